@@ -1,0 +1,96 @@
+#include "compiler/base/diagnostic.h"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+namespace parallax::base {
+namespace {
+
+constexpr std::size_t kDropped = std::numeric_limits<std::size_t>::max();
+
+auto sort_key(const Diagnostic& d) {
+  const bool located = d.range.has_value();
+  return std::tuple(located, located ? d.range->file.index() : 0U, located ? d.range->begin : 0U,
+                    static_cast<int>(d.code));
+}
+
+}  // namespace
+
+const std::vector<DiagnosticInfo>& all_diagnostics() {
+  static const std::vector<DiagnosticInfo> table = {
+#define PARALLAX_DIAGNOSTIC(name, code, severity, klass, format, help) \
+  {DiagnosticCode::name, #name, code, Severity::severity, DiagnosticClass::klass, format, help},
+#include "compiler/base/diagnostic_codes.def"
+#undef PARALLAX_DIAGNOSTIC
+  };
+  return table;
+}
+
+const DiagnosticInfo& info(DiagnosticCode code) {
+  return all_diagnostics()[static_cast<std::size_t>(code)];
+}
+
+Diagnostic* DiagnosticBuilder::entry() {
+  return index_ == kDropped ? &sink_->dropped_ : &sink_->entries_[index_];
+}
+
+DiagnosticBuilder& DiagnosticBuilder::note(SourceRange range, std::string text) {
+  entry()->notes.push_back({range, std::move(text)});
+  return *this;
+}
+
+DiagnosticBuilder& DiagnosticBuilder::note(std::string text) {
+  entry()->notes.push_back({std::nullopt, std::move(text)});
+  return *this;
+}
+
+DiagnosticBuilder& DiagnosticBuilder::fix(std::string text) {
+  entry()->fix = std::move(text);
+  return *this;
+}
+
+DiagnosticBuilder DiagnosticSink::add(DiagnosticCode code, std::optional<SourceRange> range,
+                                      std::string subject, std::string message) {
+  if (info(code).severity == Severity::kError) {
+    ++error_count_;
+    if (error_count_ > error_limit_) {
+      dropped_ = Diagnostic{};
+      return DiagnosticBuilder(*this, kDropped);
+    }
+  }
+  entries_.push_back({code, range, std::move(subject), std::move(message), {}, {}});
+  return DiagnosticBuilder(*this, entries_.size() - 1);
+}
+
+int DiagnosticSink::exit_code() const {
+  int code = 0;
+  for (const auto& entry : entries_) {
+    if (info(entry.code).severity != Severity::kError) continue;
+    const int mine = 2 + static_cast<int>(info(entry.code).klass);
+    // An internal error outranks everything: a check that disagreed must not hide behind a typo.
+    if (mine == 5) return 5;
+    code = code == 0 ? mine : std::min(code, mine);
+  }
+  return code;
+}
+
+Reported DiagnosticSink::already_reported() const {
+  PARALLAX_REQUIRE(has_errors(), "something was reported before");
+  return Reported();
+}
+
+std::vector<Diagnostic> DiagnosticSink::sorted() const {
+  auto result = entries_;
+  std::stable_sort(result.begin(), result.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return sort_key(a) < sort_key(b);
+  });
+  const auto same = [](const Diagnostic& a, const Diagnostic& b) {
+    return a.code == b.code && a.range == b.range && a.message == b.message &&
+           a.subject == b.subject;
+  };
+  result.erase(std::unique(result.begin(), result.end(), same), result.end());
+  return result;
+}
+
+}  // namespace parallax::base

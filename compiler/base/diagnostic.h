@@ -1,0 +1,123 @@
+#pragma once
+
+#include <fmt/core.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/base/result.h"
+#include "compiler/base/source_file.h"
+
+namespace parallax::base {
+
+enum class Severity : std::uint8_t { kError, kWarning };
+
+/// What an error means for the exit code of the program (docs: interface, exit codes).
+enum class DiagnosticClass : std::uint8_t {
+  kUsage,         // 2: unknown flag, missing file
+  kInput,         // 3: a model, plan, scenario or artifact has an error
+  kInconclusive,  // 4: a limit ended the run, the simulator was lost too often
+  kInternal,      // 5: an independent check disagreed
+};
+
+/// One enumerator for each line of diagnostic_codes.def.
+enum class DiagnosticCode : std::uint16_t {
+#define PARALLAX_DIAGNOSTIC(name, code, severity, klass, format, help) name,
+#include "compiler/base/diagnostic_codes.def"
+#undef PARALLAX_DIAGNOSTIC
+};
+
+struct DiagnosticInfo {
+  DiagnosticCode code;
+  std::string_view name;  // "kUnknownKey"
+  std::string_view id;    // "E5102"
+  Severity severity;
+  DiagnosticClass klass;
+  std::string_view format;  // fmt format string of the message
+  std::string_view help;    // one sentence for docs/diagnostics.md: how to mend it
+};
+const DiagnosticInfo& info(DiagnosticCode code);
+/// All codes, in the order of the registry.
+const std::vector<DiagnosticInfo>& all_diagnostics();
+
+struct DiagnosticNote {
+  std::optional<SourceRange> range;
+  std::string text;
+};
+
+struct Diagnostic {
+  DiagnosticCode code;
+  std::optional<SourceRange> range;  // where, in a text that was read
+  std::string subject;               // else: a path or another name, possibly empty
+  std::string message;
+  std::vector<DiagnosticNote> notes;
+  std::string fix;
+};
+
+class DiagnosticSink;
+
+/// Returned by DiagnosticSink::error and warning: adds notes and a fix, converts to Reported.
+class DiagnosticBuilder {
+ public:
+  DiagnosticBuilder& note(SourceRange range, std::string text);
+  DiagnosticBuilder& note(std::string text);
+  DiagnosticBuilder& fix(std::string text);
+  operator Reported() const { return Reported(); }  // NOLINT: the point of the type
+  template <typename T>
+  operator Result<T>() const {  // NOLINT: `return sink.error(...)` from any fallible function
+    return Result<T>(Reported());
+  }
+
+ private:
+  friend class DiagnosticSink;
+  DiagnosticBuilder(DiagnosticSink& sink, std::size_t index) : sink_(&sink), index_(index) {}
+  Diagnostic* entry();
+  DiagnosticSink* sink_;
+  std::size_t index_;
+};
+
+/// Collects what is wrong with the user's input; never prints. After `limit` errors further ones
+/// are counted but not kept.
+class DiagnosticSink {
+ public:
+  explicit DiagnosticSink(std::size_t error_limit = 20) : error_limit_(error_limit) {}
+
+  /// The arguments fill the format of the code's registry line.
+  template <typename... Args>
+  DiagnosticBuilder error(DiagnosticCode code, SourceRange range, const Args&... args) {
+    return add(code, range, {}, fmt::format(fmt::runtime(info(code).format), args...));
+  }
+  /// For what has no place in a text: a missing file, a process. `subject` is usually a path.
+  template <typename... Args>
+  DiagnosticBuilder error_about(DiagnosticCode code, std::string subject, const Args&... args) {
+    return add(code, std::nullopt, std::move(subject),
+               fmt::format(fmt::runtime(info(code).format), args...));
+  }
+  template <typename... Args>
+  DiagnosticBuilder warning(DiagnosticCode code, SourceRange range, const Args&... args) {
+    return error(code, range, args...);
+  }
+
+  std::size_t error_count() const { return error_count_; }
+  bool has_errors() const { return error_count_ != 0; }
+  /// The exit code that the errors ask for: the smallest class wins (usage before input ...).
+  int exit_code() const;
+  /// For a function that only knows that something below it has reported already.
+  Reported already_reported() const;
+  /// Sorted by file, offset and code, duplicates removed; those without a range come first.
+  std::vector<Diagnostic> sorted() const;
+
+ private:
+  friend class DiagnosticBuilder;
+  DiagnosticBuilder add(DiagnosticCode code, std::optional<SourceRange> range, std::string subject,
+                        std::string message);
+  std::vector<Diagnostic> entries_;
+  std::size_t error_limit_;
+  std::size_t error_count_ = 0;
+  Diagnostic dropped_{};
+};
+
+}  // namespace parallax::base

@@ -1,0 +1,68 @@
+#include "compiler/base/source_file.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "compiler/base/contract.h"
+
+namespace parallax::base {
+
+SourceFile::SourceFile(std::string name, std::string text)
+    : name_(std::move(name)), text_(std::move(text)) {
+  line_starts_.push_back(0);
+  for (std::size_t i = 0; i < text_.size(); ++i) {
+    if (text_[i] == '\n') line_starts_.push_back(static_cast<std::uint32_t>(i + 1));
+  }
+}
+
+std::string_view SourceFile::text(const SourceRange& range) const {
+  PARALLAX_REQUIRE(range.begin <= range.end && range.end <= text_.size(),
+                   "a range lies inside its file");
+  return std::string_view(text_).substr(range.begin, range.end - range.begin);
+}
+
+LineColumn SourceFile::position(std::uint32_t byte_offset) const {
+  const auto offset = std::min(byte_offset, static_cast<std::uint32_t>(text_.size()));
+  const auto after = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
+  const auto line = static_cast<std::uint32_t>(after - line_starts_.begin());
+  std::uint32_t column = 1;
+  for (std::uint32_t i = line_starts_[line - 1]; i < offset; ++i) {
+    // Continuation bytes of UTF-8 do not start a code point.
+    if ((static_cast<unsigned char>(text_[i]) & 0xC0U) != 0x80U) ++column;
+  }
+  return {line, column};
+}
+
+std::uint32_t SourceFile::line_begin(std::uint32_t number) const {
+  if (number == 0) return 0;
+  if (number > line_starts_.size()) return static_cast<std::uint32_t>(text_.size());
+  return line_starts_[number - 1];
+}
+
+std::string_view SourceFile::line(std::uint32_t number) const {
+  if (number == 0 || number > line_starts_.size()) return {};
+  const auto begin = line_starts_[number - 1];
+  auto end = number < line_starts_.size() ? line_starts_[number] - 1
+                                          : static_cast<std::uint32_t>(text_.size());
+  if (end > begin && text_[end - 1] == '\r') --end;
+  return std::string_view(text_).substr(begin, end - begin);
+}
+
+FileId SourceFiles::add(std::string name, std::string text) {
+  files_.emplace_back();
+  files_.back().emplace_back(std::move(name), std::move(text));
+  return FileId(static_cast<std::uint32_t>(files_.size() - 1));
+}
+
+const SourceFile& SourceFiles::operator[](FileId id) const {
+  PARALLAX_REQUIRE(id.index() < files_.size(), "a FileId comes from this set");
+  return files_[id.index()].front();
+}
+
+std::string SourceFiles::place(const SourceRange& range) const {
+  const auto& file = (*this)[range.file];
+  return fmt::format("{}:{}", file.name(), file.position(range.begin).line);
+}
+
+}  // namespace parallax::base

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "compiler/artifact/compiled_model.h"
+#include "compiler/ground/ground_model.h"
+
+namespace parallax::compiler {
+
+/// Turns the constraints into clauses. Top-level conjunctions are split, small disjunctions are
+/// emitted directly, everything deeper gets an auxiliary variable that is defined in the polarity
+/// in which it is used (Plaisted and Greenbaum 1986). Fills everything of the result but `plan`
+/// and `has_constraints`. Linear in the size of the formula graph.
+CompiledModel encode(const GroundModel& model);
+
+}  // namespace parallax::compiler

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "compiler/artifact/literal.h"
+
+namespace parallax::compiler {
+
+/// A node of the shared formula graph, with its sign in the low bit: negation costs nothing.
+class FormulaId {
+ public:
+  constexpr FormulaId() = default;
+  constexpr bool negated() const { return (bits_ & 1U) != 0; }
+  constexpr std::uint32_t node() const { return bits_ >> 1U; }
+  constexpr FormulaId operator~() const { return FormulaId(bits_ ^ 1U); }
+  constexpr std::uint32_t bits() const { return bits_; }
+  friend constexpr bool operator==(FormulaId, FormulaId) = default;
+  friend constexpr auto operator<=>(FormulaId, FormulaId) = default;  // order of creation
+
+ private:
+  friend class FormulaStore;
+  constexpr explicit FormulaId(std::uint32_t bits) : bits_(bits) {}
+  std::uint32_t bits_ = 0;
+};
+
+enum class FormulaNodeKind : std::uint8_t { kTrue, kAtom, kAnd };
+
+/// Hash-consed propositional formulas. The only connective is n-ary And (Or is its complement),
+/// children sorted by id and unique; constants, duplicates and complements are resolved when a
+/// node is made, and a conjunction inside a conjunction is spliced in. Equal formulas have equal
+/// ids. Atoms are SAT variables.
+class FormulaStore {
+ public:
+  FormulaStore();
+  FormulaId truth() const { return FormulaId(0); }
+  FormulaId falsity() const { return FormulaId(1); }
+  FormulaId constant(bool value) const { return value ? truth() : falsity(); }
+  FormulaId atom(std::int32_t variable);
+  FormulaId conjunction(std::vector<FormulaId> parts);
+  FormulaId disjunction(std::vector<FormulaId> parts);
+  FormulaId conjunction(FormulaId a, FormulaId b) { return conjunction(std::vector{a, b}); }
+  FormulaId disjunction(FormulaId a, FormulaId b) { return disjunction(std::vector{a, b}); }
+  FormulaId implication(FormulaId a, FormulaId b) { return disjunction(~a, b); }
+  FormulaId equivalence(FormulaId a, FormulaId b);
+
+  FormulaNodeKind kind(FormulaId id) const { return nodes_[id.node()].kind; }
+  std::int32_t variable(FormulaId id) const { return nodes_[id.node()].variable; }
+  /// Children of the And node behind `id`, whatever its sign. Valid until the next construction.
+  std::span<const FormulaId> children(FormulaId id) const;
+  std::size_t node_count() const { return nodes_.size(); }
+  /// The formula of a node in order of construction: children come before their parents.
+  FormulaId at(std::uint32_t node) const { return FormulaId(node << 1U); }
+
+ private:
+  struct Node {
+    FormulaNodeKind kind = FormulaNodeKind::kTrue;
+    std::int32_t variable = 0;
+    std::uint32_t first_child = 0, child_count = 0;
+  };
+  FormulaId intern_and(const std::vector<FormulaId>& children);
+  void grow_table();
+  std::size_t slot_of(std::span<const FormulaId> children, std::size_t hash) const;
+
+  std::vector<Node> nodes_;
+  std::vector<FormulaId> child_pool_;
+  std::vector<std::uint32_t> atom_nodes_;  // by variable; 0 means none
+  std::vector<std::uint32_t> table_;       // open addressing over And nodes; 0 means empty
+  std::size_t and_count_ = 0;
+};
+
+}  // namespace parallax::compiler

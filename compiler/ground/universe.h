@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "compiler/ground/ground_term.h"
+
+namespace parallax::compiler {
+
+struct GroundOptions {
+  std::int64_t max_domain = 1'000'000;     // ground terms of one sort
+  std::int64_t max_instances = 5'000'000;  // instances of one axiom
+};
+
+/// The domain of every sort as ground terms, in the order that fixes all numbering: subsorts in
+/// order of declaration, own constants, ranges; reified sorts by constructor, then by arguments.
+class Universe {
+ public:
+  /// Reports kDomainTooLarge at the sort, kTimeMustStartAtZero, kNoTimepoints.
+  static base::Result<Universe> make(const TypedModel& model, const GroundOptions& options,
+                                     GroundTermStore& terms, base::DiagnosticSink& sink);
+  const std::vector<GroundTermId>& domain(SortId sort) const { return domains_[sort.index()]; }
+  /// Is the term a member of the sort? Integer sorts without a range take every integer.
+  bool contains(SortId sort, GroundTermId term, const GroundTermStore& terms) const;
+  /// The last timepoint.
+  std::int32_t horizon() const { return horizon_; }
+
+ private:
+  bool add_domain(SortId sort, const TypedModel& model, const GroundOptions& options,
+                  GroundTermStore& terms, base::DiagnosticSink& sink);
+  bool add_constructors(SortId sort, const TypedModel& model, const GroundOptions& options,
+                        GroundTermStore& terms, base::DiagnosticSink& sink);
+  std::vector<std::vector<GroundTermId>> domains_;   // by sort
+  std::vector<std::vector<std::uint32_t>> members_;  // by sort: sorted term indices
+  std::vector<bool> unbounded_;                      // by sort: integers without a range
+  std::vector<std::uint8_t> state_;                  // by sort: untouched, in work, done
+  std::int32_t horizon_ = 0;
+};
+
+}  // namespace parallax::compiler

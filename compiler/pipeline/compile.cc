@@ -1,0 +1,105 @@
+#include "compiler/pipeline/compile.h"
+
+#include <set>
+#include <utility>
+
+#include "compiler/cnf/encoder.h"
+#include "compiler/ground/grounder.h"
+#include "compiler/pipeline/constraint_encoder.h"
+#include "compiler/pipeline/plan_encoder.h"
+#include "compiler/pipeline/plan_formulas.h"
+#include "compiler/plan/plan_binding.h"
+#include "compiler/plan/unroller.h"
+#include "compiler/sema/check.h"
+#include "compiler/syntax/parser.h"
+
+namespace parallax::compiler {
+namespace {
+
+/// A plan, unrolled, with its formulas checked against the model.
+struct CheckedPlan {
+  PlanGraph graph;
+  PlanFormulas formulas;
+  std::set<std::string> events;
+};
+
+base::Result<CheckedPlan> check_plan(const PlanInput& input, TypedModel& model,
+                                     base::SourceFiles& files, base::DiagnosticSink& sink) {
+  auto binding = parse_plan_binding(files, input.binding, sink);
+  if (!binding) return sink.already_reported();
+  UnrollOptions options;
+  options.entry = input.entry;
+  auto graph = unroll_plan(files, input.plan, *binding, *input.locator, options, sink);
+  if (!graph) return sink.already_reported();
+  auto formulas = check_plan_formulas(*graph, model, files, sink);
+  if (!formulas) return sink.already_reported();
+  std::set<std::string> events;
+  for (const auto& entry : binding->entries) events.insert(entry.event_symbol);
+  return CheckedPlan{*std::move(graph), *std::move(formulas), std::move(events)};
+}
+
+base::Result<std::vector<StateConstraint>> check_constraints(
+    const std::vector<base::SourceRange>& texts, TypedModel& model, const base::SourceFiles& files,
+    base::DiagnosticSink& sink) {
+  std::vector<StateConstraint> constraints;
+  bool failed = false;
+  for (const auto& text : texts) {
+    const auto parsed = parse_formula(text, files, sink);
+    if (!parsed) {
+      failed = true;
+      continue;
+    }
+    const auto checked = check_formula(model, parsed->ast, parsed->root, {}, sink);
+    if (!checked) {
+      failed = true;
+      continue;
+    }
+    constraints.push_back({*checked, text});
+  }
+  if (failed) return sink.already_reported();
+  return constraints;
+}
+
+}  // namespace
+
+base::Result<Compilation> compile_model(const CompileInput& input, base::SourceFiles& files,
+                                        base::DiagnosticSink& sink) {
+  const auto ast = load_model(input.models, input.load, files, sink);
+  if (!ast) return sink.already_reported();
+  CheckOptions check;
+  if (input.horizon) {
+    check.time_lower = 0;
+    check.time_upper = input.horizon;
+  }
+  auto typed = check_model(*ast, files, sink, check);
+  if (!typed) return sink.already_reported();
+
+  // Constraints and the plan are independent: report the errors of both.
+  auto constraints = check_constraints(input.constraints, *typed, files, sink);
+  std::optional<CheckedPlan> plan;
+  if (input.plan) {
+    auto checked = check_plan(*input.plan, *typed, files, sink);
+    if (checked) plan = *std::move(checked);
+  }
+  if (!constraints || (input.plan && !plan)) return sink.already_reported();
+
+  auto ground = ground_model(*typed, input.ground, sink);
+  if (!ground) return sink.already_reported();
+  FormulaGrounder grounder(*ground, input.ground, sink);
+  if (plan && !encode_plan(plan->graph, plan->formulas, plan->events, *ground, grounder, sink)) {
+    return sink.already_reported();
+  }
+  if (!constraints->empty() && !encode_constraints(*constraints, *ground, grounder, sink)) {
+    return sink.already_reported();
+  }
+  Compilation result;
+  result.model = encode(*ground);
+  result.model.has_constraints = !constraints->empty();
+  if (plan) {
+    result.model.plan = plan_steps(plan->graph);
+    result.plan = std::move(plan->graph);
+  }
+  return result;
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/artifact/compiled_model.h"
+#include "compiler/base/diagnostic.h"
+#include "compiler/ground/universe.h"
+#include "compiler/plan/plan_graph.h"
+#include "compiler/plan/pose_locator.h"
+#include "compiler/syntax/loader.h"
+
+namespace parallax::compiler {
+
+/// A plan and its binding table, both already read into the source files.
+struct PlanInput {
+  base::FileId plan;
+  base::FileId binding;
+  std::optional<std::string> entry;      // the function to run; the default is the last one defined
+  const PoseLocator* locator = nullptr;  // outlives the call
+};
+
+struct CompileInput {
+  std::vector<std::filesystem::path> models;
+  LoadOptions load;
+  std::optional<std::int64_t> horizon;  // replaces the range of `time`
+  std::optional<PlanInput> plan;
+  std::vector<base::SourceRange> constraints;  // state constraints, texts in the source files
+  GroundOptions ground;
+};
+
+struct Compilation {
+  CompiledModel model;
+  std::optional<PlanGraph> plan;  // the unrolled control flow, for dumps
+};
+
+/// The whole front end: load, parse, check, unroll the plan, ground, encode. Every error of every
+/// stage that could be reached is in the sink.
+base::Result<Compilation> compile_model(const CompileInput& input, base::SourceFiles& files,
+                                        base::DiagnosticSink& sink);
+
+}  // namespace parallax::compiler

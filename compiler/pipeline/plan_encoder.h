@@ -1,0 +1,28 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "compiler/artifact/compiled_model.h"
+#include "compiler/base/diagnostic.h"
+#include "compiler/ground/formula_grounder.h"
+#include "compiler/pipeline/plan_formulas.h"
+#include "compiler/plan/plan_graph.h"
+
+namespace parallax::compiler {
+
+/// Unrolls the plan's control flow together with the model. Control is at exactly one location or
+/// terminal per timepoint (atoms `L0`, `DONE`, `FAILED(class)`); at a location its event happens;
+/// whether it succeeded is decided by its success formula, never freely; a terminal is never left.
+/// Events of `plan_events` (all symbols that the binding table can produce) happen only where a
+/// location performs them; other events are the model's own.
+/// Size: reachable (location, timepoint) pairs times edges.
+base::Status encode_plan(const PlanGraph& graph, const PlanFormulas& formulas,
+                         const std::set<std::string>& plan_events, GroundModel& model,
+                         FormulaGrounder& grounder, base::DiagnosticSink& sink);
+
+/// The plan's steps for the artifact, by location number.
+std::vector<PlanStep> plan_steps(const PlanGraph& graph);
+
+}  // namespace parallax::compiler

@@ -1,0 +1,199 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "compiler/plan/builtin_call.h"
+
+namespace parallax::compiler {
+namespace {
+
+BuiltinResult same(const BuiltinCall& c) {
+  if (c.args[0] == c.args[1]) return c.values.truth();
+  const auto left = c.values.kind(c.args[0]);
+  const auto right = c.values.kind(c.args[1]);
+  const auto comparable = [](ValueKind kind) {
+    return kind == ValueKind::kModel || kind == ValueKind::kSymbol;
+  };
+  const bool asks_model = left == ValueKind::kModel || right == ValueKind::kModel;
+  if (asks_model && comparable(left) && comparable(right)) {
+    return ModelEquality{c.args[0], c.args[1]};
+  }
+  return c.values.nil();
+}
+
+BuiltinResult is_null(const BuiltinCall& c) { return c.values.boolean(c.values.is_nil(c.args[0])); }
+BuiltinResult identity(const BuiltinCall& c) { return c.args[0]; }
+BuiltinResult list(const BuiltinCall& c) { return c.values.list({c.args.begin(), c.args.end()}); }
+BuiltinResult cons(const BuiltinCall& c) { return c.values.cons(c.args[0], c.args[1]); }
+
+BuiltinResult part(const BuiltinCall& c, bool head) {
+  const auto& value = c.values[c.args[0]];
+  if (value.kind == ValueKind::kNil) return c.args[0];
+  if (value.kind != ValueKind::kCons) return c.wrong(0, "a list");
+  return head ? value.head : value.tail;
+}
+BuiltinResult car(const BuiltinCall& c) { return part(c, true); }
+BuiltinResult cdr(const BuiltinCall& c) { return part(c, false); }
+
+BuiltinResult element(const BuiltinCall& c, std::size_t list_index, std::size_t position) {
+  const auto items = c.values.elements(c.args[list_index]);
+  if (!items) return c.wrong(list_index, "a list");
+  return position < items->size() ? (*items)[position] : c.values.nil();
+}
+template <std::size_t kPosition>
+BuiltinResult nth_fixed(const BuiltinCall& c) {
+  return element(c, 0, kPosition);
+}
+
+BuiltinResult nth(const BuiltinCall& c) {
+  const auto* number = c.number(0);
+  if (number == nullptr || !number->is_integer() || number->numerator() < 0) {
+    return c.wrong(0, "a natural number");
+  }
+  return element(c, 1, static_cast<std::size_t>(number->numerator()));
+}
+
+BuiltinResult last(const BuiltinCall& c) {
+  const auto items = c.values.elements(c.args[0]);
+  if (!items) return c.wrong(0, "a list");
+  return items->empty() ? c.values.nil() : c.values.list({items->back()});
+}
+
+BuiltinResult length(const BuiltinCall& c) {
+  const auto& value = c.values[c.args[0]];
+  if (value.kind == ValueKind::kString) {
+    return c.values.number(Number(static_cast<std::int64_t>(value.text.size())));
+  }
+  const auto items = c.values.elements(c.args[0]);
+  if (!items) return c.wrong(0, "a list");
+  return c.values.number(Number(static_cast<std::int64_t>(items->size())));
+}
+
+BuiltinResult append(const BuiltinCall& c) {
+  std::vector<ValueId> all;
+  for (std::size_t i = 0; i < c.args.size(); ++i) {
+    const auto items = c.values.elements(c.args[i]);
+    if (!items) return c.wrong(i, "a list");
+    all.insert(all.end(), items->begin(), items->end());
+  }
+  return c.values.list(all);
+}
+
+BuiltinResult reverse(const BuiltinCall& c) {
+  auto items = c.values.elements(c.args[0]);
+  if (!items) return c.wrong(0, "a list");
+  std::reverse(items->begin(), items->end());
+  return c.values.list(*items);
+}
+
+/// The list of argument 1 if the search for argument 0 in it needs no model.
+std::variant<std::vector<ValueId>, BuiltinFailure> searched(const BuiltinCall& c) {
+  auto items = c.values.elements(c.args[1]);
+  if (!items) return c.wrong(1, "a list");
+  const auto is_model = [&](ValueId id) { return c.values.kind(id) == ValueKind::kModel; };
+  const bool same_only = items->size() == 1 && items->front() == c.args[0];
+  if (!same_only && (is_model(c.args[0]) || std::any_of(items->begin(), items->end(), is_model))) {
+    return BuiltinFailure{BuiltinError::kModelList, "a search among values of the model"};
+  }
+  return *std::move(items);
+}
+
+BuiltinResult member(const BuiltinCall& c) {
+  auto found = searched(c);
+  if (auto* failure = std::get_if<BuiltinFailure>(&found)) return *failure;
+  const auto& items = std::get<0>(found);
+  const auto at = std::find(items.begin(), items.end(), c.args[0]);
+  return c.values.list({at, items.end()});
+}
+
+BuiltinResult find(const BuiltinCall& c) {
+  auto found = searched(c);
+  if (auto* failure = std::get_if<BuiltinFailure>(&found)) return *failure;
+  const auto& items = std::get<0>(found);
+  const bool has = std::find(items.begin(), items.end(), c.args[0]) != items.end();
+  return has ? c.args[0] : c.values.nil();
+}
+
+BuiltinResult remove(const BuiltinCall& c) {
+  auto found = searched(c);
+  if (auto* failure = std::get_if<BuiltinFailure>(&found)) return *failure;
+  auto items = std::get<0>(found);
+  std::erase(items, c.args[0]);
+  return c.values.list(items);
+}
+
+BuiltinResult assoc(const BuiltinCall& c) {
+  const auto items = c.values.elements(c.args[1]);
+  if (!items) return c.wrong(1, "a list");
+  for (const auto item : *items) {
+    const auto& pair = c.values[item];
+    if (pair.kind == ValueKind::kCons && pair.head == c.args[0]) return item;
+  }
+  return c.values.nil();
+}
+
+/// (%expect-length list n): the list, which must have n elements.
+BuiltinResult expect_length(const BuiltinCall& c) {
+  const auto items = c.values.elements(c.args[0]);
+  if (!items) return c.wrong(0, "a list");
+  const auto wanted = c.number(1)->numerator();
+  if (static_cast<std::int64_t>(items->size()) == wanted) return c.args[0];
+  return BuiltinFailure{BuiltinError::kValue, fmt::format("the pattern has {} parts, the list {}",
+                                                          wanted, items->size())};
+}
+
+template <ValueKind kKind>
+BuiltinResult has_kind(const BuiltinCall& c) {
+  return c.values.boolean(c.values.kind(c.args[0]) == kKind);
+}
+
+BuiltinResult typep(const BuiltinCall& c) {
+  const auto& value = c.values[c.args[0]];
+  const auto& type = c.values[c.args[1]];
+  if (type.kind != ValueKind::kSymbol) return c.wrong(1, "a failure class");
+  const auto wanted = c.classes.canonical(type.text);
+  if (!wanted) return c.wrong(1, "a failure class");
+  const bool holds = value.kind == ValueKind::kFailure && c.classes.is_a(value.text, *wanted);
+  return c.values.boolean(holds);
+}
+
+constexpr BuiltinEntry kTable[] = {
+    {{"eq", 2, 2}, same},
+    {{"eql", 2, 2}, same},
+    {{"equal", 2, 2}, same},
+    {{"null", 1, 1}, is_null},
+    {{"not", 1, 1}, is_null},
+    {{"identity", 1, 1}, identity},
+    {{"list", 0, kAnyNumber}, list},
+    {{"cons", 2, 2}, cons},
+    {{"car", 1, 1}, car},
+    {{"cdr", 1, 1}, cdr},
+    {{"first", 1, 1}, car},
+    {{"rest", 1, 1}, cdr},
+    {{"second", 1, 1}, nth_fixed<1>},
+    {{"third", 1, 1}, nth_fixed<2>},
+    {{"fourth", 1, 1}, nth_fixed<3>},
+    {{"fifth", 1, 1}, nth_fixed<4>},
+    {{"nth", 2, 2}, nth},
+    {{"last", 1, 1}, last},
+    {{"length", 1, 1}, length},
+    {{"append", 0, kAnyNumber}, append},
+    {{"reverse", 1, 1}, reverse},
+    {{"member", 2, 2}, member},
+    {{"find", 2, 2}, find},
+    {{"remove", 2, 2}, remove},
+    {{"assoc", 2, 2}, assoc},
+    {{"numberp", 1, 1}, has_kind<ValueKind::kNumber>},
+    {{"stringp", 1, 1}, has_kind<ValueKind::kString>},
+    {{"typep", 2, 2}, typep},
+    {{"%expect-length", 2, 2}, expect_length},
+};
+
+}  // namespace
+
+std::span<const BuiltinEntry> list_builtins() { return kTable; }
+
+}  // namespace parallax::compiler

@@ -1,0 +1,220 @@
+#include "compiler/plan/number.h"
+
+#include <fmt/core.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace parallax::compiler {
+namespace {
+
+constexpr std::int64_t kMin = std::numeric_limits<std::int64_t>::min();
+// 10^18 is the largest power of ten in 64 bits.
+constexpr std::int64_t kMaxExponent = 18;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// The parts of a decimal token; `digits` has no point.
+struct Decimal {
+  bool negative = false;
+  std::string digits;
+  std::int64_t fraction_digits = 0;
+  std::int64_t exponent = 0;
+};
+
+bool parse_int64(std::string_view text, std::int64_t& out) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+bool read_exponent(std::string_view text, std::int64_t& exponent) {
+  std::string_view digits = text;
+  if (!digits.empty() && (digits.front() == '+' || digits.front() == '-')) digits.remove_prefix(1);
+  if (!text.empty() && text.front() == '+') text = digits;  // from_chars knows no plus sign
+  if (digits.empty()) return false;
+  for (const char c : digits) {
+    if (!is_digit(c)) return false;
+  }
+  // Whatever does not fit is far beyond the range of a double.
+  if (!parse_int64(text, exponent) || std::abs(exponent) > 100000) {
+    exponent = text.front() == '-' ? -100000 : 100000;
+  }
+  return true;
+}
+
+/// Splits `[sign] digits [. digits] [exponent]`; false if the token has another shape.
+bool split_decimal(std::string_view token, Decimal& out) {
+  if (!token.empty() && (token.front() == '+' || token.front() == '-')) {
+    out.negative = token.front() == '-';
+    token.remove_prefix(1);
+  }
+  std::size_t i = 0;
+  std::size_t whole = 0;
+  for (; i < token.size() && is_digit(token[i]); ++i, ++whole) out.digits += token[i];
+  if (i < token.size() && token[i] == '.') {
+    for (++i; i < token.size() && is_digit(token[i]); ++i, ++out.fraction_digits) {
+      out.digits += token[i];
+    }
+  }
+  if (out.digits.empty()) return false;
+  if (i == token.size()) return true;
+  constexpr std::string_view kMarkers = "eEdDfFsSlL";
+  if (kMarkers.find(token[i]) == std::string_view::npos) return false;
+  return read_exponent(token.substr(i + 1), out.exponent);
+}
+
+bool power_of_ten(std::int64_t exponent, std::int64_t& out) {
+  if (exponent < 0 || exponent > kMaxExponent) return false;
+  out = 1;
+  while (exponent-- > 0) out *= 10;
+  return true;
+}
+
+std::optional<Number> exact_decimal(const Decimal& decimal) {
+  std::int64_t mantissa = 0;
+  if (!parse_int64(decimal.digits, mantissa)) return std::nullopt;
+  if (decimal.negative) mantissa = -mantissa;
+  const std::int64_t exponent = decimal.exponent - decimal.fraction_digits;
+  std::int64_t scale = 1;
+  if (exponent < 0) {
+    if (!power_of_ten(-exponent, scale)) return std::nullopt;
+    return Number::ratio(mantissa, scale);
+  }
+  std::int64_t product = 0;
+  if (!power_of_ten(exponent, scale) || __builtin_mul_overflow(mantissa, scale, &product)) {
+    return std::nullopt;
+  }
+  return Number(product);
+}
+
+Number::Parse parse_ratio(std::string_view token, std::size_t slash, Number& out) {
+  auto top = token.substr(0, slash);
+  const auto bottom = token.substr(slash + 1);
+  const bool plus = !top.empty() && top.front() == '+';
+  if (plus) top.remove_prefix(1);
+  const auto digits = [](std::string_view text) {
+    for (const char c : text) {
+      if (!is_digit(c)) return false;
+    }
+    return !text.empty();
+  };
+  const bool minus = !plus && !top.empty() && top.front() == '-';
+  if (!digits(minus ? top.substr(1) : top) || !digits(bottom)) return Number::Parse::kNotANumber;
+  std::int64_t numerator = 0;
+  std::int64_t denominator = 0;
+  if (!parse_int64(top, numerator) || !parse_int64(bottom, denominator) || numerator == kMin) {
+    return Number::Parse::kOutOfRange;
+  }
+  const auto result = Number::ratio(numerator, denominator);
+  if (!result) return Number::Parse::kZeroDenominator;
+  out = *result;
+  return Number::Parse::kNumber;
+}
+
+}  // namespace
+
+double Number::as_double(std::int64_t integer) { return static_cast<double>(integer); }
+
+Number Number::inexact(double value) {
+  Number out;
+  out.exact_ = false;
+  out.value_ = value;
+  return out;
+}
+
+std::optional<Number> Number::ratio(std::int64_t numerator, std::int64_t denominator) {
+  if (denominator == 0) return std::nullopt;
+  if (numerator == kMin || denominator == kMin) {
+    return inexact(as_double(numerator) / as_double(denominator));
+  }
+  if (denominator < 0) {
+    numerator = -numerator;
+    denominator = -denominator;
+  }
+  const auto divisor = std::gcd(numerator, denominator);
+  Number out;
+  out.numerator_ = numerator / divisor;
+  out.denominator_ = denominator / divisor;
+  out.value_ = as_double(out.numerator_) / as_double(out.denominator_);
+  return out;
+}
+
+Number::Parse Number::parse(std::string_view token, Number& out) {
+  if (const auto slash = token.find('/'); slash != std::string_view::npos) {
+    return parse_ratio(token, slash, out);
+  }
+  Decimal decimal;
+  if (!split_decimal(token, decimal)) return Parse::kNotANumber;
+  if (const auto exact = exact_decimal(decimal)) {
+    out = *exact;
+    return Parse::kNumber;
+  }
+  const auto text = fmt::format("{}{}e{}", decimal.negative ? "-" : "", decimal.digits,
+                                decimal.exponent - decimal.fraction_digits);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  // Underflow and overflow share one error code; a tiny number is no reason to refuse a plan.
+  if (error == std::errc::result_out_of_range) {
+    const bool has_digit = decimal.digits.find_first_not_of('0') != std::string::npos;
+    const auto magnitude = decimal.exponent - decimal.fraction_digits +
+                           static_cast<std::int64_t>(decimal.digits.size());
+    if (has_digit && magnitude > 0) return Parse::kOutOfRange;
+    value = 0.0;
+  }
+  out = inexact(value);
+  return Parse::kNumber;
+}
+
+std::string Number::to_string() const {
+  if (!exact_) return fmt::format("{:.20e}", value_);  // more digits than an exact one may have
+  if (denominator_ == 1) return fmt::format("{}", numerator_);
+  return fmt::format("{}/{}", numerator_, denominator_);
+}
+
+Number operator+(const Number& a, const Number& b) {
+  std::int64_t left = 0;
+  std::int64_t right = 0;
+  std::int64_t sum = 0;
+  std::int64_t denominator = 0;
+  if (a.exact() && b.exact() && !__builtin_mul_overflow(a.numerator(), b.denominator(), &left) &&
+      !__builtin_mul_overflow(b.numerator(), a.denominator(), &right) &&
+      !__builtin_add_overflow(left, right, &sum) &&
+      !__builtin_mul_overflow(a.denominator(), b.denominator(), &denominator)) {
+    return *Number::ratio(sum, denominator);
+  }
+  return Number::inexact(a.value() + b.value());
+}
+
+Number operator-(const Number& a, const Number& b) { return a + b * Number(-1); }
+
+Number operator*(const Number& a, const Number& b) {
+  std::int64_t numerator = 0;
+  std::int64_t denominator = 0;
+  if (a.exact() && b.exact() && !__builtin_mul_overflow(a.numerator(), b.numerator(), &numerator) &&
+      !__builtin_mul_overflow(a.denominator(), b.denominator(), &denominator)) {
+    return *Number::ratio(numerator, denominator);
+  }
+  return Number::inexact(a.value() * b.value());
+}
+
+std::optional<Number> divide(const Number& a, const Number& b) {
+  if (b.exact() ? b.numerator() == 0 : b.value() == 0.0) return std::nullopt;
+  if (b.exact() && b.numerator() != kMin) {
+    return a * *Number::ratio(b.denominator(), b.numerator());
+  }
+  return Number::inexact(a.value() / b.value());
+}
+
+int compare(const Number& a, const Number& b) {
+  std::int64_t left = 0;
+  std::int64_t right = 0;
+  if (a.exact() && b.exact() && !__builtin_mul_overflow(a.numerator(), b.denominator(), &left) &&
+      !__builtin_mul_overflow(b.numerator(), a.denominator(), &right)) {
+    return left < right ? -1 : left > right ? 1 : 0;
+  }
+  return a.value() < b.value() ? -1 : a.value() > b.value() ? 1 : 0;
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,316 @@
+#include "compiler/plan/perform_resolver.h"
+
+#include <fmt/core.h>
+
+#include <utility>
+
+#include "compiler/base/suggest.h"
+
+namespace parallax::compiler {
+namespace {
+
+using base::DiagnosticCode;
+using base::Result;
+using base::SourceRange;
+
+std::optional<PerformKind> perform_kind(const Value& value) {
+  if (value.kind != ValueKind::kDesignator) return std::nullopt;
+  if (value.designator == DesignatorKind::kMotion) return PerformKind::kMotion;
+  if (value.designator == DesignatorKind::kAction) return PerformKind::kAction;
+  return std::nullopt;
+}
+
+}  // namespace
+
+/// The value of a key by role: `pose` and `location` are both the target.
+std::optional<ValueId> PerformResolver::key_value(ValueId designator, std::string_view key) const {
+  if (values_.kind(designator) != ValueKind::kDesignator) return std::nullopt;
+  for (const auto& [name, value] : values_[designator].keys) {
+    if (normalise_key(name) == key) return value;
+  }
+  return std::nullopt;
+}
+
+base::DiagnosticBuilder PerformResolver::unbound(ValueId designator, SourceRange source) {
+  const auto& value = values_[designator];
+  const auto kind = perform_kind(value);
+  if (!kind) {
+    return sink_.error(
+        DiagnosticCode::kUnboundDesignator, source,
+        fmt::format("{}: only motions and actions are performed", values_.print(designator)));
+  }
+  const auto type = values_.key(designator, "type");
+  const std::string name = type ? values_.print(*type) : "(no type)";
+  std::string keys;
+  for (const auto& [key, item] : value.keys) {
+    if (key != "type") keys += fmt::format(" :{}", normalise_key(key));
+  }
+  auto error = sink_.error(DiagnosticCode::kUnboundDesignator, source,
+                           fmt::format("{} `{}` with the keys ({})", to_string(*kind), name,
+                                       keys.empty() ? keys : keys.substr(1)));
+  for (const auto& entry : binding_.entries) {
+    if (entry.kind != *kind || entry.type != name) continue;
+    std::string wanted;
+    for (const auto& key : entry.keys) wanted += fmt::format(" :{}", key.key);
+    return error.note(entry.source, fmt::format("this binding needs the keys ({})",
+                                                wanted.empty() ? wanted : wanted.substr(1)));
+  }
+  if (const auto near = base::nearest_name(name, binding_.types(*kind), 3)) {
+    error.note(fmt::format("the nearest binding is {} `{}`", to_string(*kind), *near));
+  }
+  return error;
+}
+
+/// The first entry in written order all of whose keys the designator has.
+const BindingEntry* PerformResolver::find_entry(ValueId designator, SourceRange source) {
+  const auto kind = perform_kind(values_[designator]);
+  const auto type = values_.key(designator, "type");
+  for (const auto& entry : binding_.entries) {
+    if (!kind || !type || entry.kind != *kind || values_[*type].text != entry.type) continue;
+    bool complete = true;
+    for (const auto& key : entry.keys) complete = complete && key_value(designator, key.key);
+    if (complete) return &entry;
+  }
+  unbound(designator, source);
+  return nullptr;
+}
+
+Result<std::string> PerformResolver::model_name(const ModelNames& names, std::string_view name,
+                                                SourceRange source) {
+  if (auto found = names.find(name)) return *std::move(found);
+  auto error = sink_.error(DiagnosticCode::kUnknownPlanConstant, source, name);
+  if (const auto near = names.nearest(name)) error.fix(fmt::format("name `{}`", *near));
+  return error;
+}
+
+Result<std::string> PerformResolver::constant(ValueId id, std::string_view what,
+                                              SourceRange source) {
+  const auto& value = values_[id];
+  const auto wrong = [&](std::string_view text) -> Result<std::string> {
+    return sink_.error(DiagnosticCode::kDesignatorValue, source, "performed", what, text);
+  };
+  switch (value.kind) {
+    case ValueKind::kSymbol:
+    case ValueKind::kString:
+      return model_name(constants_, value.text, source);
+    case ValueKind::kNumber:
+      if (value.number.is_integer()) return value.number.to_string();
+      return wrong("a number that is no integer; the model has no such constants");
+    case ValueKind::kModel:
+      return graph_.values[value.model].name;
+    case ValueKind::kDesignator:
+      if (const auto name = values_.key(id, "name")) return constant(*name, what, source);
+      if (value.designator == DesignatorKind::kLocation) {
+        if (const auto object = target(id).object) return constant(*object, what, source);
+      }
+      return wrong("a designator without a name; name it, or detect it first");
+    case ValueKind::kPose:
+      return wrong("a pose where a name is needed; map it with `region`, `place` or `gaze`");
+    case ValueKind::kNil:
+      return wrong("nil");
+    case ValueKind::kCons:
+    case ValueKind::kVector:
+    case ValueKind::kQuaternion:
+    case ValueKind::kFailure:
+    case ValueKind::kCounter:
+      return wrong(values_.print(id));
+  }
+  return wrong("nothing");
+}
+
+/// Where a value points: at a pose, or at an object that it is in, on or of.
+PerformResolver::Target PerformResolver::target(ValueId id) const {
+  // Every step goes into a part of a finite value.
+  for (std::string relation;;) {
+    const auto& value = values_[id];
+    if (value.kind == ValueKind::kPose) return {value.pose, {}, {}};
+    const bool location =
+        value.kind == ValueKind::kDesignator && value.designator == DesignatorKind::kLocation;
+    if (!location) return {std::nullopt, relation, id};
+    std::optional<ValueId> next = key_value(id, "target");
+    for (const auto& [key, item] : value.keys) {
+      if (next) break;
+      if (key == "side" || key == "reachable-for" || key == "visible-for") continue;
+      relation = key;
+      next = item;
+    }
+    if (!next) return {};
+    id = *next;
+  }
+}
+
+Result<std::string> PerformResolver::mapped(std::string_view function, ValueId value,
+                                            std::string_view key, SourceRange source) {
+  const auto where = target(value);
+  if (where.pose) {
+    if (auto region = locator_.region_of(function, *where.pose)) return *std::move(region);
+    const auto& pose = *where.pose;
+    auto error = sink_.error(DiagnosticCode::kPoseOutsideRegions, source, pose.x_m, pose.y_m,
+                             pose.z_m, function);
+    if (const auto near = locator_.nearest(function, pose)) {
+      error.note(fmt::format("the nearest is `{}`, {:.4g} m away", near->region, near->distance_m));
+    }
+    return error;
+  }
+  if (!where.object) {
+    return sink_.error(DiagnosticCode::kDesignatorValue, source, "performed", key,
+                       "no pose and no object to go by");
+  }
+  const auto object = constant(*where.object, key, source);
+  if (!object) return sink_.already_reported();
+  auto region = locator_.region_of_object(function, where.relation, *object);
+  if (region) return *std::move(region);
+  return sink_.error(DiagnosticCode::kDesignatorValue, source, "performed", key,
+                     fmt::format("an object that `{}` does not map", function));
+}
+
+Result<ValueId> PerformResolver::variable(const BindingEntry& entry, ValueId designator,
+                                          std::string_view name, SourceRange source) {
+  for (const auto& key : entry.keys) {
+    if (key.variable != name) continue;
+    const auto value = key_value(designator, key.key);
+    PARALLAX_REQUIRE(value.has_value(), "the entry was chosen because its keys are there");
+    if (!key.property) return *value;
+    if (const auto property = values_.key(*value, *key.property)) return *property;
+    return sink_.error(DiagnosticCode::kDesignatorValue, source, to_string(entry.kind), key.key,
+                       fmt::format("no `{}`", *key.property));
+  }
+  PARALLAX_REQUIRE(false, "the variables of a binding were checked when it was read");
+  return designator;
+}
+
+Result<std::string> PerformResolver::substitute(const BindingEntry& entry, const Template& pieces,
+                                                ValueId designator, SourceRange source) {
+  std::string out;
+  for (const auto& piece : pieces) {
+    if (piece.kind == TemplatePiece::Kind::kText) {
+      out += piece.text;
+      continue;
+    }
+    const auto value = variable(entry, designator, piece.variable, source);
+    if (!value) return sink_.already_reported();
+    const auto text = piece.kind == TemplatePiece::Kind::kMapped
+                          ? mapped(piece.function, *value, piece.variable, source)
+                          : constant(*value, piece.variable, source);
+    if (!text) return sink_.already_reported();
+    out += *text;
+  }
+  return out;
+}
+
+void PerformResolver::flatten(const std::string& name, ValueId id, PlanArguments& out) const {
+  const auto& value = values_[id];
+  const auto pose = target(id).pose;
+  if (pose) {
+    out.emplace(name + ".x", pose->x_m);
+    out.emplace(name + ".y", pose->y_m);
+    out.emplace(name + ".z", pose->z_m);
+    out.emplace(name + ".yaw", yaw_rad(*pose));
+    return;
+  }
+  switch (value.kind) {
+    case ValueKind::kSymbol:
+      out.emplace(name, constants_.find(value.text).value_or(value.text));
+      return;
+    case ValueKind::kString:
+      out.emplace(name, value.text);
+      return;
+    case ValueKind::kNumber:
+      if (value.number.is_integer()) {
+        out.emplace(name, value.number.numerator());
+      } else {
+        out.emplace(name, value.number.value());
+      }
+      return;
+    case ValueKind::kModel:
+      out.emplace(name, graph_.values[value.model].name);
+      return;
+    case ValueKind::kDesignator:
+      for (const auto& [key, item] : value.keys) {
+        flatten(key == "name" ? name : fmt::format("{}.{}", name, key), item, out);
+      }
+      return;
+    case ValueKind::kVector:
+      out.emplace(name + ".x", value.pose.x_m);
+      out.emplace(name + ".y", value.pose.y_m);
+      out.emplace(name + ".z", value.pose.z_m);
+      return;
+    case ValueKind::kCons: {
+      std::size_t index = 0;
+      for (const auto item : values_.elements(id).value_or(std::vector<ValueId>())) {
+        flatten(fmt::format("{}.{}", name, index++), item, out);
+      }
+      return;
+    }
+    case ValueKind::kNil:
+    case ValueKind::kQuaternion:
+    case ValueKind::kPose:
+    case ValueKind::kFailure:
+    case ValueKind::kCounter:
+      return;
+  }
+}
+
+/// Every key but the type. Of two keys with one role the second keeps its own name.
+PlanArguments PerformResolver::arguments(ValueId designator) const {
+  PlanArguments out;
+  std::vector<std::string> roles;
+  for (const auto& [key, value] : values_[designator].keys) {
+    if (key == "type") continue;
+    auto role = normalise_key(key);
+    for (const auto& taken : roles) {
+      if (taken == role) role = key;
+    }
+    roles.push_back(role);
+    flatten(role, value, out);
+  }
+  return out;
+}
+
+Result<PerformResolver::Resolved> PerformResolver::resolve(ValueId designator, SourceRange source) {
+  Resolved out;
+  out.entry = find_entry(designator, source);
+  if (out.entry == nullptr) return sink_.already_reported();
+  const auto& entry = *out.entry;
+  auto& location = out.location;
+  location.source = source;
+  location.event_symbol = entry.event_symbol;
+  std::string joined;
+  for (const auto& pieces : entry.event_arguments) {
+    auto text = substitute(entry, pieces, designator, source);
+    if (!text) return sink_.already_reported();
+    joined += joined.empty() ? *text : "," + *text;
+    location.event_arguments.push_back(*std::move(text));
+  }
+  location.event = fmt::format("{}({})", entry.event_symbol, joined);
+  auto formula = substitute(entry, entry.formula, designator, source);
+  if (!formula) return sink_.already_reported();
+  location.success = {*std::move(formula), entry.time_offset, entry.formula_source};
+  const auto failure = classes_.canonical(entry.failure_class);
+  if (!failure) {
+    return sink_.error(DiagnosticCode::kUnknownFailureClass, entry.failure_source,
+                       entry.failure_class);
+  }
+  location.failure_class = *failure;
+  location.arguments = arguments(designator);
+  return out;
+}
+
+Result<std::string> PerformResolver::fluent(ValueId list, SourceRange source) {
+  const auto items = values_.elements(list);
+  if (!items || items->empty() || values_.kind(items->front()) != ValueKind::kSymbol) {
+    return sink_.error(DiagnosticCode::kPlanValue, source, "holds",
+                       "expected a quoted fluent such as '(holding left box)");
+  }
+  const auto name = model_name(fluents_, values_[items->front()].text, source);
+  if (!name) return sink_.already_reported();
+  std::string out = *name + "(";
+  for (std::size_t i = 1; i < items->size(); ++i) {
+    const auto argument = constant((*items)[i], "holds", source);
+    if (!argument) return sink_.already_reported();
+    out += (i == 1 ? "" : ",") + *argument;
+  }
+  return out + ")";
+}
+
+}  // namespace parallax::compiler

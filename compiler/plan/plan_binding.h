@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "compiler/base/result.h"
+#include "compiler/base/source_file.h"
+
+namespace parallax::compiler {
+
+/// Which designators can be performed.
+enum class PerformKind : std::uint8_t { kMotion, kAction };
+std::string_view to_string(PerformKind kind);
+
+/// The role that a designator key names: target|pose|location|goal -> target, object|for ->
+/// object, arm|gripper|left-...|right-... -> arm; every other key is its own role. Without colon.
+std::string normalise_key(std::string_view key);
+
+/// `:target ?p` binds the value of the key; `:object type ?y` one property of the designator there.
+struct BindingKey {
+  std::string key;                      // normalised, without colon
+  std::optional<std::string> property;  // "type", "name"
+  std::string variable;                 // "?p"
+};
+
+/// A piece of an event or a formula: literal text, a variable or a mapped variable (region(?p)).
+struct TemplatePiece {
+  enum class Kind : std::uint8_t { kText, kVariable, kMapped };
+  Kind kind = Kind::kText;
+  std::string text;      // kText
+  std::string variable;  // otherwise, with its question mark
+  std::string function;  // kMapped: region, place or gaze
+};
+using Template = std::vector<TemplatePiece>;
+
+/// What one kind of perform means in the model.
+struct BindingEntry {
+  PerformKind kind = PerformKind::kMotion;
+  std::string type;
+  std::vector<BindingKey> keys;
+  std::string event_symbol;
+  std::vector<Template> event_arguments;
+  Template formula;
+  std::int32_t time_offset = 0;        // @t: 0, @t+1: 1
+  std::optional<std::string> returns;  // the quantified variable of the formula that is the result
+  std::string failure_class = "simple-plan-failure";
+  base::SourceRange source;  // the entry's head
+  base::SourceRange formula_source;
+  base::SourceRange failure_source;
+};
+
+/// The binding table: what the designators of a plan mean in the model.
+struct PlanBinding {
+  std::vector<BindingEntry> entries;  // in source order, aliases expanded
+  /// The types of one kind, each once, in source order; for messages.
+  std::vector<std::string> types(PerformKind kind) const;
+};
+
+/// Reads a binding file. Blank-separated, any line layout; an entry starts with `motion` or
+/// `action`:
+///
+///     motion going (:target ?p) -> Go(region(?p))  ok: RobotAt(region(?p)) @t+1
+///                                  else navigation-pose-unreachable
+///     motion detecting (:object type ?y) -> Detect(?y)
+///         ok: exists i. TypeOf(i,?y) & Visible(i) @t
+///         returns i ; else perception-object-not-found
+///     action opening|accessing (:arm :object) -> Open(?o)  ok: IsOpen(?o) @t+1
+///     action navigating = going
+///
+/// A key without a variable binds the usual one: :target ?p, :object ?o, another its first letter.
+/// A bare `place` in the formula repeats `place(...)` of the event. Reports E4001 (syntax), E4002
+/// (bound twice), E4003 (unbound variable), E4004 (alias of nothing), several per run.
+base::Result<PlanBinding> parse_plan_binding(const base::SourceFiles& files, base::FileId file,
+                                             base::DiagnosticSink& sink);
+
+}  // namespace parallax::compiler

@@ -1,0 +1,179 @@
+#include "compiler/plan/plan_graph.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+namespace parallax::compiler {
+namespace {
+
+std::string argument_text(const PlanArgument& argument) {
+  if (const auto* text = std::get_if<std::string>(&argument)) return *text;
+  if (const auto* integer = std::get_if<std::int64_t>(&argument))
+    return fmt::format("{}", *integer);
+  return fmt::format("{}", std::get<double>(argument));
+}
+
+std::string terminal_text(const PlanTerminal& terminal, const base::SourceFiles& files) {
+  switch (terminal.kind) {
+    case TerminalKind::kDone:
+      return "DONE";
+    case TerminalKind::kFailed:
+      return fmt::format("FAILED({})", terminal.detail);
+    case TerminalKind::kBound:
+      return terminal.source
+                 ? fmt::format("BOUND({} at {})", terminal.detail, files.place(*terminal.source))
+                 : fmt::format("BOUND({})", terminal.detail);
+  }
+  return {};
+}
+
+/// A label in double quotes for Graphviz.
+std::string quoted(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+/// Nodes for the search below: locations, then branches, then terminals.
+std::size_t node_of(const PlanGraph& graph, const PlanTarget& target) {
+  if (const auto* location = std::get_if<LocationId>(&target)) return location->index();
+  if (const auto* branch = std::get_if<BranchId>(&target)) {
+    return graph.locations.size() + branch->index();
+  }
+  return graph.locations.size() + graph.branches.size() + std::get<TerminalId>(target).index();
+}
+
+std::vector<PlanTarget> successors(const PlanGraph& graph, std::size_t node) {
+  if (node < graph.locations.size()) {
+    const auto& location = graph.locations[graph.locations.id_at(node)];
+    return {location.on_success, location.on_failure};
+  }
+  node -= graph.locations.size();
+  if (node < graph.branches.size()) {
+    const auto& branch = graph.branches[graph.branches.id_at(node)];
+    return {branch.if_true, branch.if_false};
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string to_string(const PlanGraph& graph, const PlanTarget& target,
+                      const base::SourceFiles& files) {
+  if (const auto* location = std::get_if<LocationId>(&target)) {
+    return fmt::format("L{}", location->index());
+  }
+  if (const auto* branch = std::get_if<BranchId>(&target)) {
+    return fmt::format("B{}", branch->index());
+  }
+  return terminal_text(graph.terminals[std::get<TerminalId>(target)], files);
+}
+
+std::string dump_text(const PlanGraph& graph, const base::SourceFiles& files) {
+  std::string out = fmt::format("entry {}\n", to_string(graph, graph.entry, files));
+  for (std::size_t i = 0; i < graph.locations.size(); ++i) {
+    const auto& location = graph.locations[graph.locations.id_at(i)];
+    out += fmt::format("L{} {} at {}\n", i, location.event, files.place(location.source));
+    for (const auto& call : location.calls) {
+      out += fmt::format("  called at {}\n", files.place(call));
+    }
+    out += fmt::format("  ok: {} @t{}\n", location.success.formula,
+                       location.success.time_offset == 0 ? "" : "+1");
+    for (const auto& [name, value] : location.arguments) {
+      out += fmt::format("  {} = {}\n", name, argument_text(value));
+    }
+    if (location.result) {
+      out += fmt::format("  returns {}\n", graph.values[*location.result].name);
+    }
+    out += fmt::format("  success -> {}\n", to_string(graph, location.on_success, files));
+    out += fmt::format("  {} -> {}\n", location.failure_class,
+                       to_string(graph, location.on_failure, files));
+  }
+  for (std::size_t i = 0; i < graph.branches.size(); ++i) {
+    const auto& branch = graph.branches[graph.branches.id_at(i)];
+    out += fmt::format("B{} {} at {}\n  true -> {}\n  false -> {}\n", i, branch.guard,
+                       files.place(branch.source), to_string(graph, branch.if_true, files),
+                       to_string(graph, branch.if_false, files));
+  }
+  return out;
+}
+
+std::string dump_dot(const PlanGraph& graph, const base::SourceFiles& files) {
+  const auto name = [&](const PlanTarget& target) {
+    const auto* terminal = std::get_if<TerminalId>(&target);
+    return terminal != nullptr ? fmt::format("T{}", terminal->index())
+                               : to_string(graph, target, files);
+  };
+  std::string out = "digraph plan {\n  node [shape=box];\n  start [shape=point];\n";
+  for (std::size_t i = 0; i < graph.locations.size(); ++i) {
+    const auto& location = graph.locations[graph.locations.id_at(i)];
+    out += fmt::format("  L{} [label={}];\n", i,
+                       quoted(location.event + " at " + files.place(location.source)));
+  }
+  for (std::size_t i = 0; i < graph.branches.size(); ++i) {
+    const auto& branch = graph.branches[graph.branches.id_at(i)];
+    out += fmt::format("  B{} [shape=diamond, label={}];\n", i, quoted(branch.guard));
+  }
+  for (std::size_t i = 0; i < graph.terminals.size(); ++i) {
+    const auto& terminal = graph.terminals[graph.terminals.id_at(i)];
+    out +=
+        fmt::format("  T{} [shape=oval, label={}];\n", i, quoted(terminal_text(terminal, files)));
+  }
+  out += fmt::format("  start -> {};\n", name(graph.entry));
+  for (std::size_t i = 0; i < graph.locations.size(); ++i) {
+    const auto& location = graph.locations[graph.locations.id_at(i)];
+    out += fmt::format("  L{} -> {};\n", i, name(location.on_success));
+    out += fmt::format("  L{} -> {} [style=dashed, label={}];\n", i, name(location.on_failure),
+                       quoted(location.failure_class));
+  }
+  for (std::size_t i = 0; i < graph.branches.size(); ++i) {
+    const auto& branch = graph.branches[graph.branches.id_at(i)];
+    out += fmt::format("  B{} -> {} [label=true];\n", i, name(branch.if_true));
+    out += fmt::format("  B{} -> {} [label=false];\n", i, name(branch.if_false));
+  }
+  return out + "}\n";
+}
+
+std::optional<std::int64_t> longest_path(const PlanGraph& graph) {
+  constexpr std::int64_t kUnseen = -2;
+  constexpr std::int64_t kOpen = -1;
+  const auto count = graph.locations.size() + graph.branches.size() + graph.terminals.size();
+  std::vector<std::int64_t> longest(count, kUnseen);
+  // Depth first without recursion: a node is finished once all its successors are.
+  std::vector<std::size_t> open = {node_of(graph, graph.entry)};
+  while (!open.empty()) {
+    const auto node = open.back();
+    const bool first = longest[node] == kUnseen;
+    if (!first && longest[node] != kOpen) {
+      open.pop_back();
+      continue;
+    }
+    std::int64_t best = 0;
+    const auto next = successors(graph, node);
+    for (const auto& target : next) {
+      const auto index = node_of(graph, target);
+      if (longest[index] == kOpen && first) return std::nullopt;
+      if (longest[index] == kUnseen) open.push_back(index);
+      best = std::max(best, longest[index]);
+    }
+    if (first) {
+      longest[node] = kOpen;
+      // A location that comes straight back to itself was not open yet when it was looked at.
+      for (const auto& target : next) {
+        if (node_of(graph, target) == node) return std::nullopt;
+      }
+      continue;
+    }
+    longest[node] = best + (node < graph.locations.size() ? 1 : 0);
+    open.pop_back();
+  }
+  return longest[node_of(graph, graph.entry)];
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "compiler/base/id.h"
+#include "compiler/base/source_file.h"
+
+namespace parallax::compiler {
+
+/// The control flow of a plan, compressed so that only its performing locations remain. It knows
+/// nothing of Lisp: another plan language can produce the same value. Only a location advances
+/// time; branches are silent, and no cycle consists of branches alone. Cycles through locations
+/// are possible (a `loop` that comes back to the same state).
+struct LocationTag {
+  static constexpr bool kOrdered = true;  // order of discovery: success before failure, depth first
+};
+struct TerminalTag {
+  static constexpr bool kOrdered = true;  // order of discovery
+};
+struct BranchTag {
+  static constexpr bool kOrdered = true;  // order of discovery
+};
+struct ModelValueTag {
+  static constexpr bool kOrdered = true;  // order of the locations that bind them
+};
+using LocationId = base::Id<LocationTag>;
+using TerminalId = base::Id<TerminalTag>;
+using BranchId = base::Id<BranchTag>;
+using ModelValueId = base::Id<ModelValueTag>;
+
+/// Where control goes next.
+using PlanTarget = std::variant<LocationId, TerminalId, BranchId>;
+
+enum class TerminalKind : std::uint8_t {
+  kDone,    // the plan is over
+  kFailed,  // a failure that nobody handled; the prefix is a valid execution all the same
+  kBound,   // unrolling was cut here: nothing is known of what follows
+};
+
+/// One terminal per kind and detail (kBound: and form).
+struct PlanTerminal {
+  TerminalKind kind = TerminalKind::kDone;
+  std::string detail;                       // kFailed: the failure class; kBound: the form's name
+  std::optional<base::SourceRange> source;  // kBound: the form that was cut
+};
+
+/// What tells success from failure of a perform at timepoint t. The outcome is never free:
+/// control goes on at t+1 along `on_success` where the formula holds, along `on_failure` elsewhere.
+struct SuccessCondition {
+  /// Text in the binding file's formula syntax, all variables and mapping functions substituted:
+  /// atoms are fluents or predicates over constants (`RobotAt(r2)`), connectives as in a model.
+  std::string formula;
+  std::int32_t time_offset = 0;  // evaluated at t (0) or at t+1 (1)
+  base::SourceRange source;      // the formula in the binding file
+};
+
+/// A designator's argument for a controller: metres, radians, counts or names.
+using PlanArgument = std::variant<double, std::int64_t, std::string>;
+/// Sorted by name. A pose under key `target` gives target.x, target.y, target.z [m] and target.yaw
+/// [rad]; a named object under `object` gives `object`.
+using PlanArguments = std::map<std::string, PlanArgument>;
+
+/// One `perform`, reached in one particular state of the plan's variables.
+struct PlanLocation {
+  base::SourceRange source;                  // the perform form
+  std::vector<base::SourceRange> calls;      // the calls that lead to it, outermost first
+  std::string event;                         // "Go(r2)": no blanks
+  std::string event_symbol;                  // "Go"
+  std::vector<std::string> event_arguments;  // {"r2"}; a model value is written as its name, "?i1"
+  SuccessCondition success;
+  std::string failure_class;  // the class of the failure edge
+  PlanArguments arguments;
+  std::optional<ModelValueId> result;  // bound when it succeeds
+  PlanTarget on_success;
+  PlanTarget on_failure;
+};
+
+/// A value that only the model determines: what a location's success formula quantifies over.
+/// In a cycle it is what the location found last.
+struct ModelValue {
+  std::string name;      // unique, starts with `?`: "?i1"
+  std::string variable;  // the quantified variable of the success formula: "i"
+  LocationId bound_by;
+};
+
+/// A silent decision by the model's state at the timepoint at which control passes through.
+struct PlanBranch {
+  std::string guard;  // formula text as in SuccessCondition, evaluated at the current timepoint
+  base::SourceRange source;
+  PlanTarget if_true;
+  PlanTarget if_false;
+};
+
+struct PlanGraph {
+  PlanTarget entry = TerminalId(0);  // an empty plan goes straight to a terminal
+  base::Store<LocationId, PlanLocation> locations;
+  base::Store<TerminalId, PlanTerminal> terminals;
+  base::Store<BranchId, PlanBranch> branches;
+  base::Store<ModelValueId, ModelValue> values;
+};
+
+/// "L3", "B1", "DONE", "FAILED(navigation-pose-unreachable)", "BOUND(loop at plan.lisp:12)".
+std::string to_string(const PlanGraph& graph, const PlanTarget& target,
+                      const base::SourceFiles& files);
+
+/// One paragraph a location, in order of ids, with source places. Ends with a newline.
+std::string dump_text(const PlanGraph& graph, const base::SourceFiles& files);
+
+/// A picture for Graphviz: solid edges for success, dashed ones for failure.
+std::string dump_dot(const PlanGraph& graph, const base::SourceFiles& files);
+
+/// The number of performs on the longest way from the entry to a terminal; none if a cycle makes
+/// it unlimited. Linear in the graph's size.
+std::optional<std::int64_t> longest_path(const PlanGraph& graph);
+
+}  // namespace parallax::compiler

@@ -1,0 +1,279 @@
+#include "compiler/plan/plan_machine.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace parallax::compiler {
+namespace {
+
+using base::DiagnosticCode;
+
+ValueId pop(PlanState& state) {
+  const auto value = state.stack.back();
+  state.stack.pop_back();
+  return value;
+}
+
+}  // namespace
+
+std::string PlanMachine::name_at(DatumId form) const {
+  if (const auto head = data_.head(form)) return std::string(*head);
+  return data_.is_list(form) ? std::string("(...)") : print_datum(data_, form);
+}
+
+StopError PlanMachine::error(DiagnosticCode code, const PlanInstruction& at, std::string text) {
+  sink_.error(code, data_.source(at.source), name_at(at.source), text);
+  return {};
+}
+
+PlanState PlanMachine::start() const {
+  PlanState state;
+  state.frames.push_back({});
+  state.frames.back().unit = code_.main;
+  return state;
+}
+
+bool PlanMachine::run_definitions() {
+  globals_.assign(code_.globals.size(), std::nullopt);
+  PlanState state = start();
+  state.frames.back().unit = code_.definitions;
+  const auto stop = run(state);
+  if (const auto* perform = std::get_if<StopPerform>(&stop)) {
+    sink_.error(DiagnosticCode::kUnsupportedPlanForm, data_.source(perform->form), "perform",
+                "the value of a global constant cannot perform");
+  } else if (const auto* question = std::get_if<StopQuestion>(&stop)) {
+    sink_.error(DiagnosticCode::kUnsupportedPlanForm, data_.source(question->form),
+                name_at(question->form), "the value of a global constant cannot ask the model");
+  } else if (const auto* failed = std::get_if<StopFailed>(&stop)) {
+    sink_.error(
+        DiagnosticCode::kUnsupportedPlanForm, data_.source(code_.globals[0].source), "fail",
+        fmt::format("the value of a global constant fails with `{}`", failed->failure_class));
+  } else if (const auto* bound = std::get_if<StopBound>(&stop)) {
+    sink_.error(DiagnosticCode::kUnsupportedPlanForm, data_.source(bound->at), bound->form,
+                "the loop does not end, in the value of a global constant");
+  }
+  return std::holds_alternative<StopDone>(stop);
+}
+
+PlanStop PlanMachine::run(PlanState& state) {
+  for (;;) {
+    auto& frame = state.frames.back();
+    const auto& instruction = code_.units[frame.unit].code[frame.pc];
+    if (values_.full() || ++steps_ + values_.elements_read() > limits_.max_steps) {
+      const auto limit =
+          values_.full() ? static_cast<std::int64_t>(kMaxPlanValues) : limits_.max_steps;
+      sink_.error(DiagnosticCode::kUnrollLimit, data_.source(instruction.source), limit,
+                  values_.full() ? "values" : "steps");
+      return StopError{};
+    }
+    ++frame.pc;
+    if (auto stop = execute(state, instruction)) return *std::move(stop);
+  }
+}
+
+std::uint32_t PlanMachine::linked(const PlanState& state, std::uint32_t level) const {
+  auto frame = static_cast<std::uint32_t>(state.frames.size() - 1);
+  while (level-- > 0) frame = state.frames[frame].link;
+  return frame;
+}
+
+std::size_t PlanMachine::place(const PlanState& state, const PlanInstruction& instruction) const {
+  return state.frames[linked(state, instruction.a)].base + std::size_t{instruction.b};
+}
+
+PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& instruction) {
+  auto& stack = state.stack;
+  switch (instruction.op) {
+    case PlanOp::kConstant:
+      stack.push_back(ValueId(instruction.a));
+      return {};
+    case PlanOp::kLoad:
+      stack.push_back(stack[place(state, instruction)]);
+      return {};
+    case PlanOp::kStore:
+      stack[place(state, instruction)] = stack.back();
+      return {};
+    case PlanOp::kLoadGlobal:
+      return load_global(state, instruction);
+    case PlanOp::kStoreGlobal:
+      globals_[instruction.a] = pop(state);
+      return {};
+    case PlanOp::kPop:
+      stack.pop_back();
+      return {};
+    case PlanOp::kSqueeze:
+      stack.erase(stack.end() - 1 - static_cast<std::ptrdiff_t>(instruction.a), stack.end() - 1);
+      return {};
+    case PlanOp::kJump:
+      state.frames.back().pc = instruction.a;
+      return {};
+    case PlanOp::kJumpIfNil:
+      if (values_.is_nil(pop(state))) state.frames.back().pc = instruction.a;
+      return {};
+    case PlanOp::kBuiltin:
+      return builtin(state, instruction);
+    case PlanOp::kHolds:
+      return StopQuestion{pop(state), instruction.source};
+    case PlanOp::kDesignator: {
+      Value value;
+      value.kind = ValueKind::kDesignator;
+      value.designator = static_cast<DesignatorKind>(instruction.a);
+      stack.push_back(values_.intern(std::move(value)));
+      return {};
+    }
+    case PlanOp::kAddKey:
+      add_key(state, instruction);
+      return {};
+    case PlanOp::kPerform:
+      return StopPerform{pop(state), instruction.source};
+    case PlanOp::kExpectList:
+      return expect_list(state, instruction);
+    case PlanOp::kCall:
+    case PlanOp::kCallLocal:
+      return call(state, instruction);
+    case PlanOp::kReturn:
+      return leave(state);
+    case PlanOp::kExit: {
+      const auto carried = pop(state);
+      const auto frame = linked(state, instruction.a);
+      return unwind(state, {PendingKind::kExit, frame, instruction.b, carried});
+    }
+    case PlanOp::kTick:
+      return tick(state, instruction);
+    case PlanOp::kDone:
+      return StopDone{};
+    case PlanOp::kPushHandlers:
+    case PlanOp::kPushCleanup:
+      push_guard(state, instruction);
+      return {};
+    case PlanOp::kPopGuard:
+      state.guards.pop_back();
+      return {};
+    case PlanOp::kRunCleanup:
+      run_cleanup(state, instruction);
+      return {};
+    case PlanOp::kEndHandler:
+      return end_handler(state);
+    case PlanOp::kEndCleanup:
+      return end_cleanup(state);
+    case PlanOp::kFail:
+      return raise(state, values_.failure(code_.strings[instruction.a]));
+    case PlanOp::kFailValue:
+      return fail_value(state, instruction);
+  }
+  return StopError{};
+}
+
+PlanMachine::Step PlanMachine::load_global(PlanState& state, const PlanInstruction& instruction) {
+  if (const auto value = globals_[instruction.a]) {
+    state.stack.push_back(*value);
+    return {};
+  }
+  const auto& global = code_.globals[instruction.a];
+  sink_.error(DiagnosticCode::kUnboundPlanVariable, data_.source(instruction.source), global.name)
+      .note(data_.source(global.source), "it is defined only here");
+  return StopError{};
+}
+
+PlanMachine::Step PlanMachine::expect_list(const PlanState& state,
+                                           const PlanInstruction& instruction) {
+  const auto top = state.stack.back();
+  if (values_.kind(top) == ValueKind::kModel) {
+    sink_.error(DiagnosticCode::kModelList, data_.source(instruction.source),
+                name_at(instruction.source));
+    return StopError{};
+  }
+  if (values_.elements(top)) return {};
+  return error(DiagnosticCode::kPlanValue, instruction,
+               fmt::format("expected a list, not {}", values_.print(top)));
+}
+
+void PlanMachine::add_key(PlanState& state, const PlanInstruction& instruction) {
+  const auto item = pop(state);
+  Value value = values_[state.stack.back()];
+  value.keys.emplace_back(code_.strings[instruction.a], item);
+  state.stack.back() = values_.intern(std::move(value));
+}
+
+PlanMachine::Step PlanMachine::builtin(PlanState& state, const PlanInstruction& instruction) {
+  const auto count = static_cast<std::ptrdiff_t>(instruction.b);
+  const std::vector<ValueId> arguments(state.stack.end() - count, state.stack.end());
+  state.stack.resize(state.stack.size() - arguments.size());
+  auto result = call_builtin(instruction.a, arguments, code_.classes, values_);
+  if (const auto* value = std::get_if<ValueId>(&result)) {
+    state.stack.push_back(*value);
+    return {};
+  }
+  if (const auto* equality = std::get_if<ModelEquality>(&result)) {
+    return StopQuestion{*equality, instruction.source};
+  }
+  const auto& failure = std::get<BuiltinFailure>(result);
+  const auto name = plan_builtins()[instruction.a].name;
+  const auto source = data_.source(instruction.source);
+  switch (failure.kind) {
+    case BuiltinError::kValue:
+      sink_.error(DiagnosticCode::kPlanValue, source,
+                  name.front() == '%' ? name_at(instruction.source) : std::string(name),
+                  failure.text);
+      break;
+    case BuiltinError::kModelComparison:
+      sink_.error(DiagnosticCode::kModelComparison, source, name);
+      break;
+    case BuiltinError::kModelList:
+      sink_.error(DiagnosticCode::kModelList, source, name);
+      break;
+  }
+  return StopError{};
+}
+
+/// The end of a unit: its result replaces its variables.
+PlanMachine::Step PlanMachine::leave(PlanState& state) {
+  const auto result = pop(state);
+  const auto base = state.frames.back().base;
+  state.frames.pop_back();
+  state.stack.resize(base);
+  state.stack.push_back(result);
+  return {};
+}
+
+PlanMachine::Step PlanMachine::call(PlanState& state, const PlanInstruction& instruction) {
+  const auto& unit = code_.units[instruction.a];
+  std::uint32_t depth = 0;
+  const PlanFrame* outermost = nullptr;
+  // What lies between a handler and the frame it belongs to has failed and is not active any more.
+  for (auto f = static_cast<std::uint32_t>(state.frames.size()); f-- > 0;) {
+    const auto& active = state.frames[f];
+    if (active.unit == instruction.a) {
+      outermost = &active;
+      ++depth;
+    }
+    if (active.kind == FrameKind::kHandler) f = active.link + 1;
+  }
+  if (depth >= limits_.max_call_depth) {
+    if (outermost->performs != state.performs) return StopBound{unit.name, instruction.source};
+    sink_.error(DiagnosticCode::kPlanRecursion, data_.source(instruction.source), unit.name,
+                limits_.max_call_depth);
+    return StopError{};
+  }
+  PlanFrame frame;
+  frame.unit = instruction.a;
+  frame.link = instruction.op == PlanOp::kCallLocal ? linked(state, instruction.b) : 0;
+  frame.base = static_cast<std::uint32_t>(state.stack.size()) - unit.parameters;
+  frame.guard_base = static_cast<std::uint32_t>(state.guards.size());
+  frame.performs = state.performs;
+  state.frames.push_back(frame);
+  return {};
+}
+
+/// Counts an iteration of a loop that nothing static ends.
+PlanMachine::Step PlanMachine::tick(PlanState& state, const PlanInstruction& instruction) {
+  auto& counter = state.stack[state.frames.back().base + std::size_t{instruction.a}];
+  const auto count = values_[counter].number.numerator() + 1;
+  if (count > limits_.max_loop) return StopBound{name_at(instruction.source), instruction.source};
+  counter = values_.counter(count);
+  return {};
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compiler/plan/plan_code.h"
+#include "compiler/plan/plan_value.h"
+
+namespace parallax::compiler {
+
+enum class FrameKind : std::uint8_t { kCall, kHandler, kCleanup };
+enum class PendingKind : std::uint8_t { kNone, kExit, kFail };
+
+/// What a clean-up interrupted: a jump out of the frames above `frame`, or the end of the plan.
+struct Pending {
+  PendingKind kind = PendingKind::kNone;
+  std::uint32_t frame = 0;
+  std::uint32_t exit = 0;
+  ValueId value;  // kExit: carried along; kFail: the failure
+};
+
+/// One activation of a unit. Everything is an index, so equal activations compare equal.
+struct PlanFrame {
+  std::uint32_t unit = 0;
+  std::uint32_t pc = 0;
+  std::uint32_t link = 0;        // the frame of the unit around this one in the source
+  std::uint32_t base = 0;        // where its variables start on the stack
+  std::uint32_t guard_base = 0;  // guards below belong to other frames
+  FrameKind kind = FrameKind::kCall;
+  std::uint32_t skip_to = 0;  // kHandler: guards from here up to guard_base are asleep
+  ValueId failure;            // kHandler: what it handles
+  Pending pending;            // kCleanup
+  // Not part of the state's identity: performs on the way here, when the frame was made.
+  std::uint32_t performs = 0;
+};
+
+/// An active with-failure-handling or unwind-protect.
+struct PlanGuard {
+  bool cleanup = false;
+  std::uint32_t index = 0;  // the handler table, or the clean-up's unit
+  std::uint32_t frame = 0;
+  std::uint32_t height = 0;  // of the stack when it began
+};
+
+/// All that the rest of an execution depends on.
+struct PlanState {
+  std::vector<PlanFrame> frames;
+  std::vector<PlanGuard> guards;
+  std::vector<ValueId> stack;
+  std::uint32_t performs = 0;  // on the path so far; not part of the state's identity
+};
+
+/// Equal for equal states. Without `counters`, states that differ only in how often an endless loop
+/// has run are equal: coming back to such a state is a cycle, not news.
+std::vector<std::uint32_t> state_key(const PlanState& state, const ValueStore& values,
+                                     bool counters);
+
+}  // namespace parallax::compiler

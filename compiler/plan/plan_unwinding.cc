@@ -1,0 +1,143 @@
+// Failures, handlers and clean-ups. A handler runs on top of the failed body, as in CRAM, where
+// conditions are signalled before the stack is unwound: it sees the outer handlers only, and the
+// clean-ups of the body run once it has decided.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "compiler/plan/plan_machine.h"
+
+namespace parallax::compiler {
+namespace {
+
+using base::DiagnosticCode;
+
+PlanFrame frame_on_top(const PlanState& state, std::uint32_t unit, std::uint32_t link,
+                       FrameKind kind) {
+  PlanFrame frame;
+  frame.unit = unit;
+  frame.link = link;
+  frame.base = static_cast<std::uint32_t>(state.stack.size());
+  frame.guard_base = static_cast<std::uint32_t>(state.guards.size());
+  frame.kind = kind;
+  frame.performs = state.performs;
+  return frame;
+}
+
+/// Drops the top frame with its variables and guards.
+PlanFrame drop_frame(PlanState& state) {
+  const auto frame = state.frames.back();
+  state.frames.pop_back();
+  state.stack.resize(frame.base);
+  state.guards.resize(frame.guard_base);
+  return frame;
+}
+
+/// Once a handler runs, the body that failed never goes on; all that is left of it are its
+/// clean-ups. Without the rest, failures of different performs reach their handler in one state.
+void drop_abandoned(PlanState& state, std::size_t handling) {
+  auto keep = state.guards.size() - 1;
+  while (keep > handling && !state.guards[keep].cleanup) --keep;
+  const auto guard = state.guards[keep];
+  state.guards.resize(keep + 1);
+  state.frames.resize(std::size_t{guard.frame} + 1);
+  state.frames.back().pc = 0;  // it goes on at an exit or not at all
+  state.stack.resize(guard.height);
+}
+
+}  // namespace
+
+void PlanMachine::push_guard(PlanState& state, const PlanInstruction& instruction) {
+  const auto frame = static_cast<std::uint32_t>(state.frames.size() - 1);
+  const auto height = static_cast<std::uint32_t>(state.stack.size());
+  const bool cleanup = instruction.op == PlanOp::kPushCleanup;
+  state.guards.push_back({cleanup, instruction.a, frame, height});
+}
+
+void PlanMachine::run_cleanup(PlanState& state, const PlanInstruction& instruction) {
+  const auto frame = static_cast<std::uint32_t>(state.frames.size() - 1);
+  state.frames.push_back(frame_on_top(state, instruction.a, frame, FrameKind::kCleanup));
+}
+
+/// The handler fell through: the failure goes on to the next outer handler.
+PlanMachine::Step PlanMachine::end_handler(PlanState& state) {
+  const auto handler = drop_frame(state);
+  return search(state, handler.failure, handler.skip_to);
+}
+
+PlanMachine::Step PlanMachine::end_cleanup(PlanState& state) {
+  const auto cleanup = drop_frame(state);
+  if (cleanup.pending.kind == PendingKind::kNone) return {};
+  return unwind(state, cleanup.pending);
+}
+
+PlanMachine::Step PlanMachine::fail_value(PlanState& state, const PlanInstruction& instruction) {
+  const auto id = state.stack.back();
+  state.stack.pop_back();
+  const auto& value = values_[id];
+  if (value.kind == ValueKind::kFailure) return raise(state, id);
+  const auto known =
+      value.kind == ValueKind::kSymbol ? code_.classes.canonical(value.text) : std::nullopt;
+  if (known) return raise(state, values_.failure(*known));
+  sink_.error(DiagnosticCode::kUnknownFailureClass, data_.source(instruction.source),
+              values_.print(id));
+  return StopError{};
+}
+
+std::optional<PlanStop> PlanMachine::raise(PlanState& state, ValueId failure) {
+  return search(state, failure, state.guards.size());
+}
+
+/// Looks for a handler among the guards below `limit`, innermost first. A frame that is handling a
+/// failure hides the guards between the one it belongs to and its own.
+PlanMachine::Step PlanMachine::search(PlanState& state, ValueId failure, std::size_t limit) {
+  for (auto f = state.frames.size(); f-- > 0;) {
+    const auto& frame = state.frames[f];
+    for (auto g = limit; g-- > frame.guard_base;) {
+      const auto guard = state.guards[g];
+      if (guard.cleanup) continue;
+      for (const auto& clause : code_.handlers[guard.index]) {
+        if (!code_.classes.is_a(values_[failure].text, clause.failure_class)) continue;
+        drop_abandoned(state, g);
+        auto handler = frame_on_top(state, clause.unit, guard.frame, FrameKind::kHandler);
+        handler.skip_to = static_cast<std::uint32_t>(g);
+        handler.failure = failure;
+        state.frames.push_back(handler);
+        state.stack.push_back(failure);
+        return {};
+      }
+    }
+    limit = std::min(limit, std::size_t{frame.guard_base});
+    if (frame.kind == FrameKind::kHandler) limit = std::min(limit, std::size_t{frame.skip_to});
+  }
+  return unwind(state, {PendingKind::kFail, 0, 0, failure});
+}
+
+/// Leaves frames and guards up to the target, clean-up by clean-up.
+PlanMachine::Step PlanMachine::unwind(PlanState& state, Pending pending) {
+  const bool exits = pending.kind == PendingKind::kExit;
+  const auto target =
+      exits ? state.frames[pending.frame].guard_base + code_.exits[pending.exit].guards : 0U;
+  while (state.guards.size() > target) {
+    const auto guard = state.guards.back();
+    state.guards.pop_back();
+    if (!guard.cleanup) continue;
+    state.frames.resize(std::size_t{guard.frame} + 1);
+    state.stack.resize(guard.height);
+    auto cleanup = frame_on_top(state, guard.index, guard.frame, FrameKind::kCleanup);
+    cleanup.pending = pending;
+    state.frames.push_back(cleanup);
+    return {};
+  }
+  if (!exits) return StopFailed{values_[pending.value].text};
+  state.frames.resize(std::size_t{pending.frame} + 1);
+  auto& frame = state.frames.back();
+  const auto& exit = code_.exits[pending.exit];
+  state.stack.resize(frame.base + std::size_t{exit.height});
+  state.stack.push_back(pending.value);
+  frame.pc = exit.pc;
+  return {};
+}
+
+}  // namespace parallax::compiler

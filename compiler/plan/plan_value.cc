@@ -1,0 +1,199 @@
+#include "compiler/plan/plan_value.h"
+
+#include <fmt/core.h>
+
+namespace parallax::compiler {
+namespace {
+
+void append(std::string& out, std::string_view text) {
+  out += fmt::format("{}:{};", text.size(), text);
+}
+
+void append(std::string& out, const Pose& p) {
+  append(out, p.frame);
+  for (const double part : {p.x_m, p.y_m, p.z_m, p.qx, p.qy, p.qz, p.qw}) {
+    out += fmt::format("{:a};", part);  // hexadecimal: exact
+  }
+}
+
+/// A text that is equal for equal values only.
+std::string fingerprint(const Value& value) {
+  std::string out = fmt::format("{} ", static_cast<int>(value.kind));
+  switch (value.kind) {
+    case ValueKind::kNil:
+      break;
+    case ValueKind::kSymbol:
+    case ValueKind::kString:
+    case ValueKind::kFailure:
+      append(out, value.text);
+      break;
+    case ValueKind::kNumber:
+    case ValueKind::kCounter:
+      out += value.number.exact() ? value.number.to_string()
+                                  : fmt::format("{:a}", value.number.value());
+      break;
+    case ValueKind::kCons:
+      out += fmt::format("{} {}", value.head.index(), value.tail.index());
+      break;
+    case ValueKind::kVector:
+    case ValueKind::kQuaternion:
+    case ValueKind::kPose:
+      append(out, value.pose);
+      break;
+    case ValueKind::kDesignator:
+      out += fmt::format("{} ", static_cast<int>(value.designator));
+      for (const auto& [key, item] : value.keys) {
+        append(out, key);
+        out += fmt::format("{} ", item.index());
+      }
+      break;
+    case ValueKind::kModel:
+      out += fmt::format("{}", value.model.index());
+      break;
+  }
+  return out;
+}
+
+std::string print_number(const Number& number) {
+  return number.is_integer() ? number.to_string() : fmt::format("{}", number.value());
+}
+
+}  // namespace
+
+std::string_view to_string(DesignatorKind kind) {
+  switch (kind) {
+    case DesignatorKind::kMotion:
+      return "motion";
+    case DesignatorKind::kAction:
+      return "action";
+    case DesignatorKind::kObject:
+      return "object";
+    case DesignatorKind::kLocation:
+      return "location";
+    case DesignatorKind::kAllObjects:
+      return "all objects";
+  }
+  return "";
+}
+
+ValueStore::ValueStore() {
+  intern({});
+  truth_ = symbol("t");
+}
+
+ValueId ValueStore::intern(Value value) {
+  auto text = fingerprint(value);
+  const auto found = ids_.find(text);
+  if (found != ids_.end()) return found->second;
+  const auto id = values_.add(std::move(value));
+  ids_.emplace(std::move(text), id);
+  return id;
+}
+
+ValueId ValueStore::symbol(std::string_view name) {
+  Value value;
+  value.kind = ValueKind::kSymbol;
+  value.text = name;
+  return intern(std::move(value));
+}
+
+ValueId ValueStore::string(std::string_view text) {
+  Value value;
+  value.kind = ValueKind::kString;
+  value.text = text;
+  return intern(std::move(value));
+}
+
+ValueId ValueStore::number(const Number& number) {
+  Value value;
+  value.kind = ValueKind::kNumber;
+  value.number = number;
+  return intern(std::move(value));
+}
+
+ValueId ValueStore::counter(std::int64_t count) {
+  Value value;
+  value.kind = ValueKind::kCounter;
+  value.number = Number(count);
+  return intern(std::move(value));
+}
+
+ValueId ValueStore::cons(ValueId head, ValueId tail) {
+  Value value;
+  value.kind = ValueKind::kCons;
+  value.head = head;
+  value.tail = tail;
+  return intern(std::move(value));
+}
+
+ValueId ValueStore::list(const std::vector<ValueId>& items) {
+  auto out = nil();
+  for (auto item = items.rbegin(); item != items.rend() && !full(); ++item) out = cons(*item, out);
+  return out;
+}
+
+ValueId ValueStore::failure(std::string_view failure_class) {
+  Value value;
+  value.kind = ValueKind::kFailure;
+  value.text = failure_class;
+  return intern(std::move(value));
+}
+
+ValueId ValueStore::model(ModelValueId id) {
+  Value value;
+  value.kind = ValueKind::kModel;
+  value.model = id;
+  return intern(std::move(value));
+}
+
+std::optional<std::vector<ValueId>> ValueStore::elements(ValueId id) const {
+  std::vector<ValueId> out;
+  while (kind(id) == ValueKind::kCons) {
+    out.push_back(values_[id].head);
+    id = values_[id].tail;
+  }
+  elements_read_ += static_cast<std::int64_t>(out.size());
+  if (!is_nil(id)) return std::nullopt;
+  return out;
+}
+
+std::optional<ValueId> ValueStore::key(ValueId designator, std::string_view name) const {
+  if (kind(designator) != ValueKind::kDesignator) return std::nullopt;
+  for (const auto& [key, value] : values_[designator].keys) {
+    if (key == name) return value;
+  }
+  return std::nullopt;
+}
+
+std::string ValueStore::print(ValueId id) const {
+  const auto& value = values_[id];
+  switch (value.kind) {
+    case ValueKind::kNil:
+      return "nil";
+    case ValueKind::kSymbol:
+      return value.text;
+    case ValueKind::kString:
+      return fmt::format("\"{}\"", value.text);
+    case ValueKind::kNumber:
+    case ValueKind::kCounter:
+      return print_number(value.number);
+    case ValueKind::kCons:
+      return "a list";
+    case ValueKind::kVector:
+      return "a vector";
+    case ValueKind::kQuaternion:
+      return "a rotation";
+    case ValueKind::kPose:
+      return fmt::format("the pose ({:.4g}, {:.4g}, {:.4g})", value.pose.x_m, value.pose.y_m,
+                         value.pose.z_m);
+    case ValueKind::kDesignator:
+      return fmt::format("a designator ({})", to_string(value.designator));
+    case ValueKind::kFailure:
+      return fmt::format("the failure {}", value.text);
+    case ValueKind::kModel:
+      return "a value of the model";
+  }
+  return {};
+}
+
+}  // namespace parallax::compiler

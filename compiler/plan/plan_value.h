@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "compiler/base/id.h"
+#include "compiler/plan/number.h"
+#include "compiler/plan/plan_graph.h"
+#include "compiler/plan/pose_locator.h"
+
+namespace parallax::compiler {
+
+struct ValueTag {};
+using ValueId = base::Id<ValueTag>;
+
+enum class ValueKind : std::uint8_t {
+  kNil,
+  kSymbol,  // :left and left are one value
+  kNumber,
+  kString,
+  kCons,
+  kVector,  // a position [m]
+  kQuaternion,
+  kPose,
+  kDesignator,
+  kFailure,  // text: the class
+  kModel,    // determined by the model; see PlanGraph::values
+  kCounter,  // hidden iteration count of a bounded loop
+};
+
+enum class DesignatorKind : std::uint8_t { kMotion, kAction, kObject, kLocation, kAllObjects };
+std::string_view to_string(DesignatorKind kind);
+
+/// A value of a plan variable. Immutable; equal values have equal ids (see ValueStore).
+struct Value {
+  ValueKind kind = ValueKind::kNil;
+  std::string text;  // symbol name, string, failure class
+  Number number;     // kNumber, kCounter
+  ValueId head;      // kCons
+  ValueId tail;
+  Pose pose;  // kPose; kVector and kQuaternion use their part
+  DesignatorKind designator = DesignatorKind::kMotion;
+  std::vector<std::pair<std::string, ValueId>> keys;  // kDesignator: in written order
+  ModelValueId model;
+};
+
+/// More values than any plan needs; a loop that builds ever longer lists reaches it.
+inline constexpr std::size_t kMaxPlanValues = 250000;
+
+/// Hash-conses values: structurally equal values get the same id, so that two states of a plan are
+/// equal exactly if their ids are.
+class ValueStore {
+ public:
+  ValueStore();
+  ValueId nil() const { return ValueId(0); }
+  ValueId truth() const { return truth_; }
+  ValueId boolean(bool value) const { return value ? truth_ : nil(); }
+  ValueId symbol(std::string_view name);
+  ValueId string(std::string_view text);
+  ValueId number(const Number& number);
+  ValueId counter(std::int64_t count);
+  ValueId cons(ValueId head, ValueId tail);
+  ValueId list(const std::vector<ValueId>& items);
+  ValueId failure(std::string_view failure_class);
+  ValueId model(ModelValueId id);
+  ValueId intern(Value value);
+
+  const Value& operator[](ValueId id) const { return values_[id]; }
+  ValueKind kind(ValueId id) const { return values_[id].kind; }
+  bool is_nil(ValueId id) const { return id == nil(); }
+  /// The elements of a proper list; none for anything else.
+  std::optional<std::vector<ValueId>> elements(ValueId id) const;
+  /// The value of one key of a designator.
+  std::optional<ValueId> key(ValueId designator, std::string_view name) const;
+  /// More than kMaxPlanValues were made; lists are not built any more and whoever runs the plan
+  /// must stop.
+  bool full() const { return values_.size() > kMaxPlanValues; }
+  /// The number of list elements that `elements` has walked over: work that steps do not show.
+  std::int64_t elements_read() const { return elements_read_; }
+  /// For messages.
+  std::string print(ValueId id) const;
+
+ private:
+  base::Store<ValueId, Value> values_;
+  std::map<std::string, ValueId> ids_;
+  ValueId truth_;
+  mutable std::int64_t elements_read_ = 0;  // a statistic, no part of the value
+};
+
+}  // namespace parallax::compiler

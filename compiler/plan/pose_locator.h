@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace parallax::compiler {
+
+/// A pose of a plan: position [m] and unit quaternion in a named frame.
+struct Pose {
+  std::string frame = "map";
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0;
+  double qx = 0.0, qy = 0.0, qz = 0.0, qw = 1.0;
+  friend bool operator==(const Pose&, const Pose&) = default;
+};
+
+/// Rotation about the vertical axis of the pose's quaternion [rad], in (-pi, pi].
+double yaw_rad(const Pose& pose);
+
+/// The mapping from continuous poses to the model's constants. The caller answers with the same
+/// regions that the simulation maps states with, so that plan and simulator cannot disagree.
+/// `function` is one of `region`, `place` and `gaze`.
+class PoseLocator {
+ public:
+  virtual ~PoseLocator() = default;
+  /// The region of that function that contains the pose; none outside all of them.
+  virtual std::optional<std::string> region_of(std::string_view function,
+                                               const Pose& pose) const = 0;
+  struct Nearest {
+    std::string region;
+    double distance_m = 0.0;
+  };
+  /// For messages: the region nearest to a pose outside; none if the function has no regions.
+  virtual std::optional<Nearest> nearest(std::string_view function, const Pose& pose) const = 0;
+  /// The constant for a location given by an object, such as (a location (in (an object (name
+  /// drawer)))): by default the object itself. `relation` is the key: in, on, of.
+  virtual std::optional<std::string> region_of_object(std::string_view function,
+                                                      std::string_view relation,
+                                                      std::string_view object) const;
+};
+
+}  // namespace parallax::compiler

@@ -1,0 +1,234 @@
+#include "compiler/plan/unroller.h"
+
+#include <fmt/core.h>
+
+#include <map>
+#include <utility>
+
+#include "compiler/plan/lisp_reader.h"
+#include "compiler/plan/perform_resolver.h"
+#include "compiler/plan/plan_compiler.h"
+#include "compiler/plan/plan_machine.h"
+
+namespace parallax::compiler {
+namespace {
+
+using base::DiagnosticCode;
+using StateKey = std::vector<std::uint32_t>;
+
+/// An execution that waits to be continued, and the edge that it gives a target to.
+struct Job {
+  enum class Edge : std::uint8_t { kEntry, kSuccess, kFailure, kTrue, kFalse };
+  PlanState state;
+  std::optional<ValueId> failure;  // goes on by failing
+  Edge edge = Edge::kEntry;
+  std::uint32_t owner = 0;  // location or branch
+};
+
+/// Explores the states of a plan depth first, success before failure, and writes the graph.
+class Explorer {
+ public:
+  Explorer(const LispData& data, const PlanCode& code, const PlanBinding& binding,
+           const PoseLocator& locator, const UnrollOptions& options, ValueStore& values,
+           base::DiagnosticSink& sink)
+      : data_(data),
+        code_(code),
+        options_(options),
+        values_(values),
+        sink_(sink),
+        machine_(code, data,
+                 {static_cast<std::uint32_t>(std::max(options.max_call_depth, 1)), options.max_loop,
+                  options.max_steps},
+                 values, sink),
+        resolver_(binding, locator, ModelNames(options.constants), ModelNames(options.fluents),
+                  code.classes, graph_, values, sink) {}
+
+  base::Result<PlanGraph> explore();
+
+ private:
+  void set(const Job& job, PlanTarget target);
+  std::optional<PlanTarget> advance(Job& job);
+  std::optional<PlanTarget> stopped(PlanState& state, const PlanStop& stop);
+  std::optional<PlanTarget> perform(PlanState& state, const StopPerform& stop);
+  std::optional<PlanTarget> question(PlanState& state, const StopQuestion& stop);
+  base::Result<std::string> guard_text(const StopQuestion& stop);
+  PlanTarget terminal(TerminalKind kind, std::string detail, std::optional<DatumId> at);
+  std::vector<base::SourceRange> calls(const PlanState& state) const;
+
+  const LispData& data_;
+  const PlanCode& code_;
+  const UnrollOptions& options_;
+  ValueStore& values_;
+  base::DiagnosticSink& sink_;
+  PlanGraph graph_;
+  PlanMachine machine_;
+  PerformResolver resolver_;
+  std::vector<Job> jobs_;
+  std::map<StateKey, LocationId> locations_;
+  std::map<StateKey, BranchId> branches_;
+  std::map<std::string, TerminalId> terminals_;
+  bool failed_ = false;
+  bool full_ = false;  // the limit of locations was reached and reported
+};
+
+void Explorer::set(const Job& job, PlanTarget target) {
+  switch (job.edge) {
+    case Job::Edge::kEntry:
+      graph_.entry = target;
+      return;
+    case Job::Edge::kSuccess:
+      graph_.locations[LocationId(job.owner)].on_success = target;
+      return;
+    case Job::Edge::kFailure:
+      graph_.locations[LocationId(job.owner)].on_failure = target;
+      return;
+    case Job::Edge::kTrue:
+      graph_.branches[BranchId(job.owner)].if_true = target;
+      return;
+    case Job::Edge::kFalse:
+      graph_.branches[BranchId(job.owner)].if_false = target;
+      return;
+  }
+}
+
+PlanTarget Explorer::terminal(TerminalKind kind, std::string detail, std::optional<DatumId> at) {
+  const auto key = fmt::format("{} {} {}", static_cast<int>(kind), at ? at->index() : 0, detail);
+  const auto found = terminals_.find(key);
+  if (found != terminals_.end()) return found->second;
+  PlanTerminal out{kind, std::move(detail), std::nullopt};
+  if (at) out.source = data_.source(*at);
+  const auto id = graph_.terminals.add(std::move(out));
+  terminals_.emplace(key, id);
+  return id;
+}
+
+/// The call sites that are active, outermost first.
+std::vector<base::SourceRange> Explorer::calls(const PlanState& state) const {
+  std::vector<base::SourceRange> out;
+  for (std::size_t i = 1; i < state.frames.size(); ++i) {
+    const auto& frame = state.frames[i];
+    const auto& caller = state.frames[i - 1];
+    if (frame.kind != FrameKind::kCall || caller.pc == 0) continue;
+    out.push_back(data_.source(code_.units[caller.unit].code[caller.pc - 1].source));
+  }
+  return out;
+}
+
+std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform& stop) {
+  auto key = state_key(state, values_, false);
+  key.push_back(stop.designator.index());
+  const auto found = locations_.find(key);
+  if (found != locations_.end()) return found->second;
+  const auto limit = static_cast<std::size_t>(options_.max_locations);
+  if (graph_.locations.size() >= limit) {
+    if (!full_) {
+      sink_.error(DiagnosticCode::kUnrollLimit, data_.source(stop.form), limit, "locations");
+    }
+    full_ = true;
+    return std::nullopt;
+  }
+  auto resolved = resolver_.resolve(stop.designator, data_.source(stop.form));
+  if (!resolved) return std::nullopt;
+  auto& location = resolved->location;
+  location.calls = calls(state);
+  const auto* entry = resolved->entry;
+  const auto failure = values_.failure(location.failure_class);
+  const auto id = graph_.locations.add(std::move(location));
+  locations_.emplace(std::move(key), id);
+  auto result = values_.truth();
+  if (entry->returns) {
+    const auto name = fmt::format("?{}{}", *entry->returns, graph_.values.size() + 1);
+    const auto value = graph_.values.add({name, *entry->returns, id});
+    graph_.locations[id].result = value;
+    result = values_.model(value);
+  }
+  ++state.performs;
+  // The last job is taken first: success.
+  jobs_.push_back({state, failure, Job::Edge::kFailure, id.index()});
+  jobs_.push_back({std::move(state), std::nullopt, Job::Edge::kSuccess, id.index()});
+  jobs_.back().state.stack.push_back(result);
+  return id;
+}
+
+base::Result<std::string> Explorer::guard_text(const StopQuestion& stop) {
+  const auto source = data_.source(stop.form);
+  if (const auto* fluent = std::get_if<ValueId>(&stop.fluent)) {
+    return resolver_.fluent(*fluent, source);
+  }
+  const auto& equality = std::get<ModelEquality>(stop.fluent);
+  const auto left = resolver_.constant(equality.left, "eq", source);
+  const auto right = resolver_.constant(equality.right, "eq", source);
+  if (!left || !right) return sink_.already_reported();
+  return fmt::format("{}={}", *left, *right);
+}
+
+std::optional<PlanTarget> Explorer::question(PlanState& state, const StopQuestion& stop) {
+  const auto guard = guard_text(stop);
+  if (!guard) return std::nullopt;
+  auto key = state_key(state, values_, true);
+  for (const char c : *guard) key.push_back(static_cast<unsigned char>(c));
+  const auto found = branches_.find(key);
+  if (found != branches_.end()) return found->second;
+  const auto id =
+      graph_.branches.add({*guard, data_.source(stop.form), TerminalId(0), TerminalId(0)});
+  branches_.emplace(std::move(key), id);
+  jobs_.push_back({state, std::nullopt, Job::Edge::kFalse, id.index()});
+  jobs_.back().state.stack.push_back(values_.nil());
+  jobs_.push_back({std::move(state), std::nullopt, Job::Edge::kTrue, id.index()});
+  jobs_.back().state.stack.push_back(values_.truth());
+  return id;
+}
+
+std::optional<PlanTarget> Explorer::stopped(PlanState& state, const PlanStop& stop) {
+  if (const auto* at = std::get_if<StopPerform>(&stop)) return perform(state, *at);
+  if (const auto* at = std::get_if<StopQuestion>(&stop)) return question(state, *at);
+  if (const auto* at = std::get_if<StopFailed>(&stop)) {
+    return terminal(TerminalKind::kFailed, at->failure_class, std::nullopt);
+  }
+  if (const auto* at = std::get_if<StopBound>(&stop)) {
+    return terminal(TerminalKind::kBound, at->form, at->at);
+  }
+  if (std::holds_alternative<StopDone>(stop)) {
+    return terminal(TerminalKind::kDone, {}, std::nullopt);
+  }
+  return std::nullopt;
+}
+
+std::optional<PlanTarget> Explorer::advance(Job& job) {
+  if (job.failure) {
+    if (auto stop = machine_.raise(job.state, *job.failure)) return stopped(job.state, *stop);
+  }
+  const auto stop = machine_.run(job.state);
+  return stopped(job.state, stop);
+}
+
+base::Result<PlanGraph> Explorer::explore() {
+  if (!machine_.run_definitions()) return sink_.already_reported();
+  jobs_.push_back({machine_.start(), std::nullopt, Job::Edge::kEntry, 0});
+  while (!jobs_.empty() && !full_) {
+    auto job = std::move(jobs_.back());
+    jobs_.pop_back();
+    if (const auto target = advance(job)) {
+      set(job, *target);
+    } else {
+      failed_ = true;
+    }
+  }
+  if (failed_) return sink_.already_reported();
+  return std::move(graph_);
+}
+
+}  // namespace
+
+base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files, base::FileId plan,
+                                    const PlanBinding& binding, const PoseLocator& locator,
+                                    const UnrollOptions& options, base::DiagnosticSink& sink) {
+  const auto text = read_lisp(files, plan, sink);
+  if (!text) return sink.already_reported();
+  ValueStore values;
+  const auto code = PlanCompiler(*text, values, sink).compile(options.entry);
+  if (!code) return sink.already_reported();
+  return Explorer(text->data, *code, binding, locator, options, values, sink).explore();
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "compiler/base/result.h"
+#include "compiler/base/source_file.h"
+#include "compiler/plan/plan_binding.h"
+#include "compiler/plan/plan_graph.h"
+#include "compiler/plan/pose_locator.h"
+
+namespace parallax::compiler {
+
+struct UnrollOptions {
+  std::optional<std::string> entry;  // the function to run; see unroll_plan
+  std::int32_t max_call_depth = 8;   // active calls of one function
+  std::int32_t max_loop = 16;        // iterations of a loop that nothing static ends
+  std::int64_t max_locations = 20000;
+  std::int64_t max_steps = 5000000;  // and list elements, over all paths
+  /// The model's constants and fluents. A name of the plan means the one that is equal up to case,
+  /// `-` and `_` (`top-drawer` is `topDrawer`); CPL032 if there is none. Empty: names are taken as
+  /// they are.
+  std::vector<std::string> constants;
+  std::vector<std::string> fluents;
+};
+
+/// Runs the plan on its static values and forks where the model decides: at the outcome of every
+/// `perform`, at `holds` and at comparisons with detected objects. Paths that reach the same
+/// perform in the same state are merged, so the graph's size follows the plan's states, not its
+/// paths. What a bound cut off ends in a kBound terminal.
+///
+/// The plan is the function `entry`; without it the bare top-level forms in order; without those
+/// the last function defined. Reports CPL0xx errors and W- warnings, several per run.
+base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files, base::FileId plan,
+                                    const PlanBinding& binding, const PoseLocator& locator,
+                                    const UnrollOptions& options, base::DiagnosticSink& sink);
+
+}  // namespace parallax::compiler

@@ -1,0 +1,312 @@
+#include "compiler/sema/axiom_shapes.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace parallax::compiler {
+
+using base::DiagnosticCode;
+
+namespace {
+
+enum class Polarity : std::uint8_t { kPositive, kNegative, kBoth };
+
+Polarity flipped(Polarity polarity) {
+  if (polarity == Polarity::kBoth) return polarity;
+  return polarity == Polarity::kPositive ? Polarity::kNegative : Polarity::kPositive;
+}
+
+/// An effect or trajectory atom and what stands around it.
+struct Occurrence {
+  TypedFormulaId atom;
+  Polarity polarity = Polarity::kPositive;
+  /// Is the atom reached from the root through `[..]`, right sides of `->` and `&` alone?
+  bool head = false;
+  std::string_view place;  // of an atom that is no head, for the message
+};
+
+class ShapeReader {
+ public:
+  ShapeReader(std::string label, TypedModel& model, base::DiagnosticSink& sink)
+      : label_(std::move(label)), model_(model), sink_(sink) {}
+
+  void read(TypedFormulaId root) {
+    find_occurrences(root);
+    if (!check_occurrences()) return;
+    const bool any_head = std::any_of(occurrences_.begin(), occurrences_.end(),
+                                      [](const Occurrence& found) { return found.head; });
+    if (any_head) {
+      split(root);
+    } else {
+      model_.axioms.push_back({label_, root, model_.formulas[root].source, true});
+    }
+  }
+
+ private:
+  /// One step on the way from the root to a conjunct: variables or a condition.
+  struct Prefix {
+    std::optional<std::size_t> before;
+    TypedFormulaId formula;  // a kForall, or a condition
+    bool is_condition = false;
+  };
+  struct Task {
+    TypedFormulaId formula;
+    std::optional<std::size_t> prefix;
+  };
+
+  const TypedFormula& at(TypedFormulaId id) const { return model_.formulas[id]; }
+
+  std::optional<EffectKind> effect(const TypedFormula& formula) const {
+    if (formula.kind != FormulaKind::kAtom) return std::nullopt;
+    if (formula.predicate == model_.core.initiates) return EffectKind::kInitiates;
+    if (formula.predicate == model_.core.terminates) return EffectKind::kTerminates;
+    if (formula.predicate == model_.core.releases) return EffectKind::kReleases;
+    return std::nullopt;
+  }
+  std::optional<TrajectoryKind> trajectory(const TypedFormula& formula) const {
+    if (formula.kind != FormulaKind::kAtom) return std::nullopt;
+    if (formula.predicate == model_.core.trajectory) return TrajectoryKind::kTrajectory;
+    if (formula.predicate == model_.core.anti_trajectory) return TrajectoryKind::kAntiTrajectory;
+    return std::nullopt;
+  }
+
+  // --- where the atoms stand ---
+
+  void find_occurrences(TypedFormulaId root) {
+    struct Visit {
+      TypedFormulaId formula;
+      Polarity polarity;
+      bool head;
+      std::string_view place;
+    };
+    std::vector<Visit> stack = {{root, Polarity::kPositive, true, {}}};
+    while (!stack.empty()) {
+      const Visit visit = stack.back();
+      stack.pop_back();
+      const TypedFormula& formula = at(visit.formula);
+      const auto go = [&](TypedFormulaId child, Polarity polarity, bool head,
+                          std::string_view place) {
+        // The outermost construct that is in the way is the one to name.
+        const bool keep = !visit.head;
+        stack.push_back({child, polarity, visit.head && head, keep ? visit.place : place});
+      };
+      switch (formula.kind) {
+        case FormulaKind::kTrue:
+        case FormulaKind::kFalse:
+        case FormulaKind::kCompare:
+          break;
+        case FormulaKind::kAtom:
+          if (effect(formula) || trajectory(formula)) {
+            occurrences_.push_back({visit.formula, visit.polarity, visit.head, visit.place});
+          }
+          break;
+        case FormulaKind::kNot:
+          go(formula.children[0], flipped(visit.polarity), false, "under a negation");
+          break;
+        case FormulaKind::kAnd:
+          for (const auto child : formula.children) go(child, visit.polarity, true, {});
+          break;
+        case FormulaKind::kOr:
+          for (const auto child : formula.children) {
+            go(child, visit.polarity, false, "in a disjunction");
+          }
+          break;
+        case FormulaKind::kImplies:
+          go(formula.children[0], flipped(visit.polarity), false, "in a condition");
+          go(formula.children[1], visit.polarity, true, {});
+          break;
+        case FormulaKind::kIff:
+          for (const auto child : formula.children) iff_side(child, go);
+          break;
+        case FormulaKind::kForall:
+          go(formula.children[0], visit.polarity, true, {});
+          break;
+        case FormulaKind::kExists:
+          go(formula.children[0], visit.polarity, false, "below an existential quantifier");
+          break;
+      }
+    }
+    // The stack turned the order round.
+    std::reverse(occurrences_.begin(), occurrences_.end());
+  }
+
+  /// An atom that is a whole side of `<->` looks like an effect axiom and is none; inside a side
+  /// it is part of the definition of the other.
+  template <typename Go>
+  void iff_side(TypedFormulaId side, const Go& go) {
+    const bool whole = effect(at(side)) || trajectory(at(side));
+    go(side, whole ? Polarity::kPositive : Polarity::kBoth, false, "on a side of `<->`");
+  }
+
+  bool check_occurrences() {
+    const bool any_head = std::any_of(occurrences_.begin(), occurrences_.end(),
+                                      [](const Occurrence& found) { return found.head; });
+    bool fine = true;
+    for (const auto& found : occurrences_) {
+      if (found.head) continue;
+      const auto& atom = at(found.atom);
+      const auto& name = model_.symbols[atom.predicate].name;
+      if (found.polarity == Polarity::kPositive || trajectory(atom)) {
+        auto report = sink_.error(DiagnosticCode::kEffectShape, atom.source, name, found.place);
+        if (found.place.starts_with("below")) {
+          report.fix(
+              "a quantifier reaches to the end of the formula: put parentheses around the "
+              "condition, as in `({x} P(x)) -> ...`");
+        }
+        fine = false;
+      } else if (any_head) {
+        sink_.error(DiagnosticCode::kEffectInCondition, atom.source, name);
+        fine = false;
+      }
+    }
+    return fine;
+  }
+
+  // --- taking it apart ---
+
+  void split(TypedFormulaId root) {
+    std::vector<Task> stack = {{root, std::nullopt}};
+    while (!stack.empty()) {
+      const Task task = stack.back();
+      stack.pop_back();
+      const TypedFormula& formula = at(task.formula);
+      switch (formula.kind) {
+        case FormulaKind::kForall:
+          stack.push_back({formula.children[0], extend(task.prefix, task.formula, false)});
+          break;
+        case FormulaKind::kImplies:
+          stack.push_back({formula.children[1], extend(task.prefix, formula.children[0], true)});
+          break;
+        case FormulaKind::kAnd:
+          for (auto child = formula.children.rbegin(); child != formula.children.rend(); ++child) {
+            stack.push_back({*child, task.prefix});
+          }
+          break;
+        case FormulaKind::kTrue:
+        case FormulaKind::kFalse:
+        case FormulaKind::kAtom:
+        case FormulaKind::kCompare:
+        case FormulaKind::kNot:
+        case FormulaKind::kOr:
+        case FormulaKind::kIff:
+        case FormulaKind::kExists:
+          add_conjunct(task, root);
+          break;
+      }
+    }
+  }
+
+  std::size_t extend(std::optional<std::size_t> before, TypedFormulaId formula, bool condition) {
+    prefixes_.push_back({before, formula, condition});
+    return prefixes_.size() - 1;
+  }
+
+  /// From the root to the conjunct.
+  std::vector<Prefix> way(std::optional<std::size_t> last) const {
+    std::vector<Prefix> steps;
+    for (; last; last = prefixes_[*last].before) steps.push_back(prefixes_[*last]);
+    std::reverse(steps.begin(), steps.end());
+    return steps;
+  }
+
+  void add_conjunct(const Task& task, TypedFormulaId root) {
+    std::vector<VariableId> variables;
+    std::vector<TypedFormulaId> conditions;
+    const auto steps = way(task.prefix);
+    for (const auto& step : steps) {
+      if (step.is_condition) {
+        conditions.push_back(step.formula);
+      } else {
+        const auto& own = at(step.formula).variables;
+        variables.insert(variables.end(), own.begin(), own.end());
+      }
+    }
+    const auto source = at(root).source;
+    if (const auto kind = effect(at(task.formula))) {
+      warn_about_shape(steps, task.formula, root);
+      const auto condition = conjunction(std::move(conditions), task.formula);
+      const auto& terms = at(task.formula).terms;
+      model_.effects.push_back(
+          {*kind, std::move(variables), condition, terms[0], terms[1], terms[2], label_, source});
+    } else if (const auto path = trajectory(at(task.formula))) {
+      const auto condition = conjunction(std::move(conditions), task.formula);
+      const auto& terms = at(task.formula).terms;
+      model_.trajectories.push_back({*path, std::move(variables), condition, terms[0], terms[1],
+                                     terms[2], terms[3], label_, source});
+    } else {
+      model_.axioms.push_back({label_, rebuilt(steps, task.formula), source, false});
+    }
+  }
+
+  TypedFormulaId conjunction(std::vector<TypedFormulaId> parts, TypedFormulaId head) {
+    if (parts.size() == 1) return parts.front();
+    TypedFormula formula;
+    formula.kind = parts.empty() ? FormulaKind::kTrue : FormulaKind::kAnd;
+    formula.source = parts.empty() ? at(head).source : at(parts.front()).source;
+    if (!parts.empty()) formula.source.end = at(parts.back()).source.end;
+    formula.children = std::move(parts);
+    return model_.formulas.add(std::move(formula));
+  }
+
+  /// The ordinary conjunct with its own quantifiers and conditions around it.
+  TypedFormulaId rebuilt(const std::vector<Prefix>& steps, TypedFormulaId conjunct) {
+    for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
+      TypedFormula formula;
+      formula.source = at(conjunct).source;
+      if (step->is_condition) {
+        formula.kind = FormulaKind::kImplies;
+        formula.children = {step->formula, conjunct};
+      } else {
+        formula.kind = FormulaKind::kForall;
+        formula.variables = at(step->formula).variables;
+        formula.children = {conjunct};
+      }
+      conjunct = model_.formulas.add(std::move(formula));
+    }
+    return conjunct;
+  }
+
+  /// The 2005 reasoner accepts exactly `[..] atom` and `[..] condition -> atom`; it asserts other
+  /// shapes without telling its frame axioms.
+  void warn_about_shape(const std::vector<Prefix>& steps, TypedFormulaId head,
+                        TypedFormulaId root) {
+    if (std::exchange(warned_, true)) return;
+    std::string_view reason;
+    const bool one_quantifier = !steps.empty() && !steps.front().is_condition;
+    const std::size_t expected =
+        one_quantifier && steps.size() == 2 && steps[1].is_condition ? 2 : 1;
+    if (!label_.empty()) {
+      reason = "it has a label";
+    } else if (steps.empty() || !one_quantifier) {
+      reason = "it does not start with `[...]`";
+    } else if (steps.size() != expected) {
+      reason = "it has more than one `[...]` or `->`";
+    } else if (occurrences_.size() > 1) {
+      reason = "it has more than one effect";
+    } else if (model_.terms[at(head).terms[2]].kind != TermKind::kVariable) {
+      reason = "its time is not a variable";
+    } else {
+      return;
+    }
+    sink_.warning(DiagnosticCode::kEffectShapeOldReasoner, at(root).source, reason);
+  }
+
+  const std::string label_;
+  TypedModel& model_;
+  base::DiagnosticSink& sink_;
+  std::vector<Occurrence> occurrences_;
+  std::vector<Prefix> prefixes_;
+  bool warned_ = false;
+};
+
+}  // namespace
+
+void add_effect_formula(TypedFormulaId formula, std::string label, TypedModel& model,
+                        base::DiagnosticSink& sink) {
+  ShapeReader(std::move(label), model, sink).read(formula);
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "compiler/base/diagnostic.h"
+#include "compiler/base/result.h"
+#include "compiler/base/source_file.h"
+#include "compiler/sema/typed_model.h"
+#include "compiler/syntax/ast.h"
+#include "compiler/syntax/loader.h"
+
+namespace parallax::compiler {
+
+struct CheckOptions {
+  /// The range of `time` from a scenario or the command line; each overrides the model's bound. A
+  /// lower bound that nobody gives is 0.
+  std::optional<std::int64_t> time_lower = std::nullopt;
+  std::optional<std::int64_t> time_upper = std::nullopt;
+  /// False for a part of a model (a library file): missing ranges are then warnings.
+  bool complete_model = true;
+};
+
+/// Declarations, names, sorts, well-formedness, recognition of effect and trajectory axioms. Many
+/// errors in one run; fails if there was any (also one reported by the parser before).
+/// Linear in the size of the model.
+base::Result<TypedModel> check_model(const ModelAst& ast, const base::SourceFiles& files,
+                                     base::DiagnosticSink& sink, const CheckOptions& options = {});
+
+struct FormulaOptions {
+  /// The variable `time` may be free; the result names it.
+  bool allow_free_time = true;
+  /// `RobotIn(r2)` stands for `HoldsAt(RobotIn(r2), t)` where a formula is expected. t is
+  /// `fluent_time`, or else the free variable `time`.
+  bool fluents_as_atoms = false;
+  std::optional<TermId> fluent_time = std::nullopt;
+};
+
+struct CheckedFormula {
+  TypedFormulaId formula;
+  std::optional<VariableId> time;  // the free variable `time`, if the formula uses it
+};
+
+/// Checks one formula against a model and adds it to the model's stores (not to its axioms).
+/// Initiates, Terminates, Releases and Trajectory are refused (E2302).
+base::Result<CheckedFormula> check_formula(TypedModel& model, const Ast& ast, NodeId root,
+                                           const FormulaOptions& options,
+                                           base::DiagnosticSink& sink);
+
+}  // namespace parallax::compiler

@@ -1,0 +1,344 @@
+#include "compiler/sema/elaborator.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "compiler/syntax/lexer.h"
+
+namespace parallax::compiler {
+
+using base::DiagnosticCode;
+
+namespace {
+
+bool is_comparison(Operator op) {
+  switch (op) {
+    case Operator::kEqual:
+    case Operator::kNotEqual:
+    case Operator::kLess:
+    case Operator::kLessEqual:
+    case Operator::kGreaterEqual:
+    case Operator::kGreater:
+      return true;
+    case Operator::kImplies:
+    case Operator::kIff:
+    case Operator::kOr:
+    case Operator::kAnd:
+    case Operator::kAdd:
+    case Operator::kSubtract:
+    case Operator::kMultiply:
+    case Operator::kDivide:
+    case Operator::kPower:
+    case Operator::kModulo:
+    case Operator::kNot:
+    case Operator::kNegate:
+    case Operator::kPlus:
+      return false;
+  }
+  return false;
+}
+
+bool is_connective(Operator op) {
+  return op == Operator::kImplies || op == Operator::kIff || op == Operator::kOr ||
+         op == Operator::kAnd;
+}
+
+/// `time` of `time27`.
+std::string_view sort_of_variable(std::string_view name) {
+  while (!name.empty() && name.back() >= '0' && name.back() <= '9') name.remove_suffix(1);
+  return name;
+}
+
+}  // namespace
+
+Elaborator::Elaborator(TypedModel& model, const ElaborationOptions& options,
+                       base::DiagnosticSink& sink)
+    : model_(model),
+      options_(options),
+      sink_(sink),
+      advice_(model, sink),
+      domains_(model),
+      mentioned_(model.symbols.size()) {}
+
+std::optional<TypedFormulaId> Elaborator::elaborate(const Ast& ast, NodeId root) {
+  ast_ = &ast;
+  frames_.clear();
+  values_.clear();
+  scope_.clear();
+  bound_names_.clear();
+  reported_free_.clear();
+  free_time_.reset();
+  mentions_effects_ = false;
+  visit(root, Position::kFormula, std::nullopt);
+  while (!frames_.empty()) advance();
+  if (values_.back().failed) return std::nullopt;
+  return TypedFormulaId(values_.back().id);
+}
+
+// --- the walk --------------------------------------------------------------------------------
+
+/// Leaves a value, or a frame that will leave one.
+void Elaborator::visit(NodeId id, Position position, std::optional<SortId> expected) {
+  const Node& node = (*ast_)[id];
+  if (node.kind == NodeKind::kName) {
+    values_.push_back(name(node, position));
+    return;
+  }
+  if (node.kind == NodeKind::kNumber) {
+    if (position == Position::kFormula) {
+      sink_.error(DiagnosticCode::kExpectedFormula, source(node), "number", quoted(node));
+      values_.push_back(failure());
+    } else {
+      values_.push_back(number(node));
+    }
+    return;
+  }
+  Frame frame;
+  frame.node = id;
+  frame.position = position;
+  frame.end_child = node.child_count;
+  frame.values = values_.size();
+  frame.expected = expected;
+  enter(frame, node);
+  frames_.push_back(std::move(frame));
+}
+
+void Elaborator::advance() {
+  Frame& top = frames_.back();
+  const Node& node = (*ast_)[top.node];
+  if (top.next_child < top.end_child && !full_) {
+    const auto index = top.next_child++;
+    std::optional<SortId> expected;
+    if (top.symbol && index < model_.symbols[*top.symbol].arguments.size()) {
+      expected = model_.symbols[*top.symbol].arguments[index];
+    }
+    visit(ast_->child(node, index), top.child_position, expected);
+    return;
+  }
+  Frame frame = std::move(top);
+  frames_.pop_back();
+  unbind(frame);
+  for (std::size_t i = frame.values; i < values_.size(); ++i) {
+    frame.failed = frame.failed || values_[i].failed;
+  }
+  frame.failed = frame.failed || full_;
+  const Value value = frame.failed ? failure() : leave(frame, node);
+  values_.resize(frame.values);
+  values_.push_back(value);
+}
+
+void Elaborator::enter(Frame& frame, const Node& node) {
+  switch (node.kind) {
+    case NodeKind::kName:
+    case NodeKind::kNumber:
+      return;  // leaves have no frame
+    case NodeKind::kApply:
+      return enter_apply(frame, node);
+    case NodeKind::kUnary:
+      return enter_unary(frame, node);
+    case NodeKind::kBinary:
+      return enter_binary(frame, node);
+    case NodeKind::kForall:
+    case NodeKind::kExists:
+      return enter_quantifier(frame, node);
+  }
+}
+
+void Elaborator::enter_unary(Frame& frame, const Node& node) {
+  const bool is_formula = node.op == Operator::kNot;
+  frame.child_position = is_formula ? Position::kFormula : Position::kTerm;
+  if ((frame.position == Position::kFormula) == is_formula) return;
+  frame.failed = true;
+  frame.next_child = node.child_count;  // whatever is below would only repeat the complaint
+  if (is_formula) {
+    auto report = sink_.error(DiagnosticCode::kExpectedTerm, source(node), "formula", quoted(node));
+    report.fix("`!` binds tighter than a comparison: write `!(x=y)` or `x!=y`");
+  } else {
+    sink_.error(DiagnosticCode::kExpectedFormula, source(node), "term", quoted(node));
+  }
+}
+
+void Elaborator::enter_binary(Frame& frame, const Node& node) {
+  const bool is_formula = is_connective(node.op) || is_comparison(node.op);
+  frame.child_position = is_connective(node.op) ? Position::kFormula : Position::kTerm;
+  const bool wants_formula = frame.position == Position::kFormula;
+  if (wants_formula != is_formula) {
+    frame.failed = true;
+    frame.next_child = node.child_count;
+    if (is_formula) {
+      sink_.error(DiagnosticCode::kExpectedTerm, source(node), "formula", quoted(node));
+    } else {
+      sink_.error(DiagnosticCode::kExpectedFormula, source(node), "term", quoted(node));
+    }
+  } else if (node.op == Operator::kPower) {
+    sink_.error(DiagnosticCode::kUnsupportedOperator, source(node), spelling(node.op));
+    frame.failed = true;
+  }
+}
+
+void Elaborator::enter_apply(Frame& frame, const Node& node) {
+  frame.child_position = Position::kTerm;
+  frame.symbol = model_.find_symbol(ast_->name(node));
+  if (!frame.symbol) {
+    frame.failed = true;
+    return report_unknown_symbol(node, frame.position, frame.expected);
+  }
+  const Symbol& symbol = model_.symbols[*frame.symbol];
+  mentioned_[frame.symbol->index()] = true;
+  const bool predicate = symbol.kind == SymbolKind::kPredicate;
+  const bool shorthand = options_.fluents_as_atoms && symbol.kind == SymbolKind::kFluent;
+  if (frame.position == Position::kTerm && predicate) {
+    frame.failed = true;
+    sink_.error(DiagnosticCode::kExpectedTerm, source(node), "predicate", quoted(node))
+        .note(symbol.declared, "`" + signature(model_, symbol) + "` declared here");
+  } else if (frame.position == Position::kFormula && !predicate && !shorthand) {
+    frame.failed = true;
+    auto report = sink_.error(DiagnosticCode::kExpectedFormula, source(node),
+                              kind_word(symbol.kind), quoted(node));
+    report.note(symbol.declared, "`" + signature(model_, symbol) + "` declared here");
+    if (symbol.kind == SymbolKind::kFluent)
+      report.fix("write `HoldsAt(" + quoted(node) + ",time)`");
+    if (symbol.kind == SymbolKind::kEvent) report.fix("write `Happens(" + quoted(node) + ",time)`");
+  }
+  if (symbol.arguments.size() != node.child_count) {
+    frame.failed = true;
+    // What stands beyond the declared arguments has no sort to be checked against.
+    frame.end_child =
+        std::min(node.child_count, static_cast<std::uint32_t>(symbol.arguments.size()));
+    sink_
+        .error(DiagnosticCode::kWrongArity, source(node), shortened(symbol.name),
+               symbol.arguments.size(), node.child_count)
+        .note(symbol.declared, "`" + signature(model_, symbol) + "` declared here");
+  }
+}
+
+void Elaborator::enter_quantifier(Frame& frame, const Node& node) {
+  frame.child_position = Position::kFormula;
+  if (frame.position == Position::kTerm) {
+    frame.failed = true;
+    frame.next_child = node.child_count;
+    sink_.error(DiagnosticCode::kExpectedTerm, source(node), "formula", quoted(node));
+    return;
+  }
+  const auto variable_count = node.child_count - 1;
+  frame.next_child = variable_count;  // only the body is visited
+  for (std::uint32_t i = 0; i < variable_count; ++i) {
+    const Node& variable = (*ast_)[ast_->child(node, i)];
+    const auto name = ast_->name(variable);
+    const auto sort_name = sort_of_variable(name);
+    const auto sort = model_.find_sort(sort_name);
+    if (!sort) {
+      frame.failed = true;
+      auto report = sink_.error(DiagnosticCode::kVariableWithoutSort, source(variable),
+                                shortened(sort_name), shortened(name));
+      if (const auto near = advice_.sort(sort_name)) {
+        const auto& found = model_.sorts[*near];
+        report.note(found.declared, "sort `" + found.name + "` declared here");
+        report.fix(NameAdvice::replace(sort_name, found.name));
+      }
+      reported_free_.insert(name);  // once is enough
+      continue;
+    }
+    if (model_.sorts[*sort].integer) {
+      require_range(*sort, source(variable));
+    } else if (node.kind == NodeKind::kExists && !domains_.has_elements(*sort)) {
+      sink_.warning(DiagnosticCode::kExistsInEmptySort, source(variable), model_.sorts[*sort].name,
+                    "{" + shortened(name) + "}");
+    }
+    frame.variables.push_back(model_.variables.add({std::string(name), *sort}));
+    scope_[name].push_back(frame.variables.back());
+    bound_names_.push_back(name);
+  }
+}
+
+void Elaborator::unbind(const Frame& frame) {
+  for (std::size_t i = 0; i < frame.variables.size(); ++i) {
+    scope_[bound_names_.back()].pop_back();
+    bound_names_.pop_back();
+  }
+}
+
+// --- results ---------------------------------------------------------------------------------
+
+Elaborator::Value Elaborator::leave(const Frame& frame, const Node& node) {
+  const auto term = [&](std::size_t i) { return TermId(values_[frame.values + i].id); };
+  switch (node.kind) {
+    case NodeKind::kName:
+    case NodeKind::kNumber:
+      break;
+    case NodeKind::kApply:
+      return apply(frame, node);
+    case NodeKind::kUnary:
+      if (node.op == Operator::kNot) return connective(frame, node);
+      if (node.op == Operator::kNegate) return negation_of_term(node, term(0));
+      return check_integer(node.op, term(0)) ? values_[frame.values] : failure();
+    case NodeKind::kBinary:
+      if (is_connective(node.op)) return connective(frame, node);
+      if (is_comparison(node.op)) return comparison(node, term(0), term(1));
+      return arithmetic(node, term(0), term(1));
+    case NodeKind::kForall:
+    case NodeKind::kExists:
+      return connective(frame, node);
+  }
+  return failure();
+}
+
+Elaborator::Value Elaborator::connective(const Frame& frame, const Node& node) {
+  TypedFormula formula;
+  formula.source = source(node);
+  for (std::size_t i = frame.values; i < values_.size(); ++i) {
+    formula.children.push_back(TypedFormulaId(values_[i].id));
+  }
+  if (node.kind == NodeKind::kForall || node.kind == NodeKind::kExists) {
+    formula.kind = node.kind == NodeKind::kForall ? FormulaKind::kForall : FormulaKind::kExists;
+    formula.variables = frame.variables;
+  } else if (node.op == Operator::kNot) {
+    formula.kind = FormulaKind::kNot;
+  } else if (node.op == Operator::kAnd) {
+    formula.kind = FormulaKind::kAnd;
+  } else if (node.op == Operator::kOr) {
+    formula.kind = FormulaKind::kOr;
+  } else {
+    formula.kind = node.op == Operator::kImplies ? FormulaKind::kImplies : FormulaKind::kIff;
+  }
+  return add(std::move(formula));
+}
+
+bool Elaborator::has_room(const base::SourceRange& at) {
+  if (model_.formulas.size() + model_.terms.size() < kMaxTypedNodes) return true;
+  if (!full_) sink_.error(DiagnosticCode::kModelTooLarge, at, kMaxTypedNodes);
+  full_ = true;
+  return false;
+}
+
+Elaborator::Value Elaborator::add(TypedFormula formula) {
+  if (!has_room(formula.source)) return failure();
+  return {model_.formulas.add(std::move(formula)).index(), false};
+}
+
+Elaborator::Value Elaborator::add(Term term) {
+  if (!has_room(term.source)) return failure();
+  return {model_.terms.add(std::move(term)).index(), false};
+}
+
+std::string Elaborator::quoted(const Node& node) const {
+  return shortened(ast_->text(Word{node.begin, node.end}));
+}
+
+std::string Elaborator::quoted(TermId term) const {
+  const auto& range = model_.terms[term].source;
+  return shortened(ast_->text(Word{range.begin, range.end}));
+}
+
+void Elaborator::require_range(SortId sort, const base::SourceRange& use) {
+  if (!model_.sorts[sort].integer || !domains_.ranges(sort).empty()) return;
+  if (!reported_ranges_.insert(sort.index()).second) return;
+  const auto& found = model_.sorts[sort];
+  const auto code =
+      options_.complete_model ? DiagnosticCode::kMissingRange : DiagnosticCode::kMissingRangeInPart;
+  sink_.error(code, use, found.name)
+      .note(found.declared, "sort `" + found.name + "` declared here")
+      .fix("add a statement such as `range " + found.name + " 0 10`");
+}
+
+}  // namespace parallax::compiler

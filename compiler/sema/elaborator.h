@@ -1,0 +1,132 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "compiler/sema/name_advice.h"
+#include "compiler/sema/sort_domains.h"
+#include "compiler/sema/typed_model.h"
+#include "compiler/syntax/ast.h"
+
+namespace parallax::compiler {
+
+/// What a formula may use beyond its own quantifiers.
+struct ElaborationOptions {
+  bool allow_free_time = false;
+  bool fluents_as_atoms = false;
+  std::optional<TermId> fluent_time = std::nullopt;
+  bool allow_effects = true;   // Initiates, Trajectory, ...
+  bool complete_model = true;  // missing ranges are errors
+};
+
+/// Turns syntax trees into typed formulas: resolves names, gives variables their sorts, checks
+/// arities, sorts and well-formedness. Several errors a formula; no recursion. The declarations of
+/// the model must be complete.
+class Elaborator {
+ public:
+  /// Formulas and terms of one model (E2114): some 150 bytes each, tree and axiom included.
+  static constexpr std::size_t kMaxTypedNodes = 500'000;
+
+  Elaborator(TypedModel& model, const ElaborationOptions& options, base::DiagnosticSink& sink);
+
+  /// Nothing if anything was wrong.
+  std::optional<TypedFormulaId> elaborate(const Ast& ast, NodeId root);
+
+  /// Of the formula elaborated last:
+  bool mentions_effects() const { return mentions_effects_; }  // also trajectories
+  std::optional<VariableId> free_time() const { return free_time_; }
+
+  /// By symbol: was it used in any formula so far?
+  bool mentioned(SymbolId symbol) const { return mentioned_[symbol.index()]; }
+  void mention(SymbolId symbol) { mentioned_[symbol.index()] = true; }
+
+  /// Reports once that an integer sort used at `use` has no range.
+  void require_range(SortId sort, const base::SourceRange& use);
+  bool has_room(const base::SourceRange& at);
+  SortDomains& domains() { return domains_; }
+
+ private:
+  enum class Position : std::uint8_t { kFormula, kTerm };
+  /// A node whose children are being visited.
+  struct Frame {
+    NodeId node;
+    Position position = Position::kFormula;
+    Position child_position = Position::kFormula;
+    std::uint32_t next_child = 0;
+    std::uint32_t end_child = 0;
+    std::size_t values = 0;  // size of values_ when the frame was opened
+    std::optional<SymbolId> symbol;
+    std::optional<SortId> expected;  // what the parent wants, for messages
+    std::vector<VariableId> variables;
+    bool failed = false;
+  };
+  /// The result of a node: id of a formula or a term, by position.
+  struct Value {
+    std::uint32_t id = 0;
+    bool failed = false;
+  };
+
+  void visit(NodeId node, Position position, std::optional<SortId> expected);
+  void enter(Frame& frame, const Node& node);
+  void enter_unary(Frame& frame, const Node& node);
+  void enter_binary(Frame& frame, const Node& node);
+  void enter_apply(Frame& frame, const Node& node);
+  void enter_quantifier(Frame& frame, const Node& node);
+  void advance();
+  Value leave(const Frame& frame, const Node& node);
+
+  // elaborate_terms.cc
+  Value name(const Node& node, Position position);
+  Value variable(const Node& node);
+  Value constant(const Node& node);
+  Value number(const Node& node);
+  Value apply(const Frame& frame, const Node& node);
+  Value arithmetic(const Node& node, TermId left, TermId right);
+  Value negation_of_term(const Node& node, TermId operand);
+  Value comparison(const Node& node, TermId left, TermId right);
+  Value fluent_atom(const Frame& frame, const Node& node, std::vector<TermId> arguments);
+  bool check_argument(const Symbol& symbol, std::size_t position, TermId term);
+  bool check_integer(Operator op, TermId term);
+  bool is_integer(TermId term) const;
+  std::vector<SortId> sorts_of(TermId term) const;
+  void report_unknown_symbol(const Node& node, Position position, std::optional<SortId> expected);
+  void report_constant(const Node& node);
+  TermId time_term(const base::SourceRange& source);
+
+  Value connective(const Frame& frame, const Node& node);
+  Value add(TypedFormula formula);
+  Value add(Term term);
+  static Value failure() { return {0, true}; }
+  base::SourceRange source(const Node& node) const { return ast_->source(node); }
+  std::string quoted(const Node& node) const;
+  std::string quoted(TermId term) const;
+
+  void bind(VariableId variable);
+  void unbind(const Frame& frame);
+
+  TypedModel& model_;
+  const ElaborationOptions options_;
+  base::DiagnosticSink& sink_;
+  NameAdvice advice_;
+  SortDomains domains_;
+  const Ast* ast_ = nullptr;
+  std::vector<Frame> frames_;
+  std::vector<Value> values_;
+  /// Innermost binding last. Names are views into the source text.
+  std::unordered_map<std::string_view, std::vector<VariableId>> scope_;
+  std::vector<std::string_view> bound_names_;  // of the open quantifiers, in order
+  std::unordered_set<std::string_view> reported_free_;
+  std::unordered_set<std::uint32_t> reported_ranges_;  // sorts
+  std::vector<bool> mentioned_;                        // by symbol
+  std::optional<VariableId> free_time_;
+  bool mentions_effects_ = false;
+  bool full_ = false;
+};
+
+}  // namespace parallax::compiler

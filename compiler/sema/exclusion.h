@@ -1,0 +1,20 @@
+#pragma once
+
+#include "compiler/base/diagnostic.h"
+#include "compiler/sema/declarations.h"
+#include "compiler/sema/elaborator.h"
+#include "compiler/sema/typed_model.h"
+#include "compiler/syntax/ast.h"
+
+namespace parallax::compiler {
+
+/// Expands `mutex A, B, ...` into `[vars,time] !A(..) | !B(..)` for each pair of different symbols,
+/// and `xor` also into `[vars,time] A(..) | B(..) | ...`. A symbol's argument variables are named
+/// after their sorts, numbered if a sort occurs more than once, and shared between the symbols:
+/// two events of one agent exclude each other, those of two agents do not. `position` is that of
+/// the statement in ModelAst::order.
+void add_exclusion(const Ast& ast, const Statement& statement, std::size_t position,
+                   const IgnoredNames& ignored, Elaborator& elaborator, TypedModel& model,
+                   base::DiagnosticSink& sink);
+
+}  // namespace parallax::compiler

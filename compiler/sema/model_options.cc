@@ -1,0 +1,100 @@
+#include "compiler/sema/model_options.h"
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/base/suggest.h"
+#include "compiler/sema/name_advice.h"
+#include "compiler/syntax/lexer.h"
+
+namespace parallax::compiler {
+
+using base::DiagnosticCode;
+
+namespace {
+
+enum class Values : std::uint8_t { kOnOff, kEncoding, kSolver, kFile, kOff };
+
+struct OptionInfo {
+  std::string_view name;
+  Values values;
+  bool ModelOptions::*flag;  // null: accepted, without meaning for us
+};
+
+constexpr std::array<OptionInfo, 12> kOptions = {{
+    {"encoding", Values::kEncoding, nullptr},
+    {"trajectory", Values::kOnOff, &ModelOptions::trajectory},
+    {"manualrelease", Values::kOnOff, &ModelOptions::manual_release},
+    {"renaming", Values::kOnOff, &ModelOptions::renaming},
+    {"timediff", Values::kOnOff, &ModelOptions::time_diff},
+    {"modeldiff", Values::kOnOff, &ModelOptions::model_diff},
+    {"showpred", Values::kOnOff, &ModelOptions::show_predicates},
+    {"debug", Values::kOnOff, nullptr},
+    {"tmpfilerm", Values::kOnOff, nullptr},
+    {"finalstatefile", Values::kFile, nullptr},
+    {"solver", Values::kSolver, nullptr},
+    {"weighted", Values::kOff, nullptr},
+}};
+
+std::string_view expected(Values values) {
+  switch (values) {
+    case Values::kOnOff:
+      return "`on` or `off`";
+    case Values::kEncoding:
+      return "`2` or `3`";
+    case Values::kSolver:
+      return "`relsat`, `walksat`, `minisat`, `maxwalksat` or `wmaxsat`";
+    case Values::kOff:
+      return "`off` (weighted formulas are not supported)";
+    case Values::kFile:
+      return "a path";
+  }
+  return {};
+}
+
+bool allowed(Values values, std::string_view value) {
+  switch (values) {
+    case Values::kOnOff:
+      return value == "on" || value == "off";
+    case Values::kEncoding:
+      return value == "2" || value == "3";
+    case Values::kSolver:
+      return value == "relsat" || value == "walksat" || value == "minisat" ||
+             value == "maxwalksat" || value == "wmaxsat";
+    case Values::kOff:
+      return value == "off";
+    case Values::kFile:
+      return !value.empty();
+  }
+  return false;
+}
+
+}  // namespace
+
+void apply_option(const Ast& ast, const Statement& statement, ModelOptions& options,
+                  base::DiagnosticSink& sink) {
+  const auto name = ast.text(statement.name);
+  const auto value = ast.text(statement.value);
+  for (const auto& option : kOptions) {
+    if (option.name != name) continue;
+    if (!allowed(option.values, value)) {
+      sink.error(DiagnosticCode::kOptionValue, ast.source(statement.value), name, shortened(value),
+                 expected(option.values));
+      return;
+    }
+    if (option.flag != nullptr) options.*option.flag = value == "on";
+    if (option.values == Values::kEncoding) options.encoding = value == "3" ? 3 : 2;
+    return;
+  }
+  auto report =
+      sink.error(DiagnosticCode::kUnknownOption, ast.source(statement.name), shortened(name));
+  std::vector<std::string> names;
+  for (const auto& option : kOptions) names.emplace_back(option.name);
+  if (const auto near = base::nearest_name(name, names)) {
+    report.fix(NameAdvice::replace(name, *near));
+  }
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,101 @@
+#include "compiler/sema/name_advice.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "compiler/base/suggest.h"
+#include "compiler/syntax/lexer.h"
+
+namespace parallax::compiler {
+namespace {
+
+constexpr std::size_t kMostNames = 20'000;
+constexpr std::size_t kMostErrors = 20;  // later ones are not shown
+
+}  // namespace
+
+std::string_view kind_word(SymbolKind kind) {
+  switch (kind) {
+    case SymbolKind::kPredicate:
+      return "predicate";
+    case SymbolKind::kFunction:
+      return "function";
+    case SymbolKind::kFluent:
+      return "fluent";
+    case SymbolKind::kEvent:
+      return "event";
+    case SymbolKind::kReified:
+      return "term constructor";
+  }
+  return {};
+}
+
+std::string signature(const TypedModel& model, const Symbol& symbol) {
+  std::string out = shortened(symbol.name) + "(";
+  for (std::size_t i = 0; i < symbol.arguments.size(); ++i) {
+    if (i != 0) out += ',';
+    out += model.sorts[symbol.arguments[i]].name;
+  }
+  return out + ")";
+}
+
+std::string sort_name(const TypedModel& model, TermId id) {
+  const Term& term = model.terms[id];
+  switch (term.kind) {
+    case TermKind::kVariable:
+      return model.sorts[model.variables[term.variable].sort].name;
+    case TermKind::kObject: {
+      const auto& sorts = model.objects[term.object].sorts;
+      return sorts.empty() ? std::string("?") : model.sorts[sorts.front()].name;
+    }
+    case TermKind::kApply: {
+      const auto& result = model.symbols[term.symbol].result;
+      return result ? model.sorts[*result].name : std::string("?");
+    }
+    case TermKind::kInteger:
+    case TermKind::kArithmetic:
+      return "integer";
+  }
+  return {};
+}
+
+bool NameAdvice::worthwhile(std::size_t names) const {
+  return names <= kMostNames && sink_.error_count() <= kMostErrors;
+}
+
+std::optional<SymbolId> NameAdvice::symbol(std::string_view name,
+                                           std::span<const SymbolKind> kinds) const {
+  if (!worthwhile(model_.symbols.size())) return std::nullopt;
+  std::vector<std::string> names;
+  for (const auto& symbol : model_.symbols) {
+    if (std::find(kinds.begin(), kinds.end(), symbol.kind) != kinds.end()) {
+      names.push_back(symbol.name);
+    }
+  }
+  const auto near = base::nearest_name(name, names);
+  return near ? model_.find_symbol(*near) : std::nullopt;
+}
+
+std::optional<ObjectId> NameAdvice::object(std::string_view name) const {
+  if (!worthwhile(model_.objects.size())) return std::nullopt;
+  std::vector<std::string> names;
+  for (const auto& object : model_.objects) names.push_back(object.name);
+  const auto near = base::nearest_name(name, names);
+  return near ? model_.find_object(*near) : std::nullopt;
+}
+
+std::optional<SortId> NameAdvice::sort(std::string_view name) const {
+  if (!worthwhile(model_.sorts.size())) return std::nullopt;
+  std::vector<std::string> names;
+  for (const auto& sort : model_.sorts) names.push_back(sort.name);
+  const auto near = base::nearest_name(name, names);
+  return near ? model_.find_sort(*near) : std::nullopt;
+}
+
+std::string NameAdvice::replace(std::string_view wrong, std::string_view right) {
+  return fmt::format("replace `{}` with `{}`", shortened(wrong), shortened(right));
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "compiler/base/diagnostic.h"
+#include "compiler/sema/typed_model.h"
+
+namespace parallax::compiler {
+
+/// "predicate", "fluent", ... for messages.
+std::string_view kind_word(SymbolKind kind);
+/// "Filled(cup)" as it was declared.
+std::string signature(const TypedModel& model, const Symbol& symbol);
+/// The sort of a term for messages: of a constant the first one, "integer" for numbers.
+std::string sort_name(const TypedModel& model, TermId term);
+
+/// Finds declared names near a misspelt one. Gives up on sets of names so large that searching them
+/// for every error would take longer than checking the model.
+class NameAdvice {
+ public:
+  NameAdvice(const TypedModel& model, const base::DiagnosticSink& sink)
+      : model_(model), sink_(sink) {}
+
+  std::optional<SymbolId> symbol(std::string_view name, std::span<const SymbolKind> kinds) const;
+  std::optional<ObjectId> object(std::string_view name) const;
+  std::optional<SortId> sort(std::string_view name) const;
+
+  static std::string replace(std::string_view wrong, std::string_view right);
+
+ private:
+  bool worthwhile(std::size_t names) const;
+  const TypedModel& model_;
+  const base::DiagnosticSink& sink_;
+};
+
+}  // namespace parallax::compiler

@@ -1,0 +1,84 @@
+#include "compiler/sema/typed_model.h"
+
+#include <algorithm>
+#include <unordered_set>
+
+namespace parallax::compiler {
+namespace {
+
+template <typename IdType, typename T>
+std::optional<IdType> find_in(const base::Store<IdType, T>& store, const NameIndex& index,
+                              std::string_view name) {
+  if (index.size() == store.size()) {
+    const auto found = index.find(name, [&](std::uint32_t position) {
+      return std::string_view(store[IdType(position)].name);
+    });
+    if (!found) return std::nullopt;
+    return IdType(*found);
+  }
+  for (std::size_t i = 0; i < store.size(); ++i) {
+    if (store[store.id_at(i)].name == name) return store.id_at(i);
+  }
+  return std::nullopt;
+}
+
+/// `sort` and everything above it, each once.
+std::vector<SortId> ancestors(const TypedModel& model, SortId sort) {
+  std::vector<SortId> found = {sort};
+  std::unordered_set<std::uint32_t> seen = {sort.index()};
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    for (const auto parent : model.sorts[found[i]].parents) {
+      if (seen.insert(parent.index()).second) found.push_back(parent);
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+std::optional<SortId> TypedModel::find_sort(std::string_view name) const {
+  return find_in(sorts, sort_index, name);
+}
+
+std::optional<ObjectId> TypedModel::find_object(std::string_view name) const {
+  return find_in(objects, object_index, name);
+}
+
+std::optional<SymbolId> TypedModel::find_symbol(std::string_view name) const {
+  return find_in(symbols, symbol_index, name);
+}
+
+bool TypedModel::is_subsort(SortId sort, SortId ancestor) const {
+  // Nearly every chain is short and has one parent a level: no set is needed then.
+  for (int level = 0; level < 16; ++level) {
+    if (sort == ancestor) return true;
+    const auto& parents = sorts[sort].parents;
+    if (parents.empty()) return false;
+    if (parents.size() > 1) break;
+    sort = parents.front();
+  }
+  const auto above = ancestors(*this, sort);
+  return std::find(above.begin(), above.end(), ancestor) != above.end();
+}
+
+bool TypedModel::sorts_overlap(SortId a, SortId b) const {
+  if (is_subsort(a, b) || is_subsort(b, a)) return true;
+  if (sorts[a].integer && sorts[b].integer) return true;
+  // Two sorts side by side share elements only through a sort with two parents ...
+  for (std::size_t i = 0; i < sorts.size(); ++i) {
+    const auto sort = sorts.id_at(i);
+    if (sorts[sort].parents.size() > 1 && is_subsort(sort, a) && is_subsort(sort, b)) return true;
+  }
+  // ... or through a constant with two sorts.
+  for (const auto& object : objects) {
+    if (object.sorts.size() < 2) continue;
+    const auto below = [&](SortId ancestor) {
+      return std::any_of(object.sorts.begin(), object.sorts.end(),
+                         [&](SortId sort) { return is_subsort(sort, ancestor); });
+    };
+    if (below(a) && below(b)) return true;
+  }
+  return false;
+}
+
+}  // namespace parallax::compiler

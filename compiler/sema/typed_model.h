@@ -1,0 +1,224 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/base/id.h"
+#include "compiler/base/source_file.h"
+#include "compiler/sema/name_index.h"
+
+namespace parallax::compiler {
+
+struct SortTag {
+  static constexpr bool kOrdered = true;  // order of declaration
+};
+struct ObjectTag {
+  static constexpr bool kOrdered = true;  // order of declaration
+};
+struct SymbolTag {
+  static constexpr bool kOrdered = true;  // order of declaration
+};
+struct VariableTag {};
+struct TermTag {};
+struct TypedFormulaTag {};
+using SortId = base::Id<SortTag>;
+using ObjectId = base::Id<ObjectTag>;
+using SymbolId = base::Id<SymbolTag>;
+using VariableId = base::Id<VariableTag>;
+using TermId = base::Id<TermTag>;
+using TypedFormulaId = base::Id<TypedFormulaTag>;
+
+/// A sort of the many-sorted language. Its domain: the domains of its subsorts in order of
+/// declaration, then its own constants, then its ranges; for a reified sort every ground term of
+/// its constructors (symbols whose `result` is the sort).
+struct Sort {
+  std::string name;
+  std::vector<SortId> parents;
+  bool reified = false;
+  bool integer = false;  // `integer` itself or below it
+  std::vector<ObjectId> constants;
+  struct Range {
+    std::int64_t lower = 0;
+    std::int64_t upper = 0;
+    base::SourceRange declared;
+  };
+  std::vector<Range> ranges;
+  base::SourceRange declared;
+};
+
+/// A named constant of a plain sort. Integers are no objects: they are terms of kind kInteger.
+struct Object {
+  std::string name;
+  std::vector<SortId> sorts;
+  base::SourceRange declared;
+};
+
+enum class SymbolKind : std::uint8_t { kPredicate, kFunction, kFluent, kEvent, kReified };
+
+struct Symbol {
+  std::string name;
+  SymbolKind kind = SymbolKind::kPredicate;
+  std::vector<SortId> arguments;
+  std::optional<SortId> result;  // the sort of the term it makes; none for a predicate
+  base::SourceRange declared;
+  bool noninertial = false;     // fluents: no inertia at any time
+  bool manual_release = false;  // fluents: nothing is said of ReleasedAt at 0
+};
+
+/// A variable of one axiom. Its sort is its name without the trailing digits.
+struct Variable {
+  std::string name;
+  SortId sort;
+};
+
+enum class TermKind : std::uint8_t { kVariable, kObject, kInteger, kApply, kArithmetic };
+enum class ArithmeticOp : std::uint8_t { kAdd, kSubtract, kMultiply, kDivide, kModulo };
+
+struct Term {
+  TermKind kind = TermKind::kInteger;
+  VariableId variable;       // kVariable
+  ObjectId object;           // kObject
+  std::int64_t integer = 0;  // kInteger
+  SymbolId symbol;           // kApply: fluent, event, reified or function symbol
+  ArithmeticOp op = ArithmeticOp::kAdd;
+  std::vector<TermId> arguments;  // kApply; two for kArithmetic (unary minus is 0 - x)
+  base::SourceRange source;
+};
+
+enum class FormulaKind : std::uint8_t {
+  kTrue,
+  kFalse,
+  kAtom,
+  kCompare,
+  kNot,
+  kAnd,
+  kOr,
+  kImplies,
+  kIff,
+  kForall,
+  kExists
+};
+enum class CompareOp : std::uint8_t {
+  kEqual,
+  kNotEqual,
+  kLess,
+  kLessEqual,
+  kGreater,
+  kGreaterEqual
+};
+
+struct TypedFormula {
+  FormulaKind kind = FormulaKind::kTrue;
+  SymbolId predicate;                     // kAtom
+  CompareOp compare = CompareOp::kEqual;  // kCompare
+  std::vector<TermId> terms;              // kAtom: arguments; kCompare: two
+  std::vector<TypedFormulaId> children;   // connectives and quantifiers
+  std::vector<VariableId> variables;      // kForall, kExists
+  base::SourceRange source;
+};
+
+/// A formula that is asserted as it stands (observations, constraints, preconditions, triggers).
+struct Axiom {
+  std::string label;  // empty without one
+  TypedFormulaId formula;
+  base::SourceRange source;
+  /// Mentions Initiates, Terminates or Releases in a condition or a definition (as the definitions
+  /// of ECCausal.e do): they stand there for their completed meaning.
+  bool mentions_effects = false;
+};
+
+enum class EffectKind : std::uint8_t { kInitiates, kTerminates, kReleases };
+
+/// `[variables] condition -> Initiates(event, fluent, time)` (Mueller 2006, section 2.7).
+/// `event` and `fluent` are terms; `time` is a term, usually a variable.
+struct EffectAxiom {
+  EffectKind kind = EffectKind::kInitiates;
+  std::vector<VariableId> variables;  // universally quantified
+  TypedFormulaId condition;           // kTrue where there is none
+  TermId event, fluent, time;
+  std::string label;
+  base::SourceRange source;
+};
+
+enum class TrajectoryKind : std::uint8_t { kTrajectory, kAntiTrajectory };
+
+/// `[variables] condition -> Trajectory(fluent, time, target, offset)` (Mueller 2006, DEC3, DEC4).
+struct TrajectoryAxiom {
+  TrajectoryKind kind = TrajectoryKind::kTrajectory;
+  std::vector<VariableId> variables;
+  TypedFormulaId condition;  // kTrue where there is none
+  TermId fluent, time, target, offset;
+  std::string label;
+  base::SourceRange source;
+};
+
+/// `F(C1,...,Cn)=V.`: one entry of a function's table. Arguments and value are kObject, kInteger
+/// or ground kApply terms. No two entries of a model share function and arguments.
+struct FunctionValue {
+  SymbolId function;
+  std::vector<TermId> arguments;
+  TermId value;
+  base::SourceRange source;
+};
+
+/// The `option` statements; those that only chose files or solvers of the 2005 reasoner are not
+/// kept.
+struct ModelOptions {
+  int encoding = 2;
+  bool trajectory = false;
+  bool manual_release = false;  // already applied to every fluent symbol
+  bool renaming = true;
+  // Only the printed form of traces:
+  bool time_diff = true;
+  bool model_diff = false;
+  bool show_predicates = true;
+};
+
+/// `completion LABEL Predicate`; without a label the predicate is completed over all axioms.
+struct Completion {
+  std::optional<std::string> label;
+  SymbolId predicate;
+  base::SourceRange source;
+};
+
+/// The predicates of the event calculus, declared by the built-in foundations.
+struct CoreSymbols {
+  std::optional<SymbolId> happens, holds_at, released_at, initiates, terminates, releases,
+      trajectory, anti_trajectory;
+  std::optional<SortId> time, fluent, event, integer;
+};
+
+/// The checked model: every name resolved, every sort checked. Owned by value; ids index into it.
+struct TypedModel {
+  base::Store<SortId, Sort> sorts;
+  base::Store<ObjectId, Object> objects;
+  base::Store<SymbolId, Symbol> symbols;
+  base::Store<VariableId, Variable> variables;
+  base::Store<TermId, Term> terms;
+  base::Store<TypedFormulaId, TypedFormula> formulas;
+  std::vector<Axiom> axioms;         // in source order
+  std::vector<EffectAxiom> effects;  // in source order
+  std::vector<Completion> completions;
+  CoreSymbols core;
+  std::vector<TrajectoryAxiom> trajectories;   // in source order
+  std::vector<FunctionValue> function_values;  // in source order
+  ModelOptions options;
+
+  std::optional<SortId> find_sort(std::string_view name) const;
+  std::optional<ObjectId> find_object(std::string_view name) const;
+  std::optional<SymbolId> find_symbol(std::string_view name) const;
+  /// True if `sort` is `ancestor` or below it.
+  bool is_subsort(SortId sort, SortId ancestor) const;
+  /// True if the two sorts can have an element in common. A variable or function value of a wider
+  /// or overlapping sort may stand at an argument position; instances outside the declared sort
+  /// are left out when grounding.
+  bool sorts_overlap(SortId a, SortId b) const;
+
+  /// Filled by check_model. The look-ups above scan the stores where it is not.
+  NameIndex sort_index, object_index, symbol_index;
+};
+
+}  // namespace parallax::compiler

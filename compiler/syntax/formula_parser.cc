@@ -1,0 +1,348 @@
+#include "compiler/syntax/formula_parser.h"
+
+#include <algorithm>
+
+#include "compiler/syntax/parser.h"
+#include "compiler/syntax/precedence.h"
+
+namespace parallax::compiler {
+
+using base::DiagnosticCode;
+
+std::optional<NodeId> FormulaParser::parse(Period period) {
+  entries_.clear();
+  operands_.clear();
+  extents_.clear();
+  wants_operand_ = true;
+  skip_to_period_ = true;
+  last_ = lexer_.peek();
+  Step step = Step::kMore;
+  while (step == Step::kMore) step = wants_operand_ ? operand() : after_operand(period);
+  if (step == Step::kFailed) {
+    recover();
+    return std::nullopt;
+  }
+  return operands_.back().node;
+}
+
+// --- operands --------------------------------------------------------------------------------
+
+FormulaParser::Step FormulaParser::operand() {
+  const Token token = lexer_.peek();
+  switch (token.kind) {
+    case TokenKind::kName:
+      last_ = lexer_.next();
+      if (lexer_.peek().kind == TokenKind::kOpenParen) return open_call(token);
+      leaf(NodeKind::kName, token);
+      return Step::kMore;
+    case TokenKind::kNumber:
+      last_ = lexer_.next();
+      leaf(NodeKind::kNumber, token);
+      return Step::kMore;
+    case TokenKind::kOpenParen:
+      last_ = lexer_.next();
+      return push({.kind = Pending::kParen, .token = token}) ? Step::kMore : Step::kFailed;
+    case TokenKind::kOpenBracket:
+    case TokenKind::kOpenBrace:
+      last_ = lexer_.next();
+      return quantifier(token);
+    case TokenKind::kOperator: {
+      Entry entry{.kind = Pending::kPrefix, .op = token.op, .token = token};
+      if (token.op == Operator::kSubtract) {
+        entry.op = Operator::kNegate;
+      } else if (token.op == Operator::kAdd) {
+        entry.op = Operator::kPlus;
+      } else if (token.op != Operator::kNot) {
+        return fail_here(DiagnosticCode::kExpectedOperand, token);
+      }
+      last_ = lexer_.next();
+      return push(entry) ? Step::kMore : Step::kFailed;
+    }
+    case TokenKind::kCloseParen:
+    case TokenKind::kCloseBracket:
+    case TokenKind::kCloseBrace:
+    case TokenKind::kComma:
+    case TokenKind::kPeriod:
+    case TokenKind::kColon:
+    case TokenKind::kStatementLine:
+    case TokenKind::kEnd:
+      break;
+  }
+  return fail_here(DiagnosticCode::kExpectedOperand, token);
+}
+
+void FormulaParser::leaf(NodeKind kind, const Token& token) {
+  Node node;
+  node.kind = kind;
+  node.begin = token.begin;
+  node.end = token.end;
+  node.name_length = token.end - token.begin;
+  operands_.push_back({ast_.add(node), 1});
+  wants_operand_ = false;
+}
+
+FormulaParser::Step FormulaParser::open_call(const Token& name) {
+  last_ = lexer_.next();
+  const auto base = static_cast<std::uint32_t>(operands_.size());
+  if (!push({.kind = Pending::kCall, .token = name, .base = base})) return Step::kFailed;
+  // `F()` has no operand; close() sees that from `base`.
+  if (lexer_.peek().kind == TokenKind::kCloseParen) wants_operand_ = false;
+  return Step::kMore;
+}
+
+FormulaParser::Step FormulaParser::quantifier(const Token& open) {
+  const bool all = open.kind == TokenKind::kOpenBracket;
+  const auto closing = all ? TokenKind::kCloseBracket : TokenKind::kCloseBrace;
+  Entry entry{.kind = Pending::kQuantifier,
+              .quantifier = all ? NodeKind::kForall : NodeKind::kExists,
+              .token = open};
+  for (;;) {
+    const Token name = lexer_.peek();
+    if (name.kind != TokenKind::kName) {
+      return fail_here(DiagnosticCode::kExpectedVariable, name);
+    }
+    last_ = lexer_.next();
+    leaf(NodeKind::kName, name);
+    ++entry.count;
+    const Token after = lexer_.peek();
+    if (after.kind != closing && after.kind != TokenKind::kComma) {
+      sink_
+          .error(DiagnosticCode::kUnclosedBracket, lexer_.range(after), lexer_.text(open),
+                 lexer_.describe(after))
+          .note(lexer_.range(open), "opened here");
+      return Step::kFailed;
+    }
+    last_ = lexer_.next();
+    if (after.kind == closing) break;
+  }
+  wants_operand_ = true;
+  return push(entry) ? Step::kMore : Step::kFailed;
+}
+
+// --- after an operand ------------------------------------------------------------------------
+
+FormulaParser::Step FormulaParser::after_operand(Period period) {
+  const Token token = lexer_.peek();
+  switch (token.kind) {
+    case TokenKind::kOperator:
+      return token.op == Operator::kNot ? juxtaposed(token, period) : binary(token);
+    case TokenKind::kComma:
+      return comma(token);
+    case TokenKind::kCloseParen:
+      return close(token);
+    case TokenKind::kCloseBracket:
+    case TokenKind::kCloseBrace:
+      return fail_here(DiagnosticCode::kUnmatchedBracket, token);
+    case TokenKind::kPeriod:
+    case TokenKind::kStatementLine:
+    case TokenKind::kEnd:
+      return end_of_formula(token, period);
+    case TokenKind::kName:
+    case TokenKind::kNumber:
+    case TokenKind::kOpenParen:
+    case TokenKind::kOpenBracket:
+    case TokenKind::kOpenBrace:
+    case TokenKind::kColon:
+      return juxtaposed(token, period);
+  }
+  return Step::kFailed;
+}
+
+FormulaParser::Step FormulaParser::binary(const Token& token) {
+  const int strength = binding(token.op);
+  while (!entries_.empty()) {
+    Entry& top = entries_.back();
+    if (top.kind == Pending::kParen || top.kind == Pending::kCall ||
+        top.kind == Pending::kQuantifier) {
+      break;  // a quantifier reaches as far right as possible
+    }
+    const int above = binding(top.op);
+    if (above < strength) break;
+    if (above == strength && top.kind == Pending::kBinary) {
+      if (strength == kComparisonBinding) {
+        sink_.error(DiagnosticCode::kComparisonChain, lexer_.range(token), lexer_.text(token))
+            .note(lexer_.range(top.token), "the other comparison");
+        return Step::kFailed;
+      }
+      if (is_flat(token.op)) {
+        ++top.count;
+        last_ = lexer_.next();
+        wants_operand_ = true;
+        return Step::kMore;
+      }
+    }
+    if (!reduce()) return Step::kFailed;
+  }
+  last_ = lexer_.next();
+  wants_operand_ = true;
+  return push({.kind = Pending::kBinary, .op = token.op, .token = token, .count = 1})
+             ? Step::kMore
+             : Step::kFailed;
+}
+
+FormulaParser::Step FormulaParser::comma(const Token& token) {
+  if (!reduce_to_bracket()) return Step::kFailed;
+  if (entries_.empty() || entries_.back().kind != Pending::kCall) {
+    return fail_here(DiagnosticCode::kExpectedOperator, token);
+  }
+  last_ = lexer_.next();
+  wants_operand_ = true;
+  return Step::kMore;
+}
+
+FormulaParser::Step FormulaParser::close(const Token& token) {
+  if (!reduce_to_bracket()) return Step::kFailed;
+  if (entries_.empty()) {
+    sink_.error(DiagnosticCode::kUnmatchedBracket, lexer_.range(token), lexer_.text(token));
+    return Step::kFailed;
+  }
+  last_ = lexer_.next();
+  const Entry entry = entries_.back();
+  entries_.pop_back();
+  if (entry.kind == Pending::kParen) {
+    const auto operand = operands_.size() - 1;
+    if (!extents_.empty() && extents_.back().operand == operand) extents_.pop_back();
+    extents_.push_back({operand, entry.token.begin, token.end});
+    return Step::kMore;
+  }
+  Node node;
+  node.kind = NodeKind::kApply;
+  node.name_length = entry.token.end - entry.token.begin;
+  return add(node, operands_.size() - entry.base, entry.token.begin, token.end) ? Step::kMore
+                                                                                : Step::kFailed;
+}
+
+FormulaParser::Step FormulaParser::end_of_formula(const Token& token, Period period) {
+  if (!reduce_to_bracket()) return Step::kFailed;
+  if (!entries_.empty()) return fail_unclosed(token);
+  if (token.kind == TokenKind::kPeriod) {
+    last_ = lexer_.next();
+  } else if (period == Period::kRequired) {
+    // The formula itself is whole, so it stays.
+    sink_.error(DiagnosticCode::kMissingPeriod, lexer_.range(last_), lexer_.describe(token))
+        .fix("add `.` after `" + shortened(lexer_.text(last_)) + "`");
+  }
+  return Step::kDone;
+}
+
+FormulaParser::Step FormulaParser::juxtaposed(const Token& token, Period period) {
+  // At the start of a line this is most likely the next formula.
+  if (period == Period::kRequired && token.first_on_line && token.kind != TokenKind::kColon) {
+    skip_to_period_ = false;
+    return end_of_formula(token, period);
+  }
+  return fail_here(DiagnosticCode::kExpectedOperator, token);
+}
+
+// --- building --------------------------------------------------------------------------------
+
+bool FormulaParser::push(const Entry& entry) {
+  if (entries_.size() >= kMaxFormulaDepth) {
+    report_too_deep(entry.token.begin, entry.token.end);
+    return false;
+  }
+  entries_.push_back(entry);
+  return true;
+}
+
+void FormulaParser::report_too_deep(std::uint32_t begin, std::uint32_t end) {
+  sink_.error(DiagnosticCode::kFormulaTooDeep, base::SourceRange{ast_.file(), begin, end},
+              kMaxFormulaDepth);
+}
+
+bool FormulaParser::add(Node node, std::size_t child_count, std::uint32_t begin,
+                        std::uint32_t end) {
+  const std::size_t first = operands_.size() - child_count;
+  std::uint32_t depth = 0;
+  for (std::size_t i = first; i < operands_.size(); ++i) {
+    depth = std::max(depth, operands_[i].depth);
+  }
+  if (depth >= kMaxFormulaDepth) {
+    report_too_deep(begin, end);
+    return false;
+  }
+  node.begin = begin;
+  node.end = end;
+  const auto id =
+      ast_.add_with(node, child_count, [&](std::size_t i) { return operands_[first + i].node; });
+  operands_.resize(first);
+  while (!extents_.empty() && extents_.back().operand >= first) extents_.pop_back();
+  operands_.push_back({id, depth + 1});
+  wants_operand_ = false;
+  return true;
+}
+
+FormulaParser::Extent FormulaParser::extent(std::size_t operand) const {
+  const auto found = std::lower_bound(
+      extents_.begin(), extents_.end(), operand,
+      [](const Extent& extent, std::size_t wanted) { return extent.operand < wanted; });
+  if (found != extents_.end() && found->operand == operand) return *found;
+  const Node& node = ast_[operands_[operand].node];
+  return {operand, node.begin, node.end};
+}
+
+bool FormulaParser::reduce() {
+  const Entry entry = entries_.back();
+  entries_.pop_back();
+  Node node;
+  node.op = entry.op;
+  const auto end = extent(operands_.size() - 1).end;
+  if (entry.kind == Pending::kPrefix) {
+    node.kind = NodeKind::kUnary;
+    return add(node, 1, entry.token.begin, end);
+  }
+  const std::size_t child_count = entry.count + 1;
+  if (entry.kind == Pending::kQuantifier) {
+    node.kind = entry.quantifier;
+    return add(node, child_count, entry.token.begin, end);
+  }
+  node.kind = NodeKind::kBinary;
+  return add(node, child_count, extent(operands_.size() - child_count).begin, end);
+}
+
+bool FormulaParser::reduce_to_bracket() {
+  while (!entries_.empty() && entries_.back().kind != Pending::kParen &&
+         entries_.back().kind != Pending::kCall) {
+    if (!reduce()) return false;
+  }
+  return true;
+}
+
+// --- errors ----------------------------------------------------------------------------------
+
+FormulaParser::Step FormulaParser::fail_here(DiagnosticCode code, const Token& found) {
+  auto range = lexer_.range(found);
+  if (found.kind == TokenKind::kStatementLine || found.kind == TokenKind::kEnd) {
+    range = lexer_.range(last_);  // point at what is incomplete, not at what follows
+  }
+  if (code == DiagnosticCode::kUnmatchedBracket) {
+    sink_.error(code, range, lexer_.text(found));
+  } else {
+    sink_.error(code, range, lexer_.describe(found));
+  }
+  return Step::kFailed;
+}
+
+FormulaParser::Step FormulaParser::fail_unclosed(const Token& before) {
+  const auto& open = entries_.back();
+  auto place = lexer_.range(open.token);
+  if (open.kind == Pending::kCall) {
+    place.end = place.begin + 1 + (open.token.end - open.token.begin);
+  }
+  const auto at = before.kind == TokenKind::kPeriod ? before : last_;
+  sink_.error(DiagnosticCode::kUnclosedBracket, lexer_.range(at), "(", lexer_.describe(before))
+      .note(place, "opened here");
+  return Step::kFailed;
+}
+
+void FormulaParser::recover() {
+  if (!skip_to_period_) return;
+  for (;;) {
+    const auto kind = lexer_.peek().kind;
+    if (kind == TokenKind::kEnd || kind == TokenKind::kStatementLine) return;
+    lexer_.next();
+    if (kind == TokenKind::kPeriod) return;
+  }
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,227 @@
+#include "compiler/syntax/lexer.h"
+
+#include <algorithm>
+#include <array>
+
+namespace parallax::compiler {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
+
+struct Spelled {
+  std::string_view text;
+  TokenKind kind;
+  Operator op = Operator::kAnd;
+};
+
+// Longest match first.
+constexpr std::array<Spelled, 28> kPunctuation = {{
+    {"<->", TokenKind::kOperator, Operator::kIff},
+    {"->", TokenKind::kOperator, Operator::kImplies},
+    {"<=", TokenKind::kOperator, Operator::kLessEqual},
+    {">=", TokenKind::kOperator, Operator::kGreaterEqual},
+    {"!=", TokenKind::kOperator, Operator::kNotEqual},
+    {"<", TokenKind::kOperator, Operator::kLess},
+    {">", TokenKind::kOperator, Operator::kGreater},
+    {"=", TokenKind::kOperator, Operator::kEqual},
+    {"!", TokenKind::kOperator, Operator::kNot},
+    {"&", TokenKind::kOperator, Operator::kAnd},
+    {"|", TokenKind::kOperator, Operator::kOr},
+    {"+", TokenKind::kOperator, Operator::kAdd},
+    {"-", TokenKind::kOperator, Operator::kSubtract},
+    {"*", TokenKind::kOperator, Operator::kMultiply},
+    {"/", TokenKind::kOperator, Operator::kDivide},
+    {"^", TokenKind::kOperator, Operator::kPower},
+    {"%", TokenKind::kOperator, Operator::kModulo},
+    {"(", TokenKind::kOpenParen},
+    {")", TokenKind::kCloseParen},
+    {"[", TokenKind::kOpenBracket},
+    {"]", TokenKind::kCloseBracket},
+    {"{", TokenKind::kOpenBrace},
+    {"}", TokenKind::kCloseBrace},
+    {",", TokenKind::kComma},
+    {".", TokenKind::kPeriod},
+    {":", TokenKind::kColon},
+    {";", TokenKind::kEnd},   // a comment: never met, but no illegal character
+    {"\n", TokenKind::kEnd},  // likewise
+}};
+
+constexpr std::array<std::string_view, 11> kKeywords = {
+    "option",  "range",         "sort",   "xor",        "mutex", "noninertial",
+    "reified", "manualrelease", "ignore", "completion", "load"};
+
+bool starts_token(char c) {
+  if (is_name_part(c) || is_blank(c)) return true;
+  return std::any_of(kPunctuation.begin(), kPunctuation.end(),
+                     [c](const Spelled& spelled) { return spelled.text[0] == c; });
+}
+
+}  // namespace
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+bool is_name_start(char c) { return is_lower(c) || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_name_part(char c) { return is_name_start(c) || is_digit(c); }
+
+LineKind classify_line(std::string_view line) {
+  std::size_t end = 0;
+  while (end < line.size() && is_lower(line[end])) ++end;
+  if (end == 0) return LineKind::kFormulaText;
+  const auto word = line.substr(0, end);
+  const bool keyword = std::find(kKeywords.begin(), kKeywords.end(), word) != kKeywords.end();
+  const bool additional = !keyword && end < line.size() && line[end] == '!';
+  if (additional) ++end;
+  std::size_t next = end;
+  while (next < line.size() && is_blank(line[next])) ++next;
+  const bool nothing_follows = next == line.size() || line[next] == '\n' || line[next] == ';';
+  if (nothing_follows) return keyword ? LineKind::kStatement : LineKind::kFormulaText;
+  if (next == end) return LineKind::kFormulaText;
+  if (keyword) return LineKind::kStatement;
+  // Two names side by side are no formula; anything else after the first can only be one.
+  return is_name_part(line[next]) ? LineKind::kStatement : LineKind::kFormulaTextOnlyHere;
+}
+
+std::string shortened(std::string_view text) {
+  constexpr std::size_t kLongest = 60;
+  if (text.size() <= kLongest) return std::string(text);
+  std::size_t end = kLongest - 3;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  return std::string(text.substr(0, end)) + "...";
+}
+
+Lexer::Lexer(base::SourceRange range, std::string_view file_text, Mode mode,
+             base::DiagnosticSink& sink)
+    : file_(range.file),
+      text_(file_text.substr(0, range.end)),
+      mode_(mode),
+      sink_(sink),
+      position_(range.begin) {
+  scan();
+}
+
+Token Lexer::next() {
+  const Token taken = token_;
+  if (taken.kind != TokenKind::kEnd && taken.kind != TokenKind::kStatementLine) scan();
+  return taken;
+}
+
+bool Lexer::colon_follows() const {
+  std::size_t i = token_.end;
+  while (i < text_.size() && is_blank(text_[i])) ++i;
+  return i < text_.size() && text_[i] == ':';
+}
+
+std::uint32_t Lexer::statement_end() const {
+  const auto end = text_.find_first_of(";\n", token_.begin);
+  return static_cast<std::uint32_t>(end == std::string_view::npos ? text_.size() : end);
+}
+
+void Lexer::skip_statement() {
+  position_ = statement_end();
+  scan();
+}
+
+std::string Lexer::describe(const Token& token) const {
+  if (token.kind == TokenKind::kEnd) return "the end of the text";
+  if (token.kind == TokenKind::kStatementLine) return "a statement";
+  return "`" + shortened(text(token)) + "`";
+}
+
+void Lexer::skip_blanks() {
+  while (position_ < text_.size()) {
+    const char c = text_[position_];
+    if (c == ';') {
+      const auto end = text_.find('\n', position_);
+      position_ = static_cast<std::uint32_t>(end == std::string_view::npos ? text_.size() : end);
+    } else if (c == '\n') {
+      line_start_ = true;
+      ++position_;
+    } else if (is_blank(c)) {
+      ++position_;
+    } else {
+      return;
+    }
+  }
+}
+
+void Lexer::skip_illegal() {
+  const auto begin = position_;
+  while (position_ < text_.size() && !starts_token(text_[position_])) ++position_;
+  // Quote one whole code point, not its first byte.
+  std::size_t length = 1;
+  while (begin + length < position_ &&
+         (static_cast<unsigned char>(text_[begin + length]) & 0xC0U) == 0x80U) {
+    ++length;
+  }
+  sink_.error(base::DiagnosticCode::kIllegalCharacter, base::SourceRange{file_, begin, position_},
+              text_.substr(begin, length));
+}
+
+bool Lexer::scan_word() {
+  const char first = text_[position_];
+  std::uint32_t end = position_;
+  if (is_name_start(first)) {
+    while (end < text_.size() && is_name_part(text_[end])) ++end;
+    token_.kind = TokenKind::kName;
+  } else if (is_digit(first)) {
+    while (end < text_.size() && is_digit(text_[end])) ++end;
+    // `0.5` is one number, the period of `=0.` ends a formula.
+    if (end + 1 < text_.size() && text_[end] == '.' && is_digit(text_[end + 1])) {
+      ++end;
+      while (end < text_.size() && is_digit(text_[end])) ++end;
+    }
+    token_.kind = TokenKind::kNumber;
+  } else {
+    return false;
+  }
+  position_ = end;
+  return true;
+}
+
+bool Lexer::scan_operator() {
+  const auto rest = text_.substr(position_, 3);
+  for (const auto& spelled : kPunctuation) {
+    if (!rest.starts_with(spelled.text)) continue;
+    token_.kind = spelled.kind;
+    token_.op = spelled.op;
+    position_ += static_cast<std::uint32_t>(spelled.text.size());
+    return true;
+  }
+  return false;
+}
+
+void Lexer::scan() {
+  for (;;) {
+    skip_blanks();
+    token_ = Token{};
+    token_.begin = position_;
+    token_.first_on_line = line_start_;
+    if (position_ >= text_.size()) {
+      token_.end = position_;
+      return;
+    }
+    if (line_start_ && mode_ == Mode::kFile) {
+      const auto kind = classify_line(text_.substr(position_));
+      if (kind == LineKind::kStatement) {
+        token_.kind = TokenKind::kStatementLine;
+        token_.end = statement_end();
+        return;
+      }
+      if (kind == LineKind::kFormulaTextOnlyHere) {
+        auto end = position_;
+        while (is_lower(text_[end])) ++end;
+        sink_.warning(base::DiagnosticCode::kLineTakenForDeclaration,
+                      base::SourceRange{file_, position_, end},
+                      shortened(text_.substr(position_, end - position_)));
+      }
+    }
+    line_start_ = false;
+    if (scan_word() || scan_operator()) {
+      token_.end = position_;
+      return;
+    }
+    skip_illegal();
+  }
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,244 @@
+#include "compiler/syntax/loader.h"
+
+#include <algorithm>
+#include <string>
+#include <system_error>
+#include <unordered_map>
+
+#include "compiler/base/file_io.h"
+#include "compiler/base/suggest.h"
+#include "compiler/syntax/foundations.h"
+#include "compiler/syntax/lexer.h"
+#include "compiler/syntax/parser.h"
+
+namespace parallax::compiler {
+namespace {
+
+namespace fs = std::filesystem;
+using base::DiagnosticCode;
+
+fs::path canonical_or_empty(const fs::path& path) {
+  std::error_code error;
+  auto real = fs::canonical(path.empty() ? fs::path(".") : path, error);
+  return error ? fs::path() : real;
+}
+
+bool lies_below(const fs::path& file, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first ==
+         folder.end();
+}
+
+class ModelLoader {
+ public:
+  ModelLoader(const LoadOptions& options, base::SourceFiles& files, base::DiagnosticSink& sink)
+      : options_(options), files_(files), sink_(sink) {
+    for (const auto& folder : options.include_dirs) add_root(folder);
+    add_root(".");
+  }
+
+  void add_root(const fs::path& folder) {
+    auto real = canonical_or_empty(folder);
+    if (!real.empty()) roots_.push_back(std::move(real));
+  }
+
+  /// A file that the user named on the command line.
+  void load_main(const fs::path& path) {
+    const auto real = canonical_or_empty(path);
+    if (!real.empty() && index_of_.contains(real.string())) return;
+    const auto file = base::load_text(path, files_, sink_);
+    if (!file) {
+      unreadable_ = true;
+      return;
+    }
+    open(*file, path.parent_path(), false);
+    if (!real.empty()) index_of_.emplace(real.string(), model_.files.size() - 1);
+    run();
+  }
+
+  void load_main_text(base::FileId file, const fs::path& folder) {
+    open(file, folder, false);
+    run();
+  }
+
+  base::Result<ModelAst> finish() {
+    if (unreadable_) return sink_.already_reported();
+    if (options_.implicit_foundations && !foundation_loaded_) add_implicit_foundations();
+    return std::move(model_);
+  }
+
+ private:
+  /// A file whose statements are being put in order.
+  struct Open {
+    std::uint32_t file = 0;
+    std::uint32_t next = 0;
+  };
+
+  void open(base::FileId file, fs::path folder, bool built_in) {
+    model_.files.push_back({parse_file(file, files_, sink_), built_in});
+    folders_.push_back(std::move(folder));
+    stack_.push_back({static_cast<std::uint32_t>(model_.files.size() - 1), 0});
+  }
+
+  void run() {
+    while (!stack_.empty()) {
+      Open& top = stack_.back();
+      const Ast& ast = model_.files[top.file].ast;
+      if (top.next == ast.statements().size()) {
+        stack_.pop_back();
+        continue;
+      }
+      const ModelAst::Place place{top.file, top.next++};
+      const Statement& statement = ast.statements()[place.statement];
+      if (statement.kind == StatementKind::kLoad) {
+        load(place);
+        continue;
+      }
+      if (statement.kind == StatementKind::kOption) note_option(ast, statement);
+      model_.order.push_back(place);
+    }
+  }
+
+  /// The two options that choose which foundation a later `load` means.
+  void note_option(const Ast& ast, const Statement& statement) {
+    const auto name = ast.text(statement.name);
+    const auto value = ast.text(statement.value);
+    if (name == "encoding") encoding3_ = value == "3";
+    if (name == "trajectory") trajectory_ = value == "on";
+  }
+
+  void load(const ModelAst::Place& place) {
+    // Copies: what `statement` refers to moves when a file is added.
+    const Ast& ast = model_.files[place.file].ast;
+    const Word word = ast.statements()[place.statement].value;
+    const auto range = ast.source(word);
+    const fs::path path(std::string(ast.text(word)));
+    const fs::path folder = folders_[place.file];
+    const auto normal = path.lexically_normal();
+    if (!model_.files[place.file].built_in && load_from_disk(path, folder, range)) return;
+    if (load_foundation(normal.string())) return;
+    report_missing(path, range);
+  }
+
+  /// True if the file was found (and loaded or refused).
+  bool load_from_disk(const fs::path& path, const fs::path& folder,
+                      const base::SourceRange& range) {
+    std::vector<fs::path> candidates = {folder / path};
+    if (path.is_relative()) {
+      for (const auto& include : options_.include_dirs) candidates.push_back(include / path);
+      candidates.push_back(path);
+    }
+    for (const auto& candidate : candidates) {
+      std::error_code error;
+      const auto status = fs::status(candidate, error);
+      if (error || !fs::exists(status)) continue;
+      if (!fs::is_regular_file(status)) {
+        sink_.error(DiagnosticCode::kLoadNotAFile, range, candidate.lexically_normal().string());
+        unreadable_ = true;
+        return true;
+      }
+      load_found(candidate, range);
+      return true;
+    }
+    return false;
+  }
+
+  void load_found(const fs::path& candidate, const base::SourceRange& range) {
+    const auto real = canonical_or_empty(candidate);
+    const bool inside = std::any_of(roots_.begin(), roots_.end(),
+                                    [&](const fs::path& root) { return lies_below(real, root); });
+    if (!inside && !options_.allow_outside) {
+      auto report =
+          sink_.error(DiagnosticCode::kLoadOutside, range, candidate.lexically_normal().string());
+      if (real != candidate) report.note("its real path is `" + real.string() + "`");
+      report.fix("name its folder with -I, or permit it with --allow-outside");
+      unreadable_ = true;
+      return;
+    }
+    if (real.parent_path().filename() == "foundations") foundation_loaded_ = true;
+    if (index_of_.contains(real.string())) return;  // once is enough
+    const auto file = base::load_text(candidate.lexically_normal(), files_, sink_);
+    if (!file) {
+      unreadable_ = true;
+      return;
+    }
+    index_of_.emplace(real.string(), model_.files.size());
+    open(*file, candidate.parent_path(), false);
+  }
+
+  bool load_foundation(std::string path) {
+    if (!find_foundation(path)) return false;
+    foundation_loaded_ = true;
+    const bool by_user = !model_.files[stack_.back().file].built_in;
+    if (path == "foundations/EC.e" && encoding3_ && by_user) {
+      if (trajectory_) open_foundation("foundations/ECTraj.e");
+      path = "foundations/DEC.e";
+    }
+    open_foundation(path);
+    return true;
+  }
+
+  void open_foundation(const std::string& path) {
+    // Built-in texts have no real path; a colon keeps the two kinds of key apart.
+    if (!index_of_.emplace("built-in:" + path, model_.files.size()).second) return;
+    const auto foundation = find_foundation(path);
+    open(files_.add(path, std::string(foundation->text)), {}, true);
+  }
+
+  void report_missing(const fs::path& path, const base::SourceRange& range) {
+    auto report = sink_.error(DiagnosticCode::kLoadNotFound, range, shortened(path.string()));
+    report.note(
+        "looked beside the loading file, in the -I folders, in the current folder and "
+        "among the built-in foundations");
+    std::vector<std::string> known;
+    for (const auto& foundation : foundations()) known.emplace_back(foundation.path);
+    if (const auto near = base::nearest_name(path.lexically_normal().string(), known)) {
+      report.fix("replace `" + path.string() + "` with `" + *near + "`");
+    }
+    unreadable_ = true;
+  }
+
+  void add_implicit_foundations() {
+    // They come first, so their declarations do too.
+    const auto of_model = std::move(model_.order);
+    model_.order.clear();
+    if (encoding3_ && trajectory_) open_foundation("foundations/ECTraj.e");
+    open_foundation(encoding3_ ? "foundations/DEC.e" : "foundations/EC.e");
+    run();
+    model_.order.insert(model_.order.end(), of_model.begin(), of_model.end());
+  }
+
+  const LoadOptions& options_;
+  base::SourceFiles& files_;
+  base::DiagnosticSink& sink_;
+  ModelAst model_;
+  std::vector<fs::path> folders_;  // where each file of the model stands
+  std::vector<fs::path> roots_;    // real paths
+  std::vector<Open> stack_;
+  std::unordered_map<std::string, std::size_t> index_of_;  // by real path; look-up only
+  bool encoding3_ = false;
+  bool trajectory_ = false;
+  bool foundation_loaded_ = false;
+  bool unreadable_ = false;
+};
+
+}  // namespace
+
+base::Result<ModelAst> load_model(std::span<const std::filesystem::path> paths,
+                                  const LoadOptions& options, base::SourceFiles& files,
+                                  base::DiagnosticSink& sink) {
+  ModelLoader loader(options, files, sink);
+  for (const auto& path : paths) loader.add_root(path.parent_path());
+  for (const auto& path : paths) loader.load_main(path);
+  return loader.finish();
+}
+
+base::Result<ModelAst> load_model_text(base::FileId main, const std::filesystem::path& folder,
+                                       const LoadOptions& options, base::SourceFiles& files,
+                                       base::DiagnosticSink& sink) {
+  ModelLoader loader(options, files, sink);
+  loader.add_root(folder);
+  loader.load_main_text(main, folder);
+  return loader.finish();
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,250 @@
+#include "harness/campaign/campaign.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "compiler/base/contract.h"
+#include "harness/campaign/journal.h"
+#include "harness/campaign/trace_campaign.h"
+#include "harness/sampling/rng.h"
+
+namespace parallax::harness {
+namespace {
+
+using base::DiagnosticCode;
+using Clock = std::chrono::steady_clock;
+
+TraceLine trace_line(const TracePlan& plan) {
+  TraceLine line{plan.trace.number, plan.trace.key, plan.trace.holds, {}, {}, plan.calls};
+  for (const auto& event : plan.trace.events) {
+    line.events.push_back(event.text);
+    line.places.push_back(event.source);
+  }
+  return line;
+}
+
+class Campaign {
+ public:
+  Campaign(const Scenario& scenario, TraceFeed& traces, const SimulatorFactory& make_simulator,
+           const CampaignOptions& options, base::SourceFiles& files, base::DiagnosticSink& sink)
+      : scenario_(scenario),
+        traces_(traces),
+        options_(options),
+        files_(files),
+        sink_(sink),
+        criterion_(make_criterion(scenario.criterion)),
+        pool_(options.jobs, make_simulator,
+              [this](const SampleRecord& record) { keep(record); }, options.stop) {
+    for (const auto& fluent : traces.fluents()) fluents_.push_back(ground_fluent(fluent));
+    result_.scenario = scenario.name;
+    result_.title = scenario.title;
+    result_.seed = options.seed;
+    result_.criterion = scenario.criterion;
+    result_.tool_version = options.tool_version;
+    result_.replay_folder = options.run_dir.string();
+    result_.exploration = "stopped";
+  }
+
+  ~Campaign() { pool_.close(); }  // its workers write to the journal, which goes before it
+
+  base::Result<CampaignResult> run() {
+    const auto info = pool_.info();
+    if (!info) return finished(false);
+    if (info->name.empty()) {
+      return sink_.error(DiagnosticCode::kSimulatorNotStarted, scenario_.simulator.source,
+                         info->version);
+    }
+    result_.simulator = *info;
+    if (!check_against_simulator(scenario_, *info, sink_)) return sink_.already_reported();
+    auto journal = Journal::open(options_.run_dir, journal_header(scenario_, options_, *info),
+                                 options_.resume, files_, sink_);
+    if (!journal) return sink_.already_reported();
+    journal_ = std::move(*journal);
+    const auto complete = explore();
+    if (!complete) return sink_.already_reported();
+    return finished(*complete);
+  }
+
+ private:
+  /// Called in a worker's thread; by then the journal is open, as samples need a trace.
+  void keep(const SampleRecord& record) {
+    const bool is_result =
+        record.status == SampleStatus::kOk || record.status == SampleStatus::kLost;
+    if (is_result) journal_->append(record);
+  }
+
+  bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+
+  /// Trace after trace. False when something other than the lack of traces ended it early.
+  base::Result<bool> explore() {
+    const auto max_traces = scenario_.limits.max_traces;
+    for (;;) {
+      if (stopped()) return false;
+      auto trace = traces_.next();
+      if (!trace) return sink_.already_reported();
+      if (!*trace) {
+        result_.exploration = traces_.exploration();
+        return true;
+      }
+      if (max_traces > 0 && static_cast<std::int64_t>(result_.traces.size()) >= max_traces) {
+        limited_ = true;
+        return true;
+      }
+      auto end = one_trace(std::move(**trace));
+      if (!end) return sink_.already_reported();
+      if (*end == TraceEnd::kStopped) return false;
+      if (*end == TraceEnd::kLostTooOften) {
+        // Left in the journal they would end every continuation where this run ended.
+        while (!consumed_.empty() && consumed_.back().status == SampleStatus::kLost) {
+          consumed_.pop_back();
+        }
+        return true;
+      }
+      if (*end == TraceEnd::kDiscrepancy && !options_.keep_going) return true;
+    }
+  }
+
+  base::Result<TraceEnd> one_trace(CampaignTrace trace) {
+    PARALLAX_REQUIRE(trace.holds.size() == trace.events.size() + 1,
+                     "a trace has one state more than it has events");
+    const auto& true_at_start = trace.holds.front();
+    const auto cuboid = scenario_.mapping->start_cuboid(
+        fluents_, std::set<std::string>(true_at_start.begin(), true_at_start.end()),
+        scenario_.sampling, scenario_.sampling_source, sink_);
+    if (!cuboid || !check_settable(*cuboid)) return sink_.already_reported();
+    const auto plan = make_plan(std::move(trace), *cuboid);
+    if (!plan) return sink_.already_reported();
+    if (!announce(**plan)) return sink_.already_reported();
+    const TraceContext context{scenario_, options_, result_.simulator, fluents_,       *criterion_,
+                               pool_,     *journal_, lost_in_a_row_,   sink_};
+    auto outcome = run_trace(context, *plan, *cuboid);
+    if (!outcome) return sink_.already_reported();
+    result_.simulations += outcome->result.simulations;
+    result_.traces.push_back(std::move(outcome->result));
+    if (outcome->discrepancy) result_.discrepancies.push_back(std::move(*outcome->discrepancy));
+    std::move(outcome->consumed.begin(), outcome->consumed.end(), std::back_inserter(consumed_));
+    return outcome->end;
+  }
+
+  base::Result<std::shared_ptr<const TracePlan>> make_plan(CampaignTrace trace,
+                                                           const StartCuboid& cuboid) {
+    auto calls = action_calls(scenario_, trace, sink_);
+    auto sampler = Sampler::make(cuboid, scenario_.sampling_inset_m, scenario_.sampling_source,
+                                 sink_);
+    if (!calls || !sampler) return sink_.already_reported();
+    const auto key = hash64(trace.key);
+    return std::make_shared<const TracePlan>(
+        TracePlan{std::move(trace), std::move(*calls), std::move(*sampler), options_.seed, key,
+                  scenario_.limits.max_rejected_starts});
+  }
+
+  /// Every drawn variable must be one that the simulator can start with.
+  base::Status check_settable(const StartCuboid& cuboid) {
+    const auto& known = result_.simulator.parameters;
+    bool fine = true;
+    for (const auto& dimension : cuboid.dimensions) {
+      const auto found = std::find_if(known.begin(), known.end(), [&](const Parameter& p) {
+        return p.name == dimension.variable;
+      });
+      if (known.empty() || (found != known.end() && found->settable)) continue;
+      sink_.error(DiagnosticCode::kVariableNotSettable, scenario_.sampling_source,
+                  dimension.variable);
+      fine = false;
+    }
+    if (!fine) return sink_.already_reported();
+    return base::Unit{};
+  }
+
+  /// Writes the trace down before its first sample, or finds it as it was written down.
+  base::Status announce(const TracePlan& plan) {
+    auto line = trace_line(plan);
+    if (const auto* recorded = journal_->find(line.trace)) {
+      if (*recorded != line) {
+        return sink_.error_about(DiagnosticCode::kJournalMismatch,
+                                 (options_.run_dir / kJournalName).string(),
+                                 fmt::format("trace {}", line.trace), recorded->key, line.key);
+      }
+    } else {
+      journal_->append(line);
+    }
+    lines_.push_back(std::move(line));
+    return base::Unit{};
+  }
+
+  base::Result<CampaignResult> finished(bool complete) {
+    pool_.close();
+    if (complete && !journal_->rewrite(lines_, std::move(consumed_), sink_)) {
+      return sink_.already_reported();
+    }
+    const auto is = [&](CampaignVerdict verdict) {
+      return [verdict](const TraceResult& trace) { return trace.verdict == verdict; };
+    };
+    const auto& traces = result_.traces;
+    result_.interrupted = !complete;
+    if (std::any_of(traces.begin(), traces.end(), is(CampaignVerdict::kDiscrepancy))) {
+      result_.verdict = CampaignVerdict::kDiscrepancy;
+    } else if (complete && !limited_ &&
+               std::all_of(traces.begin(), traces.end(), is(CampaignVerdict::kNoDiscrepancy))) {
+      result_.verdict = CampaignVerdict::kNoDiscrepancy;
+    }
+    result_.timing.wall_s = std::chrono::duration<double>(Clock::now() - started_).count();
+    result_.timing.runs_made = pool_.runs_made();
+    result_.timing.simulated_s = pool_.simulated_s();
+    return std::move(result_);
+  }
+
+  const Scenario& scenario_;
+  TraceFeed& traces_;
+  const CampaignOptions& options_;
+  base::SourceFiles& files_;
+  base::DiagnosticSink& sink_;
+  Clock::time_point started_ = Clock::now();
+  std::vector<GroundFluent> fluents_;
+  std::unique_ptr<ConfidenceCriterion> criterion_;
+  std::unique_ptr<Journal> journal_;
+  CampaignResult result_;
+  std::vector<TraceLine> lines_;
+  std::vector<SampleRecord> consumed_;
+  std::int64_t lost_in_a_row_ = 0;
+  bool limited_ = false;  // by max_traces
+  WorkerPool pool_;       // last: its threads use what stands above
+};
+
+}  // namespace
+
+std::string_view to_string(CampaignVerdict verdict) {
+  switch (verdict) {
+    case CampaignVerdict::kNoDiscrepancy:
+      return "no-discrepancy";
+    case CampaignVerdict::kDiscrepancy:
+      return "discrepancy";
+    case CampaignVerdict::kInconclusive:
+      break;
+  }
+  return "inconclusive";
+}
+
+base::Result<CampaignResult> run_campaign(const Scenario& scenario, TraceFeed& traces,
+                                          const SimulatorFactory& make_simulator,
+                                          const CampaignOptions& options, base::SourceFiles& files,
+                                          base::DiagnosticSink& sink) {
+  PARALLAX_REQUIRE(scenario.mapping.has_value(), "a scenario that was loaded without errors");
+  return Campaign(scenario, traces, make_simulator, options, files, sink).run();
+}
+
+std::string hash_of_sources(const base::SourceFiles& files) {
+  std::uint64_t low = hash64({}), high = hash64("high");
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const auto text = files[base::FileId(static_cast<std::uint32_t>(i))].text();
+    // The size separates the texts: moving a line from one file to the next must show.
+    const auto size = std::to_string(text.size());
+    low = hash64(text, hash64(size, low));
+    high = mix64(hash64(text, high ^ low));
+  }
+  return fmt::format("{:016x}{:016x}", high, low);
+}
+
+}  // namespace parallax::harness

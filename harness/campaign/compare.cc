@@ -1,0 +1,89 @@
+#include "harness/campaign/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+namespace parallax::harness {
+namespace {
+
+std::optional<RecordDifference> differing_outcome(const ActionOutcome& a, const ActionOutcome& b,
+                                                  std::int64_t timepoint) {
+  if (a.status != b.status) {
+    return RecordDifference{timepoint, "act: status", std::string(to_string(a.status)),
+                            std::string(to_string(b.status))};
+  }
+  if (a.reason != b.reason) return RecordDifference{timepoint, "act: reason", a.reason, b.reason};
+  if (!bit_equal(a.sim_time_s, b.sim_time_s)) {
+    return RecordDifference{timepoint, "act: sim_time_s", exact_text(a.sim_time_s),
+                            exact_text(b.sim_time_s)};
+  }
+  return std::nullopt;
+}
+
+std::optional<RecordDifference> differing_state(const State& a, const State& b,
+                                                std::int64_t timepoint) {
+  auto left = a.begin();
+  auto right = b.begin();
+  while (left != a.end() || right != b.end()) {
+    const bool only_left = right == b.end() || (left != a.end() && left->first < right->first);
+    const bool only_right = left == a.end() || (right != b.end() && right->first < left->first);
+    if (only_left) return RecordDifference{timepoint, left->first, exact_text(left->second), "absent"};
+    if (only_right) {
+      return RecordDifference{timepoint, right->first, "absent", exact_text(right->second)};
+    }
+    if (!bit_equal(left->second, right->second)) {
+      return RecordDifference{timepoint, left->first, exact_text(left->second),
+                              exact_text(right->second)};
+    }
+    ++left;
+    ++right;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool bit_equal(const Value& a, const Value& b) {
+  const auto* x = std::get_if<double>(&a);
+  const auto* y = std::get_if<double>(&b);
+  if (x != nullptr && y != nullptr) {
+    return std::bit_cast<std::uint64_t>(*x) == std::bit_cast<std::uint64_t>(*y);
+  }
+  return a == b;
+}
+
+std::string exact_text(const Value& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *whole);
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  const double number = std::get<double>(value);
+  return fmt::format("{} ({:a})", number, number);
+}
+
+std::optional<RecordDifference> first_difference(const SampleRecord& a, const SampleRecord& b) {
+  if (a.status != b.status) {
+    return RecordDifference{0, "status", std::string(to_string(a.status)),
+                            std::string(to_string(b.status))};
+  }
+  const auto timepoints = std::max(a.observations.size(), b.observations.size());
+  for (std::size_t t = 0; t < timepoints; ++t) {
+    const auto time = static_cast<std::int64_t>(t);
+    if (t > 0 && t <= a.outcomes.size() && t <= b.outcomes.size()) {
+      if (auto found = differing_outcome(a.outcomes[t - 1], b.outcomes[t - 1], time)) return found;
+    }
+    if (t >= a.observations.size() || t >= b.observations.size()) {
+      const bool has_a = t < a.observations.size();
+      return RecordDifference{time, "observation", has_a ? "present" : "absent",
+                              has_a ? "absent" : "present"};
+    }
+    if (auto found = differing_state(a.observations[t], b.observations[t], time)) return found;
+  }
+  if (a.digest != b.digest) {
+    return RecordDifference{static_cast<std::int64_t>(timepoints), "digest", a.digest, b.digest};
+  }
+  return std::nullopt;
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,211 @@
+#include "harness/campaign/journal.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include "compiler/base/file_io.h"
+
+namespace parallax::harness {
+namespace {
+
+using base::DiagnosticCode;
+using base::SourceRange;
+
+constexpr std::size_t kMaxJournalBytes = std::size_t{1} << 30U;
+
+/// Takes the lines apart; reports the first foreign one only, as the rest is then no better.
+class JournalReader {
+ public:
+  JournalReader(base::FileId file, const base::SourceFiles& files, base::DiagnosticSink& sink)
+      : text_(files[file].text()), sink_(sink) {
+    journal_.file = file;
+  }
+
+  base::Result<JournalText> read() {
+    for (std::size_t begin = 0; begin < text_.size();) {
+      const auto end = text_.find('\n', begin);
+      if (end == std::string_view::npos) {
+        sink_.warning(DiagnosticCode::kJournalTruncated, range(begin, text_.size()));
+        break;
+      }
+      if (auto why = take(text_.substr(begin, end - begin))) {
+        return sink_.error(DiagnosticCode::kForeignJournalLine, range(begin, end), *why);
+      }
+      begin = end + 1;
+      journal_.complete_bytes = begin;
+    }
+    return std::move(journal_);
+  }
+
+ private:
+  SourceRange range(std::size_t begin, std::size_t end) const {
+    return {journal_.file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+  }
+
+  /// What is wrong with the line, if anything is.
+  std::optional<std::string> take(std::string_view line) {
+    if (!journal_.header) {
+      auto decoded = decode_header(line);
+      if (const auto* foreign = std::get_if<ForeignLine>(&decoded)) return foreign->why;
+      journal_.header = std::get<JournalHeader>(std::move(decoded));
+      return std::nullopt;
+    }
+    auto decoded = decode_line(line);
+    if (const auto* foreign = std::get_if<ForeignLine>(&decoded)) return foreign->why;
+    if (auto* trace = std::get_if<TraceLine>(&decoded)) {
+      const auto number = trace->trace;
+      const bool fresh = journal_.traces.emplace(number, std::move(*trace)).second;
+      if (!fresh) return "trace " + std::to_string(number) + " stands there twice";
+      return std::nullopt;
+    }
+    return take_record(std::get<SampleRecord>(std::move(decoded)));
+  }
+
+  std::optional<std::string> take_record(SampleRecord record) {
+    const auto trace = journal_.traces.find(record.trace);
+    if (trace == journal_.traces.end()) return "its trace was not announced before it";
+    const auto events = trace->second.calls.size();
+    const bool whole = record.observations.size() == events + 1 && record.outcomes.size() == events;
+    if (record.status == SampleStatus::kOk && !whole) {
+      return "it has not one observation for every timepoint of its trace";
+    }
+    const std::tuple key(record.trace, record.sample, record.phase);
+    if (!journal_.samples.emplace(key, std::move(record)).second) {
+      return "this simulation stands there twice";
+    }
+    return std::nullopt;
+  }
+
+  std::string_view text_;
+  base::DiagnosticSink& sink_;
+  JournalText journal_;
+};
+
+/// A range for a field of the header line: the whole line, as that is what was compared.
+SourceRange header_line(const JournalText& journal, const base::SourceFiles& files) {
+  const auto end = files[journal.file].text().find('\n');
+  return {journal.file, 0, static_cast<std::uint32_t>(end)};
+}
+
+bool write_all(int fd, std::string_view text) {
+  while (!text.empty()) {
+    const auto count = ::write(fd, text.data(), text.size());
+    if (count < 0 && errno != EINTR) return false;
+    if (count > 0) text.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
+}  // namespace
+
+base::Result<JournalText> read_journal(const std::filesystem::path& run_dir,
+                                       base::SourceFiles& files, base::DiagnosticSink& sink) {
+  const auto path = run_dir / kJournalName;
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    return sink.error_about(DiagnosticCode::kNoJournal, run_dir.string());
+  }
+  auto text = base::read_file(path, sink, kMaxJournalBytes);
+  if (!text) return sink.already_reported();
+  const auto file = files.add(path.string(), std::move(*text));
+  return JournalReader(file, files, sink).read();
+}
+
+Journal::Journal(std::filesystem::path path, JournalHeader header, JournalText recorded)
+    : path_(std::move(path)), header_(std::move(header)), recorded_(std::move(recorded)) {}
+
+Journal::~Journal() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+bool Journal::open_file(std::size_t keep_bytes) {
+  fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+  // Held as long as the run lasts: two runs that append to one journal would ruin it.
+  if (fd_ < 0 || ::flock(fd_, LOCK_EX | LOCK_NB) != 0) return false;
+  return ::ftruncate(fd_, static_cast<off_t>(keep_bytes)) == 0 && ::lseek(fd_, 0, SEEK_END) >= 0;
+}
+
+base::Result<std::unique_ptr<Journal>> Journal::open(const std::filesystem::path& run_dir,
+                                                     const JournalHeader& header, bool resume,
+                                                     base::SourceFiles& files,
+                                                     base::DiagnosticSink& sink) {
+  std::error_code error;
+  std::filesystem::create_directories(run_dir, error);
+  if (error) {
+    return sink.error_about(DiagnosticCode::kFileNotWritable, run_dir.string(), error.message());
+  }
+  const auto path = run_dir / kJournalName;
+  JournalText recorded;
+  if (std::filesystem::exists(path, error)) {
+    if (!resume) return sink.error_about(DiagnosticCode::kRunFolderInUse, run_dir.string());
+    auto text = read_journal(run_dir, files, sink);
+    if (!text) return sink.already_reported();
+    recorded = std::move(*text);
+  }
+  if (recorded.header) {
+    if (const auto differs = first_difference(*recorded.header, header)) {
+      return sink.error(DiagnosticCode::kJournalMismatch, header_line(recorded, files),
+                        differs->field, differs->recorded, differs->now);
+    }
+  }
+  const bool fresh = !recorded.header;
+  const auto keep_bytes = recorded.complete_bytes;
+  std::unique_ptr<Journal> journal(new Journal(path, header, std::move(recorded)));
+  if (!journal->open_file(keep_bytes)) {
+    if (errno == EWOULDBLOCK) {
+      return sink.error_about(DiagnosticCode::kRunFolderInUse, run_dir.string());
+    }
+    return sink.error_about(DiagnosticCode::kFileNotWritable, path.string(), std::strerror(errno));
+  }
+  if (fresh) journal->write_line(encode(header));
+  return journal;
+}
+
+const TraceLine* Journal::find(std::int64_t trace) const {
+  const auto found = recorded_.traces.find(trace);
+  return found == recorded_.traces.end() ? nullptr : &found->second;
+}
+
+const SampleRecord* Journal::find(std::int64_t trace, std::int64_t sample, Phase phase) const {
+  const auto found = recorded_.samples.find({trace, sample, phase});
+  return found == recorded_.samples.end() ? nullptr : &found->second;
+}
+
+void Journal::write_line(const std::string& line) {
+  const std::lock_guard lock(mutex_);
+  if (!write_error_.empty()) return;
+  // One write of the whole line: a kill leaves it whole, cut short, or not there.
+  if (!write_all(fd_, line + '\n') || ::fdatasync(fd_) != 0) write_error_ = std::strerror(errno);
+}
+
+void Journal::append(const TraceLine& trace) { write_line(encode(trace)); }
+void Journal::append(const SampleRecord& record) { write_line(encode(record)); }
+
+std::string Journal::write_error() const {
+  const std::lock_guard lock(mutex_);
+  return write_error_;
+}
+
+base::Status Journal::rewrite(const std::vector<TraceLine>& traces,
+                              std::vector<SampleRecord> consumed, base::DiagnosticSink& sink) {
+  std::sort(consumed.begin(), consumed.end(), [](const SampleRecord& a, const SampleRecord& b) {
+    return std::tuple(a.trace, a.sample, a.phase) < std::tuple(b.trace, b.sample, b.phase);
+  });
+  std::string text = encode(header_) + '\n';
+  auto record = consumed.begin();
+  for (const auto& trace : traces) {
+    text += encode(trace) + '\n';
+    for (; record != consumed.end() && record->trace == trace.trace; ++record) {
+      text += encode(*record) + '\n';
+    }
+  }
+  return base::write_file_atomically(path_, text, sink);
+}
+
+}  // namespace parallax::harness

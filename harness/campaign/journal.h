@@ -1,0 +1,77 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "compiler/base/source_file.h"
+#include "harness/campaign/journal_format.h"
+
+namespace parallax::harness {
+
+inline constexpr std::string_view kJournalName = "journal.ndjson";
+
+/// A journal as it was read.
+struct JournalText {
+  /// None when the run was ended before its first line was complete.
+  std::optional<JournalHeader> header;
+  std::map<std::int64_t, TraceLine> traces;
+  std::map<std::tuple<std::int64_t, std::int64_t, Phase>, SampleRecord> samples;
+  base::FileId file;
+  std::size_t complete_bytes = 0;  // up to the end of the last whole line
+};
+
+/// Reads RUN_DIR/journal.ndjson. A last line without its newline is dropped with kJournalTruncated;
+/// any other line that is none of ours is kForeignJournalLine; no file: kNoJournal.
+base::Result<JournalText> read_journal(const std::filesystem::path& run_dir,
+                                       base::SourceFiles& files, base::DiagnosticSink& sink);
+
+/// The record of a run on disk: one line per finished simulation, synced before `append` returns.
+/// `append` may be called from several threads.
+class Journal {
+ public:
+  /// Starts a journal in `run_dir`, which is made if missing, or continues the one there if
+  /// `resume`. Reports kRunFolderInUse, kJournalMismatch and what read_journal reports.
+  static base::Result<std::unique_ptr<Journal>> open(const std::filesystem::path& run_dir,
+                                                     const JournalHeader& header, bool resume,
+                                                     base::SourceFiles& files,
+                                                     base::DiagnosticSink& sink);
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+
+  /// What was there when it was opened; null if it was not.
+  const TraceLine* find(std::int64_t trace) const;
+  const SampleRecord* find(std::int64_t trace, std::int64_t sample, Phase phase) const;
+
+  void append(const TraceLine& trace);
+  void append(const SampleRecord& record);
+  /// Why a line could not be written; empty as long as all is well.
+  std::string write_error() const;
+
+  /// Replaces the file by header, traces and `consumed`, sorted by trace, sample and phase, so that
+  /// it no longer shows in which order simulations ended or what ran ahead in vain.
+  base::Status rewrite(const std::vector<TraceLine>& traces,
+                       std::vector<SampleRecord> consumed, base::DiagnosticSink& sink);
+
+ private:
+  Journal(std::filesystem::path path, JournalHeader header, JournalText recorded);
+  bool open_file(std::size_t keep_bytes);
+  void write_line(const std::string& line);
+
+  std::filesystem::path path_;
+  JournalHeader header_;
+  JournalText recorded_;
+  mutable std::mutex mutex_;  // guards what follows
+  int fd_ = -1;
+  std::string write_error_;
+};
+
+}  // namespace parallax::harness

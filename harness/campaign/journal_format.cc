@@ -1,0 +1,282 @@
+#include "harness/campaign/journal_format.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/campaign/criterion_json.h"
+
+namespace parallax::harness {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kJournalFormat = 1;
+
+/// Thrown by the decoders below and caught in this file: what a line lacks.
+struct Foreign {
+  std::string why;
+};
+
+const Json& field(const Json& object, const char* name) {
+  const auto found = object.find(name);
+  if (found == object.end()) throw Foreign{fmt::format("`{}` is missing", name)};
+  return *found;
+}
+
+template <typename T>
+T get(const Json& object, const char* name) {
+  const auto& value = field(object, name);
+  bool right = false;
+  if constexpr (std::is_same_v<T, std::string>) {
+    right = value.is_string();
+  } else if constexpr (std::is_same_v<T, bool>) {
+    right = value.is_boolean();
+  } else if constexpr (std::is_same_v<T, double>) {
+    right = value.is_number();
+  } else if constexpr (std::is_same_v<T, std::uint64_t>) {
+    right = value.is_number_unsigned();
+  } else {
+    right = value.is_number_integer();
+  }
+  if (!right) throw Foreign{fmt::format("`{}` has the wrong type", name)};
+  return value.get<T>();
+}
+
+const Json& list(const Json& object, const char* name) {
+  const auto& value = field(object, name);
+  if (!value.is_array()) throw Foreign{fmt::format("`{}` is no list", name)};
+  return value;
+}
+
+std::vector<std::string> strings(const Json& values, const char* name) {
+  std::vector<std::string> out;
+  if (!values.is_array()) throw Foreign{fmt::format("`{}` is no list of texts", name)};
+  for (const auto& value : values) {
+    if (!value.is_string()) throw Foreign{fmt::format("`{}` is no list of texts", name)};
+    out.push_back(value.get<std::string>());
+  }
+  return out;
+}
+
+Json json_of(const State& state) {
+  Json out = Json::object();
+  for (const auto& [name, value] : state) {
+    std::visit([&, &key = name](const auto& v) { out[key] = v; }, value);
+  }
+  return out;
+}
+
+State state_of(const Json& object, const char* what) {
+  if (!object.is_object()) throw Foreign{fmt::format("`{}` is no state", what)};
+  State state;
+  for (const auto& [name, value] : object.items()) {
+    if (value.is_boolean()) {
+      state[name] = value.get<bool>();
+    } else if (value.is_number_float()) {
+      state[name] = value.get<double>();
+    } else if (value.is_number_integer()) {
+      state[name] = value.get<std::int64_t>();
+    } else if (value.is_string()) {
+      state[name] = value.get<std::string>();
+    } else {
+      throw Foreign{fmt::format("`{}` of `{}` is no value of a state", name, what)};
+    }
+  }
+  return state;
+}
+
+template <typename Enum>
+Enum word_of(const Json& object, const char* name, std::initializer_list<Enum> known) {
+  const auto word = get<std::string>(object, name);
+  for (const auto value : known) {
+    if (to_string(value) == word) return value;
+  }
+  throw Foreign{fmt::format("`{}` is `{}`", name, word)};
+}
+
+Json json_of(const ActionCall& call) {
+  return {{"controller", call.controller},
+          {"arguments", json_of(call.arguments)},
+          {"time_limit_s", call.time_limit_s}};
+}
+
+TraceLine trace_line_of(const Json& object) {
+  TraceLine line;
+  line.trace = get<std::int64_t>(object, "trace");
+  line.key = get<std::string>(object, "key");
+  for (const auto& fluents : list(object, "holds")) {
+    line.holds.push_back(strings(fluents, "holds"));
+  }
+  for (const auto& event : list(object, "events")) {
+    line.events.push_back(get<std::string>(event, "event"));
+    line.places.push_back(get<std::string>(event, "source"));
+    line.calls.push_back({get<std::string>(event, "controller"),
+                          state_of(field(event, "arguments"), "arguments"),
+                          get<double>(event, "time_limit_s")});
+  }
+  return line;
+}
+
+SampleRecord record_of(const Json& object) {
+  SampleRecord record;
+  record.trace = get<std::int64_t>(object, "trace");
+  record.sample = get<std::int64_t>(object, "sample");
+  record.attempt = get<std::int64_t>(object, "attempt");
+  const auto phase = get<std::string>(object, "phase");
+  if (phase != "certify" && phase != "confirm") throw Foreign{"`phase` is `" + phase + "`"};
+  record.phase = phase == "confirm" ? Phase::kConfirm : Phase::kCertify;
+  record.seed = get<std::uint64_t>(object, "seed");
+  record.status = word_of(object, "status", {SampleStatus::kOk, SampleStatus::kLost});
+  record.rejected = get<std::int64_t>(object, "rejected");
+  record.reason = get<std::string>(object, "reason");
+  record.initial = state_of(field(object, "initial"), "initial");
+  for (const auto& state : list(object, "observations")) {
+    record.observations.push_back(state_of(state, "observations"));
+  }
+  for (const auto& outcome : list(object, "outcomes")) {
+    record.outcomes.push_back(
+        {word_of(outcome, "status", {SimStatus::kOk, SimStatus::kFailed, SimStatus::kTruncated}),
+         get<std::string>(outcome, "reason"), get<double>(outcome, "sim_time_s")});
+  }
+  record.digest = get<std::string>(object, "digest");
+  if (record.trace < 1 || record.sample < 1) throw Foreign{"traces and samples count from 1"};
+  return record;
+}
+
+Json parse(std::string_view line) {
+  auto object = Json::parse(line, nullptr, false);
+  if (object.is_discarded()) throw Foreign{"it is not JSON"};
+  if (!object.is_object()) throw Foreign{"it is no JSON object"};
+  return object;
+}
+
+Json json_of(const JournalHeader& header) {
+  return {{"journal", kJournalFormat},
+          {"scenario", header.scenario},
+          {"scenario_hash", header.scenario_hash},
+          {"seed", header.seed},
+          {"tool_version", header.tool_version},
+          {"simulator",
+           {{"name", header.simulator.name},
+            {"version", header.simulator.version},
+            {"determinism", header.simulator.determinism},
+            {"seeds", header.simulator.seeds},
+            {"timestep_s", header.simulator.timestep_s}}},
+          {"options", Json::parse(header.options)}};
+}
+
+std::optional<HeaderDifference> differing(const Json& a, const Json& b, const std::string& path) {
+  if (a.is_object() && b.is_object()) {
+    for (const auto& [name, value] : a.items()) {
+      const auto other = b.find(name);
+      const auto inner = path.empty() ? name : path + "." + name;
+      if (other == b.end()) return HeaderDifference{inner, value.dump(), "absent"};
+      if (auto found = differing(value, *other, inner)) return found;
+    }
+    for (const auto& [name, value] : b.items()) {
+      const auto inner = path.empty() ? name : path + "." + name;
+      if (!a.contains(name)) return HeaderDifference{inner, "absent", value.dump()};
+    }
+    return std::nullopt;
+  }
+  if (a == b) return std::nullopt;
+  return HeaderDifference{path, a.dump(), b.dump()};
+}
+
+}  // namespace
+
+JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& options,
+                             const SimulatorInfo& simulator) {
+  JournalHeader header;
+  header.scenario = scenario.name;
+  header.scenario_hash = options.scenario_hash;
+  header.seed = options.seed;
+  header.tool_version = options.tool_version;
+  header.simulator = simulator;
+  header.simulator.parameters.clear();
+  header.simulator.actions.clear();
+  const Json json = {{"criterion", Json::parse(criterion_json(scenario.criterion))},
+                     {"limits",
+                      {{"max_runs", scenario.limits.max_runs},
+                       {"max_traces", scenario.limits.max_traces},
+                       {"max_rejected_starts", scenario.limits.max_rejected_starts},
+                       {"max_lost_in_a_row", scenario.limits.max_lost_in_a_row}}},
+                     {"keep_going", options.keep_going}};
+  header.options = json.dump();
+  return header;
+}
+
+std::string encode(const JournalHeader& header) { return json_of(header).dump(); }
+
+std::string encode(const TraceLine& trace) {
+  Json out = {{"trace", trace.trace}, {"key", trace.key}, {"holds", trace.holds}};
+  auto events = Json::array();
+  for (std::size_t i = 0; i < trace.events.size(); ++i) {
+    Json event = {{"event", trace.events[i]}, {"source", trace.places[i]}};
+    event.update(json_of(trace.calls[i]));
+    events.push_back(std::move(event));
+  }
+  out["events"] = std::move(events);
+  return out.dump();
+}
+
+std::string encode(const SampleRecord& record) {
+  Json out = {{"trace", record.trace},
+              {"sample", record.sample},
+              {"attempt", record.attempt},
+              {"phase", record.phase == Phase::kConfirm ? "confirm" : "certify"},
+              {"seed", record.seed},
+              {"status", to_string(record.status)},
+              {"rejected", record.rejected},
+              {"reason", record.reason},
+              {"initial", json_of(record.initial)}};
+  auto observations = Json::array();
+  for (const auto& state : record.observations) observations.push_back(json_of(state));
+  out["observations"] = std::move(observations);
+  auto outcomes = Json::array();
+  for (const auto& outcome : record.outcomes) {
+    outcomes.push_back({{"status", to_string(outcome.status)},
+                        {"reason", outcome.reason},
+                        {"sim_time_s", outcome.sim_time_s}});
+  }
+  out["outcomes"] = std::move(outcomes);
+  out["digest"] = record.digest;
+  return out.dump();
+}
+
+std::variant<JournalHeader, ForeignLine> decode_header(std::string_view line) try {
+  const auto object = parse(line);
+  const auto format = get<std::int64_t>(object, "journal");
+  if (format != kJournalFormat) return ForeignLine{fmt::format("`journal` is {}", format)};
+  JournalHeader header;
+  header.scenario = get<std::string>(object, "scenario");
+  header.scenario_hash = get<std::string>(object, "scenario_hash");
+  header.seed = get<std::uint64_t>(object, "seed");
+  header.tool_version = get<std::string>(object, "tool_version");
+  const auto& simulator = field(object, "simulator");
+  header.simulator.name = get<std::string>(simulator, "name");
+  header.simulator.version = get<std::string>(simulator, "version");
+  header.simulator.determinism = get<std::string>(simulator, "determinism");
+  header.simulator.seeds = get<bool>(simulator, "seeds");
+  header.simulator.timestep_s = get<double>(simulator, "timestep_s");
+  header.options = field(object, "options").dump();
+  return header;
+} catch (const Foreign& foreign) {
+  return ForeignLine{foreign.why};
+}
+
+std::variant<TraceLine, SampleRecord, ForeignLine> decode_line(std::string_view line) try {
+  const auto object = parse(line);
+  if (object.contains("events")) return trace_line_of(object);
+  return record_of(object);
+} catch (const Foreign& foreign) {
+  return ForeignLine{foreign.why};
+}
+
+std::optional<HeaderDifference> first_difference(const JournalHeader& recorded,
+                                                 const JournalHeader& now) {
+  return differing(json_of(recorded), json_of(now), {});
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,58 @@
+#pragma once
+
+// The lines of RUN_DIR/journal.ndjson as text (docs/journal_format.md): a header, then one line
+// per trace before its first sample, one per finished simulation, in order of completion.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "harness/campaign/campaign.h"
+#include "harness/campaign/sample_record.h"
+
+namespace parallax::harness {
+
+/// What must be equal for a run to be continued or repeated.
+struct JournalHeader {
+  std::string scenario;
+  std::string scenario_hash;
+  std::uint64_t seed = 0;
+  std::string tool_version;
+  SimulatorInfo simulator;  // without parameters and actions: the scenario was held against them
+  std::string options;      // canonical JSON of criterion, limits and keep_going
+};
+JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& options,
+                             const SimulatorInfo& simulator);
+
+/// A trace that was handed to the simulator.
+struct TraceLine {
+  std::int64_t trace = 0;
+  std::string key;
+  std::vector<std::vector<std::string>> holds;
+  std::vector<std::string> events, places;  // "Go(r2)", "fetch.lisp:4"
+  std::vector<ActionCall> calls;
+  friend bool operator==(const TraceLine&, const TraceLine&) = default;
+};
+
+std::string encode(const JournalHeader& header);
+std::string encode(const TraceLine& trace);
+std::string encode(const SampleRecord& record);
+
+struct ForeignLine {
+  std::string why;  // "`seed` is missing"
+};
+std::variant<JournalHeader, ForeignLine> decode_header(std::string_view line);
+std::variant<TraceLine, SampleRecord, ForeignLine> decode_line(std::string_view line);
+
+/// The first field in which two headers differ, with both values; none if there is none.
+struct HeaderDifference {
+  std::string field;  // "seed", "options.criterion.epsilon"
+  std::string recorded, now;
+};
+std::optional<HeaderDifference> first_difference(const JournalHeader& recorded,
+                                                 const JournalHeader& now);
+
+}  // namespace parallax::harness

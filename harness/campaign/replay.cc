@@ -1,0 +1,115 @@
+#include "harness/campaign/replay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "harness/campaign/compare.h"
+#include "harness/campaign/journal.h"
+#include "harness/campaign/sample_runner.h"
+
+namespace parallax::harness {
+namespace {
+
+using base::DiagnosticCode;
+
+/// A repetition in the journal marks a discrepancy: it was made because of one.
+std::optional<SampleId> default_sample(const JournalText& journal) {
+  std::optional<SampleId> first;
+  for (const auto& [key, record] : journal.samples) {
+    if (record.status != SampleStatus::kOk) continue;
+    if (record.phase == Phase::kConfirm) return SampleId{record.trace, record.sample};
+    if (!first) first = SampleId{record.trace, record.sample};
+  }
+  return first;
+}
+
+/// What keeps a repetition from meaning anything.
+std::string obstacle(const JournalHeader& header, const std::string& scenario_hash,
+                     const SimulatorInfo& simulator) {
+  if (header.scenario_hash != scenario_hash) {
+    return fmt::format("the scenario, or a file that it reads, has changed: its hash was {}, now "
+                       "it is {}",
+                       header.scenario_hash, scenario_hash);
+  }
+  if (simulator.name.empty()) {
+    return fmt::format("the simulator did not start: {}", simulator.version);
+  }
+  if (header.simulator.name != simulator.name || header.simulator.version != simulator.version) {
+    return fmt::format("it was recorded with {} {}, this is {} {}", header.simulator.name,
+                       header.simulator.version, simulator.name, simulator.version);
+  }
+  return {};
+}
+
+std::optional<std::int64_t> whole(std::string_view text) {
+  std::int64_t value = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || rest != text.data() + text.size() || value < 1) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+std::optional<SampleId> parse_sample_id(std::string_view text) {
+  const auto dot = text.find('.');
+  if (dot == std::string_view::npos) return std::nullopt;
+  const auto trace = whole(text.substr(0, dot));
+  const auto sample = whole(text.substr(dot + 1));
+  if (!trace || !sample) return std::nullopt;
+  return SampleId{*trace, *sample};
+}
+
+base::Result<RunHeader> read_run_header(const std::filesystem::path& run_dir,
+                                        base::SourceFiles& files, base::DiagnosticSink& sink) {
+  const auto journal = read_journal(run_dir, files, sink);
+  if (!journal) return sink.already_reported();
+  if (!journal->header) return sink.error_about(DiagnosticCode::kNoJournal, run_dir.string());
+  const auto& header = *journal->header;
+  return RunHeader{header.scenario, header.scenario_hash, header.seed, header.tool_version};
+}
+
+base::Result<ReplayResult> replay_sample(const std::filesystem::path& run_dir,
+                                         std::optional<SampleId> id,
+                                         const std::string& scenario_hash, Simulator& simulator,
+                                         base::SourceFiles& files, base::DiagnosticSink& sink) {
+  const auto journal = read_journal(run_dir, files, sink);
+  if (!journal) return sink.already_reported();
+  if (!journal->header) return sink.error_about(DiagnosticCode::kNoJournal, run_dir.string());
+  if (!id) id = default_sample(*journal);
+  const auto found = id ? journal->samples.find({id->trace, id->sample, Phase::kCertify})
+                        : journal->samples.end();
+  if (found == journal->samples.end()) {
+    const auto name = id ? fmt::format("{}.{}", id->trace, id->sample) : std::string("at all");
+    return sink.error_about(DiagnosticCode::kNoSuchSample, run_dir.string(), name);
+  }
+  const auto& record = found->second;
+  ReplayResult result;
+  result.id = *id;
+  result.seed = record.seed;
+  result.digest = record.digest;
+  result.timepoints = record.observations.size();
+  result.reason = obstacle(*journal->header, scenario_hash, simulator.info());
+  if (result.reason.empty() && record.status == SampleStatus::kLost) {
+    result.reason = "the simulator was lost in this simulation, so there is nothing to compare";
+  }
+  result.outcome = ReplayOutcome::kCannot;
+  if (!result.reason.empty()) return result;
+  const auto& calls = journal->traces.at(record.trace).calls;
+  const auto again = repeat_sample(calls, record, simulator, [] { return false; });
+  if (again->status != SampleStatus::kOk) {
+    result.reason = fmt::format("the simulator was {}: {}", to_string(again->status),
+                                again->reason);
+    return result;
+  }
+  result.outcome = ReplayOutcome::kIdentical;
+  if (auto differs = first_difference(record, *again)) {
+    result.outcome = ReplayOutcome::kDiffers;
+    result.difference = ReplayDifference{differs->timepoint, differs->variable, differs->a,
+                                         differs->b};
+  }
+  return result;
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "harness/campaign/campaign.h"
+#include "harness/campaign/sample_record.h"
+
+namespace parallax::harness {
+
+enum class ReplayOutcome : std::uint8_t {
+  kIdentical,
+  kDiffers,
+  kCannot,  // the scenario, or the simulator, is not the one that was recorded
+};
+
+/// "2.4": sample 4 of trace 2.
+struct SampleId {
+  std::int64_t trace = 0;
+  std::int64_t sample = 0;
+};
+std::optional<SampleId> parse_sample_id(std::string_view text);
+
+/// The first value that differs; each as shortest decimal and, for numbers, in hexadecimal.
+struct ReplayDifference {
+  std::int64_t timepoint = 0;
+  std::string variable;  // "box.x", "digest", or "act: status"
+  std::string recorded;
+  std::string repeated;
+};
+
+struct ReplayResult {
+  ReplayOutcome outcome = ReplayOutcome::kIdentical;
+  SampleId id;
+  std::uint64_t seed = 0;
+  std::string reason;  // for kCannot
+  std::optional<ReplayDifference> difference;
+  std::size_t timepoints = 0;  // compared
+  std::string digest;          // recorded
+};
+
+/// What a run folder says of itself, for finding the scenario again.
+struct RunHeader {
+  std::string scenario;  // as the user wrote it at the time
+  std::string scenario_hash;
+  std::uint64_t seed = 0;
+  std::string tool_version;
+};
+base::Result<RunHeader> read_run_header(const std::filesystem::path& run_dir,
+                                        base::SourceFiles& files, base::DiagnosticSink& sink);
+
+/// Repeats one recorded simulation in `simulator` and compares every observation, every outcome
+/// and the digest bit for bit. Without `id`: the first discrepancy of the run, else its first
+/// sample. Fails, having reported, when the journal cannot be read or has no such sample.
+base::Result<ReplayResult> replay_sample(const std::filesystem::path& run_dir,
+                                         std::optional<SampleId> id,
+                                         const std::string& scenario_hash, Simulator& simulator,
+                                         base::SourceFiles& files, base::DiagnosticSink& sink);
+
+}  // namespace parallax::harness

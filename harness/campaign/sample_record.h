@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/sampling/rng.h"
+#include "harness/world/simulator.h"
+
+namespace parallax::harness {
+
+/// How one simulation ended. The last two are no results: no draw of this sample was a valid start;
+/// the simulator does not know what it was asked for.
+enum class SampleStatus : std::uint8_t { kOk, kLost, kRejected, kRefused };
+std::string_view to_string(SampleStatus status);  // "ok", "lost", "rejected", "refused"
+
+/// What a controller was asked to do; `arguments` after the plan was laid over the binding.
+struct ActionCall {
+  std::string controller;
+  State arguments;
+  double time_limit_s = 0.0;
+  friend bool operator==(const ActionCall&, const ActionCall&) = default;
+};
+
+/// What became of one act.
+struct ActionOutcome {
+  SimStatus status = SimStatus::kOk;
+  std::string reason;
+  double sim_time_s = 0.0;
+  friend bool operator==(const ActionOutcome&, const ActionOutcome&) = default;
+};
+
+/// One finished simulation: the line of the journal, and all that a replay needs besides the calls.
+struct SampleRecord {
+  std::int64_t trace = 0;    // from 1
+  std::int64_t sample = 0;   // from 1, in order of consumption
+  std::int64_t attempt = 0;  // draws of this sample that were rejected before the one used
+  Phase phase = Phase::kCertify;  // kConfirm: the repetition of a discrepancy
+  std::uint64_t seed = 0;
+  SampleStatus status = SampleStatus::kOk;
+  std::int64_t rejected = 0;
+  std::string reason;  // why not kOk
+  State initial;
+  std::vector<State> observations;      // per timepoint; fewer when lost
+  std::vector<ActionOutcome> outcomes;  // per event; fewer when lost
+  std::string digest;                   // of the last observation
+  friend bool operator==(const SampleRecord&, const SampleRecord&) = default;
+};
+
+}  // namespace parallax::harness

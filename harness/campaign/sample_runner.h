@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "harness/campaign/sample_record.h"
+#include "harness/campaign/trace_input.h"
+#include "harness/config/scenario.h"
+#include "harness/sampling/sampler.h"
+#include "harness/world/simulator.h"
+
+namespace parallax::harness {
+
+/// What a worker needs of a trace to simulate any sample of it; shared and never changed.
+struct TracePlan {
+  CampaignTrace trace;
+  std::vector<ActionCall> calls;  // per event
+  Sampler sampler;
+  std::uint64_t campaign_seed = 0;
+  std::uint64_t trace_key = 0;  // hash of trace.key
+  std::int64_t max_rejected_starts = 100;
+};
+
+/// Draws sample `sample` and simulates it: reset, observe, then act and observe per event. A failed
+/// action does not end the sequence: the plan does not know. Invalid starts are drawn again; a
+/// simulator that is lost gets the same start and seed once more. None when `abandoned` says so
+/// before the end.
+std::optional<SampleRecord> run_sample(const TracePlan& plan, std::int64_t sample,
+                                       Simulator& simulator,
+                                       const std::function<bool()>& abandoned);
+
+/// Simulates the start and seed of `record` again, with nothing drawn.
+std::optional<SampleRecord> repeat_sample(const std::vector<ActionCall>& calls,
+                                          const SampleRecord& record, Simulator& simulator,
+                                          const std::function<bool()>& abandoned);
+
+/// The calls for the events of a trace: each action's own arguments, with "{0}" replaced by the
+/// event's argument 0, and what the plan says laid over them. Reports kMissingArgument for the
+/// built-in simulator's controllers.
+base::Result<std::vector<ActionCall>> action_calls(const Scenario& scenario,
+                                                   const CampaignTrace& trace,
+                                                   base::DiagnosticSink& sink);
+
+}  // namespace parallax::harness

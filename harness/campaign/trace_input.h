@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/base/result.h"
+#include "harness/world/simulator.h"
+
+namespace parallax::harness {
+
+/// One event of a trace and the step of the plan that it came from.
+struct TraceEvent {
+  std::string text;                    // "Go(r2)", printed without blanks
+  std::string symbol;                  // "Go"
+  std::vector<std::string> arguments;  // "r2"
+  std::string source;                  // "fetch.lisp:4"; empty without a plan
+  State plan_arguments;                // laid over the action's own: target.x, target.y, ...
+};
+
+/// A trace as the campaign needs it. `holds` has one entry more than `events`.
+struct CampaignTrace {
+  std::int64_t number = 0;  // from 1, in order of enumeration
+  std::string key;          // stable text that names the trace, part of every draw's key
+  std::vector<std::vector<std::string>> holds;  // true ground fluents per timepoint, sorted
+  std::vector<TraceEvent> events;               // event t leads from timepoint t to t + 1
+};
+
+/// Where traces come from: an enumeration, a file, a list in a test.
+class TraceFeed {
+ public:
+  virtual ~TraceFeed() = default;
+  /// The next trace, or none when there is no further one.
+  virtual base::Result<std::optional<CampaignTrace>> next() = 0;
+  /// What may be said when `next` has answered none: "all traces explored", "complete up to
+  /// bound" or "stopped".
+  virtual std::string exploration() const = 0;
+  /// All ground fluents of the model, sorted.
+  virtual const std::vector<std::string>& fluents() const = 0;
+};
+
+}  // namespace parallax::harness

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "harness/campaign/campaign.h"
+#include "harness/campaign/sample_runner.h"
+
+namespace parallax::harness {
+
+/// Threads that own one simulator each and simulate samples of one trace at a time. Which worker
+/// simulates a sample, and when, shows nowhere: the caller waits for samples in its own order.
+class WorkerPool {
+ public:
+  /// `finished` is called in the worker's thread for each simulation, before `wait` returns it.
+  WorkerPool(std::int64_t jobs, SimulatorFactory make_simulator,
+             std::function<void(const SampleRecord&)> finished, const std::atomic<bool>* stop);
+  ~WorkerPool();
+  WorkerPool(const WorkerPool&) = delete;
+  WorkerPool& operator=(const WorkerPool&) = delete;
+
+  /// Of the first worker's simulator. None when stopped.
+  std::optional<SimulatorInfo> info();
+
+  void submit(std::shared_ptr<const TracePlan> plan, std::int64_t sample);
+  /// Simulates the start of `record` again; wait for it with Phase::kConfirm.
+  void submit_repeat(std::shared_ptr<const TracePlan> plan, SampleRecord record);
+  /// The result of a submitted sample. None when the stop flag was raised. What a worker threw is
+  /// thrown again here.
+  std::optional<SampleRecord> wait(std::int64_t sample, Phase phase);
+  /// Forgets everything submitted; what is under way ends after its current action.
+  void abandon();
+  /// abandon, and wait for the workers to end. Nothing may be submitted afterwards.
+  void close();
+
+  std::int64_t runs_made() const { return runs_made_; }
+  double simulated_s() const;
+
+ private:
+  using Key = std::pair<std::int64_t, Phase>;
+  struct Job {
+    std::shared_ptr<const TracePlan> plan;
+    std::int64_t sample = 0;
+    std::optional<SampleRecord> repeat;
+    std::uint64_t generation = 0;
+  };
+
+  void work(std::size_t worker);
+  void serve_jobs(Simulator* simulator);
+  void simulate(const Job& job, Simulator& simulator);
+  void submit(Job job);
+  template <typename Ready>
+  bool wait_until(std::unique_lock<std::mutex>& lock, Ready ready);
+  bool stopped() const { return stop_ != nullptr && stop_->load(); }
+
+  SimulatorFactory make_simulator_;
+  std::function<void(const SampleRecord&)> finished_;
+  const std::atomic<bool>* stop_;
+  std::atomic<std::uint64_t> generation_ = 0;
+  std::atomic<bool> closing_ = false;
+  std::atomic<std::int64_t> runs_made_ = 0;
+
+  mutable std::mutex mutex_;  // guards what follows
+  std::condition_variable changed_;
+  std::deque<Job> queue_;
+  std::map<Key, SampleRecord> results_;  // of this generation
+  std::optional<SimulatorInfo> info_;
+  std::exception_ptr thrown_;
+  double simulated_s_ = 0.0;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace parallax::harness

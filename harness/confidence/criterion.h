@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "harness/confidence/criterion_spec.h"
+#include "harness/confidence/paper_rule.h"
+#include "harness/confidence/tally.h"
+
+namespace parallax::harness {
+
+/// With this confidence, the probability of a discrepancy is below epsilon.
+struct CertifiedBound {
+  double confidence_level = 0.0;
+  double epsilon = 1.0;  // 1: nothing is known
+};
+
+/// What a criterion makes of the runs so far.
+struct Decision {
+  bool stop = false;                        // enough clean runs: no discrepancy found
+  std::string why;                          // "90 clean runs of 90 needed", "paper's rule: ..."
+  CertifiedBound certified;                 // whatever the criterion
+  std::optional<std::int64_t> runs_needed;  // total, as far as it can be told without new failures
+  std::optional<PaperVerdict> paper;        // of the criterion `paper`
+};
+
+/// When to stop simulating one trace. Looked at after every run, in order of the sample index.
+class ConfidenceCriterion {
+ public:
+  virtual ~ConfidenceCriterion() = default;
+  virtual Decision decide(const Tally& tally) const = 0;
+  /// May one look after every run without spoiling what is stated? If not, the stated level is
+  /// not the probability of a false stop.
+  virtual bool is_anytime_valid() const = 0;
+  virtual std::string_view name() const = 0;  // "clean-runs", "paper"
+};
+
+/// `confidence_level` and `epsilon` of the spec in (0, 1).
+std::unique_ptr<ConfidenceCriterion> make_criterion(const CriterionSpec& spec);
+
+/// Stop after ceil(ln(1-C) / ln(1-eps)) runs if all were clean. After lost runs, which count as
+/// failures, stop when the mixture bound reaches eps. Never after a mismatch.
+class CleanRunsCriterion final : public ConfidenceCriterion {
+ public:
+  CleanRunsCriterion(double confidence_level, double epsilon);
+  Decision decide(const Tally& tally) const override;
+  bool is_anytime_valid() const override { return true; }
+  std::string_view name() const override { return "clean-runs"; }
+
+ private:
+  double confidence_level_;
+  double epsilon_;
+  std::int64_t runs_needed_;
+};
+
+/// Stop when the paper's rule holds for the clean runs. Never after a mismatch.
+class PaperCriterion final : public ConfidenceCriterion {
+ public:
+  PaperCriterion(double confidence_level, PaperRuleSpec spec);
+  Decision decide(const Tally& tally) const override;
+  bool is_anytime_valid() const override { return false; }
+  std::string_view name() const override { return "paper"; }
+
+ private:
+  double confidence_level_;
+  PaperRuleSpec spec_;
+};
+
+/// The bound that holds beside any criterion. Without failures: bound_after(clean) at C. With
+/// failures (lost runs and mismatches): mixture_upper at C, stated with 1 - 2(1-C), as a procedure
+/// that may end with either bound errs with at most the sum of both chances.
+CertifiedBound certified_bound(const Tally& tally, double confidence_level);
+
+}  // namespace parallax::harness

@@ -1,0 +1,238 @@
+#include "harness/confidence/paper_rule.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "compiler/base/contract.h"
+#include "harness/confidence/quantiles.h"
+
+namespace parallax::harness {
+namespace {
+
+/// Beyond this many parameters the 2^n corners are bounded instead of visited.
+constexpr std::size_t kMaxCornerParameters = 12;
+
+std::string name_of(const std::vector<std::string>& names, std::size_t index, char letter) {
+  return index < names.size() ? names[index] : fmt::format("{}{}", letter, index + 1);
+}
+
+/// One evaluation of the rule: the varying columns, moved to the midpoints if centred.
+class PaperFit {
+ public:
+  PaperFit(const RegressionInput& input, const PaperRuleSpec& spec, double confidence_level)
+      : input_(input), spec_(spec), confidence_level_(confidence_level) {
+    // A column of zero width carries no information and would make the fit singular.
+    for (std::size_t i = 0; i < input.x_range.size(); ++i) {
+      if (input.x_range[i].width() > 0.0) columns_.push_back(i);
+    }
+    const bool centred = spec.intercept == InterceptKind::kCentred;
+    x_.resize(std::ssize(input.x), std::ssize(columns_));
+    for (std::size_t j = 0; j < columns_.size(); ++j) {
+      const Interval& range = input.x_range[columns_[j]];
+      const double shift = centred ? range.midpoint() : 0.0;
+      shift_.push_back(shift);
+      range_.push_back({range.lower - shift, range.upper - shift, range.closed});
+      for (std::size_t row = 0; row < input.x.size(); ++row) {
+        x_(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(j)) =
+            input.x[row][columns_[j]] - shift;
+      }
+    }
+  }
+
+  PaperVerdict run() {
+    PaperVerdict verdict;
+    select_outcomes(verdict);
+    verdict.why_not = refusal();
+    if (!verdict.why_not.empty()) return verdict;
+    verdict.z = quantile();
+    for (const std::size_t outcome : outcomes_) {
+      const auto interval = judge(outcome, verdict.z, verdict.why_not);
+      if (!interval) return verdict;
+      verdict.intervals.push_back(*interval);
+    }
+    verdict.stop = verdict.why_not.empty();
+    return verdict;
+  }
+
+ private:
+  std::int64_t runs() const { return std::ssize(input_.x); }
+  std::int64_t coefficients() const {
+    return std::ssize(columns_) + (spec_.intercept == InterceptKind::kFree ? 1 : 0);
+  }
+  bool needs_residual_freedom() const {
+    return spec_.interval == IntervalKind::kPrediction || spec_.sigma == SigmaKind::kResidualSd;
+  }
+
+  /// Is the final value the initial one, run by run? The plan never touched it.
+  bool inherited(std::size_t outcome) const {
+    if (outcome >= input_.y_names.size()) return false;
+    const auto& names = input_.x_names;
+    const auto same = std::find(names.begin(), names.end(), input_.y_names[outcome]);
+    if (same == names.end()) return false;
+    const auto column = static_cast<std::size_t>(same - names.begin());
+    for (std::size_t row = 0; row < input_.x.size(); ++row) {
+      const double change = std::abs(input_.y[row][outcome] - input_.x[row][column]);
+      if (!(change <= spec_.tolerance_m)) return false;
+    }
+    return true;
+  }
+
+  void select_outcomes(PaperVerdict& verdict) {
+    for (std::size_t j = 0; j < input_.y_cell.size(); ++j) {
+      if (!input_.y_cell[j]) continue;
+      if (spec_.exempt_inherited && inherited(j)) {
+        verdict.exempt.push_back(name_of(input_.y_names, j, 'y'));
+      } else {
+        outcomes_.push_back(j);
+      }
+    }
+  }
+
+  std::string refusal() const {
+    if (columns_.empty()) return "no initial parameter varies";
+    if (outcomes_.empty()) return "no final parameter to test";
+    const std::int64_t least = std::ssize(columns_) + spec_.extra_runs;
+    if (runs() < least) return fmt::format("{} runs, {} needed at least", runs(), least);
+    if (needs_residual_freedom() && runs() <= coefficients()) {
+      return fmt::format("{} runs leave nothing over for {} coefficients", runs(), coefficients());
+    }
+    return {};
+  }
+
+  double quantile() const {
+    const std::int64_t count =
+        spec_.root == RootKind::kInitial ? std::ssize(columns_) : std::ssize(outcomes_);
+    const double level = interval_level(confidence_level_, count, spec_.bonferroni);
+    if (spec_.interval == IntervalKind::kMean) return two_sided_z(level);
+    return student_t_quantile(0.5 * (1.0 + level), static_cast<double>(runs() - coefficients()));
+  }
+
+  std::optional<ParameterInterval> judge(std::size_t outcome, double z,
+                                         std::string& why_not) const {
+    const auto name = name_of(input_.y_names, outcome, 'y');
+    const Interval& cell = *input_.y_cell[outcome];
+    const double shift = spec_.intercept == InterceptKind::kCentred ? cell.midpoint() : 0.0;
+    Eigen::VectorXd y(std::ssize(input_.y));
+    for (std::size_t row = 0; row < input_.y.size(); ++row) {
+      y(static_cast<Eigen::Index>(row)) = input_.y[row][outcome] - shift;
+    }
+    if (!x_.allFinite() || !y.allFinite()) {
+      why_not = fmt::format("`{}` or a start value is not a number in some run", name);
+      return std::nullopt;
+    }
+    const auto fit = fit_line(x_, y, spec_.intercept == InterceptKind::kFree);
+    if (!fit) {
+      why_not = "the initial parameters of these runs are not linearly independent";
+      return std::nullopt;
+    }
+    const double sigma = sigma_of(spec_.sigma, fit->sse, fit->runs, fit->parameters);
+    const Interval span =
+        spec_.interval == IntervalKind::kMean
+            ? mean_interval(fit->coefficients, fit->intercept, range_, z, sigma, runs())
+            : prediction_hull(*fit, z, sigma);
+    auto result = describe(name, *fit, shift);
+    result.lower = span.lower + shift;
+    result.upper = span.upper + shift;
+    result.inside = result.lower >= cell.lower - spec_.tolerance_m &&
+                    result.upper <= cell.upper + spec_.tolerance_m;
+    if (!result.inside && why_not.empty()) {
+      why_not = fmt::format("`{}` may end in [{:.6g}, {:.6g}], its cell is [{}, {}]", name,
+                            result.lower, result.upper, cell.lower, cell.upper);
+    }
+    return result;
+  }
+
+  ParameterInterval describe(const std::string& name, const LinearFit& fit, double shift) const {
+    ParameterInterval result;
+    result.name = name;
+    result.coefficients.assign(input_.x_range.size(), 0.0);
+    result.intercept = fit.intercept + shift;
+    result.sse = fit.sse;
+    for (std::size_t j = 0; j < columns_.size(); ++j) {
+      const double b = fit.coefficients(static_cast<Eigen::Index>(j));
+      result.coefficients[columns_[j]] = b;
+      result.intercept -= b * shift_[j];
+    }
+    return result;
+  }
+
+  /// The prediction intervals over the whole cuboid. Both ends are extreme at corners: the mean is
+  /// linear and the half-width convex in x.
+  Interval prediction_hull(const LinearFit& fit, double q, double sigma) const {
+    const std::size_t n = range_.size();
+    if (n > kMaxCornerParameters) return prediction_bound(fit, q, sigma);
+    Interval hull;
+    Eigen::VectorXd corner(static_cast<Eigen::Index>(n));
+    for (std::uint32_t mask = 0; mask < (1U << n); ++mask) {
+      for (std::size_t j = 0; j < n; ++j) {
+        corner(static_cast<Eigen::Index>(j)) =
+            (mask >> j & 1U) != 0 ? range_[j].upper : range_[j].lower;
+      }
+      const Interval at = prediction_interval(fit, corner, q, sigma);
+      hull.lower = mask == 0 ? at.lower : std::min(hull.lower, at.lower);
+      hull.upper = mask == 0 ? at.upper : std::max(hull.upper, at.upper);
+    }
+    return hull;
+  }
+
+  /// Never shorter than the hull: the mean's extremes by the signs of its coefficients, and the
+  /// leverage's square root bounded by the triangle inequality from the midpoint outwards.
+  Interval prediction_bound(const LinearFit& fit, double q, double sigma) const {
+    Eigen::VectorXd middle(std::ssize(range_));
+    const Eigen::Index lead = fit.has_intercept ? 1 : 0;
+    double reach = 0.0;
+    for (std::size_t j = 0; j < range_.size(); ++j) {
+      const auto column = static_cast<Eigen::Index>(j);
+      middle(column) = range_[j].midpoint();
+      reach += 0.5 * range_[j].width() * fit.half_inverse.col(lead + column).norm();
+    }
+    reach += std::sqrt(fit.leverage(middle));
+    const Interval mean = mean_interval(fit.coefficients, fit.intercept, range_, 0.0, 0.0, 1);
+    const double half_width = q * sigma * std::sqrt(1.0 + reach * reach);
+    return {mean.lower - half_width, mean.upper + half_width, true};
+  }
+
+  const RegressionInput& input_;
+  const PaperRuleSpec& spec_;
+  double confidence_level_;
+  std::vector<std::size_t> columns_;   // varying initial parameters
+  std::vector<double> shift_;          // of each of them
+  std::vector<Interval> range_;        // of each of them, shifted
+  std::vector<std::size_t> outcomes_;  // tested final parameters
+  Eigen::MatrixXd x_;                  // (s x columns), shifted
+};
+
+}  // namespace
+
+PaperVerdict paper_rule(const RegressionInput& input, const PaperRuleSpec& spec,
+                        double confidence_level) {
+  PARALLAX_REQUIRE(input.x.size() == input.y.size(), "one final row per initial row");
+  for (std::size_t row = 0; row < input.x.size(); ++row) {
+    PARALLAX_REQUIRE(input.x[row].size() == input.x_range.size(), "rows as wide as the ranges");
+    PARALLAX_REQUIRE(input.y[row].size() == input.y_cell.size(), "rows as wide as the cells");
+  }
+  return PaperFit(input, spec, confidence_level).run();
+}
+
+PaperVerdict paper_rule(const Tally& tally, const PaperRuleSpec& spec, double confidence_level) {
+  const RegressionFrame& frame = tally.frame();
+  return paper_rule(
+      {tally.x(), tally.y(), frame.x_range, frame.y_cell, frame.x_names, frame.y_names}, spec,
+      confidence_level);
+}
+
+std::optional<std::int64_t> paper_stopped_at(const Tally& tally, const PaperRuleSpec& spec,
+                                             double confidence_level) {
+  const RegressionFrame& frame = tally.frame();
+  RegressionInput input{{}, {}, frame.x_range, frame.y_cell, frame.x_names, frame.y_names};
+  for (std::size_t row = 0; row < tally.x().size(); ++row) {
+    input.x.push_back(tally.x()[row]);
+    input.y.push_back(tally.y()[row]);
+    if (paper_rule(input, spec, confidence_level).stop) return std::ssize(input.x);
+  }
+  return std::nullopt;
+}
+
+}  // namespace parallax::harness

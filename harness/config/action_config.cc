@@ -1,0 +1,148 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "harness/config/sections.h"
+#include "harness/world/controller_table.h"
+
+namespace parallax::harness {
+namespace {
+
+using base::DiagnosticCode;
+
+constexpr double kMaxTimeLimitS = 86400.0;
+
+const ArgumentSpec* find_argument(const ControllerSpec& controller, std::string_view name) {
+  const auto found = std::find_if(controller.arguments.begin(), controller.arguments.end(),
+                                  [&](const ArgumentSpec& a) { return a.name == name; });
+  return found == controller.arguments.end() ? nullptr : &*found;
+}
+
+void unknown_argument(const ControllerSpec& controller, const std::string& name,
+                      base::SourceRange range, base::DiagnosticSink& sink) {
+  std::vector<std::string> known;
+  for (const auto& argument : controller.arguments) known.emplace_back(argument.name);
+  auto error = sink.error(DiagnosticCode::kUnknownArgument, range, controller.name, name);
+  add_suggestion(error, name, known, "arguments");
+}
+
+/// Reads the arguments of one action; maps nest, so that `target: {x: 0.5}` is target.x.
+class ArgumentReader {
+ public:
+  ArgumentReader(const SymbolPattern& pattern, const ControllerSpec* controller,
+                 base::DiagnosticSink& sink)
+      : pattern_(pattern), controller_(controller), sink_(sink) {}
+
+  State take() { return std::move(arguments_); }
+
+  void read(const std::string& name, const YamlEntry& entry) {
+    if (entry.value.is_map()) {
+      for (const auto& inner : entry.value.entries) read(name + "." + inner.key, inner);
+      return;
+    }
+    auto value = read_value(entry.value, fmt::format("`{}`", name), sink_);
+    if (!value) return;
+    if (auto* text = std::get_if<std::string>(&*value)) {
+      *text = with_positions(*text, pattern_, entry.value.range, sink_);
+    }
+    if (controller_ != nullptr && !fits(name, entry, *value)) return;
+    arguments_.emplace(name, std::move(*value));
+  }
+
+ private:
+  bool fits(const std::string& name, const YamlEntry& entry, Value& value) {
+    const auto* argument = find_argument(*controller_, name);
+    if (argument == nullptr) {
+      unknown_argument(*controller_, name, entry.key_range, sink_);
+      return false;
+    }
+    const bool wants_body = argument->unit == "body";
+    if (const auto* whole = std::get_if<std::int64_t>(&value); whole != nullptr && !wants_body) {
+      value = static_cast<double>(*whole);  // `1` is as good a length as `1.0`
+    }
+    const bool right = wants_body ? std::holds_alternative<std::string>(value)
+                                  : std::holds_alternative<double>(value);
+    if (!right) {
+      sink_.error(DiagnosticCode::kWrongYamlKind, entry.value.range, fmt::format("`{}`", name),
+                  describe(entry.value),
+                  wants_body ? std::string("the name of a body")
+                             : fmt::format("a number [{}]", argument->unit));
+    }
+    return right;
+  }
+
+  const SymbolPattern& pattern_;
+  const ControllerSpec* controller_;  // null: another simulator's, unknown here
+  base::DiagnosticSink& sink_;
+  State arguments_;
+};
+
+const ControllerSpec* known_controller(const std::string& name, base::SourceRange range,
+                                       base::DiagnosticSink& sink) {
+  if (const auto* found = find_controller(name)) return found;
+  std::vector<std::string> known;
+  for (const auto& controller : controllers()) known.emplace_back(controller.name);
+  auto error = sink.error(DiagnosticCode::kUnknownController, range, name);
+  add_suggestion(error, name, known, "controllers");
+  return nullptr;
+}
+
+std::optional<ActionBinding> read_action(const YamlEntry& entry, bool built_in,
+                                         base::DiagnosticSink& sink) {
+  const auto pattern = parse_pattern(entry.key);
+  if (!pattern) {
+    sink.error(DiagnosticCode::kBadPattern, entry.key_range, entry.key);
+    return std::nullopt;
+  }
+  ActionBinding action;
+  action.event = pattern->symbol;
+  action.arity = pattern->parameters.size();
+  action.source = entry.key_range;
+  const YamlFields fields(entry.value, fmt::format("the action of `{}`", pattern->symbol), sink);
+  if (!entry.value.is_map()) return std::nullopt;
+  const auto* controller = fields.find("controller");
+  if (controller == nullptr) {
+    sink.error(DiagnosticCode::kActionWithoutController, entry.key_range, entry.key);
+    return std::nullopt;
+  }
+  fields.text("controller", action.controller);
+  fields.number("time_limit_s", NumberBounds{0.0, kMaxTimeLimitS, true, false},
+                action.time_limit_s);
+  const ControllerSpec* table = nullptr;
+  if (built_in && !action.controller.empty()) {
+    table = known_controller(action.controller, controller->range, sink);
+    if (table == nullptr) return std::nullopt;
+  }
+  ArgumentReader reader(*pattern, table, sink);
+  for (const auto& argument : entry.value.entries) {
+    if (argument.key == "controller" || argument.key == "time_limit_s") continue;
+    reader.read(argument.key, argument);
+  }
+  action.arguments = reader.take();
+  return action;
+}
+
+}  // namespace
+
+std::vector<ActionBinding> read_actions(const YamlNode& node, bool built_in,
+                                        base::DiagnosticSink& sink) {
+  std::vector<ActionBinding> actions;
+  const YamlFields all(node, "`actions`", sink);
+  std::map<std::string, base::SourceRange> seen;
+  for (const auto& entry : node.entries) {
+    auto action = read_action(entry, built_in, sink);
+    if (!action) continue;
+    const auto [earlier, fresh] = seen.emplace(action->event, action->source);
+    if (!fresh) {
+      sink.error(DiagnosticCode::kDuplicateKey, action->source, action->event)
+          .note(earlier->second, "first given here");
+    }
+    actions.push_back(std::move(*action));
+  }
+  std::sort(actions.begin(), actions.end(),
+            [](const auto& a, const auto& b) { return a.event < b.event; });
+  return actions;
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,176 @@
+#include "harness/config/scenario.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "harness/config/sections.h"
+#include "harness/world/world_check.h"
+
+namespace parallax::harness {
+namespace {
+
+using base::DiagnosticCode;
+
+constexpr std::int64_t kMaxHorizon = 1'000'000;
+
+class ScenarioReader {
+ public:
+  ScenarioReader(const YamlNode& root, const base::SourceFiles& files, base::DiagnosticSink& sink)
+      : fields_(root, "the scenario", sink), files_(files), sink_(sink) {}
+
+  void read(Scenario& scenario) {
+    fields_.only({"include", "name", "model", "plan", "bind", "constraints", "horizon", "world",
+                  "regions", "mapping", "actions", "sampling", "criterion", "simulator", "limits",
+                  "expect"});
+    fields_.text("name", scenario.title);
+    read_problem(scenario);
+    read_simulation(scenario);
+    read_meaning(scenario);
+    if (const auto* node = fields_.find("criterion")) {
+      scenario.criterion = read_criterion(*node, sink_);
+    } else {
+      scenario.criterion.paper = paper_literal();
+    }
+    if (const auto* node = fields_.find("limits")) scenario.limits = read_limits(*node, sink_);
+    if (const auto* node = fields_.find("expect")) {
+      scenario.expect = read_expectation(*node, sink_);
+    }
+  }
+
+ private:
+  /// model, plan, bind, constraints, horizon: what the compiler reads.
+  void read_problem(Scenario& scenario) {
+    if (const auto* node = fields_.require("model")) {
+      scenario.models = located_texts(*node, "`model`");
+      for (auto& model : scenario.models) resolve(model);
+    }
+    scenario.plan = optional_path("plan");
+    scenario.bind = optional_path("bind");
+    if (scenario.plan.has_value() != scenario.bind.has_value()) {
+      const auto* given = fields_.find(scenario.plan ? "plan" : "bind");
+      sink_.error(DiagnosticCode::kMissingKey, given->range, "the scenario",
+                  scenario.plan ? "bind" : "plan");
+    }
+    if (const auto* node = fields_.find("constraints")) {
+      scenario.constraints = located_texts(*node, "`constraints`");
+    }
+    if (const auto* node = fields_.require("horizon")) {
+      std::int64_t horizon = 0;
+      fields_.integer("horizon", 1, kMaxHorizon, horizon);
+      scenario.horizon = static_cast<std::int32_t>(horizon);
+      scenario.horizon_source = node->range;
+    }
+  }
+
+  void read_simulation(Scenario& scenario) {
+    if (const auto* node = fields_.find("simulator")) {
+      scenario.simulator = read_simulator(*node, sink_);
+    } else {
+      scenario.simulator.source = fields_.node().range;
+    }
+    // Another simulator has a world of its own; the built-in one needs ours.
+    const bool built_in = scenario.simulator.command.empty();
+    const auto* world = built_in ? fields_.require("world") : fields_.find("world");
+    if (world != nullptr) scenario.world = read_world(*world, sink_);
+    if (const auto* node = fields_.require("actions")) {
+      scenario.actions = read_actions(*node, built_in, sink_);
+      scenario.actions_source = key_range("actions");
+    }
+  }
+
+  void read_meaning(Scenario& scenario) {
+    const auto* regions = fields_.require("regions");
+    const auto* mapping = fields_.require("mapping");
+    bool gaps_allowed = false;
+    const auto errors_before = sink_.error_count();
+    if (regions != nullptr) {
+      scenario.region_list = read_regions(*regions, gaps_allowed, sink_);
+      scenario.regions_source = key_range("regions");
+    }
+    const bool regions_read = sink_.error_count() == errors_before;
+    std::vector<FluentBinding> bindings;
+    if (mapping != nullptr) {
+      bindings = read_mapping(*mapping, sink_);
+      scenario.mapping_source = key_range("mapping");
+    }
+    scenario.sampling_source = scenario.regions_source;
+    if (const auto* node = fields_.find("sampling")) {
+      scenario.sampling_source = key_range("sampling");
+      read_sampling(*node, scenario, sink_);
+    }
+    if (!regions_read) return;  // a region without its bounds would be reported once more
+    auto cells = RegionSet::make(scenario.region_list, gaps_allowed, sink_);
+    if (cells) scenario.mapping.emplace(std::move(*cells), std::move(bindings));
+  }
+
+  base::SourceRange key_range(std::string_view key) const {
+    return fields_.node().find(key)->key_range;
+  }
+
+  /// A text, or a list of texts.
+  std::vector<LocatedText> located_texts(const YamlNode& node, std::string_view name) {
+    const auto items = node.is_list() ? node.items : std::vector<YamlNode>{node};
+    std::vector<LocatedText> out;
+    for (const auto& item : items) {
+      if (auto text = read_text(item, name, sink_)) {
+        out.push_back({std::move(*text), item.range});
+      }
+    }
+    if (items.empty()) {
+      sink_.error(DiagnosticCode::kWrongYamlKind, node.range, name, "empty", "a list of texts");
+    }
+    return out;
+  }
+
+  std::optional<LocatedText> optional_path(std::string_view key) {
+    const auto* node = fields_.find(key);
+    if (node == nullptr) return std::nullopt;
+    auto text = read_text(*node, fmt::format("`{}`", key), sink_);
+    if (!text) return std::nullopt;
+    LocatedText path{std::move(*text), node->range};
+    resolve(path);
+    return path;
+  }
+
+  /// Makes a path start where its file lies, and says at the key when nothing is there.
+  void resolve(LocatedText& path) {
+    const auto resolved = path_beside(path.source, path.text, files_);
+    std::error_code error;
+    if (!std::filesystem::exists(resolved, error)) {
+      sink_.error(DiagnosticCode::kFileNotFound, path.source,
+                  fmt::format("no file `{}`", resolved.string()));
+    }
+    path.text = resolved.string();
+  }
+
+  YamlFields fields_;
+  const base::SourceFiles& files_;
+  base::DiagnosticSink& sink_;
+};
+
+}  // namespace
+
+base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,
+                                     base::DiagnosticSink& sink) {
+  const auto errors_before = sink.error_count();
+  Scenario scenario;
+  scenario.file = path;
+  scenario.name = path.string();
+  // Files are registered in order of loading, so the next one is the scenario itself.
+  scenario.source = base::FileId(static_cast<std::uint32_t>(files.size()));
+  const auto root = load_yaml(path, files, sink);
+  if (!root) return sink.already_reported();
+  ScenarioReader(*root, files, sink).read(scenario);
+  // Of another simulator it is known when it has been started.
+  const bool built_in = scenario.simulator.command.empty();
+  if (built_in && scenario.mapping && sink.error_count() == errors_before) {
+    const auto parameters = observables(scenario.world);
+    if (!check_variables(scenario, parameters, sink)) return sink.already_reported();
+  }
+  if (sink.error_count() != errors_before) return sink.already_reported();
+  return scenario;
+}
+
+}  // namespace parallax::harness

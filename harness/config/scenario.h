@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "harness/confidence/criterion_spec.h"
+#include "harness/region/state_mapping.h"
+#include "harness/world/world_spec.h"
+
+namespace parallax::harness {
+
+/// A text of the scenario with its place, for messages and for parsing elsewhere.
+struct LocatedText {
+  std::string text;
+  base::SourceRange source;
+};
+
+/// Event symbol -> controller with its fixed arguments; what the plan says of a perform is laid
+/// over them (a pose `target` becomes target.x, target.y, target.z, target.yaw).
+/// In a text argument "{0}" stands for the event's argument 0.
+struct ActionBinding {
+  std::string event;
+  std::size_t arity = 0;
+  std::string controller;
+  State arguments;
+  double time_limit_s = 60.0;
+  base::SourceRange source;
+};
+
+/// The simulator's command and how long it may take on the clock of the wall. An act may take
+/// `act_timeout_s` if that is positive, else 5 s + its simulated limit / min_real_time_factor.
+struct SimulatorSpec {
+  std::vector<std::string> command;  // empty: the built-in ODE worker
+  double hello_timeout_s = 60.0;
+  double reset_timeout_s = 10.0;
+  double act_timeout_s = 0.0;
+  double observe_timeout_s = 2.0;
+  double close_timeout_s = 2.0;
+  double min_real_time_factor = 1.0;
+  std::int64_t recycle_after = 0;  // resets after which the process is replaced; 0: never
+  base::SourceRange source;
+};
+
+struct Limits {
+  std::int64_t max_runs = 300;             // valid simulations per trace
+  std::int64_t max_traces = 0;             // 0: all
+  std::int64_t max_rejected_starts = 100;  // in a row, for one sample
+  std::int64_t max_lost_in_a_row = 3;
+};
+
+/// What `parallax suite` and the tests hold the result against.
+struct Expectation {
+  std::optional<std::string> verdict;
+  std::optional<std::int64_t> iterations;
+  std::optional<std::int64_t> max_simulations;
+  std::vector<std::string> fluents;  // each of these must be among the diverging ones
+};
+
+/// A scenario file as checked data. Paths are resolved against the file's folder.
+struct Scenario {
+  std::filesystem::path file;
+  base::FileId source;
+  std::string name;   // the file as the user wrote it
+  std::string title;  // what it calls itself; may be empty
+  std::vector<LocatedText> models;
+  std::optional<LocatedText> plan, bind;
+  std::vector<LocatedText> constraints;
+  std::int32_t horizon = 0;
+  base::SourceRange horizon_source;
+  WorldSpec world;
+  std::vector<Region> region_list;  // as written, before RegionSet::make
+  std::optional<StateMapping> mapping;
+  std::vector<ActionBinding> actions;  // sorted by event
+  std::vector<SampledDimension> sampling;
+  double sampling_inset_m = 1e-6;  // [m, rad] how far draws stay inside their cuboid
+  base::SourceRange regions_source, mapping_source, actions_source, sampling_source;
+  CriterionSpec criterion;
+  SimulatorSpec simulator;
+  Limits limits;
+  std::optional<Expectation> expect;
+};
+
+/// Reads and checks a scenario; several errors per run, each at its key. Unknown keys get a
+/// suggestion; duplicate keys, aliases and tags are refused.
+base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,
+                                     base::DiagnosticSink& sink);
+
+/// Holds the scenario against the compiled model, before anything is simulated: every ground fluent
+/// needs a mapping of its arity whose region exists, every ground event an action. Reports each
+/// offending symbol once, at the `mapping:` or `actions:` key, with the near name as a fix; warns
+/// of a mapping or an action that the model has no use for.
+base::Status check_against_model(const Scenario& scenario, const std::vector<std::string>& fluents,
+                                 const std::vector<std::string>& events,
+                                 base::DiagnosticSink& sink);
+
+/// The same against what the simulator says of itself: sampled variables must be settable, mapped
+/// variables observable, controllers known. What the simulator does not list is not checked.
+base::Status check_against_simulator(const Scenario& scenario, const SimulatorInfo& info,
+                                     base::DiagnosticSink& sink);
+
+}  // namespace parallax::harness

@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "harness/config/sections.h"
+
+namespace parallax::harness {
+namespace {
+
+using base::DiagnosticCode;
+
+std::vector<std::string> names_of(const std::vector<Parameter>& parameters) {
+  std::vector<std::string> names;
+  for (const auto& parameter : parameters) names.push_back(parameter.name);
+  return names;
+}
+
+/// The variables that a binding reads, as far as they do not depend on the fluent's arguments.
+std::vector<std::string> variables_of(const FluentBinding& binding, const RegionSet& regions) {
+  std::vector<std::string> out;
+  if (const auto* flag = std::get_if<FlagBinding>(&binding.condition)) {
+    out.push_back(flag->variable);
+  } else if (const auto* inside = std::get_if<InsideBinding>(&binding.condition)) {
+    for (const auto axis : kAxes) {
+      const bool bounded = !regions.regions().empty() && regions.regions().front().on(axis);
+      if (bounded) out.push_back(fmt::format("{}.{}", inside->body, to_string(axis)));
+    }
+    if (inside->unless) out.push_back(*inside->unless);
+    if (inside->only_if) out.push_back(*inside->only_if);
+  }
+  std::erase_if(out, [](const std::string& v) { return v.find('{') != std::string::npos; });
+  return out;
+}
+
+void check_event(const Scenario& scenario, const GroundFluent& event, base::DiagnosticSink& sink) {
+  const auto action = std::find_if(scenario.actions.begin(), scenario.actions.end(),
+                                   [&](const ActionBinding& a) { return a.event == event.symbol; });
+  if (action == scenario.actions.end()) {
+    std::vector<std::string> known;
+    for (const auto& binding : scenario.actions) known.push_back(binding.event);
+    auto error =
+        sink.error(DiagnosticCode::kEventWithoutAction, scenario.actions_source, event.symbol);
+    add_suggestion(error, event.symbol, known, "actions");
+  } else if (action->arity != event.arguments.size()) {
+    sink.error(DiagnosticCode::kActionArity, action->source, event.text, event.arguments.size(),
+               event.symbol, action->arity);
+  }
+}
+
+/// Entries that nothing in the model answers to are most likely misspelt.
+void warn_of_unused(const Scenario& scenario, const std::set<std::string>& fluents,
+                    const std::set<std::string>& events, base::DiagnosticSink& sink) {
+  const std::vector<std::string> fluent_names(fluents.begin(), fluents.end());
+  const std::vector<std::string> event_names(events.begin(), events.end());
+  for (const auto& binding : scenario.mapping->bindings()) {
+    if (fluents.contains(binding.fluent)) continue;
+    auto warning = sink.warning(DiagnosticCode::kUnusedMapping, binding.source, binding.fluent);
+    add_suggestion(warning, binding.fluent, fluent_names, "fluents");
+  }
+  for (const auto& action : scenario.actions) {
+    if (events.contains(action.event)) continue;
+    auto warning = sink.warning(DiagnosticCode::kUnusedAction, action.source, action.event);
+    add_suggestion(warning, action.event, event_names, "events");
+  }
+}
+
+}  // namespace
+
+base::Status check_variables(const Scenario& scenario, const std::vector<Parameter>& parameters,
+                             base::DiagnosticSink& sink) {
+  const auto errors_before = sink.error_count();
+  const auto known = names_of(parameters);
+  for (const auto& binding : scenario.mapping->bindings()) {
+    for (const auto& variable : variables_of(binding, scenario.mapping->regions())) {
+      if (std::find(known.begin(), known.end(), variable) != known.end()) continue;
+      auto error = sink.error(DiagnosticCode::kUnknownSimVariable, binding.source, variable);
+      add_suggestion(error, variable, known, "variables");
+    }
+  }
+  for (const auto& dimension : scenario.sampling) {
+    const auto found =
+        std::find_if(parameters.begin(), parameters.end(),
+                     [&](const Parameter& p) { return p.name == dimension.variable; });
+    if (found == parameters.end()) {
+      auto error = sink.error(DiagnosticCode::kUnknownSimVariable, scenario.sampling_source,
+                              dimension.variable);
+      add_suggestion(error, dimension.variable, known, "variables");
+    } else if (!found->settable) {
+      sink.error(DiagnosticCode::kVariableNotSettable, scenario.sampling_source,
+                 dimension.variable);
+    }
+  }
+  if (sink.error_count() != errors_before) return sink.already_reported();
+  return base::Unit{};
+}
+
+base::Status check_against_model(const Scenario& scenario, const std::vector<std::string>& fluents,
+                                 const std::vector<std::string>& events,
+                                 base::DiagnosticSink& sink) {
+  const auto errors_before = sink.error_count();
+  std::vector<GroundFluent> ground;
+  std::set<std::string> fluent_symbols, event_symbols;
+  for (const auto& text : fluents) {
+    ground.push_back(ground_fluent(text));
+    fluent_symbols.insert(ground.back().symbol);
+  }
+  const auto mapped = scenario.mapping->check(ground, scenario.mapping_source, sink);
+  for (const auto& text : events) {
+    const auto event = ground_fluent(text);
+    if (event_symbols.insert(event.symbol).second) check_event(scenario, event, sink);
+  }
+  warn_of_unused(scenario, fluent_symbols, event_symbols, sink);
+  if (!mapped || sink.error_count() != errors_before) return sink.already_reported();
+  return base::Unit{};
+}
+
+base::Status check_against_simulator(const Scenario& scenario, const SimulatorInfo& info,
+                                     base::DiagnosticSink& sink) {
+  const auto errors_before = sink.error_count();
+  if (!info.parameters.empty() && !check_variables(scenario, info.parameters, sink)) {
+    return sink.already_reported();
+  }
+  const auto& known = info.actions;
+  for (const auto& action : scenario.actions) {
+    if (known.empty()) break;
+    if (std::find(known.begin(), known.end(), action.controller) != known.end()) continue;
+    auto error = sink.error(DiagnosticCode::kUnknownController, action.source, action.controller);
+    add_suggestion(error, action.controller, known, "controllers");
+  }
+  if (sink.error_count() != errors_before) return sink.already_reported();
+  return base::Unit{};
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,54 @@
+#pragma once
+
+// Only harness/config/*.cc include this header.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/config/scenario.h"
+#include "harness/config/yaml_fields.h"
+
+namespace parallax::harness {
+
+/// Each reads one section of a scenario, reporting at its keys; what is wrong keeps its default.
+
+/// `world`: solver, friction, floor, bodies, joints, robot (docs/scenario_format.md).
+WorldSpec read_world(const YamlNode& node, base::DiagnosticSink& sink);
+
+/// `regions: cells`, as written; `gaps_allowed` from `regions: gaps`.
+std::vector<Region> read_regions(const YamlNode& node, bool& gaps_allowed,
+                                 base::DiagnosticSink& sink);
+
+/// `mapping`: one binding per fluent symbol.
+std::vector<FluentBinding> read_mapping(const YamlNode& node, base::DiagnosticSink& sink);
+
+/// `actions`, sorted by event. With `built_in` the controllers and their arguments are checked.
+std::vector<ActionBinding> read_actions(const YamlNode& node, bool built_in,
+                                        base::DiagnosticSink& sink);
+
+/// `sampling`: inset and the dimensions that no fluent bounds, sorted by variable.
+void read_sampling(const YamlNode& node, Scenario& scenario, base::DiagnosticSink& sink);
+
+CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink);
+SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink);
+Limits read_limits(const YamlNode& node, base::DiagnosticSink& sink);
+Expectation read_expectation(const YamlNode& node, base::DiagnosticSink& sink);
+
+/// Every mapped variable must be one of `parameters`, every sampled one settable besides.
+base::Status check_variables(const Scenario& scenario, const std::vector<Parameter>& parameters,
+                             base::DiagnosticSink& sink);
+
+/// "RobotIn(region)" taken apart; parameters are distinct words.
+struct SymbolPattern {
+  std::string symbol;
+  std::vector<std::string> parameters;
+};
+std::optional<SymbolPattern> parse_pattern(std::string_view text);
+
+/// "{region}.x" -> "{0}.x"; reports a name in braces that is no parameter of the pattern.
+std::string with_positions(const std::string& text, const SymbolPattern& pattern,
+                           base::SourceRange range, base::DiagnosticSink& sink);
+
+}  // namespace parallax::harness

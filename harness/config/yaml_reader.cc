@@ -1,0 +1,212 @@
+#include "harness/config/yaml_reader.h"
+
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <sstream>
+
+namespace parallax::harness {
+namespace {
+
+using base::DiagnosticCode;
+using base::SourceRange;
+
+/// Thrown by the handler and caught in parse_yaml: yaml-cpp has no other way to stop early.
+struct TooDeep {
+  std::uint32_t offset;
+};
+
+/// Turns yaml-cpp's events into the tree. The events are used, and not its own nodes, because they
+/// show aliases, anchors, tags and duplicate keys, which its nodes have resolved already.
+class TreeBuilder final : public YAML::EventHandler {
+ public:
+  TreeBuilder(base::FileId file, const base::SourceFiles& files, base::DiagnosticSink& sink)
+      : file_(file), text_(files[file].text()), sink_(sink) {}
+
+  YamlNode take() { return std::move(root_); }
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    refuse_anchor(mark, anchor);
+    place(YamlNode{YamlNode::Kind::kNull, token(mark), {}, false, {}, {}});
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    sink_.error(DiagnosticCode::kYamlFeature, token(mark), "aliases");
+    place(YamlNode{YamlNode::Kind::kNull, token(mark), {}, false, {}, {}});
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    refuse_tag(mark, tag);
+    refuse_anchor(mark, anchor);
+    YamlNode node{YamlNode::Kind::kScalar, scalar_range(mark, value), value, tag == "!", {}, {}};
+    if (!node.quoted && (value == "~" || value == "null")) node.kind = YamlNode::Kind::kNull;
+    place(std::move(node));
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open(YamlNode::Kind::kList, mark, tag, anchor);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open(YamlNode::Kind::kMap, mark, tag, anchor);
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  struct Level {
+    YamlNode node;
+    std::optional<YamlEntry> entry;            // a key that waits for its value
+    std::map<std::string, SourceRange> keys = {};  // of the entries so far
+  };
+
+  std::uint32_t offset(const YAML::Mark& mark) const {
+    const auto size = static_cast<std::uint32_t>(text_.size());
+    return mark.pos < 0 ? 0 : std::min(static_cast<std::uint32_t>(mark.pos), size);
+  }
+
+  SourceRange token(const YAML::Mark& mark) const {
+    const auto begin = offset(mark);
+    const auto size = static_cast<std::uint32_t>(text_.size());
+    return {file_, begin, std::min(begin + 1, size)};
+  }
+
+  /// yaml-cpp gives the start only. The end is exact for plain and quoted scalars on one line;
+  /// others end with their first line.
+  SourceRange scalar_range(const YAML::Mark& mark, const std::string& value) const {
+    const auto begin = offset(mark);
+    if (text_.substr(begin).starts_with(value)) {
+      return {file_, begin, begin + static_cast<std::uint32_t>(value.size())};
+    }
+    if (begin < text_.size() && (text_[begin] == '"' || text_[begin] == '\'')) {
+      const char quote = text_[begin];
+      auto end = begin + 1;
+      while (end < text_.size() && text_[end] != quote) {
+        end += quote == '"' && text_[end] == '\\' ? 2U : 1U;
+      }
+      return {file_, begin + 1, std::min(end, static_cast<std::uint32_t>(text_.size()))};
+    }
+    const auto line_end = std::min(text_.find('\n', begin), text_.size());
+    return {file_, begin, static_cast<std::uint32_t>(line_end)};
+  }
+
+  void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) {
+    if (anchor != 0) sink_.error(DiagnosticCode::kYamlFeature, token(mark), "anchors");
+  }
+  /// "?" and "!" are what yaml-cpp calls plain and quoted values without a tag.
+  void refuse_tag(const YAML::Mark& mark, const std::string& tag) {
+    if (tag.empty() || tag == "?" || tag == "!") return;
+    sink_.error(DiagnosticCode::kYamlFeature, token(mark), "tags");
+  }
+
+  void open(YamlNode::Kind kind, const YAML::Mark& mark, const std::string& tag,
+            YAML::anchor_t anchor) {
+    refuse_tag(mark, tag);
+    refuse_anchor(mark, anchor);
+    if (levels_.size() >= static_cast<std::size_t>(kMaxYamlDepth)) throw TooDeep{offset(mark)};
+    levels_.push_back({YamlNode{kind, token(mark), {}, false, {}, {}}, std::nullopt});
+  }
+
+  void close() {
+    auto node = std::move(levels_.back().node);
+    levels_.pop_back();
+    place(std::move(node));
+  }
+
+  void place(YamlNode node) {
+    if (levels_.empty()) {
+      root_ = std::move(node);
+      return;
+    }
+    auto& level = levels_.back();
+    if (level.node.is_list()) {
+      level.node.items.push_back(std::move(node));
+    } else if (!level.entry) {
+      start_entry(level, std::move(node));
+    } else {
+      if (!node.is_scalar()) node.range = level.entry->key_range;
+      level.entry->value = std::move(node);
+      const auto fresh = level.keys.emplace(level.entry->key, level.entry->key_range).second;
+      if (fresh) level.node.entries.push_back(std::move(*level.entry));
+      level.entry.reset();
+    }
+  }
+
+  void start_entry(Level& level, YamlNode key) {
+    if (!key.is_scalar()) {
+      sink_.error(DiagnosticCode::kYamlSyntax, key.range, "a key must be a word");
+    } else if (key.text == "<<" && !key.quoted) {
+      sink_.error(DiagnosticCode::kYamlFeature, key.range, "merge keys");
+    } else if (const auto earlier = level.keys.find(key.text); earlier != level.keys.end()) {
+      sink_.error(DiagnosticCode::kDuplicateKey, key.range, key.text)
+          .note(earlier->second, "first given here");
+    }
+    level.entry = YamlEntry{std::move(key.text), key.range, {}};
+  }
+
+  base::FileId file_;
+  std::string_view text_;
+  base::DiagnosticSink& sink_;
+  YamlNode root_;
+  std::vector<Level> levels_;
+};
+
+SourceRange at_mark(base::FileId file, const YAML::Mark& mark, const base::SourceFiles& files) {
+  const auto size = static_cast<std::uint32_t>(files[file].text().size());
+  const auto begin = mark.pos < 0 ? 0U : std::min(static_cast<std::uint32_t>(mark.pos), size);
+  return {file, begin, std::min(begin + 1, size)};
+}
+
+}  // namespace
+
+const YamlEntry* YamlNode::find(std::string_view key) const {
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const YamlEntry& entry) { return entry.key == key; });
+  return found == entries.end() ? nullptr : &*found;
+}
+
+std::string describe(const YamlNode& node) {
+  constexpr std::size_t kShown = 40;
+  switch (node.kind) {
+    case YamlNode::Kind::kNull:
+      return "empty";
+    case YamlNode::Kind::kMap:
+      return "a map";
+    case YamlNode::Kind::kList:
+      return "a list";
+    case YamlNode::Kind::kScalar:
+      break;
+  }
+  const bool cut = node.text.size() > kShown;
+  return "`" + node.text.substr(0, kShown) + (cut ? "...`" : "`");
+}
+
+base::Result<YamlNode> parse_yaml(base::FileId file, const base::SourceFiles& files,
+                                  base::DiagnosticSink& sink) {
+  const auto errors_before = sink.error_count();
+  TreeBuilder builder(file, files, sink);
+  try {
+    std::istringstream stream{std::string(files[file].text())};
+    YAML::Parser parser(stream);
+    parser.HandleNextDocument(builder);
+    auto root = builder.take();
+    TreeBuilder rest(file, files, sink);
+    if (parser.HandleNextDocument(rest)) {
+      sink.error(DiagnosticCode::kYamlFeature, rest.take().range, "further documents");
+    }
+    if (sink.error_count() != errors_before) return sink.already_reported();
+    return root;
+  } catch (const YAML::Exception& error) {
+    return sink.error(DiagnosticCode::kYamlSyntax, at_mark(file, error.mark, files), error.msg);
+  } catch (const TooDeep& stop) {
+    return sink.error(DiagnosticCode::kYamlTooDeep, SourceRange{file, stop.offset, stop.offset + 1},
+                      kMaxYamlDepth);
+  }
+}
+
+}  // namespace parallax::harness

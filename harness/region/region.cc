@@ -1,0 +1,103 @@
+#include "harness/region/region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+namespace parallax::harness {
+namespace {
+
+/// The representation of an angle that lies nearest to the middle of `interval`.
+double unwrapped(double angle, const Interval& interval) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  return angle + kTurn * std::round((interval.midpoint() - angle) / kTurn);
+}
+
+/// On which axes a region's closure has the point below its upper bound.
+struct Membership {
+  std::array<bool, 4> below_upper{};
+  bool half_open = true;  // on all axes that the region bounds
+  bool turned = false;    // an angle had to be moved by full turns
+  auto rank() const {
+    return std::tuple(std::count(below_upper.begin(), below_upper.end(), true), !turned,
+                      below_upper);
+  }
+};
+
+std::optional<bool> below_upper(const Interval& interval, double value) {
+  if (value >= interval.lower && value <= interval.upper) return value < interval.upper;
+  return std::nullopt;
+}
+
+/// None if the point lies outside the region's closure.
+std::optional<Membership> membership(const Region& region, const std::array<double, 4>& point) {
+  Membership result;
+  for (const Axis axis : kAxes) {
+    const auto& bound = region.on(axis);
+    if (!bound) continue;
+    const double value = point[static_cast<std::size_t>(axis)];
+    auto below = below_upper(*bound, value);
+    // An angle may be reported a turn away from the bounds; unwrapping comes second, so that no
+    // rounding touches a value that needs none.
+    if (axis == Axis::kYaw && !below.value_or(false)) {
+      const auto again = below_upper(*bound, unwrapped(value, *bound));
+      result.turned = again.has_value() && (!below || *again);
+      if (again) below = below.value_or(false) || *again;
+    }
+    if (!below) return std::nullopt;
+    result.below_upper[static_cast<std::size_t>(axis)] = *below;
+    result.half_open = result.half_open && *below;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string_view to_string(Axis axis) {
+  switch (axis) {
+    case Axis::kX:
+      return "x";
+    case Axis::kY:
+      return "y";
+    case Axis::kZ:
+      return "z";
+    case Axis::kYaw:
+      return "yaw";
+  }
+  return "";
+}
+
+std::optional<Axis> axis_from(std::string_view name) {
+  for (const Axis axis : kAxes) {
+    if (to_string(axis) == name) return axis;
+  }
+  return std::nullopt;
+}
+
+const Region* RegionSet::find(std::string_view name) const {
+  const auto found = std::find_if(regions_.begin(), regions_.end(),
+                                  [&](const Region& region) { return region.name == name; });
+  return found == regions_.end() ? nullptr : &*found;
+}
+
+const Region* RegionSet::locate(const std::array<double, 4>& point) const {
+  const Region* best = nullptr;
+  Membership best_membership;
+  for (const auto& region : regions_) {
+    const auto here = membership(region, point);
+    if (!here) continue;
+    // Regions do not overlap, so that no other one has the point in its half-open cuboid; only
+    // across the seam of a circle that was closed by rounded bounds there may be two.
+    if (here->half_open && !here->turned) return &region;
+    // On upper faces that nobody takes over, the region that goes on above the point on most axes
+    // gets it, as on any border.
+    if (best == nullptr || here->rank() > best_membership.rank()) {
+      best = &region;
+      best_membership = *here;
+    }
+  }
+  return best;
+}
+
+}  // namespace parallax::harness

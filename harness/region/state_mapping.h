@@ -1,0 +1,111 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "harness/region/region.h"
+#include "harness/world/simulator.h"
+
+namespace parallax::harness {
+
+/// Fluent F(.., r, ..) holds iff `body` lies in region r: argument number `region_argument` names
+/// the region. `unless` / `only_if` are boolean variables that must be false / true besides.
+struct InsideBinding {
+  std::string body;  // "box" reads box.x, box.y, ...; "{0}" stands for argument 0
+  std::size_t region_argument = 0;
+  std::optional<std::string> unless;  // "box.held"
+  std::optional<std::string> only_if;
+};
+
+/// Fluent holds iff a boolean variable is true; "{0}.held" takes argument 0 of the fluent.
+struct FlagBinding {
+  std::string variable;
+};
+
+/// Said on purpose: this fluent has no continuous meaning and is not compared.
+struct IgnoredBinding {};
+
+struct FluentBinding {
+  std::string fluent;  // symbol name, "RobotIn"
+  std::size_t arity = 0;
+  std::variant<InsideBinding, FlagBinding, IgnoredBinding> condition;
+  base::SourceRange source;
+};
+
+/// A ground fluent as the model prints it, "RobotIn(r1)", taken apart.
+struct GroundFluent {
+  std::string text;
+  std::string symbol;
+  std::vector<std::string> arguments;
+};
+/// Inverse of printing without blanks; nested terms stay one argument.
+GroundFluent ground_fluent(std::string_view text);
+
+/// One continuous dimension to draw: uniform on [lower, upper), or fixed where both are equal.
+struct SampledDimension {
+  std::string variable;
+  Interval interval;
+};
+
+/// The cuboid of continuous states that a discrete state stands for.
+struct StartCuboid {
+  std::vector<SampledDimension> dimensions;  // sorted by variable
+};
+
+/// Is the variable an angle? By its name: "box.yaw".
+bool is_angle(std::string_view variable);
+
+/// "{0}.held" with the fluent's arguments put in. A number beyond the last one stays as it is.
+std::string with_arguments(std::string_view pattern, const GroundFluent& fluent);
+
+/// m and its inverse, from one binding per fluent symbol.
+class StateMapping {
+ public:
+  StateMapping(RegionSet regions, std::vector<FluentBinding> bindings);
+  const FluentBinding* find(std::string_view symbol) const;
+  const RegionSet& regions() const { return regions_; }
+  const std::vector<FluentBinding>& bindings() const { return bindings_; }
+
+  /// Can every fluent of the model be read from a continuous state? Reports each symbol without a
+  /// binding once, each binding with another number of arguments, and each argument that should
+  /// name a region and does not. `blame` is the place that should have said it.
+  base::Status check(const std::vector<GroundFluent>& fluents, base::SourceRange blame,
+                     base::DiagnosticSink& sink) const;
+
+  /// m: does the fluent hold in this continuous state? None if it is ignored on purpose.
+  /// Errors: an unbound symbol or a region that does not exist is a contract violation, checked
+  /// when the scenario is loaded; a variable that the state lacks makes the fluent false and is
+  /// appended to `missing`.
+  std::optional<bool> holds(const GroundFluent& fluent, const State& state,
+                            std::set<std::string>* missing = nullptr) const;
+
+  /// Inverse of m for a start: the cuboid in which every fluent of `true_fluents` holds and every
+  /// other one of `fluents` does not. `extra` gives the dimensions that no fluent bounds
+  /// (scenario's `sampling`), narrowing where both speak. Reports kStartNotSampleable when the
+  /// state has an empty cuboid or asks for what a reset cannot make (a flag that starts true).
+  base::Result<StartCuboid> start_cuboid(const std::vector<GroundFluent>& fluents,
+                                         const std::set<std::string>& true_fluents,
+                                         const std::vector<SampledDimension>& extra,
+                                         base::SourceRange blame, base::DiagnosticSink& sink) const;
+
+  /// The cell of every variable that a discrete state pins to one region, by variable.
+  std::map<std::string, Interval> cells(const std::vector<GroundFluent>& fluents,
+                                        const std::set<std::string>& true_fluents) const;
+
+  /// Which of `fluents` the state gets wrong, with every flag that the state lacks read as false,
+  /// as after a reset. Empty for each state drawn from `start_cuboid`.
+  std::vector<std::string> wrong_at_start(const std::vector<GroundFluent>& fluents,
+                                          const std::set<std::string>& true_fluents,
+                                          State start) const;
+
+ private:
+  RegionSet regions_;
+  std::vector<FluentBinding> bindings_;  // sorted by symbol
+};
+
+}  // namespace parallax::harness

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "compiler/base/diagnostic.h"
+#include "harness/campaign/campaign_result.h"
+#include "harness/campaign/replay.h"
+
+namespace parallax::harness {
+
+struct ReportStyle {
+  bool color = false;
+};
+
+/// The account for people: per trace the events with their places, simulations, verdict, both
+/// confidence figures and what exactly is claimed; then the verdict. 100 columns.
+std::string campaign_text(const CampaignResult& result, const ReportStyle& style);
+
+/// The document of `parallax run --json`, one line with a newline; `timing` only if asked for.
+std::string campaign_json(const CampaignResult& result, bool with_timing);
+
+/// Writes report.txt and report.json, without timing and colour, into the run folder.
+base::Status write_report(const CampaignResult& result, const std::filesystem::path& run_dir,
+                          base::DiagnosticSink& sink);
+
+std::string replay_text(const ReplayResult& result, const ReportStyle& style);
+std::string replay_json(const ReplayResult& result);
+
+/// 0 no discrepancy, 1 discrepancy, 4 inconclusive; an interruption's 130 or 143 is the caller's.
+int exit_code(const CampaignResult& result);
+
+}  // namespace parallax::harness

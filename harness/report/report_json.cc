@@ -1,0 +1,162 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "compiler/base/file_io.h"
+#include "harness/campaign/criterion_json.h"
+#include "harness/report/report.h"
+
+namespace parallax::harness {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_of(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+Json json_of(const State& state) {
+  Json out = Json::object();
+  for (const auto& [name, value] : state) {
+    std::visit([&, &key = name](const auto& v) { out[key] = v; }, value);
+  }
+  return out;
+}
+
+Json json_of(const std::vector<DivergingFluent>& fluents) {
+  auto out = Json::array();
+  for (const auto& fluent : fluents) {
+    out.push_back({{"fluent", fluent.fluent},
+                   {"timepoint", fluent.timepoint},
+                   {"predicted", fluent.predicted},
+                   {"observed", fluent.observed}});
+  }
+  return out;
+}
+
+Json json_of(const TraceResult& trace) {
+  auto events = Json::array();
+  auto sources = Json::array();
+  for (const auto& event : trace.events) {
+    events.push_back(event.text);
+    sources.push_back(event.source);
+  }
+  Json out = {{"trace", trace.number},
+              {"verdict", to_string(trace.verdict)},
+              {"events", std::move(events)},
+              {"sources", std::move(sources)},
+              {"simulations", trace.simulations},
+              {"guided", 0},
+              {"clean", trace.clean},
+              {"lost", trace.lost},
+              {"rejected", trace.rejected},
+              {"strayed", trace.strayed}};
+  out["certified"] = {{"confidence", trace.certified_level}, {"epsilon", trace.certified_epsilon}};
+  out["paper"] = {{"stopped_at", nullptr}, {"variant", trace.paper_variant}};
+  if (trace.paper_stopped_at) out["paper"]["stopped_at"] = *trace.paper_stopped_at;
+  out["not_covered"] = trace.not_covered;
+  out["claim"] = trace.claim;
+  out["caveats"] = trace.caveats;
+  return out;
+}
+
+std::string_view word(Confirmation confirmation) {
+  switch (confirmation) {
+    case Confirmation::kBitEqual:
+      return "bit-equal";
+    case Confirmation::kDiffers:
+      return "differs";
+    case Confirmation::kLost:
+      break;
+  }
+  return "lost";
+}
+
+Json json_of(const Discrepancy& found, const std::string& folder) {
+  auto outcomes = Json::array();
+  for (const auto& outcome : found.record.outcomes) {
+    outcomes.push_back({{"status", to_string(outcome.status)},
+                        {"reason", outcome.reason},
+                        {"sim_time_s", outcome.sim_time_s}});
+  }
+  return {{"trace", found.trace},
+          {"sample", found.sample},
+          {"seed", found.seed},
+          {"first_divergence", found.first_divergence},
+          {"first", json_of(found.first)},
+          {"fluents", json_of(found.fluents)},
+          {"repeated", word(found.confirmation)},
+          {"start", json_of(found.record.initial)},
+          {"outcomes", std::move(outcomes)},
+          {"replay", fmt::format("parallax replay {} --sample {}.{}", folder, found.trace,
+                                 found.sample)}};
+}
+
+Json json_of(const CampaignResult& result, bool with_timing) {
+  Json out = {{"status", "ok"},
+              {"scenario", result.scenario},
+              {"seed", result.seed},
+              {"verdict", to_string(result.verdict)},
+              {"iterations", result.traces.size()},
+              {"simulations", result.simulations},
+              {"tool_version", result.tool_version}};
+  out["simulator"] = {{"name", result.simulator.name},
+                      {"version", result.simulator.version},
+                      {"determinism", result.simulator.determinism},
+                      {"timestep_s", result.simulator.timestep_s}};
+  out["criterion"] = Json::parse(criterion_json(result.criterion));
+  out["traces"] = Json::array();
+  for (const auto& trace : result.traces) out["traces"].push_back(json_of(trace));
+  out["discrepancies"] = Json::array();
+  for (const auto& found : result.discrepancies) {
+    out["discrepancies"].push_back(json_of(found, result.replay_folder));
+  }
+  out["exploration"] = result.exploration;
+  out["interrupted"] = result.interrupted;
+  if (with_timing) {
+    const auto& timing = result.timing;
+    out["timing"] = {{"wall_s", timing.wall_s},
+                     {"runs_made", timing.runs_made},
+                     {"simulated_s", timing.simulated_s}};
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string campaign_json(const CampaignResult& result, bool with_timing) {
+  return text_of(json_of(result, with_timing), -1);
+}
+
+base::Status write_report(const CampaignResult& result, const std::filesystem::path& run_dir,
+                          base::DiagnosticSink& sink) {
+  // A folder may be moved, and the same run in two folders gives the same bytes.
+  CampaignResult local = result;
+  local.replay_folder.assign(1, '.');
+  const auto text =
+      base::write_file_atomically(run_dir / "report.txt", campaign_text(local, {}), sink);
+  const auto json =
+      base::write_file_atomically(run_dir / "report.json", text_of(json_of(local, false), 2), sink);
+  if (!text || !json) return sink.already_reported();
+  return base::Unit{};
+}
+
+std::string replay_json(const ReplayResult& result) {
+  static constexpr std::string_view kOutcomes[] = {"identical", "differs", "cannot"};
+  Json out = {{"status", "ok"},
+              {"sample", fmt::format("{}.{}", result.id.trace, result.id.sample)},
+              {"seed", result.seed},
+              {"outcome", kOutcomes[static_cast<std::size_t>(result.outcome)]},
+              {"timepoints", result.timepoints},
+              {"digest", result.digest}};
+  if (!result.reason.empty()) out["reason"] = result.reason;
+  if (const auto& difference = result.difference) {
+    out["difference"] = {{"timepoint", difference->timepoint},
+                         {"variable", difference->variable},
+                         {"recorded", difference->recorded},
+                         {"repeated", difference->repeated}};
+  }
+  return text_of(out, -1);
+}
+
+}  // namespace parallax::harness

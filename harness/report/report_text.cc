@@ -1,0 +1,261 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/campaign/compare.h"
+#include "harness/confidence/claim.h"
+#include "harness/confidence/clean_runs.h"
+#include "harness/report/report.h"
+#include "harness/report/text_layout.h"
+
+namespace parallax::harness {
+namespace {
+
+constexpr std::size_t kLabelEnd = 15;  // column at which what stands beside a label begins
+
+std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string level(double confidence) { return fmt::format("{:.6g} %", 100.0 * confidence); }
+
+class TextReport {
+ public:
+  TextReport(const CampaignResult& result, const ReportStyle& style)
+      : result_(result), style_(style) {}
+
+  std::string write() {
+    head();
+    for (const auto& trace : result_.traces) one_trace(trace);
+    foot();
+    return std::move(out_);
+  }
+
+ private:
+  std::string painted(std::string_view text, const char* color) const {
+    return style_.color ? fmt::format("\x1b[{}m{}\x1b[0m", color, text) : std::string(text);
+  }
+
+  std::string verdict_word(CampaignVerdict verdict) const {
+    switch (verdict) {
+      case CampaignVerdict::kNoDiscrepancy:
+        return painted("no discrepancy found", "1;32");
+      case CampaignVerdict::kDiscrepancy:
+        return painted("discrepancy", "1;31");
+      case CampaignVerdict::kInconclusive:
+        break;
+    }
+    return painted("inconclusive", "1;33");
+  }
+
+  void line(std::string_view label, std::string_view text, std::size_t indent = 2) {
+    const auto end = std::max(kLabelEnd, indent + label.size() + 1);
+    auto first = std::string(indent, ' ') + std::string(label);
+    first.resize(end, ' ');
+    out_ += wrapped(first, text, end);
+  }
+
+  void head() {
+    out_ += fmt::format("scenario {}\n", result_.scenario);
+    if (!result_.title.empty()) line("about", result_.title);
+    const auto& simulator = result_.simulator;
+    auto text = fmt::format("{} {}", simulator.name, simulator.version);
+    if (simulator.timestep_s > 0.0) {
+      text += fmt::format(", steps of {:.6g} ms", 1000.0 * simulator.timestep_s);
+    }
+    line("simulator", text);
+    line("seed", fmt::format("{}", result_.seed));
+    const auto& criterion = result_.criterion;
+    if (criterion.kind == CriterionKind::kPaper) {
+      line("criterion", fmt::format("paper ({}) at C = {}; not a probability of error",
+                                    criterion.paper.preset, level(criterion.confidence_level)));
+    } else {
+      line("criterion",
+           fmt::format("clean-runs: {} clean runs exclude p >= {} with {} confidence",
+                       runs_needed(criterion.confidence_level, criterion.epsilon),
+                       percent_up(criterion.epsilon), level(criterion.confidence_level)));
+    }
+  }
+
+  void one_trace(const TraceResult& trace) {
+    out_ += fmt::format("\ntrace {}: {}\n", trace.number, verdict_word(trace.verdict));
+    events(trace);
+    auto runs = fmt::format("{} ({} clean", trace.simulations, trace.clean);
+    if (trace.lost > 0) runs += fmt::format(", {} lost", trace.lost);
+    runs += ')';
+    if (trace.rejected > 0) {
+      runs += fmt::format("; {} drawn again",
+                          counted(trace.rejected, "invalid start was", "invalid starts were"));
+    }
+    line("simulations", runs);
+    line("claimed", trace.claim);
+    figures(trace);
+    for (const auto& caveat : trace.caveats) line("note", caveat);
+    for (const auto& found : result_.discrepancies) {
+      if (found.trace == trace.number) discrepancy(found, trace);
+    }
+  }
+
+  void events(const TraceResult& trace) {
+    if (trace.events.empty()) return line("events", "none: the start itself is compared");
+    std::vector<std::vector<std::string>> rows;
+    for (std::size_t i = 0; i < trace.events.size(); ++i) {
+      rows.push_back({fmt::format("{}", i), trace.events[i].text, trace.events[i].source});
+    }
+    auto text = table(rows, kLabelEnd);
+    text.replace(0, 8, "  events");
+    out_ += text;
+  }
+
+  /// Both confidence figures side by side: what is certified, and what the paper's rule says.
+  void figures(const TraceResult& trace) {
+    if (trace.verdict != CampaignVerdict::kDiscrepancy) {
+      line("certified", trace.certified_epsilon < 1.0
+                            ? fmt::format("with {} confidence p < {}", level(trace.certified_level),
+                                          percent_up(trace.certified_epsilon))
+                            : std::string("nothing"));
+    }
+    const auto paper =
+        trace.paper_stopped_at
+            ? fmt::format("satisfied after {} [not a probability of error]",
+                          counted(*trace.paper_stopped_at, "run", "runs"))
+            : fmt::format("not satisfied within {} ({})",
+                          counted(trace.clean, "clean run", "clean runs"), trace.paper_variant);
+    line("paper's rule", paper);
+  }
+
+  void discrepancy(const Discrepancy& found, const TraceResult& trace) {
+    const auto id = fmt::format("{}.{}", found.trace, found.sample);
+    out_ += fmt::format("\n  {} in simulation {}, seed {}, {}\n",
+                        painted("discrepancy", "1;31"), id, found.seed, confirmation(found));
+    std::vector<std::vector<std::string>> rows = {
+        {"fluent", "timepoint", "predicted", "observed"}};
+    for (const auto& fluent : found.fluents) rows.push_back(row(fluent));
+    out_ += table(rows, 4);
+    if (found.first_divergence < static_cast<std::int64_t>(trace.events.size())) {
+      parting(found, trace);
+    }
+    unusual_outcomes(found, trace);
+    std::vector<std::string> start;
+    for (const auto& [name, value] : found.record.initial) {
+      const auto* number = std::get_if<double>(&value);
+      start.push_back(fmt::format("{} = {}", name, number != nullptr ? fmt::format("{}", *number)
+                                                                     : exact_text(value)));
+    }
+    line("start", fmt::format("{}", fmt::join(start, ", ")), 4);
+    line("replay", fmt::format("parallax replay {} --sample {}", result_.replay_folder, id), 4);
+  }
+
+  static std::vector<std::string> row(const DivergingFluent& fluent) {
+    return {fluent.fluent, fmt::format("{}", fluent.timepoint),
+            fluent.predicted ? "true" : "false", fluent.observed ? "true" : "false"};
+  }
+
+  static std::string confirmation(const Discrepancy& found) {
+    switch (found.confirmation) {
+      case Confirmation::kBitEqual:
+        return "repeated bit for bit";
+      case Confirmation::kDiffers:
+        return "NOT repeatable: the simulator is not deterministic";
+      case Confirmation::kLost:
+        break;
+    }
+    return "not repeated: the simulator was lost";
+  }
+
+  /// Where the run left the trace, if that was before the end.
+  void parting(const Discrepancy& found, const TraceResult& trace) {
+    const auto t = static_cast<std::size_t>(found.first_divergence);
+    std::vector<std::string> parts;
+    for (const auto& fluent : found.first) {
+      parts.push_back(fmt::format("{} is {} instead of {}", fluent.fluent, fluent.observed,
+                                  fluent.predicted));
+    }
+    line("first seen",
+         fmt::format("at timepoint {}, after {}: {}", t, t > 0 ? trace.events[t - 1].text : "reset",
+                     fmt::join(parts, ", ")),
+         4);
+  }
+
+  void unusual_outcomes(const Discrepancy& found, const TraceResult& trace) {
+    const auto& outcomes = found.record.outcomes;
+    for (std::size_t i = 0; i < outcomes.size(); ++i) {
+      if (outcomes[i].status == SimStatus::kOk) continue;
+      line("action", fmt::format("event {}, {}, {} after {:.3f} s: {}", i, trace.events[i].text,
+                                 to_string(outcomes[i].status), outcomes[i].sim_time_s,
+                                 outcomes[i].reason.empty() ? "no reason given"
+                                                            : outcomes[i].reason),
+           4);
+    }
+  }
+
+  void foot() {
+    out_ += fmt::format("\nverdict: {}\n", verdict_word(result_.verdict));
+    line("traces", fmt::format("{}, {}", result_.traces.size(), exploration()));
+    line("simulations", fmt::format("{}", result_.simulations));
+    if (result_.traces.empty() && !result_.interrupted) {
+      line("note", "no trace, so nothing was compared");
+    }
+    if (result_.traces.size() > 1 && result_.verdict == CampaignVerdict::kNoDiscrepancy) {
+      line("note", "each claim holds for its trace alone; that all of them hold together is less "
+                   "certain");
+    }
+    if (result_.interrupted) {
+      line("note", fmt::format("interrupted; `--resume --out {}` continues", result_.replay_folder));
+    }
+  }
+
+  std::string exploration() const {
+    if (result_.exploration == "stopped") return "stopped before all were explored";
+    return result_.exploration;
+  }
+
+  const CampaignResult& result_;
+  const ReportStyle& style_;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string campaign_text(const CampaignResult& result, const ReportStyle& style) {
+  return TextReport(result, style).write();
+}
+
+std::string replay_text(const ReplayResult& result, const ReportStyle& style) {
+  const auto paint = [&](std::string_view text, const char* color) {
+    return style.color ? fmt::format("\x1b[{}m{}\x1b[0m", color, text) : std::string(text);
+  };
+  const auto head = fmt::format("simulation {}.{}, seed {}: ", result.id.trace, result.id.sample,
+                                result.seed);
+  switch (result.outcome) {
+    case ReplayOutcome::kIdentical:
+      return head + paint("identical", "1;32") +
+             fmt::format(", {} compared bit for bit{}\n",
+                         counted(static_cast<std::int64_t>(result.timepoints), "observation",
+                                 "observations"),
+                         result.digest.empty() ? "" : ", digest " + result.digest);
+    case ReplayOutcome::kCannot:
+      return head + paint("cannot be repeated", "1;33") + '\n' +
+             wrapped("  ", result.reason, 2);
+    case ReplayOutcome::kDiffers:
+      break;
+  }
+  const auto& difference = *result.difference;
+  return head + paint("differs", "1;31") +
+         fmt::format(" first at timepoint {} in {}\n", difference.timepoint, difference.variable) +
+         table({{"recorded", difference.recorded}, {"repeated", difference.repeated}}, 2);
+}
+
+int exit_code(const CampaignResult& result) {
+  switch (result.verdict) {
+    case CampaignVerdict::kDiscrepancy:
+      return 1;
+    case CampaignVerdict::kInconclusive:
+      return 4;
+    case CampaignVerdict::kNoDiscrepancy:
+      break;
+  }
+  return result.traces.empty() ? 1 : 0;
+}
+
+}  // namespace parallax::harness

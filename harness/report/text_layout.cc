@@ -1,0 +1,62 @@
+#include "harness/report/text_layout.h"
+
+#include <algorithm>
+
+#include "compiler/base/diagnostic_printer.h"
+
+namespace parallax::harness {
+
+std::size_t columns_of(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+  }));
+}
+
+std::string wrapped(std::string_view first, std::string_view text, std::size_t indent) {
+  std::string plain(text);
+  std::replace(plain.begin(), plain.end(), '\n', ' ');
+  plain = base::printable(plain);
+  std::string out(first);
+  std::size_t column = columns_of(first);
+  bool at_start = true;
+  for (std::size_t at = 0; at < plain.size();) {
+    const auto end = std::min(plain.find(' ', at), plain.size());
+    const auto word = std::string_view(plain).substr(at, end - at);
+    at = end + 1;
+    if (word.empty()) continue;
+    const auto width = columns_of(word);
+    if (!at_start && column + 1 + width > kReportColumns) {
+      out += '\n' + std::string(indent, ' ');
+      column = indent;
+      at_start = true;
+    }
+    if (!at_start) out += ' ', ++column;
+    out += word;
+    column += width;
+    at_start = false;
+  }
+  return out + '\n';
+}
+
+std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t indent) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], columns_of(base::printable(row[i])));
+    }
+  }
+  std::string out;
+  for (const auto& row : rows) {
+    std::string line(indent, ' ');
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const auto cell = base::printable(row[i]);
+      line += cell + std::string(widths[i] - columns_of(cell) + 2, ' ');
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    out += line + '\n';
+  }
+  return out;
+}
+
+}  // namespace parallax::harness

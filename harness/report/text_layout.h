@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace parallax::harness {
+
+inline constexpr std::size_t kReportColumns = 100;
+
+/// `text` broken at blanks so that no line is longer than kReportColumns; every line starts with
+/// `indent` blanks, except the first, which starts with `first`. Words are never broken. Control
+/// characters become visible; a newline is a blank. Ends with a newline.
+std::string wrapped(std::string_view first, std::string_view text, std::size_t indent);
+
+/// Columns padded to their widest cell, two blanks between them, no blanks at the ends of lines.
+std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t indent);
+
+/// Display columns of UTF-8 text: one per code point.
+std::size_t columns_of(std::string_view text);
+
+}  // namespace parallax::harness

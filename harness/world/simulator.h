@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace parallax::harness {
+
+/// What a simulator reports or takes: SI units, radians, quaternions w-x-y-z.
+using Value = std::variant<bool, std::int64_t, double, std::string>;
+
+/// Named values, sorted by name: "robot.x", "box.held", "drawer2.q".
+using State = std::map<std::string, Value, std::less<>>;
+
+/// The one variable of an observation that could not be made.
+inline constexpr std::string_view kLostVariable = "lost";
+
+/// What became of a request. `kFailed` is the *action* failing in the simulated world (path
+/// blocked, object not held): a legitimate observation that is compared with the prediction.
+/// `kLost` is the *simulator* failing (crash, hang, NaN): never an observation.
+enum class SimStatus : std::uint8_t {
+  kOk,
+  kFailed,
+  kTruncated,     // the action was still running at its time limit
+  kInvalidStart,  // the start state interpenetrates
+  kUnsupported,
+  kLost,
+};
+std::string_view to_string(SimStatus status);
+/// kUnsupported for a word that is not in the protocol.
+SimStatus sim_status_from(std::string_view word);
+
+struct Outcome {
+  SimStatus status = SimStatus::kOk;
+  std::string reason;       // "target unreachable: 0.71 m, reach 0.60 m"
+  double sim_time_s = 0.0;  // simulated time that the request took
+  State margins;            // graded companions of the verdict, for guided search
+};
+
+/// One variable of the continuous state: its name, unit, and whether reset takes it.
+struct Parameter {
+  std::string name;
+  std::string unit;  // "m", "rad", "1"
+  bool settable = false;
+};
+
+/// What a simulator says of itself at the handshake.
+struct SimulatorInfo {
+  std::string name;
+  std::string version;
+  std::string determinism;  // "bitwise" | "tolerance" | "none"
+  bool seeds = false;
+  std::vector<Parameter> parameters;
+  std::vector<std::string> actions;  // controllers that `act` accepts
+  double timestep_s = 0.0;
+};
+
+/// One simulated world. One instance per worker process, never shared.
+/// Call order: info at any time; reset, then any number of act and observe.
+class Simulator {
+ public:
+  virtual ~Simulator() = default;
+  virtual SimulatorInfo info() = 0;
+  /// Puts the world into `initial` (settable parameters; others take their default) and seeds the
+  /// engine's random numbers. kOk, kInvalidStart (the reason names the pair and the depth) or
+  /// kLost; kUnsupported for an unknown parameter.
+  virtual Outcome reset(const State& initial, std::uint64_t seed) = 0;
+  /// Runs the controller `action` to its end or for at most `sim_time_limit_s`.
+  virtual Outcome act(std::string_view action, const State& arguments, double sim_time_limit_s) = 0;
+  /// All observable parameters now, and "digest": a hash over the bits of the whole engine state
+  /// since the last reset, so that two runs can be compared bit by bit. A simulator that is lost
+  /// while observing returns kLostVariable with the reason, and nothing else.
+  virtual State observe() = 0;
+};
+
+}  // namespace parallax::harness

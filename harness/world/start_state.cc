@@ -1,0 +1,75 @@
+#include "harness/world/start_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "harness/world/arguments.h"
+
+namespace parallax::harness {
+namespace {
+
+StartState refusal(SimStatus status, std::string reason) { return {status, std::move(reason), {}}; }
+
+bool can_set(const BodySpec& body, std::string_view item) {
+  return std::find(body.settable.begin(), body.settable.end(), item) != body.settable.end();
+}
+
+void set_item(Placement& placement, std::string_view item, double value) {
+  if (item == "x") placement.p_WB.x() = value;
+  if (item == "y") placement.p_WB.y() = value;
+  if (item == "z") placement.p_WB.z() = value;
+  if (item == "yaw") placement.yaw_rad = value;
+}
+
+/// Moves the whole assembly of the base along x. False when the drive does not go there.
+bool shift_robot(const WorldSpec& spec, const WorldLayout& layout, BodyId base, double x_m,
+                 std::vector<Placement>& placements) {
+  const double shift_m = x_m - layout.bodies[base].p_WB.x();
+  if (const auto drive = layout.find_slider(spec.robot.base_joint)) {
+    const JointSpec& joint = layout.sliders[*drive];
+    if (joint.low_m && shift_m < *joint.low_m) return false;
+    if (joint.high_m && shift_m > *joint.high_m) return false;
+  }
+  const std::uint32_t assembly = layout.assembly_of[base.index()];
+  for (std::size_t i = 0; i < placements.size(); ++i) {
+    if (layout.assembly_of[i] == assembly) placements[i].p_WB.x() += shift_m;
+  }
+  return true;
+}
+
+}  // namespace
+
+StartState read_start_state(const WorldSpec& spec, const WorldLayout& layout, const State& given) {
+  StartState start;
+  for (const BodySpec& body : layout.bodies) {
+    start.placements.push_back({body.p_WB, body.yaw_rad});
+  }
+  const std::optional<BodyId> base = layout.find_body(spec.robot.base_body);
+  for (const auto& [name, value] : given) {
+    const std::optional<double> number = as_number(value);
+    if (!number || !std::isfinite(*number)) {
+      return refusal(SimStatus::kUnsupported, fmt::format("`{}` is not a finite number", name));
+    }
+    const std::size_t dot = name.rfind('.');
+    const std::string_view whole = name;
+    const std::string_view item = dot == std::string::npos ? "" : whole.substr(dot + 1);
+    const std::string_view owner = whole.substr(0, dot == std::string::npos ? 0 : dot);
+    if (owner == "robot" && base && can_set(layout.bodies[*base], item)) {
+      if (shift_robot(spec, layout, *base, *number, start.placements)) continue;
+      return refusal(SimStatus::kInvalidStart,
+                     fmt::format("robot.x = {} lies beyond the end of the drive", *number));
+    }
+    const std::optional<BodyId> body = layout.find_body(owner);
+    if (!body || !layout.is_free[body->index()] || !can_set(layout.bodies[*body], item)) {
+      return refusal(SimStatus::kUnsupported, fmt::format("`{}` cannot be set", name));
+    }
+    set_item(start.placements[body->index()], item, *number);
+  }
+  return start;
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "compiler/base/id.h"
+#include "harness/world/world_spec.h"
+
+namespace parallax::harness {
+
+struct BodyTag {};
+struct SliderTag {};
+struct LinkTag {};
+using BodyId = base::Id<BodyTag>;      // in WorldLayout::bodies
+using SliderId = base::Id<SliderTag>;  // in WorldLayout::sliders
+using LinkId = base::Id<LinkTag>;      // in WorldLayout::links
+
+/// Bodies that are welded together and move as one.
+struct Link {
+  std::vector<BodyId> members;  // sorted by name; the link's axes are those of the first
+};
+
+/// A WorldSpec put into the order in which the engine creates it, with its structure made plain.
+struct WorldLayout {
+  base::Store<BodyId, BodySpec> bodies;        // sorted by name
+  base::Store<SliderId, JointSpec> sliders;    // sorted by name
+  base::Store<LinkId, Link> links;             // sorted by the name of their first member
+  std::vector<std::optional<LinkId>> link_of;  // by body; none: static
+  /// By body. Bodies of one assembly hang together by joints and never collide with each other;
+  /// 0 is the static world.
+  std::vector<std::uint32_t> assembly_of;
+  std::vector<bool> is_free;  // by body: movable, and no joint names it
+
+  std::optional<BodyId> find_body(std::string_view name) const;
+  std::optional<SliderId> find_slider(std::string_view name) const;
+};
+
+/// `spec` must pass check_world.
+WorldLayout lay_out(const WorldSpec& spec);
+
+}  // namespace parallax::harness

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "runtime/session/solver_session.h"
+
+namespace parallax::runtime {
+
+/// Moves the session's valuation to the first one in lexicographic order: `order` lists literals
+/// by weight, each in its preferred polarity. The session must hold a valuation found with horizon
+/// `n` under `assumptions`. Afterwards value() gives the first valuation, whatever the solver
+/// found before. At most one call for each literal that the valuation at hand violates.
+/// Returns the literals as they are in it, in the order given; kUnknown from the solver ends the
+/// walk early and gives an empty list.
+std::vector<Literal> make_canonical(SolverSession& session, Timepoint n,
+                                    std::span<const Literal> assumptions,
+                                    std::span<const Literal> order);
+
+}  // namespace parallax::runtime

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "compiler/artifact/compiled_model.h"
+#include "runtime/solver/sat_solver.h"
+
+namespace parallax::runtime {
+
+using compiler::CompiledModel;
+using compiler::Timepoint;
+
+/// One solver loaded with one compiled model, whose horizon is chosen per call. Every clause of
+/// timepoint t carries the guard of t; a call with horizon n assumes the guards 1 .. n and drops
+/// the others, so learned clauses survive from one horizon to the next.
+class SolverSession {
+ public:
+  SolverSession(const CompiledModel& model, std::unique_ptr<SatSolver> solver);
+
+  const CompiledModel& model() const { return *model_; }
+  /// A variable of the session's own, for guards.
+  Literal new_variable();
+  void add_clause(std::span<const Literal> clause) { solver_->add_clause(clause); }
+  /// Is there a valuation with horizon `n` under these assumptions? `values()` has it afterwards.
+  SolveStatus solve(Timepoint n, std::span<const Literal> assumptions);
+  /// Value of a literal in the valuation that the last satisfiable call found; it stays available
+  /// until the next satisfiable call.
+  bool value(Literal literal) const;
+  std::int64_t solve_calls() const { return solver_->solve_calls(); }
+
+ private:
+  const CompiledModel* model_;  // outlives the session
+  std::unique_ptr<SatSolver> solver_;
+  std::int32_t variable_count_ = 0;
+  std::vector<Literal> guards_;  // by timepoint - 1
+  std::vector<bool> values_;     // by variable - 1
+};
+
+}  // namespace parallax::runtime

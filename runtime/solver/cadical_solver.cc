@@ -1,0 +1,62 @@
+#include <cadical.hpp>
+
+#include "runtime/solver/sat_solver.h"
+
+namespace parallax::runtime {
+namespace {
+
+class CadicalSolver final : public SatSolver {
+ public:
+  CadicalSolver() { solver_.set("quiet", 1); }
+
+  void add_clause(std::span<const Literal> clause) override {
+    for (const auto literal : clause) solver_.add(literal.dimacs());
+    solver_.add(0);
+    state_ = State::kReady;
+  }
+  void assume(Literal literal) override {
+    solver_.assume(literal.dimacs());
+    state_ = State::kReady;
+  }
+  SolveStatus solve() override {
+    ++calls_;
+    switch (solver_.solve()) {
+      case 10:
+        state_ = State::kSatisfied;
+        return SolveStatus::kSatisfiable;
+      case 20:
+        state_ = State::kFailed;
+        return SolveStatus::kUnsatisfiable;
+      default:
+        state_ = State::kReady;
+        return SolveStatus::kUnknown;
+    }
+  }
+  bool value(Literal literal) const override {
+    PARALLAX_REQUIRE(state_ == State::kSatisfied, "values are asked after a satisfiable call");
+    // Only variables are queried: the sign of `val` for negative literals differs by version.
+    const bool positive = solver_.val(literal.var()) > 0;
+    return positive == literal.is_positive();
+  }
+  bool failed(Literal literal) const override {
+    PARALLAX_REQUIRE(state_ == State::kFailed, "cores are asked after an unsatisfiable call");
+    return solver_.failed(literal.dimacs());
+  }
+  void set_phase(Literal literal) override { solver_.phase(literal.dimacs()); }
+  std::int64_t solve_calls() const override { return calls_; }
+
+ private:
+  enum class State : std::uint8_t { kReady, kSatisfied, kFailed };
+  // CaDiCaL's queries are not const in 1.5.3.
+  mutable CaDiCaL::Solver solver_;
+  State state_ = State::kReady;
+  std::int64_t calls_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<SatSolver> make_cadical_solver() { return std::make_unique<CadicalSolver>(); }
+
+const char* cadical_version() { return CaDiCaL::Solver::version(); }
+
+}  // namespace parallax::runtime

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "compiler/artifact/literal.h"
+
+namespace parallax::runtime {
+
+using compiler::Literal;
+
+enum class SolveStatus : std::uint8_t {
+  kSatisfiable,
+  kUnsatisfiable,
+  kUnknown,  // interrupted or out of its budget
+};
+
+/// An incremental SAT solver.
+///
+///          add_clause, assume            solve() == kSatisfiable
+///        +--------------------+        +--------------------------> SATISFIED: value()
+///        v                    |        |
+///      READY ----- solve() -----------+---------------------------> FAILED: failed()
+///        ^                             |   kUnsatisfiable
+///        +---- add_clause, assume -----+--------------------------> READY  (kUnknown)
+///
+/// Assumptions hold for one call of solve. Asking value() outside SATISFIED or failed() outside
+/// FAILED violates the contract.
+class SatSolver {
+ public:
+  virtual ~SatSolver() = default;
+  virtual void add_clause(std::span<const Literal> clause) = 0;
+  virtual void assume(Literal literal) = 0;
+  virtual SolveStatus solve() = 0;
+  /// Value of a literal in the model that was found.
+  virtual bool value(Literal literal) const = 0;
+  /// Is this assumption among those that made the formula unsatisfiable?
+  virtual bool failed(Literal literal) const = 0;
+  /// The value that the search tries first.
+  virtual void set_phase(Literal literal) = 0;
+  /// Calls of solve so far.
+  virtual std::int64_t solve_calls() const = 0;
+};
+
+/// CaDiCaL in its default configuration.
+std::unique_ptr<SatSolver> make_cadical_solver();
+/// The version of the solver that is linked.
+const char* cadical_version();
+
+}  // namespace parallax::runtime

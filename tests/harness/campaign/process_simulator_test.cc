@@ -1,0 +1,217 @@
+#include "harness/world/process_simulator.h"
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <set>
+#include <thread>
+
+namespace parallax::harness {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+ProcessOptions options_for(const std::string& mode) {
+  ProcessOptions options;
+  options.command = {PARALLAX_SCRIPTED_WORKER, mode};
+  options.hello_timeout_s = options.reset_timeout_s = options.act_timeout_s = 0.3;
+  options.observe_timeout_s = options.close_timeout_s = 0.3;
+  if (mode == "answer" || mode == "chatty") {
+    // A loaded machine must not make a working child look lost.
+    options.hello_timeout_s = options.reset_timeout_s = options.act_timeout_s = 30.0;
+    options.observe_timeout_s = options.close_timeout_s = 30.0;
+  }
+  return options;
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+TEST_CASE("a child that answers is a simulator like any other") {
+  ProcessSimulator simulator(options_for("answer"));
+  const auto info = simulator.info();
+  CHECK(info.name == "scripted");
+  CHECK(info.version == "2");
+  CHECK(info.timestep_s == 0.01);
+  CHECK(simulator.reset({{"robot.x", 0.30000000000000004}}, 17).status == SimStatus::kOk);
+  auto state = simulator.observe();
+  CHECK(std::get<double>(state.at("robot.x")) == 0.30000000000000004);
+  const auto outcome = simulator.act("going", {{"target.x", 1.0}}, 5.0);
+  CHECK(outcome.status == SimStatus::kFailed);
+  CHECK(outcome.reason == "blocked");
+  CHECK(outcome.sim_time_s == 1.5);
+  state = simulator.observe();
+  CHECK(std::get<double>(state.at("robot.x")) == 0.1);
+  // A session of its own: no signal from the terminal, one group to end it by.
+  CHECK(state.at("session") == state.at("pid"));
+}
+
+TEST_CASE("an invalid start and a refusal are answers, not losses") {
+  ProcessSimulator invalid(options_for("invalid"));
+  const auto start = invalid.reset({}, 1);
+  CHECK(start.status == SimStatus::kInvalidStart);
+  CHECK(start.reason == "box overlaps counter");
+  ProcessSimulator refusing(options_for("refuse"));
+  CHECK(refusing.reset({}, 1).status == SimStatus::kOk);
+  const auto act = refusing.act("fly", {}, 1.0);
+  CHECK(act.status == SimStatus::kUnsupported);
+  CHECK(act.reason == "no action `fly`");
+  CHECK(refusing.observe().contains("pid"));  // still the same child
+}
+
+TEST_CASE("a crash is a loss with the signal and the last lines of standard error") {
+  ProcessSimulator simulator(options_for("act-crash"));
+  REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
+  const auto outcome = simulator.act("going", {}, 1.0);
+  CHECK(outcome.status == SimStatus::kLost);
+  CHECK(contains(outcome.reason, "signal 9"));
+  CHECK(contains(outcome.reason, "assertion failed: x < y"));
+  CHECK(simulator.act("going", {}, 1.0).status == SimStatus::kLost);
+  const auto observed = simulator.observe();
+  CHECK(observed.size() == 1);
+  CHECK(observed.contains(kLostVariable));
+}
+
+TEST_CASE("an exit is a loss with the exit status") {
+  ProcessSimulator simulator(options_for("reset-exit"));
+  const auto outcome = simulator.reset({}, 1);
+  CHECK(outcome.status == SimStatus::kLost);
+  CHECK(contains(outcome.reason, "exit status 7"));
+  CHECK(contains(outcome.reason, "`reset`"));
+}
+
+TEST_CASE("a child that hangs is ended in time, whichever request it was") {
+  for (const std::string method : {"hello", "reset", "act", "observe"}) {
+    CAPTURE(method);
+    ProcessSimulator simulator(options_for(method + "-hang"));
+    const auto start = Clock::now();
+    auto outcome = simulator.reset({}, 1);
+    if (outcome.status == SimStatus::kOk) outcome = simulator.act("going", {}, 1.0);
+    if (method == "observe") {
+      CHECK(simulator.observe().contains(kLostVariable));
+    } else {
+      CHECK(outcome.status == SimStatus::kLost);
+      CHECK(contains(outcome.reason, "no reply to `" + method + "` within 0.3 s"));
+    }
+    CHECK(seconds_since(start) < 20.0);
+  }
+}
+
+TEST_CASE("a child that ignores TERM is killed") {
+  ProcessSimulator simulator(options_for("act-stubborn"));
+  REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
+  const auto pid = static_cast<pid_t>(std::get<std::int64_t>(simulator.observe().at("pid")));
+  const auto outcome = simulator.act("going", {}, 1.0);
+  CHECK(outcome.status == SimStatus::kLost);
+  CHECK(contains(outcome.reason, "signal 9"));
+  CHECK(::kill(pid, 0) == -1);
+  CHECK(errno == ESRCH);
+}
+
+TEST_CASE("lines that are not the protocol lose the child") {
+  for (const std::string mode : {"act-garbage", "act-wrong-id", "act-endless"}) {
+    CAPTURE(mode);
+    ProcessSimulator simulator(options_for(mode));
+    REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
+    const auto outcome = simulator.act("going", {}, 1.0);
+    CHECK(outcome.status == SimStatus::kLost);
+    CHECK((contains(outcome.reason, "malformed reply to `act`") ||
+           contains(outcome.reason, "is longer than")));
+  }
+}
+
+TEST_CASE("an observation that cannot be said is a loss") {
+  ProcessSimulator simulator(options_for("nan"));
+  REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
+  const auto observed = simulator.observe();
+  REQUIRE(observed.contains(kLostVariable));
+  CHECK(contains(std::get<std::string>(observed.at("lost")), "`box.x` is not finite"));
+}
+
+TEST_CASE("the reset after a loss starts a new child") {
+  ProcessSimulator simulator(options_for("third-act-crash"));
+  REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
+  const auto first = simulator.observe().at("pid");
+  CHECK(simulator.act("going", {}, 1.0).status == SimStatus::kFailed);
+  CHECK(simulator.act("going", {}, 1.0).status == SimStatus::kFailed);
+  CHECK(simulator.act("going", {}, 1.0).status == SimStatus::kLost);
+  REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
+  CHECK(simulator.observe().at("pid") != first);
+  CHECK(simulator.act("going", {}, 1.0).status == SimStatus::kFailed);
+}
+
+TEST_CASE("a child is replaced after so many resets") {
+  auto options = options_for("answer");
+  options.recycle_after = 3;
+  ProcessSimulator simulator(options);
+  std::set<std::int64_t> children;
+  for (int i = 0; i < 7; ++i) {
+    REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
+    children.insert(std::get<std::int64_t>(simulator.observe().at("pid")));
+  }
+  CHECK(children.size() == 3);
+}
+
+TEST_CASE("what does not start says why") {
+  ProcessOptions options;
+  options.command = {"/nonexistent/simulator"};
+  ProcessSimulator missing(options);
+  CHECK(missing.info().name.empty());
+  CHECK(contains(missing.info().version, "cannot start `/nonexistent/simulator`"));
+  CHECK(missing.reset({}, 1).status == SimStatus::kLost);
+  ProcessSimulator dying(options_for("dies"));
+  const auto info = dying.info();
+  CHECK(info.name.empty());
+  CHECK(contains(info.version, "exit status 3"));
+  CHECK(contains(info.version, "no licence"));
+}
+
+TEST_CASE("a child that writes much to standard error is not stopped by it") {
+  ProcessSimulator simulator(options_for("chatty"));
+  REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
+  CHECK(simulator.act("going", {}, 1.0).status == SimStatus::kFailed);
+}
+
+TEST_CASE("the stop flag ends the waiting") {
+  std::atomic<bool> stop = false;
+  auto options = options_for("act-hang");
+  options.act_timeout_s = 600.0;
+  options.stop = &stop;
+  ProcessSimulator simulator(options);
+  REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
+  std::thread raise([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    stop = true;
+  });
+  const auto outcome = simulator.act("going", {}, 600.0);
+  raise.join();
+  CHECK(outcome.status == SimStatus::kLost);
+  CHECK(contains(outcome.reason, "interrupted"));
+}
+
+TEST_CASE("a child inherits nothing but its three standard descriptors") {
+  int leaked[2];
+  REQUIRE(::pipe(leaked) == 0);  // without O_CLOEXEC, as a careless library would
+  ProcessOptions options;
+  options.command = {"/bin/sh", "-c", "ls /proc/$$/fd | tr '\\n' ' ' >&2"};
+  options.hello_timeout_s = 30.0;
+  ProcessSimulator simulator(options);
+  const auto reason = simulator.info().version;
+  ::close(leaked[0]);
+  ::close(leaked[1]);
+  CHECK(contains(reason, "standard error:\n0 1 2"));
+  CHECK_FALSE(contains(reason, "0 1 2 " + std::to_string(leaked[0])));
+}
+
+}  // namespace
+}  // namespace parallax::harness

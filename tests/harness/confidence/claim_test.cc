@@ -1,0 +1,83 @@
+#include "harness/confidence/claim.h"
+
+#include <doctest/doctest.h>
+
+#include "harness/sampling/rng.h"
+
+namespace parallax::harness {
+namespace {
+
+Tally tally_of(std::int64_t clean, std::int64_t lost = 0, std::int64_t rejected = 0) {
+  Tally tally({{"x"}, {{3, 4}}, {"y"}, {Interval{0, 1}}, {"Holding(box)", "Open(door)"}});
+  for (std::int64_t run = 0; run < clean; ++run) {
+    const CounterRng rng({.sample = static_cast<std::uint64_t>(run)});
+    tally.add_clean(std::vector<double>{3 + rng.uniform(0)}, std::vector<double>{0.5});
+  }
+  for (std::int64_t i = 0; i < lost; ++i) tally.add_lost();
+  tally.add_rejected(rejected);
+  return tally;
+}
+
+TEST_CASE("claim: the sentence of a finished clean-runs trace") {
+  CHECK(
+      claim(tally_of(90), {}) ==
+      "with 99 % confidence, fewer than 5 % of start states drawn uniformly from the start region "
+      "give a discrepancy (90 clean runs of 90)");
+}
+
+TEST_CASE("claim: before the end, and with the paper's rule, it is the bound of the runs made") {
+  CriterionSpec spec;
+  CHECK(claim(tally_of(7), spec) ==
+        "with 99 % confidence, fewer than 48.3 % of start states drawn uniformly from the start "
+        "region give a discrepancy (7 clean runs of 7)");
+  spec.kind = CriterionKind::kPaper;
+  CHECK(claim(tally_of(90), spec).find("fewer than 4.99 % of") != std::string::npos);
+  CHECK(claim(tally_of(1), spec).find("fewer than 99 % of") != std::string::npos);
+}
+
+TEST_CASE("claim: rejected starts narrow it to valid ones, lost runs widen it and are counted") {
+  CHECK(claim(tally_of(90, 0, 3), {}).find("of valid start states drawn") != std::string::npos);
+  const auto sentence = claim(tally_of(175, 1), {});
+  CHECK(
+      sentence ==
+      "with 98 % confidence, fewer than 5 % of start states drawn uniformly from the start region "
+      "give a discrepancy (175 clean runs of 176, 1 lost run counted as a failure)");
+}
+
+TEST_CASE("claim: nothing is claimed without clean runs or after a discrepancy") {
+  CHECK(claim(tally_of(0), {}) == "nothing is claimed (0 clean runs of 0)");
+  CHECK(claim(tally_of(0, 2), {}) ==
+        "nothing is claimed (0 clean runs of 2, 2 lost runs counted as failures)");
+  auto tally = tally_of(3);
+  tally.add_mismatch();
+  CHECK(claim(tally, {}) == "1 of 4 runs gave a discrepancy");
+}
+
+TEST_CASE("claim: figures are rounded away from more than was shown") {
+  CHECK(percent_up(0.05) == "5 %");
+  CHECK(percent_up(0.049881) == "4.99 %");
+  CHECK(percent_up(0.482053) == "48.3 %");
+  CHECK(percent_up(0.0010001) == "0.101 %");
+  CHECK(percent_up(0.9999) == "100 %");
+  CHECK(percent_up(0.1) == "10 %");
+  CHECK(percent_up(0.0) == "0 %");
+}
+
+TEST_CASE(
+    "caveats: rejected starts with their rate, lost runs, the paper's figure, what it omits") {
+  const auto found = caveats(tally_of(95, 2, 3), {});
+  REQUIRE(found.size() == 4);
+  CHECK(found[0] ==
+        "the claim is about start states that are valid: 3 of 100 drawn were rejected (3.0 %)");
+  CHECK(found[1] ==
+        "2 runs were lost (crash, hang or invalid numbers), counted as discrepancies; the stated "
+        "confidence is 98 % instead of 99 %, as the runs may end with either of two bounds");
+  CHECK(
+      found[2].starts_with("the paper's rule (paper-literal, n = 1) is satisfied at 99 % after "));
+  CHECK(found[2].ends_with("; that is not a probability of error"));
+  CHECK(found[3] == "no regression evidence for: Holding(box), Open(door)");
+  CHECK(caveats(tally_of(1), {}).empty());
+}
+
+}  // namespace
+}  // namespace parallax::harness

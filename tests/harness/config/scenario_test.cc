@@ -1,0 +1,182 @@
+#include "harness/config/scenario.h"
+
+#include "tests/harness/config/scenario_text.h"
+
+namespace parallax::harness::test {
+namespace {
+
+TEST_CASE("a scenario is read with defaults, paths beside its file, and the world it includes") {
+  Workspace workspace;
+  const auto scenario = workspace.load(kScenario);
+  REQUIRE_MESSAGE(scenario.has_value(), workspace.reports().front());
+  REQUIRE(scenario->models.size() == 2);
+  CHECK(scenario->models[0].text == (workspace.folder() / "domain.e").string());
+  CHECK(scenario->plan->text == (workspace.folder() / "fetch.lisp").string());
+  CHECK(scenario->horizon == 6);
+  REQUIRE(scenario->constraints.size() == 1);
+  // The range is the text without its quotes, so that an error inside it can be placed.
+  CHECK(workspace.files.text(scenario->constraints[0].source) == "HoldsAt(BoxIn(r1),time)");
+  CHECK(scenario->constraints[0].text == "HoldsAt(BoxIn(r1),time)");
+  CHECK(scenario->criterion.kind == CriterionKind::kCleanRuns);
+  CHECK(scenario->criterion.confidence_level == 0.99);
+  CHECK(scenario->criterion.paper.preset == "paper-literal");
+  CHECK(scenario->simulator.command.empty());
+  CHECK(scenario->limits.max_runs == 300);
+  CHECK_FALSE(scenario->expect.has_value());
+  CHECK(scenario->sampling_inset_m == 0.001);
+  REQUIRE(scenario->sampling.size() == 2);
+  CHECK(scenario->sampling[0].variable == "box.y");
+  CHECK(scenario->sampling[0].interval.width() == 0.0);
+  CHECK(scenario->sampling[1].interval.lower == -0.1);
+}
+
+TEST_CASE("bodies, joints, friction and robot arrive as they were written") {
+  Workspace workspace;
+  const auto scenario = workspace.load(kScenario);
+  REQUIRE(scenario.has_value());
+  const auto& world = scenario->world;
+  REQUIRE(world.bodies.size() == 6);
+  CHECK(world.bodies[0].name == "arm");  // sorted, whatever the order in the text
+  CHECK(world.bodies[2].name == "box");
+  CHECK(world.bodies[2].shapes[0].size_m == Eigen::Vector3d(0.07, 0.07, 0.07));
+  CHECK(world.bodies[2].settable == std::vector<std::string>{"x", "y", "yaw"});
+  REQUIRE(world.joints.size() == 5);
+  CHECK(world.joints[0].name == "drive");
+  CHECK(world.joints[0].parent.empty());
+  CHECK(world.joints[3].axis_W == Eigen::Vector3d::UnitX());
+  CHECK(world.joints[4].type == JointType::kFixed);
+  CHECK(world.friction.pairs.at({"box", "pad"}) == 0.6);
+  CHECK(world.robot.far_pad_body == "far");
+}
+
+TEST_CASE("what is written beside `include` is laid over it, map by map") {
+  Workspace workspace;
+  const auto scenario = workspace.load(replaced(
+      kScenario, "{include: world.yaml}",
+      "{include: world.yaml, friction: {box-pad: 0.0}, bodies: {box: {mass_kg: 0.5}}}"));
+  REQUIRE(scenario.has_value());
+  CHECK(scenario->world.friction.pairs.at({"box", "pad"}) == 0.0);
+  CHECK(scenario->world.friction.fallback == 0.5);
+  CHECK(scenario->world.bodies[2].mass_kg == 0.5);
+  CHECK(scenario->world.bodies[2].material == "box");
+
+  workspace.write("base.yaml", kScenario);
+  const auto variant = workspace.load("include: base.yaml\nhorizon: 9\nlimits: {max_runs: 5}\n");
+  REQUIRE(variant.has_value());
+  CHECK(variant->horizon == 9);
+  CHECK(variant->limits.max_runs == 5);
+  CHECK(variant->actions.size() == 3);
+}
+
+TEST_CASE("mapping and actions refer to the parameters of their patterns") {
+  Workspace workspace;
+  auto text = replaced(kScenario, "Holding(): {flag: box.held}",
+                       "\"Held(body)\": {flag: \"{body}.held\"}\n"
+                       "  \"On( a , where )\": {inside: where, body: \"{a}\", only_if: box.held}\n"
+                       "  Tired(): ignored");
+  text = replaced(text, "PickUp(): {controller: picking-up, object: box}",
+                  "\"PickUp(arm, thing)\": {controller: picking-up, object: \"{thing}\", settle_s: 1}");
+  const auto scenario = workspace.load(text);
+  REQUIRE_MESSAGE(scenario.has_value(), workspace.reports().front());
+  const auto* held = scenario->mapping->find("Held");
+  REQUIRE(held != nullptr);
+  CHECK(held->arity == 1);
+  CHECK(std::get<FlagBinding>(held->condition).variable == "{0}.held");
+  const auto& on = std::get<InsideBinding>(scenario->mapping->find("On")->condition);
+  CHECK(on.region_argument == 1);
+  CHECK(on.body == "{0}");
+  CHECK(on.only_if == "box.held");
+  CHECK(std::holds_alternative<IgnoredBinding>(scenario->mapping->find("Tired")->condition));
+  CHECK(scenario->actions[1].event == "PickUp");
+  CHECK(scenario->actions[1].arity == 2);
+  CHECK(std::get<std::string>(scenario->actions[1].arguments.at("object")) == "{1}");
+  CHECK(std::get<double>(scenario->actions[1].arguments.at("settle_s")) == 1.0);
+  CHECK(std::get<double>(scenario->actions[2].arguments.at("target.x")) == 0.5);
+  CHECK(scenario->actions[0].time_limit_s == 30.0);
+}
+
+TEST_CASE("criterion, simulator, limits and expectations are read in full") {
+  Workspace workspace;
+  const auto scenario = workspace.load(std::string(kScenario) + R"(name: all of it
+criterion: {kind: paper, confidence: 0.95, preset: paper-repaired, sigma: rmse}
+simulator: {command: [python3, sim.py], act_timeout_s: 4, recycle_after: 200}
+limits: {max_runs: 7, max_traces: 2, max_rejected_starts: 3, max_lost_in_a_row: 4}
+expect: {verdict: discrepancy, iterations: 1, max_simulations: 20, fluents: [BoxIn(r1)]}
+)");
+  REQUIRE_MESSAGE(scenario.has_value(), workspace.reports().front());
+  CHECK(scenario->title == "all of it");
+  CHECK(scenario->criterion.kind == CriterionKind::kPaper);
+  CHECK(scenario->criterion.confidence_level == 0.95);
+  CHECK(scenario->criterion.paper.sigma == SigmaKind::kRmse);
+  CHECK(scenario->criterion.paper.intercept == InterceptKind::kFree);
+  CHECK(scenario->criterion.paper.preset == "custom, from paper-repaired");
+  CHECK(scenario->simulator.command == std::vector<std::string>{"python3", "sim.py"});
+  CHECK(scenario->simulator.act_timeout_s == 4.0);
+  CHECK(scenario->limits.max_lost_in_a_row == 4);
+  REQUIRE(scenario->expect.has_value());
+  CHECK(scenario->expect->verdict == "discrepancy");
+  CHECK(scenario->expect->fluents == std::vector<std::string>{"BoxIn(r1)"});
+}
+
+TEST_CASE("a criterion may be named by one word") {
+  Workspace workspace;
+  const auto scenario = workspace.load(std::string(kScenario) + "criterion: paper\n");
+  REQUIRE(scenario.has_value());
+  CHECK(scenario->criterion.kind == CriterionKind::kPaper);
+}
+
+TEST_CASE("the scenario is held against the ground model") {
+  Workspace workspace;
+  const auto scenario = workspace.load(kScenario);
+  REQUIRE(scenario.has_value());
+  base::DiagnosticSink& sink = workspace.sink;
+  SUBCASE("which it fits") {
+    CHECK(check_against_model(*scenario,
+                              {"BoxIn(r1)", "BoxIn(r2)", "Holding()", "RobotIn(r1)", "RobotIn(r2)"},
+                              {"Go(r1)", "Go(r2)", "PickUp()", "Place(r1)"}, sink)
+              .has_value());
+    CHECK(workspace.reports().empty());
+  }
+  SUBCASE("which has more than it maps") {
+    CHECK_FALSE(check_against_model(*scenario, {"BoxAt(r1)", "BoxAt(r2)", "BoxIn(r3)"},
+                                    {"Pickup()", "Go(r1,r2)", "Go(r2,r1)"}, sink)
+                    .has_value());
+    const auto reports = workspace.reports();
+    // Each symbol once: fluent, region, event, arity; and what nothing answers to as warnings.
+    REQUIRE(reports.size() == 8);
+    CHECK(reports[0].find("E5303 at 10:1: fluent `BoxAt`") == 0);
+    CHECK(reports[1].find("W5127 at 11:3: the model has no fluent `RobotIn`") == 0);
+    CHECK(reports[2].find("E5305 at 12:3") == 0);
+    CHECK(reports[3].find("W5127 at 13:3: the model has no fluent `Holding`") == 0);
+    CHECK(reports[4] ==
+          "E5118 at 14:1: the event `Pickup` has no action fix: replace `Pickup` with `PickUp`");
+    CHECK(reports[5].find("E5123 at 15:3: the event `Go(r1,r2)` has 2 argument(s)") == 0);
+    CHECK(reports[6].find("W5128 at 16:3: no event of the model is called `PickUp`") == 0);
+    CHECK(reports[7].find("W5128 at 17:3") == 0);
+  }
+}
+
+TEST_CASE("the scenario is held against what the simulator says of itself") {
+  Workspace workspace;
+  const auto scenario =
+      workspace.load(std::string(kScenario) + "simulator: {command: [other]}\n");
+  REQUIRE(scenario.has_value());
+  SimulatorInfo info{"other", "1", "bitwise", true, {}, {}, 0.01};
+  CHECK(check_against_simulator(*scenario, info, workspace.sink).has_value());  // says nothing
+  info.parameters = {{"box.x", "m", true},   {"box.held", "1", false}, {"robot.x", "m", true},
+                     {"box.y", "m", true}, {"box.yaw", "rad", false}};
+  info.actions = {"going", "pickingup", "placing"};
+  CHECK_FALSE(check_against_simulator(*scenario, info, workspace.sink).has_value());
+  const auto first = workspace.reports();
+  REQUIRE(first.size() == 1);
+  CHECK(first[0] == "E5116 at 18:1: the simulator cannot start with a chosen `box.yaw`");
+  info.parameters.back().settable = true;
+  workspace.sink = base::DiagnosticSink();
+  CHECK_FALSE(check_against_simulator(*scenario, info, workspace.sink).has_value());
+  const auto second = workspace.reports();
+  REQUIRE(second.size() == 1);
+  CHECK(second[0].find("E5120 at 16:3: there is no controller `picking-up`") == 0);
+}
+
+}  // namespace
+}  // namespace parallax::harness::test

@@ -1,0 +1,169 @@
+#include "harness/report/report.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "harness/report/text_layout.h"
+
+namespace parallax::harness {
+namespace {
+
+using Json = nlohmann::json;
+
+CampaignResult sample_result() {
+  CampaignResult result;
+  result.scenario = "scenarios/two.yaml";
+  result.title = "two traces";
+  result.seed = 7;
+  result.verdict = CampaignVerdict::kDiscrepancy;
+  result.exploration = "all traces explored";
+  result.simulator = {"ode", "0.16.2", "bitwise", true, {}, {}, 0.002};
+  result.tool_version = "0.1.0";
+  result.replay_folder = "out/two";
+  result.simulations = 11;
+  TraceResult clean;
+  clean.number = 1;
+  clean.verdict = CampaignVerdict::kNoDiscrepancy;
+  clean.events = {{"Go(r2)", "Go", {"r2"}, "fetch.lisp:4", {}},
+                  {"PickUp()", "PickUp", {}, "fetch.lisp:10", {}}};
+  clean.simulations = clean.clean = 7;
+  clean.certified_level = 0.99;
+  clean.certified_epsilon = 0.482053;
+  clean.paper_stopped_at = 3;
+  clean.paper_variant = "paper-literal, n = 2";
+  clean.claim = "with 99 % confidence, fewer than 48.3 % of start states drawn uniformly from the "
+                "start region give a discrepancy (7 clean runs of 7)";
+  clean.caveats = {"no regression evidence for: Holding()"};
+  auto diverging = clean;
+  diverging.number = 2;
+  diverging.verdict = CampaignVerdict::kDiscrepancy;
+  diverging.simulations = 4;
+  diverging.clean = 3;
+  diverging.paper_stopped_at.reset();
+  diverging.claim = "1 of 4 runs gave a discrepancy";
+  diverging.caveats.clear();
+  result.traces = {clean, diverging};
+  Discrepancy found;
+  found.trace = 2;
+  found.sample = 4;
+  found.seed = 123;
+  found.first_divergence = 1;
+  found.first = {{"RobotIn(r2)", 1, true, false}};
+  found.fluents = {{"BoxIn(r1)", 2, true, false}, {"BoxIn(r2)", 2, false, true}};
+  found.record.initial = {{"box.x", 1.25}};
+  found.record.outcomes = {{SimStatus::kOk, "", 2.0},
+                           {SimStatus::kFailed, "nothing between the pads\n\x1b[31m", 1.5}};
+  result.discrepancies = {found};
+  result.timing = {1.5, 30.0, 11};
+  return result;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST_CASE("the text fits 100 columns and carries no colour unless asked for") {
+  const auto result = sample_result();
+  const auto text = campaign_text(result, {});
+  for (const auto& line : lines_of(text)) {
+    CAPTURE(line);
+    CHECK(columns_of(line) <= 100);
+    CHECK(line.find_last_not_of(' ') + 1 == line.size());
+  }
+  CHECK(text.find('\x1b') == std::string::npos);
+  CHECK(text.ends_with('\n'));
+  const auto colored = campaign_text(result, {true});
+  CHECK(colored.find("\x1b[1;31mdiscrepancy\x1b[0m") != std::string::npos);
+}
+
+TEST_CASE("the text says events with places, both figures, the claim, and how to repeat") {
+  const auto text = campaign_text(sample_result(), {});
+  for (const std::string part :
+       {"1  PickUp()  fetch.lisp:10\n", "with 99 % confidence p < 48.3 %", "satisfied after 3 runs",
+        "[not a probability of error]", "start region give a discrepancy (7 clean runs of 7)",
+        "in simulation 2.4, seed 123, repeated bit for bit\n",
+        "    BoxIn(r1)  2          true       false\n",
+        "at timepoint 1, after Go(r2): RobotIn(r2) is false instead of true",
+        "PickUp(), failed after 1.500 s: nothing between the pads \\u001b[31m", "box.x = 1.25",
+        "parallax replay out/two --sample 2.4", "verdict: discrepancy", "about        two traces",
+        "no regression evidence for: Holding()"}) {
+    CAPTURE(part);
+    CHECK(text.find(part) != std::string::npos);
+  }
+}
+
+TEST_CASE("the document has the fields that scripts read") {
+  const auto line = campaign_json(sample_result(), true);
+  CHECK(std::count(line.begin(), line.end(), '\n') == 1);
+  const auto json = Json::parse(line);
+  CHECK(json.at("status") == "ok");
+  CHECK(json.at("scenario") == "scenarios/two.yaml");
+  CHECK(json.at("seed") == 7);
+  CHECK(json.at("verdict") == "discrepancy");
+  CHECK(json.at("iterations") == 2);
+  CHECK(json.at("simulations") == 11);
+  CHECK(json.at("exploration") == "all traces explored");
+  const auto& trace = json.at("traces").at(0);
+  CHECK(trace.at("trace") == 1);
+  CHECK(trace.at("verdict") == "no-discrepancy");
+  CHECK(trace.at("events") == Json({"Go(r2)", "PickUp()"}));
+  CHECK(trace.at("simulations") == 7);
+  CHECK(trace.at("guided") == 0);
+  CHECK(trace.at("certified") == Json({{"confidence", 0.99}, {"epsilon", 0.482053}}));
+  CHECK(trace.at("paper").at("stopped_at") == 3);
+  CHECK(json.at("traces").at(1).at("paper").at("stopped_at").is_null());
+  CHECK(trace.at("lost") == 0);
+  CHECK(trace.at("rejected") == 0);
+  const auto& found = json.at("discrepancies").at(0);
+  CHECK(found.at("trace") == 2);
+  CHECK(found.at("sample") == 4);
+  CHECK(found.at("seed") == 123);
+  CHECK(found.at("first_divergence") == 1);
+  CHECK(found.at("fluents").at(0) ==
+        Json({{"fluent", "BoxIn(r1)"}, {"timepoint", 2}, {"predicted", true}, {"observed", false}}));
+  CHECK(found.at("replay") == "parallax replay out/two --sample 2.4");
+  CHECK(json.at("timing").at("runs_made") == 11);
+}
+
+TEST_CASE("only `timing` depends on the clock") {
+  auto one = sample_result();
+  auto two = one;
+  two.timing = {99.0, 1.0, 3};
+  CHECK(campaign_json(one, true) != campaign_json(two, true));
+  CHECK(campaign_json(one, false) == campaign_json(two, false));
+  CHECK_FALSE(Json::parse(campaign_json(one, false)).contains("timing"));
+  CHECK(campaign_text(one, {}) == campaign_text(two, {}));
+}
+
+TEST_CASE("exit codes follow the verdict") {
+  auto result = sample_result();
+  CHECK(exit_code(result) == 1);
+  result.verdict = CampaignVerdict::kInconclusive;
+  CHECK(exit_code(result) == 4);
+  result.verdict = CampaignVerdict::kNoDiscrepancy;
+  CHECK(exit_code(result) == 0);
+}
+
+TEST_CASE("wrapping breaks at blanks, keeps long words whole and counts code points") {
+  CHECK(wrapped("ab ", "", 3) == "ab \n");
+  CHECK(wrapped("", "one  two\nthree", 0) == "one two three\n");
+  std::string words;
+  for (int i = 0; i < 30; ++i) words += "w\xc3\xb6rter ";
+  for (const auto& line : lines_of(wrapped("label ", words, 6))) CHECK(columns_of(line) <= 100);
+  const std::string word(150, 'x');
+  CHECK(wrapped("  ", word, 2) == "  " + word + "\n");
+  CHECK(wrapped("  ", "a " + word, 2) == "  a\n  " + word + "\n");
+}
+
+TEST_CASE("tables align on the widest cell") {
+  CHECK(table({{"a", "bb"}, {"c\xc3\xa4sar", "d"}}, 1) == " a      bb\n c\xc3\xa4sar  d\n");
+}
+
+}  // namespace
+}  // namespace parallax::harness

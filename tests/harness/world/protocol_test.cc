@@ -1,0 +1,216 @@
+#include "harness/world/protocol.h"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace parallax::harness {
+namespace {
+
+/// Encodes and decodes a reply to `asked`.
+ReplyBody round_trip(const Request& asked, const ReplyBody& reply) {
+  auto decoded = decode_reply(encode_reply(asked.id, reply), asked);
+  REQUIRE(std::holds_alternative<ReplyBody>(decoded));
+  return std::get<ReplyBody>(std::move(decoded));
+}
+
+std::string malformed_message(std::string_view line, const Request& asked) {
+  const auto decoded = decode_reply(line, asked);
+  REQUIRE(std::holds_alternative<Malformed>(decoded));
+  return std::get<Malformed>(decoded).message;
+}
+
+std::string request_error(std::string_view line) {
+  const auto decoded = decode_request(line);
+  REQUIRE(std::holds_alternative<Malformed>(decoded));
+  return std::get<Malformed>(decoded).code;
+}
+
+const State kMixed = {{"a", true},
+                      {"b", std::int64_t{-7}},
+                      {"c", 0.1},
+                      {"d", 1.0},
+                      {"e", std::string("naïve \"\\\n\U0001F600")},
+                      {"f", 5e-324},
+                      {"g", -0.0},
+                      {"h", std::numeric_limits<double>::max()},
+                      {"i", std::nextafter(1.0, 2.0)},
+                      {"j", std::numeric_limits<std::int64_t>::min()}};
+
+TEST_CASE("a state survives the round trip bit for bit, types included") {
+  const auto back = decode_state(encode_state(kMixed));
+  REQUIRE(std::holds_alternative<State>(back));
+  CHECK(std::get<State>(back) == kMixed);
+  CHECK(std::signbit(std::get<double>(std::get<State>(back).at("g"))));
+}
+
+TEST_CASE("requests survive the round trip on one line") {
+  const std::array<Request, 6> requests = {
+      Request{1, HelloRequest{}},
+      Request{2, ResetRequest{kMixed, std::numeric_limits<std::uint64_t>::max()}},
+      Request{3, ActRequest{"picking-up", {{"object", std::string("box")}}, 30.5}},
+      Request{4, ObserveRequest{}},
+      Request{5, CloseRequest{}},
+      Request{6, UnknownRequest{"dance"}}};
+  for (const Request& request : requests) {
+    const std::string line = encode_request(request);
+    CHECK(line.find('\n') == std::string::npos);
+    const auto decoded = decode_request(line);
+    REQUIRE(std::holds_alternative<Request>(decoded));
+    const Request& back = std::get<Request>(decoded);
+    CHECK(back.id == request.id);
+    CHECK(back.body.index() == request.body.index());
+    CHECK(encode_request(back) == line);
+  }
+  const auto reset = std::get<Request>(decode_request(encode_request(requests[1])));
+  CHECK(std::get<ResetRequest>(reset.body).seed == std::numeric_limits<std::uint64_t>::max());
+  CHECK(std::get<ResetRequest>(reset.body).state == kMixed);
+}
+
+TEST_CASE("requests are written as the protocol's examples are") {
+  CHECK(encode_request({1, HelloRequest{}}) ==
+        R"({"id":1,"method":"hello","params":{"protocol":[1]}})");
+  CHECK(
+      encode_request({2, ResetRequest{{{"box.x", 1.4}, {"robot.x", 0.8}}, 2071723}}) ==
+      R"({"id":2,"method":"reset","params":{"state":{"box.x":1.4,"robot.x":0.8},"seed":2071723}})");
+  CHECK(encode_request({4, ObserveRequest{}}) == R"({"id":4,"method":"observe"})");
+}
+
+TEST_CASE("replies survive the round trip") {
+  SimulatorInfo info{"mybot",
+                     "0.3",
+                     "tolerance",
+                     true,
+                     {{"box.x", "m", true}, {"box.held", "1", false}},
+                     {"going", "placing"},
+                     0.002};
+  const auto hello = std::get<HelloReply>(round_trip({1, HelloRequest{}}, HelloReply{1, info}));
+  CHECK(hello.protocol == 1);
+  CHECK(hello.info.name == "mybot");
+  CHECK(hello.info.determinism == "tolerance");
+  CHECK(hello.info.seeds);
+  CHECK(hello.info.parameters.size() == 2);
+  CHECK(hello.info.parameters[0].settable);
+  CHECK(hello.info.actions == info.actions);
+  CHECK(hello.info.timestep_s == 0.002);
+
+  const Outcome failed{SimStatus::kFailed, "unreachable", 2.4, {{"reach", -0.03}}};
+  const auto outcome =
+      std::get<OutcomeReply>(round_trip({3, ActRequest{}}, OutcomeReply{failed})).outcome;
+  CHECK(outcome.status == SimStatus::kFailed);
+  CHECK(outcome.reason == "unreachable");
+  CHECK(outcome.sim_time_s == 2.4);
+  CHECK(outcome.margins == failed.margins);
+
+  CHECK(std::get<ObserveReply>(round_trip({4, ObserveRequest{}}, ObserveReply{kMixed})).state ==
+        kMixed);
+  CHECK(std::holds_alternative<CloseReply>(round_trip({5, CloseRequest{}}, CloseReply{})));
+  CHECK(std::get<ErrorReply>(round_trip({5, ActRequest{}}, ErrorReply{"internal", "no"})).code ==
+        "internal");
+}
+
+TEST_CASE("fields that are not known are ignored") {
+  const auto decoded =
+      decode_reply(R"({"id":2,"result":{"status":"ok","colour":[1,{"x":null}]},"later":true})",
+                   Request{2, ResetRequest{}});
+  REQUIRE(std::holds_alternative<ReplyBody>(decoded));
+  CHECK(std::get<OutcomeReply>(std::get<ReplyBody>(decoded)).outcome.status == SimStatus::kOk);
+}
+
+TEST_CASE("a reply that is not the protocol is malformed") {
+  const Request act{3, ActRequest{}}, observe{4, ObserveRequest{}}, hello{1, HelloRequest{}};
+  CHECK(malformed_message("Segmentation fault", act) == "the line is not JSON");
+  CHECK(malformed_message("", act) == "the line is not JSON");
+  CHECK(malformed_message("[1,2]", act) == "the line is not an object");
+  CHECK(malformed_message(R"({"id":3,"result":{"status":"ok"})", act) == "the line is not JSON");
+  CHECK(malformed_message(R"({"id":2,"result":{"status":"ok"}})", act) ==
+        "the reply to request 3 carries id 2");
+  CHECK(malformed_message(R"({"result":{"status":"ok"}})", act) ==
+        "the reply to request 3 carries no id");
+  CHECK(malformed_message(R"({"id":null,"error":{"code":"parse_error","message":"what?"}})", act) ==
+        "the reply to request 3 carries no id (what?)");
+  CHECK(malformed_message(R"({"id":3})", act) == "`result` is missing");
+  CHECK(malformed_message(R"({"id":3,"result":7})", act) == "`result` is not an object");
+  CHECK(malformed_message(R"({"id":3,"result":{}})", act) == "`status` is missing");
+  CHECK(malformed_message(R"({"id":3,"result":{"status":"fine"}})", act) == "no status `fine`");
+  CHECK(malformed_message(R"({"id":3,"result":{"status":"ok","sim_time":"2"}})", act) ==
+        "`sim_time` is not a number");
+  CHECK(malformed_message(R"({"id":4,"result":{"state":{"x":NaN}}})", observe) ==
+        "the line is not JSON");
+  CHECK(malformed_message(R"({"id":4,"result":{"state":{"x":1e999}}})", observe) ==
+        "the line is not JSON");
+  CHECK(malformed_message(R"({"id":4,"result":{"state":{"x":null}}})", observe) ==
+        "`x` is neither boolean, number nor string");
+  CHECK(malformed_message(R"({"id":4,"result":{"state":{"x":[1]}}})", observe) ==
+        "`x` is neither boolean, number nor string");
+  CHECK(malformed_message(R"({"id":4,"result":{}})", observe) == "`state` is missing");
+  CHECK(malformed_message(R"({"id":1,"result":{"protocol":1,"name":"x"}})", hello) ==
+        "`params` is missing");
+  CHECK(malformed_message("{\"id\":4,\"result\":{\"state\":{\"x\":\"\xff\xfe\"}}}", observe) ==
+        "the line is not JSON");
+}
+
+TEST_CASE("a deeply nested line is refused without harm") {
+  CHECK(request_error(std::string(500000, '[')) == "parse_error");
+  CHECK(request_error(std::string(400000, '[') + std::string(400000, ']')) == "invalid_request");
+  CHECK(request_error(std::string(kMaxLineBytes + 1, ' ')) == "line_too_long");
+}
+
+TEST_CASE("a request that is not the protocol is malformed") {
+  CHECK(request_error("hello") == "parse_error");
+  CHECK(request_error("7") == "invalid_request");
+  CHECK(request_error(R"({"method":"observe"})") == "invalid_request");
+  CHECK(request_error(R"({"id":"1","method":"observe"})") == "invalid_request");
+  CHECK(request_error(R"({"id":1})") == "invalid_params");
+  CHECK(request_error(R"({"id":1,"method":7})") == "invalid_params");
+  CHECK(request_error(R"({"id":1,"method":"reset"})") == "invalid_params");
+  CHECK(request_error(R"({"id":1,"method":"reset","params":{"state":{}}})") == "invalid_params");
+  CHECK(request_error(R"({"id":1,"method":"reset","params":{"state":{},"seed":-1}})") ==
+        "invalid_params");
+  CHECK(request_error(R"({"id":1,"method":"reset","params":{"state":{"x":{}},"seed":1}})") ==
+        "invalid_params");
+  CHECK(request_error(R"({"id":1,"method":"act","params":{"action":"going"}})") ==
+        "invalid_params");
+  CHECK(
+      request_error(R"({"id":1,"method":"act","params":{"action":"going","sim_time_limit":-1}})") ==
+      "invalid_params");
+  CHECK(request_error(R"({"id":1,"method":"hello","params":{"protocol":1}})") == "invalid_params");
+}
+
+TEST_CASE("no line of broken pieces of a reply crashes the decoder") {
+  const std::string whole =
+      R"({"id":3,"result":{"status":"failed","reason":"x","sim_time":2.4,"margins":{"reach":-0.03}}})";
+  const Request asked{3, ActRequest{}};
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    CHECK(std::holds_alternative<Malformed>(decode_reply(whole.substr(0, length), asked)));
+  }
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    for (const char wrong : {'"', '}', '0', '\0', '\x80'}) {
+      std::string damaged = whole;
+      damaged[at] = wrong;
+      decode_reply(damaged, asked);
+      decode_request(damaged);
+    }
+  }
+}
+
+TEST_CASE("a state names its first value that JSON cannot say") {
+  CHECK(first_not_finite(kMixed).empty());
+  CHECK(first_not_finite({{"x", 1.0}, {"y", std::nan("")}}) == "y");
+  CHECK(first_not_finite({{"x", std::numeric_limits<double>::infinity()}}) == "x");
+}
+
+TEST_CASE("status words go there and back") {
+  for (const SimStatus status :
+       {SimStatus::kOk, SimStatus::kFailed, SimStatus::kTruncated, SimStatus::kInvalidStart,
+        SimStatus::kUnsupported, SimStatus::kLost}) {
+    CHECK(sim_status_from(to_string(status)) == status);
+  }
+  CHECK(sim_status_from("fine") == SimStatus::kUnsupported);
+}
+
+}  // namespace
+}  // namespace parallax::harness

@@ -1,0 +1,197 @@
+// The program as users run it, on the scenarios of the two-region world.
+
+#include <doctest/doctest.h>
+
+#include <csignal>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/cli_fixture.h"
+
+namespace parallax::test {
+namespace {
+
+using Json = nlohmann::json;
+
+Json run_json(const CliFixture& cli, std::vector<std::string> arguments, int expected_code) {
+  arguments.insert(arguments.begin(), "run");
+  arguments.push_back("--json");
+  const auto result = cli.parallax(arguments);
+  CAPTURE(result.err);
+  CAPTURE(result.out);
+  CHECK(result.code == expected_code);
+  REQUIRE(Json::accept(result.out));
+  return Json::parse(result.out);
+}
+
+std::size_t lines_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::size_t count = 0;
+  for (std::string line; std::getline(in, line);) ++count;
+  return count;
+}
+
+TEST_CASE("Example 1: the box is fetched, ninety clean runs support p below five percent") {
+  const CliFixture cli;
+  const auto result = run_json(cli, {"scenario.yaml", "--jobs", "2", "--out", "run"}, 0);
+  CHECK(result["status"] == "ok");
+  CHECK(result["verdict"] == "no-discrepancy");
+  CHECK(result["iterations"] == 1);
+  CHECK(result["simulations"] == 90);
+  CHECK(result["exploration"] == "all traces explored");
+  const auto& trace = result["traces"][0];
+  CHECK(trace["events"] == Json({"Go(r2)", "PickUp()", "Go(r1)", "Place(r1)"}));
+  CHECK(trace["certified"]["confidence"] == 0.99);
+  CHECK(trace["certified"]["epsilon"].get<double>() == doctest::Approx(0.049881).epsilon(1e-4));
+  CHECK(trace["lost"] == 0);
+  CHECK(result["discrepancies"].empty());
+}
+
+TEST_CASE("placing at the edge: physics carries the box over the border for some starts") {
+  const CliFixture cli;
+  const auto result = run_json(cli, {"edge.yaml", "--jobs", "2", "--out", "run"}, 1);
+  CHECK(result["verdict"] == "discrepancy");
+  const auto& found = result["discrepancies"][0];
+  CHECK(found["first_divergence"] == 4);
+  bool in_r2 = false;
+  for (const auto& fluent : found["fluents"]) {
+    if (fluent["fluent"] != "BoxIn(r2)") continue;
+    in_r2 = fluent["predicted"] == false && fluent["observed"] == true;
+  }
+  CHECK(in_r2);
+  // Not every start: the first of them must not decide alone over many seeds.
+  int first_run = 0;
+  for (int seed = 1; seed <= 12; ++seed) {
+    const auto other = run_json(cli,
+                                {"edge.yaml", "--jobs", "2", "--seed", std::to_string(seed),
+                                 "--out", "run" + std::to_string(seed)},
+                                1);
+    if (other["simulations"] == 1) ++first_run;
+  }
+  CHECK(first_run < 12);
+}
+
+TEST_CASE("a model whose pick-up forgets the region is found in the first runs") {
+  const CliFixture cli;
+  for (const auto* seed : {"1", "2", "3", "4", "5"}) {
+    const auto result =
+        run_json(cli, {"wrong_model.yaml", "--seed", seed, "--out", std::string("run") + seed}, 1);
+    CHECK(result["verdict"] == "discrepancy");
+    CHECK(result["simulations"].get<int>() <= 10);
+    CHECK(result["discrepancies"][0]["first_divergence"] == 1);
+  }
+}
+
+TEST_CASE("without friction on the pads the box stays behind, and the tool reports it") {
+  const CliFixture cli;
+  cli.replace("common.yaml", "include: world.yaml",
+              "include: world.yaml\n  friction: {box-pad: 0}");
+  const auto result = run_json(cli, {"scenario.yaml", "--out", "run"}, 1);
+  CHECK(result["verdict"] == "discrepancy");
+  const auto& found = result["discrepancies"][0];
+  // Picking up is where it goes wrong, and in the end the box is where it was.
+  CHECK(found["first_divergence"] == 2);
+  bool behind = false;
+  for (const auto& fluent : found["fluents"]) {
+    if (fluent["fluent"] == "BoxIn(r2)") behind = fluent["observed"] == true;
+  }
+  CHECK(behind);
+}
+
+TEST_CASE("nothing that is printed or left on disk depends on the number of jobs") {
+  const CliFixture cli;
+  for (const auto* scenario : {"scenario.yaml", "edge.yaml"}) {
+    CAPTURE(scenario);
+    std::vector<std::string> out;
+    std::vector<std::vector<std::pair<std::string, std::string>>> folders;
+    for (const auto* jobs : {"1", "2", "5"}) {
+      std::filesystem::remove_all(cli.folder() / "run");
+      const auto result = cli.parallax({"run", scenario, "--json", "--jobs", jobs, "--out", "run"});
+      out.push_back(without_timing(result.out));
+      folders.push_back(files_below(cli.folder() / "run"));
+      const auto text = cli.parallax({"run", scenario, "--jobs", jobs, "--out", "run", "--resume"});
+      out.back() += text.out;
+    }
+    CHECK(out[0] == out[1]);
+    CHECK(out[0] == out[2]);
+    CHECK(folders[0] == folders[1]);
+    CHECK(folders[0] == folders[2]);
+    CHECK(folders[0].size() >= 3);
+  }
+}
+
+TEST_CASE("a run that was killed continues to the same report") {
+  const CliFixture cli;
+  const auto whole = cli.parallax({"run", "scenario.yaml", "--out", "run", "--json"});
+  REQUIRE(whole.code == 0);
+  const auto expected = files_below(cli.folder() / "run");
+  std::filesystem::remove_all(cli.folder() / "run");
+
+  const auto journal = cli.folder() / "run" / "journal.ndjson";
+  ProcessOptions options;
+  options.signal_when = [&] { return lines_of(journal) > 20 ? SIGKILL : 0; };
+  const auto killed =
+      cli.parallax({"run", "scenario.yaml", "--out", "run", "--jobs", "2"}, options);
+  REQUIRE(killed.code == 128 + SIGKILL);
+  const auto kept = lines_of(journal);
+  REQUIRE(kept > 20);
+  REQUIRE(kept < 90);
+
+  const auto refused = cli.parallax({"run", "scenario.yaml", "--out", "run"});
+  CHECK(refused.code == 2);
+  CHECK(refused.err.find("--resume") != std::string::npos);
+  CHECK(lines_of(journal) == kept);
+
+  const auto resumed = cli.parallax({"run", "scenario.yaml", "--out", "run", "--resume", "--json"});
+  CHECK(resumed.code == 0);
+  CHECK(without_timing(resumed.out) == without_timing(whole.out));
+  CHECK(files_below(cli.folder() / "run") == expected);
+  const auto timing = Json::parse(resumed.out)["timing"];
+  CAPTURE(timing.dump());
+}
+
+TEST_CASE("an interrupted run ends with 130 or 143 and keeps what was finished") {
+  const CliFixture cli;
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const auto folder = "run" + std::to_string(signal);
+    const auto journal = cli.folder() / folder / "journal.ndjson";
+    ProcessOptions options;
+    options.signal_when = [&] { return lines_of(journal) > 10 ? signal : 0; };
+    const auto result = cli.parallax({"run", "scenario.yaml", "--out", folder}, options);
+    CHECK(result.code == 128 + signal);
+    CHECK(lines_of(journal) > 10);
+    CHECK(cli.parallax({"run", "scenario.yaml", "--out", folder, "--resume"}).code == 0);
+  }
+}
+
+TEST_CASE("replay repeats a recorded simulation bit for bit") {
+  const CliFixture cli;
+  REQUIRE(cli.parallax({"run", "edge.yaml", "--out", "run"}).code == 1);
+  const auto discrepancy = cli.parallax({"replay", "run"});
+  CAPTURE(discrepancy.err);
+  CHECK(discrepancy.code == 0);
+  CHECK(cli.parallax({"replay", "run", "--sample", "1.1"}).code == 0);
+  CHECK(cli.parallax({"replay", "run", "--sample", "1.999"}).code == 2);
+  CHECK(cli.parallax({"replay", "run", "--sample", "first"}).code == 2);
+
+  SUBCASE("one changed bit in the record is told") {
+    auto journal = cli.read("run/journal.ndjson");
+    // The last digit of some recorded position of the first simulation.
+    const auto at = journal.find("\"tool.x\":", journal.find("\"observations\""));
+    REQUIRE(at != std::string::npos);
+    const auto end = journal.find(',', at);
+    journal[end - 1] = journal[end - 1] == '1' ? '2' : '1';
+    cli.write("run/journal.ndjson", journal);
+    const auto result = cli.parallax({"replay", "run", "--sample", "1.1"});
+    CHECK(result.code == 1);
+    CHECK((result.out + result.err).find("tool.x") != std::string::npos);
+  }
+  SUBCASE("another scenario cannot be compared") {
+    cli.replace("world.yaml", "mass_kg: 0.3", "mass_kg: 0.31");
+    const auto result = cli.parallax({"replay", "run"});
+    CHECK(result.code == 3);
+  }
+}
+
+}  // namespace
+}  // namespace parallax::test

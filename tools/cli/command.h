@@ -1,0 +1,71 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "compiler/base/source_file.h"
+
+namespace parallax::tools {
+
+/// What every command understands.
+struct CommonOptions {
+  bool json = false;
+  bool quiet = false;
+  int verbosity = 0;
+  std::string color = "auto";        // auto, always, never
+  std::string diagnostics = "text";  // text, json
+  double time_limit_s = 0.0;         // 0: none
+  std::int64_t memory_limit_mb = 0;  // 0: none
+};
+
+/// One run of one command: its texts, what was reported, where results go.
+class Invocation {
+ public:
+  explicit Invocation(const CommonOptions& options) : options_(options) {}
+  const CommonOptions& options() const { return options_; }
+  base::SourceFiles& files() { return files_; }
+  base::DiagnosticSink& sink() { return sink_; }
+
+  bool color_on(int descriptor) const;
+  /// Progress and remarks: on standard error, unless --quiet.
+  void remark(const std::string& text) const;
+  /// The result of the command; standard output holds nothing else.
+  void result(const std::string& text) const;
+  /// Prints what was reported. With --json and errors, standard output gets the one error document,
+  /// unless a result was printed already. Returns the exit code for the errors, `code` without any.
+  int finish(int code);
+
+ private:
+  CommonOptions options_;
+  base::SourceFiles files_;
+  base::DiagnosticSink sink_;
+  mutable bool printed_ = false;
+};
+
+/// A subcommand: how it is spelled, and what runs it.
+struct Command {
+  CLI::App* app = nullptr;
+  std::function<int(Invocation&)> run;
+};
+
+/// Adds the options that every command has.
+void add_common_options(CLI::App& app, CommonOptions& options);
+
+Command add_run_command(CLI::App& app);
+Command add_replay_command(CLI::App& app);
+Command add_check_command(CLI::App& app);
+Command add_compile_command(CLI::App& app);
+Command add_suite_command(CLI::App& app);
+Command add_traces_command(CLI::App& app);
+Command add_worker_command(CLI::App& app);
+
+/// {"status": "error", "diagnostics": [...]} and a newline.
+std::string error_document(const std::vector<base::Diagnostic>& diagnostics,
+                           const base::SourceFiles& files);
+
+}  // namespace parallax::tools

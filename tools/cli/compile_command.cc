@@ -1,0 +1,66 @@
+#include <memory>
+
+#include "compiler/artifact/dimacs_writer.h"
+#include "compiler/base/file_io.h"
+#include "tools/cli/scenario_model.h"
+
+namespace parallax::tools {
+namespace {
+
+struct CompileOptions {
+  ModelOptions model;
+  std::string out;
+  std::string emit = "cnf";
+};
+
+int compile_and_write(const CompileOptions& options, Invocation& invocation) {
+  auto& sink = invocation.sink();
+  const auto compilation = compile_models(options.model, invocation);
+  if (!compilation) return 0;
+  std::string text;
+  if (options.emit == "cnf") {
+    text = compiler::to_dimacs(compilation->model, invocation.files());
+  } else if (!compilation->plan) {
+    sink.error_about(base::DiagnosticCode::kUsage, "",
+                     fmt::format("--emit={} needs a scenario with a plan", options.emit));
+    return 0;
+  } else if (options.emit == "cfg") {
+    text = compiler::dump_text(*compilation->plan, invocation.files());
+  } else {
+    text = compiler::dump_dot(*compilation->plan, invocation.files());
+  }
+  if (options.out.empty()) {
+    invocation.result(text);
+  } else if (base::write_file_atomically(options.out, text, sink)) {
+    invocation.remark(fmt::format("{}: {} variables, {} clauses, horizon {}", options.out,
+                                  compilation->model.variable_count,
+                                  compilation->model.clauses.size(), compilation->model.horizon));
+    if (invocation.options().json) {
+      invocation.result(fmt::format("{{\"status\":\"ok\",\"variables\":{},\"clauses\":{}}}\n",
+                                    compilation->model.variable_count,
+                                    compilation->model.clauses.size()));
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command add_compile_command(CLI::App& app) {
+  auto options = std::make_shared<CompileOptions>();
+  auto* command = app.add_subcommand(
+      "compile", "Compile a model (or a scenario's model and plan) to DIMACS with symbols");
+  command->footer(
+      "Examples:\n"
+      "  parallax compile domain.e start.e --horizon 6 -o start.dec.cnf\n"
+      "  parallax compile scenarios/two_regions/edge.yaml --emit=cfg");
+  add_model_options(*command, options->model);
+  command->add_option("-o,--output", options->out, "File to write; default: standard output");
+  command->add_option("--emit", options->emit, "What to print: cnf, cfg (plan), cfg-dot (picture)")
+      ->check(CLI::IsMember({"cnf", "cfg", "cfg-dot"}))
+      ->capture_default_str();
+  return {command,
+          [options](Invocation& invocation) { return compile_and_write(*options, invocation); }};
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,75 @@
+#include "tools/cli/limits.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <new>
+
+#include "compiler/base/diagnostic_printer.h"
+#include "tools/cli/signals.h"
+
+namespace parallax::tools {
+namespace {
+
+constexpr std::chrono::seconds kGrace{2};
+
+const CommonOptions* g_options = nullptr;  // for the handler of failed allocations
+
+void on_out_of_memory() {
+  std::set_new_handler(nullptr);
+  end_for_limit(*g_options, fmt::format("--memory-limit {}", g_options->memory_limit_mb));
+}
+
+}  // namespace
+
+void end_for_limit(const CommonOptions& options, const std::string& limit) {
+  base::DiagnosticSink sink;
+  const base::SourceFiles files;
+  sink.error_about(base::DiagnosticCode::kLimitReached, "", limit);
+  const auto diagnostics = sink.sorted();
+  if (options.json) {
+    const auto text = error_document(diagnostics, files);
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    std::fflush(stdout);
+  }
+  fmt::print(stderr, "{}", base::to_text(diagnostics.front(), files, {}));
+  _exit(4);
+}
+
+LimitGuard::LimitGuard(const CommonOptions& options) {
+  if (options.memory_limit_mb > 0) {
+    g_options = &options;
+    std::set_new_handler(on_out_of_memory);
+    const auto bytes = static_cast<rlim_t>(options.memory_limit_mb) << 20U;
+    const rlimit limit{bytes, bytes};
+    setrlimit(RLIMIT_AS, &limit);
+  }
+  if (options.time_limit_s > 0) thread_ = std::thread([this, &options] { watch(options); });
+}
+
+LimitGuard::~LimitGuard() {
+  {
+    const std::lock_guard lock(mutex_);
+    done_ = true;
+  }
+  done_changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+bool LimitGuard::time_is_over() const {
+  const std::lock_guard lock(mutex_);
+  return over_;
+}
+
+void LimitGuard::watch(const CommonOptions& options) {
+  std::unique_lock lock(mutex_);
+  const auto limit = std::chrono::duration<double>(options.time_limit_s);
+  if (done_changed_.wait_for(lock, limit, [this] { return done_; })) return;
+  over_ = true;
+  stop_flag().store(true);
+  if (done_changed_.wait_for(lock, kGrace, [this] { return done_; })) return;
+  end_for_limit(options, fmt::format("--time-limit {}", options.time_limit_s));
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "tools/cli/command.h"
+
+namespace parallax::tools {
+
+/// Holds --time-limit and --memory-limit over all phases of a command. When the time is over the
+/// stop flag is raised; a phase that does not look at it within two seconds is ended with exit
+/// code 4 and a message. What was finished is on disk by then.
+class LimitGuard {
+ public:
+  explicit LimitGuard(const CommonOptions& options);
+  ~LimitGuard();
+  LimitGuard(const LimitGuard&) = delete;
+  LimitGuard& operator=(const LimitGuard&) = delete;
+  bool time_is_over() const;
+
+ private:
+  void watch(const CommonOptions& options);
+  mutable std::mutex mutex_;
+  std::condition_variable done_changed_;
+  bool done_ = false;
+  bool over_ = false;
+  std::thread thread_;
+};
+
+/// Reports the limit in the form that the options ask for and ends the process with 4.
+[[noreturn]] void end_for_limit(const CommonOptions& options, const std::string& limit);
+
+}  // namespace parallax::tools

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compiler/pipeline/compile.h"
+#include "tools/cli/command.h"
+
+namespace parallax::tools {
+
+/// The options of every command that reads a model.
+struct ModelOptions {
+  std::vector<std::string> models;
+  std::vector<std::string> include_dirs;
+  bool allow_outside = false;
+  std::int64_t horizon = -1;  // -1: as the model says
+};
+void add_model_options(CLI::App& command, ModelOptions& options);
+
+compiler::CompileInput compile_input(const ModelOptions& options);
+
+}  // namespace parallax::tools

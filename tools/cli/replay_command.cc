@@ -1,0 +1,81 @@
+#include <unistd.h>
+
+#include <memory>
+
+#include "harness/campaign/replay.h"
+#include "harness/report/report.h"
+#include "tools/cli/command.h"
+#include "tools/cli/scenario_model.h"
+#include "tools/cli/signals.h"
+#include "tools/cli/simulator_factory.h"
+
+namespace parallax::tools {
+namespace {
+
+struct ReplayOptions {
+  std::string run_dir;
+  std::string sample;
+};
+
+int replay(const ReplayOptions& options, Invocation& invocation) {
+  auto& sink = invocation.sink();
+  std::optional<harness::SampleId> id;
+  if (!options.sample.empty()) {
+    id = harness::parse_sample_id(options.sample);
+    if (!id) {
+      sink.error_about(
+          base::DiagnosticCode::kUsage, "",
+          fmt::format("--sample takes TRACE.SAMPLE such as 2.4, not `{}`", options.sample));
+      return 0;
+    }
+  }
+  // The journal is no source of the scenario: it is read into a set of its own.
+  base::SourceFiles journal_files;
+  base::DiagnosticSink journal_sink;
+  const auto header = harness::read_run_header(options.run_dir, journal_files, journal_sink);
+  std::optional<ScenarioModel> loaded;
+  if (header) {
+    auto result = load_scenario_model(header->scenario, invocation);
+    if (!result) return 0;
+    loaded = *std::move(result);
+  }
+  // Without a header the same call reports what is wrong with the journal.
+  if (!loaded) {
+    (void)harness::read_run_header(options.run_dir, invocation.files(), sink);
+    return 0;
+  }
+  const auto simulator = simulator_factory(*loaded)();
+  const auto result = harness::replay_sample(options.run_dir, id, loaded->sources_hash, *simulator,
+                                             invocation.files(), sink);
+  if (!result) return 0;
+  const bool json = invocation.options().json;
+  invocation.result(json ? harness::replay_json(*result)
+                         : harness::replay_text(*result, {invocation.color_on(STDOUT_FILENO)}));
+  switch (result->outcome) {
+    case harness::ReplayOutcome::kIdentical:
+      return 0;
+    case harness::ReplayOutcome::kDiffers:
+      return 1;
+    case harness::ReplayOutcome::kCannot:
+      return 3;
+  }
+  return 5;
+}
+
+}  // namespace
+
+Command add_replay_command(CLI::App& app) {
+  auto options = std::make_shared<ReplayOptions>();
+  auto* command =
+      app.add_subcommand("replay", "Repeat one recorded simulation and compare it bit by bit");
+  command->footer(
+      "Examples:\n"
+      "  parallax replay out/edge                the run's first discrepancy\n"
+      "  parallax replay out/edge --sample 1.4   simulation 4 of trace 1\n"
+      "Exit codes: 0 identical, 1 differs, 3 the scenario has changed since.");
+  command->add_option("run_dir", options->run_dir, "Folder of a run")->required();
+  command->add_option("--sample", options->sample, "TRACE.SAMPLE; default: the first discrepancy");
+  return {command, [options](Invocation& invocation) { return replay(*options, invocation); }};
+}
+
+}  // namespace parallax::tools

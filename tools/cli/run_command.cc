@@ -1,0 +1,130 @@
+#include <unistd.h>
+
+#include <memory>
+
+#include "harness/campaign/campaign.h"
+#include "harness/report/report.h"
+#include "tools/cli/command.h"
+#include "tools/cli/run_folder.h"
+#include "tools/cli/scenario_model.h"
+#include "tools/cli/signals.h"
+#include "tools/cli/simulator_factory.h"
+#include "tools/cli/trace_feed.h"
+#include "tools/cli/version.h"
+
+namespace parallax::tools {
+namespace {
+
+struct RunOptions {
+  std::string scenario;
+  std::string out;
+  std::uint64_t seed = 1;
+  std::int64_t jobs = 1;
+  bool resume = false;
+  bool keep_going = false;
+  std::string criterion;
+  double confidence = 0.0;  // 0: as the scenario says
+  double epsilon = 0.0;
+  std::int64_t max_runs = 0;
+};
+
+/// The command line has the last word over the scenario.
+void apply(const RunOptions& options, harness::Scenario& scenario) {
+  auto& criterion = scenario.criterion;
+  if (options.criterion == "paper") criterion.kind = harness::CriterionKind::kPaper;
+  if (options.criterion == "clean-runs") criterion.kind = harness::CriterionKind::kCleanRuns;
+  if (options.confidence > 0) criterion.confidence_level = options.confidence;
+  if (options.epsilon > 0) criterion.epsilon = options.epsilon;
+  if (options.max_runs > 0) scenario.limits.max_runs = options.max_runs;
+}
+
+void show_progress(const harness::CampaignProgress& progress) {
+  const double left =
+      progress.runs_per_s > 0
+          ? static_cast<double>(progress.needed - progress.done) / progress.runs_per_s
+          : 0.0;
+  fmt::print(stderr, "\rtrace {}: {}/{} simulations, {:.1f}/s, about {:.0f} s left \x1b[K",
+             progress.trace, progress.done, progress.needed, progress.runs_per_s, left);
+}
+
+harness::CampaignOptions campaign_options(const RunOptions& options, const ScenarioModel& loaded,
+                                          const Invocation& invocation) {
+  harness::CampaignOptions campaign;
+  campaign.seed = options.seed;
+  campaign.jobs = options.jobs;
+  campaign.keep_going = options.keep_going;
+  campaign.resume = options.resume;
+  campaign.run_dir = options.out.empty() ? default_run_folder(options.scenario)
+                                         : std::filesystem::path(options.out);
+  campaign.scenario_hash = loaded.sources_hash;
+  campaign.tool_version = kVersion;
+  campaign.stop = &stop_flag();
+  if (!invocation.options().quiet && isatty(STDERR_FILENO) != 0) campaign.progress = show_progress;
+  return campaign;
+}
+
+int run_scenario(const RunOptions& options, Invocation& invocation) {
+  auto& sink = invocation.sink();
+  auto loaded = load_scenario_model(options.scenario, invocation);
+  if (!loaded) return 0;
+  apply(options, loaded->scenario);
+  const auto& model = loaded->compilation.model;
+  if (!model.has_constraints) {
+    sink.error(base::DiagnosticCode::kNothingToSimulate,
+               base::SourceRange{loaded->scenario.source, 0, 0});
+    return 0;
+  }
+  EnumeratedTraces traces(model, loaded->scenario.limits.max_traces, invocation);
+  const auto campaign = campaign_options(options, *loaded, invocation);
+  const auto result = harness::run_campaign(loaded->scenario, traces, simulator_factory(*loaded),
+                                            campaign, invocation.files(), sink);
+  if (campaign.progress) fmt::print(stderr, "\r\x1b[K");
+  if (!result) return 0;
+  if (!harness::write_report(*result, campaign.run_dir, sink)) return 0;
+  const bool json = invocation.options().json;
+  invocation.result(json ? harness::campaign_json(*result, true)
+                         : harness::campaign_text(*result, {invocation.color_on(STDOUT_FILENO)}));
+  invocation.remark(fmt::format("{} simulations in {:.1f} s ({:.0f} s simulated); report: {}",
+                                result->timing.runs_made, result->timing.wall_s,
+                                result->timing.simulated_s,
+                                (campaign.run_dir / "report.txt").string()));
+  // A run that expected traces and had none is a finding, not a clean bill.
+  if (result->traces.empty() && !result->interrupted) return 1;
+  return harness::exit_code(*result);
+}
+
+}  // namespace
+
+Command add_run_command(CLI::App& app) {
+  auto options = std::make_shared<RunOptions>();
+  auto* command = app.add_subcommand(
+      "run", "The whole loop: trace, sample, simulate, compare, confidence, next trace");
+  command->footer(
+      "Examples:\n"
+      "  parallax run scenarios/two_regions/scenario.yaml\n"
+      "  parallax run edge.yaml --jobs 2 --seed 7 --out out/edge7\n"
+      "  parallax run edge.yaml --seed 7 --out out/edge7 --resume\n"
+      "Exit codes: 0 no discrepancy, 1 discrepancy or no trace, 4 inconclusive.");
+  command->add_option("scenario", options->scenario, "Scenario file (YAML)")->required();
+  command->add_option("--out", options->out, "Run folder; default out/NAME, numbered if taken");
+  command->add_option("--seed", options->seed, "Seed of every random choice")
+      ->capture_default_str();
+  command->add_option("-j,--jobs", options->jobs, "Simulations at the same time")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  command->add_flag("--resume", options->resume, "Continue the run in the run folder");
+  command->add_flag("--keep-going", options->keep_going,
+                    "Go on with the next trace after a discrepancy");
+  command->add_option("--criterion", options->criterion, "When a trace has been tried enough")
+      ->check(CLI::IsMember({"clean-runs", "paper"}));
+  command->add_option("--confidence", options->confidence, "Confidence level C of the claim")
+      ->check(CLI::Range(0.5, 0.999999));
+  command->add_option("--epsilon", options->epsilon, "Discrepancy probability to exclude")
+      ->check(CLI::Range(1e-6, 0.5));
+  command->add_option("--max-runs", options->max_runs, "Simulations per trace before giving up")
+      ->check(CLI::PositiveNumber);
+  return {command,
+          [options](Invocation& invocation) { return run_scenario(*options, invocation); }};
+}
+
+}  // namespace parallax::tools

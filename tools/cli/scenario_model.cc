@@ -1,0 +1,114 @@
+#include "tools/cli/scenario_model.h"
+
+#include <cmath>
+#include <limits>
+
+#include "compiler/base/file_io.h"
+#include "harness/campaign/campaign.h"
+
+namespace parallax::tools {
+namespace {
+
+/// The plan's poses are located with the regions that the simulation is mapped with.
+class RegionLocator final : public compiler::PoseLocator {
+ public:
+  explicit RegionLocator(const harness::RegionSet& regions) : regions_(&regions) {}
+
+  std::optional<std::string> region_of(std::string_view,
+                                       const compiler::Pose& pose) const override {
+    const auto* region = regions_->locate(point(pose));
+    if (region == nullptr) return std::nullopt;
+    return region->name;
+  }
+
+  std::optional<Nearest> nearest(std::string_view, const compiler::Pose& pose) const override {
+    std::optional<Nearest> best;
+    const auto at = point(pose);
+    for (const auto& region : regions_->regions()) {
+      double squared_m2 = 0.0;
+      for (const auto axis : {harness::Axis::kX, harness::Axis::kY, harness::Axis::kZ}) {
+        const auto& bound = region.on(axis);
+        if (!bound) continue;
+        const double value = at[static_cast<std::size_t>(axis)];
+        const double outside_m = std::max({bound->lower - value, value - bound->upper, 0.0});
+        squared_m2 += outside_m * outside_m;
+      }
+      const double distance_m = std::sqrt(squared_m2);
+      if (!best || distance_m < best->distance_m) best = Nearest{region.name, distance_m};
+    }
+    return best;
+  }
+
+ private:
+  static std::array<double, 4> point(const compiler::Pose& pose) {
+    return {pose.x_m, pose.y_m, pose.z_m, compiler::yaw_rad(pose)};
+  }
+  const harness::RegionSet* regions_;
+};
+
+/// Where a formula of the scenario can be parsed: in the file itself if it stands there word for
+/// word, else (escapes, folded lines) as a text of its own under the place's name.
+base::SourceRange formula_text(const harness::LocatedText& text, base::SourceFiles& files) {
+  const auto raw = files.text(text.source);
+  const auto offset = raw.find(text.text);
+  if (offset != std::string_view::npos) {
+    const auto begin = text.source.begin + static_cast<std::uint32_t>(offset);
+    return {text.source.file, begin, begin + static_cast<std::uint32_t>(text.text.size())};
+  }
+  const auto file = files.add(files.place(text.source), text.text);
+  return {file, 0, static_cast<std::uint32_t>(text.text.size())};
+}
+
+base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scenario,
+                                                   const RegionLocator& locator,
+                                                   Invocation& invocation) {
+  auto& files = invocation.files();
+  auto& sink = invocation.sink();
+  compiler::CompileInput input;
+  for (const auto& model : scenario.models) input.models.emplace_back(model.text);
+  input.horizon = scenario.horizon;
+  for (const auto& text : scenario.constraints) {
+    input.constraints.push_back(formula_text(text, files));
+  }
+  if (scenario.plan) {
+    const auto plan = base::load_text(scenario.plan->text, files, sink);
+    const auto bind = base::load_text(scenario.bind->text, files, sink);
+    if (!plan || !bind) return sink.already_reported();
+    input.plan = compiler::PlanInput{*plan, *bind, std::nullopt, &locator};
+  }
+  return input;
+}
+
+}  // namespace
+
+base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
+                                                Invocation& invocation) {
+  auto& sink = invocation.sink();
+  auto scenario = harness::load_scenario(path, invocation.files(), sink);
+  if (!scenario) return sink.already_reported();
+  auto scenario_hash = harness::hash_of_sources(invocation.files());
+  const RegionLocator locator(scenario->mapping->regions());
+  const auto input = compile_input(*scenario, locator, invocation);
+  if (!input) return sink.already_reported();
+  auto compilation = compiler::compile_model(*input, invocation.files(), sink);
+  if (!compilation) return sink.already_reported();
+  const auto& model = compilation->model;
+  if (!harness::check_against_model(*scenario, model.fluents, model.events, sink)) {
+    return sink.already_reported();
+  }
+  return ScenarioModel{*std::move(scenario), *std::move(compilation),
+                       harness::hash_of_sources(invocation.files()), std::move(scenario_hash)};
+}
+
+base::Result<compiler::Compilation> compile_models(const ModelOptions& options,
+                                                   Invocation& invocation) {
+  const auto& first = options.models.front();
+  if (options.models.size() == 1 && (first.ends_with(".yaml") || first.ends_with(".yml"))) {
+    auto loaded = load_scenario_model(first, invocation);
+    if (!loaded) return invocation.sink().already_reported();
+    return std::move(loaded->compilation);
+  }
+  return compiler::compile_model(compile_input(options), invocation.files(), invocation.sink());
+}
+
+}  // namespace parallax::tools

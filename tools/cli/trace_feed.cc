@@ -1,0 +1,99 @@
+#include "tools/cli/trace_feed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "harness/region/state_mapping.h"
+#include "runtime/session/unsat_core.h"
+
+namespace parallax::tools {
+
+bool report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Timepoint steps,
+                             base::DiagnosticSink& sink) {
+  const auto core = runtime::find_unsat_core(model, steps, runtime::make_cadical_solver());
+  if (!core) return false;
+  // Several origins can share a place (the frame axiom and the declaration of a fluent).
+  std::vector<const compiler::Origin*> blamed;
+  for (const auto index : *core) blamed.push_back(&model.origins[index]);
+  const auto first = blamed.empty() ? base::SourceRange{} : blamed.front()->source;
+  auto diagnostic = sink.error(base::DiagnosticCode::kModelUnsatisfiable, first, steps);
+  for (const auto* origin : blamed) {
+    diagnostic.note(origin->source, fmt::format("this {} takes part", origin->what));
+  }
+  return true;
+}
+
+EnumeratedTraces::EnumeratedTraces(const compiler::CompiledModel& model, std::int64_t max_traces,
+                                   Invocation& invocation)
+    : model_(&model),
+      max_traces_(max_traces),
+      invocation_(&invocation),
+      fluents_(model.fluents),
+      session_(std::make_unique<runtime::SolverSession>(model, runtime::make_cadical_solver())),
+      enumerator_(std::make_unique<runtime::PlanEnumerator>(*session_)) {
+  std::sort(fluents_.begin(), fluents_.end());
+}
+
+base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next() {
+  if (max_traces_ > 0 && given_ == max_traces_) {
+    limited_ = true;
+    return std::optional<harness::CampaignTrace>();
+  }
+  const auto trace = enumerator_->next();
+  if (!trace) {
+    if (given_ == 0 && !explain_absence()) return invocation_->sink().already_reported();
+    return std::optional<harness::CampaignTrace>();
+  }
+  ++given_;
+  auto converted = convert(*trace);
+  if (!converted) return invocation_->sink().already_reported();
+  return std::optional<harness::CampaignTrace>(*std::move(converted));
+}
+
+std::string EnumeratedTraces::exploration() const {
+  return std::string(
+      runtime::to_string(limited_ ? runtime::Exploration::kStopped : enumerator_->exploration()));
+}
+
+base::Status EnumeratedTraces::explain_absence() const {
+  auto& sink = invocation_->sink();
+  if (report_if_unsatisfiable(*model_, model_->horizon, sink)) return sink.already_reported();
+  for (const auto& origin : model_->origins) {
+    if (origin.what != "state constraint") continue;
+    sink.warning(base::DiagnosticCode::kNoTraceReachesConstraint, origin.source, model_->horizon);
+  }
+  return base::Unit{};
+}
+
+base::Result<harness::CampaignTrace> EnumeratedTraces::convert(const runtime::Trace& trace) const {
+  harness::CampaignTrace out;
+  out.number = trace.number;
+  out.key = runtime::event_key(trace);
+  for (const auto& point : trace.points) out.holds.push_back(point.holds);
+  for (std::size_t t = 0; t + 1 < trace.points.size(); ++t) {
+    const auto& point = trace.points[t];
+    if (point.happens.size() != 1) {
+      const auto where = model_->origins.front().source;
+      return invocation_->sink().error(base::DiagnosticCode::kSeveralEventsAtOnce, where,
+                                       point.happens.size(), t);
+    }
+    harness::TraceEvent event;
+    const auto term = harness::ground_fluent(point.happens.front());
+    event.text = term.text;
+    event.symbol = term.symbol;
+    event.arguments = term.arguments;
+    if (point.plan_step) {
+      const auto& step = model_->plan[*point.plan_step];
+      event.source = invocation_->files().place(step.source);
+      for (const auto& [name, value] : step.arguments) {
+        std::visit([&, key = name](const auto& v) { event.plan_arguments[key] = v; }, value);
+      }
+    }
+    out.events.push_back(std::move(event));
+  }
+  return out;
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compiler/artifact/compiled_model.h"
+#include "harness/campaign/trace_input.h"
+#include "runtime/enumerate/plan_enumerator.h"
+#include "tools/cli/command.h"
+
+namespace parallax::tools {
+
+/// Hands the traces of a compiled model to a campaign, one at a time: the solver waits while the
+/// campaign simulates.
+class EnumeratedTraces final : public harness::TraceFeed {
+ public:
+  /// `model` and `invocation` outlive the feed. `max_traces` 0: all.
+  EnumeratedTraces(const compiler::CompiledModel& model, std::int64_t max_traces,
+                   Invocation& invocation);
+  base::Result<std::optional<harness::CampaignTrace>> next() override;
+  std::string exploration() const override;
+  const std::vector<std::string>& fluents() const override { return fluents_; }
+  std::int64_t solve_calls() const { return session_->solve_calls(); }
+
+ private:
+  base::Result<harness::CampaignTrace> convert(const runtime::Trace& trace) const;
+  base::Status explain_absence() const;
+
+  const compiler::CompiledModel* model_;
+  std::int64_t max_traces_;
+  Invocation* invocation_;
+  std::vector<std::string> fluents_;
+  std::unique_ptr<runtime::SolverSession> session_;
+  std::unique_ptr<runtime::PlanEnumerator> enumerator_;
+  std::int64_t given_ = 0;
+  bool limited_ = false;
+};
+
+/// Reports why the model has no execution of `steps` steps: the axioms of a minimal core, each
+/// with its place. Does nothing and returns false if it has one.
+bool report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Timepoint steps,
+                             base::DiagnosticSink& sink);
+
+}  // namespace parallax::tools

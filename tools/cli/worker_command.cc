@@ -1,0 +1,40 @@
+#include <unistd.h>
+
+#include <memory>
+
+#include "harness/campaign/campaign.h"
+#include "harness/config/scenario.h"
+#include "harness/world/ode_simulator.h"
+#include "harness/world/worker.h"
+#include "tools/cli/command.h"
+
+namespace parallax::tools {
+
+Command add_worker_command(CLI::App& app) {
+  struct Options {
+    std::string scenario;
+    std::string hash;
+  };
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand(
+      "worker", "Serve the built-in simulator of a scenario on standard input and output");
+  command->group("");  // started by `run`; not meant to be typed
+  command->add_option("scenario", options->scenario)->required();
+  command->add_option("--scenario-hash", options->hash);
+  return {command, [options](Invocation& invocation) {
+            const auto scenario =
+                harness::load_scenario(options->scenario, invocation.files(), invocation.sink());
+            if (!scenario) return 0;
+            // The parent read the same file a moment ago; an edit in between must not go unseen.
+            if (!options->hash.empty() &&
+                harness::hash_of_sources(invocation.files()) != options->hash) {
+              invocation.sink().error_about(base::DiagnosticCode::kScenarioChanged,
+                                            options->scenario);
+              return 0;
+            }
+            harness::OdeSimulator simulator(scenario->world);
+            return harness::serve(simulator, STDIN_FILENO, STDOUT_FILENO) == 0 ? 0 : 5;
+          }};
+}
+
+}  // namespace parallax::tools
