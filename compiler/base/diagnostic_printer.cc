@@ -148,7 +148,12 @@ std::string to_text(const Diagnostic& d, const SourceFiles& files, const Diagnos
       out += fmt::format("note: {}\n", printable(note.text));
     }
   }
-  if (!d.fix.empty()) out += fmt::format("fix: {}\n", printable(d.fix));
+  if (!d.fix.empty()) {
+    out += fmt::format("fix: {}\n", printable(d.fix));
+  } else if (!d.range && !code.help.empty()) {
+    // No source line shows what is meant, so say what to do.
+    out += fmt::format("help: {}\n", code.help);
+  }
   return out;
 }
 

@@ -29,6 +29,10 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, TypedModel& model,
   if (!binding) return sink.already_reported();
   UnrollOptions options;
   options.entry = input.entry;
+  for (const auto& object : model.objects) options.constants.push_back(object.name);
+  for (const auto& symbol : model.symbols) {
+    if (symbol.kind == SymbolKind::kFluent) options.fluents.push_back(symbol.name);
+  }
   auto graph = unroll_plan(files, input.plan, *binding, *input.locator, options, sink);
   if (!graph) return sink.already_reported();
   auto formulas = check_plan_formulas(*graph, model, files, sink);

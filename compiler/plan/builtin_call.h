@@ -11,7 +11,7 @@
 
 namespace parallax::compiler {
 
-/// What a built-in can see; the helpers below make its body one line.
+/// What a built-in can see; the functions of it keep their bodies short.
 struct BuiltinCall {
   std::span<const ValueId> args;
   const FailureClasses& classes;

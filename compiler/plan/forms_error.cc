@@ -12,6 +12,8 @@ namespace {
 
 using base::DiagnosticCode;
 
+constexpr std::size_t kMaxSuggestions = 50;
+
 struct Hint {
   std::string_view form;
   std::string_view text;
@@ -107,13 +109,15 @@ void PlanCompiler::unknown_form(DatumId form, std::string_view name) {
     sink_.error(DiagnosticCode::kUnsupportedPlanForm, data_.source(form), name, hint->text);
     return;
   }
+  auto error = sink_.error(DiagnosticCode::kUnknownPlanForm, data_.source(form), name);
+  // Looking for the nearest name is the expensive part; nobody reads the thousandth suggestion.
+  if (sink_.error_count() > kMaxSuggestions) return;
   std::vector<std::string> names;
   for (const auto& [known, function] : functions_) names.push_back(known);
   for (const auto& [known, function] : forms()) names.emplace_back(known);
   for (const auto& builtin : plan_builtins()) {
     if (builtin.name.front() != '%') names.emplace_back(builtin.name);
   }
-  auto error = sink_.error(DiagnosticCode::kUnknownPlanForm, data_.source(form), name);
   // Half the word may be wrong: naming the nearest form helps more than naming none.
   const auto near = base::nearest_name(name, names, std::max<std::size_t>(2, name.size() / 2));
   if (near) error.note(fmt::format("the nearest form of the subset is `{}`", *near));

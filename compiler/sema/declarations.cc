@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "compiler/sema/elaborator.h"
 #include "compiler/sema/model_options.h"
 #include "compiler/sema/name_advice.h"
 #include "compiler/sema/sort_declarations.h"
@@ -17,6 +18,11 @@ namespace {
 
 bool is_symbol_name(std::string_view name) {
   return (name[0] >= 'A' && name[0] <= 'Z') || name[0] == '_';
+}
+
+/// Constants may also be spelled like variables, `r1`: a name says less than a declaration.
+bool is_constant_name(std::string_view name) {
+  return is_symbol_name(name) || (name[0] >= 'a' && name[0] <= 'z');
 }
 
 class Declarer {
@@ -85,8 +91,13 @@ class Declarer {
   void constant(const Ast& ast, Word word, SortId sort_id, bool additional) {
     const auto name = ast.text(word);
     const auto& sort = model_.sorts[sort_id];
-    if (!is_symbol_name(name)) {
+    const auto like = model_.find_sort(sort_of_variable(name));
+    if (!is_constant_name(name)) {
       sink_.error(DiagnosticCode::kNameSpelling, ast.source(word), shortened(name), "constant");
+    } else if (like) {
+      sink_.error(DiagnosticCode::kNameSpelling, ast.source(word), shortened(name), "constant")
+          .note(model_.sorts[*like].declared,
+                "it would read as a variable of the sort `" + model_.sorts[*like].name + "`");
     } else if (sort.reified) {
       sink_.error(DiagnosticCode::kReifiedConstant, ast.source(word), shortened(name), sort.name)
           .note(sort.declared, "sort `" + sort.name + "` declared here")

@@ -78,14 +78,22 @@ Elaborator::Value Elaborator::variable(const Node& node) {
   if (options_.allow_free_time && text == "time" && model_.core.time) {
     return {time_term(source(node)).index(), false};
   }
-  if (reported_free_.insert(text).second) {
-    auto report = sink_.error(DiagnosticCode::kFreeVariable, source(node), quoted(node));
-    const std::vector<std::string> names(bound_names_.begin(), bound_names_.end());
-    if (const auto near = base::nearest_name(text, names)) {
-      report.fix(NameAdvice::replace(text, *near));
-    }
-  }
+  // Constants may be spelled like variables (`r1`); a quantifier around the name goes first.
+  if (model_.find_object(text)) return constant(node);
+  if (reported_free_.insert(text).second) report_free(node);
   return failure();
+}
+
+void Elaborator::report_free(const Node& node) {
+  const auto text = ast_->name(node);
+  const std::vector<std::string> names(bound_names_.begin(), bound_names_.end());
+  const auto near = base::nearest_name(text, names);
+  // `r3` beside the constants `r1` and `r2` is no forgotten quantifier.
+  if (!near && !model_.find_sort(sort_of_variable(text)) && advice_.object(text)) {
+    return report_constant(node);
+  }
+  auto report = sink_.error(DiagnosticCode::kFreeVariable, source(node), quoted(node));
+  if (near) report.fix(NameAdvice::replace(text, *near));
 }
 
 TermId Elaborator::time_term(const base::SourceRange& at) {
@@ -300,6 +308,11 @@ bool Elaborator::check_integer(Operator op, TermId term) {
   return false;
 }
 
+bool Elaborator::check_integers(Operator op, TermId left, TermId right) {
+  const bool left_fits = check_integer(op, left);  // both complaints, if there are two
+  return check_integer(op, right) && left_fits;
+}
+
 Elaborator::Value Elaborator::negation_of_term(const Node& node, TermId operand) {
   if (!check_integer(node.op, operand)) return failure();
   Term& term = model_.terms[operand];
@@ -315,8 +328,7 @@ Elaborator::Value Elaborator::negation_of_term(const Node& node, TermId operand)
 }
 
 Elaborator::Value Elaborator::arithmetic(const Node& node, TermId left, TermId right) {
-  const bool both = check_integer(node.op, left) & check_integer(node.op, right);
-  if (!both) return failure();
+  if (!check_integers(node.op, left, right)) return failure();
   Term term;
   term.kind = TermKind::kArithmetic;
   term.op = node.op == Operator::kNegate ? ArithmeticOp::kSubtract : *arithmetic_op(node.op);
@@ -328,8 +340,7 @@ Elaborator::Value Elaborator::arithmetic(const Node& node, TermId left, TermId r
 Elaborator::Value Elaborator::comparison(const Node& node, TermId left, TermId right) {
   const auto op = *compare_op(node.op);
   if (op != CompareOp::kEqual && op != CompareOp::kNotEqual) {
-    const bool both = check_integer(node.op, left) & check_integer(node.op, right);
-    if (!both) return failure();
+    if (!check_integers(node.op, left, right)) return failure();
   } else {
     bool may_be_equal = is_integer(left) && is_integer(right);
     for (const auto a : sorts_of(left)) {

@@ -43,13 +43,12 @@ bool is_connective(Operator op) {
          op == Operator::kAnd;
 }
 
-/// `time` of `time27`.
+}  // namespace
+
 std::string_view sort_of_variable(std::string_view name) {
   while (!name.empty() && name.back() >= '0' && name.back() <= '9') name.remove_suffix(1);
   return name;
 }
-
-}  // namespace
 
 Elaborator::Elaborator(TypedModel& model, const ElaborationOptions& options,
                        base::DiagnosticSink& sink)

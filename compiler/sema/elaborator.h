@@ -16,6 +16,9 @@
 
 namespace parallax::compiler {
 
+/// `time` of `time27`: the sort that a variable of this name has.
+std::string_view sort_of_variable(std::string_view name);
+
 /// What a formula may use beyond its own quantifiers.
 struct ElaborationOptions {
   bool allow_free_time = false;
@@ -93,10 +96,12 @@ class Elaborator {
   Value fluent_atom(const Frame& frame, const Node& node, std::vector<TermId> arguments);
   bool check_argument(const Symbol& symbol, std::size_t position, TermId term);
   bool check_integer(Operator op, TermId term);
+  bool check_integers(Operator op, TermId left, TermId right);
   bool is_integer(TermId term) const;
   std::vector<SortId> sorts_of(TermId term) const;
   void report_unknown_symbol(const Node& node, Position position, std::optional<SortId> expected);
   void report_constant(const Node& node);
+  void report_free(const Node& node);
   TermId time_term(const base::SourceRange& source);
 
   Value connective(const Frame& frame, const Node& node);

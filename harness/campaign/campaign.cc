@@ -36,8 +36,9 @@ class Campaign {
         files_(files),
         sink_(sink),
         criterion_(make_criterion(scenario.criterion)),
-        pool_(options.jobs, make_simulator,
-              [this](const SampleRecord& record) { keep(record); }, options.stop) {
+        pool_(
+            options.jobs, make_simulator, [this](const SampleRecord& record) { keep(record); },
+            options.stop) {
     for (const auto& fluent : traces.fluents()) fluents_.push_back(ground_fluent(fluent));
     result_.scenario = scenario.name;
     result_.title = scenario.title;
@@ -118,8 +119,8 @@ class Campaign {
     const auto plan = make_plan(std::move(trace), *cuboid);
     if (!plan) return sink_.already_reported();
     if (!announce(**plan)) return sink_.already_reported();
-    const TraceContext context{scenario_, options_, result_.simulator, fluents_,       *criterion_,
-                               pool_,     *journal_, lost_in_a_row_,   sink_};
+    const TraceContext context{scenario_, options_,  result_.simulator, fluents_, *criterion_,
+                               pool_,     *journal_, lost_in_a_row_,    sink_};
     auto outcome = run_trace(context, *plan, *cuboid);
     if (!outcome) return sink_.already_reported();
     result_.simulations += outcome->result.simulations;
@@ -132,13 +133,13 @@ class Campaign {
   base::Result<std::shared_ptr<const TracePlan>> make_plan(CampaignTrace trace,
                                                            const StartCuboid& cuboid) {
     auto calls = action_calls(scenario_, trace, sink_);
-    auto sampler = Sampler::make(cuboid, scenario_.sampling_inset_m, scenario_.sampling_source,
-                                 sink_);
+    auto sampler =
+        Sampler::make(cuboid, scenario_.sampling_inset_m, scenario_.sampling_source, sink_);
     if (!calls || !sampler) return sink_.already_reported();
     const auto key = hash64(trace.key);
-    return std::make_shared<const TracePlan>(
-        TracePlan{std::move(trace), std::move(*calls), std::move(*sampler), options_.seed, key,
-                  scenario_.limits.max_rejected_starts});
+    return std::make_shared<const TracePlan>(TracePlan{std::move(trace), std::move(*calls),
+                                                       std::move(*sampler), options_.seed, key,
+                                                       scenario_.limits.max_rejected_starts});
   }
 
   /// Every drawn variable must be one that the simulator can start with.

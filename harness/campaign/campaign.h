@@ -33,7 +33,7 @@ struct CampaignOptions {
   std::filesystem::path run_dir;  // made if missing; holds journal.ndjson
   std::string scenario_hash;      // over every text that was read (hash_of_sources)
   std::string tool_version;
-  const std::atomic<bool>* stop = nullptr;  // raised by SIGINT and SIGTERM
+  const std::atomic<bool>* stop = nullptr;                // raised by SIGINT and SIGTERM
   std::function<void(const CampaignProgress&)> progress;  // called in the caller's thread
 };
 

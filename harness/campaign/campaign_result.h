@@ -30,9 +30,9 @@ enum class Confirmation : std::uint8_t { kBitEqual, kDiffers, kLost };
 struct Discrepancy {
   std::int64_t trace = 0;
   std::int64_t sample = 0;
-  std::uint64_t seed = 0;              // handed to the simulator at reset
-  std::int64_t first_divergence = 0;   // first timepoint at which some mapped fluent differs
-  std::vector<DivergingFluent> first;  // what differs there
+  std::uint64_t seed = 0;                // handed to the simulator at reset
+  std::int64_t first_divergence = 0;     // first timepoint at which some mapped fluent differs
+  std::vector<DivergingFluent> first;    // what differs there
   std::vector<DivergingFluent> fluents;  // what differs at the last timepoint; never empty
   Confirmation confirmation = Confirmation::kBitEqual;
   SampleRecord record;
@@ -45,15 +45,15 @@ struct TraceResult {
   std::int64_t simulations = 0;  // run and not rejected before they began; lost ones included
   std::int64_t clean = 0;
   std::int64_t lost = 0;
-  std::int64_t rejected = 0;     // invalid starts that were drawn again
-  std::int64_t strayed = 0;      // clean at the end, but differing from the trace on the way
-  double certified_level = 0.0;  // C
+  std::int64_t rejected = 0;       // invalid starts that were drawn again
+  std::int64_t strayed = 0;        // clean at the end, but differing from the trace on the way
+  double certified_level = 0.0;    // C
   double certified_epsilon = 1.0;  // with confidence C, p is below this
   std::optional<std::int64_t> paper_stopped_at;
-  std::string paper_variant;              // "paper-literal, n = 2"
-  std::vector<std::string> not_covered;   // fluents without regression evidence
-  std::string claim;                      // exactly what is claimed, one sentence
-  std::vector<std::string> caveats;       // what weakens the claim, one sentence each
+  std::string paper_variant;             // "paper-literal, n = 2"
+  std::vector<std::string> not_covered;  // fluents without regression evidence
+  std::string claim;                     // exactly what is claimed, one sentence
+  std::vector<std::string> caveats;      // what weakens the claim, one sentence each
 };
 
 /// Everything a report needs. Only `timing` depends on the clock.
@@ -62,7 +62,7 @@ struct CampaignResult {
   std::string title;     // what the scenario calls itself; may be empty
   std::uint64_t seed = 0;
   CampaignVerdict verdict = CampaignVerdict::kInconclusive;
-  std::string exploration;  // "all traces explored" | "complete up to bound" | "stopped"
+  std::string exploration;   // "all traces explored" | "complete up to bound" | "stopped"
   bool interrupted = false;  // the stop flag was raised
   CriterionSpec criterion;
   SimulatorInfo simulator;
@@ -73,8 +73,8 @@ struct CampaignResult {
   std::int64_t simulations = 0;
   struct Timing {
     double wall_s = 0.0;
-    double simulated_s = 0.0;       // by runs made now, not by those read from a journal
-    std::int64_t runs_made = 0;     // the same
+    double simulated_s = 0.0;    // by runs made now, not by those read from a journal
+    std::int64_t runs_made = 0;  // the same
   } timing;
 };
 

@@ -29,7 +29,8 @@ std::optional<RecordDifference> differing_state(const State& a, const State& b,
   while (left != a.end() || right != b.end()) {
     const bool only_left = right == b.end() || (left != a.end() && left->first < right->first);
     const bool only_right = left == a.end() || (right != b.end() && right->first < left->first);
-    if (only_left) return RecordDifference{timepoint, left->first, exact_text(left->second), "absent"};
+    if (only_left)
+      return RecordDifference{timepoint, left->first, exact_text(left->second), "absent"};
     if (only_right) {
       return RecordDifference{timepoint, right->first, "absent", exact_text(right->second)};
     }

@@ -34,18 +34,18 @@ const char* word(InterceptKind kind) {
 std::string criterion_json(const CriterionSpec& criterion) {
   const auto& paper = criterion.paper;
   const nlohmann::ordered_json out = {
-          {"kind", criterion.kind == CriterionKind::kPaper ? "paper" : "clean-runs"},
-          {"confidence", criterion.confidence_level},
-          {"epsilon", criterion.epsilon},
-          {"paper",
-           {{"preset", paper.preset},
-            {"sigma", word(paper.sigma)},
-            {"root", paper.root == RootKind::kFinal ? "final" : "initial"},
-            {"intercept", word(paper.intercept)},
-            {"interval", paper.interval == IntervalKind::kPrediction ? "prediction" : "mean"},
-            {"extra_runs", paper.extra_runs},
-            {"exempt_inherited", paper.exempt_inherited},
-            {"tolerance_m", paper.tolerance_m}}}};
+      {"kind", criterion.kind == CriterionKind::kPaper ? "paper" : "clean-runs"},
+      {"confidence", criterion.confidence_level},
+      {"epsilon", criterion.epsilon},
+      {"paper",
+       {{"preset", paper.preset},
+        {"sigma", word(paper.sigma)},
+        {"root", paper.root == RootKind::kFinal ? "final" : "initial"},
+        {"intercept", word(paper.intercept)},
+        {"interval", paper.interval == IntervalKind::kPrediction ? "prediction" : "mean"},
+        {"extra_runs", paper.extra_runs},
+        {"exempt_inherited", paper.exempt_inherited},
+        {"tolerance_m", paper.tolerance_m}}}};
   return out.dump();
 }
 

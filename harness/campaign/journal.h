@@ -58,8 +58,8 @@ class Journal {
 
   /// Replaces the file by header, traces and `consumed`, sorted by trace, sample and phase, so that
   /// it no longer shows in which order simulations ended or what ran ahead in vain.
-  base::Status rewrite(const std::vector<TraceLine>& traces,
-                       std::vector<SampleRecord> consumed, base::DiagnosticSink& sink);
+  base::Status rewrite(const std::vector<TraceLine>& traces, std::vector<SampleRecord> consumed,
+                       base::DiagnosticSink& sink);
 
  private:
   Journal(std::filesystem::path path, JournalHeader header, JournalText recorded);

@@ -29,9 +29,10 @@ std::optional<SampleId> default_sample(const JournalText& journal) {
 std::string obstacle(const JournalHeader& header, const std::string& scenario_hash,
                      const SimulatorInfo& simulator) {
   if (header.scenario_hash != scenario_hash) {
-    return fmt::format("the scenario, or a file that it reads, has changed: its hash was {}, now "
-                       "it is {}",
-                       header.scenario_hash, scenario_hash);
+    return fmt::format(
+        "the scenario, or a file that it reads, has changed: its hash was {}, now "
+        "it is {}",
+        header.scenario_hash, scenario_hash);
   }
   if (simulator.name.empty()) {
     return fmt::format("the simulator did not start: {}", simulator.version);
@@ -78,8 +79,8 @@ base::Result<ReplayResult> replay_sample(const std::filesystem::path& run_dir,
   if (!journal) return sink.already_reported();
   if (!journal->header) return sink.error_about(DiagnosticCode::kNoJournal, run_dir.string());
   if (!id) id = default_sample(*journal);
-  const auto found = id ? journal->samples.find({id->trace, id->sample, Phase::kCertify})
-                        : journal->samples.end();
+  const auto found =
+      id ? journal->samples.find({id->trace, id->sample, Phase::kCertify}) : journal->samples.end();
   if (found == journal->samples.end()) {
     const auto name = id ? fmt::format("{}.{}", id->trace, id->sample) : std::string("at all");
     return sink.error_about(DiagnosticCode::kNoSuchSample, run_dir.string(), name);
@@ -99,15 +100,15 @@ base::Result<ReplayResult> replay_sample(const std::filesystem::path& run_dir,
   const auto& calls = journal->traces.at(record.trace).calls;
   const auto again = repeat_sample(calls, record, simulator, [] { return false; });
   if (again->status != SampleStatus::kOk) {
-    result.reason = fmt::format("the simulator was {}: {}", to_string(again->status),
-                                again->reason);
+    result.reason =
+        fmt::format("the simulator was {}: {}", to_string(again->status), again->reason);
     return result;
   }
   result.outcome = ReplayOutcome::kIdentical;
   if (auto differs = first_difference(record, *again)) {
     result.outcome = ReplayOutcome::kDiffers;
-    result.difference = ReplayDifference{differs->timepoint, differs->variable, differs->a,
-                                         differs->b};
+    result.difference =
+        ReplayDifference{differs->timepoint, differs->variable, differs->a, differs->b};
   }
   return result;
 }

@@ -128,10 +128,9 @@ class TraceCampaign {
     }
     if (judgement.first_divergence == 0) {
       const auto& fluent = judgement.first.front();
-      return context_.sink.error(DiagnosticCode::kMappingNotInverse,
-                                 context_.scenario.mapping_source, record.sample, record.trace,
-                                 fluent.observed ? "a state with" : "a state without",
-                                 fluent.fluent);
+      return context_.sink.error(
+          DiagnosticCode::kMappingNotInverse, context_.scenario.mapping_source, record.sample,
+          record.trace, fluent.observed ? "a state with" : "a state without", fluent.fluent);
     }
     context_.lost_in_a_row = 0;
     if (!judgement.matches()) return accept_discrepancy(std::move(record), judgement);
@@ -194,8 +193,7 @@ class TraceCampaign {
     const auto bound = certified_bound(tally_, criterion.confidence_level);
     result.certified_level = bound.confidence_level;
     result.certified_epsilon = bound.epsilon;
-    result.paper_stopped_at =
-        paper_stopped_at(tally_, criterion.paper, criterion.confidence_level);
+    result.paper_stopped_at = paper_stopped_at(tally_, criterion.paper, criterion.confidence_level);
     result.paper_variant = paper_variant(tally_, criterion.paper);
     result.not_covered = tally_.frame().not_covered;
     result.claim = claim(tally_, criterion);
@@ -206,9 +204,8 @@ class TraceCampaign {
 
   void add_own_caveats(TraceResult& result) const {
     if (result.strayed > 0) {
-      result.caveats.push_back(
-          fmt::format("{} of the clean runs left the trace on the way and ended as predicted",
-                      result.strayed));
+      result.caveats.push_back(fmt::format(
+          "{} of the clean runs left the trace on the way and ended as predicted", result.strayed));
     }
     if (!context_.simulator.seeds) {
       result.caveats.push_back(

@@ -13,7 +13,7 @@
 namespace parallax::harness {
 
 enum class TraceEnd : std::uint8_t {
-  kDecided,      // the criterion says stop
+  kDecided,  // the criterion says stop
   kDiscrepancy,
   kRunLimit,
   kLostTooOften,  // reported

@@ -47,8 +47,8 @@ InsideBinding read_inside(const YamlFields& fields, const SymbolPattern& pattern
   if (found != names.end()) {
     binding.region_argument = static_cast<std::size_t>(found - names.begin());
   } else if (!parameter.empty()) {
-    auto error = sink.error(DiagnosticCode::kUnknownPatternParameter,
-                            fields.find("inside")->range, parameter, pattern.symbol);
+    auto error = sink.error(DiagnosticCode::kUnknownPatternParameter, fields.find("inside")->range,
+                            parameter, pattern.symbol);
     add_suggestion(error, parameter, names, "parameters");
   }
   if (const auto* body = fields.require("body")) {
@@ -125,7 +125,8 @@ std::vector<FluentBinding> read_mapping(const YamlNode& node, base::DiagnosticSi
   for (const auto& entry : node.entries) {
     if (auto binding = read_binding(entry, sink)) bindings.push_back(std::move(*binding));
   }
-  refuse_repeated(bindings, [](const FluentBinding& b) { return b.fluent; }, sink);
+  refuse_repeated(
+      bindings, [](const FluentBinding& b) { return b.fluent; }, sink);
   return bindings;
 }
 

@@ -56,8 +56,8 @@ std::string with_positions(const std::string& text, const SymbolPattern& pattern
     const auto& names = pattern.parameters;
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
-      auto error = sink.error(base::DiagnosticCode::kUnknownPatternParameter, range, name,
-                              pattern.symbol);
+      auto error =
+          sink.error(base::DiagnosticCode::kUnknownPatternParameter, range, name, pattern.symbol);
       add_suggestion(error, name, names, "parameters");
     }
     out += text.substr(at, open - at) + '{' + std::to_string(found - names.begin()) + '}';

@@ -79,9 +79,9 @@ base::Status check_variables(const Scenario& scenario, const std::vector<Paramet
     }
   }
   for (const auto& dimension : scenario.sampling) {
-    const auto found =
-        std::find_if(parameters.begin(), parameters.end(),
-                     [&](const Parameter& p) { return p.name == dimension.variable; });
+    const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const Parameter& p) {
+      return p.name == dimension.variable;
+    });
     if (found == parameters.end()) {
       auto error = sink.error(DiagnosticCode::kUnknownSimVariable, scenario.sampling_source,
                               dimension.variable);

@@ -23,7 +23,8 @@ bool looks_numeric(const std::string& text) {
   const bool plain = std::all_of(text.begin(), text.end(), [](char c) {
     return (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '+' || c == 'e' || c == 'E';
   });
-  return plain && std::any_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+  return plain &&
+         std::any_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
 template <typename T>
@@ -138,8 +139,7 @@ std::optional<Interval> read_interval(const YamlNode& node, std::string_view nam
 std::optional<Value> read_value(const YamlNode& node, std::string_view name,
                                 base::DiagnosticSink& sink) {
   if (!node.is_scalar()) {
-    sink.error(DiagnosticCode::kWrongYamlKind, node.range, name, describe(node),
-               "a single value");
+    sink.error(DiagnosticCode::kWrongYamlKind, node.range, name, describe(node), "a single value");
     return std::nullopt;
   }
   if (node.quoted) return Value(node.text);

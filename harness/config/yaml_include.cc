@@ -63,8 +63,8 @@ class Includer {
   }
 
   base::Result<YamlNode> included(const YamlEntry& include) {
-    const auto names = include.value.is_list() ? include.value.items
-                                               : std::vector<YamlNode>{include.value};
+    const auto names =
+        include.value.is_list() ? include.value.items : std::vector<YamlNode>{include.value};
     YamlNode result{YamlNode::Kind::kMap, include.key_range, {}, false, {}, {}};
     bool failed = names.empty();
     if (failed) {

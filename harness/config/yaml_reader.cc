@@ -61,7 +61,7 @@ class TreeBuilder final : public YAML::EventHandler {
  private:
   struct Level {
     YamlNode node;
-    std::optional<YamlEntry> entry;            // a key that waits for its value
+    std::optional<YamlEntry> entry;                // a key that waits for its value
     std::map<std::string, SourceRange> keys = {};  // of the entries so far
   };
 

@@ -88,8 +88,8 @@ Json json_of(const Discrepancy& found, const std::string& folder) {
           {"repeated", word(found.confirmation)},
           {"start", json_of(found.record.initial)},
           {"outcomes", std::move(outcomes)},
-          {"replay", fmt::format("parallax replay {} --sample {}.{}", folder, found.trace,
-                                 found.sample)}};
+          {"replay",
+           fmt::format("parallax replay {} --sample {}.{}", folder, found.trace, found.sample)}};
 }
 
 Json json_of(const CampaignResult& result, bool with_timing) {

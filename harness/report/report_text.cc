@@ -126,10 +126,9 @@ class TextReport {
 
   void discrepancy(const Discrepancy& found, const TraceResult& trace) {
     const auto id = fmt::format("{}.{}", found.trace, found.sample);
-    out_ += fmt::format("\n  {} in simulation {}, seed {}, {}\n",
-                        painted("discrepancy", "1;31"), id, found.seed, confirmation(found));
-    std::vector<std::vector<std::string>> rows = {
-        {"fluent", "timepoint", "predicted", "observed"}};
+    out_ += fmt::format("\n  {} in simulation {}, seed {}, {}\n", painted("discrepancy", "1;31"),
+                        id, found.seed, confirmation(found));
+    std::vector<std::vector<std::string>> rows = {{"fluent", "timepoint", "predicted", "observed"}};
     for (const auto& fluent : found.fluents) rows.push_back(row(fluent));
     out_ += table(rows, 4);
     if (found.first_divergence < static_cast<std::int64_t>(trace.events.size())) {
@@ -139,16 +138,16 @@ class TextReport {
     std::vector<std::string> start;
     for (const auto& [name, value] : found.record.initial) {
       const auto* number = std::get_if<double>(&value);
-      start.push_back(fmt::format("{} = {}", name, number != nullptr ? fmt::format("{}", *number)
-                                                                     : exact_text(value)));
+      start.push_back(fmt::format(
+          "{} = {}", name, number != nullptr ? fmt::format("{}", *number) : exact_text(value)));
     }
     line("start", fmt::format("{}", fmt::join(start, ", ")), 4);
     line("replay", fmt::format("parallax replay {} --sample {}", result_.replay_folder, id), 4);
   }
 
   static std::vector<std::string> row(const DivergingFluent& fluent) {
-    return {fluent.fluent, fmt::format("{}", fluent.timepoint),
-            fluent.predicted ? "true" : "false", fluent.observed ? "true" : "false"};
+    return {fluent.fluent, fmt::format("{}", fluent.timepoint), fluent.predicted ? "true" : "false",
+            fluent.observed ? "true" : "false"};
   }
 
   static std::string confirmation(const Discrepancy& found) {
@@ -168,8 +167,8 @@ class TextReport {
     const auto t = static_cast<std::size_t>(found.first_divergence);
     std::vector<std::string> parts;
     for (const auto& fluent : found.first) {
-      parts.push_back(fmt::format("{} is {} instead of {}", fluent.fluent, fluent.observed,
-                                  fluent.predicted));
+      parts.push_back(
+          fmt::format("{} is {} instead of {}", fluent.fluent, fluent.observed, fluent.predicted));
     }
     line("first seen",
          fmt::format("at timepoint {}, after {}: {}", t, t > 0 ? trace.events[t - 1].text : "reset",
@@ -181,10 +180,10 @@ class TextReport {
     const auto& outcomes = found.record.outcomes;
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
       if (outcomes[i].status == SimStatus::kOk) continue;
-      line("action", fmt::format("event {}, {}, {} after {:.3f} s: {}", i, trace.events[i].text,
-                                 to_string(outcomes[i].status), outcomes[i].sim_time_s,
-                                 outcomes[i].reason.empty() ? "no reason given"
-                                                            : outcomes[i].reason),
+      line("action",
+           fmt::format("event {}, {}, {} after {:.3f} s: {}", i, trace.events[i].text,
+                       to_string(outcomes[i].status), outcomes[i].sim_time_s,
+                       outcomes[i].reason.empty() ? "no reason given" : outcomes[i].reason),
            4);
     }
   }
@@ -197,11 +196,13 @@ class TextReport {
       line("note", "no trace, so nothing was compared");
     }
     if (result_.traces.size() > 1 && result_.verdict == CampaignVerdict::kNoDiscrepancy) {
-      line("note", "each claim holds for its trace alone; that all of them hold together is less "
-                   "certain");
+      line("note",
+           "each claim holds for its trace alone; that all of them hold together is less "
+           "certain");
     }
     if (result_.interrupted) {
-      line("note", fmt::format("interrupted; `--resume --out {}` continues", result_.replay_folder));
+      line("note",
+           fmt::format("interrupted; `--resume --out {}` continues", result_.replay_folder));
     }
   }
 
@@ -225,8 +226,8 @@ std::string replay_text(const ReplayResult& result, const ReportStyle& style) {
   const auto paint = [&](std::string_view text, const char* color) {
     return style.color ? fmt::format("\x1b[{}m{}\x1b[0m", color, text) : std::string(text);
   };
-  const auto head = fmt::format("simulation {}.{}, seed {}: ", result.id.trace, result.id.sample,
-                                result.seed);
+  const auto head =
+      fmt::format("simulation {}.{}, seed {}: ", result.id.trace, result.id.sample, result.seed);
   switch (result.outcome) {
     case ReplayOutcome::kIdentical:
       return head + paint("identical", "1;32") +
@@ -235,8 +236,7 @@ std::string replay_text(const ReplayResult& result, const ReportStyle& style) {
                                  "observations"),
                          result.digest.empty() ? "" : ", digest " + result.digest);
     case ReplayOutcome::kCannot:
-      return head + paint("cannot be repeated", "1;33") + '\n' +
-             wrapped("  ", result.reason, 2);
+      return head + paint("cannot be repeated", "1;33") + '\n' + wrapped("  ", result.reason, 2);
     case ReplayOutcome::kDiffers:
       break;
   }

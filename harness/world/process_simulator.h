@@ -21,8 +21,8 @@ struct ProcessOptions {
   double observe_timeout_s = 2.0;
   double close_timeout_s = 2.0;
   double min_real_time_factor = 1.0;
-  std::int64_t recycle_after = 0;            // resets after which the child is replaced; 0: never
-  const std::atomic<bool>* stop = nullptr;   // waiting ends early, as a loss, when it is raised
+  std::int64_t recycle_after = 0;           // resets after which the child is replaced; 0: never
+  const std::atomic<bool>* stop = nullptr;  // waiting ends early, as a loss, when it is raised
 };
 
 /// A simulator in a child process that speaks newline-delimited JSON on its standard input and

@@ -74,7 +74,7 @@ TEST_CASE("start states that always interpenetrate end after a bounded number of
   cli.replace("world.yaml", "bodies:\n",
               "bodies:\n  block: {size_m: [1.2, 0.2, 0.3], position_m: [1.5, 0, 0.15]}\n");
   const auto result = cli.parallax({"run", "scenario.yaml", "--out", "run"});
-  check_message(result, 3, "scenario.yaml", "block");
+  check_message(result, 3, "common.yaml", "block");
   CHECK(result.err.find("box") != std::string::npos);
 }
 

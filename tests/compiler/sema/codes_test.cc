@@ -44,7 +44,7 @@ std::vector<Case> cases() {
       {"E1012", "sort Agent\n"},
       {"E1013", "[] P().\n"},
       {"E1014", "load nowhere/nothing.e\n"},
-      {"E1017", "sort a\na b\n"},
+      {"E1017", "sort a\na 3\n"},
       {"W1101", "sort a\na A\n[a]\na = A.\n"},
       {"E2001", "nosuchsort A\n"},
       {"E2002", "sort a\nsort a\n"},

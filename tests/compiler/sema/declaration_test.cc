@@ -61,10 +61,20 @@ TEST_CASE("constants: one sort each unless the declaration says `!`") {
       checked.model->sorts_overlap(*checked.model->find_sort("a"), *checked.model->find_sort("b")));
   CHECK(places("sort a\nsort b\na C\nb C\n") == Strings{"E2014 4:3-3"});
   CHECK(places("sort a\na C, C\n") == Strings{"E2002 2:6-6"});
-  CHECK(places("sort a\na c, 3\n") == Strings{"E1017 2:3-3", "E1017 2:6-6"});
+  CHECK(places("sort a\na 3, A\n") == Strings{"E1017 2:3-3"});
   CHECK(places("agnt James\nsort agent\n") == Strings{"E2001 1:1-4"});
   CHECK(places("sort v: integer\nv C\nrange v 0 1\n") == Strings{"E2006 2:3-3"});
   CHECK(places("fluent Loaded\n") == Strings{"E2004 1:8-13"});
+}
+
+TEST_CASE("constants: lower-case names are fine unless they read as variables") {
+  const CheckedText checked(
+      "sort region\nregion r1, left\npredicate P(region)\nP(r1) & P(left).\n");
+  CHECK(checked.text() == "");
+  CHECK(places("sort region\nregion region1\n") == Strings{"E1017 2:8-14"});
+  const CheckedText wrong("sort region\nregion r1, r2\npredicate P(region)\nP(r3).\n");
+  CHECK(wrong.places() == Strings{"E2101 4:3-4"});
+  CHECK(wrong.text().find("fix: replace `r3` with `r1`") != std::string::npos);
 }
 
 TEST_CASE("constants: a misspelt keyword is recognised") {

@@ -15,7 +15,12 @@
 namespace parallax::test {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || !defined(NDEBUG)
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define PARALLAX_TEST_INSTRUMENTED
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(PARALLAX_TEST_INSTRUMENTED) || !defined(NDEBUG)
 constexpr bool kLimitsHold = false;  // instrumented or unoptimised code is another matter
 #else
 constexpr bool kLimitsHold = true;

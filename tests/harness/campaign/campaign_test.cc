@@ -239,8 +239,8 @@ TEST_CASE("the report does not depend on the number of jobs, nor on how long fai
     bool keep_going;
     double drops_above_m;
   };
-  for (const Case& kind : {Case{"stops", false, 1.95}, Case{"goes on", true, 1.95},
-                           Case{"clean", true, 2.5}}) {
+  for (const Case& kind :
+       {Case{"stops", false, 1.95}, Case{"goes on", true, 1.95}, Case{"clean", true, 2.5}}) {
     CAPTURE(kind.name);
     std::vector<std::string> journals, texts, documents;
     for (const std::int64_t jobs : {1, 2, 8}) {

@@ -187,8 +187,8 @@ TEST_CASE("records come back from their line to the last bit") {
   record.seed = (std::uint64_t{1} << 53U) - 1;
   record.reason = "quote \" and \xc3\xa4";
   record.initial = {{"a", 0.1}, {"b", -0.0}, {"c", 5e-324}, {"d", 1.7976931348623157e308}};
-  record.observations = {{{"n", std::int64_t{-7}}, {"f", true}, {"x", 3.0}, {"t", std::string("w")}},
-                         {}};
+  record.observations = {
+      {{"n", std::int64_t{-7}}, {"f", true}, {"x", 3.0}, {"t", std::string("w")}}, {}};
   record.outcomes = {{SimStatus::kTruncated, "late", 0.30000000000000004}};
   record.digest = "00ff";
   const auto decoded = decode_line(encode(record));

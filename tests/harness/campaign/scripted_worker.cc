@@ -45,9 +45,10 @@ Json reply_to(const std::string& mode, const std::string& method, const Json& pa
   static Json state = Json::object();
   static int resets = 0;
   if (method == "hello") {
-    return {{"protocol", 1}, {"name", "scripted"}, {"version", "2"}, {"determinism", "bitwise"},
-            {"seeds", true}, {"time_step", 0.01}, {"params", Json::array()},
-            {"actions", Json::array()}};
+    return {{"protocol", 1},           {"name", "scripted"},
+            {"version", "2"},          {"determinism", "bitwise"},
+            {"seeds", true},           {"time_step", 0.01},
+            {"params", Json::array()}, {"actions", Json::array()}};
   }
   if (method == "reset") {
     if (mode == "invalid") return {{"status", "invalid_start"}, {"reason", "box overlaps counter"}};

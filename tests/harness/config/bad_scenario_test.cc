@@ -46,7 +46,8 @@ TEST_CASE("keys and values of the scenario itself") {
 
 TEST_CASE("regions, mapping and sampling") {
   check_each({
-      {"r2: {x: [1, 2]}", "r2: {x: [2, 1]}", "E5201 at 9:28: region `r2`: the x bounds are reversed"},
+      {"r2: {x: [1, 2]}", "r2: {x: [2, 1]}",
+       "E5201 at 9:28: region `r2`: the x bounds are reversed"},
       {"r2: {x: [1, 2]}", "r2: {x: [1.5, 2]}", "E5205 at "},
       {"r2: {x: [1, 2]}", "r2: {x: [1, .inf]}", "E5108 at 9:40: `.inf` is not a finite number"},
       {"r2: {x: [1, 2]}", "r2: {x: [1, NaN]}", "E5108 at 9:40: `NaN` is not a finite number"},
@@ -55,9 +56,11 @@ TEST_CASE("regions, mapping and sampling") {
       {"r2: {x: [1, 2]}", "r2: {x: 1}", "E5107 at 9:36: `x` of the region `r2` is `1`, not a list"},
       {"r2: {x: [1, 2]}", "r2: {X: [1, 2]}", "E5102 at 9:33: `X` is not a key of the region `r2`"},
       {"  cells: {r1", "  gaps: alowed\n  cells: {r1",
-       "E5111 at 9:9: `alowed` is not a known value of `gaps` fix: replace `alowed` with `allowed`"},
+       "E5111 at 9:9: `alowed` is not a known value of `gaps` fix: replace `alowed` with "
+       "`allowed`"},
       {"inside: region, body: robot", "inside: regio, body: robot",
-       "E5113 at 11:29: `regio` is not a parameter of `RobotIn` fix: replace `regio` with `region`"},
+       "E5113 at 11:29: `regio` is not a parameter of `RobotIn` fix: replace `regio` with "
+       "`region`"},
       {"inside: region, body: robot", "inside: region, body: robto",
        "E5115 at 11:3: the simulator has no variable `robto.x` fix: replace `robto.x` with "
        "`robot.x`"},
@@ -141,7 +144,10 @@ TEST_CASE("several errors are reported in one run") {
 
 TEST_CASE("features of YAML that hide or multiply what is written are refused") {
   Workspace workspace;
-  for (const auto& [line, report] : std::vector<std::pair<std::string, std::string>>{
+  struct Feature {
+    std::string line, report;
+  };
+  for (const auto& feature : std::vector<Feature>{
            {"horizon: &h 6", "E5104 at 6:10: anchors"},
            {"horizon: !!int 6", "E5104 at 6:10: tags"},
            {"horizon: 6\nlimits: !!binary aGk=", "E5104 at 7:9: tags"},
@@ -151,10 +157,10 @@ TEST_CASE("features of YAML that hide or multiply what is written are refused") 
            {"horizon: [6", "E5101 at "},
            {"horizon: 6\n\tname: x", "E5101 at "},
        }) {
-    CAPTURE(line);
-    CHECK_FALSE(workspace.load(replaced(kScenario, "horizon: 6", line)).has_value());
+    CAPTURE(feature.line);
+    CHECK_FALSE(workspace.load(replaced(kScenario, "horizon: 6", feature.line)).has_value());
     REQUIRE_FALSE(workspace.reports().empty());
-    CHECK(workspace.reports()[0].substr(0, report.size()) == report);
+    CHECK(workspace.reports()[0].substr(0, feature.report.size()) == feature.report);
   }
   CHECK_FALSE(workspace.load("a: &x [1]\nb: *x\n").has_value());
   CHECK(workspace.reports()[0].find("E5104 at 1:4: anchors") == 0);
@@ -172,12 +178,15 @@ TEST_CASE("hostile texts are refused quickly with one report") {
   std::string aliases = "a0: &a0 [x]\n";
   for (int i = 1; i <= 10; ++i) {
     const auto before = "*a" + std::to_string(i - 1);
-    aliases += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [" + before + ", " + before +
-               ", " + before + "]\n";
+    aliases += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [" + before + ", " +
+               before + ", " + before + "]\n";
   }
   std::string keys;
   for (int i = 0; i < 60000; ++i) keys += "k" + std::to_string(i) + ": 1\n";
-  const std::vector<std::pair<std::string, std::string>> cases = {
+  struct Hostile {
+    std::string text, code;
+  };
+  const std::vector<Hostile> cases = {
       {nested(100000, "["), "E5105"},
       {nested(100000, "{a: "), "E5105"},
       {nested(100000, "- "), "E5105"},
@@ -195,14 +204,14 @@ TEST_CASE("hostile texts are refused quickly with one report") {
       {"- a\n- b\n", "E5107"},
   };
   Workspace workspace;
-  for (const auto& [text, code] : cases) {
-    CAPTURE(text.substr(0, 20));
+  for (const auto& hostile : cases) {
+    CAPTURE(hostile.text.substr(0, 20));
     const auto start = std::chrono::steady_clock::now();
-    CHECK_FALSE(workspace.load(text).has_value());
+    CHECK_FALSE(workspace.load(hostile.text).has_value());
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     CHECK(took.count() < 2.0);
     REQUIRE_FALSE(workspace.reports().empty());
-    CHECK(workspace.reports()[0].substr(0, 5) == code);
+    CHECK(workspace.reports()[0].substr(0, 5) == hostile.code);
     for (const auto& d : workspace.sink.sorted()) {
       CHECK(base::to_text(d, workspace.files, {}).size() < 4'000'000);
     }
@@ -247,7 +256,8 @@ TEST_CASE("files that are missing, folders, FIFOs and rings of includes") {
 TEST_CASE("line ends and a byte order mark do not matter") {
   Workspace workspace;
   std::string crlf;
-  for (const char c : std::string(kScenario)) crlf += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  for (const char c : std::string(kScenario))
+    crlf += c == '\n' ? std::string("\r\n") : std::string(1, c);
   CHECK(workspace.load(crlf).has_value());
   CHECK(workspace.load("\xEF\xBB\xBF" + std::string(kScenario)).has_value());
   const std::string text = kScenario;

@@ -51,9 +51,9 @@ TEST_CASE("bodies, joints, friction and robot arrive as they were written") {
 
 TEST_CASE("what is written beside `include` is laid over it, map by map") {
   Workspace workspace;
-  const auto scenario = workspace.load(replaced(
-      kScenario, "{include: world.yaml}",
-      "{include: world.yaml, friction: {box-pad: 0.0}, bodies: {box: {mass_kg: 0.5}}}"));
+  const auto scenario = workspace.load(
+      replaced(kScenario, "{include: world.yaml}",
+               "{include: world.yaml, friction: {box-pad: 0.0}, bodies: {box: {mass_kg: 0.5}}}"));
   REQUIRE(scenario.has_value());
   CHECK(scenario->world.friction.pairs.at({"box", "pad"}) == 0.0);
   CHECK(scenario->world.friction.fallback == 0.5);
@@ -74,8 +74,9 @@ TEST_CASE("mapping and actions refer to the parameters of their patterns") {
                        "\"Held(body)\": {flag: \"{body}.held\"}\n"
                        "  \"On( a , where )\": {inside: where, body: \"{a}\", only_if: box.held}\n"
                        "  Tired(): ignored");
-  text = replaced(text, "PickUp(): {controller: picking-up, object: box}",
-                  "\"PickUp(arm, thing)\": {controller: picking-up, object: \"{thing}\", settle_s: 1}");
+  text = replaced(
+      text, "PickUp(): {controller: picking-up, object: box}",
+      "\"PickUp(arm, thing)\": {controller: picking-up, object: \"{thing}\", settle_s: 1}");
   const auto scenario = workspace.load(text);
   REQUIRE_MESSAGE(scenario.has_value(), workspace.reports().front());
   const auto* held = scenario->mapping->find("Held");
@@ -158,13 +159,15 @@ TEST_CASE("the scenario is held against the ground model") {
 
 TEST_CASE("the scenario is held against what the simulator says of itself") {
   Workspace workspace;
-  const auto scenario =
-      workspace.load(std::string(kScenario) + "simulator: {command: [other]}\n");
+  const auto scenario = workspace.load(std::string(kScenario) + "simulator: {command: [other]}\n");
   REQUIRE(scenario.has_value());
   SimulatorInfo info{"other", "1", "bitwise", true, {}, {}, 0.01};
   CHECK(check_against_simulator(*scenario, info, workspace.sink).has_value());  // says nothing
-  info.parameters = {{"box.x", "m", true},   {"box.held", "1", false}, {"robot.x", "m", true},
-                     {"box.y", "m", true}, {"box.yaw", "rad", false}};
+  info.parameters = {{"box.x", "m", true},
+                     {"box.held", "1", false},
+                     {"robot.x", "m", true},
+                     {"box.y", "m", true},
+                     {"box.yaw", "rad", false}};
   info.actions = {"going", "pickingup", "placing"};
   CHECK_FALSE(check_against_simulator(*scenario, info, workspace.sink).has_value());
   const auto first = workspace.reports();

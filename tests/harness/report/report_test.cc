@@ -34,8 +34,9 @@ CampaignResult sample_result() {
   clean.certified_epsilon = 0.482053;
   clean.paper_stopped_at = 3;
   clean.paper_variant = "paper-literal, n = 2";
-  clean.claim = "with 99 % confidence, fewer than 48.3 % of start states drawn uniformly from the "
-                "start region give a discrepancy (7 clean runs of 7)";
+  clean.claim =
+      "with 99 % confidence, fewer than 48.3 % of start states drawn uniformly from the "
+      "start region give a discrepancy (7 clean runs of 7)";
   clean.caveats = {"no regression evidence for: Holding()"};
   auto diverging = clean;
   diverging.number = 2;
@@ -125,8 +126,9 @@ TEST_CASE("the document has the fields that scripts read") {
   CHECK(found.at("sample") == 4);
   CHECK(found.at("seed") == 123);
   CHECK(found.at("first_divergence") == 1);
-  CHECK(found.at("fluents").at(0) ==
-        Json({{"fluent", "BoxIn(r1)"}, {"timepoint", 2}, {"predicted", true}, {"observed", false}}));
+  CHECK(
+      found.at("fluents").at(0) ==
+      Json({{"fluent", "BoxIn(r1)"}, {"timepoint", 2}, {"predicted", true}, {"observed", false}}));
   CHECK(found.at("replay") == "parallax replay out/two --sample 2.4");
   CHECK(json.at("timing").at("runs_made") == 11);
 }

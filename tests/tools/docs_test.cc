@@ -1,0 +1,55 @@
+// What the documentation says is what the program does.
+
+#include <doctest/doctest.h>
+
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "compiler/base/diagnostic.h"
+#include "tests/tools/cli_fixture.h"
+
+namespace parallax::test {
+namespace {
+
+std::string document(const std::string& name) {
+  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/" + name);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+TEST_CASE("docs/diagnostics.md is what tools/update_docs makes") {
+  const CliFixture cli;
+  CHECK(cli.parallax({"diagnostics"}).out == document("docs/diagnostics.md"));
+}
+
+TEST_CASE("codes and names of diagnostics are unique") {
+  std::set<std::string_view> ids;
+  for (const auto& info : base::all_diagnostics()) {
+    CHECK_MESSAGE(ids.insert(info.id).second, info.id << " is used twice");
+    CHECK_MESSAGE(!info.help.empty(), info.id << " does not say what to do");
+    const bool warning = info.severity == base::Severity::kWarning;
+    CHECK_MESSAGE(warning == info.id.starts_with('W'), info.id << " has the wrong letter");
+  }
+}
+
+TEST_CASE("every command of the README is one that the program knows") {
+  const CliFixture cli;
+  const auto help = cli.parallax({"--help"}).out;
+  const auto readme = document("README.md");
+  const std::regex command("parallax ([a-z]+) ");
+  std::set<std::string> seen;
+  for (auto it = std::sregex_iterator(readme.begin(), readme.end(), command);
+       it != std::sregex_iterator(); ++it) {
+    seen.insert((*it)[1]);
+  }
+  CHECK(seen.contains("run"));
+  for (const auto& name : seen) {
+    CHECK_MESSAGE(help.find("  " + name + " ") != std::string::npos, "README names " << name);
+  }
+}
+
+}  // namespace
+}  // namespace parallax::test

@@ -1,0 +1,36 @@
+#include "tools/cli/command.h"
+
+namespace parallax::tools {
+namespace {
+
+/// docs/diagnostics.md: the registry as a table, one section for each hundred codes' letter.
+std::string registry_page() {
+  std::string out =
+      "# Diagnostics\n\n"
+      "Every error and warning has a code that is never reused. This page is made by "
+      "`tools/update_docs`.\n\n"
+      "| code | severity | text | what to do |\n|---|---|---|---|\n";
+  const auto cell = [](std::string_view text) {
+    std::string escaped;
+    for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
+    return escaped;
+  };
+  for (const auto& info : base::all_diagnostics()) {
+    out += fmt::format("| {} | {} | {} | {} |\n", info.id,
+                       info.severity == base::Severity::kError ? "error" : "warning",
+                       cell(info.format), cell(info.help));
+  }
+  return out;
+}
+
+}  // namespace
+
+Command add_diagnostics_command(CLI::App& app) {
+  auto* command = app.add_subcommand("diagnostics", "Print the table of error and warning codes");
+  return {command, [](Invocation& invocation) {
+            invocation.result(registry_page());
+            return 0;
+          }};
+}
+
+}  // namespace parallax::tools
