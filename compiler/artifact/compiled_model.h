@@ -32,6 +32,11 @@ struct Atom {
   friend bool operator==(const Atom&, const Atom&) = default;
 };
 
+/// The horizon from which on an atom exists: an event at t needs the step to t + 1.
+inline Timepoint needed_horizon(const Atom& atom) {
+  return atom.time.value_or(0) + (atom.kind == AtomKind::kHappens ? 1 : 0);
+}
+
 /// All clauses in one array; views stay valid until the next `add`.
 class ClauseList {
  public:
@@ -71,8 +76,8 @@ struct PlanStep {
 /// The compiled model as data: symbols, clauses, provenance. It says nothing of how it was made
 /// and nothing of how it is solved.
 ///
-/// Every clause has a timepoint, the latest that its atoms mention: the clauses with a timepoint
-/// of at most n are the model with horizon n (times may end earlier, never later).
+/// Every clause has a timepoint, the horizon that its atoms need: the clauses with a timepoint of
+/// at most n are the model with horizon n.
 struct CompiledModel {
   Timepoint horizon = 0;
   std::vector<Atom> atoms;  // atoms[v - 1] names variable v; auxiliaries come after them

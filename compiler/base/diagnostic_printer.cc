@@ -67,16 +67,17 @@ std::string excerpt(std::string_view line) {
 std::string location(const Diagnostic& d, const SourceFiles& files) {
   if (!d.range) return d.subject.empty() ? std::string("parallax") : printable(d.subject);
   const auto& file = files[d.range->file];
+  const auto name = printable(file.name());
   const auto begin = file.position(d.range->begin);
   const auto end = file.position(d.range->end);
   if (end.line == begin.line && end.column > begin.column + 1) {
-    return fmt::format("{}:{}:{}-{}", file.name(), begin.line, begin.column, end.column - 1);
+    return fmt::format("{}:{}:{}-{}", name, begin.line, begin.column, end.column - 1);
   }
   if (end.line > begin.line) {
-    return fmt::format("{}:{}:{}-{}:{}", file.name(), begin.line, begin.column, end.line,
+    return fmt::format("{}:{}:{}-{}:{}", name, begin.line, begin.column, end.line,
                        end.column > 1 ? end.column - 1 : 1);
   }
-  return fmt::format("{}:{}:{}", file.name(), begin.line, begin.column);
+  return fmt::format("{}:{}:{}", name, begin.line, begin.column);
 }
 
 std::string source_excerpt(const SourceRange& range, const SourceFiles& files) {

@@ -39,8 +39,8 @@ class Encoder {
     for (std::uint32_t node = 0; node < formulas_.node_count(); ++node) {
       const auto id = formulas_.at(node);
       if (formulas_.kind(id) == FormulaNodeKind::kAtom) {
-        const auto& atom = out_.atoms[static_cast<std::size_t>(formulas_.variable(id)) - 1];
-        times_[node] = atom.time.value_or(0);
+        times_[node] =
+            needed_horizon(out_.atoms[static_cast<std::size_t>(formulas_.variable(id)) - 1]);
       } else if (formulas_.kind(id) == FormulaNodeKind::kAnd) {
         for (const auto child : formulas_.children(id)) {
           times_[node] = std::max(times_[node], times_[child.node()]);

@@ -35,7 +35,9 @@ FormulaGrounder::FormulaGrounder(GroundModel& model, const GroundOptions& option
       typed_(&model.typed()),
       options_(options),
       sink_(&sink),
-      environment_(model.typed().variables.size()) {}
+      environment_(model.typed().variables.size()) {
+  read_function_values();
+}
 
 void FormulaGrounder::start(base::SourceRange blame) {
   spent_ = 0;
@@ -50,6 +52,10 @@ bool FormulaGrounder::spend(std::int64_t more) {
   if (failed_) return false;
   if (__builtin_add_overflow(spent_, more, &spent_) || spent_ > options_.max_instances) {
     sink_->error(DiagnosticCode::kTooManyInstances, blame_, options_.max_instances);
+    failed_ = true;
+  }
+  if (!failed_ && options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) {
+    sink_->error(DiagnosticCode::kGroundingStopped, blame_);
     failed_ = true;
   }
   return !failed_;
@@ -203,12 +209,25 @@ std::optional<FormulaId> FormulaGrounder::atom(const TypedFormula& formula) {
     if (!number || t >= model_->horizon()) return std::nullopt;
     return model_->happens(*number, t);
   }
+  if (formula.predicate == core.initiates) return effect_atom(EffectKind::kInitiates, arguments);
+  if (formula.predicate == core.terminates) return effect_atom(EffectKind::kTerminates, arguments);
+  if (formula.predicate == core.releases) return effect_atom(EffectKind::kReleases, arguments);
   std::string name = symbol.name + "(";
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (i > 0) name += ',';
     name += terms.text(arguments[i], *typed_);
   }
   return model_->named_atom(AtomKind::kPredicate, name + ")", std::nullopt);
+}
+
+/// Like the events they speak of, effects exist before the last timepoint only.
+std::optional<FormulaId> FormulaGrounder::effect_atom(EffectKind kind,
+                                                      const std::vector<GroundTermId>& arguments) {
+  const auto event = model_->event_number(arguments[0]);
+  const auto fluent = model_->fluent_number(arguments[1]);
+  const auto t = static_cast<Timepoint>(model_->terms()[arguments[2]].integer);
+  if (!event || !fluent || t >= model_->horizon() || rows_ == nullptr) return std::nullopt;
+  return rows_->holds(kind, *event, *fluent, t, model_->formulas());
 }
 
 std::optional<FormulaId> FormulaGrounder::compare(const TypedFormula& formula) {

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
+#include "compiler/ground/effect_rows.h"
 #include "compiler/ground/ground_model.h"
 
 namespace parallax::compiler {
@@ -18,6 +20,10 @@ namespace parallax::compiler {
 class FormulaGrounder {
  public:
   FormulaGrounder(GroundModel& model, const GroundOptions& options, base::DiagnosticSink& sink);
+
+  /// From now on Initiates, Terminates and Releases in formulas mean these rows; before, they name
+  /// nothing. `rows` outlives the grounder.
+  void use_effects(const EffectRows& rows) { rows_ = &rows; }
 
   void bind(VariableId variable, GroundTermId value) { environment_[variable.index()] = value; }
   void unbind(VariableId variable) { environment_[variable.index()].reset(); }
@@ -44,12 +50,17 @@ class FormulaGrounder {
   std::optional<GroundTermId> arithmetic(const Term& term, GroundTermId left, GroundTermId right);
   std::optional<GroundTermId> apply(const Term& term, std::vector<GroundTermId> arguments);
   bool arguments_fit(const Symbol& symbol, const std::vector<GroundTermId>& arguments) const;
+  std::optional<FormulaId> effect_atom(EffectKind kind, const std::vector<GroundTermId>& arguments);
+  void read_function_values();
 
   GroundModel* model_;
   const TypedModel* typed_;
   GroundOptions options_;
   base::DiagnosticSink* sink_;
   std::vector<std::optional<GroundTermId>> environment_;  // by variable
+  const EffectRows* rows_ = nullptr;
+  /// By function application: the value stated for it.
+  std::unordered_map<GroundTermId, GroundTermId> function_values_;
   std::int64_t spent_ = 0;
   bool failed_ = false;
   base::SourceRange blame_;

@@ -122,7 +122,7 @@ void GroundModel::require(FormulaId formula, std::uint32_t origin) {
   constraints_.push_back({formula, origin});
 }
 
-Timepoint GroundModel::latest_timepoint(FormulaId root) const {
+Timepoint GroundModel::needed_horizon_of(FormulaId root) const {
   Timepoint latest = 0;
   std::vector<bool> seen(formulas_.node_count(), false);
   std::vector<FormulaId> todo = {root};
@@ -132,8 +132,8 @@ Timepoint GroundModel::latest_timepoint(FormulaId root) const {
     if (seen[id.node()]) continue;
     seen[id.node()] = true;
     if (formulas_.kind(id) == FormulaNodeKind::kAtom) {
-      const auto& atom = atoms_[static_cast<std::size_t>(formulas_.variable(id)) - 1];
-      latest = std::max(latest, atom.time.value_or(0));
+      const auto variable = static_cast<std::size_t>(formulas_.variable(id));
+      latest = std::max(latest, needed_horizon(atoms_[variable - 1]));
     } else if (formulas_.kind(id) == FormulaNodeKind::kAnd) {
       const auto children = formulas_.children(id);
       todo.insert(todo.end(), children.begin(), children.end());

@@ -52,8 +52,8 @@ class GroundModel {
   std::uint32_t add_origin(base::SourceRange source, std::string what);
   void require(FormulaId formula, std::uint32_t origin);
 
-  /// The latest timepoint that the formula mentions; 0 if none.
-  Timepoint latest_timepoint(FormulaId formula) const;
+  /// The horizon from which on every atom of the formula exists.
+  Timepoint needed_horizon_of(FormulaId formula) const;
 
   const std::vector<Atom>& atoms() const { return atoms_; }
   const std::vector<Constraint>& constraints() const { return constraints_; }

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "compiler/ground/completion.h"
 #include "compiler/ground/effects.h"
 #include "compiler/ground/formula_grounder.h"
 
@@ -11,10 +12,8 @@ using base::DiagnosticCode;
 
 namespace {
 
-/// The conjuncts of an axiom `[v..] body`, one constraint for each instance of the outermost
-/// quantifier, so that a core of clauses can name single timepoints.
 void assert_axiom(const Axiom& axiom, GroundModel& model, FormulaGrounder& grounder,
-                  base::DiagnosticSink& sink) {
+                  CompletionWriter& completion, base::DiagnosticSink& sink) {
   grounder.start(axiom.source);
   const auto formula = grounder.ground(axiom.formula);
   if (grounder.failed()) return;
@@ -25,6 +24,7 @@ void assert_axiom(const Axiom& axiom, GroundModel& model, FormulaGrounder& groun
     sink.error(DiagnosticCode::kFormulaIsFalse, axiom.source);
   } else {
     model.require(*formula, model.add_origin(axiom.source, "axiom"));
+    completion.note(axiom.label, *formula);
   }
 }
 
@@ -38,15 +38,13 @@ base::Result<GroundModel> ground_model(const TypedModel& typed, const GroundOpti
   if (!universe) return sink.already_reported();
   GroundModel model(typed, std::move(terms), *std::move(universe));
   FormulaGrounder grounder(model, options, sink);
-  for (const auto& axiom : typed.axioms) assert_axiom(axiom, model, grounder, sink);
-  assert_effects(model, grounder);
-  for (const auto& completion : typed.completions) {
-    sink.error(DiagnosticCode::kCompletionUnsupported, completion.source,
-               typed.symbols[completion.predicate].name);
-  }
-  for (const auto& trajectory : typed.trajectories) {
-    sink.error(DiagnosticCode::kTrajectoryUnsupported, trajectory.source);
-  }
+  const auto rows = ground_effects(model, grounder);
+  grounder.use_effects(rows);
+  CompletionWriter completion(model);
+  for (const auto& axiom : typed.axioms) assert_axiom(axiom, model, grounder, completion, sink);
+  completion.write();
+  assert_trajectories(model, rows, grounder);
+  assert_inertia(model, rows);
   if (sink.error_count() != errors_before) return sink.already_reported();
   return model;
 }

@@ -97,11 +97,26 @@ std::optional<GroundTermId> FormulaGrounder::apply(const Term& node,
   const auto& symbol = typed_->symbols[node.symbol];
   if (!arguments_fit(symbol, arguments)) return std::nullopt;
   if (symbol.kind == SymbolKind::kFunction) {
+    const auto application = model_->terms().apply(node.symbol, std::move(arguments));
+    const auto value = function_values_.find(application);
+    if (value != function_values_.end()) return value->second;
     sink_->error(DiagnosticCode::kFunctionWithoutValue, node.source, symbol.name);
     failed_ = true;
     return std::nullopt;
   }
   return model_->terms().apply(node.symbol, std::move(arguments));
+}
+
+void FormulaGrounder::read_function_values() {
+  for (const auto& entry : typed_->function_values) {
+    std::vector<GroundTermId> arguments;
+    for (const auto id : entry.arguments) {
+      if (const auto argument = term(id)) arguments.push_back(*argument);
+    }
+    const auto value = term(entry.value);
+    if (!value || arguments.size() != entry.arguments.size()) continue;
+    function_values_.emplace(model_->terms().apply(entry.function, std::move(arguments)), *value);
+  }
 }
 
 }  // namespace parallax::compiler

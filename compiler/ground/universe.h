@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -12,6 +13,7 @@ namespace parallax::compiler {
 struct GroundOptions {
   std::int64_t max_domain = 1'000'000;     // ground terms of one sort
   std::int64_t max_instances = 5'000'000;  // instances of one axiom
+  const std::atomic<bool>* stop = nullptr;  // raised to end grounding early
 };
 
 /// The domain of every sort as ground terms, in the order that fixes all numbering: subsorts in

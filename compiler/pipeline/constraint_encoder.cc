@@ -18,7 +18,7 @@ base::Status encode_constraints(const std::vector<StateConstraint>& constraints,
       const auto value = grounder.ground(constraint.formula.formula);
       if (grounder.failed()) return sink.already_reported();
       if (value) ever[i] = true;
-      if (value && model.latest_timepoint(*value) > t) {
+      if (value && model.needed_horizon_of(*value) > t) {
         return sink.error(base::DiagnosticCode::kConstraintLooksAhead, constraint.source);
       }
       parts.push_back(value.value_or(formulas.falsity()));

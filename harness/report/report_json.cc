@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "compiler/base/file_io.h"
 #include "harness/campaign/criterion_json.h"
@@ -133,6 +134,9 @@ base::Status write_report(const CampaignResult& result, const std::filesystem::p
   // A folder may be moved, and the same run in two folders gives the same bytes.
   CampaignResult local = result;
   local.replay_folder.assign(1, '.');
+  // A run that was interrupted before its first line has no folder yet.
+  std::error_code ignored;
+  std::filesystem::create_directories(run_dir, ignored);
   const auto text =
       base::write_file_atomically(run_dir / "report.txt", campaign_text(local, {}), sink);
   const auto json =

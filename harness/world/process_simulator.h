@@ -26,7 +26,7 @@ struct ProcessOptions {
 };
 
 /// A simulator in a child process that speaks newline-delimited JSON on its standard input and
-/// output (docs/simulator_protocol.md). The child gets a session of its own, no descriptor but the
+/// output (protocol.h). The child gets a session of its own, no descriptor but the
 /// three standard ones, and is watched by the clock of the wall.
 ///
 /// On a timeout, the end of its output or a malformed line the child's process group is ended

@@ -1,5 +1,7 @@
 #include "runtime/enumerate/plan_enumerator.h"
 
+#include <algorithm>
+
 #include "runtime/enumerate/canonical.h"
 
 namespace parallax::runtime {
@@ -36,13 +38,15 @@ std::vector<Literal> PlanEnumerator::first_hit(Timepoint n) const {
 
 void PlanEnumerator::prepare_orders(Timepoint n) {
   event_order_.clear();
+  start_order_.clear();
   state_order_.clear();
   const auto& atoms = session_->model().atoms;
   for (std::size_t i = 0; i < atoms.size(); ++i) {
     const auto literal = Literal::positive(static_cast<std::int32_t>(i + 1));
     const auto time = atoms[i].time.value_or(0);
     if (atoms[i].kind == AtomKind::kHappens && time < n) event_order_.push_back(literal);
-    if (atoms[i].kind == AtomKind::kHoldsAt && time <= n) state_order_.push_back(~literal);
+    if (atoms[i].kind != AtomKind::kHoldsAt || time > n) continue;
+    (time == 0 ? start_order_ : state_order_).push_back(~literal);
   }
 }
 
@@ -70,19 +74,79 @@ std::optional<Trace> PlanEnumerator::next() {
       guard_.reset();
       continue;
     }
-    auto key = make_canonical(*session_, n_, assumptions, event_order_);
-    auto fixed = assumptions;
-    fixed.insert(fixed.end(), key.begin(), key.end());
-    make_canonical(*session_, n_, fixed, state_order_);
+    auto fixed = std::move(assumptions);
+    const auto extend = [&](const std::vector<Literal>& order) {
+      auto literals = make_canonical(*session_, n_, fixed, order);
+      fixed.insert(fixed.end(), literals.begin(), literals.end());
+      return literals;
+    };
+    auto key = extend(event_order_);
+    extend(start_order_);
+    extend(state_order_);
+    if (fixed.size() != static_cast<std::size_t>(n_) + 1 + event_order_.size() +
+                            start_order_.size() + state_order_.size()) {
+      done_ = true;  // the solver was stopped on the way
+      return std::nullopt;
+    }
     auto trace = decode_trace(session_->model(), n_,
                               [&](Literal literal) { return session_->value(literal); });
     trace.number = ++found_;
+    note_alternatives(fixed, trace);
     for (auto& literal : key) literal = ~literal;
     key.push_back(~*guard_);
     session_->add_clause(key);
     return trace;
   }
   return std::nullopt;
+}
+
+/// Is there a valuation with the fixed literals in which some literal of `different` is false?
+bool PlanEnumerator::has_alternative(std::span<const Literal> fixed,
+                                     std::span<const Literal> different) {
+  const auto wanted = session_->new_variable();
+  std::vector<Literal> clause = {~wanted};
+  for (const auto literal : different) clause.push_back(~literal);
+  session_->add_clause(clause);
+  std::vector<Literal> assumptions(fixed.begin(), fixed.end());
+  assumptions.push_back(wanted);
+  const bool found = session_->solve(n_, assumptions) == SolveStatus::kSatisfiable;
+  const auto retired = ~wanted;
+  session_->add_clause(std::span(&retired, 1));
+  return found;
+}
+
+/// `fixed`: what defines the length, then the events, the initial state and the states after it.
+void PlanEnumerator::note_alternatives(std::span<const Literal> fixed, Trace& trace) {
+  const auto head = static_cast<std::size_t>(n_) + 1 + event_order_.size();
+  const auto start = fixed.subspan(head, start_order_.size());
+  const auto states = fixed.subspan(head + start.size());
+  trace.other_initial_states = has_alternative(fixed.first(head), start);
+  trace.other_outcomes = has_alternative(fixed.first(head + start.size()), states);
+}
+
+bool PlanEnumerator::admits(const Trace& trace, const std::map<std::string, bool>& last_state) {
+  const auto n = trace.length();
+  auto assumptions = first_hit(n);
+  const auto& atoms = session_->model().atoms;
+  for (std::size_t i = 0; i < atoms.size(); ++i) {
+    const auto& atom = atoms[i];
+    const auto literal = Literal::positive(static_cast<std::int32_t>(i + 1));
+    const auto time = atom.time.value_or(0);
+    const auto among = [&](const std::vector<std::string>& names) {
+      return std::binary_search(names.begin(), names.end(), atom.name);
+    };
+    if (atom.kind == AtomKind::kHappens && time < n) {
+      const auto& point = trace.points[static_cast<std::size_t>(time)];
+      assumptions.push_back(among(point.happens) ? literal : ~literal);
+    } else if (atom.kind == AtomKind::kHoldsAt && time == 0) {
+      assumptions.push_back(among(trace.points.front().holds) ? literal : ~literal);
+    } else if (atom.kind == AtomKind::kHoldsAt && time == n) {
+      const auto wanted = last_state.find(atom.name);
+      if (wanted == last_state.end()) continue;
+      assumptions.push_back(wanted->second ? literal : ~literal);
+    }
+  }
+  return session_->solve(n, assumptions) == SolveStatus::kSatisfiable;
 }
 
 /// Is there an execution that never meets the constraints and goes on beyond the horizon?

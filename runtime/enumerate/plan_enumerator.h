@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -30,7 +33,13 @@ class PlanEnumerator {
   /// Final once `next` has answered none.
   Exploration exploration() const { return exploration_; }
 
+  /// Does the model admit, for the trace's events and initial state, a last state in which each of
+  /// these fluents has the value given? One solver call.
+  bool admits(const Trace& trace, const std::map<std::string, bool>& last_state);
+
  private:
+  bool has_alternative(std::span<const Literal> fixed, std::span<const Literal> different);
+  void note_alternatives(std::span<const Literal> fixed, Trace& trace);
   std::vector<Literal> first_hit(Timepoint n) const;
   void prepare_orders(Timepoint n);
   void finish();
@@ -40,7 +49,8 @@ class PlanEnumerator {
   Timepoint n_ = 0;
   std::optional<Literal> guard_;      // switches the blocking clauses of length n_ on
   std::vector<Literal> event_order_;  // Happens before n_, true preferred: the trace's key
-  std::vector<Literal> state_order_;  // HoldsAt up to n_, false preferred
+  std::vector<Literal> start_order_;  // HoldsAt at 0, false preferred
+  std::vector<Literal> state_order_;  // HoldsAt from 1 to n_, false preferred
   std::int64_t found_ = 0;
   bool done_ = false;
   Exploration exploration_ = Exploration::kStopped;

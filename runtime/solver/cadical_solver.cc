@@ -7,7 +7,10 @@ namespace {
 
 class CadicalSolver final : public SatSolver {
  public:
-  CadicalSolver() { solver_.set("quiet", 1); }
+  explicit CadicalSolver(const std::atomic<bool>* stop) : terminator_(stop) {
+    solver_.set("quiet", 1);
+    if (stop != nullptr) solver_.connect_terminator(&terminator_);
+  }
 
   void add_clause(std::span<const Literal> clause) override {
     for (const auto literal : clause) solver_.add(literal.dimacs());
@@ -47,6 +50,15 @@ class CadicalSolver final : public SatSolver {
 
  private:
   enum class State : std::uint8_t { kReady, kSatisfied, kFailed };
+  class StopFlag final : public CaDiCaL::Terminator {
+   public:
+    explicit StopFlag(const std::atomic<bool>* stop) : stop_(stop) {}
+    bool terminate() override { return stop_->load(std::memory_order_relaxed); }
+
+   private:
+    const std::atomic<bool>* stop_;
+  };
+  StopFlag terminator_;
   // CaDiCaL's queries are not const in 1.5.3.
   mutable CaDiCaL::Solver solver_;
   State state_ = State::kReady;
@@ -55,7 +67,9 @@ class CadicalSolver final : public SatSolver {
 
 }  // namespace
 
-std::unique_ptr<SatSolver> make_cadical_solver() { return std::make_unique<CadicalSolver>(); }
+std::unique_ptr<SatSolver> make_cadical_solver(const std::atomic<bool>* stop) {
+  return std::make_unique<CadicalSolver>(stop);
+}
 
 const char* cadical_version() { return CaDiCaL::Solver::version(); }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -43,8 +44,9 @@ class SatSolver {
   virtual std::int64_t solve_calls() const = 0;
 };
 
-/// CaDiCaL in its default configuration.
-std::unique_ptr<SatSolver> make_cadical_solver();
+/// CaDiCaL in its default configuration. A call of solve that is under way when `stop` is raised
+/// answers kUnknown soon; `stop` may be null and outlives the solver.
+std::unique_ptr<SatSolver> make_cadical_solver(const std::atomic<bool>* stop = nullptr);
 /// The version of the solver that is linked.
 const char* cadical_version();
 

@@ -29,7 +29,7 @@ Trace decode_trace(const CompiledModel& model, Timepoint length,
   trace.points.resize(static_cast<std::size_t>(length) + 1);
   for (std::size_t i = 0; i < model.atoms.size(); ++i) {
     const auto& atom = model.atoms[i];
-    if (atom.time.value_or(0) > length) continue;
+    if (compiler::needed_horizon(atom) > length) continue;
     if (!value(Literal::positive(static_cast<std::int32_t>(i + 1)))) continue;
     if (!atom.time) {
       if (atom.kind == AtomKind::kPredicate) trace.predicates.push_back(atom.name);
@@ -41,7 +41,7 @@ Trace decode_trace(const CompiledModel& model, Timepoint length,
         point.holds.push_back(atom.name);
         break;
       case AtomKind::kHappens:
-        if (*atom.time < length) point.happens.push_back(atom.name);
+        point.happens.push_back(atom.name);
         break;
       case AtomKind::kReleasedAt:
         point.released.push_back(atom.name);

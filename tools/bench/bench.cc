@@ -37,7 +37,7 @@ struct Act {
 };
 
 std::vector<Act> acts_of(const ScenarioModel& loaded, Invocation& invocation) {
-  EnumeratedTraces traces(loaded.compilation.model, 0, invocation);
+  EnumeratedTraces traces(loaded.compilation.model, invocation);
   const auto trace = traces.next();
   std::vector<Act> acts;
   for (const auto& event : (*trace)->events) {
@@ -70,7 +70,7 @@ void bench_first_trace() {
     all.push_back(seconds_of([&] {
       const auto loaded = load_scenario_model(kScenario, invocation);
       solving.push_back(seconds_of([&] {
-        EnumeratedTraces traces(loaded->compilation.model, 0, invocation);
+        EnumeratedTraces traces(loaded->compilation.model, invocation);
         (void)traces.next();
       }));
     }));

@@ -28,7 +28,7 @@ int check(const ModelOptions& options, Invocation& invocation) {
   }
   if (invocation.sink().has_errors()) return 0;
   if (invocation.options().json) {
-    invocation.result("{\"status\":\"ok\",\"diagnostics\":[]}\n");
+    invocation.document("{\"status\":\"ok\"}\n");
   } else {
     invocation.remark("no errors");
   }

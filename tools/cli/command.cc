@@ -21,7 +21,6 @@ void Invocation::remark(const std::string& text) const {
 }
 
 void Invocation::result(const std::string& text) const {
-  printed_ = true;
   std::fwrite(text.data(), 1, text.size(), stdout);
   std::fflush(stdout);
 }
@@ -31,6 +30,8 @@ std::string error_document(const std::vector<base::Diagnostic>& diagnostics,
   return fmt::format("{{\"status\":\"error\",\"diagnostics\":{}}}\n",
                      base::to_json(diagnostics, files));
 }
+
+void Invocation::document(std::string json) { document_ = std::move(json); }
 
 int Invocation::finish(int code) {
   const auto diagnostics = sink_.sorted();
@@ -49,8 +50,16 @@ int Invocation::finish(int code) {
       fmt::print(stderr, "{} further errors are not shown\n", sink_.error_count() - shown);
     }
   }
+  if (!document_.empty()) {
+    const auto end = document_.rfind('}');
+    if (!diagnostics.empty()) {
+      document_.insert(end, ",\"diagnostics\":" + base::to_json(diagnostics, files_));
+    }
+    result(document_);
+  } else if (options_.json && (sink_.has_errors() || code != 0)) {
+    result(error_document(diagnostics, files_));
+  }
   if (!sink_.has_errors()) return code;
-  if (options_.json && !printed_) result(error_document(diagnostics, files_));
   // A command that knows better (a finding, an interruption) keeps its code.
   return code != 0 ? code : sink_.exit_code();
 }

@@ -36,15 +36,18 @@ class Invocation {
   void remark(const std::string& text) const;
   /// The result of the command; standard output holds nothing else.
   void result(const std::string& text) const;
-  /// Prints what was reported. With --json and errors, standard output gets the one error document,
-  /// unless a result was printed already. Returns the exit code for the errors, `code` without any.
+  /// The result under --json: one object. What was reported becomes its field `diagnostics` when it
+  /// is printed, by finish.
+  void document(std::string json);
+  /// Prints what was reported. With --json, standard output gets one document: the command's, or
+  /// the error document if it made none. Returns the exit code for the errors, `code` without any.
   int finish(int code);
 
  private:
   CommonOptions options_;
   base::SourceFiles files_;
   base::DiagnosticSink sink_;
-  mutable bool printed_ = false;
+  std::string document_;
 };
 
 /// A subcommand: how it is spelled, and what runs it.

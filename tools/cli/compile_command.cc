@@ -29,16 +29,19 @@ int compile_and_write(const CompileOptions& options, Invocation& invocation) {
   } else {
     text = compiler::dump_dot(*compilation->plan, invocation.files());
   }
-  if (options.out.empty()) {
+  if (options.out.empty() && invocation.options().json) {
+    sink.error_about(base::DiagnosticCode::kUsage, "",
+                     "--json needs --output: the text is no JSON");
+  } else if (options.out.empty()) {
     invocation.result(text);
   } else if (base::write_file_atomically(options.out, text, sink)) {
     invocation.remark(fmt::format("{}: {} variables, {} clauses, horizon {}", options.out,
                                   compilation->model.variable_count,
                                   compilation->model.clauses.size(), compilation->model.horizon));
     if (invocation.options().json) {
-      invocation.result(fmt::format("{{\"status\":\"ok\",\"variables\":{},\"clauses\":{}}}\n",
-                                    compilation->model.variable_count,
-                                    compilation->model.clauses.size()));
+      invocation.document(fmt::format("{{\"status\":\"ok\",\"variables\":{},\"clauses\":{}}}\n",
+                                      compilation->model.variable_count,
+                                      compilation->model.clauses.size()));
     }
   }
   return 0;

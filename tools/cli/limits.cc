@@ -12,7 +12,7 @@
 namespace parallax::tools {
 namespace {
 
-constexpr std::chrono::seconds kGrace{2};
+constexpr std::chrono::seconds kGrace{6};
 
 const CommonOptions* g_options = nullptr;  // for the handler of failed allocations
 

@@ -110,13 +110,17 @@ int run(int argc, char** argv) {
 }  // namespace parallax::tools
 
 int main(int argc, char** argv) {
+  namespace base = parallax::base;
   try {
     return parallax::tools::run(argc, argv);
   } catch (const std::exception& error) {
     // Only a broken contract or the end of memory comes here.
-    fmt::print(stderr, "parallax: internal error: {}\n", error.what());
+    base::DiagnosticSink sink;
+    sink.error_about(base::DiagnosticCode::kInternal, "", error.what());
+    const base::SourceFiles files;
+    fmt::print(stderr, "{}", base::to_text(sink.sorted().front(), files, {}));
     if (parallax::tools::wants_json(argc, argv)) {
-      fmt::print("{{\"status\":\"error\",\"diagnostics\":[]}}\n");
+      fmt::print("{}", parallax::tools::error_document(sink.sorted(), files));
     }
     return 5;
   }

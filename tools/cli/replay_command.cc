@@ -48,9 +48,11 @@ int replay(const ReplayOptions& options, Invocation& invocation) {
   const auto result = harness::replay_sample(options.run_dir, id, loaded->sources_hash, *simulator,
                                              invocation.files(), sink);
   if (!result) return 0;
-  const bool json = invocation.options().json;
-  invocation.result(json ? harness::replay_json(*result)
-                         : harness::replay_text(*result, {invocation.color_on(STDOUT_FILENO)}));
+  if (invocation.options().json) {
+    invocation.document(harness::replay_json(*result));
+  } else {
+    invocation.result(harness::replay_text(*result, {invocation.color_on(STDOUT_FILENO)}));
+  }
   switch (result->outcome) {
     case harness::ReplayOutcome::kIdentical:
       return 0;

@@ -54,8 +54,12 @@ harness::CampaignOptions campaign_options(const RunOptions& options, const Scena
   campaign.jobs = options.jobs;
   campaign.keep_going = options.keep_going;
   campaign.resume = options.resume;
-  campaign.run_dir = options.out.empty() ? default_run_folder(options.scenario)
-                                         : std::filesystem::path(options.out);
+  if (!options.out.empty()) {
+    campaign.run_dir = options.out;
+  } else {
+    campaign.run_dir =
+        options.resume ? newest_run_folder(options.scenario) : default_run_folder(options.scenario);
+  }
   campaign.scenario_hash = loaded.sources_hash;
   campaign.tool_version = kVersion;
   campaign.stop = &stop_flag();
@@ -74,16 +78,18 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
                base::SourceRange{loaded->scenario.source, 0, 0});
     return 0;
   }
-  EnumeratedTraces traces(model, loaded->scenario.limits.max_traces, invocation);
+  EnumeratedTraces traces(model, invocation);
   const auto campaign = campaign_options(options, *loaded, invocation);
   const auto result = harness::run_campaign(loaded->scenario, traces, simulator_factory(*loaded),
                                             campaign, invocation.files(), sink);
   if (campaign.progress) fmt::print(stderr, "\r\x1b[K");
   if (!result) return 0;
   if (!harness::write_report(*result, campaign.run_dir, sink)) return 0;
-  const bool json = invocation.options().json;
-  invocation.result(json ? harness::campaign_json(*result, true)
-                         : harness::campaign_text(*result, {invocation.color_on(STDOUT_FILENO)}));
+  if (invocation.options().json) {
+    invocation.document(harness::campaign_json(*result, true));
+  } else {
+    invocation.result(harness::campaign_text(*result, {invocation.color_on(STDOUT_FILENO)}));
+  }
   invocation.remark(fmt::format("{} simulations in {:.1f} s ({:.0f} s simulated); report: {}",
                                 result->timing.runs_made, result->timing.wall_s,
                                 result->timing.simulated_s,

@@ -8,4 +8,7 @@ namespace parallax::tools {
 /// Finished work is never overwritten.
 std::filesystem::path default_run_folder(const std::filesystem::path& scenario);
 
+/// The newest of those folders, for --resume; the first one if there is none.
+std::filesystem::path newest_run_folder(const std::filesystem::path& scenario);
+
 }  // namespace parallax::tools

@@ -7,12 +7,14 @@
 
 #include "harness/region/state_mapping.h"
 #include "runtime/session/unsat_core.h"
+#include "tools/cli/signals.h"
 
 namespace parallax::tools {
 
 bool report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Timepoint steps,
                              base::DiagnosticSink& sink) {
-  const auto core = runtime::find_unsat_core(model, steps, runtime::make_cadical_solver());
+  const auto core =
+      runtime::find_unsat_core(model, steps, runtime::make_cadical_solver(&stop_flag()));
   if (!core) return false;
   // Several origins can share a place (the frame axiom and the declaration of a fluent).
   std::vector<const compiler::Origin*> blamed;
@@ -25,22 +27,17 @@ bool report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Tim
   return true;
 }
 
-EnumeratedTraces::EnumeratedTraces(const compiler::CompiledModel& model, std::int64_t max_traces,
-                                   Invocation& invocation)
+EnumeratedTraces::EnumeratedTraces(const compiler::CompiledModel& model, Invocation& invocation)
     : model_(&model),
-      max_traces_(max_traces),
       invocation_(&invocation),
       fluents_(model.fluents),
-      session_(std::make_unique<runtime::SolverSession>(model, runtime::make_cadical_solver())),
+      session_(std::make_unique<runtime::SolverSession>(
+          model, runtime::make_cadical_solver(&stop_flag()))),
       enumerator_(std::make_unique<runtime::PlanEnumerator>(*session_)) {
   std::sort(fluents_.begin(), fluents_.end());
 }
 
 base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next() {
-  if (max_traces_ > 0 && given_ == max_traces_) {
-    limited_ = true;
-    return std::optional<harness::CampaignTrace>();
-  }
   const auto trace = enumerator_->next();
   if (!trace) {
     if (given_ == 0 && !explain_absence()) return invocation_->sink().already_reported();
@@ -53,8 +50,7 @@ base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next() {
 }
 
 std::string EnumeratedTraces::exploration() const {
-  return std::string(
-      runtime::to_string(limited_ ? runtime::Exploration::kStopped : enumerator_->exploration()));
+  return std::string(runtime::to_string(enumerator_->exploration()));
 }
 
 base::Status EnumeratedTraces::explain_absence() const {

@@ -15,9 +15,8 @@ namespace parallax::tools {
 /// campaign simulates.
 class EnumeratedTraces final : public harness::TraceFeed {
  public:
-  /// `model` and `invocation` outlive the feed. `max_traces` 0: all.
-  EnumeratedTraces(const compiler::CompiledModel& model, std::int64_t max_traces,
-                   Invocation& invocation);
+  /// `model` and `invocation` outlive the feed.
+  EnumeratedTraces(const compiler::CompiledModel& model, Invocation& invocation);
   base::Result<std::optional<harness::CampaignTrace>> next() override;
   std::string exploration() const override;
   const std::vector<std::string>& fluents() const override { return fluents_; }
@@ -28,13 +27,11 @@ class EnumeratedTraces final : public harness::TraceFeed {
   base::Status explain_absence() const;
 
   const compiler::CompiledModel* model_;
-  std::int64_t max_traces_;
   Invocation* invocation_;
   std::vector<std::string> fluents_;
   std::unique_ptr<runtime::SolverSession> session_;
   std::unique_ptr<runtime::PlanEnumerator> enumerator_;
   std::int64_t given_ = 0;
-  bool limited_ = false;
 };
 
 /// Reports why the model has no execution of `steps` steps: the axioms of a minimal core, each

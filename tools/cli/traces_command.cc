@@ -17,7 +17,7 @@ struct TracesOptions {
   std::string format = "text";
 };
 
-/// Prints traces as they are found and counts them.
+/// Prints traces as they are found and counts them; under --json they are kept for the document.
 class TraceWriter {
  public:
   TraceWriter(const TracesOptions& options, Invocation& invocation)
@@ -26,15 +26,21 @@ class TraceWriter {
   void write(const runtime::Trace& trace) {
     ++count_;
     if (options_.count) return;
-    invocation_.result(options_.format == "jsonl" ? runtime::to_jsonl(trace) + '\n'
-                                                  : runtime::to_text(trace));
+    if (invocation_.options().json) {
+      list_ += (list_.empty() ? "" : ",") + runtime::to_jsonl(trace);
+    } else {
+      invocation_.result(options_.format == "jsonl" ? runtime::to_jsonl(trace) + '\n'
+                                                    : runtime::to_text(trace));
+    }
   }
   std::int64_t count() const { return count_; }
+  const std::string& list() const { return list_; }
 
  private:
   const TracesOptions& options_;
   Invocation& invocation_;
   std::int64_t count_ = 0;
+  std::string list_;
 };
 
 template <typename Enumerator>
@@ -50,17 +56,16 @@ void write_all(Enumerator& enumerator, TraceWriter& writer) {
 void close_list(const TracesOptions& options, const TraceWriter& writer,
                 const std::string& exploration, bool complete, double wall_s,
                 Invocation& invocation) {
-  if (options.count && invocation.options().json) {
-    invocation.result(fmt::format(
-        "{{\"status\":\"ok\",\"traces\":{},\"complete\":{},\"timing\":{{\"wall_s\":{:.3f}}}}}\n",
-        writer.count(), complete, wall_s));
+  const auto timing = fmt::format("\"timing\":{{\"wall_s\":{:.3f}}}", wall_s);
+  if (invocation.options().json) {
+    const auto list = options.count ? "" : fmt::format("\"list\":[{}],", writer.list());
+    invocation.document(fmt::format("{{\"status\":\"ok\",\"traces\":{},\"complete\":{},{}{}}}\n",
+                                    writer.count(), complete, list, timing));
   } else if (options.count) {
     invocation.result(fmt::format("{}\n", writer.count()));
-  } else if (options.format == "jsonl" || invocation.options().json) {
-    invocation.result(
-        fmt::format("{{\"summary\":true,\"traces\":{},\"complete\":{},"
-                    "\"timing\":{{\"wall_s\":{:.3f}}}}}\n",
-                    writer.count(), complete, wall_s));
+  } else if (options.format == "jsonl") {
+    invocation.result(fmt::format("{{\"summary\":true,\"traces\":{},\"complete\":{},{}}}\n",
+                                  writer.count(), complete, timing));
   } else {
     invocation.result(fmt::format("{} traces, {}\n", writer.count(), exploration));
   }
@@ -71,7 +76,7 @@ int list_traces(const TracesOptions& options, Invocation& invocation) {
   const auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
   const auto& model = compilation->model;
-  runtime::SolverSession session(model, runtime::make_cadical_solver());
+  runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
   TraceWriter writer(options, invocation);
   std::string exploration;
   bool complete = false;
