@@ -53,6 +53,8 @@ std::size_t first_invalid_byte(std::string_view text) {
   return text.size();
 }
 
+}  // namespace
+
 bool write_all(int fd, std::string_view text) {
   while (!text.empty()) {
     const auto written = ::write(fd, text.data(), text.size());
@@ -64,8 +66,6 @@ bool write_all(int fd, std::string_view text) {
   }
   return true;
 }
-
-}  // namespace
 
 Result<std::string> read_file(const std::filesystem::path& path, DiagnosticSink& sink,
                               std::size_t limit) {

@@ -22,4 +22,8 @@ Result<FileId> load_text(const std::filesystem::path& path, SourceFiles& files,
 Status write_file_atomically(const std::filesystem::path& path, std::string_view text,
                              DiagnosticSink& sink);
 
+/// Writes the whole text to an open descriptor, going on after signals. False, with `errno`, if it
+/// cannot be written.
+bool write_all(int fd, std::string_view text);
+
 }  // namespace parallax::base

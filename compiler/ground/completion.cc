@@ -1,10 +1,13 @@
 #include "compiler/ground/completion.h"
 
+#include <algorithm>
+
 #include "compiler/formula/substitute.h"
 
 namespace parallax::compiler {
 
-CompletionWriter::CompletionWriter(GroundModel& model) : model_(model) {
+CompletionWriter::CompletionWriter(GroundModel& model, Meaning meaning)
+    : model_(model), meaning_(meaning) {
   for (const auto& completion : model.typed().completions) {
     origins_.push_back(model.add_origin(completion.source, "completion"));
   }
@@ -70,6 +73,14 @@ void CompletionWriter::note_conjunct(const std::string& label, FormulaId formula
   }
 }
 
+/// A fact counts only where there are no rules.
+void CompletionWriter::drop_facts(std::vector<FormulaId>& reasons) const {
+  const auto truth = model_.formulas().truth();
+  const bool all_facts = std::all_of(reasons.begin(), reasons.end(),
+                                     [&](FormulaId reason) { return reason == truth; });
+  if (!all_facts) std::erase(reasons, truth);
+}
+
 void CompletionWriter::write() {
   if (origins_.empty()) return;
   const auto& typed = model_.typed();
@@ -86,6 +97,7 @@ void CompletionWriter::write() {
   }
   for (auto& [variable, completed] : completed_) {
     auto& formulas = model_.formulas();
+    if (meaning_ == Meaning::kDecreasoner) drop_facts(completed.reasons);
     const auto reason = formulas.disjunction(std::move(completed.reasons));
     model_.require(formulas.implication(formulas.atom(variable), reason),
                    origins_[completed.completion]);

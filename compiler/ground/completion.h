@@ -17,7 +17,7 @@ namespace parallax::compiler {
 /// events it makes them exclusive).
 class CompletionWriter {
  public:
-  explicit CompletionWriter(GroundModel& model);
+  CompletionWriter(GroundModel& model, Meaning meaning);
   /// Notes a conjunct of an axiom with this label (empty without one). Call for every axiom.
   void note(const std::string& label, FormulaId formula);
   /// Asserts the completions: false for atoms without a reason.
@@ -31,8 +31,10 @@ class CompletionWriter {
   void note_conjunct(const std::string& label, FormulaId formula);
   bool applies(std::size_t completion, const std::string& label) const;
   void prepare();
+  void drop_facts(std::vector<FormulaId>& reasons) const;
 
   GroundModel& model_;
+  Meaning meaning_;
   std::vector<std::uint32_t> origins_;           // by completion
   std::map<std::int32_t, Completed> completed_;  // by SAT variable
 };

@@ -155,11 +155,12 @@ std::optional<FormulaId> FormulaGrounder::combine(Frame& frame) {
       return std::nullopt;
     }
     case FormulaKind::kForall:
-      if (parts.empty() && frame.discarded) return std::nullopt;
-      return formulas.conjunction(std::move(parts));
-    case FormulaKind::kExists:
-      if (parts.empty() && frame.discarded) return std::nullopt;
-      return formulas.disjunction(std::move(parts));
+    case FormulaKind::kExists: {
+      const bool beyond = parts.empty() && frame.discarded;
+      if (beyond && options_.meaning == Meaning::kStandard) return std::nullopt;
+      return frame.formula->kind == FormulaKind::kForall ? formulas.conjunction(std::move(parts))
+                                                         : formulas.disjunction(std::move(parts));
+    }
     case FormulaKind::kNot:
       if (!all_there) return std::nullopt;
       return ~parts[0];

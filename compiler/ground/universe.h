@@ -10,9 +10,16 @@
 
 namespace parallax::compiler {
 
+/// The standard meaning (Mueller 2006), or that of the Discrete Event Calculus Reasoner 1.0 where
+/// the two differ: an atom that no formula mentions is false; a formula that is false whatever
+/// happens is left out; a quantifier whose instances all lie beyond the horizon is empty; a fact is
+/// no reason for an atom that rules give reasons for.
+enum class Meaning : std::uint8_t { kStandard, kDecreasoner };
+
 struct GroundOptions {
-  std::int64_t max_domain = 1'000'000;     // ground terms of one sort
-  std::int64_t max_instances = 5'000'000;  // instances of one axiom
+  Meaning meaning = Meaning::kStandard;
+  std::int64_t max_domain = 1'000'000;      // ground terms of one sort
+  std::int64_t max_instances = 5'000'000;   // instances of one axiom
   const std::atomic<bool>* stop = nullptr;  // raised to end grounding early
 };
 

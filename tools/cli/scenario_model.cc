@@ -5,6 +5,7 @@
 
 #include "compiler/base/file_io.h"
 #include "harness/campaign/campaign.h"
+#include "tools/cli/signals.h"
 
 namespace parallax::tools {
 namespace {
@@ -67,6 +68,7 @@ base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scen
   compiler::CompileInput input;
   for (const auto& model : scenario.models) input.models.emplace_back(model.text);
   input.horizon = scenario.horizon;
+  input.ground.stop = &stop_flag();
   for (const auto& text : scenario.constraints) {
     input.constraints.push_back(formula_text(text, files));
   }

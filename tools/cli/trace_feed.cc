@@ -44,6 +44,7 @@ base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next() {
     return std::optional<harness::CampaignTrace>();
   }
   ++given_;
+  current_ = *trace;
   auto converted = convert(*trace);
   if (!converted) return invocation_->sink().already_reported();
   return std::optional<harness::CampaignTrace>(*std::move(converted));
@@ -51,6 +52,12 @@ base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next() {
 
 std::string EnumeratedTraces::exploration() const {
   return std::string(runtime::to_string(enumerator_->exploration()));
+}
+
+bool EnumeratedTraces::admits(const harness::CampaignTrace& trace,
+                              const std::map<std::string, bool>& last_state) {
+  PARALLAX_REQUIRE(trace.number == current_.number, "only the trace given last is asked about");
+  return enumerator_->admits(current_, last_state);
 }
 
 base::Status EnumeratedTraces::explain_absence() const {
@@ -67,6 +74,8 @@ base::Result<harness::CampaignTrace> EnumeratedTraces::convert(const runtime::Tr
   harness::CampaignTrace out;
   out.number = trace.number;
   out.key = runtime::event_key(trace);
+  out.other_initial_states = trace.other_initial_states;
+  out.other_outcomes = trace.other_outcomes;
   for (const auto& point : trace.points) out.holds.push_back(point.holds);
   for (std::size_t t = 0; t + 1 < trace.points.size(); ++t) {
     const auto& point = trace.points[t];

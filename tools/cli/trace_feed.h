@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,6 +21,8 @@ class EnumeratedTraces final : public harness::TraceFeed {
   base::Result<std::optional<harness::CampaignTrace>> next() override;
   std::string exploration() const override;
   const std::vector<std::string>& fluents() const override { return fluents_; }
+  bool admits(const harness::CampaignTrace& trace,
+              const std::map<std::string, bool>& last_state) override;
   std::int64_t solve_calls() const { return session_->solve_calls(); }
 
  private:
@@ -31,6 +34,7 @@ class EnumeratedTraces final : public harness::TraceFeed {
   std::vector<std::string> fluents_;
   std::unique_ptr<runtime::SolverSession> session_;
   std::unique_ptr<runtime::PlanEnumerator> enumerator_;
+  runtime::Trace current_;  // the one given last
   std::int64_t given_ = 0;
 };
 

@@ -1,9 +1,10 @@
 // Domain files written for the 2005 reasoner, where they are at hand.
 
+#include "tests/support/peer_examples.h"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 
@@ -15,11 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST_CASE("every example of the 2005 reasoner is read and checked without an error") {
-  const char* folder = std::getenv("PARALLAX_PEER_EXAMPLES");
-  if (folder == nullptr || !fs::is_directory(folder)) {
-    std::cout << "SKIPPED: PARALLAX_PEER_EXAMPLES names no folder with examples\n";
-    return;
-  }
+  const auto found = peer_examples();
+  if (!found) return;
+  const fs::path folder = *found / "examples";
   std::vector<fs::path> paths;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.path().extension() == ".e") paths.push_back(entry.path());
@@ -30,7 +29,7 @@ TEST_CASE("every example of the 2005 reasoner is read and checked without an err
     CAPTURE(path);
     FrontEnd front;
     compiler::LoadOptions options;
-    options.include_dirs = {fs::path(folder), fs::path(folder).parent_path()};
+    options.include_dirs = {folder, *found};
     const std::vector<fs::path> main = {path};
     const auto ast = compiler::load_model(main, options, front.files, front.sink);
     REQUIRE_MESSAGE(ast.has_value(), front.text());

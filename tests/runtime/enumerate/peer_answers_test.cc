@@ -1,0 +1,155 @@
+// The models of the 2005 reasoner's examples, compared with the answers it recorded.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "compiler/pipeline/compile.h"
+#include "runtime/enumerate/model_enumerator.h"
+#include "tests/support/peer_examples.h"
+
+namespace parallax::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// HoldsAt and Happens atoms with their times: "Alive()@0", "!Load()@1" for an event.
+using Model = std::set<std::string>;
+
+/// Undoes the answer's layout: blanks between arguments, the closing period.
+std::string atom_of(std::string line) {
+  while (!line.empty() && (line.back() == '.' || line.back() == '\r')) line.pop_back();
+  std::string out;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] != ' ' || (i > 0 && line[i - 1] != ',')) out += line[i];
+  }
+  return out;
+}
+
+/// Reads the models of a recorded answer: full states or changes, both forms of the printer.
+class AnswerReader {
+ public:
+  std::set<Model> read(const fs::path& path) {
+    std::ifstream in(path);
+    static const std::regex model("model \\d+:|near miss:"), number("\\d+"),
+        trailer("[A-Za-z0-9]+: \\d+ predicates.*");
+    for (std::string line; std::getline(in, line);) {
+      if (std::regex_match(line, model)) {
+        close();
+        near_miss_ = near_miss_ || line.front() == 'n';
+        inside_ = true;
+      } else if (std::regex_match(line, trailer)) {
+        close();
+      } else if (inside_ && std::regex_match(line, number)) {
+        keep();
+        time_ = std::stoi(line);
+      } else if (inside_ && line == "P") {
+        keep();
+        time_ = -1;
+      } else if (inside_ && time_ >= 0) {
+        take(atom_of(line));
+      }
+    }
+    close();
+    if (near_miss_) models_.clear();
+    return models_;
+  }
+
+ private:
+  void take(const std::string& atom) {
+    static const std::regex timed("(HoldsAt|Happens|ReleasedAt)\\((.*),(\\d+)\\)");
+    std::smatch parts;
+    if (atom.empty() || atom.front() == '!') return;
+    if (std::regex_match(atom, parts, timed)) {
+      if (parts[1] == "Happens") model_.insert("!" + parts[2].str() + "@" + parts[3].str());
+      if (parts[1] == "HoldsAt") state_.insert(parts[2]);
+    } else if (atom.front() == '-') {
+      state_.erase(atom.substr(1));
+    } else {
+      state_.insert(atom.front() == '+' ? atom.substr(1) : atom);
+    }
+  }
+  /// The state of the timepoint that ends here; it is where the next one starts from.
+  void keep() {
+    if (time_ < 0) return;
+    for (const auto& fluent : state_) model_.insert(fluent + "@" + std::to_string(time_));
+  }
+  void close() {
+    if (!inside_) return;
+    keep();
+    models_.insert(model_);
+    model_.clear();
+    state_.clear();
+    time_ = -1;
+    inside_ = false;
+  }
+
+  std::set<Model> models_;
+  Model model_;
+  std::set<std::string> state_;
+  int time_ = -1;
+  bool inside_ = false, near_miss_ = false;
+};
+
+/// `option modeldiff on` prints later models as differences, `timediff off` prints no changes.
+bool prints_plainly(const fs::path& example) {
+  std::ifstream in(example);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str().find("option modeldiff on") == std::string::npos &&
+         text.str().find("option timediff off") == std::string::npos;
+}
+
+std::set<Model> enumerate(const fs::path& example, const fs::path& root) {
+  base::SourceFiles files;
+  base::DiagnosticSink sink;
+  compiler::CompileInput input;
+  input.models = {example};
+  input.load.include_dirs = {root};
+  input.load.allow_outside = true;
+  input.ground.meaning = compiler::Meaning::kDecreasoner;
+  const auto compiled = compiler::compile_model(input, files, sink);
+  REQUIRE(compiled.has_value());
+  runtime::SolverSession session(compiled->model, runtime::make_cadical_solver());
+  runtime::ModelEnumerator enumerator(session);
+  std::set<Model> models;
+  while (const auto trace = enumerator.next()) {
+    Model model;
+    for (std::size_t t = 0; t < trace->points.size(); ++t) {
+      const auto at = "@" + std::to_string(t);
+      for (const auto& fluent : trace->points[t].holds) model.insert(fluent + at);
+      for (const auto& event : trace->points[t].happens) model.insert("!" + event + at);
+    }
+    models.insert(model);
+  }
+  return models;
+}
+
+TEST_CASE("the models of every example are the recorded ones") {
+  const auto root = peer_examples();
+  if (!root) return;
+  std::vector<fs::path> examples;
+  for (const auto& entry : fs::recursive_directory_iterator(*root / "examples")) {
+    auto answer = entry.path();
+    answer.replace_extension(".txt");
+    if (entry.path().extension() == ".e" && fs::exists(answer)) examples.push_back(entry.path());
+  }
+  std::sort(examples.begin(), examples.end());
+  std::size_t compared = 0;
+  for (const auto& example : examples) {
+    if (!prints_plainly(example)) continue;
+    CAPTURE(example);
+    auto answer = example;
+    answer.replace_extension(".txt");
+    CHECK(enumerate(example, *root) == AnswerReader().read(answer));
+    ++compared;
+  }
+  CHECK(compared > 40);
+}
+
+}  // namespace
+}  // namespace parallax::test

@@ -1,0 +1,135 @@
+#include "runtime/enumerate/plan_enumerator.h"
+
+#include <doctest/doctest.h>
+
+#include "compiler/pipeline/compile.h"
+#include "tests/support/planned_model.h"
+
+namespace parallax::test {
+namespace {
+
+using runtime::Exploration;
+
+/// Two rooms, a lamp in each; switching works only where the robot is.
+constexpr const char* kRooms = R"(
+sort room
+room a1, b2
+fluent At(room)
+fluent Lit(room)
+event Go(room)
+event Switch(room)
+[time] {room} HoldsAt(At(room),time).
+[room1,room2,time] HoldsAt(At(room1),time) & HoldsAt(At(room2),time) -> room1=room2.
+[room,time] Initiates(Go(room),At(room),time).
+[room1,room2,time] room1!=room2 -> Terminates(Go(room1),At(room2),time).
+[room,time] HoldsAt(At(room),time) & !HoldsAt(Lit(room),time) -> Initiates(Switch(room),Lit(room),time).
+[room,time] HoldsAt(At(room),time) & HoldsAt(Lit(room),time) -> Terminates(Switch(room),Lit(room),time).
+)";
+
+constexpr const char* kBinding = R"(
+motion going (:target ?p) -> Go(region(?p))  ok: At(region(?p)) @t+1 else navigation-pose-unreachable
+action switching (:object ?o) -> Switch(?o)  ok: Lit(?o) @t+1 else manipulation-low-level-failure
+)";
+
+constexpr const char* kPlan = R"(
+(def-cram-function light ()
+  (let ((?b (make-pose-stamped "map" 0.0 (make-3d-vector 1.5 0 0) (make-identity-rotation))))
+    (perform (an action (type switching) (object (an object (name a1)))))
+    (perform (a motion (type going) (pose ?b)))
+    (perform (an action (type switching) (object (an object (name b2)))))))
+(light)
+)";
+
+TEST_CASE("a trace ends where the constraint holds for the first time, shortest first") {
+  PlannedModel model(kRooms, kPlan, kBinding, "HoldsAt(At(b2),time)", 5);
+  REQUIRE(model.codes() == "");
+  // Free initial state: in b2 already, or in a1. Switch fails in b2 (not there) and if a1 is lit.
+  const auto found = model.keys();
+  CHECK(found.keys == std::vector<std::string>{"Switch(a1);", "Switch(a1);Go(b2);"});
+  CHECK(found.exploration == Exploration::kAllTracesExplored);
+}
+
+TEST_CASE("failing performs end the plan, and what was done before can still hit") {
+  PlannedModel model(std::string(kRooms) + "HoldsAt(At(a1),0).\n", kPlan, kBinding,
+                     "HoldsAt(Lit(b2),time) & {event} Happens(event,time-1)", 6);
+  REQUIRE(model.codes() == "");
+  // b2 lit from the start: hit after the first step. b2 dark: after all three.
+  CHECK(model.keys().keys ==
+        std::vector<std::string>{"Switch(a1);", "Switch(a1);Go(b2);Switch(b2);"});
+}
+
+TEST_CASE("a trace does not need a continuation: the next step may be impossible") {
+  const std::string model_text =
+      std::string(kRooms) +
+      "HoldsAt(At(a1),0).\n!HoldsAt(Lit(a1),0).\n!HoldsAt(Lit(b2),0).\n"
+      "[time] Happens(Switch(b2),time) -> HoldsAt(At(a1),time).\n";  // never true in this plan
+  for (const int horizon : {2, 3, 4, 6}) {
+    CAPTURE(horizon);
+    PlannedModel model(model_text, kPlan, kBinding, "HoldsAt(At(b2),time)", horizon);
+    REQUIRE(model.codes() == "");
+    CHECK(model.keys().keys == std::vector<std::string>{"Switch(a1);Go(b2);"});
+  }
+}
+
+TEST_CASE("the traces within a horizon are the short ones of a longer horizon") {
+  std::vector<std::string> before;
+  for (int horizon = 1; horizon <= 6; ++horizon) {
+    PlannedModel model(kRooms, kPlan, kBinding,
+                       "HoldsAt(Lit(b2),time) & {event} Happens(event,time-1)", horizon);
+    REQUIRE(model.codes() == "");
+    const auto now = model.keys().keys;
+    REQUIRE(now.size() >= before.size());
+    CHECK(std::vector<std::string>(
+              now.begin(), now.begin() + static_cast<std::ptrdiff_t>(before.size())) == before);
+    before = now;
+  }
+  CHECK(before.size() >= 2);
+}
+
+TEST_CASE("a plan that outlasts the horizon is complete up to the bound only") {
+  PlannedModel cut(std::string(kRooms) + "HoldsAt(At(a1),0).\n!HoldsAt(Lit(b2),0).\n", kPlan,
+                   kBinding, "HoldsAt(Lit(b2),time)", 2);
+  REQUIRE(cut.codes() == "");
+  const auto found = cut.keys();
+  CHECK(found.keys.empty());
+  CHECK(found.exploration == Exploration::kCompleteUpToBound);
+}
+
+TEST_CASE("alternatives of a trace are noted, and asked about") {
+  const std::string released = std::string(kRooms) +
+                               "HoldsAt(At(a1),0).\n!HoldsAt(Lit(a1),0).\n"
+                               "[time] Releases(Go(b2),Lit(b2),time).\n";
+  PlannedModel model(released, kPlan, kBinding, "HoldsAt(At(b2),time)", 4);
+  REQUIRE(model.codes() == "");
+  runtime::SolverSession session(model.compiled(), runtime::make_cadical_solver());
+  runtime::PlanEnumerator enumerator(session);
+  const auto trace = enumerator.next();
+  REQUIRE(trace);
+  CHECK(runtime::event_key(*trace) == "Switch(a1);Go(b2);");
+  CHECK(trace->other_outcomes);        // Lit(b2) is free once the robot has come
+  CHECK(trace->other_initial_states);  // Lit(b2) at 0 is open
+  CHECK(enumerator.admits(*trace, {{"Lit(b2)", true}, {"At(b2)", true}}));
+  CHECK(enumerator.admits(*trace, {{"Lit(b2)", false}}));
+  CHECK(!enumerator.admits(*trace, {{"At(a1)", true}}));
+  CHECK(!enumerator.next());
+}
+
+TEST_CASE("a constraint that looks ahead of the final timepoint is refused") {
+  PlannedModel later(kRooms, kPlan, kBinding, "HoldsAt(At(b2),time+1)", 4);
+  CHECK(later.codes() == "E3013");
+  PlannedModel event(kRooms, kPlan, kBinding, "Happens(Go(b2),time)", 4);
+  CHECK(event.codes() == "E3013");
+}
+
+TEST_CASE("an event that is none of the model's is refused at its perform") {
+  PlannedModel model(kRooms, kPlan,
+                     "motion going (:target ?p) -> Gooo(region(?p)) ok: At(region(?p)) @t+1 else "
+                     "navigation-pose-unreachable\n"
+                     "action switching (:object ?o) -> Switch(?o) ok: Lit(?o) @t+1 else "
+                     "manipulation-low-level-failure\n",
+                     "HoldsAt(At(b2),time)", 4);
+  CHECK(model.codes() == "E3011");
+}
+
+}  // namespace
+}  // namespace parallax::test

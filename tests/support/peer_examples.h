@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+namespace parallax::test {
+
+/// The folder that holds `examples/` of the Discrete Event Calculus Reasoner 1.0: what
+/// PARALLAX_PEER_EXAMPLES names, or a folder beside the checkout. None, with a visible line, where
+/// there is none: the examples are not ours to ship.
+inline std::optional<std::filesystem::path> peer_examples() {
+  namespace fs = std::filesystem;
+  const char* named = std::getenv("PARALLAX_PEER_EXAMPLES");
+  const fs::path folder = named != nullptr
+                              ? fs::path(named)
+                              : fs::path(PARALLAX_SOURCE_DIR) / ".." / "shared" / "peer-examples";
+  std::error_code error;
+  if (fs::is_directory(folder / "examples", error)) return folder;
+  std::cout << "SKIPPED: no examples of the 2005 reasoner (PARALLAX_PEER_EXAMPLES)\n";
+  return std::nullopt;
+}
+
+}  // namespace parallax::test

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/pipeline/compile.h"
+#include "runtime/enumerate/plan_enumerator.h"
+
+namespace parallax::test {
+
+/// x below 1 is a1, the rest is b2.
+class TwoRooms final : public compiler::PoseLocator {
+ public:
+  std::optional<std::string> region_of(std::string_view,
+                                       const compiler::Pose& pose) const override {
+    return pose.x_m < 1.0 ? "a1" : "b2";
+  }
+  std::optional<Nearest> nearest(std::string_view, const compiler::Pose&) const override {
+    return std::nullopt;
+  }
+};
+
+/// A model, a plan, a binding table and one state constraint, through the whole front end.
+class PlannedModel {
+ public:
+  PlannedModel(const std::string& model, const std::string& plan, const std::string& binding,
+               const std::string& constraint, std::int64_t horizon) {
+    std::string name = (std::filesystem::temp_directory_path() / "parallax_model_XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) return;
+    const auto path = std::filesystem::path(name) / "model.e";
+    std::ofstream(path) << model;
+    compiler::CompileInput input;
+    input.models = {path};
+    input.horizon = horizon;
+    input.plan = compiler::PlanInput{files_.add("plan.lisp", plan),
+                                     files_.add("plan.bind", binding), std::nullopt, &rooms_};
+    const auto text = files_.add("constraint", constraint);
+    input.constraints = {{text, 0, static_cast<std::uint32_t>(constraint.size())}};
+    auto result = compiler::compile_model(input, files_, sink_);
+    if (result) compilation_ = *std::move(result);
+    std::filesystem::remove_all(name);
+  }
+
+  const compiler::CompiledModel& compiled() const { return compilation_->model; }
+
+  /// The ids of what was reported, in order, blank-separated.
+  std::string codes() const {
+    std::string out;
+    for (const auto& diagnostic : sink_.sorted()) {
+      if (!out.empty()) out += ' ';
+      out += base::info(diagnostic.code).id;
+    }
+    return out;
+  }
+
+  struct Found {
+    std::vector<std::string> keys;
+    runtime::Exploration exploration = runtime::Exploration::kStopped;
+  };
+  Found keys() const {
+    runtime::SolverSession session(compiled(), runtime::make_cadical_solver());
+    runtime::PlanEnumerator enumerator(session);
+    Found found;
+    while (const auto trace = enumerator.next()) found.keys.push_back(runtime::event_key(*trace));
+    found.exploration = enumerator.exploration();
+    return found;
+  }
+
+ private:
+  base::SourceFiles files_;
+  base::DiagnosticSink sink_;
+  TwoRooms rooms_;
+  std::optional<compiler::Compilation> compilation_;
+};
+
+}  // namespace parallax::test
