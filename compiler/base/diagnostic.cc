@@ -63,6 +63,15 @@ DiagnosticBuilder DiagnosticSink::add(DiagnosticCode code, std::optional<SourceR
   return DiagnosticBuilder(*this, entries_.size() - 1);
 }
 
+void DiagnosticSink::adopt(const DiagnosticSink& other, SourceRange place,
+                           const std::string& made) {
+  for (const auto& entry : other.sorted()) {
+    auto builder = add(entry.code, place, {}, entry.message);
+    builder.note("this is about `" + made + "`, made from the text here");
+    if (!entry.fix.empty()) builder.fix(entry.fix);
+  }
+}
+
 int DiagnosticSink::exit_code() const {
   int code = 0;
   for (const auto& entry : entries_) {

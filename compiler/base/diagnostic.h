@@ -101,6 +101,10 @@ class DiagnosticSink {
     return error(code, range, args...);
   }
 
+  /// Reports again what another sink has, at `place`: for texts that were made from the user's.
+  /// `made` is shown in a note.
+  void adopt(const DiagnosticSink& other, SourceRange place, const std::string& made);
+
   std::size_t error_count() const { return error_count_; }
   bool has_errors() const { return error_count_ != 0; }
   /// The exit code that the errors ask for: the smallest class wins (usage before input ...).

@@ -116,6 +116,11 @@ Result<FileId> load_text(const std::filesystem::path& path, SourceFiles& files,
 
 Status write_file_atomically(const std::filesystem::path& path, std::string_view text,
                              DiagnosticSink& sink) {
+  struct ::stat status {};
+  // Renaming over a device or a pipe would replace it.
+  if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
+    return sink.error_about(DiagnosticCode::kNotARegularFile, path.string());
+  }
   auto temporary = path;
   temporary += ".tmp";
   const auto fail = [&]() -> Status {

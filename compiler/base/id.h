@@ -10,7 +10,9 @@
 namespace parallax::base {
 
 template <typename Tag>
-concept OrderedTag = requires { requires Tag::kOrdered; };
+concept OrderedTag = requires {
+  requires Tag::kOrdered;
+};
 
 /// A 32-bit index with a tag. It compares equal and hashes; it is not ordered unless its order
 /// means something, which a tag says with `static constexpr bool kOrdered = true`.

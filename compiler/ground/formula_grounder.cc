@@ -1,5 +1,6 @@
 #include "compiler/ground/formula_grounder.h"
 
+#include <limits>
 #include <utility>
 
 namespace parallax::compiler {
@@ -50,7 +51,9 @@ void FormulaGrounder::start(base::SourceRange blame) {
 
 bool FormulaGrounder::spend(std::int64_t more) {
   if (failed_) return false;
-  if (__builtin_add_overflow(spent_, more, &spent_) || spent_ > options_.max_instances) {
+  if (__builtin_add_overflow(spent_, more, &spent_))
+    spent_ = std::numeric_limits<std::int64_t>::max();
+  if (spent_ > options_.max_instances) {
     sink_->error(DiagnosticCode::kTooManyInstances, blame_, options_.max_instances);
     failed_ = true;
   }
@@ -117,12 +120,17 @@ std::optional<FormulaId> FormulaGrounder::ground(TypedFormulaId root) {
 
 bool FormulaGrounder::begin_instances(Frame& frame) {
   frame.odometer.assign(frame.formula->variables.size(), 0);
+  std::int64_t instances = 1;
   for (const auto variable : frame.formula->variables) {
     const auto& domain = model_->universe().domain(typed_->variables[variable].sort);
     if (domain.empty()) return false;
     bind(variable, domain[0]);
+    if (__builtin_mul_overflow(instances, static_cast<std::int64_t>(domain.size()), &instances)) {
+      instances = std::numeric_limits<std::int64_t>::max();
+    }
   }
-  return spend(1);
+  // The whole product is paid for at once: what is too large is refused before it is begun.
+  return spend(instances);
 }
 
 bool FormulaGrounder::next_instance(Frame& frame) {
@@ -131,7 +139,7 @@ bool FormulaGrounder::next_instance(Frame& frame) {
     const auto& domain = model_->universe().domain(typed_->variables[variables[i]].sort);
     if (++frame.odometer[i] < domain.size()) {
       bind(variables[i], domain[frame.odometer[i]]);
-      return spend(1);
+      return spend(0);
     }
     frame.odometer[i] = 0;
     bind(variables[i], domain[0]);
@@ -207,8 +215,13 @@ std::optional<FormulaId> FormulaGrounder::atom(const TypedFormula& formula) {
   if (formula.predicate == core.happens) {
     const auto number = model_->event_number(arguments[0]);
     const auto t = static_cast<Timepoint>(terms[arguments[1]].integer);
-    if (!number || t >= model_->horizon()) return std::nullopt;
-    return model_->happens(*number, t);
+    if (!number) return std::nullopt;
+    if (t < model_->horizon()) return model_->happens(*number, t);
+    // Said of the last timepoint itself, an event does not happen there; reached by a variable, the
+    // instance is beyond the horizon.
+    const bool named = typed_->terms[formula.terms[1]].kind == TermKind::kInteger;
+    if (named) return model_->formulas().falsity();
+    return std::nullopt;
   }
   if (formula.predicate == core.initiates) return effect_atom(EffectKind::kInitiates, arguments);
   if (formula.predicate == core.terminates) return effect_atom(EffectKind::kTerminates, arguments);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "compiler/ground/formula_grounder.h"
@@ -15,12 +17,18 @@ void for_each_instance(const std::vector<VariableId>& variables, const GroundMod
     return model.universe().domain(model.typed().variables[variables[i]].sort);
   };
   std::vector<std::size_t> odometer(variables.size(), 0);
+  std::int64_t instances = 1;
   for (std::size_t i = 0; i < variables.size(); ++i) {
     if (domain(i).empty()) return;
     grounder.bind(variables[i], domain(i)[0]);
+    if (__builtin_mul_overflow(instances, static_cast<std::int64_t>(domain(i).size()),
+                               &instances)) {
+      instances = std::numeric_limits<std::int64_t>::max();
+    }
   }
+  if (!grounder.spend(instances)) return;
   for (;;) {
-    if (!grounder.spend(1)) return;
+    if (!grounder.spend(0)) return;
     visit();
     std::size_t i = variables.size();
     for (;;) {

@@ -18,8 +18,8 @@ enum class Meaning : std::uint8_t { kStandard, kDecreasoner };
 
 struct GroundOptions {
   Meaning meaning = Meaning::kStandard;
-  std::int64_t max_domain = 1'000'000;      // ground terms of one sort
-  std::int64_t max_instances = 5'000'000;   // instances of one axiom
+  std::int64_t max_domain = 200'000;        // ground terms of one sort
+  std::int64_t max_instances = 3'000'000;   // instances of one axiom
   const std::atomic<bool>* stop = nullptr;  // raised to end grounding early
 };
 

@@ -42,26 +42,27 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, TypedModel& model,
   return CheckedPlan{*std::move(graph), *std::move(formulas), std::move(events)};
 }
 
+base::Result<CheckedFormula> check_constraint(const ConstraintText& constraint, TypedModel& model,
+                                              const base::SourceFiles& files,
+                                              base::DiagnosticSink& sink) {
+  const auto parsed = parse_formula(constraint.text, files, sink);
+  if (!parsed) return sink.already_reported();
+  return check_formula(model, parsed->ast, parsed->root, {}, sink);
+}
+
 base::Result<std::vector<StateConstraint>> check_constraints(
-    const std::vector<base::SourceRange>& texts, TypedModel& model, const base::SourceFiles& files,
-    base::DiagnosticSink& sink) {
-  std::vector<StateConstraint> constraints;
-  bool failed = false;
-  for (const auto& text : texts) {
-    const auto parsed = parse_formula(text, files, sink);
-    if (!parsed) {
-      failed = true;
-      continue;
-    }
-    const auto checked = check_formula(model, parsed->ast, parsed->root, {}, sink);
-    if (!checked) {
-      failed = true;
-      continue;
-    }
-    constraints.push_back({*checked, text});
+    const std::vector<ConstraintText>& constraints, TypedModel& model,
+    const base::SourceFiles& files, base::DiagnosticSink& sink) {
+  std::vector<StateConstraint> checked;
+  for (const auto& constraint : constraints) {
+    const bool in_place = constraint.text.file == constraint.place.file;
+    base::DiagnosticSink own;
+    const auto formula = check_constraint(constraint, model, files, in_place ? sink : own);
+    if (formula) checked.push_back({*formula, constraint.place});
+    if (!in_place) sink.adopt(own, constraint.place, std::string(files.text(constraint.text)));
   }
-  if (failed) return sink.already_reported();
-  return constraints;
+  if (checked.size() != constraints.size()) return sink.already_reported();
+  return checked;
 }
 
 }  // namespace

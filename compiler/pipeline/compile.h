@@ -22,12 +22,19 @@ struct PlanInput {
   const PoseLocator* locator = nullptr;  // outlives the call
 };
 
+/// A state constraint: a text in the source files, and the place that messages name, which is
+/// another one when the text was unfolded or unquoted from it.
+struct ConstraintText {
+  base::SourceRange text;
+  base::SourceRange place;
+};
+
 struct CompileInput {
   std::vector<std::filesystem::path> models;
   LoadOptions load;
   std::optional<std::int64_t> horizon;  // replaces the range of `time`
   std::optional<PlanInput> plan;
-  std::vector<base::SourceRange> constraints;  // state constraints, texts in the source files
+  std::vector<ConstraintText> constraints;
   GroundOptions ground;
 };
 

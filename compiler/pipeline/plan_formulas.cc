@@ -7,17 +7,22 @@
 namespace parallax::compiler {
 namespace {
 
-/// The substituted text is nowhere in the user's files; it becomes a text of its own, named after
-/// the formula it was made from, so that a message shows what was substituted.
+/// The substituted text is nowhere in the user's files, so what is wrong with it is reported at the
+/// formula it was made from.
 base::Result<CheckedFormula> check_text(const std::string& text, base::SourceRange origin,
                                         TypedModel& model, base::SourceFiles& files,
                                         base::DiagnosticSink& sink) {
-  const auto file = files.add(files.place(origin), text);
-  const auto parsed = parse_formula(file, files, sink);
-  if (!parsed) return sink.already_reported();
+  const auto file = files.add(files[origin.file].name(), text);
+  base::DiagnosticSink own;
+  const auto parsed = parse_formula(file, files, own);
   FormulaOptions options;
   options.fluents_as_atoms = true;
-  return check_formula(model, parsed->ast, parsed->root, options, sink);
+  if (parsed) {
+    const auto checked = check_formula(model, parsed->ast, parsed->root, options, own);
+    if (checked) return *checked;
+  }
+  sink.adopt(own, origin, text);
+  return sink.already_reported();
 }
 
 }  // namespace

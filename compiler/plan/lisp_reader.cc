@@ -319,6 +319,7 @@ void Reader::report_open_list() {
 }
 
 base::Result<LispText> Reader::read() {
+  out_.file = file_;
   while (!stopped_) {
     std::uint32_t comment = 0;
     if (!skip_blanks(cursor_, comment)) {

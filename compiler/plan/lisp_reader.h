@@ -10,6 +10,7 @@ namespace parallax::compiler {
 
 /// The data of one plan file and its top-level forms in order.
 struct LispText {
+  base::FileId file;
   LispData data;
   std::vector<DatumId> forms;
 };

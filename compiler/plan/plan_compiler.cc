@@ -242,7 +242,8 @@ base::Result<PlanCode> PlanCompiler::compile(const std::optional<std::string>& e
   if (text_.forms.empty() || (bare_forms_.empty() && functions_.empty())) {
     const auto where = text_.forms.empty() ? base::SourceRange{} : data_.source(text_.forms[0]);
     if (text_.forms.empty()) {
-      return sink_.error_about(DiagnosticCode::kNoPlanEntry, "", "the file has no forms");
+      return sink_.error(DiagnosticCode::kNoPlanEntry, base::SourceRange{text_.file, 0, 0},
+                         "the file has no forms");
     }
     return sink_.error(DiagnosticCode::kNoPlanEntry, where, "only definitions of variables");
   }

@@ -110,7 +110,10 @@ ReferenceEvaluator::Truth ReferenceEvaluator::atom(const TypedFormula& formula,
   }
   if (formula.predicate == model_.core.happens) {
     // Events at the last timepoint do not exist.
-    if (number(arguments[1]) >= horizon_) return Truth::kNothing;
+    if (number(arguments[1]) >= horizon_) {
+      const bool named = model_.terms[formula.terms[1]].kind == TermKind::kInteger;
+      return named ? Truth::kFalse : Truth::kNothing;
+    }
     return truth(v.happens[at()].contains(arguments[0]));
   }
   std::string text = symbol.name + "(";

@@ -8,6 +8,8 @@
 
 #include "compiler/base/contract.h"
 #include "harness/campaign/journal.h"
+#include "harness/campaign/run_folder.h"
+#include "harness/campaign/run_limit.h"
 #include "harness/campaign/trace_campaign.h"
 #include "harness/sampling/rng.h"
 
@@ -28,9 +30,11 @@ TraceLine trace_line(const TracePlan& plan) {
 
 class Campaign {
  public:
-  Campaign(const Scenario& scenario, TraceFeed& traces, const SimulatorFactory& make_simulator,
-           const CampaignOptions& options, base::SourceFiles& files, base::DiagnosticSink& sink)
+  Campaign(const Scenario& scenario, RunFolder folder, TraceFeed& traces,
+           const SimulatorFactory& make_simulator, const CampaignOptions& options,
+           base::SourceFiles& files, base::DiagnosticSink& sink)
       : scenario_(scenario),
+        folder_(std::move(folder)),
         traces_(traces),
         options_(options),
         files_(files),
@@ -60,10 +64,11 @@ class Campaign {
     }
     result_.simulator = *info;
     if (!check_against_simulator(scenario_, *info, sink_)) return sink_.already_reported();
-    auto journal = Journal::open(options_.run_dir, journal_header(scenario_, options_, *info),
-                                 options_.resume, files_, sink_);
+    auto journal = Journal::open(std::move(folder_), journal_header(scenario_, options_, *info),
+                                 scenario_.limits.max_lost_in_a_row, files_, sink_);
     if (!journal) return sink_.already_reported();
     journal_ = std::move(*journal);
+    result_.journal_open = true;
     const auto complete = explore();
     if (!complete) return sink_.already_reported();
     return finished(*complete);
@@ -119,8 +124,10 @@ class Campaign {
     const auto plan = make_plan(std::move(trace), *cuboid);
     if (!plan) return sink_.already_reported();
     if (!announce(**plan)) return sink_.already_reported();
-    const TraceContext context{scenario_, options_,  result_.simulator, fluents_, *criterion_,
-                               pool_,     *journal_, lost_in_a_row_,    sink_};
+    const TraceContext context{scenario_,      options_,    result_.simulator,
+                               fluents_,       *criterion_, run_limit(scenario_).max_runs,
+                               traces_,        pool_,       *journal_,
+                               lost_in_a_row_, sink_};
     auto outcome = run_trace(context, *plan, *cuboid);
     if (!outcome) return sink_.already_reported();
     result_.simulations += outcome->result.simulations;
@@ -163,15 +170,38 @@ class Campaign {
   base::Status announce(const TracePlan& plan) {
     auto line = trace_line(plan);
     if (const auto* recorded = journal_->find(line.trace)) {
-      if (*recorded != line) {
+      // The plan may be named from elsewhere, as the scenario may.
+      auto before = *recorded;
+      before.places = line.places;
+      if (before != line) {
         return sink_.error_about(DiagnosticCode::kJournalMismatch,
                                  (options_.run_dir / kJournalName).string(),
                                  fmt::format("trace {}", line.trace), recorded->key, line.key);
       }
+      if (!check_recorded(plan)) return sink_.already_reported();
     } else {
       journal_->append(line);
     }
     lines_.push_back(std::move(line));
+    return base::Unit{};
+  }
+
+  /// A record counts as a sample only if its number is what its start and seed were drawn from.
+  base::Status check_recorded(const TracePlan& plan) {
+    const auto& recorded = journal_->recorded();
+    const SampleKey first(plan.trace.number, 0, Phase::kCertify);
+    for (auto at = recorded.samples.lower_bound(first); at != recorded.samples.end(); ++at) {
+      const auto& record = at->second;
+      if (record.trace != plan.trace.number) break;
+      const DrawKey key{plan.campaign_seed, plan.trace_key, Phase::kCertify,
+                        static_cast<std::uint64_t>(record.sample),
+                        static_cast<std::uint64_t>(record.attempt)};
+      std::string why;
+      if (record.seed != simulator_seed(key)) why = "its seed is not that of its number";
+      if (record.initial != plan.sampler.draw(key)) why = "its start is not that of its number";
+      if (why.empty()) continue;
+      return sink_.error(DiagnosticCode::kForeignJournalLine, recorded.places.at(at->first), why);
+    }
     return base::Unit{};
   }
 
@@ -198,6 +228,7 @@ class Campaign {
   }
 
   const Scenario& scenario_;
+  RunFolder folder_;  // until the journal takes it over
   TraceFeed& traces_;
   const CampaignOptions& options_;
   base::SourceFiles& files_;
@@ -233,7 +264,11 @@ base::Result<CampaignResult> run_campaign(const Scenario& scenario, TraceFeed& t
                                           const CampaignOptions& options, base::SourceFiles& files,
                                           base::DiagnosticSink& sink) {
   PARALLAX_REQUIRE(scenario.mapping.has_value(), "a scenario that was loaded without errors");
-  return Campaign(scenario, traces, make_simulator, options, files, sink).run();
+  // Before any worker starts: a folder that is in use must cost nothing, and nobody its report.
+  auto folder = RunFolder::claim(options.run_dir, options.resume, sink);
+  if (!folder) return sink.already_reported();
+  warn_of_low_limit(scenario, files, sink);
+  return Campaign(scenario, std::move(*folder), traces, make_simulator, options, files, sink).run();
 }
 
 std::string hash_of_sources(const base::SourceFiles& files) {

@@ -8,6 +8,7 @@
 #include "harness/campaign/sample_record.h"
 #include "harness/campaign/trace_input.h"
 #include "harness/confidence/criterion_spec.h"
+#include "harness/region/state_mapping.h"
 #include "harness/world/simulator.h"
 
 namespace parallax::harness {
@@ -36,15 +37,21 @@ struct Discrepancy {
   std::vector<DivergingFluent> fluents;  // what differs at the last timepoint; never empty
   Confirmation confirmation = Confirmation::kBitEqual;
   SampleRecord record;
+  State end;  // the variables that were compared, as last observed
 };
 
 struct TraceResult {
   std::int64_t number = 0;
   CampaignVerdict verdict = CampaignVerdict::kInconclusive;
   std::vector<TraceEvent> events;
+  std::vector<std::string> initial_state;      // true fluents at the start
+  std::vector<SampledDimension> start_region;  // the continuous states that it stands for
+  std::vector<std::string> not_compared;       // "LookingAt(..)": ignored by the mapping
   std::int64_t simulations = 0;  // run and not rejected before they began; lost ones included
   std::int64_t clean = 0;
+  std::int64_t admitted = 0;  // of the clean ones: ended otherwise, in a state the model admits
   std::int64_t lost = 0;
+  std::int64_t retried = 0;        // lost at first and observed at the second attempt
   std::int64_t rejected = 0;       // invalid starts that were drawn again
   std::int64_t strayed = 0;        // clean at the end, but differing from the trace on the way
   double certified_level = 0.0;    // C
@@ -62,8 +69,9 @@ struct CampaignResult {
   std::string title;     // what the scenario calls itself; may be empty
   std::uint64_t seed = 0;
   CampaignVerdict verdict = CampaignVerdict::kInconclusive;
-  std::string exploration;   // "all traces explored" | "complete up to bound" | "stopped"
-  bool interrupted = false;  // the stop flag was raised
+  std::string exploration;    // "all traces explored" | "complete up to bound" | "stopped"
+  bool interrupted = false;   // the stop flag was raised
+  bool journal_open = false;  // if not, the run folder is not this run's, or holds nothing of it
   CriterionSpec criterion;
   SimulatorInfo simulator;
   std::string tool_version;

@@ -45,7 +45,8 @@ std::string criterion_json(const CriterionSpec& criterion) {
         {"interval", paper.interval == IntervalKind::kPrediction ? "prediction" : "mean"},
         {"extra_runs", paper.extra_runs},
         {"exempt_inherited", paper.exempt_inherited},
-        {"tolerance_m", paper.tolerance_m}}}};
+        {"tolerance_m", paper.tolerance_m},
+        {"bonferroni", paper.bonferroni}}}};
   return out.dump();
 }
 

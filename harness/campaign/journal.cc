@@ -1,7 +1,6 @@
 #include "harness/campaign/journal.h"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -34,8 +33,9 @@ class JournalReader {
         sink_.warning(DiagnosticCode::kJournalTruncated, range(begin, text_.size()));
         break;
       }
+      line_ = range(begin, end);
       if (auto why = take(text_.substr(begin, end - begin))) {
-        return sink_.error(DiagnosticCode::kForeignJournalLine, range(begin, end), *why);
+        return sink_.error(DiagnosticCode::kForeignJournalLine, line_, *why);
       }
       begin = end + 1;
       journal_.complete_bytes = begin;
@@ -75,15 +75,17 @@ class JournalReader {
     if (record.status == SampleStatus::kOk && !whole) {
       return "it has not one observation for every timepoint of its trace";
     }
-    const std::tuple key(record.trace, record.sample, record.phase);
+    const SampleKey key(record.trace, record.sample, record.phase);
     if (!journal_.samples.emplace(key, std::move(record)).second) {
       return "this simulation stands there twice";
     }
+    journal_.places.emplace(key, line_);
     return std::nullopt;
   }
 
   std::string_view text_;
   base::DiagnosticSink& sink_;
+  SourceRange line_;  // the one that is read
   JournalText journal_;
 };
 
@@ -93,13 +95,45 @@ SourceRange header_line(const JournalText& journal, const base::SourceFiles& fil
   return {journal.file, 0, static_cast<std::uint32_t>(end)};
 }
 
-bool write_all(int fd, std::string_view text) {
-  while (!text.empty()) {
-    const auto count = ::write(fd, text.data(), text.size());
-    if (count < 0 && errno != EINTR) return false;
-    if (count > 0) text.remove_prefix(static_cast<std::size_t>(count));
+/// The lost simulations at which a continued run would end again at once: those that stand last,
+/// and as many in a row as end a run, where others that ran ahead stand behind them.
+std::vector<SampleKey> losses_to_repeat(const JournalText& journal, std::int64_t max_in_a_row) {
+  std::vector<SampleKey> out, row;
+  const auto end_row = [&](bool is_last) {
+    if (is_last || std::ssize(row) >= max_in_a_row) out.insert(out.end(), row.begin(), row.end());
+    row.clear();
+  };
+  for (const auto& [key, record] : journal.samples) {
+    if (record.phase == Phase::kConfirm) continue;
+    if (record.status == SampleStatus::kLost) {
+      row.push_back(key);
+    } else {
+      end_row(false);
+    }
   }
-  return true;
+  end_row(true);
+  return out;
+}
+
+/// Takes records out of what was read, and gives the text of the lines that are left.
+std::string without(const std::vector<SampleKey>& keys, JournalText& journal,
+                    const base::SourceFiles& files) {
+  std::vector<SourceRange> lines;
+  for (const auto& key : keys) {
+    lines.push_back(journal.places.at(key));
+    journal.places.erase(key);
+    journal.samples.erase(key);
+  }
+  std::sort(lines.begin(), lines.end(),
+            [](const SourceRange& a, const SourceRange& b) { return a.begin < b.begin; });
+  const auto text = files[journal.file].text().substr(0, journal.complete_bytes);
+  std::string out;
+  std::size_t begin = 0;
+  for (const auto& line : lines) {
+    out += text.substr(begin, line.begin - begin);
+    begin = line.end + 1;  // with its newline
+  }
+  return out += text.substr(begin);
 }
 
 }  // namespace
@@ -117,8 +151,11 @@ base::Result<JournalText> read_journal(const std::filesystem::path& run_dir,
   return JournalReader(file, files, sink).read();
 }
 
-Journal::Journal(std::filesystem::path path, JournalHeader header, JournalText recorded)
-    : path_(std::move(path)), header_(std::move(header)), recorded_(std::move(recorded)) {}
+Journal::Journal(RunFolder folder, JournalHeader header, JournalText recorded)
+    : folder_(std::move(folder)),
+      path_(folder_.path() / kJournalName),
+      header_(std::move(header)),
+      recorded_(std::move(recorded)) {}
 
 Journal::~Journal() {
   if (fd_ >= 0) ::close(fd_);
@@ -126,41 +163,39 @@ Journal::~Journal() {
 
 bool Journal::open_file(std::size_t keep_bytes) {
   fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
-  // Held as long as the run lasts: two runs that append to one journal would ruin it.
-  if (fd_ < 0 || ::flock(fd_, LOCK_EX | LOCK_NB) != 0) return false;
-  return ::ftruncate(fd_, static_cast<off_t>(keep_bytes)) == 0 && ::lseek(fd_, 0, SEEK_END) >= 0;
+  return fd_ >= 0 && ::ftruncate(fd_, static_cast<off_t>(keep_bytes)) == 0 &&
+         ::lseek(fd_, 0, SEEK_END) >= 0;
 }
 
-base::Result<std::unique_ptr<Journal>> Journal::open(const std::filesystem::path& run_dir,
-                                                     const JournalHeader& header, bool resume,
+base::Result<std::unique_ptr<Journal>> Journal::open(RunFolder folder, const JournalHeader& header,
+                                                     std::int64_t max_lost_in_a_row,
                                                      base::SourceFiles& files,
                                                      base::DiagnosticSink& sink) {
-  std::error_code error;
-  std::filesystem::create_directories(run_dir, error);
-  if (error) {
-    return sink.error_about(DiagnosticCode::kFileNotWritable, run_dir.string(), error.message());
-  }
-  const auto path = run_dir / kJournalName;
+  const auto path = folder.path() / kJournalName;
   JournalText recorded;
+  std::error_code error;
   if (std::filesystem::exists(path, error)) {
-    if (!resume) return sink.error_about(DiagnosticCode::kRunFolderInUse, run_dir.string());
-    auto text = read_journal(run_dir, files, sink);
+    auto text = read_journal(folder.path(), files, sink);
     if (!text) return sink.already_reported();
     recorded = std::move(*text);
   }
   if (recorded.header) {
-    if (const auto differs = first_difference(*recorded.header, header)) {
+    if (const auto differs = header_difference(*recorded.header, header)) {
       return sink.error(DiagnosticCode::kJournalMismatch, header_line(recorded, files),
                         differs->field, differs->recorded, differs->now);
     }
   }
+  const auto lost = losses_to_repeat(recorded, max_lost_in_a_row);
+  if (!lost.empty()) {
+    // They will be simulated again, and no simulation may stand there twice.
+    const auto kept = without(lost, recorded, files);
+    recorded.complete_bytes = kept.size();
+    if (!base::write_file_atomically(path, kept, sink)) return sink.already_reported();
+  }
   const bool fresh = !recorded.header;
   const auto keep_bytes = recorded.complete_bytes;
-  std::unique_ptr<Journal> journal(new Journal(path, header, std::move(recorded)));
+  std::unique_ptr<Journal> journal(new Journal(std::move(folder), header, std::move(recorded)));
   if (!journal->open_file(keep_bytes)) {
-    if (errno == EWOULDBLOCK) {
-      return sink.error_about(DiagnosticCode::kRunFolderInUse, run_dir.string());
-    }
     return sink.error_about(DiagnosticCode::kFileNotWritable, path.string(), std::strerror(errno));
   }
   if (fresh) journal->write_line(encode(header));
@@ -181,7 +216,8 @@ void Journal::write_line(const std::string& line) {
   const std::lock_guard lock(mutex_);
   if (!write_error_.empty()) return;
   // One write of the whole line: a kill leaves it whole, cut short, or not there.
-  if (!write_all(fd_, line + '\n') || ::fdatasync(fd_) != 0) write_error_ = std::strerror(errno);
+  if (!base::write_all(fd_, line + '\n') || ::fdatasync(fd_) != 0)
+    write_error_ = std::strerror(errno);
 }
 
 void Journal::append(const TraceLine& trace) { write_line(encode(trace)); }

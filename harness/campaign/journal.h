@@ -13,17 +13,21 @@
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/source_file.h"
 #include "harness/campaign/journal_format.h"
+#include "harness/campaign/run_folder.h"
 
 namespace parallax::harness {
 
 inline constexpr std::string_view kJournalName = "journal.ndjson";
+
+using SampleKey = std::tuple<std::int64_t, std::int64_t, Phase>;  // trace, sample
 
 /// A journal as it was read.
 struct JournalText {
   /// None when the run was ended before its first line was complete.
   std::optional<JournalHeader> header;
   std::map<std::int64_t, TraceLine> traces;
-  std::map<std::tuple<std::int64_t, std::int64_t, Phase>, SampleRecord> samples;
+  std::map<SampleKey, SampleRecord> samples;
+  std::map<SampleKey, base::SourceRange> places;  // their lines, without the newline
   base::FileId file;
   std::size_t complete_bytes = 0;  // up to the end of the last whole line
 };
@@ -37,17 +41,20 @@ base::Result<JournalText> read_journal(const std::filesystem::path& run_dir,
 /// `append` may be called from several threads.
 class Journal {
  public:
-  /// Starts a journal in `run_dir`, which is made if missing, or continues the one there if
-  /// `resume`. Reports kRunFolderInUse, kJournalMismatch and what read_journal reports.
-  static base::Result<std::unique_ptr<Journal>> open(const std::filesystem::path& run_dir,
-                                                     const JournalHeader& header, bool resume,
+  /// Starts a journal in `folder`, or continues the one there. The losses at which it would end at
+  /// once again (the last ones, and `max_lost_in_a_row` of them in a row) are dropped from it.
+  /// Reports kJournalMismatch, kFileNotWritable and what read_journal reports.
+  static base::Result<std::unique_ptr<Journal>> open(RunFolder folder, const JournalHeader& header,
+                                                     std::int64_t max_lost_in_a_row,
                                                      base::SourceFiles& files,
                                                      base::DiagnosticSink& sink);
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  /// What was there when it was opened; null if it was not.
+  /// What was there when it was opened, and what is still to be used of it.
+  const JournalText& recorded() const { return recorded_; }
+  /// Null if it was not there.
   const TraceLine* find(std::int64_t trace) const;
   const SampleRecord* find(std::int64_t trace, std::int64_t sample, Phase phase) const;
 
@@ -62,10 +69,11 @@ class Journal {
                        base::DiagnosticSink& sink);
 
  private:
-  Journal(std::filesystem::path path, JournalHeader header, JournalText recorded);
+  Journal(RunFolder folder, JournalHeader header, JournalText recorded);
   bool open_file(std::size_t keep_bytes);
   void write_line(const std::string& line);
 
+  RunFolder folder_;
   std::filesystem::path path_;
   JournalHeader header_;
   JournalText recorded_;

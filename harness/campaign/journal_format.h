@@ -15,14 +15,14 @@
 
 namespace parallax::harness {
 
-/// What must be equal for a run to be continued or repeated.
+/// What must be equal for a run to be continued or repeated, but for the name of the scenario.
 struct JournalHeader {
-  std::string scenario;
+  std::string scenario;  // as the user wrote it
   std::string scenario_hash;
   std::uint64_t seed = 0;
   std::string tool_version;
   SimulatorInfo simulator;  // without parameters and actions: the scenario was held against them
-  std::string options;      // canonical JSON of criterion, limits and keep_going
+  std::string options;      // canonical JSON of criterion, limits without max_runs, keep_going
 };
 JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& options,
                              const SimulatorInfo& simulator);
@@ -47,12 +47,12 @@ struct ForeignLine {
 std::variant<JournalHeader, ForeignLine> decode_header(std::string_view line);
 std::variant<TraceLine, SampleRecord, ForeignLine> decode_line(std::string_view line);
 
-/// The first field in which two headers differ, with both values; none if there is none.
+/// The first field in which two headers differ and must not, with both values.
 struct HeaderDifference {
   std::string field;  // "seed", "options.criterion.epsilon"
   std::string recorded, now;
 };
-std::optional<HeaderDifference> first_difference(const JournalHeader& recorded,
-                                                 const JournalHeader& now);
+std::optional<HeaderDifference> header_difference(const JournalHeader& recorded,
+                                                  const JournalHeader& now);
 
 }  // namespace parallax::harness

@@ -15,6 +15,7 @@ Judgement judge(const StateMapping& mapping, const std::vector<GroundFluent>& fl
     for (const auto& fluent : fluents) {
       const auto observed = mapping.holds(fluent, observations[t], &out.missing);
       if (!observed) continue;  // ignored on purpose
+      if (t + 1 == observations.size()) out.last_state[fluent.text] = *observed;
       const bool predicted =
           std::binary_search(trace.holds[t].begin(), trace.holds[t].end(), fluent.text);
       if (*observed != predicted) {
@@ -26,6 +27,43 @@ Judgement judge(const StateMapping& mapping, const std::vector<GroundFluent>& fl
       out.first = differing;
     }
     if (t + 1 == observations.size()) out.last = std::move(differing);
+  }
+  return out;
+}
+
+std::vector<std::string> ignored_fluents(const StateMapping& mapping,
+                                         const std::vector<GroundFluent>& fluents) {
+  std::set<std::string> out;
+  for (const auto& fluent : fluents) {
+    const auto* binding = mapping.find(fluent.symbol);
+    if (binding == nullptr || !std::holds_alternative<IgnoredBinding>(binding->condition)) continue;
+    out.insert(fluent.symbol + (fluent.arguments.empty() ? "()" : "(..)"));
+  }
+  return {out.begin(), out.end()};
+}
+
+State mapped_part(const StateMapping& mapping, const std::vector<GroundFluent>& fluents,
+                  const State& observation) {
+  State out;
+  const auto take = [&](const std::string& variable) {
+    const auto found = observation.find(variable);
+    if (found != observation.end()) out.insert(*found);
+  };
+  for (const auto& fluent : fluents) {
+    const auto* binding = mapping.find(fluent.symbol);
+    PARALLAX_REQUIRE(binding != nullptr, "the mapping was checked against the model's fluents");
+    if (const auto* flagged = std::get_if<FlagBinding>(&binding->condition)) {
+      take(with_arguments(flagged->variable, fluent));
+    } else if (const auto* inside = std::get_if<InsideBinding>(&binding->condition)) {
+      const auto* region = mapping.regions().find(fluent.arguments.at(inside->region_argument));
+      for (const auto axis : kAxes) {
+        if (region == nullptr || !region->on(axis)) continue;
+        take(with_arguments(inside->body, fluent) + '.' + std::string(to_string(axis)));
+      }
+      for (const auto& flag : {inside->unless, inside->only_if}) {
+        if (flag) take(with_arguments(*flag, fluent));
+      }
+    }
   }
   return out;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -17,6 +18,7 @@ struct Judgement {
   std::optional<std::int64_t> first_divergence;  // timepoint
   std::vector<DivergingFluent> first;            // what differs there
   std::vector<DivergingFluent> last;             // what differs at the last timepoint
+  std::map<std::string, bool> last_state;        // every compared fluent at the last timepoint
   std::set<std::string> missing;                 // variables that the mapping asks for in vain
   bool matches() const { return last.empty(); }
 };
@@ -24,5 +26,13 @@ struct Judgement {
 /// `observations` has one state per timepoint of the trace.
 Judgement judge(const StateMapping& mapping, const std::vector<GroundFluent>& fluents,
                 const CampaignTrace& trace, const std::vector<State>& observations);
+
+/// The fluents that are ignored on purpose, one entry a symbol: "LookingAt(..)", "Tired()".
+std::vector<std::string> ignored_fluents(const StateMapping& mapping,
+                                         const std::vector<GroundFluent>& fluents);
+
+/// The part of an observation that the compared fluents are read from.
+State mapped_part(const StateMapping& mapping, const std::vector<GroundFluent>& fluents,
+                  const State& observation);
 
 }  // namespace parallax::harness

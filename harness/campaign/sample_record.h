@@ -40,7 +40,8 @@ struct SampleRecord {
   std::uint64_t seed = 0;
   SampleStatus status = SampleStatus::kOk;
   std::int64_t rejected = 0;
-  std::string reason;  // why not kOk
+  std::int64_t retries = 0;  // attempts that were lost and made again with the same start and seed
+  std::string reason;        // why not kOk
   State initial;
   std::vector<State> observations;      // per timepoint; fewer when lost
   std::vector<ActionOutcome> outcomes;  // per event; fewer when lost

@@ -86,7 +86,10 @@ std::optional<SimStatus> attempt_twice(const std::vector<ActionCall>& calls, Sim
                                        const std::function<bool()>& abandoned) {
   Attempt attempt(calls, simulator, record);
   auto status = attempt.run(abandoned);
-  if (status == SimStatus::kLost && !abandoned()) status = attempt.run(abandoned);
+  if (status == SimStatus::kLost && !abandoned()) {
+    ++record.retries;
+    status = attempt.run(abandoned);
+  }
   if (status == SimStatus::kLost && abandoned()) return std::nullopt;
   return status;
 }
@@ -148,6 +151,7 @@ std::optional<SampleRecord> repeat_sample(const std::vector<ActionCall>& calls,
                                           const std::function<bool()>& abandoned) {
   SampleRecord again = record;
   again.phase = Phase::kConfirm;
+  again.retries = 0;
   const auto status = attempt_twice(calls, simulator, again, abandoned);
   if (!status) return std::nullopt;
   again.status = sample_status(*status);

@@ -29,8 +29,12 @@ class TraceCampaign {
         plan_(std::move(plan)),
         tally_(regression_frame(*context.scenario.mapping, start, context.fluents,
                                 as_set(plan_->trace.holds.back()))) {
-    outcome_.result.number = plan_->trace.number;
-    outcome_.result.events = plan_->trace.events;
+    auto& result = outcome_.result;
+    result.number = plan_->trace.number;
+    result.events = plan_->trace.events;
+    result.initial_state = plan_->trace.holds.front();
+    result.start_region = start.dimensions;
+    result.not_compared = ignored_fluents(*context.scenario.mapping, context.fluents);
   }
 
   base::Result<TraceOutcome> run() {
@@ -38,7 +42,7 @@ class TraceCampaign {
       decision_ = context_.criterion.decide(tally_);
       report_progress();
       if (decision_.stop) return finished(TraceEnd::kDecided);
-      if (tally_.runs() >= max_runs()) return finished(TraceEnd::kRunLimit);
+      if (tally_.runs() >= context_.max_runs) return finished(TraceEnd::kRunLimit);
       schedule_from(sample);
       auto record = result_of(sample, Phase::kCertify);
       if (!record) return ended_early();
@@ -53,14 +57,17 @@ class TraceCampaign {
     std::optional<TraceEnd> end;  // none: go on
   };
 
-  std::int64_t max_runs() const { return context_.scenario.limits.max_runs; }
+  bool stopped() const {
+    const auto* stop = context_.options.stop;
+    return stop != nullptr && stop->load();
+  }
 
   /// Workers run ahead of what is consumed, but not beyond what the criterion still asks for.
   void schedule_from(std::int64_t sample) {
     const std::int64_t jobs = context_.options.jobs;
     const std::int64_t window = jobs == 1 ? 1 : 2 * jobs;
-    const auto needed = std::max(decision_.runs_needed.value_or(max_runs()), sample);
-    const auto last = std::min({sample + window - 1, needed, max_runs()});
+    const auto needed = std::max(decision_.runs_needed.value_or(context_.max_runs), sample);
+    const auto last = std::min({sample + window - 1, needed, context_.max_runs});
     next_ = std::max(next_, sample);
     for (; next_ <= last; ++next_) {
       if (recorded(next_, Phase::kCertify) == nullptr) context_.pool.submit(plan_, next_);
@@ -73,8 +80,7 @@ class TraceCampaign {
 
   std::optional<SampleRecord> result_of(std::int64_t sample, Phase phase) {
     if (const auto* known = recorded(sample, phase)) {
-      const auto* stop = context_.options.stop;
-      if (stop != nullptr && stop->load()) return std::nullopt;
+      if (stopped()) return std::nullopt;
       return *known;
     }
     return context_.pool.wait(sample, phase);
@@ -133,9 +139,18 @@ class TraceCampaign {
           record.trace, fluent.observed ? "a state with" : "a state without", fluent.fluent);
     }
     context_.lost_in_a_row = 0;
-    if (!judgement.matches()) return accept_discrepancy(std::move(record), judgement);
-    if (judgement.first_divergence) ++outcome_.result.strayed;
-    add_clean_run(tally_, record.initial, record.observations.back());
+    if (record.retries > 0) ++outcome_.result.retried;
+    if (judgement.matches()) {
+      if (judgement.first_divergence) ++outcome_.result.strayed;
+      add_clean_run(tally_, record.initial, record.observations.back());
+    } else {
+      const bool admitted =
+          plan_->trace.other_outcomes && context_.feed.admits(plan_->trace, judgement.last_state);
+      if (stopped()) return Step{TraceEnd::kStopped};  // then the solver was, too
+      if (!admitted) return accept_discrepancy(std::move(record), judgement);
+      tally_.add_clean_elsewhere();
+      ++outcome_.result.admitted;
+    }
     ++outcome_.result.clean;
     outcome_.consumed.push_back(std::move(record));
     return Step{};
@@ -163,6 +178,8 @@ class TraceCampaign {
       found.confirmation = Confirmation::kDiffers;
     }
     found.record = record;
+    found.end =
+        mapped_part(*context_.scenario.mapping, context_.fluents, record.observations.back());
     outcome_.discrepancy = std::move(found);
     outcome_.consumed.push_back(std::move(record));
     outcome_.consumed.push_back(*again);
@@ -176,7 +193,8 @@ class TraceCampaign {
     CampaignProgress progress;
     progress.trace = plan_->trace.number;
     progress.done = tally_.runs();
-    progress.needed = std::min(decision_.runs_needed.value_or(max_runs()), max_runs());
+    progress.needed =
+        std::min(decision_.runs_needed.value_or(context_.max_runs), context_.max_runs);
     progress.runs_per_s = elapsed.count() > 0.0 ? static_cast<double>(made) / elapsed.count() : 0.0;
     context_.options.progress(progress);
   }
@@ -203,6 +221,27 @@ class TraceCampaign {
   }
 
   void add_own_caveats(TraceResult& result) const {
+    if (plan_->trace.other_outcomes) {
+      result.caveats.push_back(
+          "the model leaves the outcome of these events open; an end state counts as predicted if "
+          "the model admits it");
+    }
+    if (plan_->trace.other_initial_states) {
+      result.caveats.push_back(
+          "other initial states lead to the same events; only the first, in the model's order, was "
+          "sampled");
+    }
+    if (!context_.criterion.is_anytime_valid()) {
+      result.caveats.push_back(fmt::format(
+          "the criterion `{}` looks again after every run and is not made for it: its level is not "
+          "the probability of a false stop",
+          context_.criterion.name()));
+    }
+    if (result.retried > 0) {
+      result.caveats.push_back(fmt::format(
+          "{} lost at first and observed when repeated with the same start and seed",
+          result.retried == 1 ? "1 run was" : fmt::format("{} runs were", result.retried)));
+    }
     if (result.strayed > 0) {
       result.caveats.push_back(fmt::format(
           "{} of the clean runs left the trace on the way and ended as predicted", result.strayed));

@@ -34,6 +34,8 @@ struct TraceContext {
   const SimulatorInfo& simulator;
   const std::vector<GroundFluent>& fluents;
   const ConfidenceCriterion& criterion;
+  std::int64_t max_runs;
+  TraceFeed& feed;
   WorkerPool& pool;
   Journal& journal;
   std::int64_t& lost_in_a_row;  // goes on from trace to trace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,8 @@ struct CampaignTrace {
   std::string key;          // stable text that names the trace, part of every draw's key
   std::vector<std::vector<std::string>> holds;  // true ground fluents per timepoint, sorted
   std::vector<TraceEvent> events;               // event t leads from timepoint t to t + 1
+  bool other_initial_states = false;            // others lead to the same events
+  bool other_outcomes = false;  // the same start and events may end otherwise: see `admits`
 };
 
 /// Where traces come from: an enumeration, a file, a list in a test.
@@ -38,6 +41,13 @@ class TraceFeed {
   virtual std::string exploration() const = 0;
   /// All ground fluents of the model, sorted.
   virtual const std::vector<std::string>& fluents() const = 0;
+  /// Does the model let the events of `trace`, from its initial state, end in a state in which each
+  /// of these fluents has this value? Asked about the trace that was given last, and only if it has
+  /// `other_outcomes`; where the stop flag is raised meanwhile the answer does not count.
+  virtual bool admits(const CampaignTrace& trace, const std::map<std::string, bool>& last_state) {
+    (void)trace, (void)last_state;
+    return false;
+  }
 };
 
 }  // namespace parallax::harness

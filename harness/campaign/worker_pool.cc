@@ -1,6 +1,7 @@
 #include "harness/campaign/worker_pool.h"
 
 #include <chrono>
+#include <system_error>
 
 #include "compiler/base/contract.h"
 
@@ -17,7 +18,12 @@ WorkerPool::WorkerPool(std::int64_t jobs, SimulatorFactory make_simulator,
     : make_simulator_(std::move(make_simulator)), finished_(std::move(finished)), stop_(stop) {
   PARALLAX_REQUIRE(jobs >= 1, "at least one job");
   for (std::int64_t i = 0; i < jobs; ++i) {
-    threads_.emplace_back([this, i] { work(static_cast<std::size_t>(i)); });
+    try {
+      threads_.emplace_back([this, i] { work(static_cast<std::size_t>(i)); });
+    } catch (const std::system_error&) {
+      if (threads_.empty()) throw;  // nobody is left to do the work
+      break;                        // fewer workers give the same results later
+    }
   }
 }
 
@@ -25,7 +31,11 @@ WorkerPool::~WorkerPool() { close(); }
 
 void WorkerPool::close() {
   abandon();
-  closing_ = true;
+  {
+    // Under the lock, or a worker that has just found it false would sleep through the call.
+    const std::lock_guard lock(mutex_);
+    closing_ = true;
+  }
   changed_.notify_all();
   for (auto& thread : threads_) thread.join();
   threads_.clear();

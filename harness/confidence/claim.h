@@ -14,8 +14,8 @@ namespace parallax::harness {
 /// discrepancy (90 clean runs of 90)". Figures are rounded up, so never beyond the evidence.
 std::string claim(const Tally& tally, const CriterionSpec& spec);
 
-/// What weakens the claim, one sentence each: rejected starts, lost runs, the paper's figure,
-/// fluents without regression evidence.
+/// What weakens the claim, one sentence each: rejected starts, lost runs, fluents without
+/// regression evidence where the paper's rule is satisfied.
 std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec);
 
 /// "paper-literal, n = 2": the reading of the paper's rule and its number of varying initial

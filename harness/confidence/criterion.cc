@@ -53,6 +53,11 @@ Decision PaperCriterion::decide(const Tally& tally) const {
     decision.why = "a run gave a discrepancy";
     return decision;
   }
+  if (tally.lost() > 0) {
+    // The rule has no place for a run without a result; leaving it out would favour the model.
+    decision.why = "a run was lost";
+    return decision;
+  }
   decision.paper = paper_rule(tally, spec_, confidence_level_);
   decision.stop = decision.paper->stop;
   decision.why = decision.stop ? "every final interval lies in its cell" : decision.paper->why_not;

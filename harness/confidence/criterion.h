@@ -56,7 +56,7 @@ class CleanRunsCriterion final : public ConfidenceCriterion {
   std::int64_t runs_needed_;
 };
 
-/// Stop when the paper's rule holds for the clean runs. Never after a mismatch.
+/// Stop when the paper's rule holds for the clean runs. Never after a mismatch or a lost run.
 class PaperCriterion final : public ConfidenceCriterion {
  public:
   PaperCriterion(double confidence_level, PaperRuleSpec spec);

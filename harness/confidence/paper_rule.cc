@@ -218,6 +218,11 @@ PaperVerdict paper_rule(const RegressionInput& input, const PaperRuleSpec& spec,
 
 PaperVerdict paper_rule(const Tally& tally, const PaperRuleSpec& spec, double confidence_level) {
   const RegressionFrame& frame = tally.frame();
+  if (tally.elsewhere() > 0) {
+    PaperVerdict verdict;
+    verdict.why_not = "a run ended in another state that the model admits";
+    return verdict;
+  }
   return paper_rule(
       {tally.x(), tally.y(), frame.x_range, frame.y_cell, frame.x_names, frame.y_names}, spec,
       confidence_level);
@@ -225,6 +230,7 @@ PaperVerdict paper_rule(const Tally& tally, const PaperRuleSpec& spec, double co
 
 std::optional<std::int64_t> paper_stopped_at(const Tally& tally, const PaperRuleSpec& spec,
                                              double confidence_level) {
+  if (tally.elsewhere() > 0) return std::nullopt;
   const RegressionFrame& frame = tally.frame();
   RegressionInput input{{}, {}, frame.x_range, frame.y_cell, frame.x_names, frame.y_names};
   for (std::size_t row = 0; row < tally.x().size(); ++row) {

@@ -29,6 +29,9 @@ class Tally {
   /// A uniform run whose final state was the expected one. `initial` (n) and `final_values` (m)
   /// follow the frame; a value that was not observed is NaN.
   void add_clean(std::span<const double> initial, std::span<const double> final_values);
+  /// A run that ended in another state which the model admits, too. It is clean and has no row: the
+  /// regression is about one expected final state.
+  void add_clean_elsewhere() { ++clean_, ++elsewhere_; }
   /// A run that the simulator lost (crash, hang, invalid numbers): counts as a failure.
   void add_lost() { ++lost_; }
   /// Start states that were not valid and drawn again; no run at all.
@@ -37,6 +40,7 @@ class Tally {
   void add_mismatch() { ++mismatch_; }
 
   std::int64_t clean() const { return clean_; }
+  std::int64_t elsewhere() const { return elsewhere_; }  // of the clean ones
   std::int64_t lost() const { return lost_; }
   std::int64_t rejected() const { return rejected_; }
   std::int64_t mismatch() const { return mismatch_; }
@@ -44,14 +48,14 @@ class Tally {
   std::int64_t runs() const { return clean_ + lost_ + mismatch_; }
 
   const RegressionFrame& frame() const { return frame_; }
-  /// (clean x n) and (clean x m), one row per clean run in order.
+  /// (rows x n) and (rows x m), one row per clean run that ended as expected, in order.
   const std::vector<std::vector<double>>& x() const { return x_; }
   const std::vector<std::vector<double>>& y() const { return y_; }
 
  private:
   RegressionFrame frame_;
   std::vector<std::vector<double>> x_, y_;
-  std::int64_t clean_ = 0, lost_ = 0, rejected_ = 0, mismatch_ = 0;
+  std::int64_t clean_ = 0, elsewhere_ = 0, lost_ = 0, rejected_ = 0, mismatch_ = 0;
 };
 
 }  // namespace parallax::harness

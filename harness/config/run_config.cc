@@ -39,10 +39,12 @@ void read_paper_rule(const YamlFields& fields, PaperRuleSpec& rule) {
   changed = read_enum(fields, "intercept", kIntercepts, rule.intercept) || changed;
   changed = read_enum(fields, "interval", kIntervals, rule.interval) || changed;
   changed = changed || fields.find("extra_runs") != nullptr ||
-            fields.find("exempt_inherited") != nullptr || fields.find("tolerance_m") != nullptr;
+            fields.find("exempt_inherited") != nullptr || fields.find("tolerance_m") != nullptr ||
+            fields.find("bonferroni") != nullptr;
   fields.integer("extra_runs", 0, kMaxRuns, rule.extra_runs);
   fields.boolean("exempt_inherited", rule.exempt_inherited);
   fields.number("tolerance_m", kNotNegative, rule.tolerance_m);
+  fields.boolean("bonferroni", rule.bonferroni);
   if (changed) rule.preset = "custom, from " + rule.preset;
 }
 
@@ -59,7 +61,7 @@ CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink) {
   }
   YamlFields fields(map, "`criterion`", sink);
   fields.only({"kind", "confidence", "epsilon", "preset", "sigma", "root", "intercept", "interval",
-               "extra_runs", "exempt_inherited", "tolerance_m"});
+               "extra_runs", "exempt_inherited", "tolerance_m", "bonferroni"});
   if (fields.choice("kind", "criterion", kKinds) == std::size_t{1}) {
     criterion.kind = CriterionKind::kPaper;
   }
@@ -102,7 +104,8 @@ Limits read_limits(const YamlNode& node, base::DiagnosticSink& sink) {
   Limits limits;
   YamlFields fields(node, "`limits`", sink);
   fields.only({"max_runs", "max_traces", "max_rejected_starts", "max_lost_in_a_row"});
-  fields.integer("max_runs", 1, kMaxRuns, limits.max_runs);
+  fields.integer("max_runs", 0, kMaxRuns, limits.max_runs);
+  if (const auto* max_runs = fields.find("max_runs")) limits.max_runs_source = max_runs->range;
   fields.integer("max_traces", 0, kMaxRuns, limits.max_traces);
   fields.integer("max_rejected_starts", 1, kMaxRuns, limits.max_rejected_starts);
   fields.integer("max_lost_in_a_row", 1, kMaxRuns, limits.max_lost_in_a_row);

@@ -47,7 +47,9 @@ struct SimulatorSpec {
 };
 
 struct Limits {
-  std::int64_t max_runs = 300;             // valid simulations per trace
+  /// Valid simulations per trace; 0: twice what the criterion needs, at least 300.
+  std::int64_t max_runs = 0;
+  std::optional<base::SourceRange> max_runs_source;
   std::int64_t max_traces = 0;             // 0: all
   std::int64_t max_rejected_starts = 100;  // in a row, for one sample
   std::int64_t max_lost_in_a_row = 3;
@@ -93,7 +95,8 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
 /// Holds the scenario against the compiled model, before anything is simulated: every ground fluent
 /// needs a mapping of its arity whose region exists, every ground event an action. Reports each
 /// offending symbol once, at the `mapping:` or `actions:` key, with the near name as a fix; warns
-/// of a mapping or an action that the model has no use for.
+/// of a mapping or an action that the model has no use for. A mapping that ignores every fluent is
+/// an error, as each simulation would then pass.
 base::Status check_against_model(const Scenario& scenario, const std::vector<std::string>& fluents,
                                  const std::vector<std::string>& events,
                                  base::DiagnosticSink& sink);

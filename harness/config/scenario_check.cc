@@ -106,6 +106,11 @@ base::Status check_against_model(const Scenario& scenario, const std::vector<std
     fluent_symbols.insert(ground.back().symbol);
   }
   const auto mapped = scenario.mapping->check(ground, scenario.mapping_source, sink);
+  const bool compares = std::any_of(ground.begin(), ground.end(), [&](const GroundFluent& fluent) {
+    const auto* binding = scenario.mapping->find(fluent.symbol);
+    return binding != nullptr && !std::holds_alternative<IgnoredBinding>(binding->condition);
+  });
+  if (mapped && !compares) sink.error(DiagnosticCode::kNothingCompared, scenario.mapping_source);
   for (const auto& text : events) {
     const auto event = ground_fluent(text);
     if (event_symbols.insert(event.symbol).second) check_event(scenario, event, sink);

@@ -20,7 +20,11 @@ std::string campaign_text(const CampaignResult& result, const ReportStyle& style
 /// The document of `parallax run --json`, one line with a newline; `timing` only if asked for.
 std::string campaign_json(const CampaignResult& result, bool with_timing);
 
-/// Writes report.txt and report.json, without timing and colour, into the run folder.
+/// The command that repeats the simulation, for the folder where the run was started. The run
+/// folder is quoted where a shell needs it.
+std::string replay_command(const std::string& run_dir, const Discrepancy& found);
+
+/// Writes report.txt and report.json, without timing and colour, into the run folder, which exists.
 base::Status write_report(const CampaignResult& result, const std::filesystem::path& run_dir,
                           base::DiagnosticSink& sink);
 

@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "compiler/base/file_io.h"
 #include "harness/campaign/criterion_json.h"
+#include "harness/campaign/state_json.h"
 #include "harness/report/report.h"
+#include "harness/report/text_layout.h"
 
 namespace parallax::harness {
 namespace {
@@ -16,10 +17,15 @@ std::string text_of(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-Json json_of(const State& state) {
+/// {"box.x": [1, 2], "box.y": 0}
+Json json_of(const std::vector<SampledDimension>& dimensions) {
   Json out = Json::object();
-  for (const auto& [name, value] : state) {
-    std::visit([&, &key = name](const auto& v) { out[key] = v; }, value);
+  for (const auto& [variable, interval] : dimensions) {
+    if (interval.lower == interval.upper) {
+      out[variable] = interval.lower;
+    } else {
+      out[variable] = {interval.lower, interval.upper};
+    }
   }
   return out;
 }
@@ -46,10 +52,15 @@ Json json_of(const TraceResult& trace) {
               {"verdict", to_string(trace.verdict)},
               {"events", std::move(events)},
               {"sources", std::move(sources)},
+              {"initial_state", trace.initial_state},
+              {"start_region", json_of(trace.start_region)},
+              {"not_compared", trace.not_compared},
               {"simulations", trace.simulations},
               {"guided", 0},
               {"clean", trace.clean},
+              {"admitted", trace.admitted},
               {"lost", trace.lost},
+              {"retried", trace.retried},
               {"rejected", trace.rejected},
               {"strayed", trace.strayed}};
   out["certified"] = {{"confidence", trace.certified_level}, {"epsilon", trace.certified_epsilon}};
@@ -87,10 +98,10 @@ Json json_of(const Discrepancy& found, const std::string& folder) {
           {"first", json_of(found.first)},
           {"fluents", json_of(found.fluents)},
           {"repeated", word(found.confirmation)},
-          {"start", json_of(found.record.initial)},
+          {"start", state_json<Json>(found.record.initial)},
+          {"end", state_json<Json>(found.end)},
           {"outcomes", std::move(outcomes)},
-          {"replay",
-           fmt::format("parallax replay {} --sample {}.{}", folder, found.trace, found.sample)}};
+          {"replay", replay_command(folder, found)}};
 }
 
 Json json_of(const CampaignResult& result, bool with_timing) {
@@ -131,16 +142,10 @@ std::string campaign_json(const CampaignResult& result, bool with_timing) {
 
 base::Status write_report(const CampaignResult& result, const std::filesystem::path& run_dir,
                           base::DiagnosticSink& sink) {
-  // A folder may be moved, and the same run in two folders gives the same bytes.
-  CampaignResult local = result;
-  local.replay_folder.assign(1, '.');
-  // A run that was interrupted before its first line has no folder yet.
-  std::error_code ignored;
-  std::filesystem::create_directories(run_dir, ignored);
   const auto text =
-      base::write_file_atomically(run_dir / "report.txt", campaign_text(local, {}), sink);
-  const auto json =
-      base::write_file_atomically(run_dir / "report.json", text_of(json_of(local, false), 2), sink);
+      base::write_file_atomically(run_dir / "report.txt", campaign_text(result, {}), sink);
+  const auto json = base::write_file_atomically(run_dir / "report.json",
+                                                text_of(json_of(result, false), 2), sink);
   if (!text || !json) return sink.already_reported();
   return base::Unit{};
 }

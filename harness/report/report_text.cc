@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/base/diagnostic_printer.h"
 #include "harness/campaign/compare.h"
 #include "harness/confidence/claim.h"
 #include "harness/confidence/clean_runs.h"
@@ -80,7 +81,11 @@ class TextReport {
   void one_trace(const TraceResult& trace) {
     out_ += fmt::format("\ntrace {}: {}\n", trace.number, verdict_word(trace.verdict));
     events(trace);
+    start(trace);
     auto runs = fmt::format("{} ({} clean", trace.simulations, trace.clean);
+    if (trace.admitted > 0) {
+      runs += fmt::format(", {} of them in another end state", trace.admitted);
+    }
     if (trace.lost > 0) runs += fmt::format(", {} lost", trace.lost);
     runs += ')';
     if (trace.rejected > 0) {
@@ -90,6 +95,9 @@ class TextReport {
     line("simulations", runs);
     line("claimed", trace.claim);
     figures(trace);
+    if (!trace.not_compared.empty()) {
+      line("not compared:", fmt::format("{}", fmt::join(trace.not_compared, ", ")));
+    }
     for (const auto& caveat : trace.caveats) line("note", caveat);
     for (const auto& found : result_.discrepancies) {
       if (found.trace == trace.number) discrepancy(found, trace);
@@ -107,6 +115,22 @@ class TextReport {
     out_ += text;
   }
 
+  /// What the claim is about: the discrete start and the continuous states that it stands for.
+  void start(const TraceResult& trace) {
+    if (!trace.initial_state.empty()) {
+      line("start state", fmt::format("{}", fmt::join(trace.initial_state, ", ")));
+    }
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& [variable, interval] : trace.start_region) {
+      rows.push_back({variable, interval.lower == interval.upper
+                                    ? fmt::format("{}", interval.lower)
+                                    : fmt::format("{} to {}", interval.lower, interval.upper)});
+    }
+    if (rows.empty()) return;
+    constexpr std::string_view kLabel = "  start region";
+    out_ += table(rows, kLabelEnd).replace(0, kLabel.size(), kLabel);
+  }
+
   /// Both confidence figures side by side: what is certified, and what the paper's rule says.
   void figures(const TraceResult& trace) {
     if (trace.verdict != CampaignVerdict::kDiscrepancy) {
@@ -115,10 +139,13 @@ class TextReport {
                                           percent_up(trace.certified_epsilon))
                             : std::string("nothing"));
     }
+    if (trace.admitted > 0) {
+      return line("paper's rule", "not evaluated: it supposes a single end state");
+    }
     const auto paper =
         trace.paper_stopped_at
-            ? fmt::format("satisfied after {} [not a probability of error]",
-                          counted(*trace.paper_stopped_at, "run", "runs"))
+            ? fmt::format("satisfied after {} ({}) [not a probability of error]",
+                          counted(*trace.paper_stopped_at, "run", "runs"), trace.paper_variant)
             : fmt::format("not satisfied within {} ({})",
                           counted(trace.clean, "clean run", "clean runs"), trace.paper_variant);
     line("paper's rule", paper);
@@ -135,14 +162,21 @@ class TextReport {
       parting(found, trace);
     }
     unusual_outcomes(found, trace);
-    std::vector<std::string> start;
-    for (const auto& [name, value] : found.record.initial) {
+    line("start", values(found.record.initial), 4);
+    line("end", values(found.end), 4);
+    // Not wrapped: the command is to be copied.
+    out_ += fmt::format("    {:<{}}{}\n", "replay", kLabelEnd - 4,
+                        base::printable(replay_command(result_.replay_folder, found)));
+  }
+
+  static std::string values(const State& state) {
+    std::vector<std::string> parts;
+    for (const auto& [name, value] : state) {
       const auto* number = std::get_if<double>(&value);
-      start.push_back(fmt::format(
+      parts.push_back(fmt::format(
           "{} = {}", name, number != nullptr ? fmt::format("{}", *number) : exact_text(value)));
     }
-    line("start", fmt::format("{}", fmt::join(start, ", ")), 4);
-    line("replay", fmt::format("parallax replay {} --sample {}", result_.replay_folder, id), 4);
+    return fmt::format("{}", fmt::join(parts, ", "));
   }
 
   static std::vector<std::string> row(const DivergingFluent& fluent) {
@@ -201,8 +235,8 @@ class TextReport {
            "certain");
     }
     if (result_.interrupted) {
-      line("note",
-           fmt::format("interrupted; `--resume --out {}` continues", result_.replay_folder));
+      line("note", fmt::format("interrupted; `--resume --out {}` continues",
+                               shell_word(result_.replay_folder)));
     }
   }
 
@@ -218,32 +252,13 @@ class TextReport {
 
 }  // namespace
 
-std::string campaign_text(const CampaignResult& result, const ReportStyle& style) {
-  return TextReport(result, style).write();
+std::string replay_command(const std::string& run_dir, const Discrepancy& found) {
+  return fmt::format("parallax replay {} --sample {}.{}", shell_word(run_dir), found.trace,
+                     found.sample);
 }
 
-std::string replay_text(const ReplayResult& result, const ReportStyle& style) {
-  const auto paint = [&](std::string_view text, const char* color) {
-    return style.color ? fmt::format("\x1b[{}m{}\x1b[0m", color, text) : std::string(text);
-  };
-  const auto head =
-      fmt::format("simulation {}.{}, seed {}: ", result.id.trace, result.id.sample, result.seed);
-  switch (result.outcome) {
-    case ReplayOutcome::kIdentical:
-      return head + paint("identical", "1;32") +
-             fmt::format(", {} compared bit for bit{}\n",
-                         counted(static_cast<std::int64_t>(result.timepoints), "observation",
-                                 "observations"),
-                         result.digest.empty() ? "" : ", digest " + result.digest);
-    case ReplayOutcome::kCannot:
-      return head + paint("cannot be repeated", "1;33") + '\n' + wrapped("  ", result.reason, 2);
-    case ReplayOutcome::kDiffers:
-      break;
-  }
-  const auto& difference = *result.difference;
-  return head + paint("differs", "1;31") +
-         fmt::format(" first at timepoint {} in {}\n", difference.timepoint, difference.variable) +
-         table({{"recorded", difference.recorded}, {"repeated", difference.repeated}}, 2);
+std::string campaign_text(const CampaignResult& result, const ReportStyle& style) {
+  return TextReport(result, style).write();
 }
 
 int exit_code(const CampaignResult& result) {

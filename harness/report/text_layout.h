@@ -16,6 +16,9 @@ std::string wrapped(std::string_view first, std::string_view text, std::size_t i
 /// Columns padded to their widest cell, two blanks between them, no blanks at the ends of lines.
 std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t indent);
 
+/// `text` as one word of a POSIX shell.
+std::string shell_word(const std::string& text);
+
 /// Display columns of UTF-8 text: one per code point.
 std::size_t columns_of(std::string_view text);
 

@@ -2,19 +2,19 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <linux/close_range.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <mutex>
 #include <thread>
-
-extern char** environ;
 
 namespace parallax::harness {
 namespace {
@@ -64,17 +64,64 @@ std::string ending_text(const siginfo_t& info) {
   return fmt::format("signal {} ({})", info.si_status, ::strsignal(info.si_status));
 }
 
-/// Starts with default signals: what this program ignores is its own affair.
-void set_attributes(posix_spawnattr_t& attributes) {
-  sigset_t none, defaults;
+/// What the child needs to become the command; made before the fork, as only calls that are safe in
+/// a signal handler may follow it.
+struct ChildPlan {
+  std::vector<char*> arguments;
+  int input, output, errors, report;
+  pid_t parent;
+};
+
+/// Every other descriptor is closed by the exec.
+void close_on_exec_from(int first) {
+  if (::close_range(static_cast<unsigned>(first), ~0U, CLOSE_RANGE_CLOEXEC) == 0) return;
+  const long limit = ::sysconf(_SC_OPEN_MAX);  // a kernel before 5.11
+  for (int fd = first; fd < limit; ++fd) ::fcntl(fd, F_SETFD, FD_CLOEXEC);
+}
+
+/// In the child. Comes back, with errno, only when the command could not be started.
+void become(const ChildPlan& plan) {
+  // No spawn attribute offers this. The parent may have gone before it was asked for.
+  if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return;
+  if (::getppid() != plan.parent) ::_exit(EXIT_FAILURE);
+  if (::setsid() < 0) return;
+  if (::dup2(plan.input, STDIN_FILENO) < 0 || ::dup2(plan.output, STDOUT_FILENO) < 0 ||
+      ::dup2(plan.errors, STDERR_FILENO) < 0) {
+    return;
+  }
+  close_on_exec_from(STDERR_FILENO + 1);
+  // Default signals: what this program ignores or handles is its own affair.
+  for (const int signal : {SIGPIPE, SIGINT, SIGTERM, SIGHUP}) ::signal(signal, SIG_DFL);
+  sigset_t none;
   sigemptyset(&none);
-  sigemptyset(&defaults);
-  for (const int signal : {SIGPIPE, SIGINT, SIGTERM, SIGHUP}) sigaddset(&defaults, signal);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setsigdefault(&attributes, &defaults);
-  posix_spawnattr_setflags(
-      &attributes,
-      static_cast<short>(POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF));
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  ::execvp(plan.arguments[0], plan.arguments.data());  // glibc's does not allocate
+}
+
+/// The child's number, or -1. A handler of ours must not run in the child, so signals wait.
+pid_t fork_child(const ChildPlan& plan) {
+  sigset_t all, before;
+  sigfillset(&all);
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);
+  const pid_t pid = ::fork();
+  if (pid == 0) {
+    become(plan);
+    const int why = errno;
+    const auto written = ::write(plan.report, &why, sizeof why);
+    ::_exit(written == sizeof why ? EXIT_FAILURE : EXIT_FAILURE + 1);
+  }
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return pid;
+}
+
+/// What the child says of its start: 0 once the exec has closed the pipe's other end.
+int start_failure(int report) {
+  int why = 0;
+  ssize_t count = 0;
+  do {
+    count = ::read(report, &why, sizeof why);
+  } while (count < 0 && errno == EINTR);
+  return count == sizeof why ? why : 0;
 }
 
 }  // namespace
@@ -88,28 +135,21 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, const std::a
 ChildProcess::~ChildProcess() { end(Clock::now()); }
 
 void ChildProcess::start(const std::vector<std::string>& command) {
-  Pipe input, output, errors;
-  if (!input.valid() || !output.valid() || !errors.valid()) {
+  Pipe input, output, errors, report;
+  if (!input.valid() || !output.valid() || !errors.valid() || !report.valid()) {
     start_error_ = fmt::format("no pipe: {}", std::strerror(errno));
     return;
   }
-  std::vector<char*> arguments;
-  for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t attributes;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawnattr_init(&attributes);
-  posix_spawn_file_actions_adddup2(&actions, input.read, STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, output.write, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, errors.write, STDERR_FILENO);
-  posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
-  set_attributes(attributes);
-  const int failure =
-      ::posix_spawnp(&pid_, arguments[0], &actions, &attributes, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
+  ChildPlan plan{{}, input.read, output.write, errors.write, report.write, ::getpid()};
+  for (const auto& word : command) plan.arguments.push_back(const_cast<char*>(word.c_str()));
+  plan.arguments.push_back(nullptr);
+  pid_ = fork_child(plan);
+  int failure = pid_ < 0 ? errno : 0;
+  if (pid_ > 0) {
+    close_fd(report.write);
+    failure = start_failure(report.read);
+    if (failure != 0) ::waitpid(pid_, nullptr, 0);
+  }
   if (failure != 0) {
     pid_ = -1;
     start_error_ = fmt::format("cannot start `{}`: {}", command[0], std::strerror(failure));

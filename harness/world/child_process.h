@@ -12,6 +12,9 @@ namespace parallax::harness {
 
 /// One child process with pipes on its three standard descriptors, in a session of its own, so
 /// that it can be ended together with everything it has started. Its other descriptors are closed.
+/// The system kills it when the thread that made this object ends, however that comes about, so
+/// that no child is left behind by a program that was killed; what the child has started itself
+/// has to notice the end of its input.
 class ChildProcess {
  public:
   using Clock = std::chrono::steady_clock;

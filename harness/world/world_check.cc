@@ -65,7 +65,10 @@ class WorldChecker {
 
   void check_solver() {
     const SolverSpec& s = spec_.solver;
-    require_positive("solver/timestep_s", s.timestep_s);
+    // Longer steps are no physics, shorter ones no simulation anybody waits for.
+    if (!(s.timestep_s >= 1e-5 && s.timestep_s <= 0.1)) {
+      add("solver/timestep_s", "is not within 1e-5 to 0.1 s");
+    }
     require_not_negative("solver/cfm", s.cfm);
     require_not_negative("solver/surface_layer_m", s.surface_layer_m);
     require_positive("solver/max_correcting_velocity_m_s", s.max_correcting_velocity_m_s);

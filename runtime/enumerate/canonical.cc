@@ -11,6 +11,10 @@ std::vector<Literal> make_canonical(SolverSession& session, Timepoint n,
       fixed.push_back(preferred);
       continue;
     }
+    if (session.is_fixed(~preferred)) {
+      fixed.push_back(~preferred);
+      continue;
+    }
     fixed.push_back(preferred);
     const auto status = session.solve(n, fixed);
     if (status == SolveStatus::kUnknown) return {};

@@ -28,6 +28,7 @@ class SolverSession {
   /// Value of a literal in the valuation that the last satisfiable call found; it stays available
   /// until the next satisfiable call.
   bool value(Literal literal) const;
+  bool is_fixed(Literal literal) const { return solver_->is_fixed(literal); }
   std::int64_t solve_calls() const { return solver_->solve_calls(); }
 
  private:

@@ -23,6 +23,8 @@ class CadicalSolver final : public SatSolver {
   }
   SolveStatus solve() override {
     ++calls_;
+    // Easy calls end before the solver looks at the flag, and there can be very many of them.
+    if (terminator_.terminate()) return SolveStatus::kUnknown;
     switch (solver_.solve()) {
       case 10:
         state_ = State::kSatisfied;
@@ -45,6 +47,10 @@ class CadicalSolver final : public SatSolver {
     PARALLAX_REQUIRE(state_ == State::kFailed, "cores are asked after an unsatisfiable call");
     return solver_.failed(literal.dimacs());
   }
+  bool is_fixed(Literal literal) const override {
+    const int sign = solver_.fixed(literal.var());
+    return literal.is_positive() ? sign > 0 : sign < 0;
+  }
   void set_phase(Literal literal) override { solver_.phase(literal.dimacs()); }
   std::int64_t solve_calls() const override { return calls_; }
 
@@ -53,7 +59,7 @@ class CadicalSolver final : public SatSolver {
   class StopFlag final : public CaDiCaL::Terminator {
    public:
     explicit StopFlag(const std::atomic<bool>* stop) : stop_(stop) {}
-    bool terminate() override { return stop_->load(std::memory_order_relaxed); }
+    bool terminate() override { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); }
 
    private:
     const std::atomic<bool>* stop_;

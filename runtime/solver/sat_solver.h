@@ -38,6 +38,8 @@ class SatSolver {
   virtual bool value(Literal literal) const = 0;
   /// Is this assumption among those that made the formula unsatisfiable?
   virtual bool failed(Literal literal) const = 0;
+  /// Is the literal true whatever is assumed, as far as the solver knows? Never wrong, may miss some.
+  virtual bool is_fixed(Literal literal) const = 0;
   /// The value that the search tries first.
   virtual void set_phase(Literal literal) = 0;
   /// Calls of solve so far.

@@ -40,7 +40,8 @@ class PlannedModel {
     input.plan = compiler::PlanInput{files_.add("plan.lisp", plan),
                                      files_.add("plan.bind", binding), std::nullopt, &rooms_};
     const auto text = files_.add("constraint", constraint);
-    input.constraints = {{text, 0, static_cast<std::uint32_t>(constraint.size())}};
+    const base::SourceRange range{text, 0, static_cast<std::uint32_t>(constraint.size())};
+    input.constraints = {{range, range}};
     auto result = compiler::compile_model(input, files_, sink_);
     if (result) compilation_ = *std::move(result);
     std::filesystem::remove_all(name);

@@ -2,10 +2,14 @@
 
 #include <unistd.h>
 
+#include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include "compiler/base/diagnostic_printer.h"
+#include "tools/cli/signals.h"
 
 namespace parallax::tools {
 
@@ -17,12 +21,21 @@ bool Invocation::color_on(int descriptor) const {
 }
 
 void Invocation::remark(const std::string& text) const {
-  if (!options_.quiet) fmt::print(stderr, "{}\n", text);
+  if (!options_.quiet) write_error(text + '\n');
 }
 
-void Invocation::result(const std::string& text) const {
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  std::fflush(stdout);
+void write_error(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+void Invocation::result(const std::string& text) {
+  if (output_error_ != 0) return;
+  errno = 0;
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (written && std::fflush(stdout) == 0) return;
+  output_error_ = errno != 0 ? errno : EIO;
+  stop_flag().store(true);
 }
 
 std::string error_document(const std::vector<base::Diagnostic>& diagnostics,
@@ -33,21 +46,29 @@ std::string error_document(const std::vector<base::Diagnostic>& diagnostics,
 
 void Invocation::document(std::string json) { document_ = std::move(json); }
 
+/// A reader that has seen enough (head) closes the pipe: that is no error of ours to speak of.
+void Invocation::report_output_error() {
+  if (output_error_ == 0 || output_error_ == EPIPE) return;
+  sink_.error_about(base::DiagnosticCode::kFileNotWritable, "standard output",
+                    std::strerror(output_error_));
+}
+
 int Invocation::finish(int code) {
+  report_output_error();
   const auto diagnostics = sink_.sorted();
   if (options_.diagnostics == "json") {
     if (!diagnostics.empty()) {
-      fmt::print(stderr, "{}\n", base::to_json(diagnostics, files_));
+      write_error(base::to_json(diagnostics, files_) + '\n');
     }
   } else {
     for (const auto& diagnostic : diagnostics) {
       const bool is_error = base::info(diagnostic.code).severity == base::Severity::kError;
       if (options_.quiet && !is_error) continue;
-      fmt::print(stderr, "{}", base::to_text(diagnostic, files_, {color_on(STDERR_FILENO)}));
+      write_error(base::to_text(diagnostic, files_, {color_on(STDERR_FILENO)}));
     }
     const auto shown = static_cast<std::size_t>(20);
     if (sink_.error_count() > shown) {
-      fmt::print(stderr, "{} further errors are not shown\n", sink_.error_count() - shown);
+      write_error(fmt::format("{} further errors are not shown\n", sink_.error_count() - shown));
     }
   }
   if (!document_.empty()) {
@@ -59,9 +80,38 @@ int Invocation::finish(int code) {
   } else if (options_.json && (sink_.has_errors() || code != 0)) {
     result(error_document(diagnostics, files_));
   }
+  // Written last, so looked at last: the document above may be what could not be written.
+  if (output_error_ != 0) {
+    if (diagnostics.empty() && output_error_ != EPIPE) {
+      write_error(fmt::format("parallax: standard output: {}\n", std::strerror(output_error_)));
+    }
+    return code != 0 ? code : 2;
+  }
   if (!sink_.has_errors()) return code;
   // A command that knows better (a finding, an interruption) keeps its code.
   return code != 0 ? code : sink_.exit_code();
+}
+
+CLI::Validator finite_range(double lower, double upper) {
+  const auto check = [lower, upper](std::string& text) -> std::string {
+    double value = 0.0;
+    // Not a number compares false with everything, so ask for what is wanted.
+    const bool fine = CLI::detail::lexical_cast(text, value) && value >= lower && value <= upper;
+    return fine ? std::string() : fmt::format("{} is no number from {} to {}", text, lower, upper);
+  };
+  return CLI::Validator(check, fmt::format("[{} - {}]", lower, upper));
+}
+
+CLI::Validator whole_number(std::int64_t lower, std::int64_t upper) {
+  const auto check = [lower, upper](std::string& text) -> std::string {
+    std::int64_t value = 0;
+    const auto* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    const bool fine = error == std::errc() && stop == end && value >= lower && value <= upper;
+    return fine ? std::string()
+                : fmt::format("{} is no whole number from {} to {}", text, lower, upper);
+  };
+  return CLI::Validator(check, "N");
 }
 
 void add_common_options(CLI::App& app, CommonOptions& options) {
@@ -75,9 +125,9 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
   app.add_option("--time-limit", options.time_limit_s, "End the run after this many seconds")
-      ->check(CLI::PositiveNumber);
+      ->check(finite_range(1e-3, 1e7));
   app.add_option("--memory-limit", options.memory_limit_mb, "End the run above this many MB")
-      ->check(CLI::PositiveNumber);
+      ->check(whole_number(16, 10'000'000));
 }
 
 }  // namespace parallax::tools

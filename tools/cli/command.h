@@ -12,6 +12,9 @@
 
 namespace parallax::tools {
 
+/// Writes to standard error; a stream that is closed or full loses the text, never the program.
+void write_error(const std::string& text);
+
 /// What every command understands.
 struct CommonOptions {
   bool json = false;
@@ -35,7 +38,8 @@ class Invocation {
   /// Progress and remarks: on standard error, unless --quiet.
   void remark(const std::string& text) const;
   /// The result of the command; standard output holds nothing else.
-  void result(const std::string& text) const;
+  /// When it cannot be written the stop flag is raised, and `finish` reports it.
+  void result(const std::string& text);
   /// The result under --json: one object. What was reported becomes its field `diagnostics` when it
   /// is printed, by finish.
   void document(std::string json);
@@ -44,10 +48,13 @@ class Invocation {
   int finish(int code);
 
  private:
+  void report_output_error();
+
   CommonOptions options_;
   base::SourceFiles files_;
   base::DiagnosticSink sink_;
   std::string document_;
+  int output_error_ = 0;  // errno of the first failed write
 };
 
 /// A subcommand: how it is spelled, and what runs it.
@@ -55,6 +62,14 @@ struct Command {
   CLI::App* app = nullptr;
   std::function<int(Invocation&)> run;
 };
+
+/// Seeds stay below 2^53, so that every JSON reader keeps them.
+inline constexpr std::int64_t kMaxSeed = (std::int64_t{1} << 53U) - 1;
+
+/// A finite number within the bounds; refuses what is no number, which compares with nothing.
+CLI::Validator finite_range(double lower, double upper);
+/// A whole number within the bounds, every character of it.
+CLI::Validator whole_number(std::int64_t lower, std::int64_t upper);
 
 /// Adds the options that every command has.
 void add_common_options(CLI::App& app, CommonOptions& options);

@@ -33,7 +33,7 @@ void end_for_limit(const CommonOptions& options, const std::string& limit) {
     std::fwrite(text.data(), 1, text.size(), stdout);
     std::fflush(stdout);
   }
-  fmt::print(stderr, "{}", base::to_text(diagnostics.front(), files, {}));
+  write_error(base::to_text(diagnostics.front(), files, {}));
   _exit(4);
 }
 

@@ -1,5 +1,8 @@
+#include <cstdio>
 #include <exception>
+#include <new>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 #include "compiler/base/diagnostic_printer.h"
@@ -69,9 +72,10 @@ int usage_error(const CLI::App& app, const CLI::ParseError& error, int argc, cha
   built.note(fmt::format("see `parallax {}--help`", sub ? sub->get_name() + " " : ""));
   const auto diagnostics = sink.sorted();
   if (wants_json(argc, argv)) {
-    fmt::print("{}", error_document(diagnostics, files));
+    const auto document = error_document(diagnostics, files);
+    std::fwrite(document.data(), 1, document.size(), stdout);
   }
-  fmt::print(stderr, "{}", base::to_text(diagnostics.front(), files, {}));
+  write_error(base::to_text(diagnostics.front(), files, {}));
   return 2;
 }
 
@@ -114,14 +118,21 @@ int main(int argc, char** argv) {
   try {
     return parallax::tools::run(argc, argv);
   } catch (const std::exception& error) {
-    // Only a broken contract or the end of memory comes here.
+    // A broken contract, or the machine has no memory or threads left.
     base::DiagnosticSink sink;
-    sink.error_about(base::DiagnosticCode::kInternal, "", error.what());
-    const base::SourceFiles files;
-    fmt::print(stderr, "{}", base::to_text(sink.sorted().front(), files, {}));
-    if (parallax::tools::wants_json(argc, argv)) {
-      fmt::print("{}", parallax::tools::error_document(sink.sorted(), files));
+    const bool starved = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+                         dynamic_cast<const std::system_error*>(&error) != nullptr;
+    if (starved) {
+      sink.error_about(base::DiagnosticCode::kLimitReached, "", error.what());
+    } else {
+      sink.error_about(base::DiagnosticCode::kInternal, "", error.what());
     }
-    return 5;
+    const base::SourceFiles files;
+    parallax::tools::write_error(base::to_text(sink.sorted().front(), files, {}));
+    if (parallax::tools::wants_json(argc, argv)) {
+      const auto document = parallax::tools::error_document(sink.sorted(), files);
+      std::fwrite(document.data(), 1, document.size(), stdout);
+    }
+    return sink.exit_code();
   }
 }

@@ -43,8 +43,9 @@ void show_progress(const harness::CampaignProgress& progress) {
       progress.runs_per_s > 0
           ? static_cast<double>(progress.needed - progress.done) / progress.runs_per_s
           : 0.0;
-  fmt::print(stderr, "\rtrace {}: {}/{} simulations, {:.1f}/s, about {:.0f} s left \x1b[K",
-             progress.trace, progress.done, progress.needed, progress.runs_per_s, left);
+  write_error(fmt::format("\rtrace {}: {}/{} simulations, {:.1f}/s, about {:.0f} s left \x1b[K",
+                          progress.trace, progress.done, progress.needed, progress.runs_per_s,
+                          left));
 }
 
 harness::CampaignOptions campaign_options(const RunOptions& options, const ScenarioModel& loaded,
@@ -82,18 +83,20 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
   const auto campaign = campaign_options(options, *loaded, invocation);
   const auto result = harness::run_campaign(loaded->scenario, traces, simulator_factory(*loaded),
                                             campaign, invocation.files(), sink);
-  if (campaign.progress) fmt::print(stderr, "\r\x1b[K");
+  if (campaign.progress) write_error("\r\x1b[K");
   if (!result) return 0;
-  if (!harness::write_report(*result, campaign.run_dir, sink)) return 0;
+  if (result->journal_open && !harness::write_report(*result, campaign.run_dir, sink)) return 0;
   if (invocation.options().json) {
     invocation.document(harness::campaign_json(*result, true));
   } else {
     invocation.result(harness::campaign_text(*result, {invocation.color_on(STDOUT_FILENO)}));
   }
-  invocation.remark(fmt::format("{} simulations in {:.1f} s ({:.0f} s simulated); report: {}",
+  invocation.remark(fmt::format("{} simulations in {:.1f} s ({:.0f} s simulated)",
                                 result->timing.runs_made, result->timing.wall_s,
-                                result->timing.simulated_s,
-                                (campaign.run_dir / "report.txt").string()));
+                                result->timing.simulated_s));
+  if (result->journal_open) {
+    invocation.remark(fmt::format("report: {}", (campaign.run_dir / "report.txt").string()));
+  }
   // A run that expected traces and had none is a finding, not a clean bill.
   if (result->traces.empty() && !result->interrupted) return 1;
   return harness::exit_code(*result);
@@ -116,7 +119,7 @@ Command add_run_command(CLI::App& app) {
   command->add_option("--seed", options->seed, "Seed of every random choice")
       ->capture_default_str();
   command->add_option("-j,--jobs", options->jobs, "Simulations at the same time")
-      ->check(CLI::Range(1, 256))
+      ->check(whole_number(1, 256))
       ->capture_default_str();
   command->add_flag("--resume", options->resume, "Continue the run in the run folder");
   command->add_flag("--keep-going", options->keep_going,
@@ -124,11 +127,11 @@ Command add_run_command(CLI::App& app) {
   command->add_option("--criterion", options->criterion, "When a trace has been tried enough")
       ->check(CLI::IsMember({"clean-runs", "paper"}));
   command->add_option("--confidence", options->confidence, "Confidence level C of the claim")
-      ->check(CLI::Range(0.5, 0.999999));
+      ->check(finite_range(0.5, 0.999999));
   command->add_option("--epsilon", options->epsilon, "Discrepancy probability to exclude")
-      ->check(CLI::Range(1e-6, 0.5));
+      ->check(finite_range(1e-6, 0.5));
   command->add_option("--max-runs", options->max_runs, "Simulations per trace before giving up")
-      ->check(CLI::PositiveNumber);
+      ->check(whole_number(1, 1'000'000));
   return {command,
           [options](Invocation& invocation) { return run_scenario(*options, invocation); }};
 }

@@ -48,16 +48,18 @@ class RegionLocator final : public compiler::PoseLocator {
 };
 
 /// Where a formula of the scenario can be parsed: in the file itself if it stands there word for
-/// word, else (escapes, folded lines) as a text of its own under the place's name.
-base::SourceRange formula_text(const harness::LocatedText& text, base::SourceFiles& files) {
-  const auto raw = files.text(text.source);
-  const auto offset = raw.find(text.text);
+/// word, else (escapes, folded lines) as a text of its own.
+compiler::ConstraintText constraint_text(const harness::LocatedText& text,
+                                         base::SourceFiles& files) {
+  const auto size = static_cast<std::uint32_t>(text.text.size());
+  const auto offset = files.text(text.source).find(text.text);
   if (offset != std::string_view::npos) {
     const auto begin = text.source.begin + static_cast<std::uint32_t>(offset);
-    return {text.source.file, begin, begin + static_cast<std::uint32_t>(text.text.size())};
+    const base::SourceRange range{text.source.file, begin, begin + size};
+    return {range, range};
   }
-  const auto file = files.add(files.place(text.source), text.text);
-  return {file, 0, static_cast<std::uint32_t>(text.text.size())};
+  const auto file = files.add(files[text.source.file].name(), text.text);
+  return {{file, 0, size}, text.source};
 }
 
 base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scenario,
@@ -70,7 +72,7 @@ base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scen
   input.horizon = scenario.horizon;
   input.ground.stop = &stop_flag();
   for (const auto& text : scenario.constraints) {
-    input.constraints.push_back(formula_text(text, files));
+    input.constraints.push_back(constraint_text(text, files));
   }
   if (scenario.plan) {
     const auto plan = base::load_text(scenario.plan->text, files, sink);

@@ -27,6 +27,7 @@ void install_signal_handlers() {
   sigaction(SIGTERM, &action, nullptr);
   // A simulator that has gone is noticed by its reply, not by a signal.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is a failed write
 }
 
 int signal_exit_code() {

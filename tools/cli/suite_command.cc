@@ -1,4 +1,5 @@
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -7,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -108,8 +110,17 @@ std::string capture(std::vector<std::string> command, bool quiet) {
   ::close(ends[1]);
   std::string out;
   std::array<char, 4096> buffer{};
-  ssize_t count = 0;
-  while (failed == 0 && (count = ::read(ends[0], buffer.data(), buffer.size())) > 0) {
+  bool told = false;
+  while (failed == 0) {
+    // A signal to us alone ends the case as well.
+    if (stop_flag().load() && !told) {
+      ::kill(child, SIGTERM);
+      told = true;
+    }
+    pollfd ready{ends[0], POLLIN, 0};
+    if (::poll(&ready, 1, 100) <= 0) continue;
+    const auto count = ::read(ends[0], buffer.data(), buffer.size());
+    if (count <= 0) break;
     out.append(buffer.data(), static_cast<std::size_t>(count));
   }
   ::close(ends[0]);
@@ -197,10 +208,10 @@ Command add_suite_command(CLI::App& app) {
   command->add_option("--out", options->out, "Folder of the runs, made anew")
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of every run")
-      ->check(CLI::NonNegativeNumber)
+      ->check(whole_number(0, kMaxSeed))
       ->capture_default_str();
   command->add_option("-j,--jobs", options->jobs, "Cases at the same time")
-      ->check(CLI::Range(1, 256))
+      ->check(whole_number(1, 256))
       ->capture_default_str();
   return {command, [options](Invocation& invocation) { return run_suite(*options, invocation); }};
 }

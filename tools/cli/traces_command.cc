@@ -67,7 +67,8 @@ void close_list(const TracesOptions& options, const TraceWriter& writer,
     invocation.result(fmt::format("{{\"summary\":true,\"traces\":{},\"complete\":{},{}}}\n",
                                   writer.count(), complete, timing));
   } else {
-    invocation.result(fmt::format("{} traces, {}\n", writer.count(), exploration));
+    invocation.result(fmt::format("{} {}, {}\n", writer.count(),
+                                  writer.count() == 1 ? "trace" : "traces", exploration));
   }
 }
 

@@ -114,6 +114,92 @@ TEST_CASE("the run limit leaves the trace and the campaign inconclusive, and goe
   CHECK(exit_code(*result) == 4);
 }
 
+TEST_CASE(
+    "a run limit that the criterion can never meet is warned of, at its place if it has one") {
+  Bench bench(std::string(kScenarioText) + "limits: {max_runs: 20}\n");
+  std::size_t line = 13;
+  SUBCASE("from the scenario") {}
+  SUBCASE("from elsewhere") { bench.scenario.limits.max_runs = 89, line = 1; }
+  SUBCASE("none") { bench.scenario.limits.max_runs = 0, line = 0; }
+  SUBCASE("high enough") { bench.scenario.limits.max_runs = 90, line = 0; }
+  const auto result = bench.run();
+  REQUIRE(result.has_value());
+  if (line == 0) {
+    CHECK(codes(bench.sink).empty());
+    CHECK(result->verdict == CampaignVerdict::kNoDiscrepancy);
+    return;
+  }
+  CHECK(result->verdict == CampaignVerdict::kInconclusive);
+  REQUIRE(codes(bench.sink) == std::vector<std::string>{"W7009"});
+  const auto diagnostic = bench.sink.sorted()[0];
+  CHECK(diagnostic.message.ends_with("the criterion needs 90 runs"));
+  CHECK(bench.files[diagnostic.range->file].position(diagnostic.range->begin).line == line);
+}
+
+TEST_CASE("without a run limit there is room for what the criterion asks for") {
+  Bench bench(std::string(kScenarioText) + "criterion: {kind: clean-runs, epsilon: 0.01}\n");
+  const auto result = bench.run();
+  REQUIRE(result.has_value());
+  CHECK(result->simulations == 459);
+  CHECK(result->verdict == CampaignVerdict::kNoDiscrepancy);
+}
+
+TEST_CASE("a run that was lost at first and observed then is counted and recorded as retried") {
+  Bench bench;
+  const auto start = drawn_start(bench, 1, 5);
+  std::atomic<int> losses = 0;
+  bench.script.loses = [&](const State& s) { return s == start && losses++ == 0; };
+  const auto result = bench.run();
+  REQUIRE(result.has_value());
+  const auto& trace = result->traces[0];
+  CHECK(trace.lost == 0);
+  CHECK(trace.retried == 1);
+  CHECK(trace.clean == 90);
+  CHECK(std::any_of(trace.caveats.begin(), trace.caveats.end(), [](const std::string& text) {
+    return text.find("1 run was lost at first") == 0;
+  }));
+  const auto journal = slurp(bench.journal());
+  CHECK(journal.find("\"retries\":1") > journal.find("\"sample\":5"));
+  CHECK(journal.find("\"retries\":1") < journal.find("\"sample\":6"));
+}
+
+TEST_CASE("the result says where starts were drawn from and where a discrepancy ended") {
+  Bench bench;
+  bench.script.drops = box_far;
+  const auto result = bench.run();
+  REQUIRE(result.has_value());
+  const auto& trace = result->traces[0];
+  CHECK(trace.initial_state == std::vector<std::string>{"BoxIn(r2)", "RobotIn(r1)"});
+  REQUIRE(trace.start_region.size() == 2);
+  CHECK(trace.start_region[0].variable == "box.x");
+  CHECK(trace.start_region[0].interval.lower == 1.0);
+  CHECK(trace.start_region[0].interval.upper == 2.0);
+  const auto& found = result->discrepancies[0];
+  CHECK(found.end ==
+        State{{"box.held", false}, {"box.x", found.record.initial.at("box.x")}, {"robot.x", 0.5}});
+}
+
+TEST_CASE("the paper's criterion tells that its level is no probability, and waits for lost runs") {
+  Bench bench(std::string(kScenarioText) + "criterion: {kind: paper, preset: paper-repaired}\n");
+  SUBCASE("none lost") {
+    const auto result = bench.run();
+    REQUIRE(result.has_value());
+    CHECK(result->verdict == CampaignVerdict::kNoDiscrepancy);
+    const auto& caveats = result->traces[0].caveats;
+    CHECK(std::any_of(caveats.begin(), caveats.end(), [](const std::string& text) {
+      return text.find("its level is not the probability of a false stop") != std::string::npos;
+    }));
+  }
+  SUBCASE("one lost") {
+    const auto lost = drawn_start(bench, 1, 1);
+    bench.script.loses = [&](const State& start) { return start == lost; };
+    const auto result = bench.run();
+    REQUIRE(result.has_value());
+    CHECK(result->verdict == CampaignVerdict::kInconclusive);
+    CHECK(result->simulations == 300);
+  }
+}
+
 TEST_CASE("the trace limit leaves the campaign inconclusive only if there was a further trace") {
   Bench bench;
   bench.traces = 2;
@@ -250,8 +336,9 @@ TEST_CASE("the report does not depend on the number of jobs, nor on how long fai
       bench.options.keep_going = kind.keep_going;
       bench.options.jobs = jobs;
       bench.traces = 3;
-      const auto result = bench.run();
+      auto result = bench.run();
       REQUIRE(result.has_value());
+      result->replay_folder = "run";  // a temporary folder, another one each time
       REQUIRE(write_report(*result, bench.options.run_dir, bench.sink).has_value());
       journals.push_back(slurp(bench.journal()));
       texts.push_back(slurp(bench.options.run_dir / "report.txt"));

@@ -3,13 +3,19 @@
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
+#include <cstring>
 #include <set>
 #include <thread>
+
+#include "harness/world/child_process.h"
 
 namespace parallax::harness {
 namespace {
@@ -211,6 +217,55 @@ TEST_CASE("a child inherits nothing but its three standard descriptors") {
   ::close(leaked[1]);
   CHECK(contains(reason, "standard error:\n0 1 2"));
   CHECK_FALSE(contains(reason, "0 1 2 " + std::to_string(leaked[0])));
+}
+
+/// In a process of its own: starts a child that will never look at its input again, tells its
+/// number, and is killed. None of its destructors run.
+[[noreturn]] void leave_child_behind(int report) {
+  ChildProcess child({PARALLAX_SCRIPTED_WORKER, "act-hang"}, nullptr);
+  const auto deadline = Clock::now() + std::chrono::seconds(30);
+  constexpr std::size_t kMaxBytes = 4096;
+  std::string line;
+  child.write_line(R"({"id":1,"method":"reset","params":{"state":{},"seed":1}})", deadline);
+  child.read_line(line, deadline, kMaxBytes);
+  child.write_line(R"({"id":2,"method":"observe"})", deadline);
+  child.read_line(line, deadline, kMaxBytes);
+  child.write_line(R"({"id":3,"method":"act"})", deadline);
+  const auto written = ::write(report, line.data(), line.size());
+  ::raise(SIGKILL);
+  ::_exit(written > 0 ? 0 : 1);
+}
+
+TEST_CASE("a child is killed when the program that started it is") {
+  REQUIRE(::prctl(PR_SET_CHILD_SUBREAPER, 1) == 0);  // so that the orphan comes to us
+  int report[2];
+  REQUIRE(::pipe2(report, O_CLOEXEC) == 0);
+  const pid_t program = ::fork();
+  if (program == 0) leave_child_behind(report[1]);
+  ::close(report[1]);
+  REQUIRE(program > 0);
+  int status = 0;
+  REQUIRE(::waitpid(program, &status, 0) == program);
+  CHECK(WTERMSIG(status) == SIGKILL);
+  char text[4096] = {};
+  REQUIRE(::read(report[0], text, sizeof text - 1) > 0);
+  ::close(report[0]);
+  const auto* at = std::strstr(text, "\"pid\":");
+  REQUIRE(at != nullptr);
+  const auto orphan = static_cast<pid_t>(std::strtol(at + 6, nullptr, 10));
+  REQUIRE(orphan > 1);
+  const auto deadline = Clock::now() + std::chrono::seconds(10);
+  pid_t ended = 0;
+  while ((ended = ::waitpid(orphan, &status, WNOHANG)) == 0 && Clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  CHECK(ended == orphan);
+  CHECK(WTERMSIG(status) == SIGKILL);
+  if (ended == 0) {
+    ::kill(orphan, SIGKILL);
+    ::waitpid(orphan, nullptr, 0);
+  }
+  ::prctl(PR_SET_CHILD_SUBREAPER, 0);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <sstream>
@@ -52,11 +53,26 @@ inline std::string slurp(const std::filesystem::path& path) {
   return out.str();
 }
 
-inline std::vector<std::string> codes(const base::DiagnosticSink& sink) {
+/// What was reported, in order of place, but for the code that a test brings about on the way.
+inline std::vector<std::string> codes(const base::DiagnosticSink& sink,
+                                      std::string_view but_for = {}) {
   std::vector<std::string> out;
-  for (const auto& entry : sink.sorted()) out.emplace_back(base::info(entry.code).id);
+  for (const auto& entry : sink.sorted()) {
+    if (base::info(entry.code).id != but_for) out.emplace_back(base::info(entry.code).id);
+  }
   return out;
 }
+
+inline base::Diagnostic first_error(const base::DiagnosticSink& sink) {
+  for (const auto& entry : sink.sorted()) {
+    if (base::info(entry.code).severity == base::Severity::kError) return entry;
+  }
+  FAIL("no error was reported");
+  return sink.sorted().front();
+}
+
+/// These tests end their traces early on purpose.
+inline constexpr std::string_view kLowLimit = "W7009";
 
 inline constexpr const char* kScenarioText = R"(model: domain.e
 horizon: 4
@@ -88,6 +104,7 @@ struct Script {
   std::string start_failure;   // says this instead of hello
   std::atomic<int>* resets = nullptr;
   std::function<void()> on_act = [] {};
+  std::function<void()> on_info = [] {};
 };
 
 inline double number(const State& state, const std::string& name) {
@@ -99,6 +116,7 @@ class ScriptedSimulator final : public Simulator {
   explicit ScriptedSimulator(const Script& script) : script_(script) {}
 
   SimulatorInfo info() override {
+    script_.on_info();
     if (!script_.start_failure.empty()) return {"", script_.start_failure, "", false, {}, {}, 0.0};
     return {"scripted",
             "1",
@@ -163,13 +181,28 @@ class ScriptedSimulator final : public Simulator {
   double robot_m_ = 0.0, box_m_ = 0.0;
 };
 
+/// What the model leaves open, and what it says when it is asked.
+struct Openness {
+  bool initial_states = false, outcomes = false;
+  std::function<bool(const std::map<std::string, bool>&)> admits =
+      [](const std::map<std::string, bool>&) { return false; };
+};
+
 /// Traces of one plan: fetch the box from r2 to r1. They differ in their key only.
 class ListFeed final : public TraceFeed {
  public:
-  explicit ListFeed(std::int64_t count) : count_(count) {}
+  explicit ListFeed(std::int64_t count, Openness openness = {})
+      : count_(count), openness_(std::move(openness)) {}
   base::Result<std::optional<CampaignTrace>> next() override {
     if (given_ == count_) return std::optional<CampaignTrace>();
-    return std::optional<CampaignTrace>(trace(++given_));
+    auto out = trace(++given_);
+    out.other_initial_states = openness_.initial_states;
+    out.other_outcomes = openness_.outcomes;
+    return std::optional<CampaignTrace>(std::move(out));
+  }
+  bool admits(const CampaignTrace& trace, const std::map<std::string, bool>& last_state) override {
+    CHECK(trace.number == given_);
+    return openness_.admits(last_state);
   }
   std::string exploration() const override { return "all traces explored"; }
   const std::vector<std::string>& fluents() const override { return fluents_; }
@@ -192,6 +225,7 @@ class ListFeed final : public TraceFeed {
 
  private:
   std::int64_t count_;
+  Openness openness_;
   std::int64_t given_ = 0;
   std::vector<std::string> fluents_ = {"BoxIn(r1)", "BoxIn(r2)", "Holding()", "RobotIn(r1)",
                                        "RobotIn(r2)"};
@@ -206,6 +240,8 @@ struct Bench {
   Script script;
   CampaignOptions options;
   std::int64_t traces = 1;
+  Openness openness;
+  std::atomic<int> simulators = 0;  // made so far
 
   explicit Bench(const std::string& text = kScenarioText) {
     folder.write("domain.e", "sort region\n");
@@ -219,8 +255,11 @@ struct Bench {
   }
 
   base::Result<CampaignResult> run() {
-    ListFeed feed(traces);
-    const auto factory = [this] { return std::make_unique<ScriptedSimulator>(script); };
+    ListFeed feed(traces, openness);
+    const auto factory = [this] {
+      ++simulators;
+      return std::make_unique<ScriptedSimulator>(script);
+    };
     return run_campaign(scenario, feed, factory, options, files, sink);
   }
 

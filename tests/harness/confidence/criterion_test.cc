@@ -89,6 +89,16 @@ TEST_CASE("paper: stops when the rule holds and states the certified bound besid
   auto broken = constant_goal(4);
   broken.add_mismatch();
   CHECK_FALSE(criterion->decide(broken).stop);
+  auto lossy = constant_goal(4);
+  lossy.add_lost();
+  CHECK_FALSE(criterion->decide(lossy).stop);
+  CHECK(criterion->decide(lossy).why == "a run was lost");
+  auto open = constant_goal(4);
+  open.add_clean_elsewhere();
+  CHECK(open.clean() == 5);
+  CHECK_FALSE(criterion->decide(open).stop);
+  CHECK(criterion->decide(open).why == "a run ended in another state that the model admits");
+  CHECK_FALSE(paper_stopped_at(open, spec.paper, 0.99).has_value());
 }
 
 TEST_CASE("paper: the first stop is the one of a criterion that looks after every run") {

@@ -21,7 +21,7 @@ TEST_CASE("a scenario is read with defaults, paths beside its file, and the worl
   CHECK(scenario->criterion.confidence_level == 0.99);
   CHECK(scenario->criterion.paper.preset == "paper-literal");
   CHECK(scenario->simulator.command.empty());
-  CHECK(scenario->limits.max_runs == 300);
+  CHECK(scenario->limits.max_runs == 0);  // as the criterion needs
   CHECK_FALSE(scenario->expect.has_value());
   CHECK(scenario->sampling_inset_m == 0.001);
   REQUIRE(scenario->sampling.size() == 2);
@@ -99,7 +99,7 @@ TEST_CASE("mapping and actions refer to the parameters of their patterns") {
 TEST_CASE("criterion, simulator, limits and expectations are read in full") {
   Workspace workspace;
   const auto scenario = workspace.load(std::string(kScenario) + R"(name: all of it
-criterion: {kind: paper, confidence: 0.95, preset: paper-repaired, sigma: rmse}
+criterion: {kind: paper, confidence: 0.95, preset: paper-repaired, sigma: rmse, bonferroni: true}
 simulator: {command: [python3, sim.py], act_timeout_s: 4, recycle_after: 200}
 limits: {max_runs: 7, max_traces: 2, max_rejected_starts: 3, max_lost_in_a_row: 4}
 expect: {verdict: discrepancy, iterations: 1, max_simulations: 20, fluents: [BoxIn(r1)]}
@@ -110,6 +110,7 @@ expect: {verdict: discrepancy, iterations: 1, max_simulations: 20, fluents: [Box
   CHECK(scenario->criterion.confidence_level == 0.95);
   CHECK(scenario->criterion.paper.sigma == SigmaKind::kRmse);
   CHECK(scenario->criterion.paper.intercept == InterceptKind::kFree);
+  CHECK(scenario->criterion.paper.bonferroni);
   CHECK(scenario->criterion.paper.preset == "custom, from paper-repaired");
   CHECK(scenario->simulator.command == std::vector<std::string>{"python3", "sim.py"});
   CHECK(scenario->simulator.act_timeout_s == 4.0);
@@ -155,6 +156,20 @@ TEST_CASE("the scenario is held against the ground model") {
     CHECK(reports[6].find("W5128 at 16:3: no event of the model is called `PickUp`") == 0);
     CHECK(reports[7].find("W5128 at 17:3") == 0);
   }
+}
+
+TEST_CASE("a scenario in which no fluent of the model is compared is refused at its mapping") {
+  Workspace workspace;
+  auto text = replaced(kScenario, "Holding(): {flag: box.held}", "Holding(): ignored");
+  const auto some = workspace.load(text);
+  REQUIRE(some.has_value());
+  const std::vector<std::string> events = {"Go(r1)", "PickUp()", "Place(r1)"};
+  CHECK(check_against_model(*some, {"BoxIn(r1)", "Holding()"}, events, workspace.sink).has_value());
+  workspace.sink = base::DiagnosticSink();
+  CHECK_FALSE(check_against_model(*some, {"Holding()"}, events, workspace.sink).has_value());
+  const auto reports = workspace.reports();
+  REQUIRE_FALSE(reports.empty());
+  CHECK(reports[0] == "E5306 at 10:1: no fluent of the model is compared");
 }
 
 TEST_CASE("the scenario is held against what the simulator says of itself") {

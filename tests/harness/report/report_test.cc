@@ -29,6 +29,9 @@ CampaignResult sample_result() {
   clean.verdict = CampaignVerdict::kNoDiscrepancy;
   clean.events = {{"Go(r2)", "Go", {"r2"}, "fetch.lisp:4", {}},
                   {"PickUp()", "PickUp", {}, "fetch.lisp:10", {}}};
+  clean.initial_state = {"BoxIn(r2)", "RobotIn(r1)"};
+  clean.start_region = {{"box.x", {1.0, 2.0, false}}, {"robot.yaw", {0.5, 0.5, true}}};
+  clean.not_compared = {"LookingAt(..)", "Tired()"};
   clean.simulations = clean.clean = 7;
   clean.certified_level = 0.99;
   clean.certified_epsilon = 0.482053;
@@ -55,6 +58,7 @@ CampaignResult sample_result() {
   found.first = {{"RobotIn(r2)", 1, true, false}};
   found.fluents = {{"BoxIn(r1)", 2, true, false}, {"BoxIn(r2)", 2, false, true}};
   found.record.initial = {{"box.x", 1.25}};
+  found.end = {{"box.held", false}, {"box.x", 1.0055}};
   found.record.outcomes = {{SimStatus::kOk, "", 2.0},
                            {SimStatus::kFailed, "nothing between the pads\n\x1b[31m", 1.5}};
   result.discrepancies = {found};
@@ -93,10 +97,43 @@ TEST_CASE("the text says events with places, both figures, the claim, and how to
         "at timepoint 1, after Go(r2): RobotIn(r2) is false instead of true",
         "PickUp(), failed after 1.500 s: nothing between the pads \\u001b[31m", "box.x = 1.25",
         "parallax replay out/two --sample 2.4", "verdict: discrepancy", "about        two traces",
-        "no regression evidence for: Holding()"}) {
+        "no regression evidence for: Holding()", "  start state  BoxIn(r2), RobotIn(r1)\n",
+        "  start region box.x      1 to 2\n               robot.yaw  0.5\n",
+        "  not compared: LookingAt(..), Tired()\n",
+        "    end        box.held = false, box.x = 1.0055\n"}) {
     CAPTURE(part);
     CHECK(text.find(part) != std::string::npos);
   }
+}
+
+TEST_CASE("the paper's figure stands in a trace's account once") {
+  const auto text = campaign_text(sample_result(), {});
+  const auto first = text.find("satisfied after 3 runs");
+  REQUIRE(first != std::string::npos);
+  CHECK(text.find("paper's rule", first) > text.find("trace 2"));
+}
+
+TEST_CASE("a divergence at the last timepoint is told once") {
+  auto result = sample_result();
+  auto& found = result.discrepancies[0];
+  CHECK(campaign_text(result, {}).find("first seen") != std::string::npos);
+  found.first_divergence = 2;
+  found.first = found.fluents;
+  CHECK(campaign_text(result, {}).find("first seen") == std::string::npos);
+}
+
+TEST_CASE("the command that repeats a discrepancy names the folder as it was given") {
+  auto result = sample_result();
+  const auto& found = result.discrepancies[0];
+  CHECK(replay_command("out/two", found) == "parallax replay out/two --sample 2.4");
+  CHECK(replay_command("my runs/it's", found) == "parallax replay 'my runs/it'\\''s' --sample 2.4");
+  CHECK(shell_word("") == "''");
+  CHECK(shell_word("-x") == "'-x'");
+  CHECK(shell_word("$(rm)") == "'$(rm)'");
+  result.replay_folder = std::string(120, 'd');
+  CHECK(campaign_text(result, {})
+            .find("parallax replay " + result.replay_folder + " --sample 2.4\n") !=
+        std::string::npos);
 }
 
 TEST_CASE("the document has the fields that scripts read") {
@@ -121,6 +158,11 @@ TEST_CASE("the document has the fields that scripts read") {
   CHECK(json.at("traces").at(1).at("paper").at("stopped_at").is_null());
   CHECK(trace.at("lost") == 0);
   CHECK(trace.at("rejected") == 0);
+  CHECK(trace.at("retried") == 0);
+  CHECK(trace.at("admitted") == 0);
+  CHECK(trace.at("initial_state") == Json({"BoxIn(r2)", "RobotIn(r1)"}));
+  CHECK(trace.at("start_region") == Json({{"box.x", {1.0, 2.0}}, {"robot.yaw", 0.5}}));
+  CHECK(trace.at("not_compared") == Json({"LookingAt(..)", "Tired()"}));
   const auto& found = json.at("discrepancies").at(0);
   CHECK(found.at("trace") == 2);
   CHECK(found.at("sample") == 4);
@@ -129,6 +171,7 @@ TEST_CASE("the document has the fields that scripts read") {
   CHECK(
       found.at("fluents").at(0) ==
       Json({{"fluent", "BoxIn(r1)"}, {"timepoint", 2}, {"predicted", true}, {"observed", false}}));
+  CHECK(found.at("end") == Json({{"box.held", false}, {"box.x", 1.0055}}));
   CHECK(found.at("replay") == "parallax replay out/two --sample 2.4");
   CHECK(json.at("timing").at("runs_made") == 11);
 }

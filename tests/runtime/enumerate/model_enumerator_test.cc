@@ -85,6 +85,58 @@ TEST_CASE("an instance beyond the horizon says nothing") {
       4);
 }
 
+TEST_CASE("said of the last timepoint by its number, an event does not happen") {
+  check_against_brute_force("range time 0 1\nfluent F()\nevent E()\n[event] !Happens(event,1).\n",
+                            4);
+  CHECK(TextModel("range time 0 1\nfluent F()\nevent E()\nHappens(E(),1).\n").codes() == "E3003");
+}
+
+TEST_CASE("completion: what has no reason does not happen") {
+  TextModel model(
+      "range time 0 2\nfluent F()\nevent E()\nevent G()\n[time] Initiates(E(),F(),time).\n"
+      "[time] HoldsAt(F(),time) -> Happens(G(),time).\nHappens(E(),0).\ncompletion Happens\n"
+      "!HoldsAt(F(),0).\n");
+  REQUIRE(model.codes() == "");
+  const auto found = enumerate_all(model.compiled);
+  REQUIRE(found.size() == 1);
+  CHECK(found.front() == ";F() ;F() ;|E() ;G() ;;|");
+}
+
+TEST_CASE("completion of a disjunction makes the events exclusive") {
+  TextModel model(
+      "range time 0 1\nfluent F()\nevent E()\nevent G()\nHappens(E(),0) | Happens(G(),0).\n"
+      "HoldsAt(F(),0).\ncompletion Happens\n");
+  REQUIRE(model.codes() == "");
+  CHECK(enumerate_all(model.compiled).size() == 2);
+}
+
+TEST_CASE("completion with a label takes the other formulas for constraints") {
+  TextModel model(
+      "range time 0 2\nfluent F()\nevent E()\nHoldsAt(F(),0).\n"
+      "Delta: Happens(E(),0).\nHappens(E(),1).\ncompletion Delta Happens\n");
+  REQUIRE(model.codes() == "");
+  CHECK(enumerate_all(model.compiled).empty());
+}
+
+TEST_CASE("a trajectory fixes another fluent until its own is terminated") {
+  TextModel model(
+      "range time 0 3\nrange offset 1 3\nsort height: integer\nrange height 0 6\n"
+      "fluent Falling()\nfluent Height(height)\nnoninertial Height\n"
+      "event Drop()\nevent Catch()\n"
+      "[time] {height} HoldsAt(Height(height),time).\n"
+      "[height1,height2,time] HoldsAt(Height(height1),time) & HoldsAt(Height(height2),time) -> "
+      "height1=height2.\n"
+      "[time] Initiates(Drop(),Falling(),time).\n[time] Terminates(Catch(),Falling(),time).\n"
+      "[height1,height2,offset,time] HoldsAt(Height(height1),time) & height2=height1-2*offset -> "
+      "Trajectory(Falling(),time,Height(height2),offset).\n"
+      "!HoldsAt(Falling(),0).\nHoldsAt(Height(6),0).\nHappens(Drop(),0).\nHappens(Catch(),1).\n"
+      "completion Happens\n");
+  REQUIRE(model.codes() == "");
+  const auto found = enumerate_all(model.compiled);
+  // The height is 4 at 1; the catch at 1 lies strictly between 0 and 2, so 2 and 3 are free.
+  CHECK(found.size() == 7 * 7);
+}
+
 TEST_CASE("user predicates are hidden: they neither duplicate nor lose a trace") {
   check_against_brute_force(
       "range time 0 1\nsort thing\nthing A, B\npredicate P(thing)\nfluent F()\nevent E()\n"
