@@ -134,6 +134,12 @@ class TraceCampaign {
     }
     if (judgement.first_divergence == 0) {
       const auto& fluent = judgement.first.front();
+      if (!context_.scenario.simulator.command.empty()) {
+        return context_.sink.error(
+            DiagnosticCode::kStartNotTaken, context_.scenario.simulator.source, record.sample,
+            record.trace,
+            fmt::format("`{}` {}", fluent.fluent, fluent.observed ? "holds" : "does not hold"));
+      }
       return context_.sink.error(
           DiagnosticCode::kMappingNotInverse, context_.scenario.mapping_source, record.sample,
           record.trace, fluent.observed ? "a state with" : "a state without", fluent.fluent);

@@ -172,6 +172,7 @@ RequestBody read_request_body(FieldReader& reader, const Json& json) {
 HelloReply read_info(FieldReader& reader, const Json& result) {
   HelloReply hello;
   hello.protocol = reader.integer(result, "protocol");
+  if (hello.protocol != kProtocolVersion) reader.fail("`protocol` is no version that was offered");
   hello.info.name = reader.string(result, "name");
   hello.info.version = reader.string(result, "version", false);
   hello.info.determinism = reader.string(result, "determinism", false);
@@ -212,6 +213,9 @@ OutcomeReply read_outcome(FieldReader& reader, const Json& result) {
   }
   reply.outcome.reason = reader.string(result, "reason", false);
   reply.outcome.sim_time_s = reader.number(result, "sim_time", false);
+  // Sums of it are printed, so a time beyond all simulations is nonsense too.
+  const bool sane = reply.outcome.sim_time_s >= 0.0 && reply.outcome.sim_time_s <= 1e9;
+  if (!sane) reader.fail("`sim_time` is not within 0 to 1e9 s");
   if (const Json* margins = reader.object(result, "margins", false)) {
     reply.outcome.margins = reader.state(*margins);
   }

@@ -182,5 +182,83 @@ TEST_CASE("limits end a run with 4") {
   CHECK(capped.out.find("inconclusive") != std::string::npos);
 }
 
+/// The program with its streams redirected by a shell.
+ProcessResult with_streams(const CliFixture& cli, const std::string& arguments) {
+  ProcessOptions options;
+  options.folder = cli.folder().string();
+  return run_process({"sh", "-c", "exec " PARALLAX_BINARY_DIR "/parallax " + arguments}, options);
+}
+
+TEST_CASE("streams that are full or closed cost the text, not the program") {
+  const CliFixture cli;
+  const auto full = with_streams(cli, "traces scenario.yaml >/dev/full");
+  CHECK(full.code == 2);
+  CHECK(full.err.find("standard output") != std::string::npos);
+  CHECK(with_streams(cli, "check scenario.yaml --json >/dev/full").code == 2);
+  CHECK(with_streams(cli, "run nowhere.yaml 2>/dev/full").code == 2);
+  CHECK(with_streams(cli, "check scenario.yaml 2>&-").code == 0);
+  const auto head = with_streams(cli, "traces start.e domain.e --horizon 3 --limit 0 | head -2");
+  CHECK(head.code == 0);
+}
+
+TEST_CASE("options that are no numbers of their kind are refused") {
+  const CliFixture cli;
+  for (const auto& option :
+       std::vector<std::vector<std::string>>{{"--confidence", "nan"},
+                                             {"--epsilon", "nan"},
+                                             {"--time-limit", "1e300"},
+                                             {"--seed", "-1"},
+                                             {"--seed", ""},
+                                             {"--seed", "18446744073709551616"},
+                                             {"--jobs", "0"},
+                                             {"--max-runs", "2.5"}}) {
+    CAPTURE(option[0]);
+    CAPTURE(option[1]);
+    const auto result = cli.parallax({"run", "scenario.yaml", option[0], option[1]});
+    CHECK(result.code == 2);
+  }
+}
+
+TEST_CASE("what is wrong with a substituted formula is told at the binding table") {
+  const CliFixture cli;
+  cli.replace("robot.bind", "ok: Holding() @t+1", "ok: Hold() @t+1");
+  const auto result = cli.parallax({"check", "scenario.yaml"});
+  CAPTURE(result.err);
+  CHECK(result.code == 3);
+  CHECK(result.err.find("robot.bind:5:") != std::string::npos);
+  CHECK(result.err.find("robot.bind:5:1:") == std::string::npos);
+}
+
+TEST_CASE("output files replace files only") {
+  const CliFixture cli;
+  const auto result = cli.parallax({"compile", "scenario.yaml", "-o", "/dev/null"});
+  CHECK(result.code == 2);
+  CHECK(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST_CASE("a limit on the number of traces leaves a run inconclusive") {
+  const CliFixture cli;
+  // The robot starts in r1 and the pick-up fails, or in r2 and it does not: two traces. Of the
+  // first no start draws a discrepancy, as the arm cannot reach so far.
+  cli.write("free.e", "HoldsAt(BoxIn(r2),0).\n");
+  cli.write("free.yaml",
+            "include: scenario.yaml\nmodel: [domain.e, free.e]\nplan: free.lisp\n"
+            "constraints: [\"HoldsAt(RobotIn(r1),time) & {event} Happens(event,time-1)\"]\n"
+            "criterion: {epsilon: 0.4}\nlimits: {max_traces: 1}\n"
+            "sampling: {variables: {robot.x: [0, 0.3]}}\n");
+  cli.write("free.lisp",
+            "(with-failure-handling ((manipulation-low-level-failure (e) (return)))\n"
+            "  (perform (an action (type picking-up) (object (an object (name box))))))\n"
+            "(perform (a motion (type going) (pose (make-pose-stamped \"map\" 0.0 "
+            "(make-3d-vector 0.5 0 0) (make-identity-rotation)))))\n");
+  const auto all = cli.parallax({"traces", "free.yaml", "--count"});
+  CAPTURE(all.err);
+  REQUIRE(all.out == "2\n");
+  const auto limited = cli.parallax({"run", "free.yaml", "--out", "run"});
+  CAPTURE(limited.out);
+  CHECK(limited.code == 4);
+  CHECK(limited.out.find("verdict: inconclusive") != std::string::npos);
+}
+
 }  // namespace
 }  // namespace parallax::test

@@ -35,6 +35,24 @@ TEST_CASE("codes and names of diagnostics are unique") {
   }
 }
 
+TEST_CASE("every page that a text of the project names exists") {
+  const std::regex page("docs/[a-z_]+\\.md");
+  const std::filesystem::path root = PARALLAX_SOURCE_DIR;
+  std::set<std::string> named;
+  for (const auto* folder : {"compiler", "runtime", "harness", "tools", "docs", "scenarios"}) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
+      if (!entry.is_regular_file()) continue;
+      const auto text = document(std::filesystem::relative(entry.path(), root).string());
+      for (auto it = std::sregex_iterator(text.begin(), text.end(), page);
+           it != std::sregex_iterator(); ++it) {
+        named.insert(it->str());
+      }
+    }
+  }
+  CHECK(named.size() > 5);
+  for (const auto& name : named) CHECK_MESSAGE(std::filesystem::exists(root / name), name);
+}
+
 TEST_CASE("every command of the README is one that the program knows") {
   const CliFixture cli;
   const auto help = cli.parallax({"--help"}).out;

@@ -48,20 +48,16 @@ int replay(const ReplayOptions& options, Invocation& invocation) {
   const auto result = harness::replay_sample(options.run_dir, id, loaded->sources_hash, *simulator,
                                              invocation.files(), sink);
   if (!result) return 0;
+  if (result->outcome == harness::ReplayOutcome::kCannot) {
+    sink.error_about(base::DiagnosticCode::kReplayImpossible, options.run_dir, result->reason);
+    return 0;
+  }
   if (invocation.options().json) {
     invocation.document(harness::replay_json(*result));
   } else {
     invocation.result(harness::replay_text(*result, {invocation.color_on(STDOUT_FILENO)}));
   }
-  switch (result->outcome) {
-    case harness::ReplayOutcome::kIdentical:
-      return 0;
-    case harness::ReplayOutcome::kDiffers:
-      return 1;
-    case harness::ReplayOutcome::kCannot:
-      return 3;
-  }
-  return 5;
+  return result->outcome == harness::ReplayOutcome::kIdentical ? 0 : 1;
 }
 
 }  // namespace
