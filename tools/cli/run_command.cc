@@ -117,6 +117,7 @@ Command add_run_command(CLI::App& app) {
   command->add_option("scenario", options->scenario, "Scenario file (YAML)")->required();
   command->add_option("--out", options->out, "Run folder; default out/NAME, numbered if taken");
   command->add_option("--seed", options->seed, "Seed of every random choice")
+      ->check(whole_number(0, kMaxSeed))
       ->capture_default_str();
   command->add_option("-j,--jobs", options->jobs, "Simulations at the same time")
       ->check(whole_number(1, 256))

@@ -259,10 +259,20 @@ TEST_CASE("starts that are always invalid end the campaign with the colliding pa
 
 TEST_CASE("an initial observation that does not map back is an internal error") {
   Bench bench;
+  bench.scenario.simulator.command.clear();  // as if it were the built-in one
   bench.script.start_shift_m = 1.0;
   CHECK_FALSE(bench.run().has_value());
   CHECK(codes(bench.sink) == std::vector<std::string>{"E7106"});
   CHECK(bench.sink.exit_code() == 5);
+}
+
+TEST_CASE("an external simulator that does not start where it was put is at fault itself") {
+  Bench bench;
+  bench.scenario.simulator.command = {"some-simulator"};
+  bench.script.start_shift_m = 1.0;
+  CHECK_FALSE(bench.run().has_value());
+  CHECK(codes(bench.sink) == std::vector<std::string>{"E7112"});
+  CHECK(bench.sink.exit_code() == 3);
 }
 
 TEST_CASE("what the simulator refuses or does not report is the scenario's error") {
