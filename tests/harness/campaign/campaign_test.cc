@@ -259,7 +259,8 @@ TEST_CASE("starts that are always invalid end the campaign with the colliding pa
 
 TEST_CASE("an initial observation that does not map back is an internal error") {
   Bench bench;
-  bench.scenario.simulator.command.clear();  // as if it were the built-in one
+  bench.scenario.simulator.command.clear();  // as if it were the built-in one, with its arguments
+  for (auto& action : bench.scenario.actions) action.arguments["target.x"] = 0.5;
   bench.script.start_shift_m = 1.0;
   CHECK_FALSE(bench.run().has_value());
   CHECK(codes(bench.sink) == std::vector<std::string>{"E7106"});
