@@ -17,7 +17,7 @@ void count_message(int /*number*/, const char* /*text*/, va_list /*arguments*/) 
 }
 
 struct ThreadData {
-  ThreadData() { dAllocateODEDataForThread(dAllocateMaskAll); }
+  ThreadData() { dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll)); }
   ~ThreadData() { dCleanupODEAllDataForThread(); }
   ThreadData(const ThreadData&) = delete;
   ThreadData& operator=(const ThreadData&) = delete;

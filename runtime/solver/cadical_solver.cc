@@ -77,6 +77,4 @@ std::unique_ptr<SatSolver> make_cadical_solver(const std::atomic<bool>* stop) {
   return std::make_unique<CadicalSolver>(stop);
 }
 
-const char* cadical_version() { return CaDiCaL::Solver::version(); }
-
 }  // namespace parallax::runtime

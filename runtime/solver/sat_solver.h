@@ -38,7 +38,8 @@ class SatSolver {
   virtual bool value(Literal literal) const = 0;
   /// Is this assumption among those that made the formula unsatisfiable?
   virtual bool failed(Literal literal) const = 0;
-  /// Is the literal true whatever is assumed, as far as the solver knows? Never wrong, may miss some.
+  /// Is the literal true whatever is assumed, as far as the solver knows? Never wrong, may miss
+  /// some.
   virtual bool is_fixed(Literal literal) const = 0;
   /// The value that the search tries first.
   virtual void set_phase(Literal literal) = 0;
@@ -49,7 +50,5 @@ class SatSolver {
 /// CaDiCaL in its default configuration. A call of solve that is under way when `stop` is raised
 /// answers kUnknown soon; `stop` may be null and outlives the solver.
 std::unique_ptr<SatSolver> make_cadical_solver(const std::atomic<bool>* stop = nullptr);
-/// The version of the solver that is linked.
-const char* cadical_version();
 
 }  // namespace parallax::runtime

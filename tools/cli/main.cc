@@ -7,7 +7,6 @@
 
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/suggest.h"
-#include "runtime/solver/sat_solver.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/signals.h"
@@ -83,8 +82,8 @@ int run(int argc, char** argv) {
   CLI::App app(kDescription, "parallax");
   app.footer(kFooter);
   app.require_subcommand(1);
-  app.set_version_flag(
-      "--version", fmt::format("parallax {} (CaDiCaL {})", kVersion, runtime::cadical_version()));
+  app.set_version_flag("--version",
+                       fmt::format("parallax {} (CaDiCaL {})", kVersion, kCadicalVersion));
   CommonOptions options;
   std::vector<Command> commands = {add_run_command(app),         add_replay_command(app),
                                    add_suite_command(app),       add_check_command(app),

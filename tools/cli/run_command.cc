@@ -94,6 +94,11 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
   invocation.remark(fmt::format("{} simulations in {:.1f} s ({:.0f} s simulated)",
                                 result->timing.runs_made, result->timing.wall_s,
                                 result->timing.simulated_s));
+  if (invocation.options().verbosity > 0) {
+    invocation.remark(fmt::format("model: {} variables, {} clauses, {} solver calls",
+                                  model.variable_count, model.clauses.size(),
+                                  traces.solve_calls()));
+  }
   if (result->journal_open) {
     invocation.remark(fmt::format("report: {}", (campaign.run_dir / "report.txt").string()));
   }

@@ -56,6 +56,7 @@ void write_all(Enumerator& enumerator, TraceWriter& writer) {
 void close_list(const TracesOptions& options, const TraceWriter& writer,
                 const std::string& exploration, bool complete, double wall_s,
                 Invocation& invocation) {
+  if (stop_flag().load()) invocation.remark("stopped before the end: there may be more traces");
   const auto timing = fmt::format("\"timing\":{{\"wall_s\":{:.3f}}}", wall_s);
   if (invocation.options().json) {
     const auto list = options.count ? "" : fmt::format("\"list\":[{}],", writer.list());
