@@ -217,7 +217,7 @@ class Campaign {
     result_.interrupted = !complete;
     if (std::any_of(traces.begin(), traces.end(), is(CampaignVerdict::kDiscrepancy))) {
       result_.verdict = CampaignVerdict::kDiscrepancy;
-    } else if (complete && !limited_ &&
+    } else if (complete && !limited_ && !traces.empty() &&
                std::all_of(traces.begin(), traces.end(), is(CampaignVerdict::kNoDiscrepancy))) {
       result_.verdict = CampaignVerdict::kNoDiscrepancy;
     }

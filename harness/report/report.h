@@ -31,7 +31,8 @@ base::Status write_report(const CampaignResult& result, const std::filesystem::p
 std::string replay_text(const ReplayResult& result, const ReportStyle& style);
 std::string replay_json(const ReplayResult& result);
 
-/// 0 no discrepancy, 1 discrepancy, 4 inconclusive; an interruption's 130 or 143 is the caller's.
+/// 0 no discrepancy, 1 discrepancy or no trace at all, 4 inconclusive; an interruption's 130 or 143
+/// is the caller's.
 int exit_code(const CampaignResult& result);
 
 }  // namespace parallax::harness

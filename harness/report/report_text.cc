@@ -262,15 +262,10 @@ std::string campaign_text(const CampaignResult& result, const ReportStyle& style
 }
 
 int exit_code(const CampaignResult& result) {
-  switch (result.verdict) {
-    case CampaignVerdict::kDiscrepancy:
-      return 1;
-    case CampaignVerdict::kInconclusive:
-      return 4;
-    case CampaignVerdict::kNoDiscrepancy:
-      break;
-  }
-  return result.traces.empty() ? 1 : 0;
+  if (result.verdict == CampaignVerdict::kNoDiscrepancy) return 0;
+  if (result.verdict == CampaignVerdict::kDiscrepancy) return 1;
+  // A run that expected traces and had none is a finding; a run that was cut short is open.
+  return result.traces.empty() && !result.interrupted ? 1 : 4;
 }
 
 }  // namespace parallax::harness

@@ -225,6 +225,7 @@ TEST_CASE("without a trace nothing is compared, and the exit code says so") {
   const auto result = bench.run();
   REQUIRE(result.has_value());
   CHECK(result->simulations == 0);
+  CHECK(result->verdict == CampaignVerdict::kInconclusive);
   CHECK(exit_code(*result) == 1);
 }
 
