@@ -9,6 +9,14 @@ namespace {
 
 constexpr std::size_t kDropped = std::numeric_limits<std::size_t>::max();
 
+/// A message quotes the input, and hostile input has names of a megabyte. The middle goes, so that
+/// both the cause in front and what follows the quotation stay.
+std::string shortened(std::string message) {
+  constexpr std::size_t kLongest = 2000, kKept = 900;
+  if (message.size() <= kLongest) return message;
+  return message.substr(0, kKept) + " [...] " + message.substr(message.size() - kKept);
+}
+
 auto sort_key(const Diagnostic& d) {
   const bool located = d.range.has_value();
   return std::tuple(located, located ? d.range->file.index() : 0U, located ? d.range->begin : 0U,
@@ -36,17 +44,17 @@ Diagnostic* DiagnosticBuilder::entry() {
 }
 
 DiagnosticBuilder& DiagnosticBuilder::note(SourceRange range, std::string text) {
-  entry()->notes.push_back({range, std::move(text)});
+  entry()->notes.push_back({range, shortened(std::move(text))});
   return *this;
 }
 
 DiagnosticBuilder& DiagnosticBuilder::note(std::string text) {
-  entry()->notes.push_back({std::nullopt, std::move(text)});
+  entry()->notes.push_back({std::nullopt, shortened(std::move(text))});
   return *this;
 }
 
 DiagnosticBuilder& DiagnosticBuilder::fix(std::string text) {
-  entry()->fix = std::move(text);
+  entry()->fix = shortened(std::move(text));
   return *this;
 }
 
@@ -59,7 +67,7 @@ DiagnosticBuilder DiagnosticSink::add(DiagnosticCode code, std::optional<SourceR
       return DiagnosticBuilder(*this, kDropped);
     }
   }
-  entries_.push_back({code, range, std::move(subject), std::move(message), {}, {}});
+  entries_.push_back({code, range, std::move(subject), shortened(std::move(message)), {}, {}});
   return DiagnosticBuilder(*this, entries_.size() - 1);
 }
 

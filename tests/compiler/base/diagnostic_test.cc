@@ -16,6 +16,18 @@ struct Text {
   SourceRange at(std::uint32_t begin, std::uint32_t end) const { return {file, begin, end}; }
 };
 
+TEST_CASE("a message that quotes a megabyte is shortened in the middle") {
+  base::SourceFiles files;
+  base::DiagnosticSink sink;
+  sink.error_about(base::DiagnosticCode::kUsage, "",
+                   "no `" + std::string(1'000'000, 'x') + "` here")
+      .note("see " + std::string(1'000'000, 'y'));
+  const auto text = base::to_text(sink.sorted().front(), files, {});
+  CHECK(text.size() < 10'000);
+  CHECK(text.find("no `xxx") != std::string::npos);
+  CHECK(text.find("xxx` here") != std::string::npos);
+}
+
 TEST_CASE("registry: codes are unique, well formed, in order, with help and a lower-case format") {
   std::set<std::string_view> ids;
   for (const auto& info : all_diagnostics()) {
