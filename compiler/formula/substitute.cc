@@ -1,6 +1,5 @@
 #include "compiler/formula/substitute.h"
 
-#include <algorithm>
 #include <unordered_map>
 
 namespace parallax::compiler {
@@ -39,26 +38,6 @@ FormulaId substitute(FormulaStore& store, FormulaId root, std::int32_t variable,
   }
   const auto result = done.at(root.node());
   return root.negated() ? ~result : result;
-}
-
-std::vector<std::int32_t> positive_atoms(const FormulaStore& store, FormulaId root) {
-  std::vector<std::int32_t> found;
-  std::unordered_map<std::uint32_t, bool> seen;  // by bits
-  std::vector<FormulaId> todo = {root};
-  while (!todo.empty()) {
-    const auto id = todo.back();
-    todo.pop_back();
-    if (!seen.emplace(id.bits(), true).second) continue;
-    if (store.kind(id) == FormulaNodeKind::kAtom) {
-      if (!id.negated()) found.push_back(store.variable(id));
-    } else if (store.kind(id) == FormulaNodeKind::kAnd) {
-      for (const auto child : store.children(id)) {
-        todo.push_back(id.negated() ? ~child : child);
-      }
-    }
-  }
-  std::sort(found.begin(), found.end());
-  return found;
 }
 
 }  // namespace parallax::compiler

@@ -11,7 +11,4 @@ namespace parallax::compiler {
 /// `formula` with the atom `variable` replaced by a constant. Linear in the formula's graph.
 FormulaId substitute(FormulaStore& store, FormulaId formula, std::int32_t variable, bool value);
 
-/// The variables that occur under an even number of negations, ascending.
-std::vector<std::int32_t> positive_atoms(const FormulaStore& store, FormulaId formula);
-
 }  // namespace parallax::compiler

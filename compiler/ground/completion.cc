@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/formula/atoms.h"
 #include "compiler/formula/substitute.h"
 
 namespace parallax::compiler {

@@ -1,8 +1,11 @@
 #include "compiler/ground/ground_model.h"
 
 #include <algorithm>
+#include <span>
 #include <tuple>
 #include <utility>
+
+#include "compiler/formula/atoms.h"
 
 namespace parallax::compiler {
 
@@ -124,20 +127,8 @@ void GroundModel::require(FormulaId formula, std::uint32_t origin) {
 
 Timepoint GroundModel::needed_horizon_of(FormulaId root) const {
   Timepoint latest = 0;
-  std::vector<bool> seen(formulas_.node_count(), false);
-  std::vector<FormulaId> todo = {root};
-  while (!todo.empty()) {
-    const auto id = todo.back();
-    todo.pop_back();
-    if (seen[id.node()]) continue;
-    seen[id.node()] = true;
-    if (formulas_.kind(id) == FormulaNodeKind::kAtom) {
-      const auto variable = static_cast<std::size_t>(formulas_.variable(id));
-      latest = std::max(latest, needed_horizon(atoms_[variable - 1]));
-    } else if (formulas_.kind(id) == FormulaNodeKind::kAnd) {
-      const auto children = formulas_.children(id);
-      todo.insert(todo.end(), children.begin(), children.end());
-    }
+  for (const auto variable : atoms_of(formulas_, std::span(&root, 1))) {
+    latest = std::max(latest, needed_horizon(atoms_[static_cast<std::size_t>(variable) - 1]));
   }
   return latest;
 }

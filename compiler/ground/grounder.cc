@@ -1,7 +1,9 @@
 #include "compiler/ground/grounder.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "compiler/formula/atoms.h"
 #include "compiler/ground/completion.h"
 #include "compiler/ground/effects.h"
 #include "compiler/ground/formula_grounder.h"
@@ -34,27 +36,14 @@ void assert_axiom(const Axiom& axiom, const GroundOptions& options, GroundModel&
 
 /// An atom that stands in no formula is false.
 void deny_unmentioned(GroundModel& model) {
-  const auto& formulas = model.formulas();
-  std::vector<bool> seen(formulas.node_count(), false);
-  std::vector<bool> mentioned(model.atoms().size() + 1, false);
-  std::vector<FormulaId> todo;
-  for (const auto& constraint : model.constraints()) todo.push_back(constraint.formula);
-  while (!todo.empty()) {
-    const auto id = todo.back();
-    todo.pop_back();
-    if (seen[id.node()]) continue;
-    seen[id.node()] = true;
-    if (formulas.kind(id) == FormulaNodeKind::kAtom) {
-      mentioned[static_cast<std::size_t>(formulas.variable(id))] = true;
-    } else if (formulas.kind(id) == FormulaNodeKind::kAnd) {
-      const auto children = formulas.children(id);
-      todo.insert(todo.end(), children.begin(), children.end());
-    }
-  }
+  std::vector<FormulaId> asserted;
+  for (const auto& constraint : model.constraints()) asserted.push_back(constraint.formula);
+  const auto mentioned = atoms_of(model.formulas(), asserted);
   const auto origin = model.add_origin({}, "atom without a mention");
-  for (std::size_t v = 1; v < mentioned.size(); ++v) {
-    if (mentioned[v]) continue;
-    model.require(~model.formulas().atom(static_cast<std::int32_t>(v)), origin);
+  const auto count = static_cast<std::int32_t>(model.atoms().size());
+  for (std::int32_t variable = 1; variable <= count; ++variable) {
+    if (std::binary_search(mentioned.begin(), mentioned.end(), variable)) continue;
+    model.require(~model.formulas().atom(variable), origin);
   }
 }
 
