@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -22,11 +25,13 @@ enum class AtomKind : std::uint8_t {
   kLocation,   // the plan's control is at a location: name "L3"
   kHit,        // the state constraints hold at this timepoint
   kRunning,    // the plan has not ended at this timepoint
+  kAuxiliary,  // stands for a subformula; no name
+  kUnused,     // no clause mentions it
 };
 
 /// What a SAT variable stands for. `name` is printed without blanks: `RobotIn(r1)`, `Go(r2)`.
 struct Atom {
-  AtomKind kind = AtomKind::kPredicate;
+  AtomKind kind = AtomKind::kUnused;
   std::string name;
   std::optional<Timepoint> time;
   friend bool operator==(const Atom&, const Atom&) = default;
@@ -37,6 +42,21 @@ inline Timepoint needed_horizon(const Atom& atom) {
   return atom.time.value_or(0) + (atom.kind == AtomKind::kHappens ? 1 : 0);
 }
 
+/// A symbol of every timepoint.
+struct Slot {
+  AtomKind kind = AtomKind::kUnused;
+  std::string name;
+  friend bool operator==(const Slot&, const Slot&) = default;
+};
+
+/// A ground fluent or event of the model. Without a slot it is false at every timepoint, and no
+/// clause mentions it.
+struct GroundName {
+  std::string name;
+  std::optional<std::uint32_t> slot;
+  friend bool operator==(const GroundName&, const GroundName&) = default;
+};
+
 /// All clauses in one array; views stay valid until the next `add`.
 class ClauseList {
  public:
@@ -44,6 +64,7 @@ class ClauseList {
     literals_.insert(literals_.end(), clause.begin(), clause.end());
     ends_.push_back(literals_.size());
   }
+  friend bool operator==(const ClauseList&, const ClauseList&) = default;
   std::size_t size() const { return ends_.size(); }
   std::span<const Literal> operator[](std::size_t index) const {
     const std::size_t begin = index == 0 ? 0 : ends_[index - 1];
@@ -55,11 +76,22 @@ class ClauseList {
   std::vector<std::size_t> ends_;
 };
 
+/// A range of a source text as messages print it; it outlives the text.
+struct TextPlace {
+  std::string file;  // as the user named it
+  base::LineColumn begin;
+  base::LineColumn end;  // one column beyond the last
+  friend bool operator==(const TextPlace&, const TextPlace&) = default;
+};
+
 /// Where a clause comes from: an axiom, an effect axiom, a perform, a state constraint. Clauses
 /// that no text asks for (frame axioms DEC5 to DEC8) carry the declaration of their fluent.
 struct Origin {
-  base::SourceRange source;
+  base::SourceRange source;  // of a model that was read from an artifact: a line of that file
   std::string what;  // "axiom", "effect axiom", "frame axiom", "plan step", "state constraint"
+  std::string id = {};    // unique in the model; depends on `what` and the text alone
+  TextPlace place = {};   // where `source` was when the model was compiled
+  std::string text = {};  // of the source, on one line, without comments
 };
 
 /// An argument of a plan step for the controllers, as the designator gave it.
@@ -71,37 +103,94 @@ struct PlanStep {
   base::SourceRange source;
   std::string failure_class;
   std::map<std::string, PlanValue, std::less<>> arguments;
+  TextPlace place = {};  // as in Origin
+};
+
+/// A text that took part in the compilation.
+struct SourceText {
+  std::string name;
+  std::uint64_t hash = 0;  // FNV-1a over its bytes
+  friend bool operator==(const SourceText&, const SourceText&) = default;
+};
+
+std::vector<std::string> names_of(const std::vector<GroundName>& ground);
+
+/// Clauses that follow one another. A repeated section is `copies` blocks of `clauses` clauses: the
+/// block for timepoint k is the first one with every slot variable moved by k strides.
+struct Section {
+  std::size_t begin = 0;    // of its first clause
+  std::size_t clauses = 0;  // of one copy
+  std::int64_t copies = 1;  // 1 for a section that is not repeated
+  bool repeated = false;
+  Timepoint width = 0;  // repeated: copies for timepoints 0 .. horizon - width
+  friend bool operator==(const Section&, const Section&) = default;
 };
 
 /// The compiled model as data: symbols, clauses, provenance. It says nothing of how it was made
 /// and nothing of how it is solved.
 ///
+/// Variables: `fixed` first (user predicates, the plan's control, auxiliaries of single clauses),
+/// then one block of slots for every timepoint: variable = base + t * stride + slot + 1. The first
+/// `state_slots` slots exist at every timepoint, the others (events, auxiliaries of steps) at every
+/// timepoint before the last.
+///
 /// Every clause has a timepoint, the horizon that its atoms need: the clauses with a timepoint of
 /// at most n are the model with horizon n.
 struct CompiledModel {
+  std::string producer;             // "parallax 0.3.0"; empty: not said
+  std::vector<SourceText> sources;  // in the order of loading
+  std::map<std::string, std::string> options;  // that the meaning depends on
+  /// The fixed sections say the same at every greater horizon, and every repeated one has a copy:
+  /// more copies are the model with a greater horizon (compiler/artifact/extend.h).
+  bool shiftable = false;
+
   Timepoint horizon = 0;
-  std::vector<Atom> atoms;  // atoms[v - 1] names variable v; auxiliaries come after them
-  std::int32_t variable_count = 0;
+  std::vector<Atom> fixed;  // fixed[v - 1] is variable v
+  std::vector<Slot> slots;
+  std::uint32_t state_slots = 0;
+  std::vector<GroundName> fluents;                          // in declaration order
+  std::vector<std::optional<std::uint32_t>> release_slots;  // by fluent; none: never released
+  std::vector<GroundName> events;                           // in declaration order
+
   ClauseList clauses;
   std::vector<Timepoint> clause_timepoints;
   std::vector<std::uint32_t> clause_origins;  // index into `origins`
   std::vector<bool> clause_is_definition;     // defines an auxiliary: true in itself, says nothing
+  std::vector<Section> sections;              // cover the clauses, in order
   std::vector<Origin> origins;
-  std::vector<std::string> fluents;  // ground fluents in declaration order
-  std::vector<std::string> events;   // ground events in declaration order
   std::vector<PlanStep> plan;    // by location number; empty without a plan
-  bool has_constraints = false;      // kHit atoms exist
+  bool has_constraints = false;  // kHit atoms exist
+
+  std::int32_t base() const { return static_cast<std::int32_t>(fixed.size()); }
+  std::int32_t stride() const { return static_cast<std::int32_t>(slots.size()); }
+  std::int32_t variable_count() const {
+    return base() + horizon * stride() + static_cast<std::int32_t>(state_slots);
+  }
+  std::int32_t variable(std::uint32_t slot, Timepoint t) const {
+    return base() + t * stride() + static_cast<std::int32_t>(slot) + 1;
+  }
+  /// The atom of a variable, 1 <= v <= variable_count().
+  Atom atom(std::int32_t v) const;
+  /// Calls visit(variable, kind, name, time) for every variable that stands for an atom of the
+  /// model, in canonical order: timepoint by timepoint fluents, releases, events in declaration
+  /// order, then the fixed ones. Linear in what it visits.
+  void for_each_atom(const std::function<void(std::int32_t, AtomKind, const std::string&,
+                                              std::optional<Timepoint>)>& visit) const;
 };
 
 /// Variable look-up by (kind, name, time).
 class AtomIndex {
  public:
+  /// `model` outlives the index.
   explicit AtomIndex(const CompiledModel& model);
+  /// None: the atom is false in every trace, or there is no such atom.
   std::optional<Literal> find(AtomKind kind, std::string_view name,
                               std::optional<Timepoint> time) const;
 
  private:
-  std::map<std::tuple<AtomKind, Timepoint, std::string>, std::int32_t, std::less<>> variables_;
+  const CompiledModel* model_;
+  std::map<std::pair<AtomKind, std::string>, std::uint32_t, std::less<>> slots_;
+  std::map<std::tuple<AtomKind, Timepoint, std::string>, std::int32_t, std::less<>> fixed_;
 };
 
 }  // namespace parallax::compiler

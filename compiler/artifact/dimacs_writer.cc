@@ -24,6 +24,9 @@ std::string_view kind_name(AtomKind kind) {
       return "Hit";
     case AtomKind::kRunning:
       return "Running";
+    case AtomKind::kAuxiliary:
+    case AtomKind::kUnused:
+      break;
   }
   return {};
 }
@@ -50,18 +53,17 @@ std::string to_dimacs(const CompiledModel& model, const base::SourceFiles& files
   std::string out = "c dec format 0.1\n";
   fmt::format_to(std::back_inserter(out), "c dec horizon {}\n", model.horizon);
   std::string show = "c p show";
-  for (std::size_t i = 0; i < model.atoms.size(); ++i) {
-    const auto& atom = model.atoms[i];
-    fmt::format_to(std::back_inserter(out), "c dec atom {} {} {}", i + 1, kind_name(atom.kind),
-                   atom.name);
-    if (atom.time) fmt::format_to(std::back_inserter(out), " {}", *atom.time);
+  model.for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
+                          std::optional<Timepoint> time) {
+    fmt::format_to(std::back_inserter(out), "c dec atom {} {} {}", variable, kind_name(kind), name);
+    if (time) fmt::format_to(std::back_inserter(out), " {}", *time);
     out += '\n';
-    if (atom.kind == AtomKind::kHoldsAt || atom.kind == AtomKind::kHappens) {
-      fmt::format_to(std::back_inserter(show), " {}", i + 1);
+    if (kind == AtomKind::kHoldsAt || kind == AtomKind::kHappens) {
+      fmt::format_to(std::back_inserter(show), " {}", variable);
     }
-  }
+  });
   write_origins(model, files, out);
-  fmt::format_to(std::back_inserter(out), "c t pmc\np cnf {} {}\n{} 0\n", model.variable_count,
+  fmt::format_to(std::back_inserter(out), "c t pmc\np cnf {} {}\n{} 0\n", model.variable_count(),
                  model.clauses.size(), show);
   for (std::size_t i = 0; i < model.clauses.size(); ++i) {
     for (const auto literal : model.clauses[i]) {

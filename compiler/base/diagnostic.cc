@@ -60,12 +60,12 @@ DiagnosticBuilder& DiagnosticBuilder::fix(std::string text) {
 
 DiagnosticBuilder DiagnosticSink::add(DiagnosticCode code, std::optional<SourceRange> range,
                                       std::string subject, std::string message) {
-  if (info(code).severity == Severity::kError) {
-    ++error_count_;
-    if (error_count_ > error_limit_) {
-      dropped_ = Diagnostic{};
-      return DiagnosticBuilder(*this, kDropped);
-    }
+  const bool is_error = info(code).severity == Severity::kError;
+  auto& count = is_error ? error_count_ : warning_count_;
+  const bool muted = !is_error && std::find(muted_.begin(), muted_.end(), code) != muted_.end();
+  if (muted || ++count > (is_error ? error_limit_ : warning_limit_)) {
+    dropped_ = Diagnostic{};
+    return DiagnosticBuilder(*this, kDropped);
   }
   entries_.push_back({code, range, std::move(subject), shortened(std::move(message)), {}, {}});
   return DiagnosticBuilder(*this, entries_.size() - 1);

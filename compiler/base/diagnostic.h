@@ -79,11 +79,15 @@ class DiagnosticBuilder {
   std::size_t index_;
 };
 
-/// Collects what is wrong with the user's input; never prints. After `limit` errors further ones
+/// Collects what is wrong with the user's input; never prints. Beyond the limits errors and warnings
 /// are counted but not kept.
 class DiagnosticSink {
  public:
-  explicit DiagnosticSink(std::size_t error_limit = 20) : error_limit_(error_limit) {}
+  static constexpr std::size_t kUsualLimit = 20;
+
+  explicit DiagnosticSink(std::size_t error_limit = kUsualLimit,
+                          std::size_t warning_limit = kUsualLimit)
+      : error_limit_(error_limit), warning_limit_(warning_limit) {}
 
   /// The arguments fill the format of the code's registry line.
   template <typename... Args>
@@ -105,7 +109,11 @@ class DiagnosticSink {
   /// `made` is shown in a note.
   void adopt(const DiagnosticSink& other, SourceRange place, const std::string& made);
 
+  /// Warnings of this code are neither kept nor counted from now on.
+  void mute(DiagnosticCode warning) { muted_.push_back(warning); }
+
   std::size_t error_count() const { return error_count_; }
+  std::size_t warning_count() const { return warning_count_; }
   bool has_errors() const { return error_count_ != 0; }
   /// The exit code that the errors ask for: the smallest class wins (usage before input ...).
   int exit_code() const;
@@ -119,8 +127,11 @@ class DiagnosticSink {
   DiagnosticBuilder add(DiagnosticCode code, std::optional<SourceRange> range, std::string subject,
                         std::string message);
   std::vector<Diagnostic> entries_;
+  std::vector<DiagnosticCode> muted_;
   std::size_t error_limit_;
+  std::size_t warning_limit_;
   std::size_t error_count_ = 0;
+  std::size_t warning_count_ = 0;
   Diagnostic dropped_{};
 };
 

@@ -103,10 +103,15 @@ Result<FileId> load_text(const std::filesystem::path& path, SourceFiles& files,
                          DiagnosticSink& sink) {
   auto text = read_file(path, sink);
   if (!text) return sink.already_reported();
-  if (text->starts_with("\xEF\xBB\xBF")) text->erase(0, 3);
-  const auto bad = first_invalid_byte(*text);
-  const bool invalid = bad != text->size();
-  const auto id = files.add(path.string(), std::move(*text));
+  return register_text(path.string(), std::move(*text), files, sink);
+}
+
+Result<FileId> register_text(std::string name, std::string text, SourceFiles& files,
+                             DiagnosticSink& sink) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  const auto bad = first_invalid_byte(text);
+  const bool invalid = bad != text.size();
+  const auto id = files.add(std::move(name), std::move(text));
   if (invalid) {
     const auto at = static_cast<std::uint32_t>(bad);
     return sink.error(DiagnosticCode::kInvalidText, SourceRange{id, at, at + 1});

@@ -18,6 +18,10 @@ Result<std::string> read_file(const std::filesystem::path& path, DiagnosticSink&
 Result<FileId> load_text(const std::filesystem::path& path, SourceFiles& files,
                          DiagnosticSink& sink);
 
+/// The same for a text that was read already, say from standard input.
+Result<FileId> register_text(std::string name, std::string text, SourceFiles& files,
+                             DiagnosticSink& sink);
+
 /// Writes to a temporary neighbour, syncs, renames. Reports kFileNotWritable, and kNotARegularFile
 /// for an existing folder, device or pipe.
 Status write_file_atomically(const std::filesystem::path& path, std::string_view text,

@@ -1,128 +1,264 @@
 #include "compiler/cnf/encoder.h"
 
 #include <algorithm>
+#include <string>
+
+#include "compiler/cnf/clause_builder.h"
+#include "compiler/cnf/slot_table.h"
+#include "compiler/formula/substitute.h"
 
 namespace parallax::compiler {
 namespace {
 
+/// Numbers the variables and writes the clauses.
 class Encoder {
  public:
-  explicit Encoder(const GroundModel& model) : model_(model), formulas_(model.formulas()) {
-    out_.horizon = model.horizon();
-    out_.atoms = model.atoms();
-    out_.variable_count = static_cast<std::int32_t>(out_.atoms.size());
-    out_.origins = model.origins();
-    for (const auto id : model.fluents()) {
-      out_.fluents.push_back(model.terms().text(id, model.typed()));
-    }
-    for (const auto id : model.events()) {
-      out_.events.push_back(model.terms().text(id, model.typed()));
-    }
-    variables_.resize(formulas_.node_count(), 0);
-    defined_.resize(formulas_.node_count(), 0);
-    compute_times();
-  }
+  explicit Encoder(GroundModel& model) : model_(model), formulas_(model.formulas()) {}
 
   CompiledModel run() && {
-    for (const auto& constraint : model_.constraints()) {
-      origin_ = constraint.origin;
-      assert_top(constraint.formula);
-      define_pending();
-    }
+    auto constraints = model_.constraints();
+    drop_impossible(constraints);
+    ClauseBuilder builder(model_);
+    for (const auto& constraint : constraints) builder.add(constraint);
+    out_.horizon = model_.horizon();
+    out_.origins = model_.origins();
+    hash_nodes();
+    find_mentioned(builder);
+    number_slots(builder);
+    number_fixed(builder);
+    write(builder.once(), Constraint::kOnce);
+    for (const auto& [width, clauses] : builder.repeated()) write(clauses, width);
     return std::move(out_);
   }
 
  private:
-  /// Nodes are made after their children, so one pass in order of ids is enough.
-  void compute_times() {
-    times_.resize(formulas_.node_count(), 0);
-    for (std::uint32_t node = 0; node < formulas_.node_count(); ++node) {
+  /// Atoms that no trace can make true are false, and have no variable.
+  void drop_impossible(std::vector<Constraint>& constraints) {
+    RewriteMemo memo;
+    for (auto& constraint : constraints) {
+      constraint.formula = rewrite_atoms(
+          model_.formulas(), constraint.formula,
+          [&](std::int32_t variable) {
+            const auto& atom = model_.atom(variable);
+            const bool never = (atom.kind == AtomKind::kHoldsAt && !model_.may_hold(atom.index)) ||
+                               (atom.kind == AtomKind::kHappens && !model_.may_happen(atom.index));
+            return never ? formulas_.falsity() : formulas_.atom(variable);
+          },
+          memo);
+    }
+  }
+
+  /// A hash for every node that depends on names and structure only.
+  void hash_nodes() {
+    std::vector<std::uint64_t> names(model_.atom_count());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      names[i] = atom_hash(model_.atom(static_cast<std::int32_t>(i + 1)));
+    }
+    hashes_.resize(formulas_.node_count(), 0);
+    for (std::uint32_t node = 0; node < hashes_.size(); ++node) {
       const auto id = formulas_.at(node);
       if (formulas_.kind(id) == FormulaNodeKind::kAtom) {
-        times_[node] =
-            needed_horizon(out_.atoms[static_cast<std::size_t>(formulas_.variable(id)) - 1]);
+        hashes_[node] = names[static_cast<std::size_t>(formulas_.variable(id)) - 1];
       } else if (formulas_.kind(id) == FormulaNodeKind::kAnd) {
+        // A sum: the order of the children depends on the order of construction.
+        std::uint64_t sum = 0;
         for (const auto child : formulas_.children(id)) {
-          times_[node] = std::max(times_[node], times_[child.node()]);
+          sum += combine_hashes(hashes_[child.node()], child.negated() ? 1 : 0);
+        }
+        hashes_[node] = combine_hashes(sum, 2);
+      }
+    }
+  }
+  std::uint64_t atom_hash(const GroundAtom& atom) {
+    return combine_hashes(symbol_hash(atom), static_cast<std::uint64_t>(atom.time + 1));
+  }
+  std::uint64_t symbol_hash(const GroundAtom& atom) {
+    const auto kind = static_cast<std::uint64_t>(atom.kind) + 1;
+    if (atom.kind == AtomKind::kAuxiliary) return combine_hashes(kind, ++unnamed_);
+    auto& known = symbol_hashes_[{atom.kind, atom.index}];
+    if (known == 0) known = stable_hash(model_.atom_name(atom), kind);
+    return known;
+  }
+
+  /// Atoms other than those of fluents and events have a variable if some clause mentions them.
+  void find_mentioned(const ClauseBuilder& builder) {
+    std::vector<bool> mentioned(model_.atom_count() + 1, false);
+    const auto note = [&](const std::vector<OpenClause>& clauses) {
+      for (const auto& clause : clauses) {
+        for (const auto& literal : clause.literals) {
+          if (!literal.is_auxiliary) mentioned[literal.index] = true;
         }
       }
+    };
+    note(builder.once());
+    for (const auto& [width, clauses] : builder.repeated()) note(clauses);
+    for (std::size_t i = 1; i < mentioned.size(); ++i) {
+      if (mentioned[i] && !is_slot_kind(model_.atom(static_cast<std::int32_t>(i)).kind)) {
+        fixed_atoms_.push_back(static_cast<std::int32_t>(i));
+      }
+    }
+  }
+  static bool is_slot_kind(AtomKind kind) {
+    return kind == AtomKind::kHoldsAt || kind == AtomKind::kReleasedAt ||
+           kind == AtomKind::kHappens;
+  }
+
+  void number_slots(const ClauseBuilder& builder) {
+    const auto fluents = static_cast<std::uint32_t>(model_.fluents().size());
+    const auto events = static_cast<std::uint32_t>(model_.events().size());
+    // First the slots of states: fluents, releases, auxiliaries of state axioms.
+    std::vector<std::uint64_t> state, step;
+    for (std::uint32_t f = 0; f < fluents; ++f) {
+      if (model_.may_hold(f)) state.push_back(symbol_hash({AtomKind::kHoldsAt, f, 0}));
+    }
+    for (std::uint32_t f = 0; f < fluents; ++f) {
+      if (model_.can_be_released(f)) state.push_back(symbol_hash({AtomKind::kReleasedAt, f, 0}));
+    }
+    for (std::uint32_t e = 0; e < events; ++e) {
+      if (model_.may_happen(e)) step.push_back(symbol_hash({AtomKind::kHappens, e, 0}));
+    }
+    for (const auto& auxiliary : builder.auxiliaries()) {
+      if (!auxiliary.moves) continue;
+      auto& part = builder.needed(auxiliary.formula) == 0 ? state : step;
+      part.push_back(hashes_[auxiliary.formula.node()]);
+    }
+    const auto state_layout = lay_out(state);
+    const auto step_layout = lay_out(step);
+    out_.state_slots = state_layout.capacity;
+    out_.slots.resize(state_layout.capacity + step_layout.capacity);
+
+    std::size_t next_state = 0, next_step = 0;
+    const auto take_state = [&] { return state_layout.place[next_state++]; };
+    const auto take_step = [&] { return state_layout.capacity + step_layout.place[next_step++]; };
+    for (std::uint32_t f = 0; f < fluents; ++f) {
+      GroundName named{model_.terms().text(model_.fluents()[f], model_.typed()), std::nullopt};
+      if (model_.may_hold(f)) {
+        named.slot = take_state();
+        out_.slots[*named.slot] = {AtomKind::kHoldsAt, named.name};
+      }
+      out_.fluents.push_back(std::move(named));
+    }
+    for (std::uint32_t f = 0; f < fluents; ++f) {
+      out_.release_slots.emplace_back();
+      if (!model_.can_be_released(f)) continue;
+      out_.release_slots.back() = take_state();
+      out_.slots[*out_.release_slots.back()] = {AtomKind::kReleasedAt, out_.fluents[f].name};
+    }
+    for (std::uint32_t e = 0; e < events; ++e) {
+      GroundName named{model_.terms().text(model_.events()[e], model_.typed()), std::nullopt};
+      if (model_.may_happen(e)) {
+        named.slot = take_step();
+        out_.slots[*named.slot] = {AtomKind::kHappens, named.name};
+      }
+      out_.events.push_back(std::move(named));
+    }
+    auxiliary_places_.resize(builder.auxiliaries().size(), 0);
+    for (std::size_t i = 0; i < builder.auxiliaries().size(); ++i) {
+      const auto& auxiliary = builder.auxiliaries()[i];
+      if (!auxiliary.moves) continue;
+      const bool of_state = builder.needed(auxiliary.formula) == 0;
+      auxiliary_places_[i] = of_state ? take_state() : take_step();
+      out_.slots[auxiliary_places_[i]] = {AtomKind::kAuxiliary, ""};
     }
   }
 
-  void assert_top(FormulaId root) {
-    std::vector<FormulaId> todo = {root};
-    while (!todo.empty()) {
-      const auto id = todo.back();
-      todo.pop_back();
-      if (formulas_.kind(id) == FormulaNodeKind::kAnd && !id.negated()) {
-        const auto children = formulas_.children(id);
-        todo.insert(todo.end(), children.rbegin(), children.rend());
-        continue;
-      }
-      std::vector<Literal> clause;
-      if (formulas_.kind(id) == FormulaNodeKind::kAnd) {
-        for (const auto child : formulas_.children(id)) clause.push_back(use(~child));
-      } else if (id == formulas_.falsity()) {
-        // The empty clause: whatever asserted it is contradictory.
+  void number_fixed(const ClauseBuilder& builder) {
+    std::vector<std::uint64_t> hashes;
+    for (const auto variable : fixed_atoms_) hashes.push_back(atom_hash(model_.atom(variable)));
+    for (const auto& auxiliary : builder.auxiliaries()) {
+      if (!auxiliary.moves) hashes.push_back(hashes_[auxiliary.formula.node()]);
+    }
+    const auto layout = lay_out(hashes);
+    out_.fixed.resize(layout.capacity);
+    fixed_places_.resize(model_.atom_count() + 1, 0);
+    std::size_t next = 0;
+    for (const auto variable : fixed_atoms_) {
+      const auto& atom = model_.atom(variable);
+      const auto place = layout.place[next++];
+      fixed_places_[static_cast<std::size_t>(variable)] = place;
+      out_.fixed[place] = {atom.kind, model_.atom_name(atom), std::nullopt};
+      if (atom.time != GroundAtom::kUntimed) out_.fixed[place].time = atom.time;
+    }
+    for (std::size_t i = 0; i < builder.auxiliaries().size(); ++i) {
+      if (builder.auxiliaries()[i].moves) continue;
+      auxiliary_places_[i] = layout.place[next++];
+      out_.fixed[auxiliary_places_[i]] = {AtomKind::kAuxiliary, "", std::nullopt};
+    }
+    moves_.resize(builder.auxiliaries().size());
+    for (std::size_t i = 0; i < moves_.size(); ++i) moves_[i] = builder.auxiliaries()[i].moves;
+  }
+
+  /// The literal with timepoints as they stand in the formula.
+  Literal number(const OpenLiteral& open) const {
+    std::int32_t variable = 0;
+    if (open.is_auxiliary) {
+      const auto place = auxiliary_places_[open.index];
+      variable =
+          moves_[open.index] ? out_.variable(place, 0) : static_cast<std::int32_t>(place) + 1;
+    } else {
+      const auto& atom = model_.atom(static_cast<std::int32_t>(open.index));
+      if (atom.kind == AtomKind::kHoldsAt) {
+        variable = out_.variable(*out_.fluents[atom.index].slot, atom.time);
+      } else if (atom.kind == AtomKind::kReleasedAt) {
+        variable = out_.variable(*out_.release_slots[atom.index], atom.time);
+      } else if (atom.kind == AtomKind::kHappens) {
+        variable = out_.variable(*out_.events[atom.index].slot, atom.time);
       } else {
-        clause.push_back(use(id));
-      }
-      emit(clause, times_[id.node()], false);
-    }
-  }
-
-  /// A literal that implies `id`; its definition is queued if this polarity has none yet.
-  Literal use(FormulaId id) {
-    const auto node = id.node();
-    if (formulas_.kind(id) == FormulaNodeKind::kAtom) {
-      const auto literal = Literal::positive(formulas_.variable(id));
-      return id.negated() ? ~literal : literal;
-    }
-    if (variables_[node] == 0) variables_[node] = ++out_.variable_count;
-    const std::uint8_t polarity = id.negated() ? 2 : 1;
-    if ((defined_[node] & polarity) == 0) {
-      defined_[node] = static_cast<std::uint8_t>(defined_[node] | polarity);
-      pending_.push_back(id);
-    }
-    const auto literal = Literal::positive(variables_[node]);
-    return id.negated() ? ~literal : literal;
-  }
-
-  void define_pending() {
-    while (!pending_.empty()) {
-      const auto id = pending_.back();
-      pending_.pop_back();
-      const auto self = Literal::positive(variables_[id.node()]);
-      const auto time = times_[id.node()];
-      if (!id.negated()) {
-        for (const auto child : formulas_.children(id)) emit({~self, use(child)}, time, true);
-      } else {
-        std::vector<Literal> clause = {self};
-        for (const auto child : formulas_.children(id)) clause.push_back(use(~child));
-        emit(clause, time, true);
+        variable = static_cast<std::int32_t>(fixed_places_[open.index]) + 1;
       }
     }
+    const auto literal = Literal::positive(variable);
+    return open.negated ? ~literal : literal;
   }
 
-  void emit(const std::vector<Literal>& clause, Timepoint time, bool is_definition) {
-    out_.clauses.add(clause);
-    out_.clause_timepoints.push_back(time);
-    out_.clause_origins.push_back(origin_);
-    out_.clause_is_definition.push_back(is_definition);
+  void write(const std::vector<OpenClause>& clauses, Timepoint width) {
+    if (clauses.empty()) return;
+    const bool repeated = width != Constraint::kOnce;
+    std::vector<std::vector<Literal>> numbered;
+    for (const auto& clause : clauses) {
+      auto& literals = numbered.emplace_back();
+      for (const auto& open : clause.literals) literals.push_back(number(open));
+      std::sort(literals.begin(), literals.end(),
+                [](Literal a, Literal b) { return a.var() < b.var(); });
+    }
+    Section section{out_.clauses.size(), clauses.size(), 1, repeated, 0};
+    if (repeated) {
+      section.width = width;
+      section.copies = model_.horizon() - width + 1;
+    }
+    std::vector<Literal> moved;
+    for (Timepoint s = 0; s < section.copies; ++s) {
+      for (std::size_t i = 0; i < clauses.size(); ++i) {
+        moved.clear();
+        for (const auto literal : numbered[i]) {
+          const bool moves = literal.var() > out_.base();
+          const auto variable = literal.var() + (moves ? s * out_.stride() : 0);
+          moved.push_back(literal.is_positive() ? Literal::positive(variable)
+                                                : ~Literal::positive(variable));
+        }
+        out_.clauses.add(moved);
+        out_.clause_timepoints.push_back(clauses[i].needed + s);
+        out_.clause_origins.push_back(clauses[i].origin);
+        out_.clause_is_definition.push_back(clauses[i].is_definition);
+      }
+    }
+    out_.sections.push_back(section);
   }
 
-  const GroundModel& model_;
-  const FormulaStore& formulas_;
+  GroundModel& model_;
+  FormulaStore& formulas_;
   CompiledModel out_;
-  std::vector<std::int32_t> variables_;  // auxiliary variable by node; 0: none yet
-  std::vector<std::uint8_t> defined_;    // polarities that have their definition, by node
-  std::vector<Timepoint> times_;         // latest timepoint mentioned, by node
-  std::vector<FormulaId> pending_;
-  std::uint32_t origin_ = 0;
+  std::vector<std::uint64_t> hashes_;  // by node
+  std::map<std::pair<AtomKind, std::uint32_t>, std::uint64_t> symbol_hashes_;
+  std::uint64_t unnamed_ = 0;
+  std::vector<std::int32_t> fixed_atoms_;        // variables of the store without a slot
+  std::vector<std::uint32_t> fixed_places_;      // by variable of the store
+  std::vector<std::uint32_t> auxiliary_places_;  // slot or fixed place
+  std::vector<bool> moves_;                      // by auxiliary
 };
 
 }  // namespace
 
-CompiledModel encode(const GroundModel& model) { return Encoder(model).run(); }
+CompiledModel encode(GroundModel& model) { return Encoder(model).run(); }
 
 }  // namespace parallax::compiler

@@ -7,8 +7,9 @@ namespace parallax::compiler {
 
 /// Turns the constraints into clauses. Top-level conjunctions are split, small disjunctions are
 /// emitted directly, everything deeper gets an auxiliary variable that is defined in the polarity
-/// in which it is used (Plaisted and Greenbaum 1986). Fills everything of the result but `plan`
-/// and `has_constraints`. Linear in the size of the formula graph.
-CompiledModel encode(const GroundModel& model);
+/// in which it is used (Plaisted and Greenbaum 1986). What holds at every timepoint is encoded once
+/// and repeated by moving its variables. Fills everything of the result but `plan` and
+/// `has_constraints`. Linear in the formula graph, and in the clauses written.
+CompiledModel encode(GroundModel& model);
 
 }  // namespace parallax::compiler

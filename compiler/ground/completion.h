@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compiler/ground/ground_model.h"
@@ -18,25 +19,45 @@ namespace parallax::compiler {
 class CompletionWriter {
  public:
   CompletionWriter(GroundModel& model, Meaning meaning);
-  /// Notes a conjunct of an axiom with this label (empty without one). Call for every axiom.
-  void note(const std::string& label, FormulaId formula);
+  /// Notes an axiom with this label (empty without one): a formula that holds once, or, with a
+  /// width, at every timepoint as GroundModel::require_always has it. Call for every axiom.
+  void note(const std::string& label, FormulaId formula, Timepoint width);
+  /// The completion of a predicate, if it has one.
+  const Completion* completion_of(SymbolId predicate) const;
+  /// The occurrences (event, timepoint) that the axioms noted so far give a reason for; `certain`:
+  /// those that are facts.
+  struct Occurrence {
+    std::uint32_t event = 0;
+    Timepoint time = 0;
+    bool certain = false;
+  };
+  std::vector<Occurrence> occurrences() const;
+  /// The disjunction of the reasons noted so far for a user predicate's atom.
+  FormulaId reason(const GroundAtom& atom) const;
   /// Asserts the completions: false for atoms without a reason.
   void write();
 
  private:
-  struct Completed {
-    std::size_t completion = 0;  // index into the typed model's completions
-    std::vector<FormulaId> reasons;
+  /// The reasons of one event, fluent or user predicate.
+  struct Reasons {
+    std::vector<FormulaId> always;  // at timepoint 0, valid for all
+    std::map<Timepoint, std::vector<FormulaId>> single;
   };
-  void note_conjunct(const std::string& label, FormulaId formula);
-  bool applies(std::size_t completion, const std::string& label) const;
-  void prepare();
-  void drop_facts(std::vector<FormulaId>& reasons) const;
+  using Key = std::pair<AtomKind, std::uint32_t>;
+
+  void note_conjunct(const std::string& label, FormulaId formula, Timepoint width);
+  void note_reason(const GroundAtom& atom, FormulaId reason, Timepoint width);
+  const Completion* completion_of(const GroundAtom& atom) const;
+  void write_timed(AtomKind kind, std::uint32_t count, std::uint32_t origin);
+  void write_predicates();
+  void assert_completed(FormulaId atom, std::vector<FormulaId> reasons, std::uint32_t origin,
+                        Timepoint width);
 
   GroundModel& model_;
   Meaning meaning_;
-  std::vector<std::uint32_t> origins_;           // by completion
-  std::map<std::int32_t, Completed> completed_;  // by SAT variable
+  std::map<SymbolId, const Completion*> completions_;  // by predicate
+  std::map<SymbolId, std::uint32_t> origins_;          // by predicate
+  std::map<Key, Reasons> reasons_;
 };
 
 }  // namespace parallax::compiler

@@ -1,55 +1,91 @@
 #include "compiler/ground/effects.h"
 
-#include "compiler/ground/instances.h"
+#include "compiler/ground/time_profile.h"
 
 namespace parallax::compiler {
-namespace {
 
-class EffectGrounder {
- public:
-  EffectGrounder(GroundModel& model, FormulaGrounder& grounder)
-      : model_(model), grounder_(grounder), rows_(model.horizon()) {}
+EffectGrounder::EffectGrounder(GroundModel& model, FormulaGrounder& grounder, EffectRows& rows)
+    : model_(model), grounder_(grounder), rows_(rows) {
+  for (const auto& effect : model.typed().effects) {
+    origins_.push_back(model.add_origin(effect.source, "effect axiom"));
+  }
+}
 
-  EffectRows run() && {
-    for (const auto& effect : model_.typed().effects) {
-      origin_ = model_.add_origin(effect.source, "effect axiom");
-      grounder_.start(effect.source);
-      const auto& time = model_.typed().terms[effect.time];
-      auto open = effect.variables;
-      if (time.kind == TermKind::kVariable) std::erase(open, time.variable);
-      for (Timepoint t = 0; t < model_.horizon() && !grounder_.failed(); ++t) {
-        const auto now = model_.terms().integer(t);
-        if (time.kind == TermKind::kVariable) grounder_.bind(time.variable, now);
-        for_each_instance(open, model_, grounder_, [&] { instance(effect, now, t); });
-      }
+std::uint32_t EffectGrounder::origin_of(const EffectAxiom& effect) {
+  return origins_[static_cast<std::size_t>(&effect - model_.typed().effects.data())];
+}
+
+bool EffectGrounder::is_scheduled(const EffectAxiom& effect) const {
+  const auto* possible = grounder_.possible();
+  if (possible == nullptr) return false;
+  const auto& event = model_.typed().terms[effect.event];
+  return event.kind == TermKind::kApply ? possible->is_scheduled(event.symbol)
+                                        : possible->all_events_scheduled();
+}
+
+void EffectGrounder::ground(const EffectAxiom& effect) {
+  grounder_.start(effect.source);
+  if (model_.horizon() == 0) return;
+  const auto profile = time_profile(model_.typed(), effect);
+  const auto& options = grounder_.terms().options();
+  const bool always = profile.shape == TimeShape::kUniform && options.templates &&
+                      options.meaning == Meaning::kStandard && !is_scheduled(effect);
+  if (!always) return run(effect, false);
+  auto* possible = grounder_.possible();
+  if (possible != nullptr) possible->set_timeless(true);
+  grounder_.bind(profile.variable, model_.terms().integer(0));
+  run(effect, true);
+  grounder_.unbind(profile.variable);
+  if (possible != nullptr) possible->set_timeless(false);
+}
+
+void EffectGrounder::ground_at(const EffectAxiom& effect, Timepoint t) {
+  grounder_.start(effect.source);
+  const auto& time = model_.typed().terms[effect.time];
+  const bool is_variable = time.kind == TermKind::kVariable;
+  if (!is_variable && grounder_.term(effect.time) != model_.terms().integer(t)) return;
+  if (is_variable) grounder_.bind(time.variable, model_.terms().integer(t));
+  run(effect, false);
+  if (is_variable) grounder_.unbind(time.variable);
+}
+
+void EffectGrounder::run(const EffectAxiom& effect, bool always) {
+  auto conjuncts = conjuncts_of(model_.typed(), effect.condition, false);
+  conjuncts.push_back({Conjunct::Kind::kEvent, {}, false, effect.event, effect.time, false});
+  conjuncts.push_back({Conjunct::Kind::kFluent, {}, false, effect.fluent, effect.time, false});
+  std::vector<VariableId> open;
+  for (const auto variable : effect.variables) {
+    if (!grounder_.terms().is_bound(variable)) open.push_back(variable);
+  }
+  const auto found = grounder_.instances(open, conjuncts);
+  const auto count = open.empty() ? 1 : found.size() / open.size();
+  for (std::size_t i = 0; i < count && grounder_.spend(1); ++i) {
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      grounder_.bind(open[k], found[i * open.size() + k]);
     }
-    return std::move(rows_);
+    instance(effect, always);
   }
+  for (const auto variable : open) grounder_.unbind(variable);
+}
 
- private:
-  void instance(const EffectAxiom& effect, GroundTermId now, Timepoint t) {
-    if (grounder_.term(effect.time) != now) return;
-    const auto event = grounder_.term(effect.event);
-    const auto fluent = grounder_.term(effect.fluent);
-    if (!event || !fluent) return;
-    const auto e = model_.event_number(*event);
-    const auto f = model_.fluent_number(*fluent);
-    if (!e || !f) return;
-    const auto condition = grounder_.ground(effect.condition);
-    if (!condition || *condition == model_.formulas().falsity()) return;
-    rows_.add(t, {effect.kind, *e, *f, *condition, origin_});
+void EffectGrounder::instance(const EffectAxiom& effect, bool always) {
+  const auto time = grounder_.term(effect.time);
+  const auto event = grounder_.term(effect.event);
+  const auto fluent = grounder_.term(effect.fluent);
+  if (!time || !event || !fluent) return;
+  const auto t = model_.terms()[*time].integer;
+  if (t < 0 || t >= model_.horizon()) return;
+  const auto e = model_.event_number(*event);
+  const auto f = model_.fluent_number(*fluent);
+  if (!e || !f || !model_.may_happen(*e)) return;
+  const auto condition = grounder_.ground(effect.condition);
+  if (!condition || *condition == model_.formulas().falsity()) return;
+  const EffectRow row{effect.kind, *e, *f, *condition, origin_of(effect)};
+  if (always) {
+    rows_.add_always(row);
+  } else {
+    rows_.add(static_cast<Timepoint>(t), row);
   }
-
-  GroundModel& model_;
-  FormulaGrounder& grounder_;
-  EffectRows rows_;
-  std::uint32_t origin_ = 0;
-};
-
-}  // namespace
-
-EffectRows ground_effects(GroundModel& model, FormulaGrounder& grounder) {
-  return EffectGrounder(model, grounder).run();
 }
 
 }  // namespace parallax::compiler

@@ -1,18 +1,40 @@
 #pragma once
 
+#include <vector>
+
 #include "compiler/ground/effect_rows.h"
 #include "compiler/ground/formula_grounder.h"
 #include "compiler/ground/ground_model.h"
 
 namespace parallax::compiler {
 
-/// Expands every effect axiom at every timepoint before the last. Errors are the grounder's.
-EffectRows ground_effects(GroundModel& model, FormulaGrounder& grounder);
+/// Turns effect axioms into rows: once for all timepoints where the axiom says the same of each,
+/// else timepoint by timepoint. Errors are the grounder's.
+class EffectGrounder {
+ public:
+  EffectGrounder(GroundModel& model, FormulaGrounder& grounder, EffectRows& rows);
+  /// Can the axiom's events happen at fixed timepoints only?
+  bool is_scheduled(const EffectAxiom& effect) const;
+  /// Every timepoint.
+  void ground(const EffectAxiom& effect);
+  /// The rows of timepoint t.
+  void ground_at(const EffectAxiom& effect, Timepoint t);
+
+ private:
+  void run(const EffectAxiom& effect, bool always);
+  void instance(const EffectAxiom& effect, bool always);
+  std::uint32_t origin_of(const EffectAxiom& effect);
+
+  GroundModel& model_;
+  FormulaGrounder& grounder_;
+  EffectRows& rows_;
+  std::vector<std::uint32_t> origins_;  // by axiom
+};
 
 /// Asserts DEC5 to DEC12 of Mueller 2006 over the rows. Initiates, Terminates and Releases never
 /// become atoms: circumscription makes them the disjunction of their rows, so a fluent's frame
 /// axioms mention only the events that can touch it.
-void assert_inertia(GroundModel& model, const EffectRows& rows);
+void assert_inertia(GroundModel& model, const EffectRows& rows, bool templates);
 
 /// Asserts DEC3 and DEC4: what a trajectory axiom says of the time between the event that starts
 /// its fluent and the first one that stops it. Quadratic in the horizon.

@@ -1,7 +1,8 @@
 #include "compiler/ground/formula_grounder.h"
 
-#include <limits>
 #include <utility>
+
+#include "compiler/ground/grounding_frame.h"
 
 namespace parallax::compiler {
 
@@ -20,48 +21,16 @@ bool is_leaf(FormulaKind kind) {
 
 }  // namespace
 
-/// One formula under expansion: what its parts (or instances) have given so far.
-struct FormulaGrounder::Frame {
-  const TypedFormula* formula = nullptr;
-  std::size_t next_child = 0;
-  std::vector<FormulaId> parts;
-  bool discarded = false;             // some part named nothing that exists
-  std::vector<std::size_t> odometer;  // quantifiers: the current instance
-  bool exhausted = false;
-};
-
 FormulaGrounder::FormulaGrounder(GroundModel& model, const GroundOptions& options,
                                  base::DiagnosticSink& sink)
     : model_(&model),
       typed_(&model.typed()),
-      options_(options),
-      sink_(&sink),
-      environment_(model.typed().variables.size()) {
-  read_function_values();
-}
+      terms_(model, options, sink),
+      meaning_(options.meaning) {}
 
-void FormulaGrounder::start(base::SourceRange blame) {
-  spent_ = 0;
-  failed_ = false;
-  blame_ = blame;
-  if (environment_.size() < typed_->variables.size()) {
-    environment_.resize(typed_->variables.size());
-  }
-}
-
-bool FormulaGrounder::spend(std::int64_t more) {
-  if (failed_) return false;
-  if (__builtin_add_overflow(spent_, more, &spent_))
-    spent_ = std::numeric_limits<std::int64_t>::max();
-  if (spent_ > options_.max_instances) {
-    sink_->error(DiagnosticCode::kTooManyInstances, blame_, options_.max_instances);
-    failed_ = true;
-  }
-  if (!failed_ && options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) {
-    sink_->error(DiagnosticCode::kGroundingStopped, blame_);
-    failed_ = true;
-  }
-  return !failed_;
+void FormulaGrounder::use_possible(PossibleAtoms* possible) {
+  possible_ = possible;
+  quantifiers_.clear();
 }
 
 std::optional<FormulaId> FormulaGrounder::ground(TypedFormulaId root) {
@@ -75,27 +44,19 @@ std::optional<FormulaId> FormulaGrounder::ground(TypedFormulaId root) {
       have_result = true;
       return;
     }
-    stack.push_back({&formula, 0, {}, false, {}, false});
+    stack.emplace_back();
+    stack.back().formula = &formula;
     have_result = false;
-    if (is_quantifier(formula.kind)) stack.back().exhausted = !begin_instances(stack.back());
+    if (is_quantifier(formula.kind)) begin_instances(stack.back(), id);
   };
   push(root);
-  while (!stack.empty() && !failed_) {
+  while (!stack.empty() && !failed()) {
     auto& frame = stack.back();
     const auto kind = frame.formula->kind;
     bool decided = false;
     if (have_result) {
       have_result = false;
-      if (!result) {
-        frame.discarded = true;
-      } else {
-        frame.parts.push_back(*result);
-        const auto& formulas = model_->formulas();
-        decided = ((kind == FormulaKind::kAnd || kind == FormulaKind::kForall) &&
-                   *result == formulas.falsity()) ||
-                  ((kind == FormulaKind::kOr || kind == FormulaKind::kExists) &&
-                   *result == formulas.truth());
-      }
+      decided = take_part(frame, result);
       if (is_quantifier(kind)) {
         frame.exhausted = decided || !next_instance(frame);
       } else {
@@ -110,41 +71,35 @@ std::optional<FormulaId> FormulaGrounder::ground(TypedFormulaId root) {
     } else {
       result = combine(frame);
       have_result = true;
-      for (const auto variable : frame.formula->variables) unbind(variable);
+      for (const auto variable : frame.open) unbind(variable);
       stack.pop_back();
     }
   }
-  if (failed_) return std::nullopt;
+  if (failed()) {
+    for (const auto& frame : stack) {
+      for (const auto variable : frame.open) unbind(variable);
+    }
+    return std::nullopt;
+  }
   return result;
 }
 
-bool FormulaGrounder::begin_instances(Frame& frame) {
-  frame.odometer.assign(frame.formula->variables.size(), 0);
-  std::int64_t instances = 1;
-  for (const auto variable : frame.formula->variables) {
-    const auto& domain = model_->universe().domain(typed_->variables[variable].sort);
-    if (domain.empty()) return false;
-    bind(variable, domain[0]);
-    if (__builtin_mul_overflow(instances, static_cast<std::int64_t>(domain.size()), &instances)) {
-      instances = std::numeric_limits<std::int64_t>::max();
-    }
+/// Notes what a part or an instance has given. True: the rest cannot change the outcome.
+bool FormulaGrounder::take_part(Frame& frame, std::optional<FormulaId> part) const {
+  if (!part) {
+    frame.discarded = true;
+    return false;
   }
-  // The whole product is paid for at once: what is too large is refused before it is begun.
-  return spend(instances);
-}
-
-bool FormulaGrounder::next_instance(Frame& frame) {
-  const auto& variables = frame.formula->variables;
-  for (std::size_t i = variables.size(); i-- > 0;) {
-    const auto& domain = model_->universe().domain(typed_->variables[variables[i]].sort);
-    if (++frame.odometer[i] < domain.size()) {
-      bind(variables[i], domain[frame.odometer[i]]);
-      return spend(0);
-    }
-    frame.odometer[i] = 0;
-    bind(variables[i], domain[0]);
-  }
-  return false;
+  frame.exists = true;
+  if (frame.in_product) return true;
+  frame.parts.push_back(*part);
+  const auto kind = frame.formula->kind;
+  const auto& formulas = model_->formulas();
+  const bool both = is_quantifier(kind) || meaning_ == Meaning::kDecreasoner;
+  return both && (((kind == FormulaKind::kAnd || kind == FormulaKind::kForall) &&
+                   *part == formulas.falsity()) ||
+                  ((kind == FormulaKind::kOr || kind == FormulaKind::kExists) &&
+                   *part == formulas.truth()));
 }
 
 std::optional<FormulaId> FormulaGrounder::combine(Frame& frame) {
@@ -153,19 +108,20 @@ std::optional<FormulaId> FormulaGrounder::combine(Frame& frame) {
   const bool all_there = !frame.discarded;
   switch (frame.formula->kind) {
     case FormulaKind::kAnd: {
+      if (!all_there && meaning_ == Meaning::kStandard) return std::nullopt;
       const auto value = formulas.conjunction(std::move(parts));
       if (all_there || value == formulas.falsity()) return value;
       return std::nullopt;
     }
     case FormulaKind::kOr: {
+      if (!all_there && meaning_ == Meaning::kStandard) return std::nullopt;
       const auto value = formulas.disjunction(std::move(parts));
       if (all_there || value == formulas.truth()) return value;
       return std::nullopt;
     }
     case FormulaKind::kForall:
     case FormulaKind::kExists: {
-      const bool beyond = parts.empty() && frame.discarded;
-      if (beyond && options_.meaning == Meaning::kStandard) return std::nullopt;
+      if (frame.discarded && !frame.exists && meaning_ == Meaning::kStandard) return std::nullopt;
       return frame.formula->kind == FormulaKind::kForall ? formulas.conjunction(std::move(parts))
                                                          : formulas.disjunction(std::move(parts));
     }
@@ -191,7 +147,10 @@ std::optional<FormulaId> FormulaGrounder::combine(Frame& frame) {
 std::optional<FormulaId> FormulaGrounder::leaf(const TypedFormula& formula) {
   if (formula.kind == FormulaKind::kTrue) return model_->formulas().truth();
   if (formula.kind == FormulaKind::kFalse) return model_->formulas().falsity();
-  return formula.kind == FormulaKind::kAtom ? atom(formula) : compare(formula);
+  if (formula.kind == FormulaKind::kAtom) return atom(formula);
+  const auto value = terms_.compare(formula);
+  if (!value) return std::nullopt;
+  return model_->formulas().constant(*value);
 }
 
 std::optional<FormulaId> FormulaGrounder::atom(const TypedFormula& formula) {
@@ -202,7 +161,7 @@ std::optional<FormulaId> FormulaGrounder::atom(const TypedFormula& formula) {
     arguments.push_back(*value);
   }
   const auto& symbol = typed_->symbols[formula.predicate];
-  if (!arguments_fit(symbol, arguments)) return std::nullopt;
+  if (!terms_.arguments_fit(symbol, arguments)) return std::nullopt;
   const auto& core = typed_->core;
   const auto& terms = model_->terms();
   const bool is_holds = formula.predicate == core.holds_at;
@@ -226,12 +185,7 @@ std::optional<FormulaId> FormulaGrounder::atom(const TypedFormula& formula) {
   if (formula.predicate == core.initiates) return effect_atom(EffectKind::kInitiates, arguments);
   if (formula.predicate == core.terminates) return effect_atom(EffectKind::kTerminates, arguments);
   if (formula.predicate == core.releases) return effect_atom(EffectKind::kReleases, arguments);
-  std::string name = symbol.name + "(";
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    if (i > 0) name += ',';
-    name += terms.text(arguments[i], *typed_);
-  }
-  return model_->named_atom(AtomKind::kPredicate, name + ")", std::nullopt);
+  return model_->predicate(model_->terms().apply(formula.predicate, arguments));
 }
 
 /// Like the events they speak of, effects exist before the last timepoint only.
@@ -241,42 +195,7 @@ std::optional<FormulaId> FormulaGrounder::effect_atom(EffectKind kind,
   const auto fluent = model_->fluent_number(arguments[1]);
   const auto t = static_cast<Timepoint>(model_->terms()[arguments[2]].integer);
   if (!event || !fluent || t >= model_->horizon() || rows_ == nullptr) return std::nullopt;
-  return rows_->holds(kind, *event, *fluent, t, model_->formulas());
-}
-
-std::optional<FormulaId> FormulaGrounder::compare(const TypedFormula& formula) {
-  const auto left = term(formula.terms[0]);
-  const auto right = term(formula.terms[1]);
-  if (!left || !right) return std::nullopt;
-  auto& formulas = model_->formulas();
-  const auto a = model_->terms()[*left].integer;
-  const auto b = model_->terms()[*right].integer;
-  switch (formula.compare) {
-    case CompareOp::kEqual:
-      return formulas.constant(*left == *right);
-    case CompareOp::kNotEqual:
-      return formulas.constant(*left != *right);
-    case CompareOp::kLess:
-      return formulas.constant(a < b);
-    case CompareOp::kLessEqual:
-      return formulas.constant(a <= b);
-    case CompareOp::kGreater:
-      return formulas.constant(a > b);
-    case CompareOp::kGreaterEqual:
-      return formulas.constant(a >= b);
-  }
-  return std::nullopt;
-}
-
-bool FormulaGrounder::arguments_fit(const Symbol& symbol,
-                                    const std::vector<GroundTermId>& arguments) const {
-  if (arguments.size() != symbol.arguments.size()) return false;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    if (!model_->universe().contains(symbol.arguments[i], arguments[i], model_->terms())) {
-      return false;
-    }
-  }
-  return true;
+  return rows_->holds(kind, *event, *fluent, t, *model_);
 }
 
 }  // namespace parallax::compiler

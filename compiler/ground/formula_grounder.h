@@ -1,13 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
-#include <unordered_map>
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
 #include "compiler/ground/effect_rows.h"
-#include "compiler/ground/ground_model.h"
+#include "compiler/ground/instance_search.h"
+#include "compiler/ground/term_grounder.h"
 
 namespace parallax::compiler {
 
@@ -15,55 +17,67 @@ namespace parallax::compiler {
 ///
 /// The horizon is finite, so an instance can name a timepoint, an event occurrence or an integer
 /// that does not exist. Such an instance says nothing: it leaves the innermost quantifier around
-/// it; a quantifier none of whose instances exists passes this on. A conjunction with a false part
-/// stays false and a disjunction with a true part stays true.
+/// it; a quantifier none of whose instances exists passes this on. In the 2005 reasoner's meaning a
+/// conjunction with a false part is false all the same, a disjunction with a true part true.
+///
+/// Quantifiers do not run through the product of their sorts: a plan of equations and table
+/// look-ups finds the instances that can say anything.
 class FormulaGrounder {
  public:
   FormulaGrounder(GroundModel& model, const GroundOptions& options, base::DiagnosticSink& sink);
 
   /// From now on Initiates, Terminates and Releases in formulas mean these rows; before, they name
   /// nothing. `rows` outlives the grounder.
-  void use_effects(const EffectRows& rows) { rows_ = &rows; }
+  void use_effects(EffectRows& rows) { rows_ = &rows; }
+  /// From now on instances are looked up among the atoms that may be true (null: in whole sorts).
+  /// `possible` outlives the grounder.
+  void use_possible(PossibleAtoms* possible);
+  PossibleAtoms* possible() const { return possible_; }
 
-  void bind(VariableId variable, GroundTermId value) { environment_[variable.index()] = value; }
-  void unbind(VariableId variable) { environment_[variable.index()].reset(); }
-  /// Starts a new budget of instances, reported at `blame`.
-  void start(base::SourceRange blame);
-  /// True once an error was reported since `start`.
-  bool failed() const { return failed_; }
-  /// Counts `more` instances against the budget; false (and reported) when it is spent.
-  bool spend(std::int64_t more);
+  /// Gives a variable a value; a quantifier over it then has the one instance.
+  void bind(VariableId variable, GroundTermId value) { terms_.bind(variable, value); }
+  void unbind(VariableId variable) { terms_.unbind(variable); }
+  void start(base::SourceRange blame) { terms_.start(blame); }
+  bool failed() const { return terms_.failed(); }
+  bool spend(std::int64_t more) { return terms_.spend(more); }
+  TermGrounder& terms() { return terms_; }
 
   /// None: the formula names something that does not exist (or an error was reported).
   std::optional<FormulaId> ground(TypedFormulaId formula);
   /// None: the term does not denote.
-  std::optional<GroundTermId> term(TermId term);
+  std::optional<GroundTermId> term(TermId term) { return terms_.term(term); }
+  /// The assignments of the variables that have no value yet under which all conjuncts can hold,
+  /// as InstanceSearch gives them.
+  std::vector<GroundTermId> instances(const std::vector<VariableId>& variables,
+                                      const std::vector<Conjunct>& conjuncts);
 
  private:
   struct Frame;
+  struct Quantifier {
+    InstancePlan plan;
+    std::vector<TypedFormulaId> outer_atoms;  // timed atoms inside that its variables do not touch
+  };
   std::optional<FormulaId> leaf(const TypedFormula& formula);
   std::optional<FormulaId> atom(const TypedFormula& formula);
-  std::optional<FormulaId> compare(const TypedFormula& formula);
+  bool take_part(Frame& frame, std::optional<FormulaId> part) const;
   std::optional<FormulaId> combine(Frame& frame);
-  bool begin_instances(Frame& frame);
+  void begin_instances(Frame& frame, TypedFormulaId id);
   bool next_instance(Frame& frame);
-  std::optional<GroundTermId> arithmetic(const Term& term, GroundTermId left, GroundTermId right);
-  std::optional<GroundTermId> apply(const Term& term, std::vector<GroundTermId> arguments);
-  bool arguments_fit(const Symbol& symbol, const std::vector<GroundTermId>& arguments) const;
+  bool next_of_product(Frame& frame);
+  const Quantifier& quantifier(TypedFormulaId id, const Frame& frame);
+  std::vector<TypedFormulaId> outer_atoms(const TypedFormula& quantifier) const;
+  bool beyond_horizon(const TypedFormula& atom);
+  bool runnable(const InstancePlan& plan, const std::vector<VariableId>& variables);
   std::optional<FormulaId> effect_atom(EffectKind kind, const std::vector<GroundTermId>& arguments);
-  void read_function_values();
 
   GroundModel* model_;
   const TypedModel* typed_;
-  GroundOptions options_;
-  base::DiagnosticSink* sink_;
-  std::vector<std::optional<GroundTermId>> environment_;  // by variable
-  const EffectRows* rows_ = nullptr;
-  /// By function application: the value stated for it.
-  std::unordered_map<GroundTermId, GroundTermId> function_values_;
-  std::int64_t spent_ = 0;
-  bool failed_ = false;
-  base::SourceRange blame_;
+  TermGrounder terms_;
+  Meaning meaning_;
+  EffectRows* rows_ = nullptr;
+  PossibleAtoms* possible_ = nullptr;
+  /// By formula; made for the set of variables that are bound when it is first met.
+  std::map<std::uint32_t, Quantifier> quantifiers_;
 };
 
 }  // namespace parallax::compiler

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <span>
-#include <tuple>
 #include <utility>
 
 #include "compiler/formula/atoms.h"
+#include "compiler/formula/substitute.h"
 
 namespace parallax::compiler {
 
@@ -17,13 +17,10 @@ GroundModel::GroundModel(const TypedModel& model, GroundTermStore terms, Univers
   for (std::uint32_t i = 0; i < events_.size(); ++i) event_numbers_.emplace(events_[i], i);
   const auto releasable = releasable_symbols();
   for (const auto fluent : fluents_) {
-    if (releasable[terms_[fluent].symbol.index()]) {
-      release_slot_.push_back(release_count_++);
-    } else {
-      release_slot_.push_back(std::nullopt);
-    }
+    releasable_.push_back(releasable[terms_[fluent].symbol.index()]);
   }
-  allocate_timed_atoms();
+  may_hold_.assign(fluents_.size(), true);
+  may_happen_.assign(events_.size(), true);
 }
 
 /// A fluent symbol needs ReleasedAt atoms if an axiom can release it, if it has no inertia, if its
@@ -55,23 +52,6 @@ std::vector<bool> GroundModel::releasable_symbols() const {
   return result;
 }
 
-void GroundModel::allocate_timed_atoms() {
-  for (Timepoint t = 0; t <= horizon(); ++t) {
-    for (const auto fluent : fluents_) {
-      atoms_.push_back({AtomKind::kHoldsAt, terms_.text(fluent, *typed_), t});
-    }
-    for (std::size_t i = 0; i < fluents_.size(); ++i) {
-      if (release_slot_[i]) {
-        atoms_.push_back({AtomKind::kReleasedAt, terms_.text(fluents_[i], *typed_), t});
-      }
-    }
-    if (t == horizon()) continue;
-    for (const auto event : events_) {
-      atoms_.push_back({AtomKind::kHappens, terms_.text(event, *typed_), t});
-    }
-  }
-}
-
 std::optional<std::uint32_t> GroundModel::fluent_number(GroundTermId term) const {
   const auto found = fluent_numbers_.find(term);
   if (found == fluent_numbers_.end()) return std::nullopt;
@@ -84,35 +64,83 @@ std::optional<std::uint32_t> GroundModel::event_number(GroundTermId term) const 
   return found->second;
 }
 
+FormulaId GroundModel::timed(AtomKind kind, std::uint32_t index, Timepoint t) {
+  const auto key = (static_cast<std::uint64_t>(kind) << 62U) ^
+                   (static_cast<std::uint64_t>(static_cast<std::uint32_t>(t)) << 30U) ^ index;
+  const auto [entry, added] = timed_.try_emplace(key, static_cast<std::int32_t>(atoms_.size() + 1));
+  if (added) atoms_.push_back({kind, index, t});
+  return formulas_.atom(entry->second);
+}
+
 FormulaId GroundModel::holds(std::uint32_t fluent, Timepoint t) {
-  const auto stride = fluents_.size() + release_count_ + events_.size();
-  return formulas_.atom(
-      static_cast<std::int32_t>(static_cast<std::size_t>(t) * stride + fluent + 1));
+  return timed(AtomKind::kHoldsAt, fluent, t);
 }
 
 FormulaId GroundModel::released(std::uint32_t fluent, Timepoint t) {
-  const auto slot = release_slot_[fluent];
-  if (!slot) return formulas_.falsity();
-  const auto stride = fluents_.size() + release_count_ + events_.size();
-  return formulas_.atom(static_cast<std::int32_t>(static_cast<std::size_t>(t) * stride +
-                                                  fluents_.size() + *slot + 1));
+  if (!releasable_[fluent]) return formulas_.falsity();
+  return timed(AtomKind::kReleasedAt, fluent, t);
 }
 
 FormulaId GroundModel::happens(std::uint32_t event, Timepoint t) {
   PARALLAX_REQUIRE(t < horizon(), "events happen before the last timepoint");
-  const auto stride = fluents_.size() + release_count_ + events_.size();
-  return formulas_.atom(static_cast<std::int32_t>(static_cast<std::size_t>(t) * stride +
-                                                  fluents_.size() + release_count_ + event + 1));
+  return timed(AtomKind::kHappens, event, t);
+}
+
+FormulaId GroundModel::predicate(GroundTermId term) {
+  const auto [entry, added] =
+      predicates_.try_emplace(term, static_cast<std::int32_t>(atoms_.size() + 1));
+  if (added) atoms_.push_back({AtomKind::kPredicate, term.index(), GroundAtom::kUntimed});
+  return formulas_.atom(entry->second);
 }
 
 FormulaId GroundModel::named_atom(AtomKind kind, std::string name, std::optional<Timepoint> time) {
-  const auto key = std::tuple(kind, name, time.value_or(-1));
+  const auto key = std::tuple(kind, name, time.value_or(GroundAtom::kUntimed));
   const auto found = named_.find(key);
   if (found != named_.end()) return formulas_.atom(found->second);
-  atoms_.push_back({kind, std::move(name), time});
+  atoms_.push_back(
+      {kind, static_cast<std::uint32_t>(names_.size()), time.value_or(GroundAtom::kUntimed)});
+  names_.push_back(std::move(name));
   const auto variable = static_cast<std::int32_t>(atoms_.size());
   named_.emplace(key, variable);
   return formulas_.atom(variable);
+}
+
+FormulaId GroundModel::auxiliary_atom(Timepoint time) {
+  atoms_.push_back({AtomKind::kAuxiliary, 0, time});
+  return formulas_.atom(static_cast<std::int32_t>(atoms_.size()));
+}
+
+std::string GroundModel::atom_name(const GroundAtom& atom) const {
+  switch (atom.kind) {
+    case AtomKind::kHoldsAt:
+    case AtomKind::kReleasedAt:
+      return terms_.text(fluents_[atom.index], *typed_);
+    case AtomKind::kHappens:
+      return terms_.text(events_[atom.index], *typed_);
+    case AtomKind::kPredicate:
+      return terms_.text(GroundTermId(atom.index), *typed_);
+    case AtomKind::kLocation:
+    case AtomKind::kHit:
+    case AtomKind::kRunning:
+      return names_[atom.index];
+    case AtomKind::kAuxiliary:
+    case AtomKind::kUnused:
+      break;
+  }
+  return {};
+}
+
+FormulaId GroundModel::shifted(FormulaId formula, Timepoint steps) {
+  if (steps == 0) return formula;
+  RewriteMemo memo;
+  return rewrite_atoms(
+      formulas_, formula,
+      [&](std::int32_t variable) {
+        const auto moved = atom(variable);
+        if (moved.time == GroundAtom::kUntimed) return formulas_.atom(variable);
+        return timed(moved.kind, moved.index, moved.time + steps);
+      },
+      memo);
 }
 
 std::uint32_t GroundModel::add_origin(base::SourceRange source, std::string what) {
@@ -122,13 +150,18 @@ std::uint32_t GroundModel::add_origin(base::SourceRange source, std::string what
 
 void GroundModel::require(FormulaId formula, std::uint32_t origin) {
   if (formula == formulas_.truth()) return;
-  constraints_.push_back({formula, origin});
+  constraints_.push_back({formula, origin, Constraint::kOnce});
+}
+
+void GroundModel::require_always(FormulaId formula, std::uint32_t origin, Timepoint width) {
+  if (formula == formulas_.truth() || width > horizon()) return;
+  constraints_.push_back({formula, origin, width});
 }
 
 Timepoint GroundModel::needed_horizon_of(FormulaId root) const {
   Timepoint latest = 0;
   for (const auto variable : atoms_of(formulas_, std::span(&root, 1))) {
-    latest = std::max(latest, needed_horizon(atoms_[static_cast<std::size_t>(variable) - 1]));
+    latest = std::max(latest, atom(variable).needed_horizon());
   }
   return latest;
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <unordered_map>
 #include <vector>
 
@@ -13,15 +15,30 @@
 
 namespace parallax::compiler {
 
-/// A propositional formula that holds, and the text that says so.
-struct Constraint {
-  FormulaId formula;
-  std::uint32_t origin = 0;
+/// An atom before variables are numbered. `index`: the number of the fluent or event; the ground
+/// term of a user predicate; else the place in the list of names.
+struct GroundAtom {
+  static constexpr Timepoint kUntimed = -1;
+  AtomKind kind = AtomKind::kHoldsAt;
+  std::uint32_t index = 0;
+  Timepoint time = kUntimed;
+  /// The horizon from which on it exists: an event at t needs the step to t + 1.
+  Timepoint needed_horizon() const {
+    return (time == kUntimed ? 0 : time) + (kind == AtomKind::kHappens ? 1 : 0);
+  }
 };
 
-/// The model without variables: atoms, and the formulas that hold over them. Atoms are numbered
-/// timepoint by timepoint (HoldsAt, ReleasedAt, Happens, each in declaration order), so a SAT
-/// variable's place does not depend on what the axioms say.
+/// A propositional formula that holds, and the text that says so.
+struct Constraint {
+  static constexpr Timepoint kOnce = -1;
+  FormulaId formula;
+  std::uint32_t origin = 0;
+  /// kOnce, or: the formula, whose earliest timepoint is 0, holds moved to every timepoint
+  /// 0 .. horizon - width.
+  Timepoint width = kOnce;
+};
+
+/// The model without variables: atoms, and the formulas that hold over them.
 class GroundModel {
  public:
   GroundModel(const TypedModel& model, GroundTermStore terms, Universe universe);
@@ -38,6 +55,9 @@ class GroundModel {
   const std::vector<GroundTermId>& events() const { return events_; }
   std::optional<std::uint32_t> fluent_number(GroundTermId term) const;
   std::optional<std::uint32_t> event_number(GroundTermId term) const;
+  const Symbol& fluent_symbol(std::uint32_t fluent) const {
+    return typed_->symbols[terms_[fluents_[fluent]].symbol];
+  }
 
   /// HoldsAt for 0 <= t <= horizon.
   FormulaId holds(std::uint32_t fluent, Timepoint t);
@@ -45,23 +65,50 @@ class GroundModel {
   FormulaId happens(std::uint32_t event, Timepoint t);
   /// False for fluents that nothing ever releases.
   FormulaId released(std::uint32_t fluent, Timepoint t);
-  bool can_be_released(std::uint32_t fluent) const { return release_slot_[fluent].has_value(); }
+  bool can_be_released(std::uint32_t fluent) const { return releasable_[fluent]; }
+  /// A user predicate over ground arguments, as a ground term.
+  FormulaId predicate(GroundTermId term);
+  /// The variable of a user predicate's atom, if some formula has mentioned it.
+  std::optional<std::int32_t> find_predicate(GroundTermId term) const {
+    const auto found = predicates_.find(term);
+    if (found == predicates_.end()) return std::nullopt;
+    return found->second;
+  }
   /// An atom that is made when first asked for.
   FormulaId named_atom(AtomKind kind, std::string name, std::optional<Timepoint> time);
+  /// A new atom without a meaning of its own, of the horizon `time`.
+  FormulaId auxiliary_atom(Timepoint time);
+
+  /// SAT variables of the formula store, in order of first mention.
+  const GroundAtom& atom(std::int32_t variable) const {
+    return atoms_[static_cast<std::size_t>(variable) - 1];
+  }
+  std::size_t atom_count() const { return atoms_.size(); }
+  std::string atom_name(const GroundAtom& atom) const;
+  /// The formula with every timepoint moved by `steps`.
+  FormulaId shifted(FormulaId formula, Timepoint steps);
+
+  /// False at every timepoint: no formula need mention it, no variable is made for it.
+  void never_holds(std::uint32_t fluent) { may_hold_[fluent] = false; }
+  void can_hold(std::uint32_t fluent) { may_hold_[fluent] = true; }
+  void never_happens(std::uint32_t event) { may_happen_[event] = false; }
+  bool may_hold(std::uint32_t fluent) const { return may_hold_[fluent]; }
+  bool may_happen(std::uint32_t event) const { return may_happen_[event]; }
 
   std::uint32_t add_origin(base::SourceRange source, std::string what);
   void require(FormulaId formula, std::uint32_t origin);
+  /// Says the formula, whose earliest timepoint is 0, of every timepoint 0 .. horizon - width.
+  void require_always(FormulaId formula, std::uint32_t origin, Timepoint width);
 
   /// The horizon from which on every atom of the formula exists.
   Timepoint needed_horizon_of(FormulaId formula) const;
 
-  const std::vector<Atom>& atoms() const { return atoms_; }
   const std::vector<Constraint>& constraints() const { return constraints_; }
   const std::vector<Origin>& origins() const { return origins_; }
 
  private:
-  void allocate_timed_atoms();
   std::vector<bool> releasable_symbols() const;
+  FormulaId timed(AtomKind kind, std::uint32_t index, Timepoint t);
 
   const TypedModel* typed_;  // outlives the ground model
   GroundTermStore terms_;
@@ -69,10 +116,13 @@ class GroundModel {
   FormulaStore formulas_;
   std::vector<GroundTermId> fluents_, events_;
   std::unordered_map<GroundTermId, std::uint32_t> fluent_numbers_, event_numbers_;
-  std::vector<std::optional<std::uint32_t>> release_slot_;  // by fluent
-  std::uint32_t release_count_ = 0;
-  std::vector<Atom> atoms_;
+  std::vector<bool> releasable_;             // by fluent
+  std::vector<bool> may_hold_, may_happen_;  // by fluent, by event
+  std::vector<GroundAtom> atoms_;            // by variable - 1
+  std::unordered_map<std::uint64_t, std::int32_t> timed_;
+  std::unordered_map<GroundTermId, std::int32_t> predicates_;
   std::map<std::tuple<AtomKind, std::string, Timepoint>, std::int32_t> named_;
+  std::vector<std::string> names_;
   std::vector<Constraint> constraints_;
   std::vector<Origin> origins_;
 };

@@ -1,12 +1,83 @@
-#include <utility>
+#include "compiler/ground/term_grounder.h"
 
-#include "compiler/ground/formula_grounder.h"
+#include <limits>
+#include <utility>
 
 namespace parallax::compiler {
 
 using base::DiagnosticCode;
 
-std::optional<GroundTermId> FormulaGrounder::term(TermId root) {
+TermGrounder::TermGrounder(GroundModel& model, const GroundOptions& options,
+                           base::DiagnosticSink& sink)
+    : model_(&model),
+      typed_(&model.typed()),
+      options_(options),
+      sink_(&sink),
+      environment_(model.typed().variables.size()) {
+  read_function_values();
+}
+
+void TermGrounder::start(base::SourceRange blame) {
+  spent_ = 0;
+  failed_ = false;
+  blame_ = blame;
+  if (environment_.size() < typed_->variables.size()) {
+    environment_.resize(typed_->variables.size());
+  }
+}
+
+bool TermGrounder::spend(std::int64_t more) {
+  if (failed_) return false;
+  if (__builtin_add_overflow(spent_, more, &spent_)) {
+    spent_ = std::numeric_limits<std::int64_t>::max();
+  }
+  if (spent_ > options_.max_instances) {
+    sink_->error(DiagnosticCode::kTooManyInstances, blame_, options_.max_instances);
+    failed_ = true;
+  }
+  if (!failed_ && options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) {
+    sink_->error(DiagnosticCode::kGroundingStopped, blame_);
+    failed_ = true;
+  }
+  return !failed_;
+}
+
+std::optional<bool> TermGrounder::compare(const TypedFormula& formula) {
+  const auto left = term(formula.terms[0]);
+  const auto right = term(formula.terms[1]);
+  if (!left || !right) return std::nullopt;
+  const auto a = model_->terms()[*left].integer;
+  const auto b = model_->terms()[*right].integer;
+  switch (formula.compare) {
+    case CompareOp::kEqual:
+      return *left == *right;
+    case CompareOp::kNotEqual:
+      return *left != *right;
+    case CompareOp::kLess:
+      return a < b;
+    case CompareOp::kLessEqual:
+      return a <= b;
+    case CompareOp::kGreater:
+      return a > b;
+    case CompareOp::kGreaterEqual:
+      return a >= b;
+  }
+  return std::nullopt;
+}
+
+bool TermGrounder::arguments_fit(const Symbol& symbol,
+                                 std::span<const GroundTermId> arguments) const {
+  if (arguments.size() != symbol.arguments.size()) return false;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (!in_sort(symbol.arguments[i], arguments[i])) return false;
+  }
+  return true;
+}
+
+std::optional<GroundTermId> TermGrounder::term(TermId root) {
+  const auto& top = typed_->terms[root];
+  if (top.kind == TermKind::kVariable) return environment_[top.variable.index()];
+  if (top.kind == TermKind::kInteger) return model_->terms().integer(top.integer);
   // Post-order without recursion: (term, how many of its arguments are done).
   std::vector<std::pair<TermId, std::size_t>> stack = {{root, 0}};
   std::vector<GroundTermId> values;
@@ -38,10 +109,9 @@ std::optional<GroundTermId> FormulaGrounder::term(TermId root) {
         break;
       }
       case TermKind::kApply: {
-        const auto begin = values.end() - static_cast<std::ptrdiff_t>(node.arguments.size());
-        std::vector<GroundTermId> arguments(begin, values.end());
-        values.erase(begin, values.end());
-        value = apply(node, std::move(arguments));
+        const auto count = node.arguments.size();
+        value = apply(node, std::span(values).last(count));
+        values.resize(values.size() - count);
         break;
       }
     }
@@ -52,8 +122,8 @@ std::optional<GroundTermId> FormulaGrounder::term(TermId root) {
   return values.back();
 }
 
-std::optional<GroundTermId> FormulaGrounder::arithmetic(const Term& node, GroundTermId left,
-                                                        GroundTermId right) {
+std::optional<GroundTermId> TermGrounder::arithmetic(const Term& node, GroundTermId left,
+                                                     GroundTermId right) {
   const auto& terms = model_->terms();
   if (terms[left].kind != TermKind::kInteger || terms[right].kind != TermKind::kInteger) {
     return std::nullopt;
@@ -92,22 +162,22 @@ std::optional<GroundTermId> FormulaGrounder::arithmetic(const Term& node, Ground
   return model_->terms().integer(value);
 }
 
-std::optional<GroundTermId> FormulaGrounder::apply(const Term& node,
-                                                   std::vector<GroundTermId> arguments) {
+std::optional<GroundTermId> TermGrounder::apply(const Term& node,
+                                                std::span<const GroundTermId> arguments) {
   const auto& symbol = typed_->symbols[node.symbol];
   if (!arguments_fit(symbol, arguments)) return std::nullopt;
   if (symbol.kind == SymbolKind::kFunction) {
-    const auto application = model_->terms().apply(node.symbol, std::move(arguments));
+    const auto application = model_->terms().apply(node.symbol, arguments);
     const auto value = function_values_.find(application);
     if (value != function_values_.end()) return value->second;
     sink_->error(DiagnosticCode::kFunctionWithoutValue, node.source, symbol.name);
     failed_ = true;
     return std::nullopt;
   }
-  return model_->terms().apply(node.symbol, std::move(arguments));
+  return model_->terms().apply(node.symbol, arguments);
 }
 
-void FormulaGrounder::read_function_values() {
+void TermGrounder::read_function_values() {
   for (const auto& entry : typed_->function_values) {
     std::vector<GroundTermId> arguments;
     for (const auto id : entry.arguments) {
@@ -115,7 +185,7 @@ void FormulaGrounder::read_function_values() {
     }
     const auto value = term(entry.value);
     if (!value || arguments.size() != entry.arguments.size()) continue;
-    function_values_.emplace(model_->terms().apply(entry.function, std::move(arguments)), *value);
+    function_values_.emplace(model_->terms().apply(entry.function, arguments), *value);
   }
 }
 

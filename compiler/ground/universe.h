@@ -21,6 +21,9 @@ struct GroundOptions {
   std::int64_t max_domain = 200'000;        // ground terms of one sort
   std::int64_t max_instances = 3'000'000;   // instances of one axiom
   const std::atomic<bool>* stop = nullptr;  // raised to end grounding early
+  /// Off: every instance at every timepoint, from whole sorts. The models are the same.
+  bool templates = true;  // say once what holds at every timepoint
+  bool relevance = true;  // leave out what no trace can reach
 };
 
 /// The domain of every sort as ground terms, in the order that fixes all numbering: subsorts in

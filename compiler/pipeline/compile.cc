@@ -5,6 +5,7 @@
 
 #include "compiler/cnf/encoder.h"
 #include "compiler/ground/grounder.h"
+#include "compiler/lint/lint.h"
 #include "compiler/pipeline/constraint_encoder.h"
 #include "compiler/pipeline/plan_encoder.h"
 #include "compiler/pipeline/plan_formulas.h"
@@ -69,6 +70,10 @@ base::Result<std::vector<StateConstraint>> check_constraints(
 
 base::Result<Compilation> compile_model(const CompileInput& input, base::SourceFiles& files,
                                         base::DiagnosticSink& sink) {
+  // Who asks for the old meaning need not hear where it differs.
+  if (input.ground.meaning == Meaning::kDecreasoner) {
+    for (const auto code : difference_codes()) sink.mute(code);
+  }
   const auto ast = load_model(input.models, input.load, files, sink);
   if (!ast) return sink.already_reported();
   CheckOptions check;
@@ -78,6 +83,8 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
   }
   auto typed = check_model(*ast, files, sink, check);
   if (!typed) return sink.already_reported();
+  if (input.lint) lint_model(lint_rules(), *ast, *typed, sink);
+  lint_model(difference_rules(), *ast, *typed, sink);
 
   // Constraints and the plan are independent: report the errors of both.
   auto constraints = check_constraints(input.constraints, *typed, files, sink);
@@ -104,6 +111,7 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
     result.model.plan = plan_steps(plan->graph);
     result.plan = std::move(plan->graph);
   }
+  result.typed = std::make_unique<TypedModel>(*std::move(typed));
   return result;
 }
 

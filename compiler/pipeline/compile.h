@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "compiler/ground/universe.h"
 #include "compiler/plan/plan_graph.h"
 #include "compiler/plan/pose_locator.h"
+#include "compiler/sema/typed_model.h"
 #include "compiler/syntax/loader.h"
 
 namespace parallax::compiler {
@@ -36,11 +38,13 @@ struct CompileInput {
   std::optional<PlanInput> plan;
   std::vector<ConstraintText> constraints;
   GroundOptions ground;
+  bool lint = false;  // also report what is legal but hardly meant (W21xx)
 };
 
 struct Compilation {
   CompiledModel model;
-  std::optional<PlanGraph> plan;  // the unrolled control flow, for dumps
+  std::unique_ptr<TypedModel> typed;  // the checked model, for an independent evaluation
+  std::optional<PlanGraph> plan;      // the unrolled control flow, for dumps
 };
 
 /// The whole front end: load, parse, check, unroll the plan, ground, encode. Every error of every

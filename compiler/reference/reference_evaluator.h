@@ -1,70 +1,99 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "compiler/reference/expanded_model.h"
+#include "compiler/reference/reference_search.h"
 #include "compiler/sema/typed_model.h"
 
 namespace parallax::compiler {
 
 /// The true atoms of a trace: by timepoint for the event calculus, without for user predicates.
+/// `holds.size() - 1` is the trace's last timepoint; before the model's horizon, only what the
+/// model says of these timepoints alone is checked.
 struct Valuation {
   std::vector<std::set<std::string>> holds, happens, released;
   std::set<std::string> predicates;
 };
 
-/// The first thing that a valuation gets wrong.
+/// Something that a valuation gets wrong.
 struct Violation {
-  base::SourceRange source;  // the axiom, effect axiom, or fluent declaration
-  std::string what;          // "axiom", "DEC9", "DEC5 for RobotIn(r1)", ...
+  base::SourceRange source;  // the axiom, effect axiom, completion, or fluent declaration
+  std::string what;          // "axiom", "DEC9 for Lit()", "completion of Happens(Go(r1),2)", ...
   std::int64_t timepoint = 0;
+  std::string text;  // all of it on one line, with the atoms that decide
 };
 
-/// Evaluates a typed model on a valuation, slowly and obviously: formulas by recursion over their
-/// meaning, DEC5 to DEC12 of Mueller 2006 as they are printed there. Shares nothing with grounder
-/// and encoder; it is their oracle.
+struct ReferenceReport {
+  std::vector<Violation> violations;
+  bool finished = true;  // false: given up, there may be more
+};
+
+struct ReferenceLimits {
+  std::int64_t max_instances = 5'000'000;   // ground terms, instances and their parts together
+  std::int64_t max_reasons = 50'000'000;    // formulas evaluated by one check
+  const std::atomic<bool>* stop = nullptr;  // raised to end the expansion early
+};
+
+/// Evaluates a typed model on a valuation, slowly and obviously: every instance of every formula is
+/// written out once (ExpandedModel), then formulas, DEC3 to DEC12 of Mueller 2006 as they are
+/// printed there, and completion are evaluated one after the other. Shares nothing with grounder
+/// and encoder; it is their oracle. Always the standard meaning.
+///
+/// Completion is pointwise circumscription: a true atom of a completed predicate has a reason if
+/// some axiom of the label becomes false where that atom alone does. Axioms that mention effects
+/// are no reasons.
+///
+/// Cost: the instances of the model for construction; per check the atoms of these instances, and
+/// for every true completed atom those of the instances that mention it.
 class ReferenceEvaluator {
  public:
-  /// `model` outlives the evaluator; its sorts must be small.
-  explicit ReferenceEvaluator(const TypedModel& model);
-  std::optional<Violation> check(const Valuation& valuation) const;
+  /// By atom: is it true? Numbered as ExpandedModel says; `atom_count()` of them.
+  using Values = std::vector<std::uint8_t>;
 
-  const std::vector<std::string>& fluents() const { return domains_.at(fluent_sort_); }
-  const std::vector<std::string>& events() const { return domains_.at(event_sort_); }
-  std::int64_t horizon() const { return horizon_; }
+  /// `model` outlives the evaluator.
+  explicit ReferenceEvaluator(const TypedModel& model, const ReferenceLimits& limits = {});
+  ReferenceEvaluator(const ReferenceEvaluator&) = delete;
+  ReferenceEvaluator& operator=(const ReferenceEvaluator&) = delete;
+
+  /// Why the model cannot be evaluated, if it is too large; then the functions below are not to be
+  /// called.
+  std::optional<std::string> refusal() const;
+  /// The first violation; none if the valuation is a trace of the model (or the check was given
+  /// up, see `violations`).
+  std::optional<Violation> check(const Valuation& valuation) const;
+  /// At most `limit` violations: axioms in source order, then inertia and effects by timepoint,
+  /// then trajectories, then completion.
+  ReferenceReport violations(const Valuation& valuation, std::size_t limit) const;
+
+  /// The same for brute force: all atoms as one array, a yes or no for an answer. Atoms of
+  /// predicates that no formula mentions have no number; any value of theirs is fine unless the
+  /// predicate is completed.
+  bool accepts(const Values& values) const;
+  const ExpandedModel& expanded() const { return expanded_; }
+
+  const std::vector<std::string>& fluents() const { return expanded_.fluents(); }
+  const std::vector<std::string>& events() const { return expanded_.events(); }
+  std::int64_t horizon() const { return expanded_.horizon(); }
+  /// Axioms all of whose instances name what does not exist.
+  std::vector<base::SourceRange> silent_axioms() const;
 
  private:
-  /// An instance can name what does not exist; it then says nothing.
-  enum class Truth : std::uint8_t { kFalse, kTrue, kNothing };
-  using Environment = std::map<std::uint32_t, std::string>;
-  struct Effects {
-    std::set<std::string> initiated, terminated, released;
-  };
-
-  Truth evaluate(TypedFormulaId formula, Environment& environment, const Valuation& v) const;
-  Truth quantified(const TypedFormula& formula, std::size_t variable, Environment& environment,
-                   const Valuation& v) const;
-  Truth atom(const TypedFormula& formula, const Environment& environment, const Valuation& v) const;
-  std::optional<std::string> term(TermId term, const Environment& environment) const;
-  bool member(SortId sort, const std::string& value) const;
-  void collect(const EffectAxiom& effect, std::size_t variable, Environment& environment,
-               std::int64_t t, const Valuation& v, Effects& out) const;
-  std::optional<Violation> check_inertia(const Valuation& v) const;
-  std::optional<Violation> check_step(const Valuation& v, std::int64_t t, const std::string& fluent,
-                                      const Effects& effects) const;
+  Violation describe(const ReferenceFinding& finding, const Values& values) const;
+  std::string deciding_atoms(FormulaTrees::Node node, const Values& values) const;
+  void note_strange_atoms(const Valuation& valuation, std::size_t limit,
+                          std::vector<Violation>& out) const;
+  Values values_of(const Valuation& valuation) const;
 
   const TypedModel& model_;
-  std::map<std::uint32_t, std::vector<std::string>> domains_;  // by sort
-  std::map<std::string, SymbolId> fluent_symbols_;             // by ground fluent
-  std::uint32_t fluent_sort_ = 0, event_sort_ = 0;
-  std::int64_t horizon_ = 0;
+  ReferenceLimits limits_;
+  ReferenceBudget budget_;
+  ExpandedModel expanded_;
 };
-
-/// The printed ground terms of every sort, in any order without repetition.
-std::map<std::uint32_t, std::vector<std::string>> reference_domains(const TypedModel& model);
 
 }  // namespace parallax::compiler

@@ -279,15 +279,15 @@ class ShapeReader {
     const std::size_t expected =
         one_quantifier && steps.size() == 2 && steps[1].is_condition ? 2 : 1;
     if (!label_.empty()) {
-      reason = "it has a label";
+      reason = "takes it for an ordinary formula, because it has a label";
     } else if (steps.empty() || !one_quantifier) {
-      reason = "it does not start with `[...]`";
+      reason = "loses sight of it, because it does not start with `[...]`";
     } else if (steps.size() != expected) {
-      reason = "it has more than one `[...]` or `->`";
+      reason = "loses sight of it, because it has more than one `[...]` or `->`";
     } else if (occurrences_.size() > 1) {
-      reason = "it has more than one effect";
+      reason = "loses sight of it, because it has more than one effect";
     } else if (model_.terms[at(head).terms[2]].kind != TermKind::kVariable) {
-      reason = "its time is not a variable";
+      reason = "lets the fluent change at every timepoint, because its time is no variable";
     } else {
       return;
     }

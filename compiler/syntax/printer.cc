@@ -173,7 +173,7 @@ void print_labelled(const Ast& ast, const Statement& statement, std::string& out
   (out += formula) += '.';
 }
 
-void print_statement(const Ast& ast, const Statement& statement, std::string& out) {
+void append_statement(const Ast& ast, const Statement& statement, std::string& out) {
   const auto list = [&](std::string_view keyword) {
     out += keyword;
     print_items(ast, statement, out);
@@ -228,10 +228,16 @@ std::string print_formula(const Ast& ast, NodeId root) {
   return out;
 }
 
+std::string print_statement(const Ast& ast, const Statement& statement) {
+  std::string out;
+  append_statement(ast, statement, out);
+  return out;
+}
+
 std::string print_file(const Ast& ast) {
   std::string out;
   for (const auto& statement : ast.statements()) {
-    print_statement(ast, statement, out);
+    append_statement(ast, statement, out);
     out += '\n';
   }
   return out;

@@ -7,12 +7,11 @@ namespace parallax::runtime {
 using compiler::AtomKind;
 
 ModelEnumerator::ModelEnumerator(SolverSession& session) : session_(&session) {
-  const auto& atoms = session.model().atoms;
-  for (std::size_t i = 0; i < atoms.size(); ++i) {
-    if (atoms[i].kind == AtomKind::kHoldsAt || atoms[i].kind == AtomKind::kHappens) {
-      order_.push_back(~Literal::positive(static_cast<std::int32_t>(i + 1)));
-    }
-  }
+  session.model().for_each_atom(
+      [&](std::int32_t variable, AtomKind kind, const std::string&, std::optional<Timepoint>) {
+        if (kind != AtomKind::kHoldsAt && kind != AtomKind::kHappens) return;
+        order_.push_back(~Literal::positive(variable));
+      });
 }
 
 std::optional<Trace> ModelEnumerator::next() {

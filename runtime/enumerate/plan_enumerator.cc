@@ -40,14 +40,14 @@ void PlanEnumerator::prepare_orders(Timepoint n) {
   event_order_.clear();
   start_order_.clear();
   state_order_.clear();
-  const auto& atoms = session_->model().atoms;
-  for (std::size_t i = 0; i < atoms.size(); ++i) {
-    const auto literal = Literal::positive(static_cast<std::int32_t>(i + 1));
-    const auto time = atoms[i].time.value_or(0);
-    if (atoms[i].kind == AtomKind::kHappens && time < n) event_order_.push_back(literal);
-    if (atoms[i].kind != AtomKind::kHoldsAt || time > n) continue;
+  session_->model().for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string&,
+                                      std::optional<Timepoint> when) {
+    const auto literal = Literal::positive(variable);
+    const auto time = when.value_or(0);
+    if (kind == AtomKind::kHappens && time < n) event_order_.push_back(literal);
+    if (kind != AtomKind::kHoldsAt || time > n) return;
     (time == 0 ? start_order_ : state_order_).push_back(~literal);
-  }
+  });
 }
 
 std::optional<Trace> PlanEnumerator::next() {
@@ -127,25 +127,29 @@ void PlanEnumerator::note_alternatives(std::span<const Literal> fixed, Trace& tr
 bool PlanEnumerator::admits(const Trace& trace, const std::map<std::string, bool>& last_state) {
   const auto n = trace.length();
   auto assumptions = first_hit(n);
-  const auto& atoms = session_->model().atoms;
-  for (std::size_t i = 0; i < atoms.size(); ++i) {
-    const auto& atom = atoms[i];
-    const auto literal = Literal::positive(static_cast<std::int32_t>(i + 1));
-    const auto time = atom.time.value_or(0);
+  // What has no variable is false in every trace.
+  for (const auto& fluent : session_->model().fluents) {
+    const auto wanted = last_state.find(fluent.name);
+    if (!fluent.slot && wanted != last_state.end() && wanted->second) return false;
+  }
+  session_->model().for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
+                                      std::optional<Timepoint> when) {
+    const auto literal = Literal::positive(variable);
+    const auto time = when.value_or(0);
     const auto among = [&](const std::vector<std::string>& names) {
-      return std::binary_search(names.begin(), names.end(), atom.name);
+      return std::binary_search(names.begin(), names.end(), name);
     };
-    if (atom.kind == AtomKind::kHappens && time < n) {
+    if (kind == AtomKind::kHappens && time < n) {
       const auto& point = trace.points[static_cast<std::size_t>(time)];
       assumptions.push_back(among(point.happens) ? literal : ~literal);
-    } else if (atom.kind == AtomKind::kHoldsAt && time == 0) {
+    } else if (kind == AtomKind::kHoldsAt && time == 0) {
       assumptions.push_back(among(trace.points.front().holds) ? literal : ~literal);
-    } else if (atom.kind == AtomKind::kHoldsAt && time == n) {
-      const auto wanted = last_state.find(atom.name);
-      if (wanted == last_state.end()) continue;
+    } else if (kind == AtomKind::kHoldsAt && time == n) {
+      const auto wanted = last_state.find(name);
+      if (wanted == last_state.end()) return;
       assumptions.push_back(wanted->second ? literal : ~literal);
     }
-  }
+  });
   return session_->solve(n, assumptions) == SolveStatus::kSatisfiable;
 }
 

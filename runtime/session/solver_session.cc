@@ -3,7 +3,7 @@
 namespace parallax::runtime {
 
 SolverSession::SolverSession(const CompiledModel& model, std::unique_ptr<SatSolver> solver)
-    : model_(&model), solver_(std::move(solver)), variable_count_(model.variable_count) {
+    : model_(&model), solver_(std::move(solver)), variable_count_(model.variable_count()) {
   for (Timepoint t = 1; t <= model.horizon; ++t) guards_.push_back(new_variable());
   std::vector<Literal> guarded;
   for (std::size_t i = 0; i < model.clauses.size(); ++i) {
@@ -17,7 +17,7 @@ SolverSession::SolverSession(const CompiledModel& model, std::unique_ptr<SatSolv
     solver_->add_clause(guarded);
   }
   // The first solution that the search tries is the canonical one as often as possible.
-  for (std::int32_t v = 1; v <= model.variable_count; ++v) {
+  for (std::int32_t v = 1; v <= model.variable_count(); ++v) {
     solver_->set_phase(~Literal::positive(v));
   }
 }
@@ -31,8 +31,9 @@ SolveStatus SolverSession::solve(Timepoint n, std::span<const Literal> assumptio
   for (const auto literal : assumptions) solver_->assume(literal);
   const auto status = solver_->solve();
   if (status == SolveStatus::kSatisfiable) {
-    values_.resize(static_cast<std::size_t>(model_->variable_count));
-    for (std::int32_t v = 1; v <= model_->variable_count; ++v) {
+    const auto count = model_->variable_count();
+    values_.resize(static_cast<std::size_t>(count));
+    for (std::int32_t v = 1; v <= count; ++v) {
       values_[static_cast<std::size_t>(v) - 1] = solver_->value(Literal::positive(v));
     }
   }

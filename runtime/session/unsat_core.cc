@@ -8,7 +8,7 @@ class SelectedModel {
  public:
   SelectedModel(const compiler::CompiledModel& model, compiler::Timepoint n,
                 std::unique_ptr<SatSolver> solver)
-      : solver_(std::move(solver)), first_selector_(model.variable_count + 1) {
+      : solver_(std::move(solver)), first_selector_(model.variable_count() + 1) {
     std::vector<Literal> clause;
     for (std::size_t i = 0; i < model.clauses.size(); ++i) {
       if (model.clause_timepoints[i] > n) continue;

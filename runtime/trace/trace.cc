@@ -27,34 +27,36 @@ Trace decode_trace(const CompiledModel& model, Timepoint length,
                    const std::function<bool(Literal)>& value) {
   Trace trace;
   trace.points.resize(static_cast<std::size_t>(length) + 1);
-  for (std::size_t i = 0; i < model.atoms.size(); ++i) {
-    const auto& atom = model.atoms[i];
-    if (compiler::needed_horizon(atom) > length) continue;
-    if (!value(Literal::positive(static_cast<std::int32_t>(i + 1)))) continue;
-    if (!atom.time) {
-      if (atom.kind == AtomKind::kPredicate) trace.predicates.push_back(atom.name);
-      continue;
+  model.for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
+                          std::optional<Timepoint> time) {
+    if (time.value_or(0) + (kind == AtomKind::kHappens ? 1 : 0) > length) return;
+    if (!value(Literal::positive(variable))) return;
+    if (!time) {
+      if (kind == AtomKind::kPredicate) trace.predicates.push_back(name);
+      return;
     }
-    auto& point = trace.points[static_cast<std::size_t>(*atom.time)];
-    switch (atom.kind) {
+    auto& point = trace.points[static_cast<std::size_t>(*time)];
+    switch (kind) {
       case AtomKind::kHoldsAt:
-        point.holds.push_back(atom.name);
+        point.holds.push_back(name);
         break;
       case AtomKind::kHappens:
-        point.happens.push_back(atom.name);
+        point.happens.push_back(name);
         break;
       case AtomKind::kReleasedAt:
-        point.released.push_back(atom.name);
+        point.released.push_back(name);
         break;
       case AtomKind::kLocation:
-        if (*atom.time < length) point.plan_step = step_number(atom.name, model.plan.size());
+        if (*time < length) point.plan_step = step_number(name, model.plan.size());
         break;
       case AtomKind::kPredicate:
       case AtomKind::kHit:
       case AtomKind::kRunning:
+      case AtomKind::kAuxiliary:
+      case AtomKind::kUnused:
         break;
     }
-  }
+  });
   for (auto& point : trace.points) {
     std::sort(point.holds.begin(), point.holds.end());
     std::sort(point.happens.begin(), point.happens.end());

@@ -10,6 +10,7 @@
 
 #include "compiler/pipeline/compile.h"
 #include "runtime/enumerate/plan_enumerator.h"
+#include "tests/support/checked_traces.h"
 
 namespace parallax::test {
 
@@ -63,11 +64,16 @@ class PlannedModel {
     std::vector<std::string> keys;
     runtime::Exploration exploration = runtime::Exploration::kStopped;
   };
+  /// Every trace is checked on the way.
   Found keys() const {
+    TraceChecker checker(*compilation_->typed);
     runtime::SolverSession session(compiled(), runtime::make_cadical_solver());
     runtime::PlanEnumerator enumerator(session);
     Found found;
-    while (const auto trace = enumerator.next()) found.keys.push_back(runtime::event_key(*trace));
+    while (const auto trace = enumerator.next()) {
+      checker.check(*trace);
+      found.keys.push_back(runtime::event_key(*trace));
+    }
     found.exploration = enumerator.exploration();
     return found;
   }

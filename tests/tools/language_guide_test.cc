@@ -6,8 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include "compiler/reference/reference_evaluator.h"
-#include "runtime/enumerate/model_enumerator.h"
+#include "tests/support/checked_traces.h"
 #include "tests/support/text_model.h"
 
 namespace parallax::test {
@@ -18,14 +17,6 @@ std::string guide() {
   std::ostringstream out;
   out << in.rdbuf();
   return out.str();
-}
-
-std::int64_t count_traces(const compiler::CompiledModel& compiled) {
-  runtime::SolverSession session(compiled, runtime::make_cadical_solver());
-  runtime::ModelEnumerator enumerator(session);
-  std::int64_t count = 0;
-  while (enumerator.next()) ++count;
-  return count;
 }
 
 TEST_CASE("the models of the language guide have as many traces as it says") {
@@ -39,7 +30,9 @@ TEST_CASE("the models of the language guide have as many traces as it says") {
     CAPTURE(block);
     const TextModel model(block);
     REQUIRE(model.codes() == "");
-    CHECK(count_traces(model.compiled) == expected);
+    REQUIRE(model.typed != nullptr);
+    const auto traces = checked_traces(*model.typed, model.compiled);
+    CHECK(static_cast<std::int64_t>(traces.size()) == expected);
     ++models;
   }
   CHECK(models >= 7);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 
 #include "tools/cli/model_options.h"
@@ -10,7 +11,31 @@ bool is_scenario(const std::string& path) {
   return path.ends_with(".yaml") || path.ends_with(".yml");
 }
 
-int check(const ModelOptions& options, Invocation& invocation) {
+struct CheckOptions {
+  ModelOptions model;
+  std::vector<std::string> allow;
+  bool no_lint = false;
+};
+
+/// Mutes the warnings that --allow names. False if one is no warning.
+bool mute_allowed(const std::vector<std::string>& allow, Invocation& invocation) {
+  const auto& codes = base::all_diagnostics();
+  for (const auto& id : allow) {
+    const auto found =
+        std::find_if(codes.begin(), codes.end(), [&](const auto& info) { return info.id == id; });
+    if (found == codes.end() || found->severity != base::Severity::kWarning) {
+      invocation.sink().error_about(base::DiagnosticCode::kUsage, "",
+                                    fmt::format("`{}` is the code of no warning", id));
+      return false;
+    }
+    invocation.sink().mute(found->code);
+  }
+  return true;
+}
+
+int check(const CheckOptions& check_options, Invocation& invocation) {
+  const auto& options = check_options.model;
+  if (!mute_allowed(check_options.allow, invocation)) return 0;
   std::vector<std::string> models;
   for (const auto& path : options.models) {
     // Reports into the sink; a result says only that there was nothing to report.
@@ -23,8 +48,9 @@ int check(const ModelOptions& options, Invocation& invocation) {
   if (!models.empty()) {
     auto input_options = options;
     input_options.models = models;
-    (void)compiler::compile_model(compile_input(input_options), invocation.files(),
-                                  invocation.sink());
+    auto input = compile_input(input_options);
+    input.lint = !check_options.no_lint;
+    (void)compiler::compile_model(input, invocation.files(), invocation.sink());
   }
   if (invocation.sink().has_errors()) return 0;
   if (invocation.options().json) {
@@ -38,15 +64,20 @@ int check(const ModelOptions& options, Invocation& invocation) {
 }  // namespace
 
 Command add_check_command(CLI::App& app) {
-  auto options = std::make_shared<ModelOptions>();
+  auto options = std::make_shared<CheckOptions>();
   auto* command =
-      app.add_subcommand("check", "Parse and check models and scenarios; report every error");
+      app.add_subcommand("check", "Parse, check and lint models and scenarios; report every error");
   command->footer(
       "Examples:\n"
       "  parallax check domain.e problem.e --horizon 6\n"
       "  parallax check scenarios/two_regions/edge.yaml\n"
+      "  parallax check domain.e --allow W2102 --diagnostics=sarif 2> report.sarif\n"
       "Several .e files are one model; every .yaml file is a scenario of its own.");
-  add_model_options(*command, *options);
+  add_model_options(*command, options->model);
+  command->add_option("--allow", options->allow, "Do not report warnings of this code")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_flag("--no-lint", options->no_lint, "Report no W21xx: what is legal but odd");
   return {command, [options](Invocation& invocation) { return check(*options, invocation); }};
 }
 

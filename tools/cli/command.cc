@@ -9,7 +9,9 @@
 #include <cstring>
 
 #include "compiler/base/diagnostic_printer.h"
+#include "compiler/base/sarif.h"
 #include "tools/cli/signals.h"
+#include "tools/cli/version.h"
 
 namespace parallax::tools {
 
@@ -53,24 +55,33 @@ void Invocation::report_output_error() {
                     std::strerror(output_error_));
 }
 
+void Invocation::print_diagnostics(const std::vector<base::Diagnostic>& diagnostics) const {
+  if (options_.diagnostics == "sarif") {
+    write_error(base::to_sarif(diagnostics, files_, kVersion) + '\n');
+    return;
+  }
+  if (options_.diagnostics == "json") {
+    if (!diagnostics.empty()) write_error(base::to_json(diagnostics, files_) + '\n');
+    return;
+  }
+  for (const auto& diagnostic : diagnostics) {
+    const bool is_error = base::info(diagnostic.code).severity == base::Severity::kError;
+    if (options_.quiet && !is_error) continue;
+    write_error(base::to_text(diagnostic, files_, {color_on(STDERR_FILENO)}));
+  }
+  const auto rest = [](std::size_t count, const char* what) {
+    if (count <= base::DiagnosticSink::kUsualLimit) return;
+    const auto hidden = count - base::DiagnosticSink::kUsualLimit;
+    write_error(fmt::format("{} further {} not shown\n", hidden, what));
+  };
+  rest(sink_.error_count(), "errors are");
+  if (!options_.quiet) rest(sink_.warning_count(), "warnings are");
+}
+
 int Invocation::finish(int code) {
   report_output_error();
   const auto diagnostics = sink_.sorted();
-  if (options_.diagnostics == "json") {
-    if (!diagnostics.empty()) {
-      write_error(base::to_json(diagnostics, files_) + '\n');
-    }
-  } else {
-    for (const auto& diagnostic : diagnostics) {
-      const bool is_error = base::info(diagnostic.code).severity == base::Severity::kError;
-      if (options_.quiet && !is_error) continue;
-      write_error(base::to_text(diagnostic, files_, {color_on(STDERR_FILENO)}));
-    }
-    const auto shown = static_cast<std::size_t>(20);
-    if (sink_.error_count() > shown) {
-      write_error(fmt::format("{} further errors are not shown\n", sink_.error_count() - shown));
-    }
-  }
+  print_diagnostics(diagnostics);
   if (!document_.empty()) {
     const auto end = document_.rfind('}');
     if (!diagnostics.empty()) {
@@ -122,7 +133,7 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
       ->check(CLI::IsMember({"auto", "always", "never"}))
       ->capture_default_str();
   app.add_option("--diagnostics", options.diagnostics, "Form of errors and warnings")
-      ->check(CLI::IsMember({"text", "json"}))
+      ->check(CLI::IsMember({"text", "json", "sarif"}))
       ->capture_default_str();
   app.add_option("--time-limit", options.time_limit_s, "End the run after this many seconds")
       ->check(finite_range(1e-3, 1e7));

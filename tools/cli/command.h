@@ -21,7 +21,7 @@ struct CommonOptions {
   bool quiet = false;
   int verbosity = 0;
   std::string color = "auto";        // auto, always, never
-  std::string diagnostics = "text";  // text, json
+  std::string diagnostics = "text";  // text, json, sarif
   double time_limit_s = 0.0;         // 0: none
   std::int64_t memory_limit_mb = 0;  // 0: none
 };
@@ -49,6 +49,7 @@ class Invocation {
 
  private:
   void report_output_error();
+  void print_diagnostics(const std::vector<base::Diagnostic>& diagnostics) const;
 
   CommonOptions options_;
   base::SourceFiles files_;
@@ -81,6 +82,7 @@ Command add_compile_command(CLI::App& app);
 Command add_suite_command(CLI::App& app);
 Command add_traces_command(CLI::App& app);
 Command add_diagnostics_command(CLI::App& app);
+Command add_fmt_command(CLI::App& app);
 Command add_worker_command(CLI::App& app);
 
 /// {"status": "error", "diagnostics": [...]} and a newline.

@@ -2,6 +2,7 @@
 
 #include "compiler/artifact/dimacs_writer.h"
 #include "compiler/base/file_io.h"
+#include "tools/cli/emit_stage.h"
 #include "tools/cli/scenario_model.h"
 
 namespace parallax::tools {
@@ -13,7 +14,23 @@ struct CompileOptions {
   std::string emit = "cnf";
 };
 
+int write_front_end_stage(const CompileOptions& options, Invocation& invocation) {
+  const auto text = front_end_text(options.emit, options.model, invocation);
+  if (!text) return 0;
+  if (options.out.empty() && invocation.options().json) {
+    invocation.sink().error_about(base::DiagnosticCode::kUsage, "",
+                                  "--json needs --output: the text is no JSON");
+  } else if (options.out.empty()) {
+    invocation.result(*text);
+  } else if (base::write_file_atomically(options.out, *text, invocation.sink()) &&
+             invocation.options().json) {
+    invocation.document("{\"status\":\"ok\"}\n");
+  }
+  return 0;
+}
+
 int compile_and_write(const CompileOptions& options, Invocation& invocation) {
+  if (is_front_end_stage(options.emit)) return write_front_end_stage(options, invocation);
   auto& sink = invocation.sink();
   const auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
@@ -36,11 +53,11 @@ int compile_and_write(const CompileOptions& options, Invocation& invocation) {
     invocation.result(text);
   } else if (base::write_file_atomically(options.out, text, sink)) {
     invocation.remark(fmt::format("{}: {} variables, {} clauses, horizon {}", options.out,
-                                  compilation->model.variable_count,
+                                  compilation->model.variable_count(),
                                   compilation->model.clauses.size(), compilation->model.horizon));
     if (invocation.options().json) {
       invocation.document(fmt::format("{{\"status\":\"ok\",\"variables\":{},\"clauses\":{}}}\n",
-                                      compilation->model.variable_count,
+                                      compilation->model.variable_count(),
                                       compilation->model.clauses.size()));
     }
   }
@@ -59,8 +76,11 @@ Command add_compile_command(CLI::App& app) {
       "  parallax compile scenarios/two_regions/edge.yaml --emit=cfg");
   add_model_options(*command, options->model);
   command->add_option("-o,--output", options->out, "File to write; default: standard output");
-  command->add_option("--emit", options->emit, "What to print: cnf, cfg (plan), cfg-dot (picture)")
-      ->check(CLI::IsMember({"cnf", "cfg", "cfg-dot"}))
+  command
+      ->add_option("--emit", options->emit,
+                   "What to print: tokens, ast, typed (the model read), lp (for clingo), cnf, cfg "
+                   "(plan), cfg-dot (picture)")
+      ->check(CLI::IsMember({"tokens", "ast", "typed", "lp", "cnf", "cfg", "cfg-dot"}))
       ->capture_default_str();
   return {command,
           [options](Invocation& invocation) { return compile_and_write(*options, invocation); }};

@@ -13,6 +13,8 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
       ->check(CLI::IsMember({"decreasoner"}));
   command.add_option("--horizon", options.horizon, "Last timepoint; replaces the range of `time`")
       ->check(CLI::Range(0, 1'000'000));
+  command.add_option("--until", options.until,
+                     "Formula over `time`: traces end where it holds for the first time");
 }
 
 compiler::CompileInput compile_input(const ModelOptions& options) {

@@ -13,8 +13,9 @@ struct ModelOptions {
   std::vector<std::string> models;
   std::vector<std::string> include_dirs;
   bool allow_outside = false;
-  std::string compat;         // "decreasoner", or empty for the standard meaning
-  std::int64_t horizon = -1;  // -1: as the model says
+  std::string compat;              // "decreasoner", or empty for the standard meaning
+  std::int64_t horizon = -1;       // -1: as the model says
+  std::vector<std::string> until;  // state constraints
 };
 void add_model_options(CLI::App& command, ModelOptions& options);
 

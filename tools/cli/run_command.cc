@@ -96,7 +96,7 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
                                 result->timing.simulated_s));
   if (invocation.options().verbosity > 0) {
     invocation.remark(fmt::format("model: {} variables, {} clauses, {} solver calls",
-                                  model.variable_count, model.clauses.size(),
+                                  model.variable_count(), model.clauses.size(),
                                   traces.solve_calls()));
   }
   if (result->journal_open) {

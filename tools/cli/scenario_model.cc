@@ -97,7 +97,8 @@ base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& pat
   auto compilation = compiler::compile_model(*input, invocation.files(), sink);
   if (!compilation) return sink.already_reported();
   const auto& model = compilation->model;
-  if (!harness::check_against_model(*scenario, model.fluents, model.events, sink)) {
+  if (!harness::check_against_model(*scenario, compiler::names_of(model.fluents),
+                                    compiler::names_of(model.events), sink)) {
     return sink.already_reported();
   }
   return ScenarioModel{*std::move(scenario), *std::move(compilation),
@@ -112,7 +113,13 @@ base::Result<compiler::Compilation> compile_models(const ModelOptions& options,
     if (!loaded) return invocation.sink().already_reported();
     return std::move(loaded->compilation);
   }
-  return compiler::compile_model(compile_input(options), invocation.files(), invocation.sink());
+  auto input = compile_input(options);
+  for (const auto& formula : options.until) {
+    const auto file = invocation.files().add("--until", formula);
+    const base::SourceRange range{file, 0, static_cast<std::uint32_t>(formula.size())};
+    input.constraints.push_back({range, range});
+  }
+  return compiler::compile_model(input, invocation.files(), invocation.sink());
 }
 
 }  // namespace parallax::tools

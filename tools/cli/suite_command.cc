@@ -1,163 +1,105 @@
-#include <fcntl.h>
-#include <poll.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <chrono>
-#include <csignal>
-#include <filesystem>
+#include <cstdlib>
 #include <memory>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <thread>
 
-#include "compiler/base/file_io.h"
 #include "tools/cli/command.h"
-#include "tools/cli/expectation.h"
 #include "tools/cli/signals.h"
-
-extern char** environ;
+#include "tools/suite/shard.h"
+#include "tools/suite/suite_record.h"
+#include "tools/suite/suite_runner.h"
 
 namespace parallax::tools {
-namespace fs = std::filesystem;
-
 namespace {
 
 struct SuiteOptions {
   std::vector<std::string> paths;
   std::string only;
   std::string out = "out/suite";
+  std::string junit;
+  std::string shard = "1/1";
   std::uint64_t seed = 1;
   std::int64_t jobs = 1;
+  bool update_goldens = false;
+  bool force = false;
+  bool rerun_failed = false;
 };
 
-struct SuiteCase {
-  std::string file;
-  harness::Expectation expect;
-  std::vector<std::string> problems;
-  double wall_s = 0.0;
-  bool finished = false;
-};
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
 
-/// The YAML files below the paths, sorted, each once.
-std::vector<std::string> scenario_files(const SuiteOptions& options, base::DiagnosticSink& sink) {
-  std::vector<std::string> files;
-  for (const auto& path : options.paths) {
-    std::error_code error;
-    if (fs::is_regular_file(path, error)) {
-      files.push_back(path);
-      continue;
-    }
-    fs::recursive_directory_iterator walk(path, error);
-    if (error) {
-      sink.error_about(base::DiagnosticCode::kFileNotFound, path, error.message());
-      continue;
-    }
-    for (const auto& entry : walk) {
-      const auto name = entry.path().filename().string();
-      if (entry.is_regular_file(error) && (name.ends_with(".yaml") || name.ends_with(".yml"))) {
-        files.push_back(entry.path().lexically_normal().string());
-      }
-    }
+/// `slurm` stands for the task of a job array, whose tasks count from 1.
+base::Result<Shard> shard_of(const SuiteOptions& options, base::DiagnosticSink& sink) {
+  auto text = options.shard;
+  if (text == "slurm") {
+    text = environment("SLURM_ARRAY_TASK_ID") + '/' + environment("SLURM_ARRAY_TASK_COUNT");
   }
-  std::sort(files.begin(), files.end());
-  files.erase(std::unique(files.begin(), files.end()), files.end());
-  return files;
+  if (const auto shard = parse_shard(text)) return *shard;
+  return sink.error_about(
+      base::DiagnosticCode::kUsage, "",
+      fmt::format("--shard: `{}` is not of the form I/N with 1 <= I <= N <= {}", text, kMaxShards));
 }
 
-/// Has the text a key `expect` at its outermost level?
-bool says_what_it_expects(const std::string& file) {
-  base::DiagnosticSink ignored;
-  const auto text = base::read_file(file, ignored);
-  return text && (text->starts_with("expect:") || text->find("\nexpect:") != std::string::npos);
-}
-
-/// A case for every file that says what it expects; fragments that others include do not.
-std::vector<SuiteCase> find_cases(const SuiteOptions& options, Invocation& invocation) {
-  std::vector<SuiteCase> cases;
-  for (const auto& file : scenario_files(options, invocation.sink())) {
-    if (file.find(options.only) == std::string::npos) continue;
-    base::SourceFiles files;
-    base::DiagnosticSink sink;
-    const auto scenario = harness::load_scenario(file, files, sink);
-    if (scenario && scenario->expect) cases.push_back({file, *scenario->expect, {}, 0.0, false});
-    // Broken, but meant as a case: it must not pass by being skipped.
-    if (!scenario && says_what_it_expects(file)) cases.push_back({file, {}, {}, 0.0, false});
+/// The cases that are asked for; those that passed last time leave under --rerun-failed.
+base::Result<std::vector<SuiteCase>> wanted_cases(const SuiteOptions& options,
+                                                  const EarlierResults& earlier,
+                                                  Invocation& invocation) {
+  auto cases = find_cases(options.paths, invocation.files(), invocation.sink());
+  if (!cases) return invocation.sink().already_reported();
+  std::erase_if(*cases, [&](const SuiteCase& one) {
+    return one.name().find(options.only) == std::string::npos;
+  });
+  if (cases->empty()) {
+    return invocation.sink().error_about(base::DiagnosticCode::kNoCases, options.paths.front());
+  }
+  if (options.rerun_failed) {
+    std::erase_if(*cases, [&](const SuiteCase& one) {
+      const auto at = earlier.find(one.name());
+      return at == earlier.end() || at->second == "passed";
+    });
   }
   return cases;
 }
 
-/// Runs a command with its standard output caught; the rest goes where ours goes.
-std::string capture(std::vector<std::string> command, bool quiet) {
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return {};
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-  if (quiet) {
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  }
-  std::vector<char*> argv;
-  for (auto& word : command) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  pid_t child = 0;
-  const int failed =
-      ::posix_spawn(&child, "/proc/self/exe", &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  ::close(ends[1]);
-  std::string out;
-  std::array<char, 4096> buffer{};
-  bool told = false;
-  while (failed == 0) {
-    // A signal to us alone ends the case as well.
-    if (stop_flag().load() && !told) {
-      ::kill(child, SIGTERM);
-      told = true;
-    }
-    pollfd ready{ends[0], POLLIN, 0};
-    if (::poll(&ready, 1, 100) <= 0) continue;
-    const auto count = ::read(ends[0], buffer.data(), buffer.size());
-    if (count <= 0) break;
-    out.append(buffer.data(), static_cast<std::size_t>(count));
-  }
-  ::close(ends[0]);
-  if (failed == 0) ::waitpid(child, nullptr, 0);
-  return out;
+std::string line_of(const SuiteCase& one, const CaseResult& result) {
+  const auto* mark = result.outcome == Outcome::kPassed   ? "ok   "
+                     : result.outcome == Outcome::kFailed ? "FAIL "
+                                                          : "ERROR";
+  auto line = fmt::format("{} {} ({:.1f} s)", mark, one.name(), result.wall_s);
+  if (result.golden_written) line += "\n       golden file written";
+  std::string details;
+  for (const auto& problem : result.problems) details += problem + '\n';
+  // Of a case without an answer, what the program said of it is the answer.
+  if (result.outcome == Outcome::kError) details += result.messages;
+  while (details.ends_with('\n')) details.pop_back();
+  if (details.empty()) return line;
+  line += "\n       ";
+  for (const char c : details) line += c == '\n' ? "\n       " : std::string(1, c);
+  return line;
 }
 
-void run_case(SuiteCase& one, const SuiteOptions& options, bool quiet) {
-  const auto begin = std::chrono::steady_clock::now();
-  auto name = one.file;
-  std::replace(name.begin(), name.end(), '/', '_');
-  const auto folder = fs::path(options.out) / name;
-  std::error_code ignored;
-  fs::remove_all(folder, ignored);
-  const auto document =
-      capture({"parallax", "run", one.file, "--json", "--seed", std::to_string(options.seed),
-               "--out", folder.string(), quiet ? "--quiet" : "--color=auto"},
-              quiet);
-  one.problems = unmet(one.expect, document);
-  // A run that was cut off by a signal to all of us says nothing about the case.
-  one.finished = !stop_flag().load();
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-  one.wall_s = wall.count();
-}
-
-void run_all(std::vector<SuiteCase>& cases, const SuiteOptions& options, Invocation& invocation) {
+void run_all(SuiteRecord& record, const SuiteOptions& options, Invocation& invocation) {
+  const RunnerOptions runner{options.out, options.seed, options.update_goldens};
+  std::vector<std::size_t> queue;
+  for (std::size_t i = 0; i < record.cases().size(); ++i) {
+    if (record.results()[i].outcome != Outcome::kSkipped) queue.push_back(i);
+  }
   std::atomic<std::size_t> next{0};
   std::mutex printing;
   const auto work = [&] {
-    for (std::size_t i = next++; i < cases.size() && !stop_flag().load(); i = next++) {
-      run_case(cases[i], options, true);
-      const std::lock_guard lock(printing);
-      std::string line =
-          fmt::format("{} {} ({:.1f} s)", cases[i].problems.empty() ? "ok  " : "FAIL",
-                      cases[i].file, cases[i].wall_s);
-      for (const auto& problem : cases[i].problems) line += "\n       " + problem;
-      invocation.remark(line);
+    for (std::size_t i = next++; i < queue.size() && !stop_flag().load(); i = next++) {
+      const auto& one = record.cases()[queue[i]];
+      auto result = run_case(one, runner, stop_flag());
+      if (result.outcome != Outcome::kNotFinished) {
+        const std::lock_guard lock(printing);
+        invocation.remark(line_of(one, result));
+      }
+      record.finish(queue[i], std::move(result));
     }
   };
   std::vector<std::thread> threads;
@@ -165,48 +107,92 @@ void run_all(std::vector<SuiteCase>& cases, const SuiteOptions& options, Invocat
   for (auto& thread : threads) thread.join();
 }
 
+std::string summary_text(const SuiteRecord& record) {
+  auto text = fmt::format("{} passed, {} failed", record.count(Outcome::kPassed),
+                          record.count(Outcome::kFailed));
+  const auto append = [&](Outcome outcome, std::string_view words) {
+    const auto count = record.count(outcome);
+    if (count > 0) text += fmt::format(", {} {}", count, words);
+  };
+  append(Outcome::kError, "without an answer");
+  append(Outcome::kNotFinished, "not run");
+  append(Outcome::kSkipped, "in other shards");
+  return text + '\n';
+}
+
+std::string summary_document(const SuiteRecord& record) {
+  auto list = nlohmann::json::array();
+  for (std::size_t i = 0; i < record.cases().size(); ++i) {
+    const auto& result = record.results()[i];
+    list.push_back({{"case", record.cases()[i].name()},
+                    {"outcome", to_string(result.outcome)},
+                    {"problems", result.problems},
+                    {"timing", {{"wall_s", result.wall_s}}}});
+  }
+  const nlohmann::json document = {{"status", "ok"},
+                                   {"passed", record.count(Outcome::kPassed)},
+                                   {"failed", record.count(Outcome::kFailed)},
+                                   {"errors", record.count(Outcome::kError)},
+                                   {"not_run", record.count(Outcome::kNotFinished)},
+                                   {"skipped", record.count(Outcome::kSkipped)},
+                                   {"cases", list}};
+  return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+}
+
 int run_suite(const SuiteOptions& options, Invocation& invocation) {
-  auto cases = find_cases(options, invocation);
-  if (invocation.sink().has_errors()) return 0;
-  if (cases.empty()) {
-    invocation.sink().error_about(base::DiagnosticCode::kNoCases, options.paths.front());
+  auto& sink = invocation.sink();
+  if (options.update_goldens && !options.force && !environment("CI").empty()) {
+    sink.error_about(base::DiagnosticCode::kGoldenUpdateRefused, "--update-goldens");
     return 0;
   }
-  run_all(cases, options, invocation);
-  std::size_t passed = 0;
-  std::size_t failed = 0;
-  for (const auto& one : cases) {
-    if (!one.finished) continue;
-    ++(one.problems.empty() ? passed : failed);
+  const auto shard = shard_of(options, sink);
+  EarlierResults earlier;
+  if (options.rerun_failed) {
+    auto read = read_results(options.out, sink);
+    if (!read) return 0;
+    earlier = *std::move(read);
   }
-  const auto not_run = cases.size() - passed - failed;
+  auto cases = wanted_cases(options, earlier, invocation);
+  if (!shard || !cases) return 0;
+  std::vector<bool> skipped;
+  for (const auto& one : *cases) skipped.push_back(!in_shard(one.id, *shard));
+  SuiteRecord record(*std::move(cases), skipped, options.out, options.junit, std::move(earlier));
+  if (!record.save(sink)) return 0;
+  run_all(record, options, invocation);
+  const bool saved = record.save(sink).has_value();
   if (invocation.options().json) {
-    invocation.document(
-        fmt::format("{{\"status\":\"ok\",\"passed\":{},\"failed\":{},\"not_run\":{}}}\n", passed,
-                    failed, not_run));
+    invocation.document(summary_document(record));
   } else {
-    invocation.result(fmt::format("{} passed, {} failed{}\n", passed, failed,
-                                  not_run == 0 ? "" : fmt::format(", {} not run", not_run)));
+    invocation.result(summary_text(record));
   }
-  if (failed > 0) return 1;
-  return not_run == 0 ? 0 : 4;
+  if (record.count(Outcome::kFailed) + record.count(Outcome::kError) > 0) return 1;
+  return saved && record.count(Outcome::kNotFinished) > 0 ? 4 : 0;
 }
 
 }  // namespace
 
 Command add_suite_command(CLI::App& app) {
   auto options = std::make_shared<SuiteOptions>();
-  auto* command =
-      app.add_subcommand("suite", "Run every scenario below a path that says what it expects");
+  auto* command = app.add_subcommand(
+      "suite", "Run every scenario and model expectation below a path (docs/suite_format.md)");
   command->footer(
       "Examples:\n"
       "  parallax suite scenarios --jobs 2\n"
-      "  parallax suite scenarios --only edge");
-  command->add_option("paths", options->paths, "Scenario files, or folders that hold some")
+      "  parallax suite scenarios/classics --only zoo\n"
+      "  parallax suite scenarios --shard 2/5 --junit suite.xml");
+  command->add_option("paths", options->paths, "Scenarios, manifests, or folders that hold some")
       ->required();
-  command->add_option("--only", options->only, "Only files whose path contains this");
-  command->add_option("--out", options->out, "Folder of the runs, made anew")
+  command->add_option("--only", options->only, "Only cases whose name (file:id) contains this");
+  command->add_option("--out", options->out, "Folder of the runs, made anew, and the results")
       ->capture_default_str();
+  command->add_option("--junit", options->junit, "Write a JUnit report to this file");
+  command->add_option("--shard", options->shard, "Part I of N, as I/N; `slurm`: from a job array")
+      ->capture_default_str();
+  command->add_flag("--rerun-failed", options->rerun_failed,
+                    "Only cases that did not pass in the last suite with this --out");
+  command->add_flag("--update-goldens", options->update_goldens,
+                    "Write the golden files of cases that are otherwise as expected");
+  command->add_flag("--force", options->force, "Write golden files even where `CI` is set");
   command->add_option("--seed", options->seed, "Seed of every run")
       ->check(whole_number(0, kMaxSeed))
       ->capture_default_str();

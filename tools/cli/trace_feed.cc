@@ -30,7 +30,7 @@ bool report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Tim
 EnumeratedTraces::EnumeratedTraces(const compiler::CompiledModel& model, Invocation& invocation)
     : model_(&model),
       invocation_(&invocation),
-      fluents_(model.fluents),
+      fluents_(compiler::names_of(model.fluents)),
       session_(std::make_unique<runtime::SolverSession>(
           model, runtime::make_cadical_solver(&stop_flag()))),
       enumerator_(std::make_unique<runtime::PlanEnumerator>(*session_)) {

@@ -1,10 +1,12 @@
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "runtime/enumerate/model_enumerator.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/cli/scenario_model.h"
 #include "tools/cli/signals.h"
+#include "tools/cli/trace_check.h"
 
 namespace parallax::tools {
 namespace {
@@ -14,17 +16,37 @@ struct TracesOptions {
   std::int64_t limit = 10;
   bool count = false;
   bool expect_traces = false;
+  bool check = false;
   std::string format = "text";
 };
 
 /// Prints traces as they are found and counts them; under --json they are kept for the document.
+/// What is checked is printed all the same.
 class TraceWriter {
  public:
-  TraceWriter(const TracesOptions& options, Invocation& invocation)
-      : options_(options), invocation_(invocation) {}
+  /// `check` may be null; else it outlives the writer.
+  TraceWriter(const TracesOptions& options, TraceCheck* check, Invocation& invocation)
+      : options_(options), check_(check), invocation_(invocation) {}
   bool full() const { return !options_.count && options_.limit > 0 && count_ == options_.limit; }
   void write(const runtime::Trace& trace) {
     ++count_;
+    print(trace);
+    if (check_ != nullptr) check_->check(trace);
+  }
+  std::int64_t count() const { return count_; }
+  const std::string& list() const { return list_; }
+  bool agreed() const { return check_ == nullptr || check_->agreed(); }
+  /// `"checked":N,` where traces are checked.
+  std::string checked_field() const {
+    return check_ == nullptr ? "" : fmt::format("\"checked\":{},", check_->checked());
+  }
+  /// `, N checked` where traces are checked.
+  std::string checked_remark() const {
+    return check_ == nullptr ? "" : fmt::format(", {} checked", check_->checked());
+  }
+
+ private:
+  void print(const runtime::Trace& trace) {
     if (options_.count) return;
     if (invocation_.options().json) {
       list_ += (list_.empty() ? "" : ",") + runtime::to_jsonl(trace);
@@ -33,11 +55,9 @@ class TraceWriter {
                                                     : runtime::to_text(trace));
     }
   }
-  std::int64_t count() const { return count_; }
-  const std::string& list() const { return list_; }
 
- private:
   const TracesOptions& options_;
+  TraceCheck* check_;
   Invocation& invocation_;
   std::int64_t count_ = 0;
   std::string list_;
@@ -52,51 +72,67 @@ void write_all(Enumerator& enumerator, TraceWriter& writer) {
   }
 }
 
+/// What is known of the traces that were not listed.
+struct Ending {
+  std::string exploration;
+  bool complete = false;
+};
+
 /// Says what is known of the rest: complete, up to the bound, or stopped by the limit.
-void close_list(const TracesOptions& options, const TraceWriter& writer,
-                const std::string& exploration, bool complete, double wall_s,
-                Invocation& invocation) {
+void close_list(const TracesOptions& options, const TraceWriter& writer, const Ending& ending,
+                double wall_s, Invocation& invocation) {
   if (stop_flag().load()) invocation.remark("stopped before the end: there may be more traces");
   const auto timing = fmt::format("\"timing\":{{\"wall_s\":{:.3f}}}", wall_s);
   if (invocation.options().json) {
     const auto list = options.count ? "" : fmt::format("\"list\":[{}],", writer.list());
-    invocation.document(fmt::format("{{\"status\":\"ok\",\"traces\":{},\"complete\":{},{}{}}}\n",
-                                    writer.count(), complete, list, timing));
+    invocation.document(fmt::format(
+        "{{\"status\":\"{}\",\"traces\":{},\"complete\":{},\"exploration\":\"{}\",{}{}{}}}\n",
+        writer.agreed() ? "ok" : "error", writer.count(), ending.complete, ending.exploration,
+        writer.checked_field(), list, timing));
   } else if (options.count) {
     invocation.result(fmt::format("{}\n", writer.count()));
   } else if (options.format == "jsonl") {
-    invocation.result(fmt::format("{{\"summary\":true,\"traces\":{},\"complete\":{},{}}}\n",
-                                  writer.count(), complete, timing));
+    invocation.result(fmt::format("{{\"summary\":true,\"traces\":{},\"complete\":{},{}{}}}\n",
+                                  writer.count(), ending.complete, writer.checked_field(), timing));
   } else {
-    invocation.result(fmt::format("{} {}, {}\n", writer.count(),
-                                  writer.count() == 1 ? "trace" : "traces", exploration));
+    invocation.result(fmt::format("{} {}, {}{}\n", writer.count(),
+                                  writer.count() == 1 ? "trace" : "traces", ending.exploration,
+                                  writer.checked_remark()));
   }
+}
+
+/// Enumerates into the writer.
+Ending enumerate(const compiler::CompiledModel& model, TraceWriter& writer) {
+  runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
+  if (model.has_constraints) {
+    runtime::PlanEnumerator enumerator(session);
+    write_all(enumerator, writer);
+    return {std::string(runtime::to_string(enumerator.exploration())),
+            enumerator.exploration() == runtime::Exploration::kAllTracesExplored};
+  }
+  runtime::ModelEnumerator enumerator(session);
+  write_all(enumerator, writer);
+  // At the limit one more call tells "these are all" from "there are more".
+  if (writer.full() && !stop_flag().load()) (void)enumerator.next();
+  return {enumerator.exhausted() ? "complete" : "stopped", enumerator.exhausted()};
 }
 
 int list_traces(const TracesOptions& options, Invocation& invocation) {
   const auto start = std::chrono::steady_clock::now();
+  if (options.check && !options.model.compat.empty()) {
+    invocation.sink().error_about(
+        base::DiagnosticCode::kUsage, "",
+        "--check evaluates the standard meaning and does not go with --compat");
+    return 0;
+  }
   const auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
-  const auto& model = compilation->model;
-  runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
-  TraceWriter writer(options, invocation);
-  std::string exploration;
-  bool complete = false;
-  if (model.has_constraints) {
-    runtime::PlanEnumerator enumerator(session);
-    write_all(enumerator, writer);
-    exploration = runtime::to_string(enumerator.exploration());
-    complete = enumerator.exploration() == runtime::Exploration::kAllTracesExplored;
-  } else {
-    runtime::ModelEnumerator enumerator(session);
-    write_all(enumerator, writer);
-    // At the limit one more call tells "these are all" from "there are more".
-    if (writer.full() && !stop_flag().load()) (void)enumerator.next();
-    complete = enumerator.exhausted();
-    exploration = complete ? "complete" : "stopped";
-  }
+  std::optional<TraceCheck> check;
+  if (options.check) check.emplace(*compilation->typed, &stop_flag(), invocation.sink());
+  TraceWriter writer(options, check ? &*check : nullptr, invocation);
+  const auto ending = enumerate(compilation->model, writer);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  close_list(options, writer, exploration, complete, wall.count(), invocation);
+  close_list(options, writer, ending, wall.count(), invocation);
   return writer.count() == 0 && options.expect_traces ? 1 : 0;
 }
 
@@ -116,6 +152,9 @@ Command add_traces_command(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--count", options->count, "Print only the number of traces");
   command->add_flag("--expect-traces", options->expect_traces, "Exit with 1 if there is no trace");
+  command->add_flag(
+      "--check", options->check,
+      "Evaluate the model on every trace by independent means; exit 5 if one differs");
   command->add_option("--format", options->format, "text or jsonl")
       ->check(CLI::IsMember({"text", "jsonl"}))
       ->capture_default_str();

@@ -72,6 +72,23 @@ TEST_CASE("sink: errors beyond the limit are counted, not kept, and can still be
   CHECK(sink.sorted().size() == 2);
 }
 
+TEST_CASE("sink: warnings beyond the limit are counted, muted ones are not") {
+  Text text;
+  DiagnosticSink sink(20, 3);
+  sink.mute(DiagnosticCode::kWeightedFormula);
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    sink.warning(DiagnosticCode::kUnusedSort, text.at(i, i + 1), "a").note("kept or not");
+    sink.warning(DiagnosticCode::kWeightedFormula, text.at(i, i + 1));
+  }
+  CHECK(sink.warning_count() == 5);
+  CHECK(sink.sorted().size() == 3);
+  CHECK_FALSE(sink.has_errors());
+  // Errors cannot be muted.
+  sink.mute(DiagnosticCode::kInvalidText);
+  sink.error(DiagnosticCode::kInvalidText, text.at(0, 1));
+  CHECK(sink.error_count() == 1);
+}
+
 TEST_CASE("sink: the exit code follows the class of the errors; warnings have none") {
   Text text;
   DiagnosticSink sink;

@@ -132,8 +132,9 @@ TEST_CASE("every code of the front end is produced by some text") {
   note(codes_of_load("load /etc/passwd\n"));                             // E1016
   for (const auto& info : base::all_diagnostics()) {
     const bool mine = info.id[1] == '1' || info.id[1] == '2';
-    const bool letter = info.id[0] == 'E' || info.id[0] == 'W';
-    if (mine && letter) CHECK_MESSAGE(seen.contains(std::string(info.id)), info.id);
+    // W21xx and W22xx are lint's, and tested there.
+    const bool lint = info.id.starts_with("W21") || info.id.starts_with("W22");
+    if (mine && !lint) CHECK_MESSAGE(seen.contains(std::string(info.id)), info.id);
   }
 }
 

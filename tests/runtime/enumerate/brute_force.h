@@ -2,65 +2,99 @@
 
 #include <set>
 #include <string>
+#include <vector>
 
-#include "compiler/reference/reference_evaluator.h"
-#include "runtime/enumerate/model_enumerator.h"
+#include "tests/support/checked_traces.h"
 
 namespace parallax::test {
 
-/// The observable part of a trace as one line: "0:F();1:..|0:E()..".
-inline std::string signature(const std::vector<std::set<std::string>>& holds,
-                             const std::vector<std::set<std::string>>& happens) {
-  std::string out;
-  for (const auto* part : {&holds, &happens}) {
-    for (const auto& point : *part) {
-      for (const auto& atom : point) out += atom + ' ';
-      out += ';';
-    }
-    out += '|';
+/// Every assignment of a small model's atoms that the reference evaluator accepts. The atoms are
+/// the evaluator's own: what the compiler knows of the model plays no part.
+class BruteForce {
+ public:
+  explicit BruteForce(const compiler::TypedModel& typed) : evaluator_(typed) {
+    REQUIRE_MESSAGE(!evaluator_.refusal(), *evaluator_.refusal());
+    choose_open_atoms();
   }
-  return out;
-}
+  const compiler::ReferenceEvaluator& evaluator() const { return evaluator_; }
+  /// The number of atoms that are tried both ways.
+  std::size_t open_atoms() const { return open_.size(); }
 
-/// Every valuation of the atoms (at most 2^20) that the reference evaluator accepts, reduced to
-/// its observable part.
-inline std::set<std::string> brute_force(const compiler::TypedModel& typed,
-                                         const compiler::CompiledModel& compiled) {
-  const compiler::ReferenceEvaluator evaluator(typed);
-  const auto points = static_cast<std::size_t>(evaluator.horizon()) + 1;
-  std::set<std::string> accepted;
-  PARALLAX_REQUIRE(compiled.atoms.size() <= 20, "brute force is for small models");
-  for (std::uint32_t bits = 0; bits < (1U << compiled.atoms.size()); ++bits) {
-    compiler::Valuation v;
-    v.holds.resize(points);
-    v.happens.resize(points);
-    v.released.resize(points);
-    for (std::size_t i = 0; i < compiled.atoms.size(); ++i) {
-      if (((bits >> i) & 1U) == 0) continue;
-      const auto& atom = compiled.atoms[i];
-      const auto t = static_cast<std::size_t>(atom.time.value_or(0));
-      if (atom.kind == compiler::AtomKind::kHoldsAt) v.holds[t].insert(atom.name);
-      if (atom.kind == compiler::AtomKind::kHappens) v.happens[t].insert(atom.name);
-      if (atom.kind == compiler::AtomKind::kReleasedAt) v.released[t].insert(atom.name);
-      if (atom.kind == compiler::AtomKind::kPredicate) v.predicates.insert(atom.name);
+  /// Calls `visit` with the values of every accepted assignment. At most 2^22 are tried.
+  template <typename Visit>
+  void for_each(const Visit& visit) {
+    REQUIRE(open_.size() <= 22);
+    for (std::uint32_t bits = 0; bits < (1U << open_.size()); ++bits) {
+      for (std::size_t i = 0; i < open_.size(); ++i) {
+        values_[open_[i]] = static_cast<std::uint8_t>((bits >> i) & 1U);
+      }
+      if (evaluator_.accepts(values_)) visit(values_);
     }
-    if (!evaluator.check(v)) accepted.insert(signature(v.holds, v.happens));
   }
-  return accepted;
-}
+  std::set<std::string> signatures() {
+    std::set<std::string> all;
+    for_each([&](const auto& values) { all.insert(signature(valuation(values))); });
+    return all;
+  }
+  compiler::Valuation valuation(const compiler::ReferenceEvaluator::Values& values) const {
+    const auto& model = evaluator_.expanded();
+    const auto points = static_cast<std::size_t>(model.horizon()) + 1;
+    compiler::Valuation out;
+    out.holds.resize(points);
+    out.happens.resize(points);
+    out.released.resize(points);
+    for (std::int64_t t = 0; t <= model.horizon(); ++t) {
+      const auto now = static_cast<std::size_t>(t);
+      for (std::uint32_t f = 0; f < model.fluents().size(); ++f) {
+        if (values[model.holds(f, t)] != 0) out.holds[now].insert(model.fluents()[f]);
+        if (values[model.released(f, t)] != 0) out.released[now].insert(model.fluents()[f]);
+      }
+      for (std::uint32_t e = 0; e < model.events().size() && t < model.horizon(); ++e) {
+        if (values[model.happens(e, t)] != 0) out.happens[now].insert(model.events()[e]);
+      }
+    }
+    for (std::uint32_t i = 0; i < model.atom_count(); ++i) {
+      if (!model.timepoint(i) && values[i] != 0) out.predicates.insert(model.atom_text(i));
+    }
+    return out;
+  }
+
+ private:
+  /// ReleasedAt is settled of most fluents: true where there is no inertia; false, by DEC8 from the
+  /// start on, where nothing releases.
+  void choose_open_atoms() {
+    const auto& model = evaluator_.expanded();
+    values_.assign(model.atom_count(), 0);
+    std::set<std::uint32_t> settled;
+    for (std::uint32_t f = 0; f < model.fluents().size(); ++f) {
+      const auto& symbol = model.symbol_of(f);
+      bool open = symbol.manual_release;
+      for (std::int64_t t = 0; t < model.horizon(); ++t) {
+        for (const auto& row : model.rows(f, t)) {
+          open = open || row.kind == compiler::EffectKind::kReleases;
+        }
+      }
+      for (std::int64_t t = 0; t <= model.horizon() && (symbol.noninertial || !open); ++t) {
+        values_[model.released(f, t)] = symbol.noninertial ? 1 : 0;
+        settled.insert(model.released(f, t));
+      }
+    }
+    for (std::uint32_t i = 0; i < model.atom_count(); ++i) {
+      if (!settled.contains(i)) open_.push_back(i);
+    }
+  }
+
+  compiler::ReferenceEvaluator evaluator_;
+  compiler::ReferenceEvaluator::Values values_;
+  std::vector<std::uint32_t> open_;
+};
 
 /// What the enumerator finds, in its order.
-inline std::vector<std::string> enumerate_all(const compiler::CompiledModel& compiled) {
-  runtime::SolverSession session(compiled, runtime::make_cadical_solver());
-  runtime::ModelEnumerator enumerator(session);
+inline std::vector<std::string> enumerate_all(const compiler::TypedModel& typed,
+                                              const compiler::CompiledModel& compiled) {
   std::vector<std::string> found;
-  while (const auto trace = enumerator.next()) {
-    std::vector<std::set<std::string>> holds, happens;
-    for (const auto& point : trace->points) {
-      holds.emplace_back(point.holds.begin(), point.holds.end());
-      happens.emplace_back(point.happens.begin(), point.happens.end());
-    }
-    found.push_back(signature(holds, happens));
+  for (const auto& trace : checked_traces(typed, compiled)) {
+    found.push_back(signature(tools::valuation_of(trace)));
   }
   return found;
 }

@@ -16,8 +16,8 @@ void check_against_brute_force(const std::string& text, std::size_t expected) {
   TextModel model(text);
   REQUIRE(model.codes() == "");
   REQUIRE(model.ground != nullptr);
-  auto found = enumerate_all(model.compiled);
-  const auto wanted = brute_force(*model.typed, model.compiled);
+  auto found = enumerate_all(*model.typed, model.compiled);
+  const auto wanted = BruteForce(*model.typed).signatures();
   const auto count = found.size();
   std::sort(found.begin(), found.end());
   CHECK(std::adjacent_find(found.begin(), found.end()) == found.end());
@@ -97,7 +97,7 @@ TEST_CASE("completion: what has no reason does not happen") {
       "[time] HoldsAt(F(),time) -> Happens(G(),time).\nHappens(E(),0).\ncompletion Happens\n"
       "!HoldsAt(F(),0).\n");
   REQUIRE(model.codes() == "");
-  const auto found = enumerate_all(model.compiled);
+  const auto found = enumerate_all(*model.typed, model.compiled);
   REQUIRE(found.size() == 1);
   CHECK(found.front() == ";F() ;F() ;|E() ;G() ;;|");
 }
@@ -107,7 +107,7 @@ TEST_CASE("completion of a disjunction makes the events exclusive") {
       "range time 0 1\nfluent F()\nevent E()\nevent G()\nHappens(E(),0) | Happens(G(),0).\n"
       "HoldsAt(F(),0).\ncompletion Happens\n");
   REQUIRE(model.codes() == "");
-  CHECK(enumerate_all(model.compiled).size() == 2);
+  CHECK(enumerate_all(*model.typed, model.compiled).size() == 2);
 }
 
 TEST_CASE("completion with a label takes the other formulas for constraints") {
@@ -115,7 +115,7 @@ TEST_CASE("completion with a label takes the other formulas for constraints") {
       "range time 0 2\nfluent F()\nevent E()\nHoldsAt(F(),0).\n"
       "Delta: Happens(E(),0).\nHappens(E(),1).\ncompletion Delta Happens\n");
   REQUIRE(model.codes() == "");
-  CHECK(enumerate_all(model.compiled).empty());
+  CHECK(enumerate_all(*model.typed, model.compiled).empty());
 }
 
 TEST_CASE("a trajectory fixes another fluent until its own is terminated") {
@@ -132,7 +132,7 @@ TEST_CASE("a trajectory fixes another fluent until its own is terminated") {
       "!HoldsAt(Falling(),0).\nHoldsAt(Height(6),0).\nHappens(Drop(),0).\nHappens(Catch(),1).\n"
       "completion Happens\n");
   REQUIRE(model.codes() == "");
-  const auto found = enumerate_all(model.compiled);
+  const auto found = enumerate_all(*model.typed, model.compiled);
   // The height is 4 at 1; the catch at 1 lies strictly between 0 and 2, so 2 and 3 are free.
   CHECK(found.size() == 7 * 7);
 }
@@ -151,12 +151,12 @@ TEST_CASE("an unsatisfiable model has no trace") {
 TEST_CASE("traces come in canonical order, whatever was asked of the solver before") {
   TextModel model("range time 0 1\nfluent F()\nfluent G()\nevent E()\n");
   REQUIRE(model.codes() == "");
-  const auto first = enumerate_all(model.compiled);
+  const auto first = enumerate_all(*model.typed, model.compiled);
   // Time, then declaration order, false before true: the first trace is the empty one.
   REQUIRE(first.size() == 8);
   CHECK(first.front() == ";;|;;|");
   CHECK(first.back() == "F() G() ;F() G() ;|E() ;;|");
-  CHECK(enumerate_all(model.compiled) == first);
+  CHECK(enumerate_all(*model.typed, model.compiled) == first);
 }
 
 }  // namespace

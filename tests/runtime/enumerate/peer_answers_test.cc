@@ -10,12 +10,14 @@
 
 #include "compiler/pipeline/compile.h"
 #include "runtime/enumerate/model_enumerator.h"
+#include "tests/support/checked_traces.h"
 #include "tests/support/peer_examples.h"
 
 namespace parallax::test {
 namespace {
 
 namespace fs = std::filesystem;
+using compiler::Meaning;
 
 /// HoldsAt and Happens atoms with their times: "Alive()@0", "!Load()@1" for an event.
 using Model = std::set<std::string>;
@@ -107,15 +109,20 @@ bool has_option(const fs::path& example, const std::string& option) {
   return text.str().find("option " + option) != std::string::npos;
 }
 
-std::set<Model> enumerate(const fs::path& example, const fs::path& root) {
-  base::SourceFiles files;
-  base::DiagnosticSink sink;
+compiler::CompileInput input_for(const fs::path& example, const fs::path& root, Meaning meaning) {
   compiler::CompileInput input;
   input.models = {example};
   input.load.include_dirs = {root};
   input.load.allow_outside = true;
-  input.ground.meaning = compiler::Meaning::kDecreasoner;
-  const auto compiled = compiler::compile_model(input, files, sink);
+  input.ground.meaning = meaning;
+  return input;
+}
+
+std::set<Model> enumerate(const fs::path& example, const fs::path& root) {
+  base::SourceFiles files;
+  base::DiagnosticSink sink;
+  const auto compiled =
+      compiler::compile_model(input_for(example, root, Meaning::kDecreasoner), files, sink);
   REQUIRE(compiled.has_value());
   runtime::SolverSession session(compiled->model, runtime::make_cadical_solver());
   runtime::ModelEnumerator enumerator(session);
@@ -132,18 +139,23 @@ std::set<Model> enumerate(const fs::path& example, const fs::path& root) {
   return models;
 }
 
-TEST_CASE("the models of every example are the recorded ones") {
-  const auto root = peer_examples();
-  if (!root) return;
+/// The examples that come with an answer, sorted.
+std::vector<fs::path> answered_examples(const fs::path& root) {
   std::vector<fs::path> examples;
-  for (const auto& entry : fs::recursive_directory_iterator(*root / "examples")) {
+  for (const auto& entry : fs::recursive_directory_iterator(root / "examples")) {
     auto answer = entry.path();
     answer.replace_extension(".txt");
     if (entry.path().extension() == ".e" && fs::exists(answer)) examples.push_back(entry.path());
   }
   std::sort(examples.begin(), examples.end());
+  return examples;
+}
+
+TEST_CASE("the models of every example are the recorded ones") {
+  const auto root = peer_examples();
+  if (!root) return;
   std::size_t compared = 0;
-  for (const auto& example : examples) {
+  for (const auto& example : answered_examples(*root)) {
     // Prints later models as differences from earlier ones, in a form of its own.
     if (has_option(example, "modeldiff on")) continue;
     CAPTURE(example);
@@ -154,6 +166,29 @@ TEST_CASE("the models of every example are the recorded ones") {
     ++compared;
   }
   CHECK(compared > 42);
+}
+
+TEST_CASE("in the standard meaning, the traces of every example satisfy the reference evaluator") {
+  const auto root = peer_examples();
+  if (!root) return;
+  std::int64_t checked = 0;
+  std::size_t examples = 0;
+  for (const auto& example : answered_examples(*root)) {
+    CAPTURE(example);
+    base::SourceFiles files;
+    base::DiagnosticSink sink;
+    const auto compiled =
+        compiler::compile_model(input_for(example, *root, Meaning::kStandard), files, sink);
+    REQUIRE(compiled.has_value());
+    TraceChecker checker(*compiled->typed);
+    runtime::SolverSession session(compiled->model, runtime::make_cadical_solver());
+    runtime::ModelEnumerator enumerator(session);
+    while (const auto trace = enumerator.next()) checker.check(*trace);
+    checked += checker.checked();
+    ++examples;
+  }
+  CHECK(examples > 42);
+  CHECK(checked > 0);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "tools/cli/expectation.h"
+#include "tools/suite/expectation.h"
 
 #include <fmt/core.h>
 

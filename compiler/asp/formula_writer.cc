@@ -1,0 +1,219 @@
+#include "compiler/asp/formula_writer.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace parallax::compiler {
+namespace {
+
+bool is_leaf(FormulaKind kind) {
+  return kind == FormulaKind::kTrue || kind == FormulaKind::kFalse || kind == FormulaKind::kAtom ||
+         kind == FormulaKind::kCompare;
+}
+
+/// `more` behind `body`, in the order given, without copying the longer of the two.
+void move_behind(AspBody& body, AspBody more) {
+  if (body.empty()) {
+    body = std::move(more);
+    return;
+  }
+  body.insert(body.end(), std::make_move_iterator(more.begin()),
+              std::make_move_iterator(more.end()));
+}
+
+}  // namespace
+
+struct FormulaWriter::Frame {
+  const TypedFormula* formula = nullptr;
+  bool want_true = false;
+  bool want_false = false;
+  std::vector<Part> parts;
+};
+
+FormulaWriter::FormulaWriter(const TypedModel& model, AspNames& names, TermWriter& terms,
+                             std::string& rules)
+    : model_(model),
+      names_(names),
+      terms_(terms),
+      rules_(rules),
+      mentioned_(model.symbols.size()) {}
+
+const std::string& FormulaWriter::mentioned(SymbolId predicate) {
+  auto& name = mentioned_[predicate.index()];
+  if (name.empty()) name = names_.fresh("mentioned_" + names_.symbol(predicate));
+  return name;
+}
+
+AspFormula FormulaWriter::write(TypedFormulaId root, bool wanted, const AspPoint* point) {
+  point_ = point;
+  hidden_.clear();
+  std::vector<Frame> stack;
+  std::optional<Part> done;
+  const auto enter = [&](TypedFormulaId id, bool want_true, bool want_false) {
+    const auto& formula = model_.formulas[id];
+    if (is_leaf(formula.kind)) {
+      done = leaf(formula, want_true, want_false);
+      return;
+    }
+    // A quantifier is read for the value of its instances that decides it.
+    if (formula.kind == FormulaKind::kForall || formula.kind == FormulaKind::kExists) {
+      want_true = formula.kind == FormulaKind::kExists;
+      want_false = !want_true;
+    }
+    stack.push_back({&formula, want_true, want_false, {}});
+  };
+  enter(root, wanted, !wanted);
+  while (!stack.empty()) {
+    auto& frame = stack.back();
+    if (done) frame.parts.push_back(*std::exchange(done, std::nullopt));
+    const auto next = frame.parts.size();
+    if (next == frame.formula->children.size()) {
+      done = combine(frame);
+      stack.pop_back();
+      continue;
+    }
+    const auto kind = frame.formula->kind;
+    const bool both = kind == FormulaKind::kIff;
+    const bool turned = kind == FormulaKind::kNot || (kind == FormulaKind::kImplies && next == 0);
+    const bool want_true = turned ? frame.want_false : frame.want_true;
+    const bool want_false = turned ? frame.want_true : frame.want_false;
+    enter(frame.formula->children[next], both || want_true, both || want_false);
+  }
+  return {std::move(done->exists), std::move(done->when(wanted)), std::move(hidden_)};
+}
+
+void FormulaWriter::inherit(Part& whole, Part& part) const {
+  for (const auto variable : part.free) {
+    if (std::find(whole.free.begin(), whole.free.end(), variable) == whole.free.end()) {
+      whole.free.push_back(variable);
+    }
+  }
+  whole.completed.insert(part.completed.begin(), part.completed.end());
+  move_behind(whole.exists, std::move(part.exists));
+}
+
+FormulaWriter::Part FormulaWriter::combine(Frame& frame) {
+  const auto kind = frame.formula->kind;
+  if (kind == FormulaKind::kForall || kind == FormulaKind::kExists) return quantified(frame);
+  Part whole;
+  auto& parts = frame.parts;
+  if (kind == FormulaKind::kNot || kind == FormulaKind::kImplies) {
+    std::swap(parts[0].when_true, parts[0].when_false);
+  }
+  for (const bool value : {false, true}) {
+    if (!(value ? frame.want_true : frame.want_false)) continue;
+    if (kind == FormulaKind::kIff) {
+      whole.when(value) = equivalence(parts, value);
+    } else if (kind == FormulaKind::kNot) {
+      whole.when(value) = std::move(parts[0].when(value));
+    } else {
+      // Conjunctions are true, disjunctions false, if all parts are.
+      const bool all = (kind == FormulaKind::kAnd) == value;
+      whole.when(value) = all ? conjunction(parts, value) : disjunction(parts, value);
+    }
+  }
+  for (auto& part : parts) inherit(whole, part);
+  return whole;
+}
+
+AspAlternatives FormulaWriter::conjunction(std::vector<Part>& parts, bool value) {
+  AspBody all;
+  for (auto& part : parts) {
+    auto body = single(part, value);
+    if (!body) return {};
+    move_behind(all, *std::move(body));
+  }
+  return {std::move(all)};
+}
+
+AspAlternatives FormulaWriter::disjunction(std::vector<Part>& parts, bool value) const {
+  AspAlternatives any;
+  for (auto& part : parts) {
+    for (auto& body : part.when(value)) any.push_back(std::move(body));
+  }
+  return any;
+}
+
+AspAlternatives FormulaWriter::equivalence(std::vector<Part>& parts, bool value) {
+  AspAlternatives any;
+  for (const bool first : {false, true}) {
+    // Copies: each value of each side is needed for either value of the whole.
+    auto left = single(parts[0], first);
+    auto right = single(parts[1], first == value);
+    if (left) parts[0].when(first) = {*left};
+    if (right) parts[1].when(first == value) = {*right};
+    if (!left || !right) continue;
+    move_behind(*left, *std::move(right));
+    any.push_back(*std::move(left));
+  }
+  return any;
+}
+
+/// The part as one conjunction, through an auxiliary where it is none; nothing if it is never so.
+std::optional<AspBody> FormulaWriter::single(Part& part, bool value) {
+  auto& alternatives = part.when(value);
+  if (alternatives.empty()) return std::nullopt;
+  if (alternatives.size() == 1) return std::move(alternatives[0]);
+  return AspBody{auxiliary("part", part, terms_.domains(part.free), alternatives)};
+}
+
+/// Rules for `kind_N(free variables)`, true where one of the alternatives is.
+AspLiteral FormulaWriter::auxiliary(const char* kind, const Part& part, const AspBody& domain,
+                                    const AspAlternatives& alternatives) {
+  std::vector<std::string> arguments;
+  for (const auto variable : part.free) arguments.push_back(terms_.variable(variable));
+  AspBody bound;
+  if (point_ != nullptr && part.completed.contains(point_->predicate)) {
+    arguments.insert(arguments.end(), point_->arguments.begin(), point_->arguments.end());
+    bound = point_->domain;
+  }
+  append(bound, domain);
+  hidden_.insert(part.completed.begin(), part.completed.end());
+  const auto name = names_.fresh(std::string(kind) + "_" + std::to_string(++auxiliaries_));
+  const auto head = applied(name, arguments);
+  for (const auto& alternative : alternatives) {
+    auto body = bound;
+    append(body, alternative);
+    rules_ += rule_text(head, body);
+  }
+  return plain_literal(head);
+}
+
+/// An existing instance of the value looked for decides. Without any existing instance there is
+/// no formula, unless there is no instance at all.
+FormulaWriter::Part FormulaWriter::quantified(Frame& frame) {
+  const auto& variables = frame.formula->variables;
+  const bool exists = frame.formula->kind == FormulaKind::kExists;
+  auto& body = frame.parts[0];
+  Part whole;
+  whole.completed = body.completed;
+  for (const auto variable : body.free) {
+    if (std::find(variables.begin(), variables.end(), variable) == variables.end()) {
+      whole.free.push_back(variable);
+    }
+  }
+  auto domain = terms_.domains(whole.free);
+  append(domain, terms_.domains(variables));
+  append(domain, body.exists);
+  auto& deciding = body.when(exists);
+  if (deciding.empty()) {
+    whole.when_true = constant(!exists);
+    whole.when_false = constant(exists);
+  } else {
+    const auto decided = auxiliary(exists ? "some" : "fails", whole, domain, deciding);
+    const auto open = plain_literal("not " + decided.text);
+    whole.when(exists) = {AspBody{decided}};
+    whole.when(!exists) = {AspBody{open}};
+  }
+  const bool any_empty = std::any_of(variables.begin(), variables.end(), [&](VariableId id) {
+    return terms_.is_empty(model_.variables[id].sort);
+  });
+  if (!body.exists.empty() && !any_empty) {
+    Part fixed;  // existence does not depend on the point
+    fixed.free = whole.free;
+    whole.exists.push_back(auxiliary("exists", fixed, domain, constant(true)));
+  }
+  return whole;
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,105 @@
+#include "compiler/cnf/clause_builder.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace parallax::compiler {
+
+/// Nodes are made after their children, so one pass in order of ids is enough.
+ClauseBuilder::ClauseBuilder(const GroundModel& model)
+    : model_(model), formulas_(model.formulas()) {
+  const auto count = static_cast<std::uint32_t>(formulas_.node_count());
+  needed_.resize(count, 0);
+  timed_.resize(count, false);
+  known_.resize(count);
+  for (std::uint32_t node = 0; node < count; ++node) {
+    const auto id = formulas_.at(node);
+    if (formulas_.kind(id) == FormulaNodeKind::kAtom) {
+      const auto& atom = model.atom(formulas_.variable(id));
+      needed_[node] = atom.needed_horizon();
+      timed_[node] = atom.time != GroundAtom::kUntimed;
+    } else if (formulas_.kind(id) == FormulaNodeKind::kAnd) {
+      for (const auto child : formulas_.children(id)) {
+        needed_[node] = std::max(needed_[node], needed_[child.node()]);
+        if (timed_[child.node()]) timed_[node] = true;
+      }
+    }
+  }
+}
+
+void ClauseBuilder::add(const Constraint& constraint) {
+  origin_ = constraint.origin;
+  const bool moves = constraint.width != Constraint::kOnce;
+  std::vector<FormulaId> todo = {constraint.formula};
+  while (!todo.empty()) {
+    const auto id = todo.back();
+    todo.pop_back();
+    if (formulas_.kind(id) == FormulaNodeKind::kAnd && !id.negated()) {
+      const auto children = formulas_.children(id);
+      todo.insert(todo.end(), children.rbegin(), children.rend());
+      continue;
+    }
+    if (id == formulas_.truth()) continue;
+    OpenClause clause{{}, origin_, false, needed_[id.node()]};
+    if (formulas_.kind(id) == FormulaNodeKind::kAnd) {
+      for (const auto child : formulas_.children(id)) clause.literals.push_back(use(~child, moves));
+    } else if (id != formulas_.falsity()) {
+      clause.literals.push_back(use(id, moves));
+    }
+    // The empty clause: whatever asserted it is contradictory.
+    emit(std::move(clause), constraint.width);
+  }
+  define_pending();
+}
+
+/// A literal that implies `id`; its definition is queued if this polarity has none yet.
+OpenLiteral ClauseBuilder::use(FormulaId id, bool moves) {
+  if (formulas_.kind(id) == FormulaNodeKind::kAtom) {
+    return {false, id.negated(), static_cast<std::uint32_t>(formulas_.variable(id))};
+  }
+  // What mentions no timepoint is the same for all of them.
+  const bool copies = moves && timed_[id.node()];
+  auto& known = known_[id.node()];
+  if (known.auxiliary[copies] == 0) {
+    auxiliaries_.push_back({id.negated() ? ~id : id, copies});
+    known.auxiliary[copies] = static_cast<std::uint32_t>(auxiliaries_.size());
+  }
+  const std::uint8_t polarity = id.negated() ? 2 : 1;
+  if ((known.defined[copies] & polarity) == 0) {
+    known.defined[copies] = static_cast<std::uint8_t>(known.defined[copies] | polarity);
+    pending_.emplace_back(id, copies);
+  }
+  return {true, id.negated(), known.auxiliary[copies] - 1};
+}
+
+void ClauseBuilder::define_pending() {
+  while (!pending_.empty()) {
+    const auto [id, moves] = pending_.back();
+    pending_.pop_back();
+    const OpenLiteral self{true, false, known_[id.node()].auxiliary[moves] - 1};
+    const auto needed = needed_[id.node()];
+    const auto width = moves ? needed : Constraint::kOnce;
+    if (!id.negated()) {
+      for (const auto child : formulas_.children(id)) {
+        auto not_self = self;
+        not_self.negated = true;
+        emit({{not_self, use(child, moves)}, origin_, true, needed}, width);
+      }
+    } else {
+      OpenClause clause{{self}, origin_, true, needed};
+      for (const auto child : formulas_.children(id)) clause.literals.push_back(use(~child, moves));
+      emit(std::move(clause), width);
+    }
+  }
+}
+
+void ClauseBuilder::emit(OpenClause clause, Timepoint width) {
+  if (width == Constraint::kOnce) {
+    once_.push_back(std::move(clause));
+  } else {
+    clause.needed = width;
+    repeated_[width].push_back(std::move(clause));
+  }
+}
+
+}  // namespace parallax::compiler

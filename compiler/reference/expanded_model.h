@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/reference/formula_trees.h"
+#include "compiler/reference/reference_terms.h"
+#include "compiler/sema/typed_model.h"
+
+namespace parallax::compiler {
+
+/// A formula of the expanded model, and the last timepoint that must exist for its atoms to.
+struct ReferenceFormula {
+  FormulaTrees::Node node = FormulaTrees::kTruth;
+  std::int64_t needed = 0;
+};
+
+/// A typed model with every instance of every formula written out. A formula without quantifiers
+/// exists if all its atoms and comparisons do; `[x] f` and `{x} f` are the conjunction and the
+/// disjunction of the instances that exist, and exist themselves unless all of at least one
+/// instance do not. Nothing is joined, solved, shared or replicated: that is the grounder's art,
+/// and this is what it is held against.
+///
+/// Atoms are numbered by timepoint: HoldsAt of every fluent, ReleasedAt of every fluent, and before
+/// the last timepoint Happens of every event; then the atoms of user predicates as they are met.
+class ExpandedModel {
+ public:
+  using Value = ReferenceTerms::Value;
+  struct Conjunct {
+    std::size_t axiom = 0;  // index into the typed model's axioms
+    ReferenceFormula formula;
+    std::int64_t size = 1;  // atoms in it, each counted once
+  };
+  /// `Initiates(event,fluent,t)` under a condition; listed by t and fluent.
+  struct EffectRow {
+    EffectKind kind = EffectKind::kInitiates;
+    std::uint32_t event = 0;
+    ReferenceFormula condition;
+    std::size_t effect = 0;  // index into the typed model's effects
+  };
+  /// DEC3 or DEC4: while `fluent` has developed since `begin`, `target` holds at `end`.
+  struct Path {
+    ReferenceFormula condition;
+    std::uint32_t fluent = 0, target = 0;
+    std::int64_t begin = 0, end = 0;
+    std::size_t trajectory = 0;  // index into the typed model's trajectories
+  };
+  /// A completed atom and the conjuncts that can be a reason for it.
+  struct Completed {
+    std::size_t completion = 0;
+    std::uint32_t atom = 0;
+    std::vector<std::size_t> reasons;  // indices into conjuncts()
+  };
+
+  /// `model` and `budget` outlive the object, which is incomplete when the budget is spent.
+  ExpandedModel(const TypedModel& model, ReferenceBudget& budget);
+
+  /// Its formulas nest too deep to be expanded; the budget counts as spent.
+  bool too_deep() const { return too_deep_; }
+  std::int64_t horizon() const { return horizon_; }
+  const std::vector<std::string>& fluents() const { return fluents_; }
+  const std::vector<std::string>& events() const { return events_; }
+  const Symbol& symbol_of(std::uint32_t fluent) const { return *fluent_symbols_[fluent]; }
+  std::size_t atom_count() const { return timed_atoms() + predicates_.size(); }
+  std::optional<std::uint32_t> fluent(const std::string& text) const;
+  std::optional<std::uint32_t> event(const std::string& text) const;
+  std::optional<std::uint32_t> predicate(const std::string& text) const;
+
+  std::uint32_t holds(std::uint32_t fluent, std::int64_t t) const { return place(t, fluent); }
+  std::uint32_t released(std::uint32_t fluent, std::int64_t t) const;
+  std::uint32_t happens(std::uint32_t event, std::int64_t t) const;
+  /// `HoldsAt(F(),2)`
+  std::string atom_text(std::uint32_t atom) const;
+  /// None for the atoms of user predicates, which are not bound to a timepoint.
+  std::optional<std::int64_t> timepoint(std::uint32_t atom) const;
+  /// The last timepoint that must exist for the atom to: an event's effects come one later.
+  std::int64_t needed(std::uint32_t atom) const;
+
+  const FormulaTrees& trees() const { return trees_; }
+  const std::vector<Conjunct>& conjuncts() const { return conjuncts_; }
+  const std::vector<EffectRow>& rows(std::uint32_t fluent, std::int64_t t) const {
+    return rows_[static_cast<std::size_t>(t) * fluents_.size() + fluent];
+  }
+  const std::vector<Path>& paths() const { return paths_; }
+  const std::vector<Completed>& completed() const { return completed_; }
+  /// The axioms that do not exist: every instance names something beyond the horizon or its sort.
+  const std::vector<std::size_t>& silent_axioms() const { return silent_axioms_; }
+
+ private:
+  friend class ModelExpander;
+  std::uint32_t place(std::int64_t t, std::size_t offset) const {
+    const auto stride = 2 * fluents_.size() + events_.size();
+    return static_cast<std::uint32_t>(static_cast<std::size_t>(t) * stride + offset);
+  }
+  std::size_t timed_atoms() const {
+    return horizon_ < 0 ? 0 : place(horizon_, 2 * fluents_.size());
+  }
+
+  bool too_deep_ = false;
+  std::int64_t horizon_ = -1;
+  std::vector<std::string> fluents_, events_;
+  std::vector<const Symbol*> fluent_symbols_;
+  std::map<std::string, std::uint32_t> fluent_numbers_, event_numbers_, predicate_numbers_;
+  std::vector<std::string> predicates_;
+  FormulaTrees trees_;
+  std::vector<Conjunct> conjuncts_;
+  std::vector<std::vector<EffectRow>> rows_;
+  std::vector<Path> paths_;
+  std::vector<Completed> completed_;
+  std::vector<std::size_t> silent_axioms_;
+};
+
+}  // namespace parallax::compiler

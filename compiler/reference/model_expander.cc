@@ -1,0 +1,194 @@
+#include "compiler/reference/model_expander.h"
+
+#include <algorithm>
+#include <set>
+
+namespace parallax::compiler {
+ModelExpander::ModelExpander(const TypedModel& model, ReferenceBudget& budget, ExpandedModel& out)
+    : model_(model), budget_(budget), out_(out), terms_(model, budget) {
+  environment_.resize(model.variables.size());
+}
+
+void ModelExpander::run() {
+  out_.too_deep_ = too_deep();
+  if (out_.too_deep_) budget_.spend_all();
+  if (budget_.spent()) return;
+  number_atoms();
+  if (budget_.spent()) return;
+  expand_effects();
+  expand_axioms();
+  expand_trajectories();
+  complete();
+}
+
+bool ModelExpander::too_deep() const {
+  if (ReferenceTerms::depth(model_, kMaxReferenceDepth) > kMaxReferenceDepth) return true;
+  // A part is added to the store before the formula around it.
+  std::vector<std::size_t> depths(model_.formulas.size(), 1);
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    for (const auto child : model_.formulas[model_.formulas.id_at(i)].children) {
+      depths[i] = std::max(depths[i], depths[child.index()] + 1);
+    }
+    if (depths[i] > kMaxReferenceDepth) return true;
+  }
+  return false;
+}
+
+void ModelExpander::number_atoms() {
+  out_.horizon_ = static_cast<std::int64_t>(terms_.domain(*model_.core.time).size()) - 1;
+  for (const auto value : terms_.domain(*model_.core.fluent)) {
+    const auto& text = terms_.text(value);
+    out_.fluent_numbers_.emplace(text, static_cast<std::uint32_t>(out_.fluents_.size()));
+    out_.fluents_.push_back(text);
+    const auto symbol = model_.find_symbol(text.substr(0, text.find('(')));
+    out_.fluent_symbols_.push_back(&model_.symbols[*symbol]);
+  }
+  for (const auto value : terms_.domain(*model_.core.event)) {
+    const auto& text = terms_.text(value);
+    out_.event_numbers_.emplace(text, static_cast<std::uint32_t>(out_.events_.size()));
+    out_.events_.push_back(text);
+  }
+  const auto stride = static_cast<std::int64_t>(2 * out_.fluents_.size() + out_.events_.size());
+  if (!budget_.spend(stride * (out_.horizon_ + 1))) return;
+  out_.rows_.resize(static_cast<std::size_t>(std::max<std::int64_t>(out_.horizon_, 0)) *
+                    out_.fluents_.size());
+}
+
+void ModelExpander::for_each(const std::vector<VariableId>& variables,
+                             const std::function<void()>& visit, std::size_t position) {
+  if (position == variables.size()) {
+    if (budget_.spend()) visit();
+    return;
+  }
+  const auto variable = variables[position];
+  for (const auto value : terms_.domain(model_.variables[variable].sort)) {
+    if (budget_.spent()) return;
+    environment_[variable.index()] = value;
+    for_each(variables, visit, position + 1);
+  }
+}
+
+ReferenceFormula ModelExpander::measured(Node node) const {
+  ReferenceFormula formula{node, 0};
+  for (const auto atom : out_.trees_.atoms_of(node)) {
+    formula.needed = std::max(formula.needed, out_.needed(atom));
+  }
+  return formula;
+}
+
+void ModelExpander::expand_effects() {
+  for (std::size_t i = 0; i < model_.effects.size(); ++i) expand_effect(i);
+  effects_known_ = true;
+}
+
+/// An instance whose terms or condition do not exist gives no row.
+void ModelExpander::expand_effect(std::size_t index) {
+  const auto& effect = model_.effects[index];
+  for_each(effect.variables, [&] {
+    const auto event = term(effect.event);
+    const auto fluent = term(effect.fluent);
+    const auto time = term(effect.time);
+    if (!event || !fluent || !time) return;
+    const auto e = out_.event(terms_.text(*event));
+    const auto f = out_.fluent(terms_.text(*fluent));
+    const auto t = terms_.number(*time);
+    if (!e || !f || !t || *t < 0 || *t >= out_.horizon_) return;
+    const auto before = out_.trees_.size();
+    const auto condition = expand(effect.condition);
+    if (!condition || *condition == FormulaTrees::kFalsity) {
+      out_.trees_.rewind(before);
+      return;
+    }
+    out_.rows_[static_cast<std::size_t>(*t) * out_.fluents_.size() + *f].push_back(
+        {effect.kind, *e, measured(*condition), index});
+  });
+}
+
+void ModelExpander::expand_axioms() {
+  for (std::size_t i = 0; i < model_.axioms.size() && !budget_.spent(); ++i) {
+    const auto whole = expand(model_.axioms[i].formula);
+    if (!whole) {
+      out_.silent_axioms_.push_back(i);
+      continue;
+    }
+    for (const auto conjunct : out_.trees_.conjuncts(*whole)) {
+      if (conjunct == FormulaTrees::kTruth) continue;
+      const auto size = static_cast<std::int64_t>(out_.trees_.atoms_of(conjunct).size());
+      out_.conjuncts_.push_back({i, measured(conjunct), size});
+    }
+  }
+}
+
+void ModelExpander::expand_trajectories() {
+  for (std::size_t i = 0; i < model_.trajectories.size(); ++i) expand_trajectory(i);
+}
+
+/// The development begins with an event at t >= 0 and lasts a positive time, up to the horizon.
+void ModelExpander::expand_trajectory(std::size_t index) {
+  const auto& axiom = model_.trajectories[index];
+  for_each(axiom.variables, [&] {
+    const auto fluent = term(axiom.fluent);
+    const auto target = term(axiom.target);
+    const auto time = term(axiom.time);
+    const auto offset = term(axiom.offset);
+    if (!fluent || !target || !time || !offset) return;
+    const auto f1 = out_.fluent(terms_.text(*fluent));
+    const auto f2 = out_.fluent(terms_.text(*target));
+    const auto t = terms_.number(*time);
+    const auto d = terms_.number(*offset);
+    if (!f1 || !f2 || !t || !d || *t < 0 || *d <= 0 || *d > out_.horizon_ - *t) return;
+    const auto before = out_.trees_.size();
+    const auto condition = expand(axiom.condition);
+    if (!condition || *condition == FormulaTrees::kFalsity) {
+      out_.trees_.rewind(before);
+      return;
+    }
+    out_.paths_.push_back({measured(*condition), *f1, *f2, *t, *t + *d, index});
+  });
+}
+
+std::vector<std::uint32_t> ModelExpander::atoms_of(SymbolId predicate) const {
+  std::vector<std::uint32_t> atoms;
+  const auto& core = model_.core;
+  if (predicate == core.holds_at || predicate == core.released_at || predicate == core.happens) {
+    const bool events = predicate == core.happens;
+    const auto last = events ? out_.horizon_ - 1 : out_.horizon_;
+    const auto count = events ? out_.events_.size() : out_.fluents_.size();
+    for (std::int64_t t = 0; t <= last; ++t) {
+      for (std::uint32_t i = 0; i < count; ++i) {
+        atoms.push_back(events                          ? out_.happens(i, t)
+                        : predicate == core.released_at ? out_.released(i, t)
+                                                        : out_.holds(i, t));
+      }
+    }
+    return atoms;
+  }
+  const auto prefix = model_.symbols[predicate].name + "(";
+  for (std::size_t i = 0; i < out_.predicates_.size(); ++i) {
+    if (out_.predicates_[i].starts_with(prefix)) {
+      atoms.push_back(static_cast<std::uint32_t>(out_.timed_atoms() + i));
+    }
+  }
+  return atoms;
+}
+
+/// For every completed atom, the conjuncts of the label that mention it.
+void ModelExpander::complete() {
+  for (std::size_t c = 0; c < model_.completions.size() && !budget_.spent(); ++c) {
+    const auto& completion = model_.completions[c];
+    std::map<std::uint32_t, ExpandedModel::Completed> completed;
+    for (const auto atom : atoms_of(completion.predicate)) completed[atom] = {c, atom, {}};
+    for (std::size_t i = 0; i < out_.conjuncts_.size(); ++i) {
+      const auto& axiom = model_.axioms[out_.conjuncts_[i].axiom];
+      if (axiom.mentions_effects) continue;
+      if (completion.label && *completion.label != axiom.label) continue;
+      for (const auto atom : out_.trees_.atoms_of(out_.conjuncts_[i].formula.node)) {
+        const auto found = completed.find(atom);
+        if (found != completed.end()) found->second.reasons.push_back(i);
+      }
+    }
+    for (auto& [atom, entry] : completed) out_.completed_.push_back(std::move(entry));
+  }
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,182 @@
+#include "harness/config/suite_manifest.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <system_error>
+
+#include "harness/config/yaml_fields.h"
+
+namespace parallax::harness {
+namespace {
+
+using base::DiagnosticCode;
+
+constexpr std::int64_t kMaxHorizon = 1'000'000;
+constexpr std::int64_t kMaxTraces = 1'000'000'000;
+constexpr std::size_t kMaxIdLength = 100;
+constexpr NumberBounds kTimeLimit{0.0, 86400.0, true, false};
+
+bool is_alphanumeric(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+}
+
+/// Ids become file names and are typed in shells: what is wrong with this one, or nothing.
+std::string id_problem(std::string_view id) {
+  if (id.size() > kMaxIdLength) return fmt::format("it is longer than {} bytes", kMaxIdLength);
+  if (id.empty() || !is_alphanumeric(id.front()))
+    return "it does not begin with a letter or a digit";
+  const auto bad = std::find_if(id.begin(), id.end(), [](char c) {
+    return !is_alphanumeric(c) && c != '_' && c != '-' && c != '.';
+  });
+  return bad == id.end() ? "" : "it has other characters than letters, digits, `_`, `-` and `.`";
+}
+
+class ManifestReader {
+ public:
+  ManifestReader(const base::SourceFiles& files, base::DiagnosticSink& sink)
+      : files_(files), sink_(sink) {}
+
+  void read(const YamlNode& root, SuiteManifest& manifest) {
+    YamlFields fields(root, "the manifest", sink_);
+    fields.only({"defaults", "cases"});
+    YamlNode defaults;
+    if (const auto* node = fields.find("defaults")) {
+      check_defaults(*node);
+      defaults = *node;
+    }
+    const auto* cases = fields.require("cases");
+    if (cases == nullptr) return;
+    if (!cases->is_list() || cases->items.empty()) {
+      sink_.error(DiagnosticCode::kWrongYamlKind, cases->range, "`cases`",
+                  cases->is_list() ? "empty" : describe(*cases), "a list of cases");
+      return;
+    }
+    for (const auto& node : cases->items) {
+      manifest.cases.push_back(read_case(node.is_map() ? merged(defaults, node) : node));
+    }
+  }
+
+ private:
+  /// Only what several cases can share; mistakes in the values show where they are read.
+  void check_defaults(const YamlNode& node) {
+    YamlFields fields(node, "`defaults`", sink_);
+    fields.only({"horizon", "constraints", "limits", "expect"});
+    if (const auto* expect = fields.find("expect")) {
+      YamlFields(*expect, "`expect` of `defaults`", sink_).only({"complete"});
+    }
+  }
+
+  ManifestCase read_case(const YamlNode& node) {
+    ManifestCase out;
+    out.source = node.range;
+    YamlFields fields(node, "the case", sink_);
+    if (!node.is_map()) return out;
+    fields.only({"id", "model", "horizon", "constraints", "limits", "expect"});
+    if (const auto* id = fields.require("id")) read_id(*id, out);
+    if (const auto* models = fields.require("model")) {
+      out.models = located_texts(*models, "`model`");
+      for (auto& model : out.models) resolve_model(model);
+    }
+    fields.integer("horizon", 0, kMaxHorizon, out.horizon);
+    if (const auto* constraints = fields.find("constraints")) {
+      out.constraints = located_texts(*constraints, "`constraints`");
+    }
+    if (const auto* limits = fields.find("limits")) read_limits(*limits, out);
+    const auto errors_before = sink_.error_count();
+    if (const auto* expect = fields.find("expect")) read_expectation(*expect, out.expect);
+    const bool nothing = !out.expect.traces && !out.expect.golden;
+    if (nothing && sink_.error_count() == errors_before) {
+      sink_.error(DiagnosticCode::kCaseExpectsNothing, out.source, out.id);
+    }
+    return out;
+  }
+
+  void read_id(const YamlNode& node, ManifestCase& out) {
+    const auto id = read_text(node, "`id`", sink_);
+    if (!id) return;
+    out.id = *id;
+    out.source = node.range;
+    if (const auto problem = id_problem(*id); !problem.empty()) {
+      sink_.error(DiagnosticCode::kBadCaseId, node.range, *id, problem);
+      return;
+    }
+    const auto [first, is_new] = ids_.emplace(*id, node.range);
+    if (is_new) return;
+    sink_.error(DiagnosticCode::kDuplicateCase, node.range, *id)
+        .note(first->second, "the first one is here");
+  }
+
+  void read_limits(const YamlNode& node, ManifestCase& out) {
+    YamlFields fields(node, "`limits` of a case", sink_);
+    fields.only({"time_s", "memory_mb"});
+    fields.number("time_s", kTimeLimit, out.time_limit_s);
+    fields.integer("memory_mb", 16, 10'000'000, out.memory_limit_mb);
+  }
+
+  void read_expectation(const YamlNode& node, TraceExpectation& out) {
+    const auto errors_before = sink_.error_count();
+    YamlFields fields(node, "`expect` of a case", sink_);
+    fields.only({"traces", "complete", "golden"});
+    fields.integer("traces", 0, kMaxTraces, out.traces);
+    fields.boolean("complete", out.complete);
+    if (const auto* golden = fields.find("golden")) {
+      if (auto text = read_text(*golden, "`golden`", sink_)) {
+        out.golden = LocatedText{
+            path_beside(golden->range, *text, files_).lexically_normal().string(), golden->range};
+      }
+    }
+    if (!out.complete && out.traces.value_or(0) < 1 && sink_.error_count() == errors_before) {
+      const auto* place = fields.find(out.traces ? "traces" : "complete");
+      sink_.error(DiagnosticCode::kYamlOutOfBounds, place->range, "`traces`",
+                  out.traces ? "0" : "not given", "at least 1 where `complete` is false");
+    }
+  }
+
+  /// A text, or a list of texts.
+  std::vector<LocatedText> located_texts(const YamlNode& node, std::string_view name) {
+    const auto items = node.is_list() ? node.items : std::vector<YamlNode>{node};
+    std::vector<LocatedText> out;
+    for (const auto& item : items) {
+      if (auto text = read_text(item, name, sink_)) out.push_back({std::move(*text), item.range});
+    }
+    if (items.empty()) {
+      sink_.error(DiagnosticCode::kWrongYamlKind, node.range, name, "empty", "a list of texts");
+    }
+    return out;
+  }
+
+  void resolve_model(LocatedText& model) {
+    const auto resolved = path_beside(model.source, model.text, files_).lexically_normal();
+    std::error_code error;
+    if (!std::filesystem::exists(resolved, error)) {
+      sink_.error(DiagnosticCode::kFileNotFound, model.source,
+                  fmt::format("no file `{}`", resolved.string()));
+    }
+    model.text = resolved.string();
+  }
+
+  const base::SourceFiles& files_;
+  base::DiagnosticSink& sink_;
+  std::map<std::string, base::SourceRange> ids_;  // the first use of each
+};
+
+}  // namespace
+
+bool looks_like_manifest(std::string_view text) {
+  return text.starts_with("cases:") || text.find("\ncases:") != std::string_view::npos;
+}
+
+base::Result<SuiteManifest> load_manifest(const std::filesystem::path& path,
+                                          base::SourceFiles& files, base::DiagnosticSink& sink) {
+  const auto errors_before = sink.error_count();
+  const auto root = load_yaml(path, files, sink);
+  if (!root) return sink.already_reported();
+  SuiteManifest manifest{path, {}};
+  ManifestReader(files, sink).read(*root, manifest);
+  if (sink.error_count() != errors_before) return sink.already_reported();
+  return manifest;
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "harness/config/scenario.h"
+
+namespace parallax::harness {
+
+/// What the list of a model's traces is held against. At least one of `traces` and `golden` is set.
+struct TraceExpectation {
+  std::optional<std::int64_t> traces;
+  /// False: `traces` are looked for and there must be more; then `traces` is at least 1.
+  bool complete = true;
+  /// The text that `parallax traces` must print; the file need not exist.
+  std::optional<LocatedText> golden;
+};
+
+/// One case: models compiled together and what is known of their traces. Paths are resolved against
+/// the manifest's folder.
+struct ManifestCase {
+  std::string id;  // distinct within the manifest; a safe file name
+  base::SourceRange source;
+  std::vector<LocatedText> models;       // not empty; the files exist
+  std::optional<std::int64_t> horizon;   // replaces the range of `time`
+  std::vector<LocatedText> constraints;  // traces end where these hold for the first time
+  double time_limit_s = 60.0;            // wall clock
+  std::optional<std::int64_t> memory_limit_mb;
+  TraceExpectation expect;
+};
+
+/// A suite manifest as checked data (docs/suite_format.md), cases in the order of the file.
+struct SuiteManifest {
+  std::filesystem::path file;
+  std::vector<ManifestCase> cases;
+};
+
+/// Is the text a manifest: has it a key `cases` at its outermost level?
+bool looks_like_manifest(std::string_view text);
+
+/// Reads and checks a manifest; several errors per run, each at its key. `defaults` are laid under
+/// every case. Unknown keys, unsafe and repeated ids, missing models (kFileNotFound) and cases that
+/// expect nothing are refused.
+base::Result<SuiteManifest> load_manifest(const std::filesystem::path& path,
+                                          base::SourceFiles& files, base::DiagnosticSink& sink);
+
+}  // namespace parallax::harness

@@ -1,0 +1,217 @@
+#include "tests/fuzz/differential.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "tests/fuzz/oracles.h"
+
+namespace parallax::test {
+namespace {
+
+using Keys = std::set<std::string>;
+
+Comparison difference(std::string sides, std::string detail) {
+  return {Comparison::Kind::kDiffer, std::move(sides), std::move(detail), 0, {}};
+}
+
+class Comparer {
+ public:
+  Comparer(const std::string& text, const DifferentialOptions& options)
+      : text_(text), options_(options), base_(text, {}) {}
+
+  Comparison run() {
+    if (!base_.typed) return refused();
+    evaluator_.emplace(*base_.typed);
+    if (const auto reason = evaluator_->refusal()) return difference("reference", *reason);
+    if (options_.brute_force) brute_ = brute_force_traces(*evaluator_, options_.max_atoms);
+    if (options_.clingo) {
+      if (auto failure = ask_clingo(false)) return *failure;
+    }
+    if (!base_.compiled) return confirm_refusal();
+    if (auto found = compare_existence()) return *found;
+    result_.brute_force = brute_.has_value();
+    result_.clingo = clingo_.has_value();
+    if (auto found = compare_traces()) return *found;
+    if (auto found = compare_variants()) return *found;
+    return result_;
+  }
+
+ private:
+  Comparison refused() const {
+    return {Comparison::Kind::kRefused, base_.codes(), {}, 0, base_.error_lines()};
+  }
+
+  std::optional<Comparison> ask_clingo(bool observable) {
+    const auto program =
+        compiler::to_asp(*base_.typed, base_.files, {.report_existence = true}, base_.sink);
+    if (!program) return difference("export", base_.codes());
+    std::string error;
+    clingo_ = clingo_traces(*program, options_.max_traces + 1, observable,
+                            static_cast<std::size_t>(evaluator_->horizon()), error);
+    if (!clingo_) return difference("clingo", error + program->text);
+    return std::nullopt;
+  }
+
+  bool has_trace() const {
+    return (brute_ && !brute_->traces.empty()) || (clingo_ && !clingo_->found.traces.empty());
+  }
+
+  /// "This formula is false whatever happens" and "says nothing" can be looked at from outside;
+  /// what is wrong with a number or a table is taken as it is.
+  Comparison confirm_refusal() const {
+    const auto codes = base_.codes();
+    if (codes == "E3003" && has_trace()) {
+      return difference("refusal E3003", "an oracle has a trace");
+    }
+    if (codes == "E3004" && evaluator_->silent_axioms().empty()) {
+      return difference("refusal E3004", "every axiom says something to the reference evaluator");
+    }
+    if (codes == "E3004" && clingo_ && !clingo_->found.traces.empty() &&
+        clingo_->existing_axioms.size() == base_.typed->axioms.size()) {
+      return difference("refusal E3004", "every axiom says something to clingo");
+    }
+    return refused();
+  }
+
+  std::optional<Comparison> compare_existence() const {
+    if (!evaluator_->silent_axioms().empty()) {
+      const auto where = evaluator_->silent_axioms().front();
+      return difference("existence, reference evaluator",
+                        "says nothing: " + std::string(base_.files.text(where)));
+    }
+    if (!clingo_ || clingo_->found.traces.empty()) return std::nullopt;
+    for (std::size_t i = 0; i < base_.typed->axioms.size(); ++i) {
+      if (clingo_->existing_axioms.contains(i)) continue;
+      return difference(
+          "existence, clingo",
+          "says nothing: " + std::string(base_.files.text(base_.typed->axioms[i].source)));
+    }
+    return std::nullopt;
+  }
+
+  static Keys observed(const TraceList& list) {
+    Keys all;
+    for (const auto& trace : list.traces) all.insert(trace_key(trace, false));
+    return all;
+  }
+
+  /// With the user predicates that both sides know.
+  static Keys in_full(const TraceList& list, const TraceList& other) {
+    Keys all;
+    for (const auto& trace : list.traces) {
+      auto key = trace_key(trace, true);
+      for (const auto& name : trace.predicates) {
+        if (list.predicates && !list.predicates->contains(name)) continue;
+        if (other.predicates && !other.predicates->contains(name)) continue;
+        key += " " + name;
+      }
+      all.insert(std::move(key));
+    }
+    return all;
+  }
+
+  static std::optional<Comparison> same(const std::string& name, const Keys& ours,
+                                        const std::string& other_name, const Keys& theirs) {
+    for (const auto& key : ours) {
+      if (theirs.contains(key)) continue;
+      return difference(name + " > " + other_name,
+                        "only " + name + " (" + std::to_string(ours.size()) + " against " +
+                            std::to_string(theirs.size()) + " traces): " + key);
+    }
+    for (const auto& key : theirs) {
+      if (ours.contains(key)) continue;
+      return difference(name + " < " + other_name,
+                        "only " + other_name + " (" + std::to_string(theirs.size()) + " against " +
+                            std::to_string(ours.size()) + " traces): " + key);
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Comparison> compare_traces() {
+    const auto limit = options_.max_traces + 1;
+    const auto all = solver_valuations(*base_.compiled, limit);
+    const auto enumerated = enumerated_traces(*base_.compiled, limit);
+    result_.traces = enumerated.traces.size();
+    const auto found_once = observed(enumerated);
+    if (found_once.size() != enumerated.traces.size()) {
+      return difference("enumerator", "a trace is enumerated twice");
+    }
+    if (all.complete) {
+      if (auto found = same("enumerator", found_once, "solver", observed(all))) return found;
+    }
+    if (brute_) {
+      if (auto found = against("brute force", all, enumerated, *brute_)) return found;
+    }
+    if (clingo_ && !clingo_->found.complete) {
+      if (auto failure = ask_clingo(true)) return failure;
+      if (auto found = against("clingo", {{}, false}, enumerated, clingo_->found)) return found;
+    } else if (clingo_) {
+      if (auto found = against("clingo", all, enumerated, clingo_->found)) return found;
+    }
+    if (!enumerated.complete) {
+      result_.kind = Comparison::Kind::kPart;
+      return check_part(enumerated);
+    }
+    return std::nullopt;
+  }
+
+  /// All atoms where both sides are complete, the observable ones where there are too many.
+  std::optional<Comparison> against(const std::string& name, const TraceList& all,
+                                    const TraceList& enumerated, const TraceList& theirs) const {
+    if (!theirs.complete) return std::nullopt;
+    if (all.complete) return same("parallax", in_full(all, theirs), name, in_full(theirs, all));
+    if (enumerated.complete) return same("parallax", observed(enumerated), name, observed(theirs));
+    if (theirs.traces.size() < enumerated.traces.size()) {
+      return difference("parallax > " + name, "parallax has more traces");
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Comparison> check_part(const TraceList& enumerated) const {
+    for (std::size_t i = 0; i < enumerated.traces.size(); i += 10) {
+      if (const auto violation = evaluator_->check(enumerated.traces[i])) {
+        return difference("parallax > reference evaluator",
+                          violation->text + " in " + trace_key(enumerated.traces[i], false));
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Comparison> compare_variants() const {
+    const auto variants = ground_variants();
+    std::optional<Keys> expected;
+    for (const auto& variant : variants) {
+      if (variants.size() == 1) break;
+      const FuzzCompilation compilation(text_, variant.options);
+      if (!compilation.compiled) {
+        return difference("grounding " + variant.name, compilation.codes());
+      }
+      const auto list = enumerated_traces(*compilation.compiled, options_.max_traces + 1);
+      auto found = observed(list);
+      if (!list.complete && expected && found.size() == expected->size()) continue;
+      if (!expected) {
+        expected = std::move(found);
+      } else if (auto differing = same("grounding " + variants.front().name, *expected,
+                                       "grounding " + variant.name, found)) {
+        return differing;
+      }
+    }
+    return std::nullopt;
+  }
+
+  const std::string& text_;
+  const DifferentialOptions& options_;
+  FuzzCompilation base_;
+  std::optional<compiler::ReferenceEvaluator> evaluator_;
+  std::optional<TraceList> brute_;
+  std::optional<ClingoAnswer> clingo_;
+  Comparison result_;
+};
+
+}  // namespace
+
+Comparison compare_oracles(const std::string& text, const DifferentialOptions& options) {
+  return Comparer(text, options).run();
+}
+
+}  // namespace parallax::test

@@ -1,0 +1,88 @@
+#include "tools/suite/junit.h"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+namespace parallax::tools {
+namespace {
+
+SuiteCase manifest_case(const std::string& id) {
+  return {"m/suite.yaml", id, "m/suite.yaml", harness::ManifestCase{}};
+}
+
+CaseResult result(Outcome outcome, const std::string& problem = {}) {
+  CaseResult out;
+  out.outcome = outcome;
+  if (!problem.empty()) out.problems = {problem};
+  return out;
+}
+
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST_CASE("markup and line ends become entities") {
+  CHECK(xml_escaped("a<b> & \"c\" 'd'") == "a&lt;b&gt; &amp; &quot;c&quot; &apos;d&apos;");
+  CHECK(xml_escaped("a\tb\nc\rd") == "a&#9;b&#10;c&#13;d");
+  CHECK(xml_escaped("]]>") == "]]&gt;");
+}
+
+TEST_CASE("what XML cannot hold is shown as bytes") {
+  CHECK(xml_escaped(std::string("a\0b", 3)) == "a\\x00b");
+  CHECK(xml_escaped("\x1b[31mred") == "\\x1B[31mred");
+  CHECK(xml_escaped("\xEF\xBF\xBE") == "\\xEF\\xBF\\xBE");  // U+FFFE
+  CHECK(xml_escaped("\xEF\xBF\xBD") == "\xEF\xBF\xBD");     // U+FFFD is a character
+}
+
+TEST_CASE("bytes that are no UTF-8 are shown, characters are kept") {
+  CHECK(xml_escaped("caf\xC3\xA9 \xE2\x82\xAC \xF0\x9F\x8E\x88") ==
+        "caf\xC3\xA9 \xE2\x82\xAC \xF0\x9F\x8E\x88");
+  CHECK(xml_escaped("\xC3") == "\\xC3");                             // cut off
+  CHECK(xml_escaped("\xC0\xAF") == "\\xC0\\xAF");                    // overlong
+  CHECK(xml_escaped("\xED\xA0\x80") == "\\xED\\xA0\\x80");           // surrogate
+  CHECK(xml_escaped("\xF4\x90\x80\x80") == "\\xF4\\x90\\x80\\x80");  // above U+10FFFF
+  CHECK(xml_escaped("\xC3<") == "\\xC3&lt;");
+}
+
+TEST_CASE("each outcome has its element, and the counts are of their kinds") {
+  const std::vector<SuiteCase> cases = {manifest_case("a"), manifest_case("b"), manifest_case("c"),
+                                        manifest_case("d"), manifest_case("e")};
+  const std::vector<CaseResult> results = {
+      result(Outcome::kPassed), result(Outcome::kFailed, "2 traces, expected 3 traces"),
+      result(Outcome::kError, "the program was ended by signal 11"), result(Outcome::kNotFinished),
+      result(Outcome::kSkipped)};
+  const auto text = to_junit(cases, results, "2026-01-01T00:00:00Z");
+  CHECK(holds(
+      text, R"(<testsuites name="parallax suite" tests="5" failures="1" errors="2" skipped="1")"));
+  CHECK(holds(text, R"(<failure message="2 traces, expected 3 traces" type="failed">)"));
+  CHECK(holds(text, R"(<error message="the program was ended by signal 11" type="error">)"));
+  CHECK(holds(text, R"(<error message="not finished" type="not finished"/>)"));
+  CHECK(holds(text, R"(<skipped message="not in this shard"/>)"));
+  CHECK(holds(text,
+              R"(<testcase classname="m/suite.yaml" name="a" file="m/suite.yaml" time="0.000">)"));
+}
+
+TEST_CASE("names and messages that look like markup stay text") {
+  auto one = manifest_case("a");
+  one.file = one.group = "x\"><evil>.yaml";
+  auto bad = result(Outcome::kFailed, "<b>\nsecond line");
+  bad.messages = "</system-err>\x1b";
+  const auto text = to_junit({one}, {bad}, "now");
+  CHECK_FALSE(holds(text, "<evil>"));
+  CHECK_FALSE(holds(text, "<b>"));
+  CHECK(holds(text, R"(message="&lt;b&gt;")"));
+  CHECK(holds(text, "<system-err>&lt;/system-err&gt;\\x1B</system-err>"));
+}
+
+TEST_CASE("a scenario is named by its file within its folder") {
+  const SuiteCase scenario{"s/two/edge.yaml", "s/two/edge.yaml", "s/two", harness::Expectation{}};
+  const auto text = to_junit({manifest_case("a"), scenario},
+                             {result(Outcome::kPassed), result(Outcome::kPassed)}, "now");
+  CHECK(holds(text, R"(<testsuite name="m/suite.yaml" tests="1")"));
+  CHECK(holds(text, R"(<testsuite name="s/two" tests="1")"));
+  CHECK(holds(text, R"(classname="s/two" name="edge.yaml" file="s/two/edge.yaml")"));
+}
+
+}  // namespace
+}  // namespace parallax::tools

@@ -1,0 +1,203 @@
+// `parallax suite` on manifests, as a real process.
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/cli_fixture.h"
+
+namespace parallax::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kLamp =
+    "range time 0 1\n"
+    "fluent On()\n"
+    "event Press()\n"
+    "[time] Initiates(Press(),On(),time).\n"
+    "!HoldsAt(On(),0).\n";  // pressed or not: two traces
+
+/// A folder `s` with a model of two traces and a manifest of two cases.
+class SuiteFixture : public CliFixture {
+ public:
+  SuiteFixture() {
+    fs::create_directories(folder() / "s");
+    write("s/lamp.e", kLamp);
+    write("s/suite.yaml",
+          "cases:\n"
+          "  - id: both\n"
+          "    model: lamp.e\n"
+          "    expect: {traces: 2, golden: expected/both.txt}\n"
+          "  - id: lit\n"
+          "    model: lamp.e\n"
+          "    constraints: HoldsAt(On(),time)\n"
+          "    expect: {traces: 1}\n");
+  }
+  ProcessResult suite(const std::vector<std::string>& arguments) const {
+    // The tests may themselves run under CI.
+    return suite_with({"-u", "CI"}, arguments);
+  }
+  ProcessResult suite_under_ci(const std::vector<std::string>& arguments) const {
+    return suite_with({"CI=true"}, arguments);
+  }
+
+ private:
+  /// `env SETTINGS... parallax suite s ARGUMENTS...`
+  ProcessResult suite_with(const std::vector<std::string>& settings,
+                           const std::vector<std::string>& arguments) const {
+    std::vector<std::string> command = {"/usr/bin/env"};
+    command.insert(command.end(), settings.begin(), settings.end());
+    command.insert(command.end(), {std::string(PARALLAX_BINARY_DIR) + "/parallax", "suite", "s"});
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    ProcessOptions options;
+    options.folder = folder().string();
+    return run_process(command, options);
+  }
+};
+
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST_CASE("a golden file is written on demand, held against, and its difference is shown") {
+  const SuiteFixture cli;
+  const auto missing = cli.suite({});
+  CHECK(missing.code == 1);
+  CHECK(holds(missing.err, "there is no golden file s/expected/both.txt"));
+  CHECK(missing.out == "1 passed, 1 failed\n");
+
+  CHECK(cli.suite({"--update-goldens"}).code == 0);
+  CHECK(cli.read("s/expected/both.txt") == cli.parallax({"traces", "s/lamp.e"}).out);
+  const auto passed = cli.suite({});
+  CHECK(passed.code == 0);
+  CHECK(passed.out == "2 passed, 0 failed\n");
+
+  cli.replace("s/expected/both.txt", "> Press()", "> Pull()");
+  const auto failed = cli.suite({});
+  CHECK(failed.code == 1);
+  CHECK(holds(failed.err, "FAIL  s/suite.yaml:both"));
+  CHECK(holds(failed.err, "-       > Pull()"));
+  CHECK(holds(failed.err, "+       > Press()"));
+  CHECK(failed.out == "1 passed, 1 failed\n");
+}
+
+TEST_CASE("a wrong number of traces fails, and no golden file is made of it") {
+  const SuiteFixture cli;
+  cli.replace("s/suite.yaml", "traces: 2", "traces: 3");
+  const auto result = cli.suite({"--update-goldens"});
+  CHECK(result.code == 1);
+  CHECK(holds(result.err, "2 traces, expected 3 traces"));
+  CHECK_FALSE(fs::exists(cli.folder() / "s/expected/both.txt"));
+}
+
+TEST_CASE("golden files are not rewritten under CI without force") {
+  const SuiteFixture cli;
+  const auto refused = cli.suite_under_ci({"--update-goldens"});
+  CHECK(refused.code == 2);
+  CHECK(holds(refused.err, "E7007"));
+  CHECK_FALSE(fs::exists(cli.folder() / "s/expected/both.txt"));
+  CHECK(cli.suite_under_ci({"--update-goldens", "--force"}).code == 0);
+  CHECK(fs::exists(cli.folder() / "s/expected/both.txt"));
+}
+
+TEST_CASE("there are more traces than `complete: false` asks for, or the case fails") {
+  const SuiteFixture cli;
+  cli.replace("s/suite.yaml", "{traces: 2, golden: expected/both.txt}",
+              "{traces: 1, complete: false}");
+  CHECK(cli.suite({}).code == 0);
+  cli.replace("s/suite.yaml", "traces: 1, complete", "traces: 2, complete");
+  const auto result = cli.suite({});
+  CHECK(result.code == 1);
+  CHECK(holds(result.err, "2 traces, expected 2 traces and more"));
+}
+
+TEST_CASE("a horizon replaces that of the model") {
+  const SuiteFixture cli;
+  cli.replace("s/suite.yaml", "{traces: 2, golden: expected/both.txt}", "{traces: 8}");
+  cli.replace("s/suite.yaml", "id: both", "id: both\n    horizon: 3");
+  CHECK(cli.suite({}).code == 0);  // pressed or not at 0, 1, 2
+}
+
+TEST_CASE("a model that is refused is an error of its case, not of the suite") {
+  const SuiteFixture cli;
+  cli.write("s/lamp.e", std::string(kLamp) + "HoldsAt(Off(),0).\n");
+  const auto result = cli.suite({"--junit", "report.xml"});
+  CHECK(result.code == 1);
+  CHECK(result.out == "0 passed, 0 failed, 2 without an answer\n");
+  CHECK(holds(result.err, "the input was refused"));
+  CHECK(holds(result.err, "`Off`"));
+  CHECK(holds(cli.read("report.xml"), R"(errors="2")"));
+}
+
+TEST_CASE("a limit that ends a case is an error of that case") {
+  const SuiteFixture cli;
+  // A million and more traces, which cannot be listed in a hundredth of a second.
+  cli.replace("s/suite.yaml", "id: both", "id: both\n    horizon: 25\n    limits: {time_s: 0.01}");
+  const auto result = cli.suite({});
+  CHECK(result.code == 1);
+  CHECK(holds(result.err, "inconclusive: a limit ended it first"));
+  CHECK(result.out == "1 passed, 0 failed, 1 without an answer\n");
+}
+
+TEST_CASE("a broken manifest is refused before anything runs") {
+  const SuiteFixture cli;
+  cli.replace("s/suite.yaml", "id: lit", "id: both");
+  const auto result = cli.suite({});
+  CHECK(result.code == 3);
+  CHECK(holds(result.err, "suite.yaml:5:9"));
+  CHECK(result.out.empty());
+}
+
+TEST_CASE("only what failed last time is run again") {
+  const SuiteFixture cli;
+  const auto none = cli.suite({"--rerun-failed"});
+  CHECK(none.code == 2);
+  CHECK(holds(none.err, "E7008"));
+  CHECK(cli.suite({}).code == 1);
+  const auto again = cli.suite({"--rerun-failed"});
+  CHECK(again.out == "0 passed, 1 failed\n");
+  CHECK(holds(again.err, "s/suite.yaml:both"));
+  CHECK_FALSE(holds(again.err, "s/suite.yaml:lit"));
+  CHECK(cli.suite({"--rerun-failed", "--update-goldens"}).out == "1 passed, 0 failed\n");
+  const auto nothing = cli.suite({"--rerun-failed"});
+  CHECK(nothing.code == 0);
+  CHECK(nothing.out == "0 passed, 0 failed\n");
+}
+
+TEST_CASE("the shards together run every case once") {
+  const SuiteFixture cli;
+  REQUIRE(cli.suite({"--update-goldens"}).code == 0);
+  std::int64_t passed = 0;
+  for (const auto* shard : {"1/3", "2/3", "3/3"}) {
+    const auto result = cli.suite({"--shard", shard, "--json"});
+    CHECK(result.code == 0);
+    const auto document = nlohmann::json::parse(result.out);
+    CHECK(document["cases"].size() == 2);
+    CHECK(document["passed"].get<int>() + document["skipped"].get<int>() == 2);
+    passed += document["passed"].get<std::int64_t>();
+  }
+  CHECK(passed == 2);
+  CHECK(cli.suite({"--shard", "4/3"}).code == 2);
+}
+
+TEST_CASE("--only picks cases by their names") {
+  const SuiteFixture cli;
+  CHECK(cli.suite({"--only", "suite.yaml:lit"}).out == "1 passed, 0 failed\n");
+  const auto none = cli.suite({"--only", "nothing"});
+  CHECK(none.code == 2);
+  CHECK(holds(none.err, "no case is to be found here"));
+}
+
+TEST_CASE("scenarios and model expectations are cases side by side") {
+  const SuiteFixture cli;
+  REQUIRE(cli.suite({"--update-goldens"}).code == 0);
+  const auto result = cli.parallax({"suite", "s", "wrong_model.yaml", "--json"});
+  CHECK(result.code == 0);
+  const auto document = nlohmann::json::parse(result.out);
+  CHECK(document["passed"] == 3);
+  CHECK(document["cases"][0]["case"] == "wrong_model.yaml");
+}
+
+}  // namespace
+}  // namespace parallax::test

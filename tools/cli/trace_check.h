@@ -1,0 +1,42 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include "compiler/base/diagnostic.h"
+#include "compiler/reference/reference_evaluator.h"
+#include "runtime/trace/trace.h"
+
+namespace parallax::tools {
+
+/// `--check`: holds traces against the reference evaluator, which shares nothing with the way they
+/// were found. Standard meaning only. A plan's control flow and the state constraints of a scenario
+/// are not part of the model and are not looked at.
+class TraceCheck {
+ public:
+  /// All three outlive the check; raising `stop`, which may be null, ends it early.
+  TraceCheck(const compiler::TypedModel& typed, const std::atomic<bool>* stop,
+             base::DiagnosticSink& sink)
+      : typed_(typed), stop_(stop), sink_(sink) {}
+
+  /// Reports E7201 for a trace that does not satisfy the model, with its further violations as
+  /// notes; E7202, once, where the model is too large for the check.
+  void check(const runtime::Trace& trace);
+  /// The traces that were checked to the end, whatever the outcome.
+  std::int64_t checked() const { return checked_; }
+  bool agreed() const { return !disagreed_ && !given_up_; }
+
+ private:
+  void give_up(const runtime::Trace& trace, const std::string& reason);
+  void report(const runtime::Trace& trace, const std::vector<compiler::Violation>& violations);
+
+  const compiler::TypedModel& typed_;
+  const std::atomic<bool>* stop_;
+  base::DiagnosticSink& sink_;
+  std::unique_ptr<compiler::ReferenceEvaluator> evaluator_;  // made for the first trace
+  std::int64_t checked_ = 0;
+  bool disagreed_ = false, given_up_ = false;
+};
+
+}  // namespace parallax::tools

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "harness/config/scenario.h"
+#include "harness/config/suite_manifest.h"
+
+namespace parallax::tools {
+
+/// One thing that a suite checks: a scenario file with `expect`, or a case of a manifest.
+struct SuiteCase {
+  std::string file;   // the scenario or the manifest, as the user's path leads to it
+  std::string id;     // of the case; of a scenario its file
+  std::string group;  // what JUnit calls the class: the manifest, or the scenario's folder
+  std::variant<harness::Expectation, harness::ManifestCase> check;
+
+  /// Unique in a suite, and what --only looks at: `FILE`, or `FILE:ID`.
+  std::string name() const { return id == file ? file : file + ':' + id; }
+};
+
+enum class Outcome : std::uint8_t {
+  kPassed,
+  kFailed,       // the answer is another one than expected
+  kError,        // no answer: a crash, a limit, a refused input
+  kNotFinished,  // the suite ended first
+  kSkipped,      // in another shard
+};
+std::string_view to_string(Outcome outcome);
+
+struct CaseResult {
+  Outcome outcome = Outcome::kNotFinished;
+  std::vector<std::string> problems;  // a sentence each; further lines are details
+  std::string messages;               // what the program wrote to standard error
+  bool golden_written = false;
+  double wall_s = 0.0;
+};
+
+/// The cases below the paths, sorted by group and id: manifests (a key `cases` at the outermost
+/// level), scenarios with `expect`, and scenarios that are broken but meant as a case, which must
+/// not pass by being skipped. A broken manifest and a missing path are reported.
+base::Result<std::vector<SuiteCase>> find_cases(const std::vector<std::string>& paths,
+                                                base::SourceFiles& files,
+                                                base::DiagnosticSink& sink);
+
+}  // namespace parallax::tools

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "tools/suite/suite_results.h"
+
+namespace parallax::tools {
+
+/// The results of a running suite, kept on disk while it runs: every case stands there as not
+/// finished from the beginning, and the files are written anew at most once a second. Thread-safe.
+class SuiteRecord {
+ public:
+  /// `junit` may be empty: then no such report is written. `earlier` is kept beside the new
+  /// results. Cases of `skipped` (parallel to `cases`) are marked so. Call `save` before the first
+  /// case.
+  SuiteRecord(std::vector<SuiteCase> cases, const std::vector<bool>& skipped,
+              std::filesystem::path folder, std::filesystem::path junit, EarlierResults earlier);
+
+  const std::vector<SuiteCase>& cases() const { return cases_; }
+  const std::vector<CaseResult>& results() const { return results_; }
+  void finish(std::size_t index, CaseResult result);
+  /// Writes the files; reports kFileNotWritable.
+  base::Status save(base::DiagnosticSink& sink);
+  std::size_t count(Outcome outcome) const;
+
+ private:
+  std::vector<SuiteCase> cases_;
+  std::vector<CaseResult> results_;
+  std::filesystem::path folder_, junit_;
+  EarlierResults earlier_;
+  std::string timestamp_;  // of the beginning, ISO 8601
+  std::chrono::steady_clock::time_point last_save_;
+  std::mutex mutex_;
+};
+
+}  // namespace parallax::tools

@@ -1,0 +1,155 @@
+#include "tools/suite/suite_runner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "compiler/base/file_io.h"
+#include "tools/suite/child_process.h"
+#include "tools/suite/expectation.h"
+#include "tools/suite/text_difference.h"
+
+namespace parallax::tools {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Why a command that ended with this code gave no answer.
+std::string no_answer(int code) {
+  if (code < 0) return "the program could not be started";
+  if (code == 2 || code == 3) return "the input was refused";
+  if (code == 4) return "inconclusive: a limit ended it first";
+  if (code > 128) return fmt::format("the program was ended by signal {}", code - 128);
+  return fmt::format("the program ended with exit code {}", code);
+}
+
+void report_no_answer(const ChildResult& child, CaseResult& result) {
+  result.outcome = Outcome::kError;
+  result.problems = {no_answer(child.code)};
+}
+
+void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
+                  const RunnerOptions& options, const std::atomic<bool>& stop, CaseResult& result) {
+  auto name = one.file;
+  std::replace(name.begin(), name.end(), '/', '_');
+  const auto folder = options.out / name;
+  std::error_code ignored;
+  fs::remove_all(folder, ignored);
+  const auto child =
+      run_this_program({"run", one.file, "--json", "--seed", std::to_string(options.seed), "--out",
+                        folder.string(), "--quiet", "--color=never"},
+                       stop);
+  result.messages = child.err;
+  // Exit code 1 is a finding and 4 a verdict that may be the expected one; both give a document.
+  const bool answered = child.code == 0 || child.code == 1 || child.code == 4;
+  if (!answered) return report_no_answer(child, result);
+  result.problems = unmet(expect, child.out);
+}
+
+std::vector<std::string> traces_command(const harness::ManifestCase& one) {
+  std::vector<std::string> words = {"traces"};
+  for (const auto& model : one.models) words.push_back(model.text);
+  for (const auto& constraint : one.constraints) {
+    words.insert(words.end(), {"--until", constraint.text});
+  }
+  if (one.horizon) words.insert(words.end(), {"--horizon", std::to_string(*one.horizon)});
+  const auto limit = one.expect.complete ? 0 : one.expect.traces.value_or(0);
+  words.insert(words.end(), {"--limit", std::to_string(limit)});
+  words.insert(words.end(), {"--time-limit", fmt::format("{}", one.time_limit_s)});
+  if (one.memory_limit_mb) {
+    words.insert(words.end(), {"--memory-limit", std::to_string(*one.memory_limit_mb)});
+  }
+  words.insert(words.end(), {"--quiet", "--color=never"});
+  return words;
+}
+
+/// What the document of `parallax traces --json` says against the expected number.
+void compare_count(const harness::TraceExpectation& expect, const std::string& document,
+                   CaseResult& result) {
+  const auto found = nlohmann::json::parse(document, nullptr, false);
+  if (found.is_discarded() || !found.is_object() || found.value("status", "") != "ok") {
+    result.problems.push_back("the program printed no result");
+    return;
+  }
+  const auto traces = found.value("traces", std::int64_t{-1});
+  // Complete up to the horizon is all that a case asks for.
+  const bool complete = found.value("exploration", "stopped") != "stopped";
+  if (traces == *expect.traces && complete == expect.complete) return;
+  const auto phrase = [](std::int64_t count, bool all) {
+    return fmt::format("{} trace{}{}", count, count == 1 ? "" : "s", all ? "" : " and more");
+  };
+  result.problems.push_back(fmt::format("{}, expected {}", phrase(traces, complete),
+                                        phrase(*expect.traces, expect.complete)));
+}
+
+void compare_golden(const std::string& path, const std::string& text, bool update,
+                    CaseResult& result) {
+  base::DiagnosticSink sink;
+  std::error_code error;
+  const bool exists = fs::exists(path, error);
+  const auto expected = exists ? base::read_file(path, sink) : base::Result<std::string>("");
+  if (exists && expected && *expected == text) return;
+  if (update && result.problems.empty()) {
+    fs::create_directories(fs::path(path).parent_path(), error);
+    result.golden_written = static_cast<bool>(base::write_file_atomically(path, text, sink));
+    if (!result.golden_written) result.problems.push_back(fmt::format("cannot write {}", path));
+    return;
+  }
+  if (!exists) {
+    result.problems.push_back(
+        fmt::format("there is no golden file {}; --update-goldens writes it", path));
+  } else if (!expected) {
+    result.problems.push_back(fmt::format("cannot read {}", path));
+  } else {
+    result.problems.push_back(
+        fmt::format("the traces are not those of {}\n{}", path, text_difference(*expected, text)));
+  }
+}
+
+void run_traces(const harness::ManifestCase& one, const RunnerOptions& options,
+                const std::atomic<bool>& stop, CaseResult& result) {
+  const auto command = traces_command(one);
+  if (one.expect.traces) {
+    auto words = command;
+    words.emplace_back("--json");
+    // Counting goes on to the end, so it answers only whether these are all.
+    if (one.expect.complete) words.emplace_back("--count");
+    const auto child = run_this_program(words, stop);
+    result.messages = child.err;
+    if (child.code != 0) return report_no_answer(child, result);
+    compare_count(one.expect, child.out, result);
+  }
+  if (one.expect.golden) {
+    const auto child = run_this_program(command, stop);
+    result.messages = child.err;
+    if (child.code != 0) return report_no_answer(child, result);
+    compare_golden(one.expect.golden->text, child.out, options.update_goldens, result);
+  }
+}
+
+}  // namespace
+
+CaseResult run_case(const SuiteCase& one, const RunnerOptions& options,
+                    const std::atomic<bool>& stop) {
+  const auto begin = std::chrono::steady_clock::now();
+  CaseResult result;
+  result.outcome = Outcome::kPassed;
+  if (const auto* scenario = std::get_if<harness::Expectation>(&one.check)) {
+    run_scenario(one, *scenario, options, stop, result);
+  } else {
+    run_traces(std::get<harness::ManifestCase>(one.check), options, stop, result);
+  }
+  if (result.outcome == Outcome::kPassed && !result.problems.empty()) {
+    result.outcome = Outcome::kFailed;
+  }
+  // A process that was cut off says nothing about the case.
+  if (stop.load()) result = CaseResult{};
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  result.wall_s = wall.count();
+  return result;
+}
+
+}  // namespace parallax::tools
