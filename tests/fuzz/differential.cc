@@ -183,6 +183,8 @@ class Comparer {
     for (const auto& variant : variants) {
       if (variants.size() == 1) break;
       const FuzzCompilation compilation(text_, variant.options);
+      // Expanded over all timepoints, a contradiction between them shows while grounding already.
+      if (compilation.codes() == "E3003" && expected && expected->empty()) continue;
       if (!compilation.compiled) {
         return difference("grounding " + variant.name, compilation.codes());
       }
