@@ -83,6 +83,10 @@ struct Origin {
   std::string what;  // "axiom", "effect axiom", "frame axiom", "plan step", "state constraint"
 };
 
+/// `Origin::what` of clauses that follow from the others and only shorten the search: an
+/// explanation must not rest on them.
+inline constexpr std::string_view kInvariantOrigin = "state invariant";
+
 /// An argument of a plan step for the controllers, as the designator gave it.
 using PlanValue = std::variant<double, std::int64_t, std::string>;
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "compiler/artifact/compiled_model.h"
@@ -103,6 +104,15 @@ class GroundModel {
   /// The horizon from which on every atom of the formula exists.
   Timepoint needed_horizon_of(FormulaId formula) const;
 
+  /// Notes that the grounder looked at so many instances of a text.
+  void charge(base::SourceRange source, std::int64_t instances) {
+    charges_.emplace_back(source, instances);
+  }
+  /// In the order of grounding; a text may have several entries.
+  const std::vector<std::pair<base::SourceRange, std::int64_t>>& charges() const {
+    return charges_;
+  }
+
   const std::vector<Constraint>& constraints() const { return constraints_; }
   const std::vector<Origin>& origins() const { return origins_; }
 
@@ -125,6 +135,7 @@ class GroundModel {
   std::vector<std::string> names_;
   std::vector<Constraint> constraints_;
   std::vector<Origin> origins_;
+  std::vector<std::pair<base::SourceRange, std::int64_t>> charges_;
 };
 
 }  // namespace parallax::compiler

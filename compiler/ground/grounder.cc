@@ -7,6 +7,7 @@
 #include "compiler/ground/completion.h"
 #include "compiler/ground/effects.h"
 #include "compiler/ground/formula_grounder.h"
+#include "compiler/ground/invariants.h"
 #include "compiler/ground/narrative.h"
 #include "compiler/ground/reachability.h"
 #include "compiler/ground/rigid.h"
@@ -72,7 +73,9 @@ class Grounder {
     completion_.write();
     assert_trajectories(model_, rows_, grounder_);
     assert_inertia(model_, rows_, standard_ && options_.templates);
+    if (standard_ && options_.templates && options_.invariants) add_invariants(model_, rows_);
     if (!standard_) deny_unmentioned();
+    grounder_.start({});  // charges what the last axiom took
   }
 
   template <typename Wanted>

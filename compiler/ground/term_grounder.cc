@@ -18,6 +18,7 @@ TermGrounder::TermGrounder(GroundModel& model, const GroundOptions& options,
 }
 
 void TermGrounder::start(base::SourceRange blame) {
+  if (spent_ > 0) model_->charge(blame_, spent_);
   spent_ = 0;
   failed_ = false;
   blame_ = blame;

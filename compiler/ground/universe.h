@@ -24,6 +24,8 @@ struct GroundOptions {
   /// Off: every instance at every timepoint, from whole sorts. The models are the same.
   bool templates = true;  // say once what holds at every timepoint
   bool relevance = true;  // leave out what no trace can reach
+  /// Add what follows by induction (compiler/ground/invariants.h); needs `templates`.
+  bool invariants = true;
 };
 
 /// The domain of every sort as ground terms, in the order that fixes all numbering: subsorts in

@@ -106,6 +106,7 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
   }
   Compilation result;
   result.model = encode(*ground);
+  if (input.costs) result.costs = axiom_costs(*ground, result.model);
   result.model.has_constraints = !constraints->empty();
   if (plan) {
     result.model.plan = plan_steps(plan->graph);

@@ -9,6 +9,7 @@
 #include "compiler/artifact/compiled_model.h"
 #include "compiler/base/diagnostic.h"
 #include "compiler/ground/universe.h"
+#include "compiler/pipeline/axiom_cost.h"
 #include "compiler/plan/plan_graph.h"
 #include "compiler/plan/pose_locator.h"
 #include "compiler/sema/typed_model.h"
@@ -38,12 +39,14 @@ struct CompileInput {
   std::optional<PlanInput> plan;
   std::vector<ConstraintText> constraints;
   GroundOptions ground;
+  bool costs = false;  // also count what each axiom costs
   bool lint = false;  // also report what is legal but hardly meant (W21xx)
 };
 
 struct Compilation {
   CompiledModel model;
   std::unique_ptr<TypedModel> typed;  // the checked model, for an independent evaluation
+  std::vector<AxiomCost> costs;       // if asked for
   std::optional<PlanGraph> plan;      // the unrolled control flow, for dumps
 };
 

@@ -11,7 +11,8 @@ class SelectedModel {
       : solver_(std::move(solver)), first_selector_(model.variable_count() + 1) {
     std::vector<Literal> clause;
     for (std::size_t i = 0; i < model.clauses.size(); ++i) {
-      if (model.clause_timepoints[i] > n) continue;
+      const auto& origin = model.origins[model.clause_origins[i]];
+      if (model.clause_timepoints[i] > n || origin.what == compiler::kInvariantOrigin) continue;
       clause.assign(model.clauses[i].begin(), model.clauses[i].end());
       if (!model.clause_is_definition[i]) clause.push_back(~selector(model.clause_origins[i]));
       solver_->add_clause(clause);

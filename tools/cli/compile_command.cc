@@ -14,6 +14,14 @@ struct CompileOptions {
   std::string emit = "cnf";
 };
 
+/// The table goes to standard error: standard output may hold the artifact.
+void report_costs(const CompileOptions& options, const compiler::Compilation& compilation,
+                  Invocation& invocation) {
+  if (options.model.stats && !invocation.options().json) {
+    write_error(compiler::cost_table(compilation.costs, invocation.files()));
+  }
+}
+
 int write_front_end_stage(const CompileOptions& options, Invocation& invocation) {
   const auto text = front_end_text(options.emit, options.model, invocation);
   if (!text) return 0;
@@ -34,6 +42,7 @@ int compile_and_write(const CompileOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
+  report_costs(options, *compilation, invocation);
   std::string text;
   if (options.emit == "cnf") {
     text = compiler::to_dimacs(compilation->model, invocation.files());
@@ -56,9 +65,13 @@ int compile_and_write(const CompileOptions& options, Invocation& invocation) {
                                   compilation->model.variable_count(),
                                   compilation->model.clauses.size(), compilation->model.horizon));
     if (invocation.options().json) {
-      invocation.document(fmt::format("{{\"status\":\"ok\",\"variables\":{},\"clauses\":{}}}\n",
+      const auto axioms =
+          options.model.stats
+              ? ",\"axioms\":" + compiler::cost_json(compilation->costs, invocation.files())
+              : "";
+      invocation.document(fmt::format("{{\"status\":\"ok\",\"variables\":{},\"clauses\":{}{}}}\n",
                                       compilation->model.variable_count(),
-                                      compilation->model.clauses.size()));
+                                      compilation->model.clauses.size(), axioms));
     }
   }
   return 0;
@@ -73,8 +86,11 @@ Command add_compile_command(CLI::App& app) {
   command->footer(
       "Examples:\n"
       "  parallax compile domain.e start.e --horizon 6 -o start.dec.cnf\n"
+      "  parallax compile domain.e --stats -o domain.dec.cnf\n"
       "  parallax compile scenarios/two_regions/edge.yaml --emit=cfg");
   add_model_options(*command, options->model);
+  command->add_flag("--stats", options->model.stats,
+                    "Show on standard error what each axiom costs, dearest first");
   command->add_option("-o,--output", options->out, "File to write; default: standard output");
   command
       ->add_option("--emit", options->emit,

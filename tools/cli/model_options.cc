@@ -25,6 +25,7 @@ compiler::CompileInput compile_input(const ModelOptions& options) {
   if (options.horizon >= 0) input.horizon = options.horizon;
   if (!options.compat.empty()) input.ground.meaning = compiler::Meaning::kDecreasoner;
   input.ground.stop = &stop_flag();
+  input.costs = options.stats;
   return input;
 }
 

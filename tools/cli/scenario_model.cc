@@ -86,14 +86,15 @@ base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scen
 }  // namespace
 
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
-                                                Invocation& invocation) {
+                                                Invocation& invocation, bool costs) {
   auto& sink = invocation.sink();
   auto scenario = harness::load_scenario(path, invocation.files(), sink);
   if (!scenario) return sink.already_reported();
   auto scenario_hash = harness::hash_of_sources(invocation.files());
   const RegionLocator locator(scenario->mapping->regions());
-  const auto input = compile_input(*scenario, locator, invocation);
+  auto input = compile_input(*scenario, locator, invocation);
   if (!input) return sink.already_reported();
+  input->costs = costs;
   auto compilation = compiler::compile_model(*input, invocation.files(), sink);
   if (!compilation) return sink.already_reported();
   const auto& model = compilation->model;
@@ -109,7 +110,7 @@ base::Result<compiler::Compilation> compile_models(const ModelOptions& options,
                                                    Invocation& invocation) {
   const auto& first = options.models.front();
   if (options.models.size() == 1 && (first.ends_with(".yaml") || first.ends_with(".yml"))) {
-    auto loaded = load_scenario_model(first, invocation);
+    auto loaded = load_scenario_model(first, invocation, options.stats);
     if (!loaded) return invocation.sink().already_reported();
     return std::move(loaded->compilation);
   }

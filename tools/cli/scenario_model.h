@@ -19,9 +19,9 @@ struct ScenarioModel {
 };
 
 /// Reads the scenario, compiles model, plan and constraints, and holds the mapping and the actions
-/// against the model.
+/// against the model. `costs`: also count what each axiom costs.
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
-                                                Invocation& invocation);
+                                                Invocation& invocation, bool costs = false);
 
 /// What the models on the command line compile to; a single .yaml is a scenario.
 base::Result<compiler::Compilation> compile_models(const ModelOptions& options,

@@ -1,0 +1,210 @@
+#include "compiler/ground/invariants.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "compiler/ground/reachability.h"
+#include "compiler/ground/step_facts.h"
+
+namespace parallax::compiler {
+namespace {
+
+using Group = std::vector<std::uint32_t>;  // fluents, ascending
+
+/// The instances of each fluent symbol that differ in one argument, for each of its arguments.
+std::vector<Group> candidates(const GroundModel& model) {
+  std::map<std::pair<std::uint32_t, std::vector<std::uint32_t>>, Group> groups;
+  std::vector<Group> result;
+  std::size_t widest = 0;
+  for (const auto fluent : model.fluents())
+    widest = std::max(widest, model.terms().arguments(fluent).size());
+  for (std::size_t counted = 0; counted < widest; ++counted) {
+    groups.clear();
+    for (std::uint32_t f = 0; f < model.fluents().size(); ++f) {
+      const auto arguments = model.terms().arguments(model.fluents()[f]);
+      if (counted >= arguments.size() || !model.may_hold(f)) continue;
+      std::vector<std::uint32_t> others;
+      for (std::size_t i = 0; i < arguments.size(); ++i) {
+        if (i != counted) others.push_back(arguments[i].index());
+      }
+      const auto symbol = model.terms()[model.fluents()[f]].symbol;
+      groups[{symbol.index(), std::move(others)}].push_back(f);
+    }
+    for (auto& [key, group] : groups) {
+      if (group.size() > 1 && group.size() <= kMaxGroup) result.push_back(std::move(group));
+    }
+  }
+  return result;
+}
+
+class InvariantFinder {
+ public:
+  InvariantFinder(GroundModel& model, const EffectRows& rows)
+      : model_(model), rows_(rows), facts_(model), initial_(initial_values(model)) {
+    for (const auto& row : rows.always()) rows_of_[row.fluent].push_back(&row);
+  }
+
+  void run() {
+    for (const auto& group : candidates(model_)) {
+      if (!is_inertial(group)) continue;
+      const auto true_at_0 = count_true_at_0(group);
+      if (!true_at_0 || *true_at_0 > 1 || !at_most_one_is_kept(group)) continue;
+      add_at_most_one(group);
+      if (*true_at_0 == 1 && one_is_kept(group)) add_at_least_one(group);
+    }
+  }
+
+ private:
+  bool is_inertial(const Group& group) const {
+    return std::all_of(group.begin(), group.end(), [&](std::uint32_t f) {
+      return !model_.can_be_released(f) && !model_.fluent_symbol(f).noninertial &&
+             rows_.is_uniform(f);
+    });
+  }
+
+  /// None: something is not stated.
+  std::optional<std::size_t> count_true_at_0(const Group& group) const {
+    std::size_t count = 0;
+    for (const auto f : group) {
+      if (initial_[f] == Truth::kUnknown) return std::nullopt;
+      if (initial_[f] == Truth::kTrue) ++count;
+    }
+    return count;
+  }
+
+  /// The rows that change members of the group; null if there are too many.
+  std::optional<std::vector<const EffectRow*>> rows_of(const Group& group, EffectKind kind) const {
+    std::vector<const EffectRow*> result;
+    for (const auto f : group) {
+      const auto found = rows_of_.find(f);
+      if (found == rows_of_.end()) continue;
+      for (const auto* row : found->second) {
+        if (row->kind == kind) result.push_back(row);
+      }
+      if (result.size() > kMaxGroupRows) return std::nullopt;
+    }
+    return result;
+  }
+
+  /// What is known when the row takes effect, given that at most one member holds.
+  StateFacts facts_in(const EffectRow& row, const Group& group) const {
+    auto facts = facts_.of(row);
+    const auto holds = [&](std::uint32_t f) {
+      const auto found = facts.find(f);
+      return found != facts.end() && found->second;
+    };
+    const auto known = std::find_if(group.begin(), group.end(), holds);
+    if (known == group.end()) return facts;
+    for (const auto f : group) {
+      if (f != *known) facts.emplace(f, false);
+    }
+    return facts;
+  }
+
+  /// With these facts, does the event do this to the fluent?
+  bool changes(EffectKind kind, std::uint32_t event, std::uint32_t fluent,
+               const StateFacts& facts) const {
+    const auto found = rows_of_.find(fluent);
+    if (found == rows_of_.end()) return false;
+    return std::any_of(found->second.begin(), found->second.end(), [&](const EffectRow* row) {
+      return row->kind == kind && row->event == event && facts_.implied(row->condition, facts);
+    });
+  }
+
+  bool at_most_one_is_kept(const Group& group) const {
+    const auto initiations = rows_of(group, EffectKind::kInitiates);
+    if (!initiations) return false;
+    std::vector<StateFacts> facts;
+    for (const auto* row : *initiations) {
+      facts.push_back(facts_in(*row, group));
+      if (!others_are_false_after(*row, facts.back(), group)) return false;
+    }
+    for (std::size_t i = 0; i < initiations->size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const auto &row = *(*initiations)[i], &other = *(*initiations)[j];
+        if (row.fluent != other.fluent && !cannot_coincide(row, facts[i], other, facts[j])) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  /// Unless another event initiates them.
+  bool others_are_false_after(const EffectRow& row, const StateFacts& facts,
+                              const Group& group) const {
+    return std::all_of(group.begin(), group.end(), [&](std::uint32_t other) {
+      if (other == row.fluent) return true;
+      const auto found = facts.find(other);
+      if (found != facts.end() && !found->second) return true;
+      auto with_other = facts;
+      with_other[other] = true;
+      return changes(EffectKind::kTerminates, row.event, other, with_other);
+    });
+  }
+
+  bool cannot_coincide(const EffectRow& row, const StateFacts& facts, const EffectRow& other,
+                       const StateFacts& other_facts) const {
+    if (row.event != other.event && facts_.exclusive(row.event, other.event)) return true;
+    const bool contradiction = std::any_of(facts.begin(), facts.end(), [&](const auto& fact) {
+      const auto found = other_facts.find(fact.first);
+      return found != other_facts.end() && found->second != fact.second;
+    });
+    // What one event initiates and another terminates at once has no trace (DEC9, DEC10).
+    return contradiction || changes(EffectKind::kTerminates, row.event, other.fluent, facts) ||
+           changes(EffectKind::kTerminates, other.event, row.fluent, other_facts);
+  }
+
+  /// Who terminates the member that holds initiates another.
+  bool one_is_kept(const Group& group) const {
+    const auto terminations = rows_of(group, EffectKind::kTerminates);
+    if (!terminations) return false;
+    return std::all_of(terminations->begin(), terminations->end(), [&](const EffectRow* row) {
+      auto facts = facts_.of(*row);
+      const auto found = facts.find(row->fluent);
+      if (found != facts.end() && !found->second) return true;  // did not hold
+      for (const auto f : group) facts[f] = f == row->fluent;
+      return std::any_of(group.begin(), group.end(), [&](std::uint32_t f) {
+        return changes(EffectKind::kInitiates, row->event, f, facts);
+      });
+    });
+  }
+
+  std::uint32_t origin_of(const Group& group) {
+    return model_.add_origin(model_.fluent_symbol(group[0]).declared,
+                             std::string(kInvariantOrigin));
+  }
+
+  void add_at_most_one(const Group& group) {
+    const auto origin = origin_of(group);
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const auto both =
+            model_.formulas().conjunction(model_.holds(group[i], 0), model_.holds(group[j], 0));
+        model_.require_always(~both, origin, 0);
+      }
+    }
+  }
+
+  void add_at_least_one(const Group& group) {
+    std::vector<FormulaId> members;
+    for (const auto f : group) members.push_back(model_.holds(f, 0));
+    model_.require_always(model_.formulas().disjunction(members), origin_of(group), 0);
+  }
+
+  GroundModel& model_;
+  const EffectRows& rows_;
+  StepFacts facts_;
+  std::vector<Truth> initial_;                                      // by fluent, at 0
+  std::map<std::uint32_t, std::vector<const EffectRow*>> rows_of_;  // by fluent
+};
+
+}  // namespace
+
+void add_invariants(GroundModel& model, const EffectRows& rows) {
+  if (model.horizon() > 0) InvariantFinder(model, rows).run();
+}
+
+}  // namespace parallax::compiler

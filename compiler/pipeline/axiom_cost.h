@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/artifact/compiled_model.h"
+#include "compiler/base/source_file.h"
+#include "compiler/ground/ground_model.h"
+
+namespace parallax::compiler {
+
+/// What one source text costs: an axiom, an effect axiom, the declaration of a fluent (its frame
+/// axioms and invariants), a plan step, a state constraint.
+struct AxiomCost {
+  base::SourceRange source;
+  std::string what;  // as Origin::what
+  /// Instances of its atoms in a full expansion over all sorts, known before grounding; 0 where the
+  /// text is no formula of the model. Stays at the greatest number if it is beyond 64 bits.
+  std::uint64_t product = 0;
+  std::int64_t instances = 0;  // that the grounder looked at
+  std::size_t clauses = 0, literals = 0;
+};
+
+/// One entry for each text, dearest first: by clauses, then instances, then place.
+/// Linear in the model.
+std::vector<AxiomCost> axiom_costs(const GroundModel& ground, const CompiledModel& compiled);
+
+/// Instances of atoms and comparisons in a full expansion; the greatest number stands for all that
+/// is beyond 64 bits.
+std::uint64_t expansion_size(const TypedModel& model, const Universe& universe,
+                             TypedFormulaId formula);
+
+/// An aligned table with a line for each entry and one for the sum.
+std::string cost_table(const std::vector<AxiomCost>& costs, const base::SourceFiles& files);
+/// The same as a JSON array.
+std::string cost_json(const std::vector<AxiomCost>& costs, const base::SourceFiles& files);
+
+}  // namespace parallax::compiler
