@@ -20,8 +20,8 @@ Atom CompiledModel::atom(std::int32_t v) const {
 }
 
 void CompiledModel::for_each_atom(
-    const std::function<void(std::int32_t, AtomKind, const std::string&,
-                             std::optional<Timepoint>)>& visit) const {
+    const std::function<void(std::int32_t, AtomKind, const std::string&, std::optional<Timepoint>)>&
+        visit) const {
   for (Timepoint t = 0; t <= horizon; ++t) {
     for (const auto& fluent : fluents) {
       if (fluent.slot) visit(variable(*fluent.slot, t), AtomKind::kHoldsAt, fluent.name, t);

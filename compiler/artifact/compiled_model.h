@@ -76,11 +76,22 @@ class ClauseList {
   std::vector<std::size_t> ends_;
 };
 
+/// A range of a source text as messages print it; it outlives the text.
+struct TextPlace {
+  std::string file;  // as the user named it
+  base::LineColumn begin;
+  base::LineColumn end;  // one column beyond the last
+  friend bool operator==(const TextPlace&, const TextPlace&) = default;
+};
+
 /// Where a clause comes from: an axiom, an effect axiom, a perform, a state constraint. Clauses
 /// that no text asks for (frame axioms DEC5 to DEC8) carry the declaration of their fluent.
 struct Origin {
-  base::SourceRange source;
-  std::string what;  // "axiom", "effect axiom", "frame axiom", "plan step", "state constraint"
+  base::SourceRange source;  // of a model that was read from an artifact: a line of that file
+  std::string what;       // "axiom", "effect axiom", "frame axiom", "plan step", "state constraint"
+  std::string id = {};    // unique in the model; depends on `what` and the text alone
+  TextPlace place = {};   // where `source` was when the model was compiled
+  std::string text = {};  // of the source, on one line, without comments
 };
 
 /// `Origin::what` of clauses that follow from the others and only shorten the search: an
@@ -96,6 +107,14 @@ struct PlanStep {
   base::SourceRange source;
   std::string failure_class;
   std::map<std::string, PlanValue, std::less<>> arguments;
+  TextPlace place = {};  // as in Origin
+};
+
+/// A text that took part in the compilation.
+struct SourceText {
+  std::string name;
+  std::uint64_t hash = 0;  // FNV-1a over its bytes
+  friend bool operator==(const SourceText&, const SourceText&) = default;
 };
 
 std::vector<std::string> names_of(const std::vector<GroundName>& ground);
@@ -122,6 +141,10 @@ struct Section {
 /// Every clause has a timepoint, the horizon that its atoms need: the clauses with a timepoint of
 /// at most n are the model with horizon n.
 struct CompiledModel {
+  std::string producer;                        // "parallax 0.3.0"; empty: not said
+  std::vector<SourceText> sources;             // in the order of loading
+  std::map<std::string, std::string> options;  // that the meaning depends on
+
   Timepoint horizon = 0;
   std::vector<Atom> fixed;  // fixed[v - 1] is variable v
   std::vector<Slot> slots;

@@ -3,6 +3,7 @@
 #include <set>
 #include <utility>
 
+#include "compiler/artifact/describe.h"
 #include "compiler/cnf/encoder.h"
 #include "compiler/ground/grounder.h"
 #include "compiler/lint/lint.h"
@@ -66,6 +67,14 @@ base::Result<std::vector<StateConstraint>> check_constraints(
   return checked;
 }
 
+/// What the model says of its own making, so that it can be read without the texts.
+void describe(const CompileInput& input, const base::SourceFiles& files, CompiledModel& model) {
+  model.producer = input.producer;
+  if (input.ground.meaning == Meaning::kDecreasoner) model.options["compat"] = "decreasoner";
+  describe_sources(model, files);
+  sort_clauses(model);
+}
+
 }  // namespace
 
 base::Result<Compilation> compile_model(const CompileInput& input, base::SourceFiles& files,
@@ -112,6 +121,7 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
     result.model.plan = plan_steps(plan->graph);
     result.plan = std::move(plan->graph);
   }
+  describe(input, files, result.model);
   result.typed = std::make_unique<TypedModel>(*std::move(typed));
   return result;
 }

@@ -39,6 +39,7 @@ struct CompileInput {
   std::optional<PlanInput> plan;
   std::vector<ConstraintText> constraints;
   GroundOptions ground;
+  std::string producer;  // the program and its version, for the artifact; may be empty
   bool costs = false;  // also count what each axiom costs
   bool lint = false;  // also report what is legal but hardly meant (W21xx)
 };

@@ -155,7 +155,16 @@ class ModelLoader {
       return;
     }
     if (real.parent_path().filename() == "foundations") foundation_loaded_ = true;
-    if (index_of_.contains(real.string())) return;  // once is enough
+    const auto loaded = index_of_.find(real.string());
+    if (loaded != index_of_.end()) {  // once is enough
+      const bool is_open = std::any_of(stack_.begin(), stack_.end(), [&](const Open& open) {
+        return open.file == loaded->second;
+      });
+      if (is_open) {
+        sink_.warning(DiagnosticCode::kLoadCycle, range, candidate.lexically_normal().string());
+      }
+      return;
+    }
     const auto file = base::load_text(candidate.lexically_normal(), files_, sink_);
     if (!file) {
       unreadable_ = true;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "compiler/artifact/artifact_writer.h"
 #include "tools/cli/model_options.h"
 #include "tools/cli/scenario_model.h"
 
@@ -41,6 +42,8 @@ int check(const CheckOptions& check_options, Invocation& invocation) {
     // Reports into the sink; a result says only that there was nothing to report.
     if (is_scenario(path)) {
       (void)load_scenario_model(path, invocation);
+    } else if (compiler::is_artifact_name(path)) {
+      (void)compiler::load_artifact(path, invocation.files(), invocation.sink());
     } else {
       models.push_back(path);
     }

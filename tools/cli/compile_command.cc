@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "compiler/artifact/dimacs_writer.h"
+#include "compiler/artifact/artifact_writer.h"
 #include "compiler/base/file_io.h"
 #include "tools/cli/emit_stage.h"
 #include "tools/cli/scenario_model.h"
@@ -12,6 +12,7 @@ struct CompileOptions {
   ModelOptions model;
   std::string out;
   std::string emit = "cnf";
+  bool no_projection = false;
 };
 
 /// The table goes to standard error: standard output may hold the artifact.
@@ -38,6 +39,12 @@ int write_front_end_stage(const CompileOptions& options, Invocation& invocation)
 }
 
 int compile_and_write(const CompileOptions& options, Invocation& invocation) {
+  if (options.emit != "cnf" && names_artifact(options.model)) {
+    invocation.sink().error_about(
+        base::DiagnosticCode::kUsage, options.model.models.front(),
+        fmt::format("--emit={} needs the texts of the model", options.emit));
+    return 0;
+  }
   if (is_front_end_stage(options.emit)) return write_front_end_stage(options, invocation);
   auto& sink = invocation.sink();
   const auto compilation = compile_models(options.model, invocation);
@@ -45,7 +52,7 @@ int compile_and_write(const CompileOptions& options, Invocation& invocation) {
   report_costs(options, *compilation, invocation);
   std::string text;
   if (options.emit == "cnf") {
-    text = compiler::to_dimacs(compilation->model, invocation.files());
+    text = compiler::to_artifact(compilation->model, {.projection_line = !options.no_projection});
   } else if (!compilation->plan) {
     sink.error_about(base::DiagnosticCode::kUsage, "",
                      fmt::format("--emit={} needs a scenario with a plan", options.emit));
@@ -89,6 +96,8 @@ Command add_compile_command(CLI::App& app) {
       "  parallax compile domain.e --stats -o domain.dec.cnf\n"
       "  parallax compile scenarios/two_regions/edge.yaml --emit=cfg");
   add_model_options(*command, options->model);
+  command->add_flag("--no-projection-line", options->no_projection,
+                    "Leave out `c t pmc` and `c p show`, for readers that take no comment there");
   command->add_flag("--stats", options->model.stats,
                     "Show on standard error what each axiom costs, dearest first");
   command->add_option("-o,--output", options->out, "File to write; default: standard output");

@@ -11,8 +11,8 @@ namespace parallax::tools {
 bool is_front_end_stage(std::string_view stage);
 
 /// The models after that stage as text: the tokens with their places, the statements as the printer
-/// writes them, the checked model, or the checked model as a logic program for clingo. What is wrong with the models is in the sink; then nothing is
-/// printed.
+/// writes them, the checked model, or the checked model as a logic program for clingo. What is
+/// wrong with the models is in the sink; then nothing is printed.
 base::Result<std::string> front_end_text(std::string_view stage, const ModelOptions& options,
                                          Invocation& invocation);
 

@@ -1,11 +1,20 @@
 #include "tools/cli/model_options.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compiler/artifact/artifact_writer.h"
 #include "tools/cli/signals.h"
+#include "tools/cli/version.h"
 
 namespace parallax::tools {
 
 void add_model_options(CLI::App& command, ModelOptions& options) {
-  command.add_option("models", options.models, "Model files (.e)")->required();
+  command
+      .add_option("models", options.models,
+                  "Model files (.e), or one that `compile` wrote (.dec.cnf)")
+      ->required();
   command.add_option("-I,--include", options.include_dirs, "Folder in which `load` looks");
   command.add_flag("--allow-outside", options.allow_outside,
                    "Let `load` leave the folders of the models");
@@ -26,7 +35,34 @@ compiler::CompileInput compile_input(const ModelOptions& options) {
   if (!options.compat.empty()) input.ground.meaning = compiler::Meaning::kDecreasoner;
   input.ground.stop = &stop_flag();
   input.costs = options.stats;
+  input.producer = fmt::format("parallax {}", kVersion);
   return input;
+}
+
+bool names_artifact(const ModelOptions& options) {
+  return std::any_of(options.models.begin(), options.models.end(),
+                     [](const std::string& name) { return compiler::is_artifact_name(name); });
+}
+
+base::Result<compiler::CompiledModel> load_artifact(const ModelOptions& options,
+                                                    Invocation& invocation) {
+  auto& sink = invocation.sink();
+  const auto refuse = [&](const char* what) {
+    return sink.error_about(base::DiagnosticCode::kUsage, options.models.front(), what);
+  };
+  if (options.models.size() > 1) {
+    return refuse("a compiled model stands alone; compile the texts together instead");
+  }
+  if (!options.compat.empty() || !options.until.empty()) {
+    return refuse("the meaning of a compiled model is fixed; give --compat and --until to compile");
+  }
+  auto model = compiler::load_artifact(options.models.front(), invocation.files(), sink);
+  if (model && options.horizon >= 0 && options.horizon != model->horizon) {
+    return sink.error_about(base::DiagnosticCode::kHorizonNotExtensible, options.models.front(),
+                            options.horizon,
+                            fmt::format("it was compiled for the horizon {}", model->horizon));
+  }
+  return model;
 }
 
 }  // namespace parallax::tools

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/artifact/artifact_reader.h"
 #include "compiler/pipeline/compile.h"
 #include "tools/cli/command.h"
 
@@ -21,5 +22,12 @@ struct ModelOptions {
 void add_model_options(CLI::App& command, ModelOptions& options);
 
 compiler::CompileInput compile_input(const ModelOptions& options);
+
+/// Is one of the models a compiled one (`.cnf`)?
+bool names_artifact(const ModelOptions& options);
+/// The compiled model that the options name, read without the front end. Reports a second model,
+/// options that belong to the compilation, and another horizon (E6014).
+base::Result<compiler::CompiledModel> load_artifact(const ModelOptions& options,
+                                                    Invocation& invocation);
 
 }  // namespace parallax::tools

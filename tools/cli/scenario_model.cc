@@ -6,6 +6,7 @@
 #include "compiler/base/file_io.h"
 #include "harness/campaign/campaign.h"
 #include "tools/cli/signals.h"
+#include "tools/cli/version.h"
 
 namespace parallax::tools {
 namespace {
@@ -71,6 +72,7 @@ base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scen
   for (const auto& model : scenario.models) input.models.emplace_back(model.text);
   input.horizon = scenario.horizon;
   input.ground.stop = &stop_flag();
+  input.producer = fmt::format("parallax {}", kVersion);
   for (const auto& text : scenario.constraints) {
     input.constraints.push_back(constraint_text(text, files));
   }
@@ -109,6 +111,13 @@ base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& pat
 base::Result<compiler::Compilation> compile_models(const ModelOptions& options,
                                                    Invocation& invocation) {
   const auto& first = options.models.front();
+  if (names_artifact(options)) {
+    auto model = load_artifact(options, invocation);
+    if (!model) return invocation.sink().already_reported();
+    compiler::Compilation compiled;
+    compiled.model = *std::move(model);
+    return compiled;
+  }
   if (options.models.size() == 1 && (first.ends_with(".yaml") || first.ends_with(".yml"))) {
     auto loaded = load_scenario_model(first, invocation, options.stats);
     if (!loaded) return invocation.sink().already_reported();

@@ -23,7 +23,8 @@ struct ScenarioModel {
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
                                                 Invocation& invocation, bool costs = false);
 
-/// What the models on the command line compile to; a single .yaml is a scenario.
+/// What the models on the command line compile to; a single .yaml is a scenario, a single .cnf has
+/// been compiled before and brings neither the checked model nor the plan's graph.
 base::Result<compiler::Compilation> compile_models(const ModelOptions& options,
                                                    Invocation& invocation);
 

@@ -125,6 +125,11 @@ int list_traces(const TracesOptions& options, Invocation& invocation) {
         "--check evaluates the standard meaning and does not go with --compat");
     return 0;
   }
+  if (options.check && names_artifact(options.model)) {
+    invocation.sink().error_about(base::DiagnosticCode::kUsage, options.model.models.front(),
+                                  "--check evaluates the texts of a model; name them instead");
+    return 0;
+  }
   const auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
   std::optional<TraceCheck> check;

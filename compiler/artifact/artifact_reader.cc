@@ -1,0 +1,259 @@
+#include "compiler/artifact/artifact_reader.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <limits>
+#include <set>
+
+#include "compiler/artifact/artifact_text.h"
+#include "compiler/artifact/clause_reader.h"
+#include "compiler/artifact/provenance_reader.h"
+#include "compiler/artifact/symbol_reader.h"
+#include "compiler/base/file_io.h"
+
+namespace parallax::compiler {
+namespace {
+
+using base::DiagnosticCode;
+
+constexpr std::int64_t kMaxHorizon = 1'000'000;  // as on the command line
+// A variable takes some bytes wherever it is used; models may have some that are used nowhere.
+constexpr std::int64_t kFreeVariables = 1'000'000;
+constexpr std::int64_t kFreeTableEntries = 4096;
+constexpr std::int64_t kBytesPerTableEntry = 8;
+
+class ArtifactReader {
+ public:
+  ArtifactReader(base::FileId file, const base::SourceFiles& files, base::DiagnosticSink& sink)
+      : cursor_(files, file, sink), symbols_(cursor_, model_), provenance_(cursor_, model_) {}
+
+  base::Result<CompiledModel> run() && {
+    if (!read_format() || !read_entries()) return cursor_.sink().already_reported();
+    ClauseReader clauses(cursor_, model_);
+    if (!clauses.read(provenance_.clause_count(), provenance_.runs())) {
+      return cursor_.sink().already_reported();
+    }
+    symbols_.name_the_rest();
+    return std::move(model_);
+  }
+
+ private:
+  struct Entry {
+    std::string_view key;
+    bool (ArtifactReader::*read)();
+    bool once;         // at most one line, which has to be there but for `producer`
+    bool needs_frame;  // speaks of slots, variables or timepoints
+  };
+  static const std::vector<Entry>& entries();
+
+  bool read_format();
+  bool read_entries();
+  bool read_entry();
+  bool read_producer();
+  bool read_option();
+  bool read_source();
+  bool read_horizon();
+  bool read_base() { return read_size("the number of fixed variables", base_); }
+  bool read_stride() { return read_size("the number of slots", stride_); }
+  bool read_state_slots() { return read_size("the number of state slots", state_slots_); }
+  bool read_state_constraints() { return read_flag(model_.has_constraints); }
+  bool read_fluent() { return symbols_.read_fluent(); }
+  bool read_event() { return symbols_.read_event(); }
+  bool read_slot() { return symbols_.read_slot(); }
+  bool read_atom() { return symbols_.read_atom(); }
+  bool read_in() { return provenance_.read_in(); }
+  bool read_axiom() { return provenance_.read_axiom(); }
+  bool read_section() { return provenance_.read_section(); }
+  bool read_clauses() { return provenance_.read_clauses(); }
+  bool read_step() { return provenance_.read_step(); }
+  bool read_argument() { return provenance_.read_argument(); }
+
+  bool read_size(std::string_view what, std::int64_t& size);
+  bool read_flag(bool& flag);
+  bool complete_frame();
+
+  ArtifactCursor cursor_;
+  CompiledModel model_;
+  SymbolReader symbols_;
+  ProvenanceReader provenance_;
+  std::set<std::string_view> seen_;  // keys that stand once
+  std::int64_t minor_ = 0;
+  std::int64_t base_ = 0, stride_ = 0, state_slots_ = 0;
+  bool has_frame_ = false;
+};
+
+const std::vector<ArtifactReader::Entry>& ArtifactReader::entries() {
+  using Reader = ArtifactReader;
+  static const std::vector<Entry> table = {
+      {"producer", &Reader::read_producer, true, false},
+      {"option", &Reader::read_option, false, false},
+      {"source", &Reader::read_source, false, false},
+      {"horizon", &Reader::read_horizon, true, false},
+      {"base", &Reader::read_base, true, false},
+      {"stride", &Reader::read_stride, true, false},
+      {"state-slots", &Reader::read_state_slots, true, false},
+      {"state-constraints", &Reader::read_state_constraints, true, false},
+      {"fluent", &Reader::read_fluent, false, true},
+      {"event", &Reader::read_event, false, true},
+      {"slot", &Reader::read_slot, false, true},
+      {"atom", &Reader::read_atom, false, true},
+      {"in", &Reader::read_in, false, false},
+      {"axiom", &Reader::read_axiom, false, false},
+      {"section", &Reader::read_section, false, true},
+      {"clauses", &Reader::read_clauses, false, true},
+      {"step", &Reader::read_step, false, false},
+      {"argument", &Reader::read_argument, false, false},
+  };
+  return table;
+}
+
+/// `c dec format MAJOR.MINOR` is the first line.
+bool ArtifactReader::read_format() {
+  if (!cursor_.next_line()) return cursor_.fail(DiagnosticCode::kNotAnArtifact, "it is empty");
+  if (!cursor_.line().starts_with("c dec format ")) {
+    cursor_.raw_word();
+    return cursor_.fail(DiagnosticCode::kNotAnArtifact, "its first line is not `c dec format 1.0`");
+  }
+  cursor_.raw_word(), cursor_.raw_word(), cursor_.raw_word();
+  const auto version = cursor_.raw_word();
+  const auto dot = version.find('.');
+  if (dot == std::string_view::npos) return cursor_.expected("a version MAJOR.MINOR");
+  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+  std::int64_t major = 0;
+  if (!cursor_.parse_number(version.substr(0, dot), "the major version", 0, kMost, major) ||
+      !cursor_.parse_number(version.substr(dot + 1), "the minor version", 0, kMost, minor_)) {
+    return false;
+  }
+  if (major != kFormatMajor) {
+    return cursor_.fail(DiagnosticCode::kArtifactVersion, fmt::format("{}.{}", major, minor_),
+                        kFormatMajor);
+  }
+  return cursor_.end_of_line();
+}
+
+bool ArtifactReader::read_entries() {
+  while (cursor_.next_line()) {
+    const auto line = cursor_.line();
+    if (line.starts_with("p ")) return complete_frame() && symbols_.check_hits();
+    if (line.starts_with("c dec ")) {
+      if (!read_entry()) return false;
+    } else if (!line.empty() && line != "c" && !line.starts_with("c ")) {
+      cursor_.raw_word();
+      return cursor_.expected("`c dec`, a comment or `p cnf`");
+    }
+  }
+  return cursor_.expected("`p cnf`");
+}
+
+bool ArtifactReader::read_entry() {
+  cursor_.raw_word(), cursor_.raw_word();
+  const auto key = cursor_.raw_word();
+  for (const auto& entry : entries()) {
+    if (entry.key != key) continue;
+    if (entry.once && !seen_.insert(entry.key).second) {
+      return cursor_.fail(DiagnosticCode::kArtifactTwice, fmt::format("`c dec {}`", key));
+    }
+    if (entry.needs_frame && !complete_frame()) return false;
+    return (this->*entry.read)();
+  }
+  if (minor_ <= kFormatMinor) return cursor_.expected("an entry of the format");
+  constexpr std::size_t kShown = 40;
+  cursor_.warn(DiagnosticCode::kArtifactUnknownKey, key.substr(0, kShown),
+               fmt::format("{}.{}", kFormatMajor, minor_));
+  return true;
+}
+
+bool ArtifactReader::read_producer() {
+  return cursor_.word("a program and its version", model_.producer) && cursor_.end_of_line();
+}
+
+bool ArtifactReader::read_option() {
+  std::string name, value;
+  if (!cursor_.word("the name of an option", name)) return false;
+  if (model_.options.contains(name)) {
+    return cursor_.fail(DiagnosticCode::kArtifactTwice, fmt::format("the option `{}`", name));
+  }
+  if (!cursor_.word("the value of an option", value)) return false;
+  model_.options.emplace(std::move(name), std::move(value));
+  return cursor_.end_of_line();
+}
+
+bool ArtifactReader::read_source() {
+  constexpr std::size_t kHashDigits = 16;
+  SourceText source;
+  if (!cursor_.word("the name of a file", source.name)) return false;
+  if (cursor_.raw_word() != "fnv1a64") return cursor_.expected("`fnv1a64`");
+  const auto digits = cursor_.raw_word();
+  const auto* end = digits.data() + digits.size();
+  const auto [stop, error] = std::from_chars(digits.data(), end, source.hash, 16);
+  if (digits.size() != kHashDigits || error != std::errc() || stop != end) {
+    return cursor_.expected("16 hexadecimal digits");
+  }
+  model_.sources.push_back(std::move(source));
+  return cursor_.end_of_line();
+}
+
+bool ArtifactReader::read_horizon() {
+  std::int64_t horizon = 0;
+  if (!cursor_.number("the horizon", 0, kMaxHorizon, horizon)) return false;
+  model_.horizon = static_cast<Timepoint>(horizon);
+  return cursor_.end_of_line();
+}
+
+bool ArtifactReader::read_size(std::string_view what, std::int64_t& size) {
+  const auto bytes = static_cast<std::int64_t>(cursor_.file_size());
+  if (!cursor_.number(what, 0, std::numeric_limits<std::int32_t>::max(), size)) return false;
+  if (size > kFreeTableEntries + bytes / kBytesPerTableEntry) {
+    return cursor_.fail(DiagnosticCode::kArtifactOversized, what, size, bytes);
+  }
+  return cursor_.end_of_line();
+}
+
+bool ArtifactReader::read_flag(bool& flag) {
+  const auto text = cursor_.raw_word();
+  if (text != "yes" && text != "no") return cursor_.expected("`yes` or `no`");
+  flag = text == "yes";
+  return cursor_.end_of_line();
+}
+
+/// Makes the tables once everything is known that sizes them.
+bool ArtifactReader::complete_frame() {
+  if (has_frame_) return true;
+  for (const auto& entry : entries()) {
+    if (!entry.once || entry.key == "producer" || seen_.contains(entry.key)) continue;
+    return cursor_.fail(DiagnosticCode::kArtifactMissing, fmt::format("c dec {}", entry.key));
+  }
+  if (state_slots_ > stride_) {
+    return cursor_.fail(DiagnosticCode::kArtifactRange, "the number of state slots", state_slots_,
+                        0, stride_);
+  }
+  const auto bytes = static_cast<std::int64_t>(cursor_.file_size());
+  const auto variables = base_ + std::int64_t{model_.horizon} * stride_ + state_slots_;
+  if (variables > kFreeVariables + bytes ||
+      variables > std::numeric_limits<std::int32_t>::max() / 2) {
+    return cursor_.fail(DiagnosticCode::kArtifactOversized, "the number of variables", variables,
+                        bytes);
+  }
+  model_.fixed.resize(static_cast<std::size_t>(base_));
+  model_.slots.resize(static_cast<std::size_t>(stride_));
+  model_.state_slots = static_cast<std::uint32_t>(state_slots_);
+  has_frame_ = true;
+  return true;
+}
+
+}  // namespace
+
+base::Result<CompiledModel> read_artifact(base::FileId file, const base::SourceFiles& files,
+                                          base::DiagnosticSink& sink) {
+  return ArtifactReader(file, files, sink).run();
+}
+
+base::Result<CompiledModel> load_artifact(const std::filesystem::path& path,
+                                          base::SourceFiles& files, base::DiagnosticSink& sink) {
+  auto text = base::read_file(path, sink, kMaxArtifactBytes);
+  if (!text) return sink.already_reported();
+  return read_artifact(files.add(path.string(), *std::move(text)), files, sink);
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,167 @@
+#include "compiler/artifact/artifact_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+
+namespace parallax::compiler {
+namespace {
+
+constexpr std::size_t kQuoteInMessages = 40;  // bytes of a bad word that a message repeats
+
+bool is_plain(char c) { return c > 0x20 && c < 0x7F && c != '"' && c != '\\'; }
+
+std::optional<char> hex_byte(std::string_view digits) {
+  unsigned value = 0;
+  const auto* end = digits.data() + digits.size();
+  const auto [stop, error] = std::from_chars(digits.data(), end, value, 16);
+  if (digits.size() != 2 || error != std::errc() || stop != end) return std::nullopt;
+  return static_cast<char>(static_cast<unsigned char>(value));
+}
+
+/// The text between the quotes, or none if an escape is unknown or the closing quote is missing.
+std::optional<std::string> unquoted(std::string_view word) {
+  std::string out;
+  std::size_t i = 1;
+  for (; i < word.size() && word[i] != '"'; ++i) {
+    if (word[i] != '\\') {
+      out += word[i];
+    } else if (i + 1 < word.size() && (word[i + 1] == '"' || word[i + 1] == '\\')) {
+      out += word[++i];
+    } else if (i + 3 < word.size() && word[i + 1] == 'x') {
+      const auto byte = hex_byte(word.substr(i + 2, 2));
+      if (!byte) return std::nullopt;
+      out += *byte;
+      i += 3;
+    } else {
+      return std::nullopt;
+    }
+  }
+  if (i + 1 != word.size()) return std::nullopt;
+  return out;
+}
+
+}  // namespace
+
+void append_word(std::string& out, std::string_view word) {
+  out += ' ';
+  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) {
+    out += word;
+    return;
+  }
+  out += '"';
+  for (const char c : word) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (c == ' ' || is_plain(c)) {
+      out += c;
+    } else {
+      fmt::format_to(std::back_inserter(out), "\\x{:02x}", static_cast<unsigned char>(c));
+    }
+  }
+  out += '"';
+}
+
+ArtifactCursor::ArtifactCursor(const base::SourceFiles& files, base::FileId file,
+                               base::DiagnosticSink& sink)
+    : text_(files[file].text()), file_(file), sink_(&sink), last_{file, 0, 0} {}
+
+base::SourceRange ArtifactCursor::range(std::size_t begin, std::size_t end) const {
+  return {file_, static_cast<std::uint32_t>(line_begin_ + begin),
+          static_cast<std::uint32_t>(line_begin_ + end)};
+}
+
+base::SourceRange ArtifactCursor::line_range() const { return range(0, line_.size()); }
+
+bool ArtifactCursor::next_line() {
+  line_begin_ = next_;
+  position_ = 0;
+  line_ = {};
+  last_ = range(0, 0);
+  if (next_ >= text_.size()) return false;
+  auto end = text_.find('\n', next_);
+  if (end == std::string_view::npos) end = text_.size();
+  line_ = text_.substr(next_, end - next_);
+  if (line_.ends_with('\r')) line_.remove_suffix(1);
+  next_ = end + 1;
+  return true;
+}
+
+void ArtifactCursor::skip_blanks() {
+  while (position_ < line_.size() && line_[position_] == ' ') ++position_;
+}
+
+bool ArtifactCursor::at_line_end() {
+  skip_blanks();
+  return position_ == line_.size();
+}
+
+std::string_view ArtifactCursor::raw_word() {
+  skip_blanks();
+  const auto begin = position_;
+  if (begin < line_.size() && line_[begin] == '"') {
+    ++position_;
+    while (position_ < line_.size() && line_[position_] != '"') {
+      position_ += line_[position_] == '\\' ? 2U : 1U;
+    }
+    position_ = std::min(position_ + 1, line_.size());
+  }
+  while (position_ < line_.size() && line_[position_] != ' ') ++position_;
+  last_ = range(begin, position_);
+  return line_.substr(begin, position_ - begin);
+}
+
+bool ArtifactCursor::word(std::string_view what, std::string& out) {
+  const auto raw = raw_word();
+  if (raw.starts_with('"')) {
+    auto text = unquoted(raw);
+    if (!text) return expected(what);
+    out = *std::move(text);
+    return true;
+  }
+  if (raw.empty() || !std::all_of(raw.begin(), raw.end(), is_plain)) return expected(what);
+  out = raw;
+  return true;
+}
+
+bool ArtifactCursor::number(std::string_view what, std::int64_t lower, std::int64_t upper,
+                            std::int64_t& out) {
+  return parse_number(raw_word(), what, lower, upper, out);
+}
+
+bool ArtifactCursor::parse_number(std::string_view text, std::string_view what, std::int64_t lower,
+                                  std::int64_t upper, std::int64_t& out) {
+  const auto* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, out);
+  const bool too_long = error == std::errc::result_out_of_range && stop == end;
+  if (!too_long && (error != std::errc() || stop != end)) return expected(what);
+  if (too_long || out < lower || out > upper) {
+    return fail(base::DiagnosticCode::kArtifactRange, what, text.substr(0, kQuoteInMessages), lower,
+                upper);
+  }
+  return true;
+}
+
+bool ArtifactCursor::end_of_line() {
+  if (at_line_end()) return true;
+  raw_word();
+  return expected("the end of the line");
+}
+
+bool ArtifactCursor::expected(std::string_view what) {
+  const auto begin = static_cast<std::size_t>(last_.begin) - line_begin_;
+  const auto size = static_cast<std::size_t>(last_.end - last_.begin);
+  const auto text = line_.substr(begin, std::min(size, kQuoteInMessages));
+  if (text.empty()) {
+    const bool at_end = next_ >= text_.size();
+    return fail(base::DiagnosticCode::kArtifactSyntax, what,
+                at_end ? "the end of the file" : "the end of the line");
+  }
+  return fail(base::DiagnosticCode::kArtifactSyntax, what,
+              fmt::format("`{}{}`", text, size > kQuoteInMessages ? "..." : ""));
+}
+
+}  // namespace parallax::compiler

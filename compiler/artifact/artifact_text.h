@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "compiler/base/diagnostic.h"
+#include "compiler/base/source_file.h"
+
+namespace parallax::compiler {
+
+inline constexpr std::int64_t kFormatMajor = 1;
+inline constexpr std::int64_t kFormatMinor = 0;
+
+/// Appends a blank and the word. A word of visible ASCII characters other than `"` and `\` stands
+/// as it is; any other is quoted, with `\"`, `\\` and `\xHH` for what is not visible ASCII.
+void append_word(std::string& out, std::string_view word);
+
+/// Reads the lines of an artifact and their words, and reports what is wrong at its place. Lines
+/// end with a newline (a carriage return before it is dropped), words are separated by blanks.
+/// Functions that return bool report and return false.
+class ArtifactCursor {
+ public:
+  /// `files` and `sink` outlive the cursor.
+  ArtifactCursor(const base::SourceFiles& files, base::FileId file, base::DiagnosticSink& sink);
+
+  /// False at the end of the file; nothing is reported.
+  bool next_line();
+  std::string_view line() const { return line_; }
+  /// Bytes of the whole file.
+  std::size_t file_size() const { return text_.size(); }
+
+  /// The next word as it stands, without unquoting; empty at the end of the line.
+  std::string_view raw_word();
+  bool at_line_end();
+  /// A word, unquoted. `what` is said when there is none: "a name".
+  bool word(std::string_view what, std::string& out);
+  /// A decimal number with an optional minus. E6003 if it is none, E6006 beyond the bounds.
+  bool number(std::string_view what, std::int64_t lower, std::int64_t upper, std::int64_t& out);
+  bool parse_number(std::string_view text, std::string_view what, std::int64_t lower,
+                    std::int64_t upper, std::int64_t& out);
+  bool end_of_line();
+
+  /// Reports E6003 at the word read last; always false.
+  bool expected(std::string_view what);
+  template <typename... Args>
+  bool fail(base::DiagnosticCode code, const Args&... args) {
+    sink_->error(code, last_, args...);
+    return false;
+  }
+  template <typename... Args>
+  void warn(base::DiagnosticCode code, const Args&... args) {
+    sink_->warning(code, last_, args...);
+  }
+  /// The range of the word read last, or of the line's end.
+  base::SourceRange last() const { return last_; }
+  base::SourceRange line_range() const;
+  base::DiagnosticSink& sink() { return *sink_; }
+
+ private:
+  void skip_blanks();
+  base::SourceRange range(std::size_t begin, std::size_t end) const;
+
+  std::string_view text_;
+  base::FileId file_;
+  base::DiagnosticSink* sink_;
+  std::size_t next_ = 0;        // where the next line begins
+  std::size_t line_begin_ = 0;  // of the current line
+  std::string_view line_;
+  std::size_t position_ = 0;  // in the line
+  base::SourceRange last_;
+};
+
+}  // namespace parallax::compiler

@@ -1,0 +1,248 @@
+#include "compiler/artifact/artifact_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "compiler/artifact/artifact_text.h"
+#include "compiler/artifact/atom_kinds.h"
+#include "compiler/artifact/clause_runs.h"
+#include "compiler/artifact/derived.h"
+#include "compiler/artifact/places.h"
+
+namespace parallax::compiler {
+namespace {
+
+class ArtifactWriter {
+ public:
+  explicit ArtifactWriter(const CompiledModel& model) : model_(model) {}
+
+  std::string run(const ArtifactOptions& options) && {
+    check_names();
+    write_frame();
+    write_names();
+    write_other_slots();
+    write_fixed();
+    write_axioms();
+    write_sections();
+    write_plan();
+    if (options.projection_line) out_ += "c t pmc\n";
+    print("p cnf {} {}\n", model_.variable_count(), model_.clauses.size());
+    if (options.projection_line) write_projection();
+    write_clauses();
+    return std::move(out_);
+  }
+
+ private:
+  template <typename... Args>
+  void print(fmt::format_string<const Args&...> format, const Args&... args) {
+    fmt::format_to(std::back_inserter(out_), format, args...);
+  }
+  void word(std::string_view text) { append_word(out_, text); }
+  void number(std::int64_t value) {
+    const fmt::format_int digits(value);
+    out_ += ' ';
+    out_.append(digits.data(), digits.size());
+  }
+
+  void check_names() {
+    named_.resize(model_.slots.size(), false);
+    PARALLAX_REQUIRE(model_.release_slots.size() == model_.fluents.size(),
+                     "release slots by fluent");
+    for (std::size_t i = 0; i < model_.fluents.size(); ++i) {
+      const auto& fluent = model_.fluents[i];
+      if (fluent.slot) claim(*fluent.slot, {AtomKind::kHoldsAt, fluent.name});
+      if (!model_.release_slots[i]) continue;
+      claim(*model_.release_slots[i], {AtomKind::kReleasedAt, fluent.name});
+    }
+    for (const auto& event : model_.events) {
+      if (event.slot) claim(*event.slot, {AtomKind::kHappens, event.name});
+    }
+  }
+  void claim(std::uint32_t slot, const Slot& meaning) {
+    PARALLAX_REQUIRE(slot < model_.slots.size() && model_.slots[slot] == meaning && !named_[slot],
+                     "a slot of its own for every name");
+    named_[slot] = true;
+  }
+
+  void write_frame() {
+    print("c dec format {}.{}\n", kFormatMajor, kFormatMinor);
+    if (!model_.producer.empty()) line("producer", model_.producer);
+    for (const auto& [name, value] : model_.options) {
+      out_ += "c dec option";
+      word(name);
+      word(value);
+      out_ += '\n';
+    }
+    for (const auto& source : model_.sources) {
+      out_ += "c dec source";
+      word(source.name);
+      print(" fnv1a64 {:016x}\n", source.hash);
+    }
+    print("c dec horizon {}\nc dec base {}\nc dec stride {}\nc dec state-slots {}\n",
+          model_.horizon, model_.base(), model_.stride(), model_.state_slots);
+    print("c dec state-constraints {}\n", model_.has_constraints ? "yes" : "no");
+  }
+  void line(std::string_view key, std::string_view value) {
+    print("c dec {}", key);
+    word(value);
+    out_ += '\n';
+  }
+
+  void write_names() {
+    for (std::size_t i = 0; i < model_.fluents.size(); ++i) {
+      write_name("fluent", model_.fluents[i]);
+      if (model_.release_slots[i]) print(" released {}", *model_.release_slots[i]);
+      out_ += '\n';
+    }
+    for (const auto& event : model_.events) {
+      write_name("event", event);
+      out_ += '\n';
+    }
+  }
+  void write_name(std::string_view key, const GroundName& ground) {
+    print("c dec {}", key);
+    word(ground.name);
+    if (ground.slot) {
+      number(*ground.slot);
+    } else {
+      out_ += " never";
+    }
+  }
+
+  void write_other_slots() {
+    const auto occurring = occurrences(model_);
+    for (std::size_t i = 0; i < model_.slots.size(); ++i) {
+      const auto& slot = model_.slots[i];
+      const auto usual = occurring.slots[i] ? AtomKind::kAuxiliary : AtomKind::kUnused;
+      if (named_[i] || slot == Slot{usual, {}}) continue;
+      print("c dec slot {} {}", i, to_string(slot.kind));
+      word(slot.name);
+      out_ += '\n';
+    }
+    fixed_occur_ = occurring.fixed;
+  }
+
+  void write_fixed() {
+    for (std::size_t i = 0; i < model_.fixed.size(); ++i) {
+      const auto& atom = model_.fixed[i];
+      const auto usual = fixed_occur_[i] ? AtomKind::kAuxiliary : AtomKind::kUnused;
+      if (atom == Atom{usual, {}, std::nullopt}) continue;
+      print("c dec atom {} {}", i + 1, to_string(atom.kind));
+      word(atom.name);
+      if (atom.time) number(*atom.time);
+      out_ += '\n';
+    }
+  }
+
+  void write_axioms() {
+    for (const auto& origin : model_.origins) {
+      places_.write_file(origin.place, out_);
+      PARALLAX_REQUIRE(!origin.id.empty(), "every origin has an id");
+      out_ += "c dec axiom";
+      word(origin.id);
+      word(origin.what);
+      places_.write_place(origin.place, out_);
+      word(origin.text);
+      out_ += '\n';
+    }
+  }
+
+  void write_sections() {
+    std::size_t begin = 0;
+    for (const auto& section : model_.sections) {
+      PARALLAX_REQUIRE(section.begin == begin, "sections cover the clauses, in order");
+      if (section.copies == 0) continue;  // it says nothing at this horizon
+      begin += section.clauses * static_cast<std::size_t>(section.copies);
+      PARALLAX_REQUIRE(begin <= model_.clauses.size(), "sections cover the clauses, in order");
+      if (section.repeated) {
+        require_copies(section);
+        print("c dec section repeated {}\n", section.width);
+      } else {
+        PARALLAX_REQUIRE(section.copies == 1, "only repeated sections have copies");
+        out_ += "c dec section fixed\n";
+      }
+      for (const auto& run : clause_runs(model_, section)) {
+        out_ += "c dec clauses";
+        word(model_.origins[run.origin].id);
+        append_counts(run.groups, out_);
+        if (run.timepoint) print(" at {}", *run.timepoint);
+        out_ += '\n';
+      }
+    }
+    PARALLAX_REQUIRE(begin == model_.clauses.size(), "sections cover the clauses, in order");
+  }
+  void require_copies(const Section& section) const {
+    PARALLAX_REQUIRE(section.copies == model_.horizon - section.width + 1,
+                     "one copy for every timepoint");
+    for (std::int64_t copy = 1; copy < section.copies; ++copy) {
+      for (std::size_t i = section.begin; i < section.begin + section.clauses; ++i) {
+        const auto j = i + section.clauses * static_cast<std::size_t>(copy);
+        PARALLAX_REQUIRE(is_shifted(model_, model_.clauses[i], model_.clauses[j], copy) &&
+                             model_.clause_origins[i] == model_.clause_origins[j] &&
+                             model_.clause_is_definition[i] == model_.clause_is_definition[j] &&
+                             model_.clause_timepoints[i] + copy == model_.clause_timepoints[j],
+                         "copies are the first block, moved");
+      }
+    }
+  }
+
+  void write_plan() {
+    for (const auto& step : model_.plan) {
+      places_.write_file(step.place, out_);
+      out_ += "c dec step";
+      word(step.event);
+      word(step.failure_class);
+      places_.write_place(step.place, out_);
+      out_ += '\n';
+      for (const auto& [name, value] : step.arguments) write_argument(name, value);
+    }
+  }
+  void write_argument(std::string_view name, const PlanValue& value) {
+    out_ += "c dec argument";
+    word(name);
+    if (const auto* text = std::get_if<std::string>(&value)) {
+      out_ += " text";
+      word(*text);
+    } else if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+      print(" integer {}", *integer);
+    } else {
+      print(" real {}", std::get<double>(value));
+    }
+    out_ += '\n';
+  }
+
+  void write_projection() {
+    out_ += "c p show";
+    for (const auto v : observable_variables(model_)) number(v);
+    out_ += " 0\n";
+  }
+
+  void write_clauses() {
+    for (std::size_t i = 0; i < model_.clauses.size(); ++i) {
+      for (const auto literal : model_.clauses[i]) {
+        const fmt::format_int digits(literal.dimacs());
+        out_.append(digits.data(), digits.size());
+        out_ += ' ';
+      }
+      out_ += "0\n";
+    }
+  }
+
+  const CompiledModel& model_;
+  std::string out_;
+  std::vector<bool> named_;  // slots of fluents, releases and events
+  std::vector<bool> fixed_occur_;
+  PlaceWriter places_;
+};
+
+}  // namespace
+
+std::string to_artifact(const CompiledModel& model, const ArtifactOptions& options) {
+  return ArtifactWriter(model).run(options);
+}
+
+bool is_artifact_name(std::string_view name) { return name.ends_with(".cnf"); }
+
+}  // namespace parallax::compiler

@@ -1,0 +1,88 @@
+#include "compiler/artifact/clause_runs.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <limits>
+
+#include "compiler/artifact/derived.h"
+
+namespace parallax::compiler {
+namespace {
+
+/// Adds the group that is complete, as a repetition if it equals the one before.
+void close(ClauseGroup& open, std::vector<ClauseGroup>& groups) {
+  if (open.size() == 0) return;
+  if (!groups.empty() && groups.back().plain == open.plain &&
+      groups.back().definitions == open.definitions) {
+    ++groups.back().repeat;
+  } else {
+    groups.push_back(open);
+  }
+  open = {};
+}
+
+}  // namespace
+
+std::vector<ClauseRun> clause_runs(const CompiledModel& model, const Section& section) {
+  std::vector<ClauseRun> runs;
+  ClauseGroup open;
+  for (std::size_t i = section.begin; i < section.begin + section.clauses; ++i) {
+    std::optional<Timepoint> stated = model.clause_timepoints[i];
+    if (*stated == usual_timepoint(model, section, model.clauses[i])) stated.reset();
+    const auto origin = model.clause_origins[i];
+    if (runs.empty() || runs.back().origin != origin || runs.back().timepoint != stated) {
+      if (!runs.empty()) close(open, runs.back().groups);
+      runs.push_back({origin, stated, {}});
+    }
+    if (model.clause_is_definition[i]) {
+      ++open.definitions;
+      continue;
+    }
+    if (open.definitions > 0) close(open, runs.back().groups);
+    ++open.plain;
+  }
+  if (!runs.empty()) close(open, runs.back().groups);
+  return runs;
+}
+
+void append_counts(const std::vector<ClauseGroup>& groups, std::string& out) {
+  char separator = ' ';
+  for (const auto& group : groups) {
+    fmt::format_to(std::back_inserter(out), "{}{}", separator, group.plain);
+    if (group.definitions > 0) fmt::format_to(std::back_inserter(out), "+{}", group.definitions);
+    if (group.repeat > 1) fmt::format_to(std::back_inserter(out), "x{}", group.repeat);
+    separator = ',';
+  }
+}
+
+bool read_counts(ArtifactCursor& cursor, std::vector<ClauseGroup>& groups) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
+  auto rest = cursor.raw_word();
+  if (rest.empty()) return cursor.expected("numbers of clauses");
+  for (bool more = true; more;) {
+    const auto comma = rest.find(',');
+    auto text = rest.substr(0, comma);
+    more = comma != std::string_view::npos;
+    rest = more ? rest.substr(comma + 1) : std::string_view();
+    std::int64_t plain = 0, definitions = 0, repeat = 1;
+    if (const auto at = text.find('x'); at != std::string_view::npos) {
+      if (!cursor.parse_number(text.substr(at + 1), "a repetition", 1, kMost, repeat)) return false;
+      text = text.substr(0, at);
+    }
+    if (const auto at = text.find('+'); at != std::string_view::npos) {
+      if (!cursor.parse_number(text.substr(at + 1), "a number of clauses", 1, kMost, definitions)) {
+        return false;
+      }
+      text = text.substr(0, at);
+    }
+    if (!cursor.parse_number(text, "a number of clauses", definitions > 0 ? 0 : 1, kMost, plain)) {
+      return false;
+    }
+    groups.push_back({static_cast<std::uint32_t>(plain), static_cast<std::uint32_t>(definitions),
+                      static_cast<std::uint32_t>(repeat)});
+  }
+  return true;
+}
+
+}  // namespace parallax::compiler

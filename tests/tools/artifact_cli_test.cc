@@ -1,0 +1,168 @@
+#include <doctest/doctest.h>
+
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "tests/tools/cli_fixture.h"
+
+namespace parallax::test {
+namespace {
+
+constexpr const char* kLamps =
+    "sort lamp\nlamp A, B, C\nfluent On(lamp)\nevent Press(lamp)\n"
+    "[lamp,time] !HoldsAt(On(lamp),time) -> Initiates(Press(lamp),On(lamp),time).\n"
+    "[lamp,time] HoldsAt(On(lamp),time) -> Terminates(Press(lamp),On(lamp),time).\n"
+    "[event1,event2,time] Happens(event1,time) & Happens(event2,time) -> event1=event2.\n"
+    "[lamp] !HoldsAt(On(lamp),0).\nrange time 0 3\n";
+
+/// A reader of the names and clauses, written from docs/artifact_format.md alone.
+struct Stranger {
+  std::map<int, std::string> names;  // "HoldsAt On(A) 2" by variable
+  std::vector<std::vector<int>> clauses;
+  std::vector<int> shown;
+
+  explicit Stranger(const std::string& text) {
+    std::map<std::string, int> frame;
+    std::vector<std::tuple<std::string, std::string, int>> slots;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      std::istringstream words(line);
+      std::string c, dec, key, name;
+      words >> c;
+      if (c != "c" && c != "p") {
+        clauses.emplace_back();
+        std::istringstream literals(line);
+        for (int literal = 0; literals >> literal && literal != 0;) {
+          clauses.back().push_back(literal);
+        }
+        continue;
+      }
+      words >> dec >> key;
+      int number = 0;
+      if (dec == "p" && key == "show") {
+        while (words >> number && number != 0) shown.push_back(number);
+      } else if (dec == "dec" && (key == "horizon" || key == "base" || key == "stride")) {
+        words >> frame[key];
+      } else if (dec == "dec" && (key == "fluent" || key == "event")) {
+        words >> name >> number;
+        slots.emplace_back(key == "fluent" ? "HoldsAt" : "Happens", name, number);
+      }
+    }
+    for (const auto& [kind, name, slot] : slots) {
+      const int points = frame["horizon"] + (kind == "HoldsAt" ? 1 : 0);
+      for (int t = 0; t < points; ++t) {
+        names[frame["base"] + t * frame["stride"] + slot + 1] =
+            kind + " " + name + " " + std::to_string(t);
+      }
+    }
+  }
+};
+
+bool minisat_says_satisfiable(const CliFixture& cli, const std::string& file, std::string& model) {
+  ProcessOptions options;
+  options.folder = cli.folder().string();
+  const auto result = run_process({"minisat", "-verb=0", file, "model.txt"}, options);
+  REQUIRE((result.code == 10 || result.code == 20));
+  model = cli.read("model.txt");
+  return result.code == 10;
+}
+
+bool minisat_is_installed() { return run_process({"minisat", "--help"}).code == 0; }
+
+}  // namespace
+
+TEST_CASE("traces of a compiled model are those of its text, byte for byte") {
+  const CliFixture cli;
+  cli.write("lamps.e", kLamps);
+  cli.write("fall.e",
+            "load foundations/EC.e\nrange time 0 4\nfluent F()\nfluent G()\nevent E()\nevent D()\n"
+            "[time] Initiates(E(),F(),time).\n[time] Releases(D(),G(),time).\n"
+            "Happens(E(),1).\n!HoldsAt(F(),0).\nHoldsAt(G(),0).\n");
+  const std::vector<std::vector<std::string>> models = {
+      {"lamps.e"},
+      {"fall.e"},
+      {"fall.e", "--compat", "decreasoner"},
+      {"lamps.e", "--horizon", "2"},
+      {"lamps.e", "--until", "HoldsAt(On(A),time) & HoldsAt(On(B),time)"},
+      {"edge.yaml"}};
+  for (const auto& model : models) {
+    CAPTURE(model.front());
+    auto compile = model;
+    compile.insert(compile.begin(), "compile");
+    compile.insert(compile.end(), {"-o", "m.dec.cnf"});
+    REQUIRE(cli.parallax(compile).code == 0);
+    for (const auto& format : {"text", "jsonl"}) {
+      auto direct = model;
+      direct.insert(direct.begin(), "traces");
+      const std::vector<std::string> options = {"--limit", "0", "--format", format};
+      direct.insert(direct.end(), options.begin(), options.end());
+      std::vector<std::string> read = {"traces", "m.dec.cnf"};
+      read.insert(read.end(), options.begin(), options.end());
+      const auto wanted = cli.parallax(direct), found = cli.parallax(read);
+      CHECK(wanted.code == 0);
+      CHECK(found.code == 0);
+      CHECK(without_timing(found.out) == without_timing(wanted.out));
+      CHECK(wanted.out.size() > 50);
+    }
+    REQUIRE(cli.parallax({"compile", "m.dec.cnf", "-o", "again.dec.cnf"}).code == 0);
+    CHECK(cli.read("again.dec.cnf") == cli.read("m.dec.cnf"));
+    CHECK(cli.parallax({"check", "m.dec.cnf"}).code == 0);
+  }
+}
+
+TEST_CASE("a compiled model refuses what belongs to its compilation") {
+  const CliFixture cli;
+  cli.write("lamps.e", kLamps);
+  REQUIRE(cli.parallax({"compile", "lamps.e", "-o", "m.dec.cnf"}).code == 0);
+  const auto horizon = cli.parallax({"traces", "m.dec.cnf", "--horizon", "9"});
+  CHECK(horizon.code == 3);
+  CHECK(horizon.err.find("E6014") != std::string::npos);
+  CHECK(cli.parallax({"traces", "m.dec.cnf", "--horizon", "3"}).code == 0);
+  CHECK(cli.parallax({"traces", "m.dec.cnf", "--compat", "decreasoner"}).code == 2);
+  CHECK(cli.parallax({"traces", "m.dec.cnf", "lamps.e"}).code == 2);
+  CHECK(cli.parallax({"traces", "m.dec.cnf", "--check"}).code == 2);
+  CHECK(cli.parallax({"compile", "m.dec.cnf", "--emit=lp"}).code == 2);
+  cli.write("short.dec.cnf", cli.read("m.dec.cnf").substr(0, 900));
+  const auto damaged = cli.parallax({"check", "short.dec.cnf"});
+  CHECK(damaged.code == 3);
+  CHECK(damaged.err.find("short.dec.cnf:") != std::string::npos);
+}
+
+TEST_CASE("a stranger's reader and another solver agree with us") {
+  if (!minisat_is_installed()) {
+    MESSAGE("SKIPPED: minisat is not installed");
+    return;
+  }
+  const CliFixture cli;
+  cli.write("lamps.e", kLamps);
+  for (const auto& [goal, possible] : std::map<std::string, bool>{
+           {"HoldsAt(On(A),3) & HoldsAt(On(B),3) & HoldsAt(On(C),3).\n", true},
+           {"HoldsAt(On(A),2) & HoldsAt(On(B),2) & HoldsAt(On(C),2).\n", false}}) {
+    cli.write("goal.e", std::string(kLamps) + goal);
+    REQUIRE(cli.parallax({"compile", "goal.e", "--no-projection-line", "-o", "m.dec.cnf"}).code ==
+            0);
+    std::string answer;
+    CHECK(minisat_says_satisfiable(cli, "m.dec.cnf", answer) == possible);
+    CHECK((cli.parallax({"traces", "goal.e", "--count"}).out != "0\n") == possible);
+    if (!possible) continue;
+    const Stranger stranger(cli.read("m.dec.cnf"));
+    std::set<std::string> pressed, lit;
+    std::istringstream words(answer.substr(answer.find('\n') + 1));
+    for (int literal = 0; words >> literal && literal != 0;) {
+      const auto name = stranger.names.find(literal);
+      if (name == stranger.names.end()) continue;
+      if (name->second.starts_with("Happens")) pressed.insert(name->second);
+      if (name->second.ends_with(" 3")) lit.insert(name->second);
+    }
+    CHECK(pressed.size() == 3);
+    CHECK(lit == std::set<std::string>{"HoldsAt On(A) 3", "HoldsAt On(B) 3", "HoldsAt On(C) 3"});
+  }
+  REQUIRE(cli.parallax({"compile", "lamps.e", "-o", "m.dec.cnf"}).code == 0);
+  const Stranger stranger(cli.read("m.dec.cnf"));
+  std::set<int> named;
+  for (const auto& [variable, name] : stranger.names) named.insert(variable);
+  CHECK(std::set<int>(stranger.shown.begin(), stranger.shown.end()) == named);
+}
+
+}  // namespace parallax::test
