@@ -10,27 +10,36 @@ namespace parallax::compiler {
 
 CompletionWriter::CompletionWriter(GroundModel& model, Meaning meaning)
     : model_(model), meaning_(meaning) {
+  const auto& core = model.typed().core;
   for (const auto& completion : model.typed().completions) {
-    completions_[completion.predicate] = &completion;
-    origins_[completion.predicate] = model.add_origin(completion.source, "completion");
+    auto kind = AtomKind::kPredicate;
+    if (completion.predicate == core.happens) kind = AtomKind::kHappens;
+    if (completion.predicate == core.holds_at) kind = AtomKind::kHoldsAt;
+    if (completion.predicate == core.released_at) kind = AtomKind::kReleasedAt;
+    entries_.push_back({&completion, kind, model.add_origin(completion.source, "completion"), {}});
   }
 }
 
-const Completion* CompletionWriter::completion_of(SymbolId predicate) const {
-  const auto found = completions_.find(predicate);
-  return found == completions_.end() ? nullptr : found->second;
+const CompletionWriter::Entry* CompletionWriter::first_entry(SymbolId predicate) const {
+  for (const auto& entry : entries_) {
+    if (entry.completion->predicate == predicate) return &entry;
+  }
+  return nullptr;
 }
 
-const Completion* CompletionWriter::completion_of(const GroundAtom& atom) const {
-  const auto& core = model_.typed().core;
-  if (atom.kind == AtomKind::kHappens && core.happens) return completion_of(*core.happens);
-  if (atom.kind == AtomKind::kHoldsAt && core.holds_at) return completion_of(*core.holds_at);
-  if (atom.kind != AtomKind::kPredicate) return nullptr;
-  return completion_of(model_.terms()[GroundTermId(atom.index)].symbol);
+const Completion* CompletionWriter::completion_of(SymbolId predicate) const {
+  const auto* entry = first_entry(predicate);
+  return entry == nullptr ? nullptr : entry->completion;
+}
+
+bool CompletionWriter::completes(const Entry& entry, const GroundAtom& atom) const {
+  if (entry.kind != atom.kind) return false;
+  return atom.kind != AtomKind::kPredicate ||
+         model_.terms()[GroundTermId(atom.index)].symbol == entry.completion->predicate;
 }
 
 void CompletionWriter::note(const std::string& label, FormulaId formula, Timepoint width) {
-  if (completions_.empty()) return;
+  if (entries_.empty()) return;
   const auto& formulas = model_.formulas();
   if (formulas.kind(formula) == FormulaNodeKind::kAnd && !formula.negated()) {
     const auto children = formulas.children(formula);
@@ -44,14 +53,17 @@ void CompletionWriter::note(const std::string& label, FormulaId formula, Timepoi
 void CompletionWriter::note_conjunct(const std::string& label, FormulaId formula, Timepoint width) {
   for (const auto variable : positive_atoms(model_.formulas(), formula)) {
     const auto atom = model_.atom(variable);
-    const auto* completion = completion_of(atom);
-    if (completion == nullptr || (completion->label && *completion->label != label)) continue;
-    note_reason(atom, ~substitute(model_.formulas(), formula, variable, false), width);
+    for (auto& entry : entries_) {
+      const auto& wanted = entry.completion->label;
+      if (!completes(entry, atom) || (wanted && *wanted != label)) continue;
+      note_reason(atom, ~substitute(model_.formulas(), formula, variable, false), width, entry);
+    }
   }
 }
 
-void CompletionWriter::note_reason(const GroundAtom& atom, FormulaId reason, Timepoint width) {
-  auto& reasons = reasons_[{atom.kind, atom.index}];
+void CompletionWriter::note_reason(const GroundAtom& atom, FormulaId reason, Timepoint width,
+                                   Entry& entry) {
+  auto& reasons = entry.reasons[{atom.kind, atom.index}];
   if (width == Constraint::kOnce) {
     reasons.single[atom.time].push_back(reason);
     return;
@@ -70,8 +82,10 @@ void CompletionWriter::note_reason(const GroundAtom& atom, FormulaId reason, Tim
 std::vector<CompletionWriter::Occurrence> CompletionWriter::occurrences() const {
   std::vector<Occurrence> found;
   const auto truth = model_.formulas().truth();
-  for (const auto& [key, reasons] : reasons_) {
-    if (key.first != AtomKind::kHappens) continue;
+  const auto& happens = model_.typed().core.happens;
+  const auto* entry = happens ? first_entry(*happens) : nullptr;
+  if (entry == nullptr) return found;
+  for (const auto& [key, reasons] : entry->reasons) {
     for (const auto& [t, list] : reasons.single) {
       const bool certain = std::find(list.begin(), list.end(), truth) != list.end();
       found.push_back({key.second, t, certain});
@@ -81,8 +95,10 @@ std::vector<CompletionWriter::Occurrence> CompletionWriter::occurrences() const 
 }
 
 FormulaId CompletionWriter::reason(const GroundAtom& atom) const {
-  const auto found = reasons_.find({atom.kind, atom.index});
-  if (found == reasons_.end()) return model_.formulas().falsity();
+  const auto* entry = first_entry(model_.terms()[GroundTermId(atom.index)].symbol);
+  if (entry == nullptr) return model_.formulas().falsity();
+  const auto found = entry->reasons.find({atom.kind, atom.index});
+  if (found == entry->reasons.end()) return model_.formulas().falsity();
   const auto single = found->second.single.find(GroundAtom::kUntimed);
   if (single == found->second.single.end()) return model_.formulas().falsity();
   return model_.formulas().disjunction(single->second);
@@ -105,52 +121,56 @@ void CompletionWriter::assert_completed(FormulaId atom, std::vector<FormulaId> r
 }
 
 void CompletionWriter::write() {
-  const auto& core = model_.typed().core;
-  if (core.happens && completion_of(*core.happens) != nullptr && model_.horizon() > 0) {
-    write_timed(AtomKind::kHappens, static_cast<std::uint32_t>(model_.events().size()),
-                origins_.at(*core.happens));
+  for (auto& entry : entries_) {
+    if (entry.kind == AtomKind::kPredicate) {
+      write_predicates(entry);
+    } else {
+      write_timed(entry);
+    }
   }
-  if (core.holds_at && completion_of(*core.holds_at) != nullptr) {
-    write_timed(AtomKind::kHoldsAt, static_cast<std::uint32_t>(model_.fluents().size()),
-                origins_.at(*core.holds_at));
-  }
-  write_predicates();
 }
 
 /// Every ground atom of a completed predicate is completed, also those that no axiom mentions.
-void CompletionWriter::write_timed(AtomKind kind, std::uint32_t count, std::uint32_t origin) {
-  const bool is_event = kind == AtomKind::kHappens;
+void CompletionWriter::write_timed(Entry& entry) {
+  const bool is_event = entry.kind == AtomKind::kHappens;
   const Timepoint width = is_event ? 1 : 0;
   const auto atom = [&](std::uint32_t index, Timepoint t) {
-    return is_event ? model_.happens(index, t) : model_.holds(index, t);
+    if (is_event) return model_.happens(index, t);
+    return entry.kind == AtomKind::kHoldsAt ? model_.holds(index, t) : model_.released(index, t);
   };
+  const auto may_be_true = [&](std::uint32_t index) {
+    if (is_event) return model_.may_happen(index);
+    return entry.kind == AtomKind::kHoldsAt ? model_.may_hold(index)
+                                            : model_.can_be_released(index);
+  };
+  if (width > model_.horizon()) return;
+  const auto count = is_event ? model_.events().size() : model_.fluents().size();
   for (std::uint32_t index = 0; index < count; ++index) {
-    if (is_event ? !model_.may_happen(index) : !model_.may_hold(index)) continue;
-    auto& reasons = reasons_[{kind, index}];
+    if (!may_be_true(index)) continue;
+    auto& reasons = entry.reasons[{entry.kind, index}];
     if (reasons.single.empty() && meaning_ == Meaning::kStandard) {
-      assert_completed(atom(index, 0), reasons.always, origin, width);
+      assert_completed(atom(index, 0), reasons.always, entry.origin, width);
       continue;
     }
     for (Timepoint t = 0; t + width <= model_.horizon(); ++t) {
       auto here = reasons.single[t];
       for (const auto reason : reasons.always) here.push_back(model_.shifted(reason, t));
-      assert_completed(atom(index, t), std::move(here), origin, Constraint::kOnce);
+      assert_completed(atom(index, t), std::move(here), entry.origin, Constraint::kOnce);
     }
   }
 }
 
-void CompletionWriter::write_predicates() {
+void CompletionWriter::write_predicates(Entry& entry) {
   // The atoms of user predicates exist where some formula mentions them.
   for (std::size_t i = 0; i < model_.atom_count(); ++i) {
     const auto variable = static_cast<std::int32_t>(i + 1);
     const auto atom = model_.atom(variable);
-    if (atom.kind != AtomKind::kPredicate) continue;
-    const auto symbol = model_.terms()[GroundTermId(atom.index)].symbol;
-    if (completion_of(symbol) == nullptr) continue;
-    auto& reasons = reasons_[{atom.kind, atom.index}];
+    if (!completes(entry, atom)) continue;
+    auto& reasons = entry.reasons[{atom.kind, atom.index}];
     assert_completed(model_.formulas().atom(variable), reasons.single[GroundAtom::kUntimed],
-                     origins_.at(symbol), Constraint::kOnce);
+                     entry.origin, Constraint::kOnce);
   }
+  model_.close_predicate(entry.completion->predicate);
 }
 
 }  // namespace parallax::compiler

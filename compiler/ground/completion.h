@@ -15,26 +15,28 @@ namespace parallax::compiler {
 /// occurs positively, not G[p := false] is a reason for p, and p implies one of its reasons
 /// (pointwise circumscription, Lifschitz 1986; for axioms of the form `body -> P(..)` this is the
 /// predicate completion of Mueller 2006, Theorem 2.1, and for a disjunction of two completed
-/// events it makes them exclusive).
+/// events it makes them exclusive). A predicate with several completions needs a reason for each.
 class CompletionWriter {
  public:
   CompletionWriter(GroundModel& model, Meaning meaning);
   /// Notes an axiom with this label (empty without one): a formula that holds once, or, with a
   /// width, at every timepoint as GroundModel::require_always has it. Call for every axiom.
   void note(const std::string& label, FormulaId formula, Timepoint width);
-  /// The completion of a predicate, if it has one.
+  /// The first completion of a predicate, if it has one.
   const Completion* completion_of(SymbolId predicate) const;
-  /// The occurrences (event, timepoint) that the axioms noted so far give a reason for; `certain`:
-  /// those that are facts.
+  /// The occurrences (event, timepoint) that the axioms noted so far give a reason for under the
+  /// first completion; `certain`: those that are facts.
   struct Occurrence {
     std::uint32_t event = 0;
     Timepoint time = 0;
     bool certain = false;
   };
   std::vector<Occurrence> occurrences() const;
-  /// The disjunction of the reasons noted so far for a user predicate's atom.
+  /// The disjunction of the reasons noted so far for a user predicate's atom, under the first
+  /// completion.
   FormulaId reason(const GroundAtom& atom) const;
-  /// Asserts the completions: false for atoms without a reason.
+  /// Asserts the completions: false for atoms without a reason, also those of user predicates that
+  /// are first mentioned later.
   void write();
 
  private:
@@ -43,21 +45,26 @@ class CompletionWriter {
     std::vector<FormulaId> always;  // at timepoint 0, valid for all
     std::map<Timepoint, std::vector<FormulaId>> single;
   };
-  using Key = std::pair<AtomKind, std::uint32_t>;
+  /// A completion with its reasons, by kind and index of the atom.
+  struct Entry {
+    const Completion* completion = nullptr;
+    AtomKind kind = AtomKind::kPredicate;
+    std::uint32_t origin = 0;
+    std::map<std::pair<AtomKind, std::uint32_t>, Reasons> reasons;
+  };
 
+  bool completes(const Entry& entry, const GroundAtom& atom) const;
+  const Entry* first_entry(SymbolId predicate) const;
   void note_conjunct(const std::string& label, FormulaId formula, Timepoint width);
-  void note_reason(const GroundAtom& atom, FormulaId reason, Timepoint width);
-  const Completion* completion_of(const GroundAtom& atom) const;
-  void write_timed(AtomKind kind, std::uint32_t count, std::uint32_t origin);
-  void write_predicates();
+  void note_reason(const GroundAtom& atom, FormulaId reason, Timepoint width, Entry& entry);
+  void write_timed(Entry& entry);
+  void write_predicates(Entry& entry);
   void assert_completed(FormulaId atom, std::vector<FormulaId> reasons, std::uint32_t origin,
                         Timepoint width);
 
   GroundModel& model_;
   Meaning meaning_;
-  std::map<SymbolId, const Completion*> completions_;  // by predicate
-  std::map<SymbolId, std::uint32_t> origins_;          // by predicate
-  std::map<Key, Reasons> reasons_;
+  std::vector<Entry> entries_;  // in the order of the model
 };
 
 }  // namespace parallax::compiler

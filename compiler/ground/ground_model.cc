@@ -87,6 +87,9 @@ FormulaId GroundModel::happens(std::uint32_t event, Timepoint t) {
 }
 
 FormulaId GroundModel::predicate(GroundTermId term) {
+  if (closed_.contains(terms_[term].symbol) && !predicates_.contains(term)) {
+    return formulas_.falsity();
+  }
   const auto [entry, added] =
       predicates_.try_emplace(term, static_cast<std::int32_t>(atoms_.size() + 1));
   if (added) atoms_.push_back({AtomKind::kPredicate, term.index(), GroundAtom::kUntimed});

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <unordered_map>
@@ -69,6 +70,8 @@ class GroundModel {
   bool can_be_released(std::uint32_t fluent) const { return releasable_[fluent]; }
   /// A user predicate over ground arguments, as a ground term.
   FormulaId predicate(GroundTermId term);
+  /// From now on atoms of the predicate that no formula has mentioned yet are false.
+  void close_predicate(SymbolId predicate) { closed_.insert(predicate); }
   /// The variable of a user predicate's atom, if some formula has mentioned it.
   std::optional<std::int32_t> find_predicate(GroundTermId term) const {
     const auto found = predicates_.find(term);
@@ -131,6 +134,7 @@ class GroundModel {
   std::vector<GroundAtom> atoms_;            // by variable - 1
   std::unordered_map<std::uint64_t, std::int32_t> timed_;
   std::unordered_map<GroundTermId, std::int32_t> predicates_;
+  std::set<SymbolId> closed_;
   std::map<std::tuple<AtomKind, std::string, Timepoint>, std::int32_t> named_;
   std::vector<std::string> names_;
   std::vector<Constraint> constraints_;

@@ -6,6 +6,7 @@
 #include "compiler/formula/atoms.h"
 #include "compiler/ground/completion.h"
 #include "compiler/ground/effects.h"
+#include "compiler/ground/expansion_size.h"
 #include "compiler/ground/formula_grounder.h"
 #include "compiler/ground/invariants.h"
 #include "compiler/ground/narrative.h"
@@ -52,14 +53,14 @@ class Grounder {
     tabulate_predicates(model_, completion_, possible_);
     grounder_.use_possible(&possible_);
     assert_axioms([](const TimeProfile& p) { return p.shape == TimeShape::kFixed; });
-    Narrative narrative(model_, possible_, rows_, effects_);
+    Narrative narrative(model_, possible_, rows_, effects_, options_.keep_unreachable);
     narrative.schedule(completion_);
     grounder_.use_possible(&possible_);
     narrative.walk();
     for (const auto& effect : typed_.effects) {
       if (!effects_.is_scheduled(effect)) effects_.ground(effect);
     }
-    drop_unreachable(model_, possible_, rows_);
+    drop_unreachable(model_, possible_, rows_, options_.keep_unreachable);
     grounder_.use_possible(&possible_);
     grounder_.use_effects(rows_);
     assert_axioms([](const TimeProfile& p) {
@@ -144,6 +145,8 @@ class Grounder {
   /// False in itself, or only with what is already known of the model?
   bool is_false_whatever_happens(const Axiom& axiom) {
     if (grounder_.possible() == nullptr) return true;
+    const auto size = expansion_size(typed_, model_.universe(), axiom.formula);
+    if (size > static_cast<std::uint64_t>(options_.max_instances)) return false;  // cannot tell
     grounder_.use_possible(nullptr);
     grounder_.start(axiom.source);
     const auto formula = grounder_.ground(axiom.formula);

@@ -131,7 +131,8 @@ class Planner {
   std::optional<Candidate> candidate(std::size_t i) const {
     const auto& conjunct = conjuncts_[i];
     if (used_[i] || matched_[i] || possible_ == nullptr ||
-        conjunct.kind == Conjunct::Kind::kCompare || conjunct.kind == Conjunct::Kind::kFluent || conjunct.kind == Conjunct::Kind::kTime) {
+        conjunct.kind == Conjunct::Kind::kCompare || conjunct.kind == Conjunct::Kind::kFluent ||
+        conjunct.kind == Conjunct::Kind::kTime) {
       return std::nullopt;
     }
     TermId pattern = conjunct.term;

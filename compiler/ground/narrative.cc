@@ -48,8 +48,12 @@ struct Change {
 }  // namespace
 
 Narrative::Narrative(GroundModel& model, PossibleAtoms& possible, EffectRows& rows,
-                     EffectGrounder& effects)
-    : model_(model), possible_(possible), rows_(rows), effects_(effects) {}
+                     EffectGrounder& effects, std::size_t keep_unreachable)
+    : model_(model),
+      possible_(possible),
+      rows_(rows),
+      effects_(effects),
+      keep_unreachable_(keep_unreachable) {}
 
 /// An event symbol is scheduled if no axiom of the label with a time variable speaks of it
 /// positively.
@@ -110,7 +114,8 @@ void Narrative::choose_tracked() {
     tracked_[f] = !changed_otherwise[symbol.index()] && !model_.can_be_released(f) &&
                   values_[f] != Truth::kUnknown;
     if (!tracked_[f]) continue;
-    if (values_[f] == Truth::kFalse && is_worth_leaving_out(model_)) model_.never_holds(f);
+    if (values_[f] == Truth::kFalse && is_worth_leaving_out(model_, keep_unreachable_))
+      model_.never_holds(f);
     possible_.track(f, 0, values_[f] == Truth::kTrue);
   }
 }

@@ -16,7 +16,9 @@ namespace parallax::compiler {
 /// are made on the way, for the occurrences only.
 class Narrative {
  public:
-  Narrative(GroundModel& model, PossibleAtoms& possible, EffectRows& rows, EffectGrounder& effects);
+  /// `keep_unreachable`: as in GroundOptions.
+  Narrative(GroundModel& model, PossibleAtoms& possible, EffectRows& rows, EffectGrounder& effects,
+            std::size_t keep_unreachable);
   /// Reads the occurrences off the axioms noted so far: every axiom whose timepoints are all fixed.
   /// Events that other axioms of the label can bring about are not scheduled.
   void schedule(const CompletionWriter& completion);
@@ -34,6 +36,7 @@ class Narrative {
   PossibleAtoms& possible_;
   EffectRows& rows_;
   EffectGrounder& effects_;
+  std::size_t keep_unreachable_;
   std::map<std::pair<Timepoint, std::uint32_t>, bool> occurrences_;  // certain?
   std::vector<bool> tracked_;                                        // by fluent
   std::vector<Truth> values_;  // by fluent, at the timepoint reached

@@ -4,9 +4,8 @@
 
 namespace parallax::compiler {
 
-bool is_worth_leaving_out(const GroundModel& model) {
-  constexpr std::size_t kFewAtoms = 100'000;
-    return model.fluents().size() * static_cast<std::size_t>(model.horizon() + 1) > kFewAtoms;
+bool is_worth_leaving_out(const GroundModel& model, std::size_t keep) {
+  return model.fluents().size() * static_cast<std::size_t>(model.horizon() + 1) > keep;
 }
 
 std::vector<Truth> initial_values(const GroundModel& model) {
@@ -30,7 +29,8 @@ std::vector<Truth> initial_values(const GroundModel& model) {
   return values;
 }
 
-void drop_unreachable(GroundModel& model, PossibleAtoms& possible, EffectRows& rows) {
+void drop_unreachable(GroundModel& model, PossibleAtoms& possible, EffectRows& rows,
+                      std::size_t keep) {
   const auto count = model.fluents().size();
   std::vector<bool> reached(count, true);
   const auto& formulas = model.formulas();
@@ -67,7 +67,7 @@ void drop_unreachable(GroundModel& model, PossibleAtoms& possible, EffectRows& r
     });
   }
   for (std::uint32_t f = 0; f < count; ++f) {
-    if (!reached[f] && is_worth_leaving_out(model)) model.never_holds(f);
+    if (!reached[f] && is_worth_leaving_out(model, keep)) model.never_holds(f);
   }
   rows.filter_always([&](const EffectRow& row) { return value_at(row, 0) != Truth::kFalse; });
   possible.forget_fluent_tables();

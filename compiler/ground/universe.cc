@@ -27,12 +27,20 @@ base::Result<Universe> Universe::make(const TypedModel& model, const GroundOptio
   }
   PARALLAX_REQUIRE(model.core.time.has_value(), "a model loads the event calculus");
   const auto& time = model.sorts[*model.core.time];
-  const auto& timepoints = universe.domain(*model.core.time);
+  auto& timepoints = universe.domains_[model.core.time->index()];
+  std::sort(timepoints.begin(), timepoints.end(),
+            [&](GroundTermId a, GroundTermId b) { return terms[a].integer < terms[b].integer; });
   if (timepoints.empty()) return sink.error(DiagnosticCode::kNoTimepoints, time.declared);
   if (terms[timepoints.front()].integer != 0) {
     const auto where = time.ranges.empty() ? time.declared : time.ranges.front().declared;
     return sink.error(DiagnosticCode::kTimeMustStartAtZero, where,
                       terms[timepoints.front()].integer);
+  }
+  for (std::size_t i = 1; i < timepoints.size(); ++i) {
+    const auto before = terms[timepoints[i - 1]].integer, after = terms[timepoints[i]].integer;
+    if (after == before + 1) continue;
+    const auto where = time.ranges.empty() ? time.declared : time.ranges.back().declared;
+    return sink.error(DiagnosticCode::kTimeHasGap, where, before + 1, before, after);
   }
   universe.horizon_ = static_cast<std::int32_t>(timepoints.size()) - 1;
   return universe;

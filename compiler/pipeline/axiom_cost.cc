@@ -8,28 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "compiler/ground/expansion_size.h"
+
 namespace parallax::compiler {
 namespace {
 
 constexpr auto kGreatest = std::numeric_limits<std::uint64_t>::max();
-
-std::uint64_t times(std::uint64_t a, std::uint64_t b) {
-  std::uint64_t product = 0;
-  return __builtin_mul_overflow(a, b, &product) ? kGreatest : product;
-}
-
-std::uint64_t plus(std::uint64_t a, std::uint64_t b) {
-  return a > kGreatest - b ? kGreatest : a + b;
-}
-
-std::uint64_t domain_product(const TypedModel& model, const Universe& universe,
-                             const std::vector<VariableId>& variables) {
-  std::uint64_t product = 1;
-  for (const auto variable : variables) {
-    product = times(product, universe.domain(model.variables[variable].sort).size());
-  }
-  return product;
-}
 
 using CostKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::string>;
 
@@ -72,14 +56,13 @@ class CostCounter {
     const auto& universe = ground_.universe();
     const auto add = [&](base::SourceRange source, const char* what, std::uint64_t size) {
       auto& entry = cost(source, what);
-      entry.product = plus(entry.product, size);
+      entry.product = size > kGreatest - entry.product ? kGreatest : entry.product + size;
     };
     for (const auto& axiom : typed.axioms) {
       add(axiom.source, "axiom", expansion_size(typed, universe, axiom.formula));
     }
     const auto with_head = [&](const auto& axiom) {
-      return times(domain_product(typed, universe, axiom.variables),
-                   plus(expansion_size(typed, universe, axiom.condition), 1));
+      return expansion_size(typed, universe, axiom.condition, axiom.variables);
     };
     for (const auto& effect : typed.effects) add(effect.source, "effect axiom", with_head(effect));
     for (const auto& axiom : typed.trajectories) {
@@ -113,28 +96,6 @@ std::string place_of(const AxiomCost& cost, const base::SourceFiles& files) {
 }
 
 }  // namespace
-
-std::uint64_t expansion_size(const TypedModel& model, const Universe& universe,
-                             TypedFormulaId formula) {
-  // Iterative: a formula may be as deep as the parser allows.
-  struct Visit {
-    TypedFormulaId formula;
-    std::uint64_t factor;
-  };
-  std::vector<Visit> open = {{formula, 1}};
-  std::uint64_t size = 0;
-  while (!open.empty()) {
-    const auto [id, factor] = open.back();
-    open.pop_back();
-    const auto& node = model.formulas[id];
-    const auto inner = times(factor, domain_product(model, universe, node.variables));
-    if (node.kind == FormulaKind::kAtom || node.kind == FormulaKind::kCompare) {
-      size = plus(size, inner);
-    }
-    for (const auto child : node.children) open.push_back({child, inner});
-  }
-  return size;
-}
 
 std::vector<AxiomCost> axiom_costs(const GroundModel& ground, const CompiledModel& compiled) {
   return CostCounter(ground, compiled).run();

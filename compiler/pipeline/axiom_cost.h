@@ -27,11 +27,6 @@ struct AxiomCost {
 /// Linear in the model.
 std::vector<AxiomCost> axiom_costs(const GroundModel& ground, const CompiledModel& compiled);
 
-/// Instances of atoms and comparisons in a full expansion; the greatest number stands for all that
-/// is beyond 64 bits.
-std::uint64_t expansion_size(const TypedModel& model, const Universe& universe,
-                             TypedFormulaId formula);
-
 /// An aligned table with a line for each entry and one for the sum.
 std::string cost_table(const std::vector<AxiomCost>& costs, const base::SourceFiles& files);
 /// The same as a JSON array.

@@ -46,7 +46,7 @@ std::set<std::size_t> FuzzCompilation::error_lines() const {
 }
 
 std::vector<GroundVariant> ground_variants() {
-  std::vector<GroundVariant> variants(4);
+  std::vector<GroundVariant> variants(5);
   variants[0].name = "default";
   variants[1].name = "without templates";
   variants[1].options.templates = false;
@@ -55,6 +55,8 @@ std::vector<GroundVariant> ground_variants() {
   variants[3].name = "plain";
   variants[3].options.templates = false;
   variants[3].options.relevance = false;
+  variants[4].name = "without unreachable fluents";
+  variants[4].options.keep_unreachable = 0;
   return variants;
 }
 

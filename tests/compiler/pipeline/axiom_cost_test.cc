@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "compiler/cnf/encoder.h"
+#include "compiler/ground/expansion_size.h"
 #include "compiler/ground/grounder.h"
 #include "tests/compiler/front_end.h"
 

@@ -37,6 +37,47 @@ TEST_CASE("initiates and terminates with conditions") {
       16);
 }
 
+TEST_CASE("a predicate that only a trajectory's condition mentions is completed") {
+  check_against_brute_force(
+      "range time 0 1\nrange offset 1 1\nfluent F()\nfluent G()\npredicate P()\nevent E()\n"
+      "[time] Initiates(E(),F(),time).\n"
+      "[time,offset] P() -> Trajectory(F(),time,G(),offset).\ncompletion P\n"
+      "!HoldsAt(F(),0).\n",
+      4);
+}
+
+TEST_CASE("of two completions of one predicate both count") {
+  check_against_brute_force(
+      "range time 0 1\nfluent F()\nevent A()\nevent B()\n"
+      "One: HoldsAt(F(),0) -> Happens(A(),0).\nTwo: Happens(A(),0) | Happens(B(),0).\n"
+      "completion One Happens\ncompletion Two Happens\nHoldsAt(F(),0).\n",
+      1);
+}
+
+TEST_CASE("an atom that no axiom gives a reason for under one of the completions is false") {
+  check_against_brute_force(
+      "range time 0 1\nfluent F()\nevent A()\nevent B()\n"
+      "One: HoldsAt(F(),0) -> Happens(A(),0).\nTwo: !HoldsAt(F(),0) -> Happens(B(),0).\n"
+      "completion One Happens\ncompletion Two Happens\n",
+      0);
+}
+
+TEST_CASE("completed, ReleasedAt needs a reason among the axioms") {
+  check_against_brute_force(
+      "range time 0 1\nfluent F()\nevent A()\n[time] Releases(A(),F(),time).\n"
+      "completion ReleasedAt\n!HoldsAt(F(),0).\n",
+      1);
+}
+
+TEST_CASE("timepoints come from several ranges in any order, without a gap") {
+  TextModel both("range time 2 2\nrange time 0 1\nfluent F()\nHoldsAt(F(),0).\n");
+  CHECK(both.codes() == "W2008");
+  CHECK(enumerate_all(*both.typed, both.compiled).size() == 1);
+  CHECK(both.compiled.horizon == 2);
+  TextModel gap("range time 0 1\nrange time 3 4\nfluent F()\nHoldsAt(F(),0).\n");
+  CHECK(gap.codes().find("E3015") != std::string::npos);
+}
+
 TEST_CASE("an event that initiates and terminates one fluent is impossible") {
   check_against_brute_force(
       "range time 0 1\nfluent F()\nevent E()\n"
