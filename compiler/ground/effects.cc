@@ -42,11 +42,15 @@ void EffectGrounder::ground(const EffectAxiom& effect) {
 void EffectGrounder::ground_at(const EffectAxiom& effect, Timepoint t) {
   grounder_.start(effect.source);
   const auto& time = model_.typed().terms[effect.time];
-  const bool is_variable = time.kind == TermKind::kVariable;
-  if (!is_variable && grounder_.term(effect.time) != model_.terms().integer(t)) return;
-  if (is_variable) grounder_.bind(time.variable, model_.terms().integer(t));
-  run(effect, false);
-  if (is_variable) grounder_.unbind(time.variable);
+  if (time.kind == TermKind::kVariable) {
+    grounder_.bind(time.variable, model_.terms().integer(t));
+    run(effect, false);
+    grounder_.unbind(time.variable);
+  } else {
+    only_ = t;
+    run(effect, false);
+    only_.reset();
+  }
 }
 
 void EffectGrounder::run(const EffectAxiom& effect, bool always) {
@@ -74,7 +78,7 @@ void EffectGrounder::instance(const EffectAxiom& effect, bool always) {
   const auto fluent = grounder_.term(effect.fluent);
   if (!time || !event || !fluent) return;
   const auto t = model_.terms()[*time].integer;
-  if (t < 0 || t >= model_.horizon()) return;
+  if (t < 0 || t >= model_.horizon() || (only_ && t != *only_)) return;
   const auto e = model_.event_number(*event);
   const auto f = model_.fluent_number(*fluent);
   if (!e || !f || !model_.may_happen(*e)) return;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "compiler/ground/effect_rows.h"
@@ -29,6 +30,7 @@ class EffectGrounder {
   FormulaGrounder& grounder_;
   EffectRows& rows_;
   std::vector<std::uint32_t> origins_;  // by axiom
+  std::optional<Timepoint> only_;       // no rows of other timepoints
 };
 
 /// Asserts DEC5 to DEC12 of Mueller 2006 over the rows. Initiates, Terminates and Releases never

@@ -49,6 +49,18 @@ std::uint64_t expansion_size(const TypedModel& model, const Universe& universe,
   return size;
 }
 
+bool has_empty_quantifier(const TypedModel& model, const Universe& universe,
+                          TypedFormulaId formula) {
+  std::vector<TypedFormulaId> open = {formula};
+  while (!open.empty()) {
+    const auto& node = model.formulas[open.back()];
+    open.pop_back();
+    if (domain_product(model, universe, node.variables) == 0) return true;
+    open.insert(open.end(), node.children.begin(), node.children.end());
+  }
+  return false;
+}
+
 std::uint64_t expansion_size(const TypedModel& model, const Universe& universe,
                              TypedFormulaId condition, const std::vector<VariableId>& variables) {
   return times(domain_product(model, universe, variables),

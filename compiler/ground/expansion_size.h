@@ -13,7 +13,12 @@ namespace parallax::compiler {
 std::uint64_t expansion_size(const TypedModel& model, const Universe& universe,
                              TypedFormulaId formula);
 
-/// The same for `[variables] condition -> head`, which has one atom more.
+/// Does some quantifier inside, with or without the root, range over nothing? Then atoms below it
+/// have no instances, and say nothing of the timepoints that exist.
+bool has_empty_quantifier(const TypedModel& model, const Universe& universe,
+                          TypedFormulaId formula);
+
+/// The expansion of `[variables] condition -> head`, which has one atom more.
 std::uint64_t expansion_size(const TypedModel& model, const Universe& universe,
                              TypedFormulaId condition, const std::vector<VariableId>& variables);
 

@@ -110,7 +110,8 @@ class Grounder {
   void assert_axiom(const Axiom& axiom, const TimeProfile& profile) {
     grounder_.start(axiom.source);
     const bool always = profile.shape == TimeShape::kUniform && standard_ && options_.templates &&
-                        !waits_for_scheduled_event(axiom);
+                        !waits_for_scheduled_event(axiom) &&
+                        !has_empty_quantifier(typed_, model_.universe(), axiom.formula);
     std::optional<FormulaId> formula;
     if (!always) {
       formula = grounder_.ground(axiom.formula);

@@ -15,6 +15,13 @@ void FormulaGrounder::begin_instances(Frame& frame, TypedFormulaId id) {
   for (const auto variable : frame.formula->variables) {
     if (!terms_.is_bound(variable)) frame.open.push_back(variable);
   }
+  const auto ranges_over_nothing = [&](VariableId variable) {
+    return model_->universe().domain(typed_->variables[variable].sort).empty();
+  };
+  if (std::any_of(frame.open.begin(), frame.open.end(), ranges_over_nothing)) {
+    frame.exhausted = true;  // true or false, whatever stands inside
+    return;
+  }
   const auto& known = quantifier(id, frame);
   for (const auto atom : known.outer_atoms) {
     if (!beyond_horizon(typed_->formulas[atom])) continue;
@@ -100,10 +107,6 @@ bool FormulaGrounder::next_instance(Frame& frame) {
   frame.in_product = true;
   for (const auto variable : frame.open) {
     const auto& domain = model_->universe().domain(typed_->variables[variable].sort);
-    if (domain.empty()) {
-      frame.discarded = false;
-      return false;
-    }
     bind(variable, domain[0]);
   }
   frame.odometer.assign(width, 0);
