@@ -54,7 +54,8 @@ class Grounder {
     grounder_.use_possible(&possible_);
     assert_axioms([](const TimeProfile& p) { return p.shape == TimeShape::kFixed; });
     Narrative narrative(model_, possible_, rows_, effects_, options_.keep_unreachable);
-    narrative.schedule(completion_);
+    // A formula may ask for the effects of an event that never happens.
+    if (!some_axiom_mentions_effects()) narrative.schedule(completion_);
     grounder_.use_possible(&possible_);
     narrative.walk();
     for (const auto& effect : typed_.effects) {
@@ -77,6 +78,11 @@ class Grounder {
     if (standard_ && options_.templates && options_.invariants) add_invariants(model_, rows_);
     if (!standard_) deny_unmentioned();
     grounder_.start({});  // charges what the last axiom took
+  }
+
+  bool some_axiom_mentions_effects() const {
+    return std::any_of(typed_.axioms.begin(), typed_.axioms.end(),
+                       [](const Axiom& axiom) { return axiom.mentions_effects; });
   }
 
   template <typename Wanted>

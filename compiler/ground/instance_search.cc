@@ -152,7 +152,7 @@ bool InstanceSearch::match(TermId root, GroundTermId root_value) {
     const auto& pattern = model.typed().terms[id];
     if (pattern.kind == TermKind::kVariable) {
       if (!take(pattern.variable, value)) return false;
-    } else if (pattern.kind == TermKind::kArithmetic) {
+    } else if (pattern.kind == TermKind::kArithmetic && is_open(id)) {
       if (!match_arithmetic(pattern, value)) return false;
     } else if (pattern.kind != TermKind::kApply ||
                model.typed().symbols[pattern.symbol].kind == SymbolKind::kFunction) {
@@ -171,13 +171,14 @@ bool InstanceSearch::match(TermId root, GroundTermId root_value) {
   return true;
 }
 
+bool InstanceSearch::is_open(TermId id) const {
+  const auto all = variables_of(terms_.model().typed(), id);
+  return std::any_of(all.begin(), all.end(), [&](VariableId v) { return !terms_.is_bound(v); });
+}
+
 /// `a + b` or `a - b` with one side bound: the other is a difference or a sum.
 bool InstanceSearch::match_arithmetic(const Term& pattern, GroundTermId value) {
   auto& store = terms_.model().terms();
-  const auto is_open = [&](TermId id) {
-    const auto all = variables_of(terms_.model().typed(), id);
-    return std::any_of(all.begin(), all.end(), [&](VariableId v) { return !terms_.is_bound(v); });
-  };
   const bool left_open = is_open(pattern.arguments[0]);
   const auto known = terms_.term(pattern.arguments[left_open ? 1 : 0]);
   if (!known || store[*known].kind != TermKind::kInteger ||
@@ -192,15 +193,9 @@ bool InstanceSearch::match_arithmetic(const Term& pattern, GroundTermId value) {
   if (left_open) {
     overflow = adds ? __builtin_sub_overflow(result, other, &solved)
                     : __builtin_add_overflow(result, other, &solved);
-  } else if (is_open(pattern.arguments[1])) {
+  } else {
     overflow = adds ? __builtin_sub_overflow(result, other, &solved)
                     : __builtin_sub_overflow(other, result, &solved);
-  } else {
-    const auto right = terms_.term(pattern.arguments[1]);
-    if (!right || store[*right].kind != TermKind::kInteger) return false;
-    overflow = adds ? __builtin_add_overflow(other, store[*right].integer, &solved)
-                    : __builtin_sub_overflow(other, store[*right].integer, &solved);
-    return !overflow && solved == result;
   }
   if (overflow) return false;
   return match(pattern.arguments[left_open ? 0 : 1], store.integer(solved));

@@ -22,6 +22,8 @@ class InstanceSearch {
   bool filter(const Conjunct& conjunct);
   bool may_be_true(const TypedFormula& atom);
   bool match(TermId pattern, GroundTermId value);
+  /// Has the term a variable without a value?
+  bool is_open(TermId id) const;
   bool match_arithmetic(const Term& pattern, GroundTermId value);
   void match_rows(const InstancePlan::Step& step, std::size_t number);
   bool take(VariableId variable, GroundTermId value);

@@ -89,6 +89,25 @@ TEST_CASE("an effect axiom whose time is computed counts for a scheduled event")
       2);
 }
 
+TEST_CASE("a formula may speak of the effects of an event that never happens") {
+  check_against_brute_force(
+      "range time 0 2\nfluent F()\nfluent G()\nevent E()\n"
+      "[event,time] Initiates(event,F(),time).\n"
+      "[time] Initiates(E(),F(),1) -> HoldsAt(G(),time).\ncompletion Happens\n",
+      2);
+}
+
+TEST_CASE("computed arguments of an effect's event are matched with every operator") {
+  for (const std::string zero : {"2%2", "0*2", "1/2", "2-2", "(0-2)%2"}) {
+    check_against_brute_force(
+        "range time 0 1\nsort level: integer\nrange level 0 0\nfluent F()\n"
+        "event E(level,level)\nHoldsAt(F(),0).\nHappens(E(0,0),0).\n"
+        "[time] Terminates(E(time," +
+            zero + "),F(),time).\n",
+        1);
+  }
+}
+
 TEST_CASE("timepoints come from several ranges in any order, without a gap") {
   TextModel both("range time 2 2\nrange time 0 1\nfluent F()\nHoldsAt(F(),0).\n");
   CHECK(both.codes() == "W2008");
