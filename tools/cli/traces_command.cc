@@ -4,6 +4,7 @@
 
 #include "runtime/enumerate/model_enumerator.h"
 #include "runtime/enumerate/plan_enumerator.h"
+#include "runtime/graph/trace_counter.h"
 #include "tools/cli/scenario_model.h"
 #include "tools/cli/signals.h"
 #include "tools/cli/trace_check.h"
@@ -101,6 +102,30 @@ void close_list(const TracesOptions& options, const TraceWriter& writer, const E
   }
 }
 
+/// `--count` without a plan or constraints: no trace needs to be made.
+int count_only(const TracesOptions& options, const compiler::CompiledModel& model,
+               std::chrono::steady_clock::time_point start, Invocation& invocation) {
+  const auto counted = runtime::count_traces(model, {}, &stop_flag());
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  const auto number = counted.count.get_str();
+  if (!counted.complete) invocation.remark("stopped before the end: there may be more traces");
+  if (options.model.stats && !invocation.options().json) {
+    write_error(fmt::format("strategy {}{}{}; {} states, {} transitions, {} solver calls\n",
+                            counted.strategy, counted.remark.empty() ? "" : ": ", counted.remark,
+                            counted.states, counted.transitions, counted.solve_calls));
+  }
+  if (invocation.options().json) {
+    invocation.document(
+        fmt::format("{{\"status\":\"ok\",\"traces\":{},\"complete\":{},\"exploration\":\"{}\","
+                    "\"strategy\":\"{}\",\"timing\":{{\"wall_s\":{:.3f}}}}}\n",
+                    number, counted.complete, counted.complete ? "complete" : "stopped",
+                    counted.strategy, wall.count()));
+  } else {
+    invocation.result(number + '\n');
+  }
+  return counted.count == 0 && options.expect_traces ? 1 : 0;
+}
+
 /// Enumerates into the writer.
 Ending enumerate(const compiler::CompiledModel& model, TraceWriter& writer) {
   runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
@@ -132,6 +157,12 @@ int list_traces(const TracesOptions& options, Invocation& invocation) {
   }
   const auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
+  if (options.model.stats && !invocation.options().json && !compilation->costs.empty()) {
+    write_error(compiler::cost_table(compilation->costs, invocation.files()));
+  }
+  if (options.count && !options.check && !compilation->model.has_constraints) {
+    return count_only(options, compilation->model, start, invocation);
+  }
   std::optional<TraceCheck> check;
   if (options.check) check.emplace(*compilation->typed, &stop_flag(), invocation.sink());
   TraceWriter writer(options, check ? &*check : nullptr, invocation);
@@ -156,6 +187,8 @@ Command add_traces_command(CLI::App& app) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_flag("--count", options->count, "Print only the number of traces");
+  command->add_flag("--stats", options->model.stats,
+                    "Show on standard error how traces were counted and what each axiom costs");
   command->add_flag("--expect-traces", options->expect_traces, "Exit with 1 if there is no trace");
   command->add_flag(
       "--check", options->check,

@@ -1,0 +1,298 @@
+#include "runtime/graph/layered_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <optional>
+
+#include "runtime/graph/unit_values.h"
+
+namespace parallax::runtime {
+namespace {
+
+using compiler::AtomKind;
+
+constexpr std::int64_t kNoWindow = -2;  // of a clause without timed variables
+constexpr std::int64_t kStart = -1;     // the window of the state at 0 alone; else the step's time
+
+/// Fixed variables that some clause connects.
+class Components {
+ public:
+  explicit Components(std::size_t count) : parent_(count), window_(count, kNoWindow) {
+    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  }
+  std::size_t find(std::size_t v) {
+    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
+    return v;
+  }
+  /// False if the two belong to different windows.
+  bool unite(std::size_t a, std::size_t b) {
+    a = find(a);
+    b = find(b);
+    const auto window = window_[b];
+    parent_[b] = a;
+    return window == kNoWindow || place(a, window);
+  }
+  bool place(std::size_t v, std::int64_t window) {
+    auto& own = window_[find(v)];
+    if (own == kNoWindow) own = window;
+    return own == window;
+  }
+  std::int64_t window(std::size_t v) { return window_[find(v)]; }
+
+ private:
+  std::vector<std::size_t> parent_;
+  std::vector<std::int64_t> window_;
+};
+
+class Splitter {
+ public:
+  explicit Splitter(const CompiledModel& model)
+      : model_(model),
+        values_(unit_values(model)),
+        components_(static_cast<std::size_t>(model.base())) {}
+
+  std::variant<LayeredModel, std::string> run() && {
+    out_.horizon = model_.horizon;
+    out_.state_slots = model_.state_slots;
+    out_.stride = static_cast<std::uint32_t>(model_.stride());
+    for (const auto& fluent : model_.fluents) {
+      if (fluent.slot) out_.observed.push_back(*fluent.slot);
+    }
+    for (const auto& event : model_.events) {
+      if (event.slot) out_.events.push_back(*event.slot);
+    }
+    for (std::int32_t v = 1; v <= model_.base(); ++v) {
+      const auto value = values_[static_cast<std::size_t>(v) - 1];
+      if (value > 0) out_.true_fixed.push_back(v);
+      if (value == 0 && model_.fixed[static_cast<std::size_t>(v) - 1].kind != AtomKind::kUnused) {
+        out_.open_fixed.push_back(v);
+      }
+    }
+    for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
+      if (!place_clause(c)) return reason_;
+    }
+    find_copied();
+    collect();
+    find_hidden();
+    return std::move(out_);
+  }
+
+ private:
+  bool is_fixed(Literal literal) const { return literal.var() <= model_.base(); }
+  std::int8_t fixed_value(Literal literal) const {
+    const auto value = values_[static_cast<std::size_t>(literal.var()) - 1];
+    return literal.is_positive() ? value : static_cast<std::int8_t>(-value);
+  }
+  bool is_satisfied(std::size_t c) const {
+    const auto clause = model_.clauses[c];
+    return std::any_of(clause.begin(), clause.end(), [&](Literal literal) {
+      return is_fixed(literal) && fixed_value(literal) > 0;
+    });
+  }
+
+  /// The window of the clause's timed variables; none if they do not fit into one.
+  std::optional<std::int64_t> window_of(std::span<const Literal> clause) {
+    std::int64_t least = model_.horizon + 1, most = -1, step = kNoWindow;
+    for (const auto literal : clause) {
+      if (is_fixed(literal)) continue;
+      const auto place = literal.var() - model_.base() - 1;
+      const std::int64_t t = place / model_.stride();
+      if (place % model_.stride() < static_cast<std::int32_t>(model_.state_slots)) {
+        least = std::min(least, t);
+        most = std::max(most, t);
+      } else if (step != kNoWindow && step != t) {
+        return std::nullopt;
+      } else {
+        step = t;
+      }
+    }
+    if (step != kNoWindow) {
+      if (most >= 0 && (least < step || most > step + 1)) return std::nullopt;
+      return step;
+    }
+    if (most < 0) return kNoWindow;
+    if (most - least > 1) return std::nullopt;
+    return most > least ? least : most - 1;
+  }
+
+  bool place_clause(std::size_t c) {
+    if (is_satisfied(c)) return true;
+    const auto clause = model_.clauses[c];
+    const auto window = window_of(clause);
+    bool fits = window.has_value();
+    std::optional<std::size_t> first;
+    for (const auto literal : clause) {
+      if (!fits) break;
+      if (!is_fixed(literal) || fixed_value(literal) != 0) continue;
+      const auto v = static_cast<std::size_t>(literal.var()) - 1;
+      if (first) fits = components_.unite(*first, v);
+      if (fits && *window != kNoWindow) fits = components_.place(v, *window);
+      first = v;
+    }
+    if (fits) return true;
+    const auto& origin = model_.origins[model_.clause_origins[c]];
+    reason_ = fmt::format("the clauses of `{}` look at more than two neighbouring timepoints",
+                          origin.text.empty() ? origin.what : origin.text);
+    return false;
+  }
+
+  /// Does the clause speak of one state only? Its timepoint then.
+  std::optional<std::int64_t> state_of(std::span<const Literal> clause) const {
+    std::optional<std::int64_t> state;
+    for (const auto literal : clause) {
+      if (is_fixed(literal)) {
+        if (fixed_value(literal) == 0) return std::nullopt;
+        continue;
+      }
+      const auto place = literal.var() - model_.base() - 1;
+      const std::int64_t t = place / model_.stride();
+      const bool is_state = slot_of(literal) < static_cast<std::int32_t>(model_.state_slots);
+      if (!is_state || (state && *state != t)) return std::nullopt;
+      state = t;
+    }
+    return state;
+  }
+  std::int32_t slot_of(Literal literal) const {
+    return (literal.var() - model_.base() - 1) % model_.stride();
+  }
+
+  /// Auxiliaries of a state that need no single value in the two windows of that state: each window
+  /// gets a copy with the clauses that define it. They are those that stand negated only in clauses
+  /// about the state alone: where one copy is true, what it stands for is, so the disjunction of
+  /// the copies serves both windows.
+  void find_copied() {
+    copied_.assign(model_.state_slots, false);
+    for (std::uint32_t slot = 0; slot < model_.state_slots; ++slot) {
+      copied_[slot] = model_.slots[slot].kind == AtomKind::kAuxiliary;
+    }
+    for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
+      const auto clause = model_.clauses[c];
+      if (is_satisfied(c) || state_of(clause)) continue;
+      for (const auto literal : clause) {
+        if (is_fixed(literal) || literal.is_positive()) continue;
+        const auto slot = static_cast<std::size_t>(slot_of(literal));
+        if (slot < copied_.size()) copied_[slot] = false;
+      }
+    }
+  }
+  bool has_copied(std::span<const Literal> clause) const {
+    return std::any_of(clause.begin(), clause.end(), [&](Literal literal) {
+      return !is_fixed(literal) && static_cast<std::size_t>(slot_of(literal)) < copied_.size() &&
+             copied_[static_cast<std::size_t>(slot_of(literal))];
+    });
+  }
+
+  /// Writes every clause into its window; those of fixed variables alone that no window claims are
+  /// satisfiable if the model is, and constrain no trace.
+  void collect() {
+    std::vector<WindowClauses> windows(static_cast<std::size_t>(model_.horizon) + 1);
+    std::vector<std::map<std::int32_t, std::int32_t>> locals(windows.size());
+    const auto frame = static_cast<std::int32_t>(out_.state_slots + out_.stride);
+    for (std::size_t i = 0; i < windows.size(); ++i) {
+      windows[i].variables = i == 0 ? static_cast<std::int32_t>(out_.state_slots) : frame;
+    }
+    for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
+      if (is_satisfied(c)) continue;
+      const auto clause = model_.clauses[c];
+      auto window = *window_of(clause);
+      for (const auto literal : clause) {
+        if (window == kNoWindow && is_fixed(literal) && fixed_value(literal) == 0) {
+          window = components_.window(static_cast<std::size_t>(literal.var()) - 1);
+        }
+      }
+      if (window == kNoWindow && !clause.empty()) continue;
+      window = std::max(window, kStart);
+      const auto index = static_cast<std::size_t>(window + 1);
+      write(clause, window, windows[index], locals[index]);
+      const auto state = state_of(clause);
+      if (state && *state < model_.horizon && has_copied(clause)) {
+        const auto next = static_cast<std::size_t>(*state + 1);
+        write(clause, *state, windows[next], locals[next]);
+      }
+    }
+    group(std::move(windows));
+  }
+
+  void write(std::span<const Literal> clause, std::int64_t window, WindowClauses& target,
+             std::map<std::int32_t, std::int32_t>& locals) const {
+    auto& written = target.clauses.emplace_back();
+    for (const auto literal : clause) {
+      if (is_fixed(literal) && fixed_value(literal) != 0) continue;
+      written.push_back(local(literal, window, target, locals));
+    }
+  }
+
+  std::int32_t local(Literal literal, std::int64_t window, WindowClauses& target,
+                     std::map<std::int32_t, std::int32_t>& locals) const {
+    std::int32_t v = 0;
+    if (is_fixed(literal)) {
+      const auto [entry, added] = locals.try_emplace(literal.var(), target.variables + 1);
+      if (added) ++target.variables;
+      v = entry->second;
+    } else {
+      const auto place = literal.var() - model_.base() - 1;
+      const auto slot = place % model_.stride();
+      const auto slots = static_cast<std::int32_t>(out_.state_slots);
+      if (slot >= slots) {
+        v = slots + slot + 1;
+      } else {
+        const bool after = window != kStart && place / model_.stride() != window;
+        v = slot + 1 + (after ? slots : 0);
+      }
+    }
+    return literal.is_positive() ? v : -v;
+  }
+
+  /// Steps with the same clauses are one.
+  void group(std::vector<WindowClauses> windows) {
+    out_.start = std::move(windows[0]);
+    std::map<std::vector<std::vector<std::int32_t>>, std::uint32_t> known;
+    for (std::size_t i = 1; i < windows.size(); ++i) {
+      auto& clauses = windows[i].clauses;
+      std::sort(clauses.begin(), clauses.end());
+      const auto [entry, added] =
+          known.try_emplace(clauses, static_cast<std::uint32_t>(out_.steps.size()));
+      if (added) out_.steps.push_back(std::move(windows[i]));
+      out_.step_at.push_back(entry->second);
+    }
+  }
+
+  void find_hidden() {
+    const auto slots = out_.state_slots;
+    std::vector<bool> before(slots, false), after(slots, false);
+    const auto note = [&](const WindowClauses& window, bool is_start) {
+      for (const auto& clause : window.clauses) {
+        for (const auto literal : clause) {
+          const auto v = static_cast<std::uint32_t>(std::abs(literal)) - 1;
+          if (v < slots) (is_start ? after : before)[v] = true;
+          if (!is_start && v >= slots && v < 2 * slots) after[v - slots] = true;
+        }
+      }
+    };
+    note(out_.start, true);
+    for (const auto& step : out_.steps) note(step, false);
+    std::vector<bool> seen(slots, false);
+    for (const auto slot : out_.observed) seen[slot] = true;
+    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+      if (!seen[slot] && !copied_[slot] && before[slot] && after[slot]) out_.hidden.push_back(slot);
+    }
+  }
+
+  const CompiledModel& model_;
+  std::vector<std::int8_t> values_;
+  Components components_;
+  std::vector<bool> copied_;  // by state slot
+  LayeredModel out_;
+  std::string reason_;
+};
+
+}  // namespace
+
+std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model) {
+  return Splitter(model).run();
+}
+
+}  // namespace parallax::runtime

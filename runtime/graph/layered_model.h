@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "compiler/artifact/compiled_model.h"
+
+namespace parallax::runtime {
+
+using compiler::CompiledModel;
+using compiler::Literal;
+using compiler::Timepoint;
+
+/// Clauses over one window, with variables of their own:
+///   1 .. S             the slots of the state before, S = state_slots
+///   S+1 .. 2S          the slots of the state after
+///   2S+1 .. S+stride   the slots of the step between them
+///   the rest           variables that occur in this window only
+/// The window at the start has the state before only.
+struct WindowClauses {
+  std::vector<std::vector<std::int32_t>> clauses;  // DIMACS literals
+  std::int32_t variables = 0;
+  friend bool operator==(const WindowClauses&, const WindowClauses&) = default;
+};
+
+/// A model whose clauses each look at two neighbouring timepoints at most.
+struct LayeredModel {
+  Timepoint horizon = 0;
+  std::uint32_t state_slots = 0;
+  std::uint32_t stride = 0;
+  std::vector<std::uint32_t> observed;  // state slots of HoldsAt, in declaration order
+  std::vector<std::uint32_t> events;    // step slots of Happens, in declaration order
+  /// State slots that are no HoldsAt and that one window can hand on to the next.
+  std::vector<std::uint32_t> hidden;
+  WindowClauses start;
+  std::vector<WindowClauses> steps;      // those that differ
+  std::vector<std::uint32_t> step_at;    // by timepoint: index into `steps`
+  std::vector<std::int32_t> true_fixed;  // fixed variables that are true in every trace
+  std::vector<std::int32_t> open_fixed;  // those whose value is not the same in every trace
+};
+
+/// Splits the model into windows, or says why it cannot be split: "a clause of FILE:LINE spans
+/// timepoints 0 to 3". Fixed variables with a value of their own are replaced by it. Linear in the
+/// clauses.
+std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model);
+
+}  // namespace parallax::runtime

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <gmpxx.h>
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <variant>
+#include <vector>
+
+#include "runtime/graph/layered_model.h"
+#include "runtime/graph/step_solver.h"
+
+namespace parallax::runtime {
+
+/// A state of the graph: what is observed, and every valuation of the hidden slots that some trace
+/// with the same observations so far can have (subset construction, Rabin and Scott 1959).
+struct GraphNode {
+  Bits observed;
+  std::vector<Bits> hidden;  // ascending
+  friend bool operator==(const GraphNode&, const GraphNode&) = default;
+  friend auto operator<=>(const GraphNode&, const GraphNode&) = default;
+};
+
+struct GraphEdge {
+  std::uint32_t events = 0;  // index into TraceGraph::event_sets
+  std::uint32_t target = 0;  // index into TraceGraph::nodes
+};
+
+struct GraphLimits {
+  std::size_t nodes = 2'000'000;   // of all layers together
+  std::size_t edges = 20'000'000;  // that are stored
+};
+
+/// The traces of a model as the paths of a layered graph: every distinct state of a window is asked
+/// for its successors once, whatever leads to it and whenever, so that cost grows with states and
+/// not with traces. A path from the start to the last layer is a trace, and distinct paths are
+/// distinct traces. Needs a satisfiable model.
+class TraceGraph {
+ public:
+  /// None if the solver was stopped or a limit was hit; `reason` says which. `model` outlives the
+  /// graph, `stop` may be null.
+  static std::unique_ptr<TraceGraph> build(const LayeredModel& model, const GraphLimits& limits,
+                                           const std::atomic<bool>* stop, std::string& reason);
+
+  /// The exact number of traces.
+  const mpz_class& count() const { return total_; }
+  /// Paths from a node of the layer of timepoint t to the last layer.
+  const mpz_class& completions(Timepoint t, std::uint32_t node) const;
+
+  const LayeredModel& model() const { return model_; }
+  const GraphNode& node(std::uint32_t index) const { return *nodes_[index]; }
+  const Bits& events(std::uint32_t index) const { return *event_sets_[index]; }
+  /// The nodes at timepoint 0 in canonical order.
+  const std::vector<std::uint32_t>& starts() const { return starts_; }
+  /// The ways on from a node, in canonical order; some may lead to no trace.
+  const std::vector<GraphEdge>& edges(Timepoint t, std::uint32_t node) const;
+  /// Every node fixes its hidden slots.
+  bool is_determined() const { return determined_; }
+
+  std::size_t node_count() const { return nodes_.size(); }
+  std::size_t edge_count() const { return edge_count_; }
+  std::int64_t solve_calls() const;
+
+ private:
+  TraceGraph(const LayeredModel& model, const GraphLimits& limits, const std::atomic<bool>* stop);
+  bool expand(std::string& reason);
+  bool expand_node(std::uint32_t step, std::uint32_t node, std::string& reason);
+  void count_back();
+  std::uint32_t intern(GraphNode node);
+  std::uint32_t intern_events(Bits events);
+
+  using Counts = std::unordered_map<std::uint32_t, mpz_class>;  // by node, for look-up only
+
+  const LayeredModel& model_;
+  GraphLimits limits_;
+  StepSolver start_;
+  std::vector<std::unique_ptr<StepSolver>> steps_;
+  std::map<GraphNode, std::uint32_t> node_index_;
+  std::vector<const GraphNode*> nodes_;
+  std::map<Bits, std::uint32_t> event_index_;
+  std::vector<const Bits*> event_sets_;
+  std::vector<std::unordered_map<std::uint32_t, std::vector<GraphEdge>>> edges_;  // by step, node
+  std::vector<std::vector<std::uint32_t>> layers_;                                // by timepoint
+  std::vector<Counts> completions_;                                               // by timepoint
+  std::vector<std::uint32_t> starts_;
+  std::size_t edge_count_ = 0;
+  bool determined_ = true;
+  mpz_class total_;
+};
+
+}  // namespace parallax::runtime
