@@ -1,0 +1,69 @@
+;; Bowl and spoon to the table, the spoon first. Drawers are closed until the spoon is found: the one
+;; that it was in stays open.
+
+(in-package :kitchen-demo)
+
+(defparameter *work-pose*
+  (make-pose-stamped "map" 0.0 (make-3d-vector 0.72 0.06 0) (make-identity-rotation)))
+(defparameter *table-pose*
+  (make-pose-stamped "map" 0.0 (make-3d-vector -0.10 0.58 0) (make-quaternion 0 0 1 0)))
+
+(defparameter *counter-cells*
+  (list (make-pose-stamped "map" 0.0 (make-3d-vector 1.46 0.075 0.85) (make-identity-rotation))
+        (make-pose-stamped "map" 0.0 (make-3d-vector 1.46 0.225 0.85) (make-identity-rotation))
+        (make-pose-stamped "map" 0.0 (make-3d-vector 1.46 0.375 0.85) (make-identity-rotation))))
+
+(defparameter *bowl-spot*
+  (make-pose-stamped "map" 0.0 (make-3d-vector -0.82 0.625 0.86) (make-identity-rotation)))
+(defparameter *spoon-spot*
+  (make-pose-stamped "map" 0.0 (make-3d-vector -0.82 0.775 0.86) (make-identity-rotation)))
+
+(def-cram-function drive-to (?pose)
+  (exe:perform (desig:a motion (type going) (target (desig:a location (pose ?pose))))))
+
+(def-cram-function park-arms ()
+  (exe:perform (desig:an action (type parking-arms) (arm left)))
+  (exe:perform (desig:an action (type parking-arms) (arm right))))
+
+(def-cram-function pick-up (?object)
+  (exe:perform (desig:an action (type picking-up) (arm left) (object ?object))))
+
+(def-cram-function find-on-counter (?type)
+  (dolist (?cell *counter-cells*)
+    (exe:perform (desig:a motion (type looking) (target (desig:a location (pose ?cell)))))
+    (cpl:with-failure-handling
+        ((common-fail:perception-low-level-failure (e)
+           (roslisp:ros-info (demo) "no ~a here: ~a" ?type e)
+           (return)))
+      (return-from find-on-counter
+        (exe:perform (desig:a motion (type detecting) (object (desig:an object (type ?type))))))))
+  (cpl:fail 'common-fail:object-nowhere-to-be-found))
+
+(def-cram-function find-in-drawers (?type)
+  (dolist (?drawer '(:d-top :d-mid :d-low))
+    (exe:perform (desig:an action (type opening) (arm left)
+                           (object (desig:an object (name ?drawer)))))
+    (exe:perform (desig:a motion (type looking)
+                          (target (desig:a location (in (desig:an object (name ?drawer)))))))
+    (cpl:with-failure-handling
+        ((common-fail:perception-low-level-failure (e) (return)))
+      (return-from find-in-drawers
+        (exe:perform (desig:a motion (type detecting) (object (desig:an object (type ?type)))))))
+    (exe:perform (desig:an action (type closing) (arm left)
+                           (object (desig:an object (name ?drawer))))))
+  (cpl:fail 'common-fail:object-nowhere-to-be-found))
+
+(def-cram-function deliver (?object ?spot)
+  (pick-up ?object)
+  (park-arms)
+  (drive-to *table-pose*)
+  (exe:perform (desig:an action (type placing) (arm left) (object ?object)
+                         (target (desig:a location (pose ?spot)))))
+  (park-arms))
+
+(def-cram-function bring-bowl-and-spoon ()
+  (deliver (find-in-drawers :spoon) *spoon-spot*)
+  (drive-to *work-pose*)
+  (deliver (find-on-counter :bowl) *bowl-spot*))
+
+(bring-bowl-and-spoon)
