@@ -11,6 +11,11 @@ class CadicalSolver final : public SatSolver {
     solver_.set("quiet", 1);
     if (stop != nullptr) solver_.connect_terminator(&terminator_);
   }
+  CadicalSolver(std::FILE* proof, ProofForm form, const std::atomic<bool>* stop)
+      : CadicalSolver(stop) {
+    solver_.set("binary", form == ProofForm::kBinary ? 1 : 0);
+    solver_.trace_proof(proof, "proof");
+  }
 
   void add_clause(std::span<const Literal> clause) override {
     for (const auto literal : clause) solver_.add(literal.dimacs());
@@ -75,6 +80,11 @@ class CadicalSolver final : public SatSolver {
 
 std::unique_ptr<SatSolver> make_cadical_solver(const std::atomic<bool>* stop) {
   return std::make_unique<CadicalSolver>(stop);
+}
+
+std::unique_ptr<SatSolver> make_proving_solver(std::FILE* proof, ProofForm form,
+                                               const std::atomic<bool>* stop) {
+  return std::make_unique<CadicalSolver>(proof, form, stop);
 }
 
 }  // namespace parallax::runtime

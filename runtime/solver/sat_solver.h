@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <cstdio>
 #include <memory>
 #include <span>
 
@@ -50,5 +51,13 @@ class SatSolver {
 /// CaDiCaL in its default configuration. A call of solve that is under way when `stop` is raised
 /// answers kUnknown soon; `stop` may be null and outlives the solver.
 std::unique_ptr<SatSolver> make_cadical_solver(const std::atomic<bool>* stop = nullptr);
+
+enum class ProofForm : std::uint8_t { kBinary, kText };
+
+/// The same solver; what it learns and deletes goes to `proof` as DRAT, until it finds a
+/// contradiction that rests on no assumption. The stream outlives the solver and is the caller's to
+/// flush and to ask for errors.
+std::unique_ptr<SatSolver> make_proving_solver(std::FILE* proof, ProofForm form,
+                                               const std::atomic<bool>* stop = nullptr);
 
 }  // namespace parallax::runtime

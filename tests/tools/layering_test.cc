@@ -79,6 +79,7 @@ const std::map<std::string, std::vector<std::string>>& allowed() {
         "compiler/formula", "compiler/cnf", "compiler/plan", "compiler/lint"}},
       {"runtime/solver", front},
       {"runtime/session", {"compiler/base", "compiler/artifact", "runtime/solver"}},
+      {"runtime/proof", {"compiler/base"}},
       {"runtime/trace", front},
       {"runtime/enumerate",
        {"compiler/base", "compiler/artifact", "runtime/solver", "runtime/session",

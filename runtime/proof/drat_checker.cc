@@ -1,0 +1,146 @@
+#include "runtime/proof/drat_checker.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+namespace parallax::runtime {
+
+using proof_literal::negated;
+
+namespace {
+
+/// What the propagator keeps for a variable, its watch lists included.
+constexpr std::size_t kBytesPerVariable = 128;
+
+}  // namespace
+
+DratChecker::DratChecker(std::uint32_t variables, const ProofLimits& limits)
+    : max_variable_(std::min(std::int64_t{variables} + limits.more_variables,
+                             proof_literal::kMaxVariable - 1)),
+      variables_with_room_(static_cast<std::int64_t>(limits.bytes / kBytesPerVariable)),
+      clauses_(limits.bytes),
+      propagator_(clauses_, limits.stop) {}
+
+bool DratChecker::has_room(std::span<const std::int64_t> clause) const {
+  return std::all_of(clause.begin(), clause.end(), [&](std::int64_t literal) {
+    return std::abs(literal) <= variables_with_room_;
+  });
+}
+
+bool DratChecker::normalize(std::span<const std::int64_t> clause) {
+  clause_.clear();
+  for (const auto literal : clause) {
+    clause_.push_back(proof_literal::from_dimacs(literal));
+    propagator_.resize(proof_literal::variable(clause_.back()));
+  }
+  sorted_ = clause_;
+  std::sort(sorted_.begin(), sorted_.end());
+  const auto complement = [](Code a, Code b) { return b == negated(a) && a < b; };
+  if (std::adjacent_find(sorted_.begin(), sorted_.end(), complement) != sorted_.end()) return false;
+  const auto repeated = std::unique(sorted_.begin(), sorted_.end());
+  if (repeated != sorted_.end()) {
+    sorted_.erase(repeated, sorted_.end());
+    // The first literal stays the first.
+    const auto first = std::find(sorted_.begin(), sorted_.end(), clause_.front());
+    std::rotate(sorted_.begin(), first, first + 1);
+    clause_ = sorted_;
+  }
+  return true;
+}
+
+/// Adds the clause in work and what follows from it at once.
+DratChecker::Outcome DratChecker::hold() {
+  const auto added = clauses_.add(clause_);
+  if (!added) return Outcome::kNoRoom;
+  refuted_ = !propagator_.attach(*added) || propagator_.propagate() != ProofClauses::kNone;
+  return propagator_.stopped() ? Outcome::kStopped : Outcome::kFine;
+}
+
+DratChecker::Outcome DratChecker::add_clause(std::span<const std::int64_t> clause) {
+  if (refuted_) return Outcome::kFine;
+  if (!has_room(clause)) return Outcome::kNoRoom;
+  if (!normalize(clause)) return Outcome::kFine;
+  return hold();
+}
+
+DratChecker::Outcome DratChecker::add_lemma(std::span<const std::int64_t> clause) {
+  ++statistics_.lemmas;
+  if (refuted_) return Outcome::kFine;
+  if (!has_room(clause)) return Outcome::kNoRoom;
+  if (!normalize(clause)) return Outcome::kFine;
+  const auto outcome = follows();
+  return outcome == Outcome::kFine ? hold() : outcome;
+}
+
+DratChecker::Outcome DratChecker::remove_clause(std::span<const std::int64_t> clause) {
+  ++statistics_.deletions;
+  if (refuted_) return Outcome::kFine;
+  if (!has_room(clause)) return Outcome::kNoRoom;
+  if (!normalize(clause)) return Outcome::kFine;
+  const auto found = clauses_.find(clause_);
+  if (found == ProofClauses::kNone || propagator_.is_support(found)) {
+    ++statistics_.ignored_deletions;
+    return Outcome::kFine;
+  }
+  clauses_.remove(found);
+  if (clauses_.is_sparse()) {
+    clauses_.compact();
+    propagator_.rebuild();
+  }
+  return Outcome::kFine;
+}
+
+/// Does what was assigned lead to a conflict? What was assigned before `root` stays for good.
+DratChecker::Outcome DratChecker::conflicts(std::size_t root) {
+  const auto conflict = propagator_.propagate();
+  if (propagator_.stopped()) return Outcome::kStopped;
+  if (conflict == ProofClauses::kNone) return Outcome::kDoesNotFollow;
+  propagator_.mark_core(conflict, root);
+  return Outcome::kFine;
+}
+
+DratChecker::Outcome DratChecker::follows() {
+  const auto mark = propagator_.mark();
+  auto outcome = Outcome::kDoesNotFollow;
+  for (const auto literal : clause_) {
+    if (propagator_.is_true(literal)) outcome = Outcome::kFine;
+  }
+  if (outcome != Outcome::kFine) {
+    for (const auto literal : clause_) {
+      if (propagator_.is_open(literal)) propagator_.assign(negated(literal));
+    }
+    outcome = conflicts(mark);
+    if (outcome == Outcome::kDoesNotFollow && !clause_.empty()) {
+      ++statistics_.resolution_lemmas;
+      outcome = follows_by_resolution(clause_.front(), mark);
+    }
+  }
+  propagator_.backtrack(mark);
+  return outcome;
+}
+
+/// The negation of the clause is assigned and led to no conflict.
+DratChecker::Outcome DratChecker::follows_by_resolution(Code pivot, std::size_t root) {
+  const auto complement = negated(pivot);
+  for (Ref clause = clauses_.first(); clause != clauses_.end(); clause = clauses_.next(clause)) {
+    if (clauses_.is_removed(clause)) continue;
+    const auto literals = std::as_const(clauses_).literals(clause);
+    if (std::find(literals.begin(), literals.end(), complement) == literals.end()) continue;
+    const auto mark = propagator_.mark();
+    bool satisfied = false;
+    for (const auto literal : literals) {
+      satisfied = satisfied || (literal != complement && propagator_.is_true(literal));
+    }
+    if (satisfied) continue;
+    for (const auto literal : literals) {
+      if (propagator_.is_open(literal)) propagator_.assign(negated(literal));
+    }
+    const auto outcome = conflicts(root);
+    propagator_.backtrack(mark);
+    if (outcome != Outcome::kFine) return outcome;
+  }
+  return Outcome::kFine;
+}
+
+}  // namespace parallax::runtime

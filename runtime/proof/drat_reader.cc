@@ -1,0 +1,126 @@
+#include "runtime/proof/drat_reader.h"
+
+#include <charconv>
+#include <cstdlib>
+#include <utility>
+
+namespace parallax::runtime {
+namespace {
+
+constexpr int kEndOfFile = -1;
+constexpr std::size_t kBufferBytes = std::size_t{1} << 16U;
+constexpr std::size_t kMaxWord = 20;  // longer than any literal
+
+bool is_blank(int c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+}  // namespace
+
+DratReader::DratReader(std::istream& in, DratFormat format, std::int64_t max_variable)
+    : in_(in), format_(format), max_variable_(max_variable), buffer_(kBufferBytes) {}
+
+int DratReader::get() {
+  if (next_ == filled_) {
+    in_.read(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    filled_ = static_cast<std::size_t>(in_.gcount());
+    next_ = 0;
+    if (filled_ == 0) return kEndOfFile;
+  }
+  ++offset_;
+  return static_cast<unsigned char>(buffer_[next_++]);
+}
+
+DratReader::Outcome DratReader::fail(std::string problem) {
+  problem_ = std::move(problem);
+  return Outcome::kMalformed;
+}
+
+DratReader::Outcome DratReader::next(DratStep& step) {
+  step.deletes = false;
+  step.clause.clear();
+  const auto outcome = format_ == DratFormat::kBinary ? next_binary(step) : next_text(step);
+  if (outcome == Outcome::kStep) ++steps_;
+  if (outcome == Outcome::kEnd && in_.bad()) return fail("the file cannot be read");
+  return outcome;
+}
+
+bool DratReader::take(std::int64_t literal, DratStep& step) {
+  if (std::abs(literal) > max_variable_) {
+    problem_ = "the variable " + std::to_string(std::abs(literal)) + " is beyond " +
+               std::to_string(max_variable_);
+    return false;
+  }
+  if (static_cast<std::int64_t>(step.clause.size()) >= 2 * max_variable_) {
+    problem_ = "a clause has more literals than there are";
+    return false;
+  }
+  step.clause.push_back(literal);
+  return true;
+}
+
+/// A number of at most 32 bits in groups of 7, without idle groups.
+bool DratReader::read_number(std::int64_t& value) {
+  constexpr int kMaxShift = 28;
+  std::uint64_t number = 0;
+  for (int shift = 0;; shift += 7) {
+    const int byte = get();
+    if (byte == kEndOfFile) {
+      problem_ = "the file ends within a clause";
+      return false;
+    }
+    number |= static_cast<std::uint64_t>(byte & 0x7F) << static_cast<unsigned>(shift);
+    if ((byte & 0x80) == 0) {
+      const bool idle = shift > 0 && byte == 0;
+      if (idle) problem_ = "a number is longer than it need be";
+      value = static_cast<std::int64_t>(number);
+      return !idle;
+    }
+    if (shift == kMaxShift) {
+      problem_ = "a number is too large";
+      return false;
+    }
+  }
+}
+
+DratReader::Outcome DratReader::next_binary(DratStep& step) {
+  const int first = get();
+  if (first == kEndOfFile) return Outcome::kEnd;
+  if (first != 'a' && first != 'd') return fail("a step begins with neither `a` nor `d`");
+  step.deletes = first == 'd';
+  while (true) {
+    std::int64_t number = 0;
+    if (!read_number(number)) return Outcome::kMalformed;
+    if (number == 0) return Outcome::kStep;
+    if (number == 1) return fail("1 is no literal");
+    if (!take(number % 2 == 0 ? number / 2 : -(number / 2), step)) return Outcome::kMalformed;
+  }
+}
+
+/// The next word, and the blank after it. False at the end of the file.
+bool DratReader::read_word(std::string& word) {
+  word.clear();
+  int c = get();
+  while (is_blank(c)) c = get();
+  while (c != kEndOfFile && !is_blank(c) && word.size() < kMaxWord) {
+    word += static_cast<char>(c);
+    c = get();
+  }
+  return !word.empty();
+}
+
+DratReader::Outcome DratReader::next_text(DratStep& step) {
+  std::string word;
+  if (!read_word(word)) return Outcome::kEnd;
+  step.deletes = word == "d";
+  if (step.deletes && !read_word(word)) return fail("the file ends within a clause");
+  while (true) {
+    std::int64_t literal = 0;
+    const auto* end = word.data() + word.size();
+    const auto [stop, error] = std::from_chars(word.data(), end, literal);
+    if (error != std::errc() || stop != end) return fail("`" + word + "` is no literal");
+    if (literal == 0) return Outcome::kStep;
+    if (!take(literal, step)) return Outcome::kMalformed;
+    if (!read_word(word)) return fail("the file ends within a clause");
+  }
+}
+
+}  // namespace parallax::runtime

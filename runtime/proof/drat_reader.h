@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <istream>
+#include <string>
+#include <vector>
+
+namespace parallax::runtime {
+
+/// A DRAT file does not say which form it has; whoever writes it knows.
+enum class DratFormat : std::uint8_t {
+  kBinary,  // `a` or `d`, literals as 2v or 2v + 1 in groups of 7 bits, low group first; 0 ends
+  kText     // a clause a line, `d` before what is deleted; 0 ends
+};
+
+struct DratStep {
+  bool deletes = false;
+  std::vector<std::int64_t> clause;  // DIMACS literals
+};
+
+/// Reads the steps of a proof one after the other; memory is one step.
+class DratReader {
+ public:
+  /// `in` outlives the reader. Literals of variables beyond `max_variable` are refused, and clauses
+  /// with more literals than there are.
+  DratReader(std::istream& in, DratFormat format, std::int64_t max_variable);
+
+  enum class Outcome : std::uint8_t { kStep, kEnd, kMalformed };
+  Outcome next(DratStep& step);
+  /// What is wrong, after kMalformed.
+  const std::string& problem() const { return problem_; }
+  /// Bytes that were read, and steps.
+  std::int64_t offset() const { return offset_; }
+  std::int64_t steps() const { return steps_; }
+
+ private:
+  int get();
+  Outcome fail(std::string problem);
+  Outcome next_binary(DratStep& step);
+  Outcome next_text(DratStep& step);
+  bool read_number(std::int64_t& value);
+  bool read_word(std::string& word);
+  bool take(std::int64_t literal, DratStep& step);
+
+  std::istream& in_;
+  DratFormat format_;
+  std::int64_t max_variable_;
+  std::vector<char> buffer_;
+  std::size_t next_ = 0, filled_ = 0;
+  std::int64_t offset_ = 0, steps_ = 0;
+  std::string problem_;
+};
+
+}  // namespace parallax::runtime
