@@ -74,7 +74,7 @@ TEST_CASE("--check counts what it checked in every form of output") {
   const auto text = cli.parallax({"traces", "m.e", "--check"});
   CHECK(text.code == 0);
   CHECK(text.err == "");
-  CHECK(text.out.find("2 traces, complete, 2 checked\n") != std::string::npos);
+  CHECK(text.out.find("2 traces, complete (no proof), 2 checked\n") != std::string::npos);
   const auto lines = cli.parallax({"traces", "m.e", "--check", "--format", "jsonl"});
   CHECK(lines.out.find("\"checked\":2") != std::string::npos);
   const auto json = cli.parallax({"traces", "m.e", "--check", "--json", "--limit", "1"});
@@ -109,7 +109,7 @@ TEST_CASE("a model too large for the check says so, prints its traces and exits 
   const auto result = cli.parallax({"traces", "m.e", "--check"});
   CHECK(result.code == 4);
   CHECK(result.err.find("E7202") != std::string::npos);
-  CHECK(result.out.find("1 trace, complete, 0 checked\n") != std::string::npos);
+  CHECK(result.out.find("1 trace, complete (no proof), 0 checked\n") != std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,178 @@
+#include "runtime/certify/certificate.h"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "runtime/enumerate/model_enumerator.h"
+#include "tests/support/planned_model.h"
+#include "tests/support/random_model.h"
+#include "tests/support/text_model.h"
+
+namespace parallax::test {
+namespace {
+
+namespace fs = std::filesystem;
+using runtime::ProofVerdict;
+
+/// A folder that goes with the object.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "parallax_proof_XXXXXX").string();
+    REQUIRE(::mkdtemp(name.data()) != nullptr);
+    path_ = name;
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  fs::path file(const std::string& name) const { return path_ / name; }
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(path_)) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+ private:
+  fs::path path_;
+};
+
+/// The ids of what was reported and whether the proof was accepted: "ok" or "E7301".
+std::string prove(const runtime::CompletenessClaim& claim, const Folder& folder) {
+  base::DiagnosticSink sink;
+  auto files = runtime::ProofFiles::create(folder.file("p.drat"), sink);
+  REQUIRE(files);
+  const auto certificate = runtime::prove(claim, *files, {}, sink);
+  if (certificate.verdict == ProofVerdict::kAccepted) return sink.has_errors() ? "both" : "ok";
+  std::string codes;
+  for (const auto& entry : sink.sorted()) codes += base::info(entry.code).id;
+  return codes;
+}
+
+std::vector<runtime::Trace> list(const compiler::CompiledModel& model, std::size_t limit) {
+  runtime::SolverSession session(model, runtime::make_cadical_solver());
+  runtime::ModelEnumerator enumerator(session);
+  std::vector<runtime::Trace> traces;
+  while (traces.size() <= limit) {
+    auto trace = enumerator.next();
+    if (!trace) break;
+    traces.push_back(*std::move(trace));
+  }
+  return traces;
+}
+
+TEST_CASE("the proof of a complete list is accepted, that of a list without one of them is not") {
+  const Folder folder;
+  int complete = 0, unsatisfiable = 0;
+  for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+    const TextModel model(random_model(seed, kSolverSize).print());
+    if (model.sink.has_errors()) continue;
+    const auto traces = list(model.compiled, 60);
+    if (traces.size() > 60) continue;
+    ++complete;
+    unsatisfiable += traces.empty() ? 1 : 0;
+    for (std::size_t left_out = 0; left_out <= traces.size(); left_out += traces.size() / 2 + 1) {
+      runtime::CompletenessClaim claim(model.compiled);
+      for (std::size_t i = 0; i < traces.size(); ++i) {
+        if (i != left_out) claim.add(traces[i]);
+      }
+      CHECK(prove(claim, folder) == (left_out < traces.size() ? "E7301" : "ok"));
+    }
+    runtime::CompletenessClaim claim(model.compiled);
+    for (const auto& trace : traces) claim.add(trace);
+    CHECK(prove(claim, folder) == "ok");
+  }
+  CHECK(complete > 60);
+  CHECK(unsatisfiable > 5);
+  CHECK(folder.names() == std::vector<std::string>{"p.drat", "p.drat.cnf"});
+}
+
+constexpr const char* kDoors = R"(
+sort room
+room a1, b2
+fluent At(room)
+event Go(room)
+[time] {room} HoldsAt(At(room),time).
+[room1,room2,time] HoldsAt(At(room1),time) & HoldsAt(At(room2),time) -> room1=room2.
+[room,time] Initiates(Go(room),At(room),time).
+[room1,room2,time] room1!=room2 -> Terminates(Go(room1),At(room2),time).
+)";
+constexpr const char* kBinding =
+    "motion going (:target ?p) -> Go(region(?p))  ok: At(region(?p)) @t+1 else "
+    "navigation-pose-unreachable\n";
+constexpr const char* kPlan = R"(
+(def-cram-function there ()
+  (let ((?b (make-pose-stamped "map" 0.0 (make-3d-vector 1.5 0 0) (make-identity-rotation)))
+        (?a (make-pose-stamped "map" 0.0 (make-3d-vector 0.5 0 0) (make-identity-rotation))))
+    (perform (a motion (type going) (pose ?a)))
+    (perform (a motion (type going) (pose ?b)))))
+(there)
+)";
+
+TEST_CASE("traces of a plan are all traces, or all up to the horizon") {
+  const Folder folder;
+  for (const int horizon : {1, 2, 3}) {
+    CAPTURE(horizon);
+    PlannedModel model(kDoors, kPlan, kBinding, "HoldsAt(At(b2),time)", horizon);
+    REQUIRE(model.codes() == "");
+    runtime::SolverSession session(model.compiled(), runtime::make_cadical_solver());
+    runtime::PlanEnumerator enumerator(session);
+    std::vector<runtime::Trace> traces;
+    while (auto trace = enumerator.next()) traces.push_back(*std::move(trace));
+    CHECK(traces.size() == (horizon == 1 ? 0 : 1));
+    runtime::CompletenessClaim claim(model.compiled());
+    CHECK((prove(claim, folder) == "ok") == false);  // a trace, or an execution, is left
+    for (const auto& trace : traces) claim.add(trace);
+    const bool all = enumerator.exploration() == runtime::Exploration::kAllTracesExplored;
+    CHECK(all == (horizon > 1));
+    CHECK(prove(claim, folder) == (all ? "ok" : "E7301"));
+    claim.limit_to_horizon();
+    CHECK(prove(claim, folder) == "ok");
+  }
+}
+
+TEST_CASE("files that cannot be written are refused before the work, and nothing stays behind") {
+  const Folder folder;
+  const auto code = [&](const fs::path& path) {
+    base::DiagnosticSink sink;
+    const auto files = runtime::ProofFiles::create(path, sink);
+    CHECK_FALSE(files);
+    CHECK(sink.exit_code() == 2);
+    const auto entry = sink.sorted().front();
+    CHECK(entry.subject.starts_with(path.string()));
+    return std::string(base::info(entry.code).id);
+  };
+  CHECK(code(folder.file("no/p.drat")) == "E0005");
+  CHECK(code("/dev/null") == "E0003");
+  fs::create_directory(folder.file("p.drat.cnf"));
+  CHECK(code(folder.file("p.drat")) == "E0003");
+  fs::remove(folder.file("p.drat.cnf"));
+  {
+    base::DiagnosticSink sink;
+    const auto files = runtime::ProofFiles::create(folder.file("p.drat"), sink);
+    REQUIRE(files);
+    CHECK(folder.names() == std::vector<std::string>{"p.drat.cnf.part", "p.drat.part"});
+  }
+  CHECK(folder.names().empty());
+}
+
+TEST_CASE("a disk that takes no more is noticed") {
+  const TextModel model("range time 0 1\nfluent F()\nHoldsAt(F(),0).\n!HoldsAt(F(),0).\n");
+  const Folder folder;
+  base::DiagnosticSink sink;
+  fs::create_symlink("/dev/full", folder.file("p.drat.part"));
+  auto files = runtime::ProofFiles::create(folder.file("p.drat"), sink);
+  REQUIRE(files);
+  const auto certificate =
+      runtime::prove(runtime::CompletenessClaim(model.compiled), *files, {}, sink);
+  CHECK(certificate.verdict == ProofVerdict::kNotFinished);
+  REQUIRE(sink.error_count() == 1);
+  CHECK(base::info(sink.sorted().front().code).id == "E0005");
+}
+
+}  // namespace
+}  // namespace parallax::test

@@ -1,0 +1,96 @@
+#include "tools/cli/certify.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "runtime/enumerate/plan_enumerator.h"
+#include "tools/cli/signals.h"
+
+namespace parallax::tools {
+namespace {
+
+constexpr const char* kUsualFile = "true";  // what CLI11 gives a flag without a value
+
+/// domain.e, domain.dec.cnf: domain.drat, in the current folder.
+std::string usual_file(const std::string& model) {
+  auto name = std::filesystem::path(model).filename().string();
+  return name.substr(0, name.find('.', 1)) + ".drat";
+}
+
+bool is_whole(const std::string& exploration) { return exploration != "stopped"; }
+
+}  // namespace
+
+void add_certify_option(CLI::App& command, CertifyOption& option) {
+  command
+      .add_flag("--certify", option.file,
+                "Write a DRAT proof that there are no other traces, and the formula it refutes "
+                "(FILE.cnf), and check it; the usual FILE is the model's name with .drat")
+      ->type_name("[=FILE]");
+}
+
+TraceCertifier::TraceCertifier(const CertifyOption& option, const std::vector<std::string>& models,
+                               const runtime::CompiledModel& model, Invocation& invocation)
+    : option_(option), invocation_(invocation) {
+  if (option.file.empty()) return;
+  const auto path = option.file == kUsualFile ? usual_file(models.front()) : option.file;
+  auto files = runtime::ProofFiles::create(path, invocation.sink());
+  if (!files) return;
+  files_.emplace(*std::move(files));
+  claim_.emplace(model);
+}
+
+void TraceCertifier::decline(const std::string& reason) {
+  if (!files_) return;
+  invocation_.sink().error_about(base::DiagnosticCode::kNothingProved,
+                                 files_->proof_path().string(), reason);
+}
+
+void TraceCertifier::conclude(const std::string& exploration) {
+  if (!files_) return;
+  if (!is_whole(exploration)) return decline("the list was stopped before its end");
+  if (exploration == runtime::to_string(runtime::Exploration::kCompleteUpToBound)) {
+    claim_->limit_to_horizon();
+  }
+  runtime::ProofLimits limits;
+  limits.stop = &stop_flag();
+  const auto memory_mb = invocation_.options().memory_limit_mb;
+  if (memory_mb > 0) limits.bytes = static_cast<std::size_t>(memory_mb) << 19U;  // the half
+  const auto certificate = runtime::prove(*claim_, *files_, limits, invocation_.sink());
+  switch (certificate.verdict) {
+    case runtime::ProofVerdict::kAccepted:
+      verdict_ = "proof checked";
+      break;
+    case runtime::ProofVerdict::kRejected:
+      verdict_ = "proof not accepted";
+      return;
+    case runtime::ProofVerdict::kNotFinished:
+      verdict_ = "proof not checked";
+      return;
+  }
+  invocation_.remark(fmt::format("{}: {} bytes, {} lemmas, refutes {}",
+                                 files_->proof_path().string(), certificate.proof_bytes,
+                                 certificate.statistics.lemmas, files_->formula_path().string()));
+}
+
+std::string TraceCertifier::remark(const std::string& exploration) const {
+  return is_whole(exploration) ? fmt::format(" ({})", verdict_) : "";
+}
+
+std::string TraceCertifier::fields() const {
+  const auto short_form = verdict_ == "no proof" ? "none" : verdict_.substr(6);
+  auto out = fmt::format("\"proof\":\"{}\",", short_form);
+  if (verdict_ == "proof checked") {
+    const auto text = [](const std::filesystem::path& path) {
+      return nlohmann::json(path.string())
+          .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    };
+    out += fmt::format("\"proof_file\":{},\"formula_file\":{},", text(files_->proof_path()),
+                       text(files_->formula_path()));
+  }
+  return out;
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "runtime/certify/certificate.h"
+#include "tools/cli/command.h"
+
+namespace parallax::tools {
+
+/// `--certify[=FILE]`: whether a list of traces is complete, as a checked proof.
+struct CertifyOption {
+  std::string file;  // empty: not asked for
+};
+/// `--certify` takes its file after `=` only, so that a model may follow it.
+void add_certify_option(CLI::App& command, CertifyOption& option);
+
+/// Collects the traces of a list and proves at its end that there are no others. Without the option
+/// it does nothing and says so.
+class TraceCertifier {
+ public:
+  /// `models`: as on the command line; the first one names the file where the user does not. All
+  /// references outlive the object.
+  TraceCertifier(const CertifyOption& option, const std::vector<std::string>& models,
+                 const runtime::CompiledModel& model, Invocation& invocation);
+
+  /// The files can be written. False: reported.
+  bool ready() const { return !option_.file.empty() == files_.has_value(); }
+  void add(const runtime::Trace& trace) {
+    if (claim_) claim_->add(trace);
+  }
+  /// Makes and checks the proof; `exploration`: what is known of the traces that were not listed.
+  void conclude(const std::string& exploration);
+  /// Warns that there is nothing to prove.
+  void decline(const std::string& reason);
+
+  /// The list is not what it claims to be, or nobody could tell.
+  bool refuted() const { return verdict_ == "proof not accepted"; }
+  /// `no proof`, `proof checked`, `proof not accepted` or `proof not checked`.
+  const std::string& verdict() const { return verdict_; }
+  /// ` (proof checked)` after what claims to be complete, else nothing.
+  std::string remark(const std::string& exploration) const;
+  /// `"proof":"checked","proof_file":"..",`: none, checked, not accepted, not checked.
+  std::string fields() const;
+
+ private:
+  const CertifyOption& option_;
+  Invocation& invocation_;
+  std::optional<runtime::ProofFiles> files_;
+  std::optional<runtime::CompletenessClaim> claim_;
+  std::string verdict_ = "no proof";
+};
+
+}  // namespace parallax::tools
