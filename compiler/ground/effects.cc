@@ -82,6 +82,12 @@ void EffectGrounder::instance(const EffectAxiom& effect, bool always) {
   const auto e = model_.event_number(*event);
   const auto f = model_.fluent_number(*fluent);
   if (!e || !f || !model_.may_happen(*e)) return;
+  // Encoding 3 of the 2005 reasoner has no axioms for a noninertial fluent but those of releases.
+  if (grounder_.terms().options().meaning == Meaning::kDecreasoner &&
+      model_.typed().options.encoding == 3 && effect.kind != EffectKind::kReleases &&
+      model_.fluent_symbol(*f).noninertial) {
+    return;
+  }
   const auto condition = grounder_.ground(effect.condition);
   if (!condition || *condition == model_.formulas().falsity()) return;
   const EffectRow row{effect.kind, *e, *f, *condition, origin_of(effect)};
