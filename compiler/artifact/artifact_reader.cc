@@ -10,6 +10,7 @@
 #include "compiler/artifact/clause_reader.h"
 #include "compiler/artifact/provenance_reader.h"
 #include "compiler/artifact/symbol_reader.h"
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 
 namespace parallax::compiler {

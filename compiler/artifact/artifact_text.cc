@@ -6,6 +6,8 @@
 #include <charconv>
 #include <iterator>
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::compiler {
 namespace {
 

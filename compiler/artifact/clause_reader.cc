@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "compiler/artifact/derived.h"
+#include "compiler/base/diagnostic_codes.h"
 
 namespace parallax::compiler {
 namespace {

@@ -5,6 +5,8 @@
 #include <iterator>
 #include <limits>
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::compiler {
 namespace {
 

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <limits>
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::compiler {
 
 using base::DiagnosticCode;

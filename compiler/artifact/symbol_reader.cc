@@ -4,6 +4,7 @@
 
 #include "compiler/artifact/atom_kinds.h"
 #include "compiler/artifact/derived.h"
+#include "compiler/base/diagnostic_codes.h"
 
 namespace parallax::compiler {
 namespace {

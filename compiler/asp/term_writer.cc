@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::compiler {
 
 using base::DiagnosticCode;

@@ -1,5 +1,7 @@
 #include "compiler/base/diagnostic.h"
 
+#include "compiler/base/diagnostic_codes.h"
+
 #include <algorithm>
 #include <limits>
 #include <tuple>

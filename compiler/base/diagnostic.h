@@ -23,12 +23,9 @@ enum class DiagnosticClass : std::uint8_t {
   kInternal,      // 5: an independent check disagreed
 };
 
-/// One enumerator for each line of diagnostic_codes.def.
-enum class DiagnosticCode : std::uint16_t {
-#define PARALLAX_DIAGNOSTIC(name, code, severity, klass, format, help) name,
-#include "compiler/base/diagnostic_codes.def"
-#undef PARALLAX_DIAGNOSTIC
-};
+/// Its enumerators stand in diagnostic_codes.h, which only those include who name one: a new code
+/// must not recompile the rest.
+enum class DiagnosticCode : std::uint16_t;
 
 struct DiagnosticInfo {
   DiagnosticCode code;

@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::base {
 namespace {
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/ground/grounding_frame.h"
 
 namespace parallax::compiler {

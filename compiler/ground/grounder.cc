@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/formula/atoms.h"
 #include "compiler/ground/completion.h"
 #include "compiler/ground/effects.h"

@@ -1,3 +1,4 @@
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/lint/contradiction.h"
 #include "compiler/lint/rules.h"
 

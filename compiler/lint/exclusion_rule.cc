@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/lint/rules.h"
 
 namespace parallax::compiler {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/lint/rules.h"
 #include "compiler/sema/sort_domains.h"
 

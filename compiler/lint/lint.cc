@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/lint/rules.h"
 
 namespace parallax::compiler {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/lint/rules.h"
 #include "compiler/syntax/lexer.h"
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/lint/rules.h"
 #include "compiler/sema/sort_domains.h"
 

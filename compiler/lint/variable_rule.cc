@@ -3,6 +3,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/lint/rules.h"
 #include "compiler/syntax/lexer.h"
 

@@ -1,5 +1,7 @@
 #include "compiler/pipeline/constraint_encoder.h"
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::compiler {
 
 base::Status encode_constraints(const std::vector<StateConstraint>& constraints, GroundModel& model,

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::compiler {
 
 using base::DiagnosticCode;

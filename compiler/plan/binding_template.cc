@@ -1,5 +1,7 @@
 #include "compiler/plan/binding_template.h"
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::compiler {
 namespace {
 

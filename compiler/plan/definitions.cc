@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 #include "compiler/plan/plan_compiler.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/plan/plan_builtins.h"
 #include "compiler/plan/plan_compiler.h"
 

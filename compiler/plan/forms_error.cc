@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 #include "compiler/plan/plan_builtins.h"
 #include "compiler/plan/plan_compiler.h"

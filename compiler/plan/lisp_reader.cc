@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/plan/lisp_token.h"
 
 namespace parallax::compiler {

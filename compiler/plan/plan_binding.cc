@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/plan/binding_template.h"
 #include "compiler/plan/binding_text.h"
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::compiler {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/plan/plan_machine.h"
 
 namespace parallax::compiler {

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/plan/lisp_reader.h"
 #include "compiler/plan/perform_resolver.h"
 #include "compiler/plan/plan_compiler.h"

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::compiler {
 
 using base::DiagnosticCode;

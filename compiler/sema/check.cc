@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/sema/axiom_shapes.h"
 #include "compiler/sema/declarations.h"
 #include "compiler/sema/elaborator.h"

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/sema/elaborator.h"
 #include "compiler/sema/model_options.h"
 #include "compiler/sema/name_advice.h"

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <utility>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 #include "compiler/sema/elaborator.h"
 #include "compiler/syntax/lexer.h"

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/sema/name_advice.h"
 #include "compiler/syntax/lexer.h"
 

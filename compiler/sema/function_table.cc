@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/sema/name_advice.h"
 
 namespace parallax::compiler {

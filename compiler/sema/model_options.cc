@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 #include "compiler/sema/name_advice.h"
 #include "compiler/syntax/lexer.h"

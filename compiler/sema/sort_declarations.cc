@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 #include "compiler/sema/depth_first.h"
 #include "compiler/sema/name_advice.h"

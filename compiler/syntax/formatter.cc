@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/syntax/formula_layout.h"
 #include "compiler/syntax/lexer.h"
 #include "compiler/syntax/parser.h"

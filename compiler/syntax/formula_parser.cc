@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/syntax/parser.h"
 #include "compiler/syntax/precedence.h"
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::compiler {
 namespace {
 

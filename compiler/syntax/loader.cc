@@ -5,6 +5,7 @@
 #include <system_error>
 #include <unordered_map>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/suggest.h"
 #include "compiler/syntax/foundations.h"

@@ -1,5 +1,6 @@
 #include "compiler/syntax/parser.h"
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/syntax/formula_parser.h"
 #include "compiler/syntax/lexer.h"
 #include "compiler/syntax/statement_parser.h"

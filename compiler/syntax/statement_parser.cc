@@ -3,6 +3,7 @@
 #include <charconv>
 #include <string>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/syntax/lexer.h"
 
 namespace parallax::compiler {

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/sample_runner.h"
 #include "harness/region/state_mapping.h"
 #include "harness/world/controller_table.h"

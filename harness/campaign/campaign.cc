@@ -7,6 +7,7 @@
 #include <set>
 
 #include "compiler/base/contract.h"
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/journal.h"
 #include "harness/campaign/run_folder.h"
 #include "harness/campaign/run_limit.h"

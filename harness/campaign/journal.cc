@@ -8,6 +8,7 @@
 #include <cstring>
 #include <system_error>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 
 namespace parallax::harness {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/compare.h"
 #include "harness/campaign/journal.h"
 #include "harness/campaign/sample_runner.h"

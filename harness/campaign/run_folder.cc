@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/journal.h"
 
 namespace parallax::harness {

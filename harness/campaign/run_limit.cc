@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/confidence/clean_runs.h"
 
 namespace parallax::harness {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <set>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/compare.h"
 #include "harness/campaign/judge.h"
 #include "harness/confidence/claim.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
 #include "harness/world/controller_table.h"
 

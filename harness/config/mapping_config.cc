@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
 
 namespace parallax::harness {

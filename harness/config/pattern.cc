@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
 
 namespace parallax::harness {

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
 
 namespace parallax::harness {

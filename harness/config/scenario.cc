@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
 #include "harness/world/world_check.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
 
 namespace parallax::harness {

@@ -6,6 +6,7 @@
 #include <map>
 #include <system_error>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/config/yaml_fields.h"
 
 namespace parallax::harness {

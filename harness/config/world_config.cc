@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
 #include "harness/world/world_check.h"
 

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 
 namespace parallax::harness {

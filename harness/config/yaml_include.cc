@@ -2,6 +2,7 @@
 #include <map>
 #include <system_error>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "harness/config/yaml_reader.h"
 

@@ -9,6 +9,8 @@
 #include <optional>
 #include <sstream>
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::harness {
 namespace {
 

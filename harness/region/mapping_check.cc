@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 #include "harness/region/state_mapping.h"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/region/region.h"
 
 namespace parallax::harness {

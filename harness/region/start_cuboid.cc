@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/region/state_mapping.h"
 
 namespace parallax::harness {

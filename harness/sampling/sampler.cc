@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::harness {
 
 Sampler::Sampler(StartCuboid cuboid, double inset) : cuboid_(std::move(cuboid)), inset_(inset) {}

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "runtime/solver/sat_solver.h"
 
 namespace parallax::runtime {

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <utility>
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::runtime {
 namespace {
 

@@ -1,17 +1,14 @@
 #include "runtime/enumerate/model_enumerator.h"
 
 #include "runtime/enumerate/canonical.h"
+#include "runtime/enumerate/projection.h"
 
 namespace parallax::runtime {
 
-using compiler::AtomKind;
-
-ModelEnumerator::ModelEnumerator(SolverSession& session) : session_(&session) {
-  session.model().for_each_atom(
-      [&](std::int32_t variable, AtomKind kind, const std::string&, std::optional<Timepoint>) {
-        if (kind != AtomKind::kHoldsAt && kind != AtomKind::kHappens) return;
-        order_.push_back(~Literal::positive(variable));
-      });
+ModelEnumerator::ModelEnumerator(SolverSession& session, Distinct distinct) : session_(&session) {
+  for (const auto& block : projection_blocks(session.model(), distinct)) {
+    for (const auto atom : block) order_.push_back(~atom);
+  }
 }
 
 std::optional<Trace> ModelEnumerator::next() {
@@ -22,12 +19,20 @@ std::optional<Trace> ModelEnumerator::next() {
   if (status != SolveStatus::kSatisfiable) return std::nullopt;
   auto blocking = make_canonical(*session_, n, {}, order_);
   if (blocking.empty() && !order_.empty()) return std::nullopt;
+  session_->require_model(n);
   auto trace =
       decode_trace(session_->model(), n, [&](Literal literal) { return session_->value(literal); });
   trace.number = ++found_;
   for (auto& literal : blocking) literal = ~literal;
   session_->add_clause(blocking);
   return trace;
+}
+
+SourceStats ModelEnumerator::stats() const {
+  SourceStats stats;
+  stats.strategy = "blocking";
+  stats.solve_calls = session_->solve_calls();
+  return stats;
 }
 
 }  // namespace parallax::runtime

@@ -1,27 +1,26 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
+#include "runtime/enumerate/trace_source.h"
 #include "runtime/session/solver_session.h"
-#include "runtime/trace/trace.h"
 
 namespace parallax::runtime {
 
-/// All traces of a model at its full horizon: distinct over HoldsAt and Happens, in canonical order
-/// (timepoint, then declaration order, false before true). Each trace is blocked for good by one
-/// clause over the observable atoms, so cost grows with the number of traces already found.
-class ModelEnumerator {
+/// Blocks each trace for good by one clause over the atoms that tell traces apart, and finds the
+/// first one of the rest by a walk over these atoms: the first trace costs little, and each further
+/// one grows dearer with the number of those found.
+class ModelEnumerator final : public TraceSource {
  public:
   /// `session` outlives the enumerator.
-  explicit ModelEnumerator(SolverSession& session);
-  /// The next trace, or none. `exhausted()` tells whether none means that there is none.
-  std::optional<Trace> next();
-  bool exhausted() const { return exhausted_; }
+  explicit ModelEnumerator(SolverSession& session, Distinct distinct = Distinct::kObservable);
+  std::optional<Trace> next() override;
+  bool exhausted() const override { return exhausted_; }
+  SourceStats stats() const override;
 
  private:
   SolverSession* session_;
-  std::vector<Literal> order_;  // observable atoms, false preferred
+  std::vector<Literal> order_;  // the atoms, false preferred
   std::int64_t found_ = 0;
   bool exhausted_ = false;
 };

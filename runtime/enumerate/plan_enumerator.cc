@@ -40,14 +40,14 @@ void PlanEnumerator::prepare_orders(Timepoint n) {
   event_order_.clear();
   start_order_.clear();
   state_order_.clear();
-  session_->model().for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string&,
-                                      std::optional<Timepoint> when) {
-    const auto literal = Literal::positive(variable);
-    const auto time = when.value_or(0);
-    if (kind == AtomKind::kHappens && time < n) event_order_.push_back(literal);
-    if (kind != AtomKind::kHoldsAt || time > n) return;
-    (time == 0 ? start_order_ : state_order_).push_back(~literal);
-  });
+  session_->model().for_each_atom(
+      [&](std::int32_t variable, AtomKind kind, const std::string&, std::optional<Timepoint> when) {
+        const auto literal = Literal::positive(variable);
+        const auto time = when.value_or(0);
+        if (kind == AtomKind::kHappens && time < n) event_order_.push_back(literal);
+        if (kind != AtomKind::kHoldsAt || time > n) return;
+        (time == 0 ? start_order_ : state_order_).push_back(~literal);
+      });
 }
 
 std::optional<Trace> PlanEnumerator::next() {

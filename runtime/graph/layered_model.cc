@@ -49,8 +49,9 @@ class Components {
 
 class Splitter {
  public:
-  explicit Splitter(const CompiledModel& model)
+  Splitter(const CompiledModel& model, Distinct distinct)
       : model_(model),
+        distinct_(distinct),
         values_(unit_values(model)),
         components_(static_cast<std::size_t>(model.base())) {}
 
@@ -61,16 +62,15 @@ class Splitter {
     for (const auto& fluent : model_.fluents) {
       if (fluent.slot) out_.observed.push_back(*fluent.slot);
     }
+    if (distinct_ == Distinct::kAll) {
+      for (const auto slot : model_.release_slots) {
+        if (slot) out_.observed.push_back(*slot);
+      }
+    }
     for (const auto& event : model_.events) {
       if (event.slot) out_.events.push_back(*event.slot);
     }
-    for (std::int32_t v = 1; v <= model_.base(); ++v) {
-      const auto value = values_[static_cast<std::size_t>(v) - 1];
-      if (value > 0) out_.true_fixed.push_back(v);
-      if (value == 0 && model_.fixed[static_cast<std::size_t>(v) - 1].kind != AtomKind::kUnused) {
-        out_.open_fixed.push_back(v);
-      }
-    }
+    if (!read_fixed()) return reason_;
     for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
       if (!place_clause(c)) return reason_;
     }
@@ -91,6 +91,20 @@ class Splitter {
     return std::any_of(clause.begin(), clause.end(), [&](Literal literal) {
       return is_fixed(literal) && fixed_value(literal) > 0;
     });
+  }
+
+  bool read_fixed() {
+    for (std::int32_t v = 1; v <= model_.base(); ++v) {
+      const auto& atom = model_.fixed[static_cast<std::size_t>(v) - 1];
+      const auto value = values_[static_cast<std::size_t>(v) - 1];
+      if (value > 0) out_.true_fixed.push_back(v);
+      if (value != 0 || atom.kind == AtomKind::kUnused) continue;
+      out_.open_fixed.push_back(v);
+      if (distinct_ == Distinct::kObservable || atom.kind != AtomKind::kPredicate) continue;
+      reason_ = fmt::format("`{}` tells traces apart", atom.name);
+      return false;
+    }
+    return true;
   }
 
   /// The window of the clause's timed variables; none if they do not fit into one.
@@ -277,11 +291,18 @@ class Splitter {
     std::vector<bool> seen(slots, false);
     for (const auto slot : out_.observed) seen[slot] = true;
     for (std::uint32_t slot = 0; slot < slots; ++slot) {
-      if (!seen[slot] && !copied_[slot] && before[slot] && after[slot]) out_.hidden.push_back(slot);
+      if (seen[slot] || copied_[slot]) continue;
+      if (before[slot] && after[slot]) {
+        out_.hidden.push_back(slot);
+      } else if ((before[slot] || after[slot]) &&
+                 model_.slots[slot].kind == AtomKind::kReleasedAt) {
+        out_.loose_releases.push_back(slot);
+      }
     }
   }
 
   const CompiledModel& model_;
+  Distinct distinct_;
   std::vector<std::int8_t> values_;
   Components components_;
   std::vector<bool> copied_;  // by state slot
@@ -291,8 +312,9 @@ class Splitter {
 
 }  // namespace
 
-std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model) {
-  return Splitter(model).run();
+std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model,
+                                                           Distinct distinct) {
+  return Splitter(model, distinct).run();
 }
 
 }  // namespace parallax::runtime

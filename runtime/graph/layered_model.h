@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compiler/artifact/compiled_model.h"
+#include "runtime/enumerate/trace_source.h"
 
 namespace parallax::runtime {
 
@@ -30,10 +31,13 @@ struct LayeredModel {
   Timepoint horizon = 0;
   std::uint32_t state_slots = 0;
   std::uint32_t stride = 0;
-  std::vector<std::uint32_t> observed;  // state slots of HoldsAt, in declaration order
-  std::vector<std::uint32_t> events;    // step slots of Happens, in declaration order
-  /// State slots that are no HoldsAt and that one window can hand on to the next.
+  /// State slots that tell traces apart: HoldsAt in declaration order, then perhaps ReleasedAt.
+  std::vector<std::uint32_t> observed;
+  std::vector<std::uint32_t> events;  // step slots of Happens, in declaration order
+  /// Other state slots that one window can hand on to the next.
   std::vector<std::uint32_t> hidden;
+  /// State slots of ReleasedAt that are neither, though some clause mentions them.
+  std::vector<std::uint32_t> loose_releases;
   WindowClauses start;
   std::vector<WindowClauses> steps;      // those that differ
   std::vector<std::uint32_t> step_at;    // by timepoint: index into `steps`
@@ -44,6 +48,7 @@ struct LayeredModel {
 /// Splits the model into windows, or says why it cannot be split: "a clause of FILE:LINE spans
 /// timepoints 0 to 3". Fixed variables with a value of their own are replaced by it. Linear in the
 /// clauses.
-std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model);
+std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model,
+                                                           Distinct distinct);
 
 }  // namespace parallax::runtime

@@ -1,10 +1,13 @@
 #include "runtime/graph/step_solver.h"
 
+#include <algorithm>
+
 namespace parallax::runtime {
 
 StepSolver::StepSolver(const LayeredModel& model, const WindowClauses& window, bool is_start,
                        const std::atomic<bool>* stop)
     : model_(model),
+      window_(window),
       is_start_(is_start),
       solver_(make_cadical_solver(stop)),
       next_guard_(window.variables + 1) {
@@ -45,6 +48,7 @@ std::optional<std::vector<Move>> StepSolver::moves(const Bits& observed, const B
     const auto status = solver_->solve();
     if (status == SolveStatus::kUnknown || found.size() == limit) return std::nullopt;
     if (status == SolveStatus::kUnsatisfiable) break;
+    require_window();
     found.push_back(read());
     blocking = {~guard};
     for (const auto literal : projection_) {
@@ -54,6 +58,17 @@ std::optional<std::vector<Move>> StepSolver::moves(const Bits& observed, const B
   }
   solver_->add_clause(std::vector{~guard});
   return found;
+}
+
+/// Every way is evaluated once, without the solver.
+void StepSolver::require_window() const {
+  for (const auto& clause : window_.clauses) {
+    PARALLAX_REQUIRE(std::any_of(clause.begin(), clause.end(),
+                                 [&](std::int32_t literal) {
+                                   return solver_->value(Literal::from_dimacs(literal));
+                                 }),
+                     "the solver's valuations satisfy every clause");
+  }
 }
 
 Move StepSolver::read() const {

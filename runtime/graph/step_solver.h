@@ -36,8 +36,10 @@ class StepSolver {
 
  private:
   Move read() const;
+  void require_window() const;
 
   const LayeredModel& model_;
+  const WindowClauses& window_;
   bool is_start_;
   std::unique_ptr<SatSolver> solver_;
   std::vector<Literal> projection_;  // events, observed, hidden

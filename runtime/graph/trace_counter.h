@@ -2,28 +2,19 @@
 
 #include <gmpxx.h>
 
-#include <atomic>
-#include <cstdint>
-#include <string>
-
-#include "compiler/artifact/compiled_model.h"
-#include "runtime/graph/trace_graph.h"
+#include "runtime/graph/model_traces.h"
 
 namespace parallax::runtime {
 
 struct TraceCount {
-  mpz_class count;        // distinct over HoldsAt and Happens
+  mpz_class count;
   bool complete = false;  // else at least so many
-  /// "blocking": one clause for each trace; "graph": the layered graph.
-  std::string strategy = "blocking";
-  std::string remark;                       // why the graph was not used, if it would have paid
-  std::size_t states = 0, transitions = 0;  // of the graph
-  std::int64_t solve_calls = 0;
+  SourceStats stats;
 };
 
-/// Counts the traces of a model without constraints at its full horizon. A few are found one by
-/// one; if there are more, the graph counts them, and where the model has none, blocking goes on.
-TraceCount count_traces(const compiler::CompiledModel& model, const GraphLimits& limits,
-                        const std::atomic<bool>* stop);
+/// Counts the traces of a model without constraints at its full horizon. Left to choose, a few are
+/// found one by one; if there are more, the graph counts them, and where the model has none, the
+/// tree does.
+TraceCount count_traces(const CompiledModel& model, const TraceQuery& query);
 
 }  // namespace parallax::runtime

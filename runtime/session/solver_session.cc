@@ -1,5 +1,7 @@
 #include "runtime/session/solver_session.h"
 
+#include <algorithm>
+
 namespace parallax::runtime {
 
 SolverSession::SolverSession(const CompiledModel& model, std::unique_ptr<SatSolver> solver)
@@ -38,6 +40,16 @@ SolveStatus SolverSession::solve(Timepoint n, std::span<const Literal> assumptio
     }
   }
   return status;
+}
+
+void SolverSession::require_model(Timepoint n) const {
+  for (std::size_t i = 0; i < model_->clauses.size(); ++i) {
+    if (model_->clause_timepoints[i] > n) continue;
+    const auto clause = model_->clauses[i];
+    PARALLAX_REQUIRE(
+        std::any_of(clause.begin(), clause.end(), [&](Literal literal) { return value(literal); }),
+        "the solver's valuations satisfy every clause");
+  }
 }
 
 bool SolverSession::value(Literal literal) const {

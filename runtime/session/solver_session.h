@@ -28,6 +28,9 @@ class SolverSession {
   /// Value of a literal in the valuation that the last satisfiable call found; it stays available
   /// until the next satisfiable call.
   bool value(Literal literal) const;
+  /// Evaluates every clause of horizon `n` on the valuation at hand, without the solver: a solver
+  /// that answers wrongly is a broken contract. Linear in the clauses.
+  void require_model(Timepoint n) const;
   bool is_fixed(Literal literal) const { return solver_->is_fixed(literal); }
   std::int64_t solve_calls() const { return solver_->solve_calls(); }
 

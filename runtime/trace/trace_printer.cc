@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/trace/trace.h"
+#include "runtime/trace/trace_format.h"
 
 namespace parallax::runtime {
 namespace {
@@ -24,38 +25,74 @@ void append(std::string& out, std::string_view mark, const Names& names) {
   }
 }
 
-}  // namespace
+/// `["A","B"]`; atoms are names and numbers, but a name in the text may need escapes.
+std::string json_list(const Names& names) { return nlohmann::json(names).dump(); }
 
-std::string to_text(const Trace& trace) {
-  std::string out = "trace " + std::to_string(trace.number) + '\n';
-  for (std::size_t t = 0; t < trace.points.size(); ++t) {
-    const auto& point = trace.points[t];
-    out += "  " + std::to_string(t) + '\n';
-    if (t == 0) {
+class TextFormat final : public TraceFormat {
+ public:
+  std::string head(const std::string& number) const override { return "trace " + number + '\n'; }
+  std::string introduction(Timepoint t) const override { return "  " + std::to_string(t) + '\n'; }
+  std::string point(const TracePoint* before, const TracePoint& point) const override {
+    std::string out;
+    if (before == nullptr) {
       append(out, "  ", point.holds);
     } else {
-      append(out, "- ", only_in(trace.points[t - 1].holds, point.holds));
-      append(out, "+ ", only_in(point.holds, trace.points[t - 1].holds));
+      append(out, "- ", only_in(before->holds, point.holds));
+      append(out, "+ ", only_in(point.holds, before->holds));
     }
     append(out, "> ", point.happens);
+    return out;
   }
-  return out;
+  std::string tail(const Names&) const override { return ""; }
+};
+
+class JsonlFormat final : public TraceFormat {
+ public:
+  std::string head(const std::string& number) const override {
+    return "{\"trace\":" + number + ",\"timepoints\":[";
+  }
+  std::string introduction(Timepoint t) const override {
+    return (t == 0 ? "{\"time\":" : ",{\"time\":") + std::to_string(t);
+  }
+  std::string point(const TracePoint*, const TracePoint& point) const override {
+    return ",\"happens\":" + json_list(point.happens) + ",\"holds\":" + json_list(point.holds) +
+           ",\"released\":" + json_list(point.released) + '}';
+  }
+  std::string tail(const Names& predicates) const override {
+    return "],\"predicates\":" + json_list(predicates) + "}\n";
+  }
+};
+
+}  // namespace
+
+const TraceFormat& text_format() {
+  static const TextFormat format;
+  return format;
 }
 
-std::string to_jsonl(const Trace& trace) {
-  nlohmann::ordered_json out;
-  out["trace"] = trace.number;
-  auto points = nlohmann::ordered_json::array();
-  for (std::size_t t = 0; t < trace.points.size(); ++t) {
-    const auto& point = trace.points[t];
-    points.push_back({{"time", t},
-                      {"happens", point.happens},
-                      {"holds", point.holds},
-                      {"released", point.released}});
+const TraceFormat& jsonl_format() {
+  static const JsonlFormat format;
+  return format;
+}
+
+std::string format_trace(const TraceFormat& format, const Trace& trace) {
+  auto out = format.head(std::to_string(trace.number));
+  const TracePoint* before = nullptr;
+  Timepoint t = 0;
+  for (const auto& point : trace.points) {
+    out += format.introduction(t++);
+    out += format.point(before, point);
+    before = &point;
   }
-  out["timepoints"] = std::move(points);
-  out["predicates"] = trace.predicates;
-  return out.dump();
+  return out + format.tail(trace.predicates);
+}
+
+std::string to_text(const Trace& trace) { return format_trace(text_format(), trace); }
+
+std::string to_jsonl(const Trace& trace) {
+  auto line = format_trace(jsonl_format(), trace);
+  line.pop_back();
+  return line;
 }
 
 }  // namespace parallax::runtime

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/cli/signals.h"
 

@@ -24,6 +24,7 @@ class TraceCertifier {
   TraceCertifier(const CertifyOption& option, const std::vector<std::string>& models,
                  const runtime::CompiledModel& model, Invocation& invocation);
 
+  bool is_asked() const { return claim_.has_value(); }
   /// The files can be written. False: reported.
   bool ready() const { return !option_.file.empty() == files_.has_value(); }
   void add(const runtime::Trace& trace) {

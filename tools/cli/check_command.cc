@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "compiler/artifact/artifact_writer.h"
+#include "compiler/base/diagnostic_codes.h"
 #include "tools/cli/model_options.h"
 #include "tools/cli/scenario_model.h"
 

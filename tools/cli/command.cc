@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/sarif.h"
 #include "tools/cli/signals.h"

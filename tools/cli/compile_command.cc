@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "compiler/artifact/artifact_writer.h"
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "tools/cli/emit_stage.h"
 #include "tools/cli/scenario_model.h"

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "compiler/asp/asp_export.h"
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "compiler/sema/check.h"
 #include "compiler/sema/model_text.h"

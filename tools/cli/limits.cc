@@ -6,6 +6,7 @@
 #include <chrono>
 #include <new>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "tools/cli/signals.h"
 

@@ -5,6 +5,7 @@
 #include <system_error>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/suggest.h"
 #include "tools/cli/command.h"

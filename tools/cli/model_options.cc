@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "compiler/artifact/artifact_writer.h"
+#include "compiler/base/diagnostic_codes.h"
 #include "tools/cli/signals.h"
 #include "tools/cli/version.h"
 

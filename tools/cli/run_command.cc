@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/campaign.h"
 #include "harness/report/report.h"
 #include "tools/cli/command.h"

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "tools/cli/command.h"
 #include "tools/cli/signals.h"
 #include "tools/suite/shard.h"

@@ -1,5 +1,6 @@
 #include "tools/cli/trace_check.h"
 
+#include "compiler/base/diagnostic_codes.h"
 #include "tools/cli/trace_valuation.h"
 
 namespace parallax::tools {

@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/region/state_mapping.h"
 #include "runtime/session/unsat_core.h"
 #include "tools/cli/signals.h"

@@ -2,13 +2,13 @@
 #include <memory>
 #include <optional>
 
-#include "runtime/enumerate/model_enumerator.h"
+#include "compiler/base/diagnostic_codes.h"
 #include "runtime/enumerate/plan_enumerator.h"
-#include "runtime/graph/trace_counter.h"
+#include "runtime/graph/trace_sampler.h"
 #include "tools/cli/certify.h"
 #include "tools/cli/scenario_model.h"
 #include "tools/cli/signals.h"
-#include "tools/cli/trace_check.h"
+#include "tools/cli/trace_writer.h"
 
 namespace parallax::tools {
 namespace {
@@ -20,69 +20,31 @@ struct TracesOptions {
   bool expect_traces = false;
   bool check = false;
   std::string format = "text";
+  std::string distinct = "observable";
+  std::string strategy = "auto";
+  std::int64_t from = 1;
+  std::int64_t sample = 0;
+  std::int64_t seed = 1;
   CertifyOption certify;
 };
 
-/// Prints traces as they are found and counts them; under --json they are kept for the document.
-/// What is checked is printed all the same.
-class TraceWriter {
- public:
-  /// `check` may be null; else it outlives the writer, as the certifier does.
-  TraceWriter(const TracesOptions& options, TraceCheck* check, TraceCertifier& certifier,
-              Invocation& invocation)
-      : options_(options), check_(check), certifier_(certifier), invocation_(invocation) {}
-  bool full() const { return !options_.count && options_.limit > 0 && count_ == options_.limit; }
-  void write(const runtime::Trace& trace) {
-    ++count_;
-    print(trace);
-    if (check_ != nullptr) check_->check(trace);
-    certifier_.add(trace);
+runtime::TraceQuery query_of(const TracesOptions& options) {
+  runtime::TraceQuery query;
+  query.distinct =
+      options.distinct == "all" ? runtime::Distinct::kAll : runtime::Distinct::kObservable;
+  for (const auto& [strategy, name] : runtime::kStrategyNames) {
+    if (name == options.strategy) query.strategy = strategy;
   }
-  std::int64_t count() const { return count_; }
-  const std::string& list() const { return list_; }
-  bool agreed() const { return check_ == nullptr || check_->agreed(); }
-  /// `"checked":N,` where traces are checked.
-  std::string checked_field() const {
-    return check_ == nullptr ? "" : fmt::format("\"checked\":{},", check_->checked());
-  }
-  /// `, N checked` where traces are checked.
-  std::string checked_remark() const {
-    return check_ == nullptr ? "" : fmt::format(", {} checked", check_->checked());
-  }
-
- private:
-  void print(const runtime::Trace& trace) {
-    if (options_.count) return;
-    if (invocation_.options().json) {
-      list_ += (list_.empty() ? "" : ",") + runtime::to_jsonl(trace);
-    } else {
-      invocation_.result(options_.format == "jsonl" ? runtime::to_jsonl(trace) + '\n'
-                                                    : runtime::to_text(trace));
-    }
-  }
-
-  const TracesOptions& options_;
-  TraceCheck* check_;
-  TraceCertifier& certifier_;
-  Invocation& invocation_;
-  std::int64_t count_ = 0;
-  std::string list_;
-};
-
-template <typename Enumerator>
-void write_all(Enumerator& enumerator, TraceWriter& writer) {
-  while (!writer.full() && !stop_flag().load()) {
-    const auto trace = enumerator.next();
-    if (!trace) return;
-    writer.write(*trace);
-  }
+  query.wanted = options.count || options.sample > 0 ? 0 : options.limit;
+  query.stop = &stop_flag();
+  return query;
 }
 
 /// What is known of the traces that were not listed, and how.
 struct Ending {
   std::string exploration;
   bool complete = false;
-  std::string remark, fields;  // of the certifier
+  std::string remark = {}, fields = {};  // of the certifier
 
   void add(TraceCertifier& certifier) {
     certifier.conclude(exploration);
@@ -116,11 +78,19 @@ void close_list(const TracesOptions& options, const TraceWriter& writer, const E
   }
 }
 
+void show_stats(const TracesOptions& options, const runtime::SourceStats& stats,
+                Invocation& invocation) {
+  if (!options.model.stats || invocation.options().json) return;
+  write_error(fmt::format("strategy {}{}{}; {} states, {} transitions, {} solver calls\n",
+                          stats.strategy, stats.remark.empty() ? "" : ", not the graph: ",
+                          stats.remark, stats.states, stats.transitions, stats.solve_calls));
+}
+
 /// `--count` without a plan or constraints: no trace needs to be made.
 int count_only(const TracesOptions& options, const compiler::CompiledModel& model,
                TraceCertifier& certifier, std::chrono::steady_clock::time_point start,
                Invocation& invocation) {
-  const auto counted = runtime::count_traces(model, {}, &stop_flag());
+  const auto counted = runtime::count_traces(model, query_of(options));
   if (counted.count == 0 && counted.complete) {
     certifier.conclude("complete");
   } else {
@@ -129,54 +99,98 @@ int count_only(const TracesOptions& options, const compiler::CompiledModel& mode
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   const auto number = counted.count.get_str();
   if (!counted.complete) invocation.remark("stopped before the end: there may be more traces");
-  if (options.model.stats && !invocation.options().json) {
-    write_error(fmt::format("strategy {}{}{}; {} states, {} transitions, {} solver calls\n",
-                            counted.strategy, counted.remark.empty() ? "" : ": ", counted.remark,
-                            counted.states, counted.transitions, counted.solve_calls));
-  }
+  show_stats(options, counted.stats, invocation);
   if (invocation.options().json) {
     invocation.document(
         fmt::format("{{\"status\":\"ok\",\"traces\":{},\"complete\":{},\"exploration\":\"{}\","
                     "\"strategy\":\"{}\",{}\"timing\":{{\"wall_s\":{:.3f}}}}}\n",
                     number, counted.complete, counted.complete ? "complete" : "stopped",
-                    counted.strategy, certifier.fields(), wall.count()));
+                    counted.stats.strategy, certifier.fields(), wall.count()));
   } else {
     invocation.result(number + '\n');
   }
   return counted.count == 0 && options.expect_traces ? 1 : 0;
 }
 
-/// Enumerates into the writer.
-Ending enumerate(const compiler::CompiledModel& model, TraceWriter& writer) {
+/// Traces with a plan or constraints.
+Ending enumerate_plan(const compiler::CompiledModel& model, TraceWriter& writer) {
   runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
-  if (model.has_constraints) {
-    runtime::PlanEnumerator enumerator(session);
-    write_all(enumerator, writer);
-    return {std::string(runtime::to_string(enumerator.exploration())),
-            enumerator.exploration() == runtime::Exploration::kAllTracesExplored,
-            {},
-            {}};
+  runtime::PlanEnumerator enumerator(session);
+  while (!writer.full() && !stop_flag().load()) {
+    const auto trace = enumerator.next();
+    if (!trace) break;
+    writer.write(*trace);
   }
-  runtime::ModelEnumerator enumerator(session);
-  write_all(enumerator, writer);
+  return {std::string(runtime::to_string(enumerator.exploration())),
+          enumerator.exploration() == runtime::Exploration::kAllTracesExplored};
+}
+
+/// Traces of a model; none if the strategy cannot be had.
+std::optional<Ending> enumerate(const TracesOptions& options, const compiler::CompiledModel& model,
+                                TraceWriter& writer, Invocation& invocation) {
+  runtime::ModelTraces traces(model, query_of(options));
+  if (!traces.refusal().empty()) {
+    invocation.sink().error_about(base::DiagnosticCode::kStrategyRefused, "", options.strategy,
+                                  traces.refusal());
+    return std::nullopt;
+  }
+  if (options.from > 1) traces.seek(static_cast<long>(options.from - 1));
+  writer.write_all(traces);
   // At the limit one more call tells "these are all" from "there are more".
-  if (writer.full() && !stop_flag().load()) (void)enumerator.next();
-  return {enumerator.exhausted() ? "complete" : "stopped", enumerator.exhausted(), {}, {}};
+  if (writer.full() && !stop_flag().load()) (void)traces.next();
+  show_stats(options, traces.stats(), invocation);
+  if (!traces.exhausted()) return Ending{"stopped", false};
+  return Ending{options.from > 1 ? "complete from there on" : "complete", options.from == 1};
+}
+
+/// `--sample`.
+Ending sample(const TracesOptions& options, const compiler::CompiledModel& model,
+              TraceWriter& writer, Invocation& invocation) {
+  const auto sample =
+      runtime::sample_traces(model, query_of(options), static_cast<std::size_t>(options.sample),
+                             static_cast<std::uint64_t>(options.seed));
+  for (const auto& trace : sample.traces) writer.write(trace);
+  show_stats(options, sample.stats, invocation);
+  if (!sample.complete) return {"stopped", false};
+  return {fmt::format("drawn from {} with seed {}", sample.population.get_str(), options.seed),
+          false};
+}
+
+/// Options that do not go together.
+bool is_usable(const TracesOptions& options, Invocation& invocation) {
+  const auto refuse = [&](const std::string& about, const std::string& why) {
+    invocation.sink().error_about(base::DiagnosticCode::kUsage, about, why);
+    return false;
+  };
+  if (options.check && !options.model.compat.empty()) {
+    return refuse("", "--check evaluates the standard meaning and does not go with --compat");
+  }
+  if (options.check && names_artifact(options.model)) {
+    return refuse(options.model.models.front(),
+                  "--check evaluates the texts of a model; name them instead");
+  }
+  if (options.sample > 0 && (options.count || options.from > 1)) {
+    return refuse("", "--sample does not go with --count or --from");
+  }
+  if (!options.certify.file.empty() &&
+      (options.sample > 0 || options.from > 1 || options.distinct == "all")) {
+    return refuse("",
+                  "--certify proves a whole list over HoldsAt and Happens complete; it does not "
+                  "go with --sample, --from or --distinct all");
+  }
+  if (options.count && options.from > 1) return refuse("", "--count does not go with --from");
+  return true;
+}
+
+/// What a model without a plan can be asked for, and one with a plan cannot.
+bool asks_for_models(const TracesOptions& options) {
+  return options.sample > 0 || options.from > 1 || options.distinct != "observable" ||
+         options.strategy != "auto";
 }
 
 int list_traces(const TracesOptions& options, Invocation& invocation) {
   const auto start = std::chrono::steady_clock::now();
-  if (options.check && !options.model.compat.empty()) {
-    invocation.sink().error_about(
-        base::DiagnosticCode::kUsage, "",
-        "--check evaluates the standard meaning and does not go with --compat");
-    return 0;
-  }
-  if (options.check && names_artifact(options.model)) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, options.model.models.front(),
-                                  "--check evaluates the texts of a model; name them instead");
-    return 0;
-  }
+  if (!is_usable(options, invocation)) return 0;
   const auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
   if (options.model.stats && !invocation.options().json && !compilation->costs.empty()) {
@@ -187,13 +201,29 @@ int list_traces(const TracesOptions& options, Invocation& invocation) {
   if (options.count && !options.check && !compilation->model.has_constraints) {
     return count_only(options, compilation->model, certifier, start, invocation);
   }
+  const auto& model = compilation->model;
+  if (model.has_constraints && asks_for_models(options)) {
+    invocation.sink().error_about(base::DiagnosticCode::kUsage, options.model.models.front(),
+                                  "--sample, --from, --distinct and --strategy do not go with a "
+                                  "plan or state constraints");
+    return 0;
+  }
   std::optional<TraceCheck> check;
   if (options.check) check.emplace(*compilation->typed, &stop_flag(), invocation.sink());
-  TraceWriter writer(options, check ? &*check : nullptr, certifier, invocation);
-  auto ending = enumerate(compilation->model, writer);
-  ending.add(certifier);
+  TraceWriter writer({options.format, options.count, options.sample > 0 ? 0 : options.limit},
+                     check ? &*check : nullptr, certifier, invocation);
+  std::optional<Ending> ending;
+  if (model.has_constraints) {
+    ending = enumerate_plan(model, writer);
+  } else if (options.sample > 0) {
+    ending = sample(options, model, writer, invocation);
+  } else {
+    ending = enumerate(options, model, writer, invocation);
+  }
+  if (!ending) return 0;
+  ending->add(certifier);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  close_list(options, writer, ending, wall.count(), invocation);
+  close_list(options, writer, *ending, wall.count(), invocation);
   return writer.count() == 0 && options.expect_traces ? 1 : 0;
 }
 
@@ -206,6 +236,9 @@ Command add_traces_command(CLI::App& app) {
   command->footer(
       "Examples:\n"
       "  parallax traces domain.e start.e --horizon 2 --limit 0\n"
+      "  parallax traces domain.e --count\n"
+      "  parallax traces domain.e --from 1000001 --limit 10\n"
+      "  parallax traces domain.e --sample 5 --seed 7\n"
       "  parallax traces scenarios/two_regions/scenario.yaml --format jsonl\n"
       "  parallax traces domain.e --limit 0 --certify=domain.drat");
   add_model_options(*command, options->model);
@@ -213,8 +246,27 @@ Command add_traces_command(CLI::App& app) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_flag("--count", options->count, "Print only the number of traces");
+  command->add_option("--from", options->from, "Begin with the trace of this number")
+      ->check(whole_number(1, kMaxSeed))
+      ->capture_default_str();
+  command->add_option("--sample", options->sample, "So many traces, each any one equally likely")
+      ->check(whole_number(1, 1'000'000));
+  command->add_option("--seed", options->seed, "Of --sample")
+      ->check(whole_number(0, kMaxSeed))
+      ->capture_default_str();
+  command
+      ->add_option("--distinct", options->distinct,
+                   "What tells traces apart: `observable` (HoldsAt and Happens) or `all` atoms")
+      ->check(CLI::IsMember({"observable", "all"}))
+      ->capture_default_str();
+  command
+      ->add_option("--strategy", options->strategy,
+                   "auto, blocking, guarded, tree or graph: the traces and their order are the "
+                   "same, the time is not")
+      ->check(CLI::IsMember({"auto", "blocking", "guarded", "tree", "graph"}))
+      ->capture_default_str();
   command->add_flag("--stats", options->model.stats,
-                    "Show on standard error how traces were counted and what each axiom costs");
+                    "Show on standard error how traces were found and what each axiom costs");
   command->add_flag("--expect-traces", options->expect_traces, "Exit with 1 if there is no trace");
   command->add_flag(
       "--check", options->check,

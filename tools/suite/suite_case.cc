@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <tuple>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 
 namespace parallax::tools {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 
 namespace parallax::tools {

@@ -1,10 +1,9 @@
-#include "compiler/base/diagnostic.h"
-
 #include <doctest/doctest.h>
 
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 
 namespace parallax::base {

@@ -9,6 +9,8 @@
 #include <set>
 #include <string>
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::base {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/sampling/rng.h"
 
 namespace parallax::harness {

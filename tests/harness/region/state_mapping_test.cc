@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "compiler/base/diagnostic_codes.h"
+
 namespace parallax::harness {
 namespace {
 

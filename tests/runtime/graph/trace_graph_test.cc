@@ -89,7 +89,7 @@ void compare(const std::string& text, Seen& seen) {
   const auto wanted = blocking_traces(model.compiled, kLimit);
   if (wanted.empty() || wanted.size() == kLimit) return;
   CAPTURE(text);
-  const auto split = runtime::split_into_windows(model.compiled);
+  const auto split = runtime::split_into_windows(model.compiled, runtime::Distinct::kObservable);
   if (!std::holds_alternative<runtime::LayeredModel>(split)) {
     ++seen.nonlocal;
     CHECK_FALSE(std::get<std::string>(split).empty());
@@ -127,23 +127,25 @@ TEST_CASE("counts are exact beyond 64 bits") {
       "sort s\ns A, B\nfluent On(s)\nevent Press(s)\n[s,time] Initiates(Press(s),On(s),time).\n"
       "[s] !HoldsAt(On(s),0).\nrange time 0 70\n");
   REQUIRE(model.ground != nullptr);
-  const auto counted = runtime::count_traces(model.compiled, {}, nullptr);
+  const auto counted = runtime::count_traces(model.compiled, {});
   CHECK(counted.complete);
-  CHECK(counted.strategy == "graph");
+  CHECK(counted.stats.strategy == "graph");
   mpz_class wanted;
   mpz_ui_pow_ui(wanted.get_mpz_t(), 4, 70);
   CHECK(counted.count == wanted);
 }
 
-TEST_CASE("a limit that is hit leaves the graph for blocking, with the reason") {
+TEST_CASE("a limit that is hit leaves the graph for the tree, with the reason") {
   const TextModel model(
       "sort s\ns A, B, C\nfluent On(s)\nevent Press(s)\n[s,time] Initiates(Press(s),On(s),time).\n"
       "[s] !HoldsAt(On(s),0).\nrange time 0 3\n");
-  const auto counted = runtime::count_traces(model.compiled, {.nodes = 3, .edges = 3}, nullptr);
+  runtime::TraceQuery query;
+  query.limits = {.nodes = 3, .edges = 3};
+  const auto counted = runtime::count_traces(model.compiled, query);
   CHECK(counted.complete);
-  CHECK(counted.strategy == "blocking");
+  CHECK(counted.stats.strategy == "tree");
   CHECK(counted.count == 512);
-  CHECK_FALSE(counted.remark.empty());
+  CHECK_FALSE(counted.stats.remark.empty());
 }
 
 TEST_CASE("a raised stop flag ends the count early and says so") {
@@ -151,7 +153,9 @@ TEST_CASE("a raised stop flag ends the count early and says so") {
       "sort s\ns A, B, C\nfluent On(s)\nevent Press(s)\n[s,time] Initiates(Press(s),On(s),time).\n"
       "range time 0 5\n");
   const std::atomic<bool> stop{true};
-  CHECK_FALSE(runtime::count_traces(model.compiled, {}, &stop).complete);
+  runtime::TraceQuery query;
+  query.stop = &stop;
+  CHECK_FALSE(runtime::count_traces(model.compiled, query).complete);
 }
 
 }  // namespace parallax::test

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/syntax/foundations.h"
 #include "compiler/syntax/lexer.h"

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "runtime/trace/trace.h"
+#include "runtime/trace/trace_format.h"
+
+namespace parallax::runtime {
+
+/// Which atoms tell two traces apart.
+enum class Distinct : std::uint8_t {
+  kObservable,  // HoldsAt and Happens
+  kAll,         // also ReleasedAt and user predicates, as the 2005 reasoner counts models
+};
+
+/// What the search for traces took.
+struct SourceStats {
+  std::string strategy;                     // "blocking", "guarded", "tree", "graph"
+  std::string remark;                       // why not the graph, if it would have paid
+  std::size_t states = 0, transitions = 0;  // of the graph
+  std::int64_t solve_calls = 0;
+};
+
+/// The traces of a model at its full horizon, each once, in canonical order (timepoint, then
+/// declaration order, false before true), whatever the strategy.
+class TraceSource {
+ public:
+  TraceSource() = default;
+  TraceSource(const TraceSource&) = delete;
+  TraceSource& operator=(const TraceSource&) = delete;
+  virtual ~TraceSource() = default;
+  /// The next trace, or none. `exhausted()` tells whether none means that there is none.
+  virtual std::optional<Trace> next() = 0;
+  /// Appends the next trace as `format` writes it; false: there is none.
+  virtual bool print_next(const TraceFormat& format, std::string& out) {
+    const auto trace = next();
+    if (trace) out += format_trace(format, *trace);
+    return trace.has_value();
+  }
+  virtual bool exhausted() const = 0;
+  virtual SourceStats stats() const = 0;
+};
+
+}  // namespace parallax::runtime

@@ -1,0 +1,203 @@
+#include <doctest/doctest.h>
+
+#include <set>
+
+#include "runtime/enumerate/trace_tree.h"
+#include "runtime/graph/trace_sampler.h"
+#include "tests/support/random_model.h"
+#include "tests/support/text_model.h"
+
+namespace parallax::test {
+namespace {
+
+using runtime::Distinct;
+using runtime::ModelTraces;
+using runtime::Strategy;
+using runtime::TraceQuery;
+
+constexpr std::size_t kLimit = 300;
+
+TraceQuery query(Strategy strategy, Distinct distinct = Distinct::kObservable) {
+  TraceQuery query;
+  query.strategy = strategy;
+  query.distinct = distinct;
+  return query;
+}
+
+/// Lines as they are printed; `pieces`: by print_next, else by next.
+std::vector<std::string> lines(runtime::TraceSource& source, bool pieces) {
+  std::vector<std::string> out;
+  while (out.size() < kLimit) {
+    std::string line;
+    if (pieces) {
+      if (!source.print_next(runtime::jsonl_format(), line)) break;
+    } else {
+      const auto trace = source.next();
+      if (!trace) break;
+      line = runtime::format_trace(runtime::jsonl_format(), *trace);
+    }
+    out.push_back(line);
+  }
+  return out;
+}
+
+std::vector<std::string> lines(const compiler::CompiledModel& model, const TraceQuery& query,
+                               bool pieces) {
+  ModelTraces traces(model, query);
+  return lines(traces, pieces);
+}
+
+/// Without what does not tell traces apart: it need not be determined.
+std::string observable(const std::string& line) {
+  std::string out;
+  std::size_t at = 0;
+  while (true) {
+    const auto begin = line.find(",\"released\":[", at);
+    if (begin == std::string::npos) break;
+    out += line.substr(at, begin - at);
+    at = line.find(']', begin) + 1;
+  }
+  return out + line.substr(at, line.find("\"predicates\"", at) - at);
+}
+
+std::vector<std::string> observable(std::vector<std::string> lines) {
+  for (auto& line : lines) line = observable(line);
+  return lines;
+}
+
+struct Seen {
+  std::size_t models = 0, lists = 0, traces = 0;
+};
+
+void compare(const compiler::CompiledModel& model, Distinct distinct, Seen& seen) {
+  const auto wanted = lines(model, query(Strategy::kBlocking, distinct), false);
+  if (wanted.size() == kLimit) return;
+  ++seen.models;
+  seen.traces += wanted.size();
+  for (const auto strategy : {Strategy::kAuto, Strategy::kGuarded, Strategy::kTree}) {
+    for (const bool pieces : {false, true}) {
+      const auto found = lines(model, query(strategy, distinct), pieces);
+      if (distinct == Distinct::kAll) {
+        CHECK(found == wanted);
+      } else {
+        CHECK(observable(found) == observable(wanted));
+      }
+    }
+  }
+  ModelTraces graph(model, query(Strategy::kGraph, distinct));
+  if (!graph.refusal().empty()) return;
+  ++seen.lists;
+  CHECK(lines(graph, true) == wanted);
+  CHECK(graph.exhausted());
+  CHECK(lines(model, query(Strategy::kGraph, distinct), false) == wanted);
+  for (std::size_t k = 0; k <= wanted.size(); k += 1 + wanted.size() / 7) {
+    ModelTraces from(model, query(Strategy::kGraph, distinct));
+    from.seek(static_cast<long>(k));
+    CHECK(lines(from, true) ==
+          std::vector(wanted.begin() + static_cast<std::ptrdiff_t>(k), wanted.end()));
+  }
+}
+
+/// 4^steps traces: two switches, each pressed or not at every timepoint.
+std::string switches(int steps) {
+  return "sort s\ns A, B\nfluent On(s)\nevent Press(s)\n"
+         "[s,time] Initiates(Press(s),On(s),time).\n[s] !HoldsAt(On(s),0).\nrange time 0 " +
+         std::to_string(steps) + "\n";
+}
+
+}  // namespace
+
+TEST_CASE("every strategy gives the same traces in the same order") {
+  Seen seen;
+  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+    const auto text = random_model(seed, seed % 5 == 0 ? kSolverSize : kBruteForceSize).print();
+    const TextModel model(text);
+    if (model.ground == nullptr) continue;
+    CAPTURE(text);
+    compare(model.compiled, seed % 3 == 0 ? Distinct::kAll : Distinct::kObservable, seen);
+  }
+  CHECK(seen.models > 800);
+  CHECK(seen.lists > 300);
+  CHECK(seen.traces > 5000);
+}
+
+TEST_CASE("a level with many children is halved and the list stays the same") {
+  const TextModel model(switches(3));
+  REQUIRE(model.ground != nullptr);
+  const auto wanted = lines(model.compiled, query(Strategy::kBlocking), false);
+  for (const std::size_t most : {1, 2, 3, 15}) {
+    runtime::SolverSession session(model.compiled, runtime::make_cadical_solver());
+    std::vector<compiler::Literal> atoms;
+    model.compiled.for_each_atom([&](std::int32_t variable, compiler::AtomKind kind,
+                                     const std::string&, std::optional<runtime::Timepoint>) {
+      if (kind == compiler::AtomKind::kHoldsAt || kind == compiler::AtomKind::kHappens) {
+        atoms.push_back(compiler::Literal::positive(variable));
+      }
+    });
+    runtime::TraceTree tree(session, {atoms}, "tree", most);
+    CHECK(lines(tree, false) == wanted);
+    CHECK(tree.exhausted());
+  }
+}
+
+TEST_CASE("the list goes on from any number, also far beyond 64 bits") {
+  const TextModel model(switches(70));
+  REQUIRE(model.ground != nullptr);
+  ModelTraces traces(model.compiled, query(Strategy::kAuto));
+  mpz_class count;
+  mpz_ui_pow_ui(count.get_mpz_t(), 4, 70);
+  traces.seek(count - 2);
+  std::string line;
+  CHECK(traces.print_next(runtime::jsonl_format(), line));
+  CHECK(line.starts_with("{\"trace\":" + mpz_class(count - 1).get_str() + ","));
+  CHECK_FALSE(traces.exhausted());
+  const auto last = traces.next();
+  REQUIRE(last.has_value());
+  CHECK(last->points[69].happens.size() == 2);
+  CHECK_FALSE(traces.next().has_value());
+  CHECK(traces.exhausted());
+}
+
+TEST_CASE("samples are uniform, repeatable and the same by every strategy") {
+  const TextModel model(switches(2));
+  REQUIRE(model.ground != nullptr);
+  const auto draw = [&](Strategy strategy, std::size_t size, std::uint64_t seed) {
+    std::vector<std::string> out;
+    for (const auto& trace :
+         runtime::sample_traces(model.compiled, query(strategy), size, seed).traces) {
+      out.push_back(runtime::to_jsonl(trace));
+    }
+    return out;
+  };
+  const auto wanted = draw(Strategy::kGraph, 50, 3);
+  CHECK(wanted.size() == 50);
+  for (const auto strategy : {Strategy::kAuto, Strategy::kTree, Strategy::kBlocking}) {
+    CHECK(draw(strategy, 50, 3) == wanted);
+  }
+  CHECK(draw(Strategy::kGraph, 50, 4) != wanted);
+  // 16 traces, 16000 draws: chi squared has 15 degrees of freedom, 44.3 is its 99.99 % quantile.
+  std::map<std::string, int> counts;
+  for (const auto& trace :
+       runtime::sample_traces(model.compiled, query(Strategy::kGraph), 16000, 1).traces) {
+    ++counts[runtime::event_key(trace)];
+  }
+  CHECK(counts.size() == 16);
+  double chi = 0;
+  for (const auto& [key, count] : counts) chi += (count - 1000.0) * (count - 1000.0) / 1000.0;
+  CHECK(chi < 44.3);
+}
+
+TEST_CASE("a model whose clauses look far has no graph, and the tree lists it") {
+  const TextModel model(
+      "fluent F()\nevent E()\nrange time 0 4\n"
+      "[time] Initiates(E(),F(),time).\n!HoldsAt(F(),0).\n"
+      "Happens(E(),0) | Happens(E(),3).\n");
+  REQUIRE(model.ground != nullptr);
+  ModelTraces forced(model.compiled, query(Strategy::kGraph));
+  CHECK(forced.refusal().find("more than two neighbouring timepoints") != std::string::npos);
+  CHECK(lines(model.compiled, query(Strategy::kAuto), true) ==
+        lines(model.compiled, query(Strategy::kBlocking), true));
+  CHECK(lines(model.compiled, query(Strategy::kAuto), true).size() == 12);
+}
+
+}  // namespace parallax::test
