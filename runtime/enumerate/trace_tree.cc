@@ -122,7 +122,8 @@ std::unique_ptr<TraceTree> make_trace_tree(SolverSession& session, Distinct dist
   for (const auto& block : projection_blocks(session.model(), distinct)) {
     atoms.insert(atoms.end(), block.begin(), block.end());
   }
-  return std::make_unique<TraceTree>(session, std::vector{std::move(atoms)}, "tree", kMostChildren);
+  return std::make_unique<TraceTree>(session, std::vector<std::vector<Literal>>{std::move(atoms)},
+                                     "tree", kMostChildren);
 }
 
 std::unique_ptr<TraceTree> make_guarded_blocking(SolverSession& session, Distinct distinct) {
