@@ -1,0 +1,104 @@
+#include <fmt/core.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "tools/bench/families/families.h"
+#include "tools/bench/families/object_names.h"
+
+namespace parallax::tools {
+namespace {
+
+constexpr const char* kWorld = R"(; {0} accounts of up to {1}, transfers of up to {2}, {3} steps.
+
+range time 0 {3}
+sort account
+account {4}
+sort balance: integer
+range balance 0 {1}
+sort amount: integer
+range amount 1 {2}
+
+fluent Has(account,balance)
+event Transfer(account,account,amount)
+
+; The payer's book, then the receiver's.
+[account1,account2,amount,balance1,balance2,time]
+HoldsAt(Has(account1,balance1),time) & account1!=account2 & balance2=balance1-amount ->
+Initiates(Transfer(account1,account2,amount),Has(account1,balance2),time).
+[account1,account2,amount,balance1,balance2,time]
+HoldsAt(Has(account1,balance1),time) & account1!=account2 & balance2=balance1-amount ->
+Terminates(Transfer(account1,account2,amount),Has(account1,balance1),time).
+[account1,account2,amount,balance1,balance2,time]
+HoldsAt(Has(account2,balance1),time) & account1!=account2 & balance2=balance1+amount ->
+Initiates(Transfer(account1,account2,amount),Has(account2,balance2),time).
+[account1,account2,amount,balance1,balance2,time]
+HoldsAt(Has(account2,balance1),time) & account1!=account2 & balance2=balance1+amount ->
+Terminates(Transfer(account1,account2,amount),Has(account2,balance1),time).
+
+; Nobody pays himself, or more than he has, or more than the other's book can hold.
+[account1,account2,amount,time]
+Happens(Transfer(account1,account2,amount),time) -> account1!=account2.
+[account1,account2,amount,balance,time]
+Happens(Transfer(account1,account2,amount),time) & HoldsAt(Has(account1,balance),time) ->
+amount<=balance.
+[account1,account2,amount,balance,time]
+Happens(Transfer(account1,account2,amount),time) & HoldsAt(Has(account2,balance),time) ->
+balance+amount<={1}.
+
+)";
+
+/// The world and the opening balances.
+std::string opened_bank(const BankSize& size) {
+  std::string text = fmt::format(kWorld, size.accounts, size.max_balance, size.max_amount,
+                                 size.horizon, numbered_names("Acc", size.accounts));
+  const int share = size.max_balance / size.accounts;
+  for (int account = 1; account <= size.accounts; ++account) {
+    text +=
+        fmt::format("[balance] HoldsAt(Has(Acc{},balance),0) <-> balance={}.\n", account, share);
+  }
+  return text;
+}
+
+/// Small and the same everywhere (Park and Miller 1988).
+class Draw {
+ public:
+  /// 0 to `count` - 1.
+  int below(int count) {
+    state_ = state_ * 48271 % 2147483647;
+    return static_cast<int>(state_ % static_cast<std::uint64_t>(count));
+  }
+
+ private:
+  std::uint64_t state_ = 1;
+};
+
+}  // namespace
+
+std::string bank_projection_model(const BankSize& size) {
+  std::string text = opened_bank(size) + "\ncompletion Book Happens\n";
+  const auto accounts = static_cast<std::size_t>(size.accounts);
+  std::vector<int> balances(accounts, size.max_balance / size.accounts);
+  Draw draw;
+  for (int time = 0; time < size.horizon;) {
+    const auto from = static_cast<std::size_t>(draw.below(size.accounts));
+    const auto to = static_cast<std::size_t>(draw.below(size.accounts));
+    const int amount = 1 + draw.below(size.max_amount);
+    if (from == to || balances[from] < amount || balances[to] + amount > size.max_balance) continue;
+    balances[from] -= amount;
+    balances[to] += amount;
+    text += fmt::format("Book: Happens(Transfer(Acc{},Acc{},{}),{}).\n", from + 1, to + 1, amount,
+                        time++);
+  }
+  return text;
+}
+
+std::string bank_planning_model(const BankSize& size) {
+  return opened_bank(size) +
+         fmt::format(
+             "\n[event1,event2,time] Happens(event1,time) & Happens(event2,time) -> "
+             "event1=event2.\nHoldsAt(Has(Acc1,{}),{}).\n",
+             size.max_balance, size.horizon);
+}
+
+}  // namespace parallax::tools

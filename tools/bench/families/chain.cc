@@ -1,0 +1,29 @@
+#include <fmt/core.h>
+
+#include "tools/bench/families/families.h"
+
+namespace parallax::tools {
+
+std::string chain_model(int stages) {
+  constexpr const char* kText = R"(; A chain of {0} stages; each tick of a clock lights one more.
+
+range time 0 {1}
+sort stage: integer
+range stage 1 {0}
+
+fluent Lit(stage)
+event Tick()
+
+[stage1,stage2,time]
+HoldsAt(Lit(stage1),time) & stage2=stage1+1 -> Initiates(Tick(),Lit(stage2),time).
+
+HoldsAt(Lit(1),0).
+[time] time<{1} -> Happens(Tick(),time).
+
+; What is to be inferred, denied.
+!HoldsAt(Lit({0}),{1}).
+)";
+  return fmt::format(kText, stages, stages - 1);
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace parallax::tools {
+
+// Families of models whose size is a parameter and whose number of traces is known. Each function
+// returns a complete text in the language of `docs/language.md`; the same parameters give the same
+// text. Parameters are positive unless said otherwise and at most kMaxFamilyParameter.
+
+inline constexpr int kMaxFamilyParameter = 1'000'000;
+
+/// `lamps` switches of which any may be toggled at each of `horizon` steps; all lamps are dark at
+/// first and lit at the end. 2^(lamps*(horizon-1)) traces.
+std::string lamps_model(int lamps, int horizon);
+
+/// A robot carries `things` things between the ends of a row of `rooms` rooms, one at a time: the
+/// first thing from the first room to the last, the second the other way, and so on. The horizon
+/// is that of the shortest plan, things*(rooms+1), and `slack` steps, which may be negative.
+std::string robot_model(int rooms, int things, int slack);
+
+/// `pigeons` land at once, each in one of `holes` holes, no two in one.
+/// holes!/(holes-pigeons)! traces.
+std::string pigeon_model(int pigeons, int holes);
+
+/// A tick lights the next of `stages` stages; does the last one stay dark? No trace.
+std::string chain_model(int stages);
+
+/// Transfers between accounts that are written in the account's book as integers.
+struct BankSize {
+  int accounts = 0;
+  int max_balance = 0;  // of any account; each starts with its share, max_balance / accounts
+  int max_amount = 0;   // of one transfer
+  int horizon = 0;      // one transfer a step
+};
+
+/// All transfers are told. One trace.
+std::string bank_projection_model(const BankSize& size);
+
+/// At most one transfer a step, none is told; at the end the first account has everything.
+std::string bank_planning_model(const BankSize& size);
+
+/// A thing is dropped `horizon` - 2 units above the ground, falls one unit a step by a trajectory,
+/// and hitting the ground is an event that this triggers. One trace. `horizon` is 3 or more.
+std::string falling_model(int horizon);
+
+/// The model of a name such as `robot_4_2_8`, `robot_6_4_m1` (slack -1), `lamps_4_6`,
+/// `pigeon_9_8`, `chain_200`, `bankproj_4_100_5_20`, `bankplan_3_12_4_5`, `falling_40`; nullopt if
+/// there is no such family or a parameter is out of range.
+std::optional<std::string> family_model(std::string_view name);
+
+}  // namespace parallax::tools

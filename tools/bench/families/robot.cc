@@ -1,0 +1,69 @@
+#include <fmt/core.h>
+
+#include "tools/bench/families/families.h"
+#include "tools/bench/families/object_names.h"
+
+namespace parallax::tools {
+namespace {
+
+constexpr const char* kWorld = R"(; A robot carries {0} things along a row of {1} rooms, {2} steps.
+
+range time 0 {2}
+sort room: integer
+range room 1 {1}
+sort thing
+thing {3}
+
+fluent Robot(room)
+fluent LiesIn(thing,room)
+fluent Carries(thing)
+event Enter(room)
+event Grasp(thing)
+event Drop(thing)
+
+; Effects. Where a carried thing is follows from where the robot is.
+[room,time] Initiates(Enter(room),Robot(room),time).
+[room1,room2,time]
+HoldsAt(Robot(room1),time) & room1!=room2 -> Terminates(Enter(room2),Robot(room1),time).
+[thing,time] Initiates(Grasp(thing),Carries(thing),time).
+[thing,room,time] Releases(Grasp(thing),LiesIn(thing,room),time).
+[thing,time] Terminates(Drop(thing),Carries(thing),time).
+[thing,room,time] HoldsAt(Robot(room),time) -> Initiates(Drop(thing),LiesIn(thing,room),time).
+[thing,room,time] !HoldsAt(Robot(room),time) -> Terminates(Drop(thing),LiesIn(thing,room),time).
+
+[thing,room,time]
+HoldsAt(Carries(thing),time) & HoldsAt(Robot(room),time) -> HoldsAt(LiesIn(thing,room),time).
+[thing,room1,room2,time]
+HoldsAt(LiesIn(thing,room1),time) & HoldsAt(LiesIn(thing,room2),time) -> room1=room2.
+
+; One thing is done at a time: into the next room, grasp what is here, drop what is carried.
+[event1,event2,time] Happens(event1,time) & Happens(event2,time) -> event1=event2.
+[room,time]
+Happens(Enter(room),time) -> ({{room1}} HoldsAt(Robot(room1),time) & (room=room1+1 | room1=room+1)).
+[thing,time]
+Happens(Grasp(thing),time) -> ({{room}} HoldsAt(Robot(room),time) & HoldsAt(LiesIn(thing,room),time)).
+[thing1,thing2,time] Happens(Grasp(thing1),time) -> !HoldsAt(Carries(thing2),time).
+[thing,time] Happens(Drop(thing),time) -> HoldsAt(Carries(thing),time).
+
+[room] HoldsAt(Robot(room),0) <-> room=1.
+[thing] !HoldsAt(Carries(thing),0).
+[thing] !HoldsAt(Carries(thing),{2}).
+)";
+
+}  // namespace
+
+std::string robot_model(int rooms, int things, int slack) {
+  const int horizon = things * (rooms + 1) + slack;
+  std::string text = fmt::format(kWorld, things, rooms, horizon, numbered_names("Thing", things));
+  for (int thing = 1; thing <= things; ++thing) {
+    const int from = thing % 2 == 1 ? 1 : rooms;
+    const int to = rooms + 1 - from;
+    text += fmt::format(
+        "[room] HoldsAt(LiesIn(Thing{0},room),0) <-> "
+        "room={1}.\nHoldsAt(LiesIn(Thing{0},{2}),{3}).\n",
+        thing, from, to, horizon);
+  }
+  return text;
+}
+
+}  // namespace parallax::tools
