@@ -1,0 +1,76 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tools/bench/measure.h"
+#include "tools/bench/row.h"
+
+namespace parallax::tools {
+
+/// A run of the benchmark: where its files are, how it measures, what it has found. Rows are
+/// printed as they come in.
+class Bench {
+ public:
+  /// Makes a folder below the one for temporary files; it is removed at the end.
+  explicit Bench(const MeasureOptions& options);
+  ~Bench();
+  Bench(const Bench&) = delete;
+  Bench& operator=(const Bench&) = delete;
+
+  /// Ends what is measured under `section` and begins another one.
+  void begin(std::string section);
+  /// Measures the contestants and adds the row.
+  const Row& compare(std::string name, const std::vector<Contestant>& contestants,
+                     std::optional<std::string> expected = std::nullopt);
+  /// Measures one program without adding a row.
+  Side measured(const Contestant& contestant);
+  /// Adds a row that was measured in another way; its section is filled in.
+  void add(Row row);
+  const std::vector<Row>& rows() const { return rows_; }
+
+  /// A file in the run's folder.
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  /// `NAME.e` with the text of the family's model; the caller owes a name that there is.
+  std::string model_file(const std::string& name);
+  /// `NAME.lp`: what `parallax compile --emit=lp` makes of it, for clingo.
+  std::string program_file(const std::string& name);
+  /// `NAME.dec.cnf`: what `parallax compile` makes of it.
+  std::string artifact_file(const std::string& name);
+
+ private:
+  std::string compiled_file(const std::string& name, const std::string& suffix,
+                            const std::vector<std::string>& options);
+
+  MeasureOptions options_;
+  std::filesystem::path folder_;
+  std::string section_;
+  std::vector<Row> rows_;
+};
+
+/// The program under test, and this one.
+std::string parallax_program();
+std::string bench_program();
+
+struct Section {
+  const char* name;
+  const char* what;
+  void (*measure)(Bench&);
+};
+
+/// In the order in which they are measured and printed.
+const std::vector<Section>& sections();
+
+void measure_start(Bench& bench);
+void measure_compilation(Bench& bench);
+void measure_horizons(Bench& bench);
+void measure_examples(Bench& bench);
+void measure_counting(Bench& bench);
+void measure_listing(Bench& bench);
+void measure_first_trace(Bench& bench);
+void measure_world(Bench& bench);
+void measure_demo(Bench& bench);
+
+}  // namespace parallax::tools

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace parallax::tools {
+
+/// What one run of a program cost.
+struct Cost {
+  double wall_s = 0.0;
+  double cpu_s = 0.0;      // user and system
+  double peak_mb = 0.0;    // largest resident set, in 10^6 bytes
+  double output_mb = 0.0;  // what it wrote on standard output
+};
+
+struct ChildRun {
+  Cost cost;
+  int code = -1;         // exit code, 128 + signal, 127 if there is no such program
+  bool stopped = false;  // killed at the time limit
+  std::string tail;      // the end of its standard output, at most kTailBytes
+};
+
+inline constexpr std::size_t kTailBytes = 8192;
+
+struct ChildOptions {
+  std::string output;  // file for standard output; written anew
+  std::string folder;  // working directory; empty: ours
+  double time_limit_s = 60.0;
+};
+
+/// Runs a program (looked up in PATH, no shell) to its end with standard error discarded. Memory
+/// is what the kernel reports of this child alone (wait4); it is never less than this process used
+/// before the call, so large things are measured in children. nullopt if no process or file can be
+/// had.
+std::optional<ChildRun> run_child(const std::vector<std::string>& command,
+                                  const ChildOptions& options);
+
+}  // namespace parallax::tools

@@ -1,0 +1,69 @@
+// Reading a model and making clauses of it, beside clingo's grounder on the exported program.
+
+#include <fmt/core.h>
+
+#include "tools/bench/bench.h"
+#include "tools/bench/contestants.h"
+
+namespace parallax::tools {
+namespace {
+
+/// The last horizon at which clingo's grounder takes part: beyond it needs gigabytes.
+constexpr int kLastGroundedHorizon = 10'000;
+
+/// `robot_4_2_SLACK` has this horizon and goes on for `slack` steps.
+constexpr int kShortestPlan = 10;
+
+}  // namespace
+
+void measure_start(Bench& bench) {
+  bench.begin("start of the program");
+  Contestant clingo{"clingo", {"clingo", "--version"}, "", {0}, {}};
+  bench.compare("--version", {parallax_with({"--version"}), clingo});
+}
+
+void measure_compilation(Bench& bench) {
+  const std::vector<std::pair<std::string, std::string>> models = {{"falling_40", "1"},
+                                                                   {"chain_200", "0"},
+                                                                   {"bankproj_4_100_5_20", "1"},
+                                                                   {"bankproj_8_400_10_60", "1"}};
+  bench.begin("compilation, beside clingo's grounding");
+  for (const auto& [name, traces] : models) {
+    const auto compile =
+        parallax_with({"compile", bench.model_file(name), "-o", bench.path(name + ".dec.cnf")});
+    bench.compare(name, {compile, clingo_grounds(bench.program_file(name))});
+  }
+  bench.begin("compilation and all traces, listed");
+  for (const auto& [name, traces] : models) {
+    bench.compare(name,
+                  {parallax_lists(bench.model_file(name)), clingo_lists(bench.program_file(name))},
+                  traces);
+  }
+}
+
+void measure_horizons(Bench& bench) {
+  bench.begin("compile time over the horizon (robot_4_2)");
+  for (int horizon = 10; horizon <= 100'000; horizon *= 10) {
+    const auto name = fmt::format("robot_4_2_{}", horizon - kShortestPlan);
+    const auto artifact = bench.path(name + ".dec.cnf");
+    std::vector<Contestant> contestants = {
+        parallax_with({"compile", bench.model_file(name), "-o", artifact})};
+    if (horizon <= kLastGroundedHorizon) {
+      contestants.push_back(clingo_grounds(bench.program_file(name)));
+    }
+    bench.compare(fmt::format("horizon {}", horizon), contestants);
+
+    // The stages, timed inside one process; its last line is the answer.
+    const auto stages = run_child({bench_program(), "stages", bench.model_file(name)},
+                                  {bench.path("output"), "", 600.0});
+    Row row;
+    row.name = fmt::format("horizon {}, stages", horizon);
+    row.note = stages && stages->code == 0 ? stages->tail : "could not be measured";
+    while (row.note.ends_with('\n')) row.note.pop_back();
+    bench.add(std::move(row));
+    std::error_code ignored;
+    std::filesystem::remove(artifact, ignored);
+  }
+}
+
+}  // namespace parallax::tools
