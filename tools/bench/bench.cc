@@ -65,8 +65,11 @@ std::string Bench::compiled_file(const std::string& name, const std::string& suf
   return file;
 }
 
-std::string Bench::program_file(const std::string& name) {
-  return compiled_file(name, ".lp", {"--emit=lp"});
+std::string Bench::program_file(const std::string& name, Encoding encoding) {
+  if (encoding == Encoding::kExported) return compiled_file(name, ".lp", {"--emit=lp"});
+  const auto file = path(name + ".tuned.lp");
+  if (!fs::exists(file)) std::ofstream(file) << family_program(name).value();
+  return file;
 }
 
 std::string Bench::artifact_file(const std::string& name) {

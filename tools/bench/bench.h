@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/bench/contestants.h"
 #include "tools/bench/measure.h"
 #include "tools/bench/row.h"
 
@@ -35,8 +36,8 @@ class Bench {
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   /// `NAME.e` with the text of the family's model; the caller owes a name that there is.
   std::string model_file(const std::string& name);
-  /// `NAME.lp`: what `parallax compile --emit=lp` makes of it, for clingo.
-  std::string program_file(const std::string& name);
+  /// `NAME.lp` or `NAME.tuned.lp`, for clingo.
+  std::string program_file(const std::string& name, Encoding encoding);
   /// `NAME.dec.cnf`: what `parallax compile` makes of it.
   std::string artifact_file(const std::string& name);
 

@@ -14,6 +14,10 @@ constexpr int kLastGroundedHorizon = 10'000;
 /// `robot_4_2_SLACK` has this horizon and goes on for `slack` steps.
 constexpr int kShortestPlan = 10;
 
+Contestant grounding(Bench& bench, const std::string& name, Encoding encoding) {
+  return clingo_grounds(bench.program_file(name, encoding), encoding);
+}
+
 }  // namespace
 
 void measure_start(Bench& bench) {
@@ -29,14 +33,19 @@ void measure_compilation(Bench& bench) {
                                                                    {"bankproj_8_400_10_60", "1"}};
   bench.begin("compilation, beside clingo's grounding");
   for (const auto& [name, traces] : models) {
-    const auto compile =
-        parallax_with({"compile", bench.model_file(name), "-o", bench.path(name + ".dec.cnf")});
-    bench.compare(name, {compile, clingo_grounds(bench.program_file(name))});
+    bench.compare(
+        name,
+        {parallax_with({"compile", bench.model_file(name), "-o", bench.path(name + ".dec.cnf")}),
+         grounding(bench, name, Encoding::kExported), grounding(bench, name, Encoding::kTuned)});
   }
   bench.begin("compilation and all traces, listed");
   for (const auto& [name, traces] : models) {
+    const auto clingo = [&, &file = name](Encoding encoding) {
+      return clingo_lists(bench.program_file(file, encoding), encoding);
+    };
     bench.compare(name,
-                  {parallax_lists(bench.model_file(name)), clingo_lists(bench.program_file(name))},
+                  {parallax_lists(bench.model_file(name)), clingo(Encoding::kExported),
+                   clingo(Encoding::kTuned)},
                   traces);
   }
 }
@@ -49,7 +58,8 @@ void measure_horizons(Bench& bench) {
     std::vector<Contestant> contestants = {
         parallax_with({"compile", bench.model_file(name), "-o", artifact})};
     if (horizon <= kLastGroundedHorizon) {
-      contestants.push_back(clingo_grounds(bench.program_file(name)));
+      contestants.push_back(grounding(bench, name, Encoding::kExported));
+      contestants.push_back(grounding(bench, name, Encoding::kTuned));
     }
     bench.compare(fmt::format("horizon {}", horizon), contestants);
 

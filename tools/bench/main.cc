@@ -50,8 +50,8 @@ int measure_all(const BenchOptions& options) {
   return agree ? 0 : 1;
 }
 
-int print_model(const std::string& name) {
-  const auto text = family_model(name);
+int print_model(const std::string& name, bool tuned) {
+  const auto text = tuned ? family_program(name) : family_model(name);
   if (!text) {
     fmt::print(stderr, "no family has a model `{}`\n", name);
     return 2;
@@ -91,13 +91,15 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   std::string argument;
   auto* model = app.add_subcommand("model", "Print the model of a family, such as lamps_4_6");
+  bool tuned = false;
+  model->add_flag("--tuned", tuned, "The logic program that a clingo user would write instead");
   auto* solve = app.add_subcommand("solve", "CaDiCaL alone on a DIMACS file");
   auto* stages = app.add_subcommand("stages", "Time the stages of compiling a model file");
   for (auto* command : {model, solve, stages}) {
     command->add_option("name", argument, "Name or file")->required();
   }
   CLI11_PARSE(app, argc, argv);
-  if (model->parsed()) return print_model(argument);
+  if (model->parsed()) return print_model(argument, tuned);
   if (solve->parsed()) return solve_plainly(argument);
   if (stages->parsed()) return print_stages(argument);
   return measure_all(options);

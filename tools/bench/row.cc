@@ -13,8 +13,8 @@ std::string duration(double seconds) {
 }
 
 std::string line_of(const Side& side) {
-  if (!side.cost) return fmt::format("{:<10}{}", side.program, side.remark);
-  auto line = fmt::format("{:<10}{:>10} {:>9.1f} MB", side.program, duration(side.cost->wall_s),
+  if (!side.cost) return fmt::format("{:<17}{}", side.program, side.remark);
+  auto line = fmt::format("{:<17}{:>8} {:>9.1f} MB", side.program, duration(side.cost->wall_s),
                           side.cost->peak_mb);
   if (!side.answer.empty()) line += fmt::format("   {}", side.answer);
   if (side.cost->output_mb >= 0.1) line += fmt::format("   wrote {:.1f} MB", side.cost->output_mb);
@@ -37,9 +37,10 @@ nlohmann::ordered_json document(const Side& side) {
 
 }  // namespace
 
-std::optional<double> Row::ratio() const {
-  if (sides.size() < 2 || !sides[0].cost || !sides[1].cost) return std::nullopt;
-  return sides[1].cost->wall_s / sides[0].cost->wall_s;
+std::optional<double> Row::ratio(std::size_t side) const {
+  if (side == 0 || side >= sides.size()) return std::nullopt;
+  if (!sides[0].cost || !sides[side].cost) return std::nullopt;
+  return sides[side].cost->wall_s / sides[0].cost->wall_s;
 }
 
 bool Row::agrees() const {
@@ -55,18 +56,17 @@ bool Row::agrees() const {
 std::string to_text(const Row& row) {
   std::string text;
   std::string label = row.name;
-  for (const auto& side : row.sides) {
-    text += fmt::format("  {:<28}{}", label, line_of(side));
-    label.clear();
-    const auto ratio = row.ratio();
-    if (&side == &row.sides.back() && ratio) text += fmt::format("   x {:.2f}", *ratio);
+  for (std::size_t i = 0; i < row.sides.size(); ++i) {
+    text += fmt::format("  {:<24}{}", label, line_of(row.sides[i]));
+    if (const auto ratio = row.ratio(i)) text += fmt::format("   = {:.2f} x ours", *ratio);
     text += '\n';
+    label.clear();
   }
   if (!row.note.empty()) {
-    text += fmt::format("  {:<28}{}\n", label, row.note);
+    text += fmt::format("  {:<24}{}\n", label, row.note);
   }
   if (!row.agrees()) {
-    text += fmt::format("  {:<28}ANSWERS DIFFER, expected {}\n", "", row.expected.value_or("?"));
+    text += fmt::format("  {:<24}ANSWERS DIFFER, expected {}\n", "", row.expected.value_or("?"));
   }
   return text;
 }
@@ -76,8 +76,10 @@ std::string to_json(const std::vector<Row>& rows) {
   for (const auto& row : rows) {
     nlohmann::ordered_json json = {{"section", row.section}, {"row", row.name}};
     json["sides"] = nlohmann::ordered_json::array();
-    for (const auto& side : row.sides) json["sides"].push_back(document(side));
-    if (const auto ratio = row.ratio()) json["ratio"] = *ratio;
+    for (std::size_t i = 0; i < row.sides.size(); ++i) {
+      json["sides"].push_back(document(row.sides[i]));
+      if (const auto ratio = row.ratio(i)) json["sides"].back()["ratio"] = *ratio;
+    }
     if (row.expected) json["expected"] = *row.expected;
     if (!row.note.empty()) json["note"] = row.note;
     json["agrees"] = row.agrees();

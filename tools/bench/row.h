@@ -10,7 +10,7 @@ namespace parallax::tools {
 
 /// One program's part of a row.
 struct Side {
-  std::string program;       // "parallax", "clingo", "cadical"
+  std::string program;       // "parallax", "clingo"
   std::string command;       // as a user would type it, folders left out
   std::optional<Cost> cost;  // medians; none: see `remark`
   int runs = 0;
@@ -18,7 +18,7 @@ struct Side {
   std::string remark;  // why there is no cost: "not installed", "no end within 60 s"
 };
 
-/// One measurement: what one program needs, beside its peer if there is one.
+/// One measurement: what one program needs, beside its peers if there are any.
 struct Row {
   std::string section;
   std::string name;
@@ -26,8 +26,8 @@ struct Row {
   std::optional<std::string> expected;  // the answer that is known
   std::string note;                     // other figures of the row, in words
 
-  /// Time of the second side in units of the first; none unless both have one.
-  std::optional<double> ratio() const;
+  /// Time of a side in units of the first; none for the first, or unless both have one.
+  std::optional<double> ratio(std::size_t side) const;
   /// No two answers, and no answer and the known one, differ.
   bool agrees() const;
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "tools/bench/answers.h"
 #include "tools/bench/bench.h"
 #include "tools/bench/contestants.h"
 

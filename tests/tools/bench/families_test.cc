@@ -28,6 +28,12 @@ TEST_CASE("lamps: an odd number of flips for each, 2^(lamps*(horizon-1)) traces"
   CHECK(traces_of("lamps_4_2") == 16);
 }
 
+TEST_CASE("distant: lamps that are not flipped both first and last, (3*2^(horizon-3))^lamps") {
+  CHECK(traces_of("distant_1_3") == 3);
+  CHECK(traces_of("distant_1_5") == 12);
+  CHECK(traces_of("distant_2_4") == 36);
+}
+
 TEST_CASE("pigeons: injective maps into the holes") {
   CHECK(traces_of("pigeon_1_1") == 1);
   CHECK(traces_of("pigeon_2_3") == 3 * 2);
@@ -43,6 +49,12 @@ TEST_CASE("robots: as many traces as courses through rooms and hands") {
     CAPTURE(name);
     CHECK(traces_of(name) == robot_courses(rooms, things, slack));
   }
+}
+
+TEST_CASE("robots without a goal: every course") {
+  CHECK(traces_of("roaming_2_1_3") == roaming_courses(2, 1, 3));
+  CHECK(traces_of("roaming_3_2_3") == roaming_courses(3, 2, 3));
+  CHECK(roaming_courses(3, 2, 3) > 20);
 }
 
 TEST_CASE("robots: the courses of the sizes that are measured") {
@@ -89,10 +101,10 @@ TEST_CASE("falling things: one trace, on the ground one step before the end") {
 }
 
 TEST_CASE("names that are no family, or sizes out of range, have no model") {
-  for (const auto* name :
-       {"", "robot", "robot_4_2", "robot_4_2_8_1", "robot_4_m2_8", "robot_1_2_0", "robot_4_2_x",
-        "robot_2_1_m9", "lamps_0_3", "lamps_3_-1", "lamps_3_", "bankproj_5_4_1_3", "falling_2",
-        "robot_1000000_1000000_0", "lamps_99999999999_1", "zoo_3"}) {
+  for (const auto* name : {"", "robot", "robot_4_2", "robot_4_2_8_1", "robot_4_m2_8", "robot_1_2_0",
+                           "robot_4_2_x", "robot_2_1_m9", "lamps_0_3", "lamps_3_-1", "lamps_3_",
+                           "bankproj_5_4_1_3", "falling_2", "distant_3_2", "roaming_1_2_3",
+                           "robot_1000000_1000000_0", "lamps_99999999999_1", "zoo_3"}) {
     CHECK_MESSAGE(!tools::family_model(name), name);
   }
 }

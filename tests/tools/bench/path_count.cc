@@ -51,6 +51,12 @@ std::vector<State> robot_moves(const State& state, int rooms) {
   return next;
 }
 
+State robot_start(int rooms, int things) {
+  State start = {1, 0};
+  for (int thing = 1; thing <= things; ++thing) start.push_back(thing % 2 == 1 ? 1 : rooms);
+  return start;
+}
+
 std::vector<State> transfers(const State& balances, int max_balance, int max_amount) {
   std::vector<State> next = {balances};
   for (std::size_t from = 0; from < balances.size(); ++from) {
@@ -70,20 +76,22 @@ std::vector<State> transfers(const State& balances, int max_balance, int max_amo
 }  // namespace
 
 std::int64_t robot_courses(int rooms, int things, int slack) {
-  State start = {1, 0};
   State goal = {0, 0};
-  for (int thing = 1; thing <= things; ++thing) {
-    const bool odd = thing % 2 == 1;
-    start.push_back(odd ? 1 : rooms);
-    goal.push_back(odd ? rooms : 1);
-  }
+  for (int thing = 1; thing <= things; ++thing) goal.push_back(thing % 2 == 1 ? rooms : 1);
   return paths(
-      start, things * (rooms + 1) + slack,
+      robot_start(rooms, things), things * (rooms + 1) + slack,
       [&](const State& state) { return robot_moves(state, rooms); },
       [&](State state) {
         state[0] = 0;  // the robot may be anywhere
         return state == goal;
       });
+}
+
+std::int64_t roaming_courses(int rooms, int things, int horizon) {
+  return paths(
+      robot_start(rooms, things), horizon,
+      [&](const State& state) { return robot_moves(state, rooms); },
+      [](const State&) { return true; });
 }
 
 std::int64_t transfer_series(int accounts, int max_balance, int max_amount, int horizon) {

@@ -11,6 +11,9 @@ namespace parallax::test {
 /// next room, grasps what is there or drops what it carries.
 std::int64_t robot_courses(int rooms, int things, int slack);
 
+/// Of `roaming_model(rooms, things, horizon)`: the same courses wherever they end.
+std::int64_t roaming_courses(int rooms, int things, int horizon);
+
 /// Of `bank_planning_model({accounts, max_balance, max_amount, horizon})`: series of transfers and
 /// pauses after which the first account has everything.
 std::int64_t transfer_series(int accounts, int max_balance, int max_amount, int horizon);

@@ -75,20 +75,28 @@ class Draw {
 
 }  // namespace
 
-std::string bank_projection_model(const BankSize& size) {
-  std::string text = opened_bank(size) + "\ncompletion Book Happens\n";
-  const auto accounts = static_cast<std::size_t>(size.accounts);
-  std::vector<int> balances(accounts, size.max_balance / size.accounts);
+std::vector<Transfer> told_transfers(const BankSize& size) {
+  std::vector<Transfer> told;
+  std::vector<int> balances(static_cast<std::size_t>(size.accounts),
+                            size.max_balance / size.accounts);
   Draw draw;
-  for (int time = 0; time < size.horizon;) {
+  while (static_cast<int>(told.size()) < size.horizon) {
     const auto from = static_cast<std::size_t>(draw.below(size.accounts));
     const auto to = static_cast<std::size_t>(draw.below(size.accounts));
     const int amount = 1 + draw.below(size.max_amount);
     if (from == to || balances[from] < amount || balances[to] + amount > size.max_balance) continue;
     balances[from] -= amount;
     balances[to] += amount;
-    text += fmt::format("Book: Happens(Transfer(Acc{},Acc{},{}),{}).\n", from + 1, to + 1, amount,
-                        time++);
+    told.push_back({static_cast<int>(from) + 1, static_cast<int>(to) + 1, amount});
+  }
+  return told;
+}
+
+std::string bank_projection_model(const BankSize& size) {
+  std::string text = opened_bank(size) + "\ncompletion Book Happens\n";
+  int time = 0;
+  for (const auto& [from, to, amount] : told_transfers(size)) {
+    text += fmt::format("Book: Happens(Transfer(Acc{},Acc{},{}),{}).\n", from, to, amount, time++);
   }
   return text;
 }

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace parallax::tools {
 
@@ -16,10 +17,17 @@ inline constexpr int kMaxFamilyParameter = 1'000'000;
 /// first and lit at the end. 2^(lamps*(horizon-1)) traces.
 std::string lamps_model(int lamps, int horizon);
 
+/// The same lamps, and none is flipped both in the first and in the last of at least 3 steps: a
+/// text that ties far timepoints together. (3*2^(horizon-3))^lamps traces.
+std::string distant_model(int lamps, int horizon);
+
 /// A robot carries `things` things between the ends of a row of `rooms` rooms, one at a time: the
 /// first thing from the first room to the last, the second the other way, and so on. The horizon
 /// is that of the shortest plan, things*(rooms+1), and `slack` steps, which may be negative.
 std::string robot_model(int rooms, int things, int slack);
+
+/// The same world without a goal: everything that the robot can do in `horizon` steps.
+std::string roaming_model(int rooms, int things, int horizon);
 
 /// `pigeons` land at once, each in one of `holes` holes, no two in one.
 /// holes!/(holes-pigeons)! traces.
@@ -36,6 +44,16 @@ struct BankSize {
   int horizon = 0;      // one transfer a step
 };
 
+/// By numbers of accounts, from 1.
+struct Transfer {
+  int from = 0;
+  int to = 0;
+  int amount = 0;
+};
+
+/// One legal transfer for each step, drawn by a generator of our own.
+std::vector<Transfer> told_transfers(const BankSize& size);
+
 /// All transfers are told. One trace.
 std::string bank_projection_model(const BankSize& size);
 
@@ -47,8 +65,12 @@ std::string bank_planning_model(const BankSize& size);
 std::string falling_model(int horizon);
 
 /// The model of a name such as `robot_4_2_8`, `robot_6_4_m1` (slack -1), `lamps_4_6`,
-/// `pigeon_9_8`, `chain_200`, `bankproj_4_100_5_20`, `bankplan_3_12_4_5`, `falling_40`; nullopt if
-/// there is no such family or a parameter is out of range.
+/// `roaming_6_4_30`, `distant_4_6`, `pigeon_9_8`, `chain_200`, `bankproj_4_100_5_20`,
+/// `bankplan_3_12_4_5`, `falling_40`; nullopt if there is no such family or a parameter is out of
+/// range.
 std::optional<std::string> family_model(std::string_view name);
+
+/// The same model as a clingo user would write it by hand (tuned.h).
+std::optional<std::string> family_program(std::string_view name);
 
 }  // namespace parallax::tools

@@ -1,9 +1,10 @@
 #include <charconv>
 #include <cstdint>
-#include <functional>
+#include <utility>
 #include <vector>
 
 #include "tools/bench/families/families.h"
+#include "tools/bench/families/tuned.h"
 
 namespace parallax::tools {
 namespace {
@@ -14,50 +15,46 @@ struct Family {
   std::string_view name;
   std::size_t parameters = 0;
   std::size_t may_be_negative = 0;  // the last so many
-  std::function<std::optional<std::string>(const Parameters&)> text;
+  bool (*fits)(const Parameters&) = nullptr;
+  std::string (*model)(const Parameters&) = nullptr;
+  std::string (*program)(const Parameters&) = nullptr;
 };
 
-/// A share of nothing, or nobody to pay: such a bank has no transfer.
-std::optional<BankSize> bank_size(const Parameters& p) {
-  if (p[0] < 2 || p[1] < p[0]) return std::nullopt;
-  return BankSize{p[0], p[1], p[2], p[3]};
+using P = const Parameters&;
+
+bool any(P) { return true; }
+
+BankSize bank(P p) { return {p[0], p[1], p[2], p[3]}; }
+
+/// Else there is nobody to pay, or everyone's share is nothing.
+bool has_transfers(P p) { return p[0] >= 2 && p[1] >= p[0]; }
+
+bool has_steps(P p) {
+  const std::int64_t horizon = p[1] * (std::int64_t{p[0]} + 1) + p[2];
+  return p[0] >= 2 && horizon >= 1 && horizon <= kMaxFamilyParameter;
 }
 
-const std::vector<Family>& families() {
-  static const std::vector<Family> all = {
-      {"lamps", 2, 0, [](const Parameters& p) { return lamps_model(p[0], p[1]); }},
-      {"robot", 3, 1,
-       [](const Parameters& p) -> std::optional<std::string> {
-         const std::int64_t horizon = p[1] * (std::int64_t{p[0]} + 1) + p[2];
-         if (p[0] < 2 || horizon < 1 || horizon > kMaxFamilyParameter) return std::nullopt;
-         return robot_model(p[0], p[1], p[2]);
-       }},
-      {"pigeon", 2, 0, [](const Parameters& p) { return pigeon_model(p[0], p[1]); }},
-      {"chain", 1, 0,
-       [](const Parameters& p) -> std::optional<std::string> {
-         if (p[0] < 2) return std::nullopt;
-         return chain_model(p[0]);
-       }},
-      {"bankproj", 4, 0,
-       [](const Parameters& p) -> std::optional<std::string> {
-         const auto size = bank_size(p);
-         if (!size) return std::nullopt;
-         return bank_projection_model(*size);
-       }},
-      {"bankplan", 4, 0,
-       [](const Parameters& p) -> std::optional<std::string> {
-         const auto size = bank_size(p);
-         if (!size) return std::nullopt;
-         return bank_planning_model(*size);
-       }},
-      {"falling", 1, 0,
-       [](const Parameters& p) -> std::optional<std::string> {
-         if (p[0] < 3) return std::nullopt;
-         return falling_model(p[0]);
-       }},
-  };
-  return all;
-}
+const Family kFamilies[] = {
+    {"lamps", 2, 0, any, [](P p) { return lamps_model(p[0], p[1]); },
+     [](P p) { return tuned_lamps(p[0], p[1]); }},
+    {"distant", 2, 0, [](P p) { return p[1] >= 3; }, [](P p) { return distant_model(p[0], p[1]); },
+     [](P p) { return tuned_distant(p[0], p[1]); }},
+    {"robot", 3, 1, has_steps, [](P p) { return robot_model(p[0], p[1], p[2]); },
+     [](P p) { return tuned_robot(p[0], p[1], p[2]); }},
+    {"roaming", 3, 0, [](P p) { return p[0] >= 2; },
+     [](P p) { return roaming_model(p[0], p[1], p[2]); },
+     [](P p) { return tuned_roaming(p[0], p[1], p[2]); }},
+    {"pigeon", 2, 0, any, [](P p) { return pigeon_model(p[0], p[1]); },
+     [](P p) { return tuned_pigeon(p[0], p[1]); }},
+    {"chain", 1, 0, [](P p) { return p[0] >= 2; }, [](P p) { return chain_model(p[0]); },
+     [](P p) { return tuned_chain(p[0]); }},
+    {"bankproj", 4, 0, has_transfers, [](P p) { return bank_projection_model(bank(p)); },
+     [](P p) { return tuned_bank_projection(bank(p)); }},
+    {"bankplan", 4, 0, has_transfers, [](P p) { return bank_planning_model(bank(p)); },
+     [](P p) { return tuned_bank_planning(bank(p)); }},
+    {"falling", 1, 0, [](P p) { return p[0] >= 3; }, [](P p) { return falling_model(p[0]); },
+     [](P p) { return tuned_falling(p[0]); }},
+};
 
 /// `7`, or `m1` for -1 (a name that is also a file name).
 std::optional<int> parameter(std::string_view word) {
@@ -81,11 +78,10 @@ std::vector<std::string_view> words_of(std::string_view name) {
   }
 }
 
-}  // namespace
-
-std::optional<std::string> family_model(std::string_view name) {
+/// The family of a name and its parameters, if they fit.
+std::optional<std::pair<const Family*, Parameters>> parsed(std::string_view name) {
   const auto words = words_of(name);
-  for (const auto& family : families()) {
+  for (const auto& family : kFamilies) {
     if (family.name != words.front() || family.parameters + 1 != words.size()) continue;
     Parameters parameters;
     for (std::size_t i = 1; i < words.size(); ++i) {
@@ -94,9 +90,24 @@ std::optional<std::string> family_model(std::string_view name) {
       if (!value || (!any_sign && *value < 1)) return std::nullopt;
       parameters.push_back(*value);
     }
-    return family.text(parameters);
+    if (!family.fits(parameters)) return std::nullopt;
+    return std::pair(&family, std::move(parameters));
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> family_model(std::string_view name) {
+  const auto found = parsed(name);
+  if (!found) return std::nullopt;
+  return found->first->model(found->second);
+}
+
+std::optional<std::string> family_program(std::string_view name) {
+  const auto found = parsed(name);
+  if (!found) return std::nullopt;
+  return found->first->program(found->second);
 }
 
 }  // namespace parallax::tools

@@ -24,4 +24,9 @@ event Flip(lamp)
   return fmt::format(kText, lamps, horizon, numbered_names("Lamp", lamps));
 }
 
+std::string distant_model(int lamps, int horizon) {
+  return lamps_model(lamps, horizon) +
+         fmt::format("\n[lamp] Happens(Flip(lamp),0) -> !Happens(Flip(lamp),{}).\n", horizon - 1);
+}
+
 }  // namespace parallax::tools

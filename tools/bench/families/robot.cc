@@ -47,21 +47,28 @@ Happens(Grasp(thing),time) -> ({{room}} HoldsAt(Robot(room),time) & HoldsAt(Lies
 
 [room] HoldsAt(Robot(room),0) <-> room=1.
 [thing] !HoldsAt(Carries(thing),0).
-[thing] !HoldsAt(Carries(thing),{2}).
 )";
+
+int first_room(int thing, int rooms) { return thing % 2 == 1 ? 1 : rooms; }
 
 }  // namespace
 
-std::string robot_model(int rooms, int things, int slack) {
-  const int horizon = things * (rooms + 1) + slack;
+std::string roaming_model(int rooms, int things, int horizon) {
   std::string text = fmt::format(kWorld, things, rooms, horizon, numbered_names("Thing", things));
   for (int thing = 1; thing <= things; ++thing) {
-    const int from = thing % 2 == 1 ? 1 : rooms;
-    const int to = rooms + 1 - from;
-    text += fmt::format(
-        "[room] HoldsAt(LiesIn(Thing{0},room),0) <-> "
-        "room={1}.\nHoldsAt(LiesIn(Thing{0},{2}),{3}).\n",
-        thing, from, to, horizon);
+    text += fmt::format("[room] HoldsAt(LiesIn(Thing{},room),0) <-> room={}.\n", thing,
+                        first_room(thing, rooms));
+  }
+  return text;
+}
+
+std::string robot_model(int rooms, int things, int slack) {
+  const int horizon = things * (rooms + 1) + slack;
+  std::string text = roaming_model(rooms, things, horizon);
+  text += fmt::format("\n; The goal.\n[thing] !HoldsAt(Carries(thing),{}).\n", horizon);
+  for (int thing = 1; thing <= things; ++thing) {
+    text += fmt::format("HoldsAt(LiesIn(Thing{},{}),{}).\n", thing,
+                        rooms + 1 - first_room(thing, rooms), horizon);
   }
   return text;
 }

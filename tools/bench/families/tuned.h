@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "tools/bench/families/families.h"
+
+namespace parallax::tools {
+
+// The families as a clingo user would write them by hand: logic programs whose rules of the
+// discrete event calculus are cut down to what such a model needs. Nothing is open but the start,
+// the events and what is released; effects are derived of events that happen only. The answer sets
+// are the traces, one each.
+
+/// The rules of the calculus. The models say `fluent`, `happens`, `initiates`, `terminates`,
+/// `releases`; `holds` and `happens` are shown.
+std::string tuned_calculus(int horizon);
+
+std::string tuned_lamps(int lamps, int horizon);
+std::string tuned_distant(int lamps, int horizon);
+std::string tuned_robot(int rooms, int things, int slack);
+std::string tuned_roaming(int rooms, int things, int horizon);
+std::string tuned_pigeon(int pigeons, int holes);
+std::string tuned_chain(int stages);
+std::string tuned_bank_projection(const BankSize& size);
+std::string tuned_bank_planning(const BankSize& size);
+std::string tuned_falling(int horizon);
+
+}  // namespace parallax::tools
