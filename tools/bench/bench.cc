@@ -25,7 +25,7 @@ Bench::~Bench() {
 
 void Bench::begin(std::string section) {
   section_ = std::move(section);
-  fmt::print("\n{}\n", section_);
+  fmt::print("\n{}\n  {:<43}{:>8} {:>8} {:>11}\n", section_, "", "wall", "cpu", "memory");
 }
 
 const Row& Bench::compare(std::string name, const std::vector<Contestant>& contestants,

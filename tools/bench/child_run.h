@@ -24,7 +24,7 @@ struct ChildRun {
 inline constexpr std::size_t kTailBytes = 8192;
 
 struct ChildOptions {
-  std::string output;  // file for standard output; written anew
+  std::string output;       // file for standard output; written anew
   std::string folder = {};  // working directory; empty: ours
   double time_limit_s = 60.0;
 };

@@ -54,12 +54,12 @@ void measure_examples(Bench& bench) {
     all.cost->cpu_s += side.cost->cpu_s;
     all.cost->peak_mb = std::max(all.cost->peak_mb, side.cost->peak_mb);
     all.runs = side.runs;
-    dearest.emplace_back(side.cost->wall_s, problem.stem().string());
+    dearest.emplace_back(side.cost->cpu_s, problem.stem().string());
   }
   all.command = "parallax traces FILE --limit 0 --format jsonl --compat decreasoner";
   std::sort(dearest.rbegin(), dearest.rend());
   dearest.resize(std::min<std::size_t>(dearest.size(), 3));
-  row.note = fmt::format("{} problems; dearest:", problems.size());
+  row.note = fmt::format("{} problems; dearest, cpu:", problems.size());
   for (const auto& [seconds, name] : dearest) {
     row.note += fmt::format(" {} {:.0f} ms", name, 1e3 * seconds);
   }

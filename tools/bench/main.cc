@@ -20,6 +20,7 @@ const std::vector<Section>& sections() {
       {"counting", "counting traces, beside clingo", measure_counting},
       {"listing", "listing traces, beside clingo", measure_listing},
       {"first-trace", "the first trace, beside CaDiCaL alone", measure_first_trace},
+      {"strategies", "ways to enumerate, side by side", measure_strategies},
       {"examples", "the examples of the reasoner of 2005", measure_examples},
       {"horizons", "compile time over the horizon", measure_horizons},
       {"world", "the two-region world", measure_world},

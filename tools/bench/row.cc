@@ -14,8 +14,9 @@ std::string duration(double seconds) {
 
 std::string line_of(const Side& side) {
   if (!side.cost) return fmt::format("{:<17}{}", side.program, side.remark);
-  auto line = fmt::format("{:<17}{:>8} {:>9.1f} MB", side.program, duration(side.cost->wall_s),
-                          side.cost->peak_mb);
+  auto line =
+      fmt::format("{:<17}{:>8} {:>8} {:>8.1f} MB", side.program, duration(side.cost->wall_s),
+                  duration(side.cost->cpu_s), side.cost->peak_mb);
   if (!side.answer.empty()) line += fmt::format("   {}", side.answer);
   if (side.cost->output_mb >= 0.1) line += fmt::format("   wrote {:.1f} MB", side.cost->output_mb);
   return line;
@@ -40,7 +41,7 @@ nlohmann::ordered_json document(const Side& side) {
 std::optional<double> Row::ratio(std::size_t side) const {
   if (side == 0 || side >= sides.size()) return std::nullopt;
   if (!sides[0].cost || !sides[side].cost) return std::nullopt;
-  return sides[side].cost->wall_s / sides[0].cost->wall_s;
+  return sides[side].cost->cpu_s / sides[0].cost->cpu_s;
 }
 
 bool Row::agrees() const {
@@ -57,16 +58,16 @@ std::string to_text(const Row& row) {
   std::string text;
   std::string label = row.name;
   for (std::size_t i = 0; i < row.sides.size(); ++i) {
-    text += fmt::format("  {:<24}{}", label, line_of(row.sides[i]));
+    text += fmt::format("  {:<26}{}", label, line_of(row.sides[i]));
     if (const auto ratio = row.ratio(i)) text += fmt::format("   = {:.2f} x ours", *ratio);
     text += '\n';
     label.clear();
   }
   if (!row.note.empty()) {
-    text += fmt::format("  {:<24}{}\n", label, row.note);
+    text += fmt::format("  {:<26}{}\n", label, row.note);
   }
   if (!row.agrees()) {
-    text += fmt::format("  {:<24}ANSWERS DIFFER, expected {}\n", "", row.expected.value_or("?"));
+    text += fmt::format("  {:<26}ANSWERS DIFFER, expected {}\n", "", row.expected.value_or("?"));
   }
   return text;
 }

@@ -26,7 +26,8 @@ struct Row {
   std::optional<std::string> expected;  // the answer that is known
   std::string note;                     // other figures of the row, in words
 
-  /// Time of a side in units of the first; none for the first, or unless both have one.
+  /// Processor time of a side in units of the first's; none for the first, or unless both have one.
+  /// All programs use one thread, and wall time would also measure what else the machine does.
   std::optional<double> ratio(std::size_t side) const;
   /// No two answers, and no answer and the known one, differ.
   bool agrees() const;

@@ -7,6 +7,18 @@
 #include "tools/bench/contestants.h"
 
 namespace parallax::tools {
+namespace {
+
+/// The first `limit` traces (0: all), found in one of the ways that `--strategy` names.
+Contestant lists_by(const char* strategy, const std::string& file, int limit) {
+  auto contestant = parallax_with({"traces", file, "--strategy", strategy, "--limit",
+                                   std::to_string(limit), "--format", "jsonl"});
+  contestant.program = strategy;
+  contestant.answer = [](const ChildRun& run) { return jsonl_answer(run.tail); };
+  return contestant;
+}
+
+}  // namespace
 
 void measure_first_trace(Bench& bench) {
   bench.begin("first trace of an artifact, beside CaDiCaL alone on the same file");
@@ -23,6 +35,23 @@ void measure_first_trace(Bench& bench) {
     };
     bench.compare(name, {ours, plain});
   }
+}
+
+void measure_strategies(Bench& bench) {
+  bench.begin("ways to enumerate, where a clause ties far timepoints together");
+  for (const int limit : {5'000, 50'000}) {
+    const auto file = bench.model_file("distant_4_6");
+    bench.compare(fmt::format("distant_4_6, {} traces", limit),
+                  {lists_by("tree", file, limit), lists_by("guarded", file, limit),
+                   lists_by("blocking", file, limit)},
+                  std::to_string(limit));
+  }
+  bench.begin("ways to enumerate, where the trace graph applies");
+  const auto file = bench.model_file("robot_4_2_4");
+  bench.compare("robot_4_2_4",
+                {lists_by("graph", file, 0), lists_by("tree", file, 0),
+                 lists_by("guarded", file, 0), lists_by("blocking", file, 0)},
+                "3488");
 }
 
 }  // namespace parallax::tools
