@@ -7,6 +7,10 @@ namespace parallax::runtime {
 TraceCount count_traces(const CompiledModel& model, const TraceQuery& query) {
   TraceCount result;
   ModelTraces traces(model, query);
+  if (traces.graph() == nullptr && !traces.refusal().empty()) {
+    result.refusal = traces.refusal();
+    return result;
+  }
   const auto stopped = [&] { return query.stop != nullptr && query.stop->load(); };
   while (true) {
     if (const auto* graph = traces.graph()) {

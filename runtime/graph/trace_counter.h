@@ -10,6 +10,7 @@ struct TraceCount {
   mpz_class count;
   bool complete = false;  // else at least so many
   SourceStats stats;
+  std::string refusal;  // why the strategy that was asked for cannot be had; nothing was counted
 };
 
 /// Counts the traces of a model without constraints at its full horizon. Left to choose, a few are

@@ -30,6 +30,7 @@ TraceSample sample_traces(const CompiledModel& model, const TraceQuery& query, s
   sample.population = counted.count;
   sample.complete = counted.complete;
   sample.stats = counted.stats;
+  sample.refusal = counted.refusal;
   if (!counted.complete || counted.count == 0) return sample;
   std::mt19937_64 random(seed);
   std::multimap<mpz_class, std::size_t> draws;  // by the number of traces before

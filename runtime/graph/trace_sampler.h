@@ -14,6 +14,7 @@ struct TraceSample {
   mpz_class population;
   bool complete = false;  // else stopped
   SourceStats stats;
+  std::string refusal;  // as of TraceCount
 };
 
 /// Draws `size` traces uniformly, with replacement. The same seed draws the same traces whatever

@@ -86,11 +86,21 @@ void show_stats(const TracesOptions& options, const runtime::SourceStats& stats,
                           stats.remark, stats.states, stats.transitions, stats.solve_calls));
 }
 
+void report_refusal(const TracesOptions& options, const std::string& reason,
+                    Invocation& invocation) {
+  invocation.sink().error_about(base::DiagnosticCode::kStrategyRefused, "", options.strategy,
+                                reason);
+}
+
 /// `--count` without a plan or constraints: no trace needs to be made.
 int count_only(const TracesOptions& options, const compiler::CompiledModel& model,
                TraceCertifier& certifier, std::chrono::steady_clock::time_point start,
                Invocation& invocation) {
   const auto counted = runtime::count_traces(model, query_of(options));
+  if (!counted.refusal.empty()) {
+    report_refusal(options, counted.refusal, invocation);
+    return 0;
+  }
   if (counted.count == 0 && counted.complete) {
     certifier.conclude("complete");
   } else {
@@ -130,8 +140,7 @@ std::optional<Ending> enumerate(const TracesOptions& options, const compiler::Co
                                 TraceWriter& writer, Invocation& invocation) {
   runtime::ModelTraces traces(model, query_of(options));
   if (!traces.refusal().empty()) {
-    invocation.sink().error_about(base::DiagnosticCode::kStrategyRefused, "", options.strategy,
-                                  traces.refusal());
+    report_refusal(options, traces.refusal(), invocation);
     return std::nullopt;
   }
   if (options.from > 1) traces.seek(static_cast<long>(options.from - 1));
@@ -143,17 +152,21 @@ std::optional<Ending> enumerate(const TracesOptions& options, const compiler::Co
   return Ending{options.from > 1 ? "complete from there on" : "complete", options.from == 1};
 }
 
-/// `--sample`.
-Ending sample(const TracesOptions& options, const compiler::CompiledModel& model,
-              TraceWriter& writer, Invocation& invocation) {
+/// `--sample`; none if the strategy cannot be had.
+std::optional<Ending> sample(const TracesOptions& options, const compiler::CompiledModel& model,
+                             TraceWriter& writer, Invocation& invocation) {
   const auto sample =
       runtime::sample_traces(model, query_of(options), static_cast<std::size_t>(options.sample),
                              static_cast<std::uint64_t>(options.seed));
+  if (!sample.refusal.empty()) {
+    report_refusal(options, sample.refusal, invocation);
+    return std::nullopt;
+  }
   for (const auto& trace : sample.traces) writer.write(trace);
   show_stats(options, sample.stats, invocation);
-  if (!sample.complete) return {"stopped", false};
-  return {fmt::format("drawn from {} with seed {}", sample.population.get_str(), options.seed),
-          false};
+  if (!sample.complete) return Ending{"stopped", false};
+  return Ending{
+      fmt::format("drawn from {} with seed {}", sample.population.get_str(), options.seed), false};
 }
 
 /// Options that do not go together.

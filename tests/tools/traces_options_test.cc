@@ -1,0 +1,85 @@
+#include <doctest/doctest.h>
+
+#include "tests/tools/cli_fixture.h"
+
+namespace parallax::test {
+namespace {
+
+// Two switches, each pressed or not at each of four timepoints: 4^4 traces.
+constexpr const char* kSwitches =
+    "sort s\ns A, B\nfluent On(s)\nevent Press(s)\n[s,time] Initiates(Press(s),On(s),time).\n"
+    "[s] !HoldsAt(On(s),0).\nrange time 0 4\n";
+
+std::string before_timing(const std::string& text) { return text.substr(0, text.find("timing")); }
+
+}  // namespace
+
+TEST_CASE("a forced strategy lists and counts the same") {
+  const CliFixture cli;
+  cli.write("m.e", kSwitches);
+  const auto wanted = cli.parallax({"traces", "m.e", "--limit", "0", "--format", "jsonl"});
+  CHECK(wanted.code == 0);
+  CHECK(wanted.out.find("\"traces\":256,\"complete\":true") != std::string::npos);
+  for (const auto* strategy : {"blocking", "guarded", "tree", "graph"}) {
+    const auto listed = cli.parallax(
+        {"traces", "m.e", "--limit", "0", "--format", "jsonl", "--strategy", strategy});
+    CHECK(before_timing(listed.out) == before_timing(wanted.out));
+    CHECK(cli.parallax({"traces", "m.e", "--count", "--strategy", strategy}).out == "256\n");
+  }
+  const auto stats = cli.parallax({"traces", "m.e", "--count", "--stats"});
+  CHECK(stats.err.find("strategy graph; ") != std::string::npos);
+}
+
+TEST_CASE("--from goes on where an earlier list ended") {
+  const CliFixture cli;
+  cli.write("m.e", kSwitches);
+  const auto all = cli.parallax({"traces", "m.e", "--limit", "0"}).out;
+  const auto from = cli.parallax({"traces", "m.e", "--limit", "0", "--from", "200"}).out;
+  const auto begin = all.find("trace 200\n");
+  REQUIRE(begin != std::string::npos);
+  const auto end = all.find("256 traces");
+  CHECK(from.starts_with(all.substr(begin, end - begin)));
+  CHECK(from.find("57 traces, complete from there on") != std::string::npos);
+  CHECK(cli.parallax({"traces", "m.e", "--from", "257"}).out.starts_with("0 traces"));
+}
+
+TEST_CASE("--sample draws traces of the list, the same for the same seed") {
+  const CliFixture cli;
+  cli.write("m.e", kSwitches);
+  const auto drawn = cli.parallax({"traces", "m.e", "--sample", "3", "--seed", "9"});
+  CHECK(drawn.code == 0);
+  CHECK(drawn.out.find("3 traces, drawn from 256 with seed 9") != std::string::npos);
+  CHECK(cli.parallax({"traces", "m.e", "--sample", "3", "--seed", "9"}).out == drawn.out);
+  CHECK(cli.parallax({"traces", "m.e", "--sample", "3", "--seed", "8"}).out != drawn.out);
+}
+
+TEST_CASE("--distinct all tells traces apart by what is hidden") {
+  const CliFixture cli;
+  cli.write("m.e",
+            "fluent F()\nevent E()\npredicate P()\nrange time 0 1\nHoldsAt(F(),0).\n"
+            "P() | !P().\n[time] Releases(E(),F(),time).\nP() -> Happens(E(),0).\n");
+  CHECK(cli.parallax({"traces", "m.e", "--count"}).out == "3\n");
+  CHECK(cli.parallax({"traces", "m.e", "--count", "--distinct", "all"}).out == "5\n");
+}
+
+TEST_CASE("options that do not go together, and a strategy that cannot be had, are told") {
+  const CliFixture cli;
+  cli.write("m.e", kSwitches);
+  CHECK(cli.parallax({"traces", "m.e", "--sample", "2", "--count"}).code == 2);
+  CHECK(cli.parallax({"traces", "m.e", "--from", "2", "--count"}).code == 2);
+  CHECK(cli.parallax({"traces", "m.e", "--from", "0"}).code == 2);
+  CHECK(cli.parallax({"traces", "m.e", "--sample", "0"}).code == 2);
+  CHECK(cli.parallax({"traces", "m.e", "--distinct", "all", "--certify"}).code == 2);
+  CHECK(cli.parallax({"traces", "m.e", "--until", "HoldsAt(On(A),time)", "--sample", "2"}).code ==
+        2);
+  cli.write("far.e", std::string(kSwitches) + "Happens(Press(A),0) | Happens(Press(A),3).\n");
+  for (const auto* more : {"--count", "--quiet"}) {
+    const auto refused = cli.parallax({"traces", "far.e", more, "--strategy", "graph"});
+    CHECK(refused.code == 2);
+    CHECK(refused.out.empty());
+    CHECK(refused.err.find("E7203") != std::string::npos);
+  }
+  CHECK(cli.parallax({"traces", "far.e", "--count"}).out == "192\n");
+}
+
+}  // namespace parallax::test
