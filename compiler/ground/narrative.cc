@@ -37,6 +37,28 @@ void for_each_positive_event(const TypedModel& model, TypedFormulaId root, const
   }
 }
 
+bool is_same_time(const TypedModel& model, TermId a, TermId b) {
+  const auto &left = model.terms[a], &right = model.terms[b];
+  return a == b || (left.kind == TermKind::kVariable && right.kind == TermKind::kVariable &&
+                    left.variable == right.variable);
+}
+
+/// Calls visit(fluent term) for every HoldsAt of the effect's condition at another timepoint than
+/// the event's.
+template <typename Visit>
+void for_each_other_time(const TypedModel& model, const EffectAxiom& effect, const Visit& visit) {
+  std::vector<TypedFormulaId> todo = {effect.condition};
+  while (!todo.empty()) {
+    const auto& formula = model.formulas[todo.back()];
+    todo.pop_back();
+    if (formula.kind == FormulaKind::kAtom && formula.predicate == model.core.holds_at &&
+        !is_same_time(model, formula.terms[1], effect.time)) {
+      visit(formula.terms[0]);
+    }
+    todo.insert(todo.end(), formula.children.begin(), formula.children.end());
+  }
+}
+
 struct Change {
   bool may_begin = false, must_begin = false, may_cease = false, must_cease = false;
   void add(bool begins, bool certain) {
@@ -94,25 +116,29 @@ void Narrative::schedule(const CompletionWriter& completion) {
   possible_.schedule(symbols, pairs);
 }
 
-/// A fluent is followed if it has inertia throughout, a known value at first, and only scheduled
-/// events change it.
+/// A fluent is followed if it has inertia throughout, a known value at first, only scheduled events
+/// change it, and no effect depends on its value at another timepoint than the event's: the walk
+/// grounds an effect before it knows what holds later.
 void Narrative::choose_tracked() {
   const auto& typed = model_.typed();
-  std::vector<bool> changed_otherwise(typed.symbols.size(), false);
-  for (const auto& effect : typed.effects) {
-    if (effects_.is_scheduled(effect)) continue;
-    const auto& fluent = typed.terms[effect.fluent];
+  std::vector<bool> left_out(typed.symbols.size(), false);
+  const auto leave_out = [&](TermId id) {
+    const auto& fluent = typed.terms[id];
     if (fluent.kind == TermKind::kApply) {
-      changed_otherwise[fluent.symbol.index()] = true;
+      left_out[fluent.symbol.index()] = true;
     } else {
-      changed_otherwise.assign(changed_otherwise.size(), true);
+      left_out.assign(left_out.size(), true);
     }
+  };
+  for (const auto& effect : typed.effects) {
+    if (!effects_.is_scheduled(effect)) leave_out(effect.fluent);
+    for_each_other_time(typed, effect, leave_out);
   }
   tracked_.assign(model_.fluents().size(), false);
   for (std::uint32_t f = 0; f < model_.fluents().size(); ++f) {
     const auto symbol = model_.terms()[model_.fluents()[f]].symbol;
-    tracked_[f] = !changed_otherwise[symbol.index()] && !model_.can_be_released(f) &&
-                  values_[f] != Truth::kUnknown;
+    tracked_[f] =
+        !left_out[symbol.index()] && !model_.can_be_released(f) && values_[f] != Truth::kUnknown;
     if (!tracked_[f]) continue;
     if (values_[f] == Truth::kFalse && is_worth_leaving_out(model_, keep_unreachable_))
       model_.never_holds(f);

@@ -89,6 +89,22 @@ TEST_CASE("an effect axiom whose time is computed counts for a scheduled event")
       2);
 }
 
+TEST_CASE("the effect of a completed occurrence may depend on what holds later or at any time") {
+  // Both effects would take place at 0: contradiction.
+  check_against_brute_force(
+      "range time 0 3\nfluent F()\nevent E()\n"
+      "[time]({time1} HoldsAt(F(),time1)) -> Terminates(E(),F(),time).\n"
+      "[time] Initiates(E(),F(),time).\n!HoldsAt(F(),0).\nHappens(E(),0).\n"
+      "completion Happens\n",
+      0);
+  check_against_brute_force(
+      "range time 0 2\nfluent F()\nfluent G()\nevent E()\n"
+      "[time] HoldsAt(F(),time+1) -> Initiates(E(),G(),time).\n"
+      "[time] Initiates(E(),F(),time).\n!HoldsAt(F(),0).\n!HoldsAt(G(),0).\nHappens(E(),0).\n"
+      "completion Happens\n",
+      1);
+}
+
 TEST_CASE("a formula may speak of the effects of an event that never happens") {
   check_against_brute_force(
       "range time 0 2\nfluent F()\nfluent G()\nevent E()\n"
