@@ -218,7 +218,8 @@ class Encoder {
     for (const auto& clause : clauses) {
       auto& literals = numbered.emplace_back();
       for (const auto& open : clause.literals) literals.push_back(number(open));
-      std::sort(literals.begin(), literals.end(),
+      // What a definition defines stays in front.
+      std::sort(literals.begin() + (clause.is_definition ? 1 : 0), literals.end(),
                 [](Literal a, Literal b) { return a.var() < b.var(); });
     }
     Section section{out_.clauses.size(), clauses.size(), 1, repeated, 0};

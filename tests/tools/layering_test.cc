@@ -84,6 +84,8 @@ const std::map<std::string, std::vector<std::string>>& allowed() {
       {"runtime/certify",
        {"compiler/base", "compiler/artifact", "runtime/proof", "runtime/solver",
         "runtime/trace"}},
+      {"runtime/explain",
+       {"compiler/base", "compiler/artifact", "runtime/proof", "runtime/solver"}},
       {"runtime/enumerate",
        {"compiler/base", "compiler/artifact", "runtime/solver", "runtime/session",
         "runtime/trace"}},

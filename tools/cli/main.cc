@@ -24,6 +24,7 @@ constexpr const char* kFooter =
     "  parallax replay out/edge\n"
     "  parallax traces model.e --limit 0\n"
     "  parallax compile model.e -o model.dec.cnf\n"
+    "  parallax explain model.e --why \"HoldsAt(F(),3)\"\n"
     "Exit codes: 0 nothing to report, 1 finding, 2 usage, 3 input rejected, 4 inconclusive,\n"
     "5 internal error, 130 and 143 interrupted.";
 
@@ -86,10 +87,11 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version",
                        fmt::format("parallax {} (CaDiCaL {})", kVersion, kCadicalVersion));
   CommonOptions options;
-  std::vector<Command> commands = {
-      add_run_command(app),         add_replay_command(app), add_suite_command(app),
-      add_check_command(app),       add_traces_command(app), add_compile_command(app),
-      add_diagnostics_command(app), add_fmt_command(app),    add_worker_command(app)};
+  std::vector<Command> commands = {add_run_command(app),         add_replay_command(app),
+                                   add_suite_command(app),       add_check_command(app),
+                                   add_traces_command(app),      add_compile_command(app),
+                                   add_diagnostics_command(app), add_explain_command(app),
+                                   add_fmt_command(app),         add_worker_command(app)};
   for (auto& command : commands) add_common_options(*command.app, options);
   try {
     app.parse(argc, argv);

@@ -88,7 +88,8 @@ base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scen
 }  // namespace
 
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
-                                                Invocation& invocation, bool costs) {
+                                                Invocation& invocation,
+                                                const ModelOptions& options) {
   auto& sink = invocation.sink();
   auto scenario = harness::load_scenario(path, invocation.files(), sink);
   if (!scenario) return sink.already_reported();
@@ -96,7 +97,9 @@ base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& pat
   const RegionLocator locator(scenario->mapping->regions());
   auto input = compile_input(*scenario, locator, invocation);
   if (!input) return sink.already_reported();
-  input->costs = costs;
+  input->costs = options.stats;
+  input->ground.relevance = !options.plain_grounding;
+  input->ground.invariants = !options.plain_grounding;
   auto compilation = compiler::compile_model(*input, invocation.files(), sink);
   if (!compilation) return sink.already_reported();
   const auto& model = compilation->model;
@@ -119,7 +122,7 @@ base::Result<compiler::Compilation> compile_models(const ModelOptions& options,
     return compiled;
   }
   if (options.models.size() == 1 && (first.ends_with(".yaml") || first.ends_with(".yml"))) {
-    auto loaded = load_scenario_model(first, invocation, options.stats);
+    auto loaded = load_scenario_model(first, invocation, options);
     if (!loaded) return invocation.sink().already_reported();
     return std::move(loaded->compilation);
   }

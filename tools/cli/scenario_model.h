@@ -19,9 +19,11 @@ struct ScenarioModel {
 };
 
 /// Reads the scenario, compiles model, plan and constraints, and holds the mapping and the actions
-/// against the model. `costs`: also count what each axiom costs.
+/// against the model. Of `options` it looks at
+/// `stats` and `plain_grounding`.
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
-                                                Invocation& invocation, bool costs = false);
+                                                Invocation& invocation,
+                                                const ModelOptions& options = {});
 
 /// What the models on the command line compile to; a single .yaml is a scenario, a single .cnf has
 /// been compiled before and brings neither the checked model nor the plan's graph.

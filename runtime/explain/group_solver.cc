@@ -1,0 +1,52 @@
+#include "runtime/explain/group_solver.h"
+
+namespace parallax::runtime {
+
+GroupSolver::GroupSolver(std::int32_t variables, std::size_t groups, const std::atomic<bool>* stop)
+    : solver_(make_cadical_solver(stop)), variables_(variables), groups_(groups) {
+  // Groups that are not asked for are switched on where that costs nothing.
+  for (std::uint32_t g = 0; g < groups; ++g) solver_->set_phase(selector(g));
+}
+
+void GroupSolver::add(std::span<const Literal> clause, std::uint32_t group) {
+  clause_.assign(clause.begin(), clause.end());
+  clause_.push_back(~selector(group));
+  solver_->add_clause(clause_);
+}
+
+SolveStatus GroupSolver::solve(const IndexSet& groups) {
+  asked_ = groups;
+  for (const auto group : groups) solver_->assume(selector(group));
+  return solver_->solve();
+}
+
+IndexSet GroupSolver::core() const {
+  IndexSet used;
+  for (const auto group : asked_) {
+    if (solver_->failed(selector(group))) used.push_back(group);
+  }
+  return used;
+}
+
+IndexSet GroupSolver::satisfied() const {
+  IndexSet holding;
+  for (std::uint32_t g = 0; g < groups_; ++g) {
+    if (solver_->value(selector(g))) holding.push_back(g);
+  }
+  return holding;
+}
+
+GroupSolver load_axioms(ExecutionFormula& formula, const AxiomGroups& groups,
+                        const std::atomic<bool>* stop) {
+  const auto& model = formula.model();
+  GroupSolver solver(formula.variables(), groups.size(), stop);
+  formula.for_each_always([&](std::span<const Literal> clause) { solver.add_definition(clause); });
+  for (std::size_t i = 0; i < model.clauses.size(); ++i) {
+    const auto group = groups.group_of[model.clause_origins[i]];
+    if (formula.is_definition(i) || group == AxiomGroups::kNone) continue;
+    solver.add(formula.clause(i), group);
+  }
+  return solver;
+}
+
+}  // namespace parallax::runtime

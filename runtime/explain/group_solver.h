@@ -1,0 +1,50 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "runtime/explain/axiom_groups.h"
+#include "runtime/explain/execution_formula.h"
+#include "runtime/solver/sat_solver.h"
+
+namespace parallax::runtime {
+
+/// A set of numbers, ascending.
+using IndexSet = std::vector<std::uint32_t>;
+
+/// Clauses in groups, which hold while they are selected. Definitions of auxiliaries always hold.
+class GroupSolver {
+ public:
+  /// `stop` may be null.
+  GroupSolver(std::int32_t variables, std::size_t groups, const std::atomic<bool>* stop);
+
+  void add(std::span<const Literal> clause, std::uint32_t group);
+  void add_definition(std::span<const Literal> clause) { solver_->add_clause(clause); }
+
+  SolveStatus solve(const IndexSet& groups);
+  /// After kUnsatisfiable: the groups that the solver used, a subset of those that were asked for.
+  IndexSet core() const;
+  /// After kSatisfiable: groups whose clauses hold in the valuation found, among them those asked
+  /// for. May miss some.
+  IndexSet satisfied() const;
+  std::size_t group_count() const { return groups_; }
+  std::int64_t solve_calls() const { return solver_->solve_calls(); }
+
+ private:
+  Literal selector(std::uint32_t group) const {
+    return Literal::positive(variables_ + 1 + static_cast<std::int32_t>(group));
+  }
+  std::unique_ptr<SatSolver> solver_;
+  std::int32_t variables_;
+  std::size_t groups_;
+  IndexSet asked_;
+  std::vector<Literal> clause_;
+};
+
+/// The axioms of a model, by group.
+GroupSolver load_axioms(ExecutionFormula& formula, const AxiomGroups& groups,
+                        const std::atomic<bool>* stop);
+
+}  // namespace parallax::runtime

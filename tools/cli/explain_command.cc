@@ -1,0 +1,81 @@
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "tools/cli/explain_run.h"
+#include "tools/cli/explain_why.h"
+#include "tools/cli/scenario_model.h"
+
+namespace parallax::tools {
+namespace {
+
+struct ExplainOptions {
+  ModelOptions model;
+  SetOptions sets;
+  WhyCommand why;
+  std::string sample;  // of a run folder
+};
+
+/// The model with every axiom's clauses as it says them, whatever other axioms settle; if it is too
+/// large for that, as it is solved.
+std::optional<compiler::CompiledModel> compile(const ExplainOptions& options,
+                                               Invocation& invocation) {
+  auto plain = options.model;
+  plain.plain_grounding = true;
+  Invocation attempt(invocation.options());
+  auto compiled = compile_models(plain, attempt);
+  if (compiled) return std::move(compiled->model);
+  auto usual = compile_models(options.model, invocation);
+  if (!usual) return std::nullopt;
+  invocation.remark(
+      "the model is too large to be grounded in full: what some axioms settle for others is not "
+      "shown");
+  return std::move(usual->model);
+}
+
+int explain(const ExplainOptions& options, Invocation& invocation) {
+  const auto& first = options.model.models.front();
+  std::error_code ignored;
+  if (std::filesystem::is_directory(first, ignored)) {
+    return explain_run(first, options.sample, options.sets, invocation);
+  }
+  const auto model = compile(options, invocation);
+  if (!model) return 0;
+  if (options.why.fact.empty()) return explain_sets(*model, options.sets, std::nullopt, invocation);
+  auto why = options.why;
+  why.all = options.sets.all;
+  return explain_why(*model, why, invocation);
+}
+
+}  // namespace
+
+Command add_explain_command(CLI::App& app) {
+  auto options = std::make_shared<ExplainOptions>();
+  auto* command = app.add_subcommand("explain",
+                                     "Say which axioms contradict each other or a run's "
+                                     "discrepancy, or why a fact holds in a trace");
+  command->footer(
+      "Examples:\n"
+      "  parallax explain domain.e start.e\n"
+      "  parallax explain domain.e start.e --all --time-limit 60\n"
+      "  parallax explain domain.e --why \"HoldsAt(Filled(cup),3)\" --trace 2\n"
+      "  parallax explain out/plan2                the first discrepancy of a run\n"
+      "  parallax explain domain.e --until \"HoldsAt(At(kitchen),time)\"\n"
+      "Exit code 1 if there is a contradiction, 0 if there is none or a fact was explained.");
+  add_model_options(*command, options->model);
+  command->add_flag("--all", options->sets.all,
+                    "All minimal sets of axioms; with --why: further causes as well");
+  command
+      ->add_option("--limit", options->sets.limit, "With --all: stop after this many sets; 0: all")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--why", options->why.fact,
+                      "Tell what is behind this fact: HoldsAt(F(a),3), Happens(E(),2), or !...");
+  command->add_option("--trace", options->why.trace, "The trace that --why is about")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--sample", options->sample,
+                      "Of a run folder: TRACE.SAMPLE; default: the first discrepancy");
+  return {command, [options](Invocation& invocation) { return explain(*options, invocation); }};
+}
+
+}  // namespace parallax::tools

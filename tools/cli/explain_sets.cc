@@ -1,0 +1,202 @@
+#include "tools/cli/explain_sets.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "runtime/explain/clause_text.h"
+#include "runtime/explain/contradiction.h"
+#include "tools/cli/explain_place.h"
+#include "tools/cli/signals.h"
+
+namespace parallax::tools {
+namespace {
+
+using nlohmann::ordered_json;
+using runtime::IndexSet;
+using runtime::ProofVerdict;
+
+constexpr std::size_t kShownInstances = 6;  // of one axiom, in text
+
+std::string counted(std::size_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+/// One minimal set, written down.
+class SetWriter {
+ public:
+  SetWriter(runtime::ExecutionFormula& formula, const runtime::AxiomGroups& axioms)
+      : formula_(formula), axioms_(axioms), texts_(formula.model()) {}
+
+  runtime::ProofReport ground(const IndexSet& set, const runtime::ProofLimits& limits) {
+    groups_ = set;
+    auto found = runtime::ground_contradiction(formula_, axioms_, set, limits);
+    clauses_ = std::move(found.clauses);
+    return found.proof;
+  }
+
+  std::string text() const {
+    std::string out;
+    for (const auto group : groups_) {
+      const auto& origin = first_origin(group);
+      const auto place = place_text(origin);
+      out += fmt::format("  {}{}\n", place.empty() ? "" : place + "  ", axiom_text(origin));
+      const auto instances = instances_of(group);
+      for (std::size_t i = 0; i < instances.size() && i < kShownInstances; ++i) {
+        out += "      " + instances[i] + '\n';
+      }
+      if (instances.size() > kShownInstances) {
+        out += fmt::format("      ... and {}\n",
+                           counted(instances.size() - kShownInstances, "further instance"));
+      }
+    }
+    return out;
+  }
+
+  ordered_json json() const {
+    auto list = ordered_json::array();
+    for (const auto group : groups_) {
+      const auto& origin = first_origin(group);
+      list.push_back({{"file", origin.place.file},
+                      {"line", origin.place.begin.line},
+                      {"column", origin.place.begin.column},
+                      {"what", origin.what},
+                      {"text", origin.text},
+                      {"instances", instances_of(group)}});
+    }
+    return list;
+  }
+
+ private:
+  const compiler::Origin& first_origin(std::uint32_t group) const {
+    return formula_.model().origins[axioms_.origins[group].front()];
+  }
+  std::vector<std::string> instances_of(std::uint32_t group) const {
+    std::vector<std::string> out;
+    for (const auto clause : clauses_) {
+      if (axioms_.group_of[formula_.model().clause_origins[clause]] == group) {
+        out.push_back(texts_.clause(clause));
+      }
+    }
+    return out;
+  }
+
+  runtime::ExecutionFormula& formula_;
+  const runtime::AxiomGroups& axioms_;
+  runtime::ClauseText texts_;
+  IndexSet groups_;
+  std::vector<std::size_t> clauses_;
+};
+
+/// What is known of the sets that are not shown.
+std::string claim(const runtime::MinimalSets& found, const SetOptions& options) {
+  if (options.all) {
+    return found.proven ? "these are all minimal sets" : "stopped: there may be further sets";
+  }
+  if (found.proven) return "no fewer axioms do";
+  return fmt::format("stopped: fewer may do, but not fewer than {}", found.lower_bound);
+}
+
+const char* proof_word(ProofVerdict verdict) {
+  switch (verdict) {
+    case ProofVerdict::kAccepted:
+      return "checked";
+    case ProofVerdict::kRejected:
+      return "not accepted";
+    case ProofVerdict::kNotFinished:
+      return "not checked";
+  }
+  return "";
+}
+
+/// What the sets are held against.
+std::string observed_text(const std::optional<ObservedRun>& run) {
+  std::string out;
+  if (!run) return out;
+  for (const auto& line : run->lines) out += "  observed: " + line + '\n';
+  return out;
+}
+
+void print_none(const compiler::CompiledModel& model, const std::optional<ObservedRun>& run,
+                Invocation& invocation) {
+  if (invocation.options().json) {
+    invocation.document("{\"status\":\"ok\",\"satisfiable\":true,\"sets\":[]}\n");
+  } else if (run) {
+    invocation.result("The model admits what was observed.\n" + observed_text(run));
+  } else {
+    invocation.result(fmt::format(
+        "The model has a trace up to timepoint {}: its axioms do not contradict each other.\n",
+        model.horizon));
+  }
+}
+
+void print(const runtime::MinimalSets& found, const SetOptions& options,
+           const std::optional<ObservedRun>& run, const runtime::ProofLimits& limits,
+           SetWriter& writer, Invocation& invocation) {
+  const bool json = invocation.options().json;
+  ordered_json document = {{"status", "ok"},
+                           {"satisfiable", false},
+                           {"smallest", !options.all && found.proven},
+                           {"complete", options.all && found.proven}};
+  if (run) document["observed"] = run->lines;
+  auto sets = ordered_json::array();
+  if (!json) {
+    invocation.result(
+        fmt::format("The model has no trace{}; {} of axioms that contradict {} ({}):\n{}",
+                    run ? " in which this happens" : "", counted(found.sets.size(), "minimal set"),
+                    run ? "it" : "each other", claim(found, options), observed_text(run)));
+  }
+  for (std::size_t i = 0; i < found.sets.size(); ++i) {
+    const auto proof = writer.ground(found.sets[i], limits);
+    if (proof.verdict == ProofVerdict::kRejected) {
+      invocation.sink().error_about(base::DiagnosticCode::kProofRejected, "", proof.reason);
+    }
+    if (json) {
+      sets.push_back({{"size", found.sets[i].size()},
+                      {"proof", proof_word(proof.verdict)},
+                      {"axioms", writer.json()}});
+    } else {
+      invocation.result(fmt::format("set {}: {} (proof {})\n{}", i + 1,
+                                    counted(found.sets[i].size(), "axiom"),
+                                    proof_word(proof.verdict), writer.text()));
+    }
+  }
+  if (!json) return;
+  document["sets"] = std::move(sets);
+  invocation.document(document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
+                      '\n');
+}
+
+}  // namespace
+
+int explain_sets(const compiler::CompiledModel& model, const SetOptions& options,
+                 const std::optional<ObservedRun>& run, Invocation& invocation) {
+  runtime::ExecutionFormula formula(model, run ? std::optional(run->observed) : std::nullopt);
+  const auto axioms = runtime::group_axioms(model);
+  auto solver = runtime::load_axioms(formula, axioms, &stop_flag());
+  const auto found =
+      options.all
+          ? runtime::all_minimal_sets(solver, static_cast<std::size_t>(options.limit), &stop_flag())
+          : runtime::smallest_set(solver, &stop_flag());
+  if (found.unknown || (found.sets.empty() && !found.proven)) {
+    invocation.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
+                                  "whether there is a contradiction is not known");
+    return 0;
+  }
+  if (found.sets.empty()) {
+    print_none(model, run, invocation);
+    return 0;
+  }
+  runtime::ProofLimits limits;
+  limits.stop = &stop_flag();
+  SetWriter writer(formula, axioms);
+  print(found, options, run, limits, writer, invocation);
+  if (stop_flag().load()) {
+    invocation.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
+                                  claim(found, options));
+    return 0;
+  }
+  return 1;
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,136 @@
+#include "tools/cli/explain_why.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "runtime/enumerate/model_enumerator.h"
+#include "runtime/enumerate/plan_enumerator.h"
+#include "runtime/explain/why.h"
+#include "tools/cli/explain_place.h"
+#include "tools/cli/signals.h"
+#include "tools/cli/trace_fact.h"
+#include "tools/cli/why_text.h"
+
+namespace parallax::tools {
+namespace {
+
+using compiler::AtomKind;
+using compiler::Literal;
+using runtime::WhyStep;
+
+/// A trace with a valuation of every variable.
+struct ValuedTrace {
+  compiler::Timepoint length = 0;
+  std::vector<bool> values;
+};
+
+template <typename Enumerator>
+std::optional<runtime::Trace> nth(Enumerator& enumerator, std::int64_t number,
+                                  std::int64_t& found) {
+  std::optional<runtime::Trace> trace;
+  for (found = 0; found < number; ++found) {
+    trace = enumerator.next();
+    if (!trace) break;
+  }
+  return trace;
+}
+
+std::optional<runtime::Trace> find_trace(runtime::SolverSession& session, std::int64_t number,
+                                         std::int64_t& found) {
+  if (session.model().has_constraints) {
+    runtime::PlanEnumerator enumerator(session);
+    return nth(enumerator, number, found);
+  }
+  runtime::ModelEnumerator enumerator(session);
+  return nth(enumerator, number, found);
+}
+
+/// Every atom as the trace has it; what it does not show is the solver's choice.
+std::optional<ValuedTrace> value(const compiler::CompiledModel& model,
+                                 const runtime::Trace& trace) {
+  runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
+  std::vector<Literal> assumptions;
+  model.for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
+                          std::optional<compiler::Timepoint> time) {
+    const auto t = time.value_or(0) + (kind == AtomKind::kHappens ? 1 : 0);
+    if (t > trace.length()) return;
+    const auto has = [&](const std::vector<std::string>& names) {
+      const auto literal = Literal::positive(variable);
+      assumptions.push_back(std::binary_search(names.begin(), names.end(), name) ? literal
+                                                                                 : ~literal);
+    };
+    if (kind == AtomKind::kPredicate && !time) has(trace.predicates);
+    if (!time) return;
+    const auto& point = trace.points[static_cast<std::size_t>(*time)];
+    if (kind == AtomKind::kHoldsAt) has(point.holds);
+    if (kind == AtomKind::kHappens) has(point.happens);
+    if (kind == AtomKind::kReleasedAt) has(point.released);
+  });
+  if (session.solve(trace.length(), assumptions) != runtime::SolveStatus::kSatisfiable) {
+    return std::nullopt;
+  }
+  ValuedTrace valued{trace.length(), {}};
+  for (std::int32_t v = 1; v <= model.variable_count(); ++v) {
+    valued.values.push_back(session.value(Literal::positive(v)));
+  }
+  return valued;
+}
+
+base::Result<ValuedTrace> load_trace(const compiler::CompiledModel& model, std::int64_t number,
+                                     Invocation& invocation) {
+  runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
+  std::int64_t found = 0;
+  const auto trace = find_trace(session, number, found);
+  const auto valued = trace ? value(model, *trace) : std::nullopt;
+  if (valued) return *valued;
+  if (stop_flag().load()) {
+    return invocation.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
+                                         fmt::format("trace {} was not reached", number));
+  }
+  return invocation.sink().error_about(
+      base::DiagnosticCode::kNoSuchTrace, "--trace", number,
+      found == 0 ? "the model has none" : fmt::format("the model has {}", found));
+}
+
+/// The last timepoint at which the atom of a fact can be.
+bool is_within(const TraceFact& fact, compiler::Timepoint length) {
+  return fact.time.value_or(0) + (fact.kind == AtomKind::kHappens ? 1 : 0) <= length;
+}
+
+}  // namespace
+
+int explain_why(const compiler::CompiledModel& model, const WhyCommand& command,
+                Invocation& invocation) {
+  const auto fact = parse_fact(command.fact, model, invocation.sink());
+  if (!fact) return 0;
+  const auto trace = load_trace(model, command.trace, invocation);
+  if (!trace) return 0;
+  if (!is_within(*fact, trace->length)) {
+    invocation.sink().error_about(
+        base::DiagnosticCode::kNoSuchFact, "--why", command.fact,
+        fmt::format("trace {} ends at {}{}", command.trace, trace->length,
+                    fact->kind == AtomKind::kHappens ? ", where nothing happens any more" : ""));
+    return 0;
+  }
+  WhyText text(model, command.trace);
+  std::vector<WhyStep> steps;
+  std::optional<Literal> asked;
+  if (fact->atom) {
+    const bool holds = trace->values[static_cast<std::size_t>(fact->atom->var()) - 1];
+    asked = holds ? *fact->atom : ~*fact->atom;
+    runtime::WhyOptions options;
+    options.alternatives = command.all;
+    options.stop = &stop_flag();
+    steps = runtime::explain_fact(model, trace->length, trace->values, *asked, options);
+  }
+  if (invocation.options().json) {
+    invocation.document(text.json(*fact, asked, steps));
+  } else {
+    invocation.result(text.text(*fact, asked, steps));
+  }
+  return 0;
+}
+
+}  // namespace parallax::tools
