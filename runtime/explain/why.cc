@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <set>
 
 #include "runtime/solver/sat_solver.h"
@@ -148,20 +149,23 @@ class Explainer {
   }
 
   /// Does the model, with the choices made before, admit no other value? One solver call.
-  bool is_forced(Literal fact) const {
-    const auto solver = make_cadical_solver(options_.stop);
-    for (std::size_t i = 0; i < model_.clauses.size(); ++i) {
-      if (model_.clause_timepoints[i] <= n_) solver->add_clause(model_.clauses[i]);
+  bool is_forced(Literal fact) {
+    if (solver_ == nullptr) {
+      solver_ = make_cadical_solver(options_.stop);
+      for (std::size_t i = 0; i < model_.clauses.size(); ++i) {
+        if (model_.clause_timepoints[i] <= n_) solver_->add_clause(model_.clauses[i]);
+      }
     }
-    for (const auto choice : derivation_.choices_before(fact)) solver->assume(choice);
-    solver->assume(~fact);
-    return solver->solve() == SolveStatus::kUnsatisfiable;
+    for (const auto choice : derivation_.choices_before(fact)) solver_->assume(choice);
+    solver_->assume(~fact);
+    return solver_->solve() == SolveStatus::kUnsatisfiable;
   }
 
   const CompiledModel& model_;
   Timepoint n_;
   const WhyOptions& options_;
   Derivation derivation_;
+  std::unique_ptr<SatSolver> solver_;  // made for the first choice
   std::vector<Literal> open_;
   std::map<std::int32_t, WhyStep> steps_;  // by variable
 };

@@ -85,7 +85,7 @@ TEST_CASE("a state constraint that no trace meets takes part") {
 constexpr const char* kCup =
     "range time 0 4\nsort thing\nthing Cup\nfluent Filled(thing)\nfluent Holding()\n"
     "event Grasp()\nevent Pour(thing)\nevent Spill(thing)\n"
-    "[time] Initiates(Grasp(),Holding(),time).\n"                                    // line 9
+    "[time] Initiates(Grasp(),Holding(),time).\n"  // line 9
     "[thing,time] HoldsAt(Holding(),time) -> Initiates(Pour(thing),Filled(thing),time).\n"
     "[thing,time] Terminates(Spill(thing),Filled(thing),time).\n"
     "!HoldsAt(Filled(Cup),0).\n!HoldsAt(Holding(),0).\n"
@@ -146,6 +146,15 @@ TEST_CASE("facts and traces that do not exist are refused with the nearest name"
       cli.parallax({"explain", "m.e", "--why", "Happens(Grasp(),0)", "--trace", "2"});
   CHECK(trace.code == 2);
   CHECK(holds(trace.err, "there is no trace 2: the model has 1"));
+}
+
+TEST_CASE("a run of a contradictory model says that the contradiction was checked") {
+  const CliFixture cli;
+  cli.write("start.e", cli.read("start.e") + "\nHoldsAt(Holding(),0).\n!HoldsAt(Holding(),0).\n");
+  const auto result = cli.parallax({"run", "scenario.yaml", "--out", "r"});
+  CHECK(result.code == 3);
+  CHECK(holds(result.err, "E7001"));
+  CHECK(holds(result.err, "a proof of the contradiction was checked"));
 }
 
 TEST_CASE("a discrepancy of a run is laid to the axioms that exclude what was seen") {

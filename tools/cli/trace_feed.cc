@@ -7,10 +7,32 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/region/state_mapping.h"
+#include "runtime/explain/contradiction.h"
 #include "runtime/session/unsat_core.h"
 #include "tools/cli/signals.h"
 
 namespace parallax::tools {
+
+namespace {
+
+/// Was the contradiction between these origins' axioms checked by a proof?
+std::string proof_remark(const compiler::CompiledModel& model, compiler::Timepoint steps,
+                         const std::vector<std::uint32_t>& core) {
+  const auto axioms = runtime::group_axioms(model);
+  std::set<std::uint32_t> groups;
+  for (const auto origin : core) groups.insert(axioms.group_of[origin]);
+  runtime::ExecutionFormula formula(model, runtime::Observed{steps, {}});
+  runtime::ProofLimits limits;
+  limits.stop = &stop_flag();
+  const auto ground =
+      runtime::ground_contradiction(formula, axioms, {groups.begin(), groups.end()}, limits);
+  if (ground.proof.verdict == runtime::ProofVerdict::kAccepted) {
+    return "a proof of the contradiction was checked";
+  }
+  return "no proof of the contradiction was accepted: " + ground.proof.reason;
+}
+
+}  // namespace
 
 bool report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Timepoint steps,
                              base::DiagnosticSink& sink) {
@@ -25,6 +47,7 @@ bool report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Tim
   for (const auto* origin : blamed) {
     diagnostic.note(origin->source, fmt::format("this {} takes part", origin->what));
   }
+  diagnostic.note(proof_remark(model, steps, *core));
   return true;
 }
 
