@@ -156,7 +156,7 @@ struct CompiledModel {
   ClauseList clauses;
   std::vector<Timepoint> clause_timepoints;
   std::vector<std::uint32_t> clause_origins;  // index into `origins`
-  std::vector<bool> clause_is_definition;     // of the auxiliary that is its first literal
+  std::vector<bool> clause_is_definition;     // defines an auxiliary: true in itself, says nothing
   std::vector<Section> sections;              // cover the clauses, in order
   std::vector<Origin> origins;
   std::vector<PlanStep> plan;    // by location number; empty without a plan

@@ -7,10 +7,9 @@
 #include <random>
 #include <set>
 
-#include "compiler/artifact/describe.h"
 #include "runtime/explain/contradiction.h"
+#include "tests/runtime/explain/plain_model.h"
 #include "tests/support/random_model.h"
-#include "tests/support/text_model.h"
 
 namespace parallax::test {
 namespace {
@@ -130,14 +129,6 @@ TEST_CASE("a search that is stopped says that it does not know") {
   CHECK_FALSE(runtime::all_minimal_sets(solver, 0, &stop).proven);
 }
 
-/// Without what is settled while grounding, so that each axiom's clauses stand for themselves.
-compiler::GroundOptions plain() {
-  compiler::GroundOptions options;
-  options.relevance = false;
-  options.invariants = false;
-  return options;
-}
-
 bool has_model(const compiler::CompiledModel& model, const runtime::AxiomGroups& groups,
                std::uint32_t mask) {
   const auto solver = runtime::make_cadical_solver();
@@ -153,9 +144,8 @@ bool has_model(const compiler::CompiledModel& model, const runtime::AxiomGroups&
 TEST_CASE("the minimal sets of random models are those of all subsets of their axioms") {
   int compared = 0;
   for (std::uint64_t seed = 1; seed <= 1'500 && compared < 60; ++seed) {
-    TextModel model(random_model(seed, kSolverSize).print(), plain());
+    PlainModel model(random_model(seed, kSolverSize).print());
     if (model.sink.has_errors()) continue;
-    compiler::describe_sources(model.compiled, model.files);
     const auto groups = runtime::group_axioms(model.compiled);
     if (groups.size() > 11 || has_model(model.compiled, groups, UINT32_MAX)) continue;
     ++compared;
@@ -177,7 +167,7 @@ TEST_CASE("the minimal sets of random models are those of all subsets of their a
 TEST_CASE("the ground instances of a set contradict each other, and no one can go") {
   int compared = 0;
   for (std::uint64_t seed = 1; seed <= 800 && compared < 40; ++seed) {
-    TextModel model(random_model(seed, kSolverSize).print(), plain());
+    PlainModel model(random_model(seed, kSolverSize).print());
     if (model.sink.has_errors()) continue;
     const auto groups = runtime::group_axioms(model.compiled);
     runtime::ExecutionFormula formula(model.compiled);
@@ -233,11 +223,11 @@ TEST_CASE(
       }
       return out;
     };
-    const TextModel whole(text(UINT32_MAX), plain());
+    const PlainModel whole(text(UINT32_MAX));
     if (whole.sink.has_errors()) continue;  // a line that is false whatever holds
     const auto expected = brute_force(lines.size(), [&](std::uint32_t mask) {
-      const TextModel part(text(mask), plain());
-      REQUIRE(part.codes() == "");
+      const PlainModel part(text(mask));
+      REQUIRE_FALSE(part.sink.has_errors());
       return !has_model(part.compiled, runtime::group_axioms(part.compiled), UINT32_MAX);
     });
     contradictory += expected.empty() ? 0 : 1;

@@ -8,8 +8,8 @@
 
 #include "runtime/enumerate/model_enumerator.h"
 #include "runtime/explain/clause_text.h"
+#include "tests/runtime/explain/plain_model.h"
 #include "tests/support/random_model.h"
-#include "tests/support/text_model.h"
 
 namespace parallax::test {
 namespace {
@@ -18,13 +18,6 @@ using compiler::AtomKind;
 using runtime::Literal;
 using runtime::WhyKind;
 using runtime::WhyStep;
-
-compiler::GroundOptions plain() {
-  compiler::GroundOptions options;
-  options.relevance = false;
-  options.invariants = false;
-  return options;
-}
 
 std::vector<std::vector<bool>> valuations(const compiler::CompiledModel& model, std::size_t limit) {
   runtime::SolverSession session(model, runtime::make_cadical_solver());
@@ -54,7 +47,7 @@ const char* word(WhyKind kind) {
 }
 
 /// "stated HoldsAt(F(),0); inertia HoldsAt(F(),2); ..."
-std::string told(const TextModel& model, const std::vector<WhyStep>& steps) {
+std::string told(const PlainModel& model, const std::vector<WhyStep>& steps) {
   const runtime::ClauseText text(model.compiled);
   std::string out;
   for (const auto& step : steps) {
@@ -84,8 +77,8 @@ completion Happens
 )";
 
 TEST_CASE("a fact is told from its causes: event, conditions, inertia") {
-  const TextModel model(kCup, plain());
-  REQUIRE(model.codes() == "");
+  const PlainModel model(kCup);
+  REQUIRE_FALSE(model.sink.has_errors());
   const auto values = valuations(model.compiled, 2);
   REQUIRE(values.size() == 1);
   const auto asked = fact(model.compiled, values[0], AtomKind::kHoldsAt, "Filled()", 4);
@@ -102,8 +95,8 @@ TEST_CASE("a fact is told from its causes: event, conditions, inertia") {
 }
 
 TEST_CASE("a fact that does not hold has a history as well") {
-  const TextModel model(std::string(kCup) + "Happens(Drop(),2).\n", plain());
-  REQUIRE(model.codes() == "");
+  const PlainModel model(std::string(kCup) + "Happens(Drop(),2).\n");
+  REQUIRE_FALSE(model.sink.has_errors());
   const auto values = valuations(model.compiled, 2);
   REQUIRE(values.size() == 1);
   const auto asked = fact(model.compiled, values[0], AtomKind::kHoldsAt, "Filled()", 4);
@@ -117,7 +110,7 @@ TEST_CASE("a fact that does not hold has a history as well") {
 TEST_CASE("what the model leaves open is a choice, what comes later can take it away") {
   const std::string text =
       "range time 0 1\nfluent F()\nfluent G()\nevent E()\n[time] Terminates(E(),F(),time).\n";
-  const TextModel open(text + "HoldsAt(G(),1).\n", plain());
+  const PlainModel open(text + "HoldsAt(G(),1).\n");
   auto values = valuations(open.compiled, 10);
   REQUIRE(!values.empty());
   auto asked = fact(open.compiled, values[0], AtomKind::kHoldsAt, "F()", 0);
@@ -153,7 +146,7 @@ bool follows(const compiler::CompiledModel& model, const std::vector<bool>& valu
 TEST_CASE("each step of random models follows from its axiom and from facts told before") {
   int chains = 0, steps_seen = 0, inertia = 0, effects = 0;
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
-    const TextModel model(random_model(seed, kSolverSize).print(), plain());
+    const PlainModel model(random_model(seed, kSolverSize).print());
     if (model.sink.has_errors()) continue;
     const auto& compiled = model.compiled;
     for (const auto& values : valuations(compiled, 2)) {
@@ -221,15 +214,15 @@ struct GrowingWorld {
 
 /// Is it so in the one trace of the model?
 bool is_true(const std::string& text, const std::string& fluent, int time) {
-  const TextModel model(text, plain());
-  REQUIRE(model.codes() == "");
+  const PlainModel model(text);
+  REQUIRE_FALSE(model.sink.has_errors());
   const auto values = valuations(model.compiled, 2);
   REQUIRE(values.size() == 1);
   return fact(model.compiled, values[0], AtomKind::kHoldsAt, fluent, time).is_positive();
 }
 
 /// The occurrences that a chain names.
-std::set<std::string> named(const TextModel& model, const std::vector<WhyStep>& steps) {
+std::set<std::string> named(const PlainModel& model, const std::vector<WhyStep>& steps) {
   const runtime::ClauseText text(model.compiled);
   std::set<std::string> events;
   for (const auto& step : steps) {
@@ -245,8 +238,8 @@ TEST_CASE("without the causes named a fact is no more, and with them alone it is
   int asked = 0;
   for (int i = 0; i < 40; ++i) {
     const GrowingWorld world(random);
-    const TextModel model(world.without({}), plain());
-    REQUIRE(model.codes() == "");
+    const PlainModel model(world.without({}));
+    REQUIRE_FALSE(model.sink.has_errors());
     const auto values = valuations(model.compiled, 2);
     REQUIRE(values.size() == 1);
     for (const int time : {3, 5}) {
