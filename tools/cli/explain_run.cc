@@ -67,7 +67,7 @@ class Observation {
       run_.lines.push_back(
           fmt::format("{} happens at {}", trace_.events[static_cast<std::size_t>(t)], t));
     }
-    const auto fluents = discrepancy.value("fluents", json::array());
+    const auto fluents = discrepancy.value("first", json::array());
     for (const auto& fluent : fluents) see(fluent);
     return std::move(run_);
   }
