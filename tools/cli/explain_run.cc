@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "harness/campaign/journal.h"
 #include "tools/cli/scenario_model.h"

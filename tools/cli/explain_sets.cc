@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "runtime/explain/clause_text.h"
 #include "runtime/explain/contradiction.h"
 #include "tools/cli/explain_place.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 
 namespace parallax::tools {
