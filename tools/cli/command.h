@@ -82,7 +82,6 @@ Command add_compile_command(CLI::App& app);
 Command add_suite_command(CLI::App& app);
 Command add_traces_command(CLI::App& app);
 Command add_diagnostics_command(CLI::App& app);
-Command add_explain_command(CLI::App& app);
 Command add_fmt_command(CLI::App& app);
 Command add_worker_command(CLI::App& app);
 

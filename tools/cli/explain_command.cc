@@ -1,10 +1,12 @@
+#include "tools/cli/explain_command.h"
+
 #include <filesystem>
 #include <memory>
 #include <optional>
 
 #include "tools/cli/explain_run.h"
 #include "tools/cli/explain_why.h"
-#include "tools/cli/scenario_model.h"
+#include "tools/cli/plain_models.h"
 
 namespace parallax::tools {
 namespace {
@@ -20,10 +22,8 @@ struct ExplainOptions {
 /// large for that, as it is solved.
 std::optional<compiler::CompiledModel> compile(const ExplainOptions& options,
                                                Invocation& invocation) {
-  auto plain = options.model;
-  plain.plain_grounding = true;
   Invocation attempt(invocation.options());
-  auto compiled = compile_models(plain, attempt);
+  auto compiled = compile_plain_models(options.model, attempt);
   if (compiled) return std::move(compiled->model);
   auto usual = compile_models(options.model, invocation);
   if (!usual) return std::nullopt;

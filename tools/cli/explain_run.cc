@@ -9,7 +9,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "harness/campaign/journal.h"
-#include "tools/cli/scenario_model.h"
+#include "tools/cli/plain_models.h"
 
 namespace parallax::tools {
 namespace {
@@ -114,9 +114,7 @@ int explain_run(const std::string& run_dir, const std::string& sample, const Set
     }
     return 0;
   }
-  ModelOptions plain;
-  plain.plain_grounding = true;
-  const auto loaded = load_scenario_model(journal->header->scenario, invocation, plain);
+  const auto loaded = load_plain_scenario(journal->header->scenario, invocation);
   if (!loaded) return 0;
   if (loaded->sources_hash != journal->header->scenario_hash) {
     sink.error_about(base::DiagnosticCode::kJournalMismatch, run_dir, "scenario_hash",

@@ -9,6 +9,7 @@
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/suggest.h"
 #include "tools/cli/command.h"
+#include "tools/cli/explain_command.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/signals.h"
 #include "tools/cli/version.h"

@@ -35,8 +35,6 @@ compiler::CompileInput compile_input(const ModelOptions& options) {
   if (options.horizon >= 0) input.horizon = options.horizon;
   if (!options.compat.empty()) input.ground.meaning = compiler::Meaning::kDecreasoner;
   input.ground.stop = &stop_flag();
-  input.ground.relevance = !options.plain_grounding;
-  input.ground.invariants = !options.plain_grounding;
   input.costs = options.stats;
   input.producer = fmt::format("parallax {}", kVersion);
   return input;

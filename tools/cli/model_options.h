@@ -17,7 +17,6 @@ struct ModelOptions {
   std::string compat;              // "decreasoner", or empty for the standard meaning
   std::int64_t horizon = -1;       // -1: as the model says
   std::vector<std::string> until;  // state constraints
-  bool plain_grounding = false;    // nothing is settled while grounding: for explanations
   bool stats = false;              // count what each axiom costs; commands offer it themselves
 };
 void add_model_options(CLI::App& command, ModelOptions& options);

@@ -5,6 +5,7 @@
 
 #include "compiler/base/file_io.h"
 #include "harness/campaign/campaign.h"
+#include "tools/cli/plain_models.h"
 #include "tools/cli/signals.h"
 #include "tools/cli/version.h"
 
@@ -85,11 +86,20 @@ base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scen
   return input;
 }
 
-}  // namespace
+/// How a model is compiled beyond what the user says.
+struct Switches {
+  bool costs = false;
+  bool plain = false;  // plain_models.h
+  void apply(compiler::CompileInput& input) const {
+    input.costs = costs;
+    if (!plain) return;
+    input.ground.relevance = false;
+    input.ground.invariants = false;
+  }
+};
 
-base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
-                                                Invocation& invocation,
-                                                const ModelOptions& options) {
+base::Result<ScenarioModel> load(const std::filesystem::path& path, Invocation& invocation,
+                                 const Switches& switches) {
   auto& sink = invocation.sink();
   auto scenario = harness::load_scenario(path, invocation.files(), sink);
   if (!scenario) return sink.already_reported();
@@ -97,9 +107,7 @@ base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& pat
   const RegionLocator locator(scenario->mapping->regions());
   auto input = compile_input(*scenario, locator, invocation);
   if (!input) return sink.already_reported();
-  input->costs = options.stats;
-  input->ground.relevance = !options.plain_grounding;
-  input->ground.invariants = !options.plain_grounding;
+  switches.apply(*input);
   auto compilation = compiler::compile_model(*input, invocation.files(), sink);
   if (!compilation) return sink.already_reported();
   const auto& model = compilation->model;
@@ -111,8 +119,8 @@ base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& pat
                        harness::hash_of_sources(invocation.files()), std::move(scenario_hash)};
 }
 
-base::Result<compiler::Compilation> compile_models(const ModelOptions& options,
-                                                   Invocation& invocation) {
+base::Result<compiler::Compilation> compile(const ModelOptions& options, Invocation& invocation,
+                                            const Switches& switches) {
   const auto& first = options.models.front();
   if (names_artifact(options)) {
     auto model = load_artifact(options, invocation);
@@ -122,17 +130,40 @@ base::Result<compiler::Compilation> compile_models(const ModelOptions& options,
     return compiled;
   }
   if (options.models.size() == 1 && (first.ends_with(".yaml") || first.ends_with(".yml"))) {
-    auto loaded = load_scenario_model(first, invocation, options);
+    auto loaded = load(first, invocation, switches);
     if (!loaded) return invocation.sink().already_reported();
     return std::move(loaded->compilation);
   }
   auto input = compile_input(options);
+  switches.apply(input);
   for (const auto& formula : options.until) {
     const auto file = invocation.files().add("--until", formula);
     const base::SourceRange range{file, 0, static_cast<std::uint32_t>(formula.size())};
     input.constraints.push_back({range, range});
   }
   return compiler::compile_model(input, invocation.files(), invocation.sink());
+}
+
+}  // namespace
+
+base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
+                                                Invocation& invocation, bool costs) {
+  return load(path, invocation, {costs, false});
+}
+
+base::Result<ScenarioModel> load_plain_scenario(const std::filesystem::path& path,
+                                                Invocation& invocation) {
+  return load(path, invocation, {false, true});
+}
+
+base::Result<compiler::Compilation> compile_models(const ModelOptions& options,
+                                                   Invocation& invocation) {
+  return compile(options, invocation, {options.stats, false});
+}
+
+base::Result<compiler::Compilation> compile_plain_models(const ModelOptions& options,
+                                                         Invocation& invocation) {
+  return compile(options, invocation, {false, true});
 }
 
 }  // namespace parallax::tools

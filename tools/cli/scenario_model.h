@@ -19,11 +19,9 @@ struct ScenarioModel {
 };
 
 /// Reads the scenario, compiles model, plan and constraints, and holds the mapping and the actions
-/// against the model. Of `options` it looks at
-/// `stats` and `plain_grounding`.
+/// against the model. `costs`: also count what each axiom costs.
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
-                                                Invocation& invocation,
-                                                const ModelOptions& options = {});
+                                                Invocation& invocation, bool costs = false);
 
 /// What the models on the command line compile to; a single .yaml is a scenario, a single .cnf has
 /// been compiled before and brings neither the checked model nor the plan's graph.
