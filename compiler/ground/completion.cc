@@ -7,6 +7,11 @@
 #include "compiler/formula/substitute.h"
 
 namespace parallax::compiler {
+namespace {
+
+constexpr std::size_t kMaxInstances = 1'000'000;  // of one predicate that are made for completion
+
+}  // namespace
 
 CompletionWriter::CompletionWriter(GroundModel& model, Meaning meaning)
     : model_(model), meaning_(meaning) {
@@ -160,7 +165,31 @@ void CompletionWriter::write_timed(Entry& entry) {
   }
 }
 
+/// The 2005 reasoner completes a predicate over all arguments, not just where a formula mentions
+/// it.
+void CompletionWriter::mention_all_instances(SymbolId predicate) {
+  const auto& sorts = model_.typed().symbols[predicate].arguments;
+  std::vector<const std::vector<GroundTermId>*> domains;
+  std::size_t count = 1;
+  for (const auto sort : sorts) {
+    domains.push_back(&model_.universe().domain(sort));
+    if (domains.back()->empty() || count > kMaxInstances / domains.back()->size()) return;
+    count *= domains.back()->size();
+  }
+  std::vector<GroundTermId> arguments;
+  for (std::size_t number = 0; number < count; ++number) {
+    arguments.clear();
+    auto rest = number;
+    for (const auto* domain : domains) {
+      arguments.push_back((*domain)[rest % domain->size()]);
+      rest /= domain->size();
+    }
+    (void)model_.predicate(model_.terms().apply(predicate, arguments));
+  }
+}
+
 void CompletionWriter::write_predicates(Entry& entry) {
+  if (meaning_ == Meaning::kDecreasoner) mention_all_instances(entry.completion->predicate);
   // The atoms of user predicates exist where some formula mentions them.
   for (std::size_t i = 0; i < model_.atom_count(); ++i) {
     const auto variable = static_cast<std::int32_t>(i + 1);

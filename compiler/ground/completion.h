@@ -58,6 +58,7 @@ class CompletionWriter {
   void note_conjunct(const std::string& label, FormulaId formula, Timepoint width);
   void note_reason(const GroundAtom& atom, FormulaId reason, Timepoint width, Entry& entry);
   void write_timed(Entry& entry);
+  void mention_all_instances(SymbolId predicate);
   void write_predicates(Entry& entry);
   void assert_completed(FormulaId atom, std::vector<FormulaId> reasons, std::uint32_t origin,
                         Timepoint width);

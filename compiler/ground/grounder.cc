@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compiler/artifact/origin_kinds.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/formula/atoms.h"
 #include "compiler/ground/completion.h"
@@ -167,7 +168,7 @@ class Grounder {
     std::vector<FormulaId> asserted;
     for (const auto& constraint : model_.constraints()) asserted.push_back(constraint.formula);
     const auto mentioned = atoms_of(model_.formulas(), asserted);
-    const auto origin = model_.add_origin({}, "atom without a mention");
+    const auto origin = model_.add_origin({}, std::string(kUnmentionedOrigin));
     const auto deny = [&](FormulaId atom) {
       const auto variable = model_.formulas().variable(atom);
       if (!std::binary_search(mentioned.begin(), mentioned.end(), variable)) {

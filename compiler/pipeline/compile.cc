@@ -90,6 +90,7 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
     check.time_lower = 0;
     check.time_upper = input.horizon;
   }
+  check.keep_causal_definitions = input.ground.meaning == Meaning::kDecreasoner;
   auto typed = check_model(*ast, files, sink, check);
   if (!typed) return sink.already_reported();
   if (input.lint) lint_model(lint_rules(), *ast, *typed, sink);

@@ -1,6 +1,7 @@
 #include "compiler/sema/check.h"
 
 #include <string>
+#include <string_view>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -19,12 +20,16 @@ using base::DiagnosticCode;
 
 namespace {
 
+constexpr std::string_view kCausalDefinitions = "foundations/ECCausal.e";
+
 class ModelChecker {
  public:
-  ModelChecker(const ModelAst& ast, const IgnoredNames& ignored, const CheckOptions& options,
-               TypedModel& model, base::DiagnosticSink& sink)
+  ModelChecker(const ModelAst& ast, const base::SourceFiles& files, const IgnoredNames& ignored,
+               const CheckOptions& options, TypedModel& model, base::DiagnosticSink& sink)
       : ast_(ast),
+        files_(files),
         ignored_(ignored),
+        keep_causal_(options.keep_causal_definitions),
         model_(model),
         sink_(sink),
         elaborator_(model, {.complete_model = options.complete_model}, sink),
@@ -93,6 +98,8 @@ class ModelChecker {
 
   bool is_used(const ModelAst::Place& place) const {
     const Ast& ast = ast_.ast(place);
+    const auto& file = files_[ast.source(ast_.statement(place).source).file];
+    if (keep_causal_ && file.name() == kCausalDefinitions) return true;
     NodeId id = ast_.statement(place).formula;
     while (ast[id].kind == NodeKind::kForall) id = ast.child(ast[id], ast[id].child_count - 1);
     if (ast[id].kind == NodeKind::kBinary) id = ast.child(ast[id], 0);
@@ -118,7 +125,9 @@ class ModelChecker {
   }
 
   const ModelAst& ast_;
+  const base::SourceFiles& files_;
   const IgnoredNames& ignored_;
+  bool keep_causal_;
   TypedModel& model_;
   base::DiagnosticSink& sink_;
   Elaborator elaborator_;
@@ -128,12 +137,12 @@ class ModelChecker {
 
 }  // namespace
 
-base::Result<TypedModel> check_model(const ModelAst& ast, const base::SourceFiles&,
+base::Result<TypedModel> check_model(const ModelAst& ast, const base::SourceFiles& files,
                                      base::DiagnosticSink& sink, const CheckOptions& options) {
   TypedModel model;
   const IgnoredNames ignored(ast);
   declare(ast, ignored, options, model, sink);
-  ModelChecker(ast, ignored, options, model, sink).run();
+  ModelChecker(ast, files, ignored, options, model, sink).run();
   if (sink.has_errors()) return sink.already_reported();
   return model;
 }

@@ -19,6 +19,9 @@ struct CheckOptions {
   std::optional<std::int64_t> time_upper = std::nullopt;
   /// False for a part of a model (a library file): missing ranges are then warnings.
   bool complete_model = true;
+  /// Keep the definitions of ECCausal.e also where nothing mentions what they define: the atoms are
+  /// part of the models of the 2005 reasoner.
+  bool keep_causal_definitions = false;
 };
 
 /// Declarations, names, sorts, well-formedness, recognition of effect and trajectory axioms. Many

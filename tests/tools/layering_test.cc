@@ -92,6 +92,9 @@ const std::map<std::string, std::vector<std::string>>& allowed() {
       {"runtime/graph",
        {"compiler/base", "compiler/artifact", "runtime/solver", "runtime/session",
         "runtime/trace", "runtime/enumerate"}},
+      {"runtime/replay",
+       {"compiler/base", "compiler/artifact", "runtime/solver", "runtime/session",
+        "runtime/trace"}},
       {"harness/region", {"compiler/base", "harness/world"}},  // State of simulator.h only
       {"harness/sampling", {"compiler/base", "harness/region", "harness/world"}},
       {"harness/world", {"compiler/base"}},

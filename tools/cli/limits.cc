@@ -17,6 +17,19 @@ constexpr std::chrono::seconds kGrace{6};
 
 const CommonOptions* g_options = nullptr;  // for the handler of failed allocations
 
+std::mutex g_stopped_mutex;
+std::string g_stopped_text;
+
+/// Leaves the text out where standard output is being written to just now: then a line is cut off,
+/// which no reader takes for the end.
+void write_stopped_text() {
+  const std::unique_lock lock(g_stopped_mutex, std::try_to_lock);
+  if (!lock.owns_lock() || ftrylockfile(stdout) != 0) return;
+  std::fwrite(g_stopped_text.data(), 1, g_stopped_text.size(), stdout);
+  std::fflush(stdout);
+  funlockfile(stdout);
+}
+
 void on_out_of_memory() {
   std::set_new_handler(nullptr);
   end_for_limit(*g_options, fmt::format("--memory-limit {}", g_options->memory_limit_mb));
@@ -29,6 +42,7 @@ void end_for_limit(const CommonOptions& options, const std::string& limit) {
   const base::SourceFiles files;
   sink.error_about(base::DiagnosticCode::kLimitReached, "", limit);
   const auto diagnostics = sink.sorted();
+  write_stopped_text();
   if (options.json) {
     const auto text = error_document(diagnostics, files);
     std::fwrite(text.data(), 1, text.size(), stdout);
@@ -36,6 +50,16 @@ void end_for_limit(const CommonOptions& options, const std::string& limit) {
   }
   write_error(base::to_text(diagnostics.front(), files, {}));
   _exit(4);
+}
+
+StoppedText::StoppedText(std::string text) {
+  const std::lock_guard lock(g_stopped_mutex);
+  g_stopped_text = std::move(text);
+}
+
+StoppedText::~StoppedText() {
+  const std::lock_guard lock(g_stopped_mutex);
+  g_stopped_text.clear();
 }
 
 LimitGuard::LimitGuard(const CommonOptions& options) {

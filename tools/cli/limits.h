@@ -2,6 +2,7 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <string>
 #include <thread>
 
 #include "tools/cli/command.h"
@@ -26,6 +27,16 @@ class LimitGuard {
   bool done_ = false;
   bool over_ = false;
   std::thread thread_;
+};
+
+/// While it lives, a limit that ends the process writes this text to standard output first: the
+/// mark that a list was stopped. One at a time.
+class StoppedText {
+ public:
+  explicit StoppedText(std::string text);
+  ~StoppedText();
+  StoppedText(const StoppedText&) = delete;
+  StoppedText& operator=(const StoppedText&) = delete;
 };
 
 /// Reports the limit in the form that the options ask for and ends the process with 4.

@@ -20,6 +20,8 @@ void TraceWriter::print(const runtime::Trace& trace) {
   if (form_.count_only) return;
   if (invocation_.options().json) {
     list_ += (list_.empty() ? "" : ",") + runtime::to_jsonl(trace);
+  } else if (form_.listing != nullptr) {
+    invocation_.result(form_.listing->trace(trace));
   } else {
     invocation_.result(runtime::format_trace(format(), trace));
   }
@@ -33,9 +35,9 @@ void TraceWriter::write(const runtime::Trace& trace) {
 }
 
 void TraceWriter::write_all(runtime::TraceSource& source) {
-  // Traces as such are needed for checks, for a proof and for the document only.
+  // Traces as such are needed for checks, for a proof, for the document and for other formats only.
   const bool as_text = check_ == nullptr && !certifier_.is_asked() && !form_.count_only &&
-                       !invocation_.options().json;
+                       form_.listing == nullptr && !invocation_.options().json;
   std::string block;
   while (!full() && !stop_flag().load()) {
     if (as_text) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "runtime/enumerate/trace_source.h"
+#include "runtime/trace/list_format.h"
 #include "tools/cli/certify.h"
 #include "tools/cli/command.h"
 #include "tools/cli/trace_check.h"
@@ -17,10 +18,14 @@ class TraceWriter {
     std::string format = "text";  // or "jsonl"
     bool count_only = false;
     std::int64_t limit = 0;  // 0: none
+    /// In place of `format`, for what is neither text nor jsonl; outlives the writer.
+    runtime::ListFormat* listing = nullptr;
   };
   /// `check` may be null; else it outlives the writer, as the others do.
   TraceWriter(Form form, TraceCheck* check, TraceCertifier& certifier, Invocation& invocation)
-      : form_(std::move(form)), check_(check), certifier_(certifier), invocation_(invocation) {}
+      : form_(std::move(form)), check_(check), certifier_(certifier), invocation_(invocation) {
+    if (form_.listing != nullptr) invocation_.result(form_.listing->begin());
+  }
 
   bool full() const { return !form_.count_only && form_.limit > 0 && count_ == form_.limit; }
   void write(const runtime::Trace& trace);

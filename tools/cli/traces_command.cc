@@ -5,10 +5,14 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/graph/trace_sampler.h"
+#include "runtime/trace/vocabulary.h"
 #include "tools/cli/certify.h"
+#include "tools/cli/limits.h"
 #include "tools/cli/scenario_model.h"
 #include "tools/cli/signals.h"
+#include "tools/cli/trace_listing.h"
 #include "tools/cli/trace_writer.h"
+#include "tools/cli/traces_replay.h"
 
 namespace parallax::tools {
 namespace {
@@ -19,8 +23,10 @@ struct TracesOptions {
   bool count = false;
   bool expect_traces = false;
   bool check = false;
-  std::string format = "text";
+  ListingOptions listing;
+  ReplayTracesOptions replay;
   std::string distinct = "observable";
+  bool distinct_given = false;
   std::string strategy = "auto";
   std::int64_t from = 1;
   std::int64_t sample = 0;
@@ -55,7 +61,8 @@ struct Ending {
 };
 
 /// Says what is known of the rest: complete, up to the bound, or stopped by the limit.
-void close_list(const TracesOptions& options, const TraceWriter& writer, const Ending& ending,
+void close_list(const TracesOptions& options, const compiler::CompiledModel& model,
+                const TraceWriter& writer, runtime::ListFormat* listing, const Ending& ending,
                 double wall_s, Invocation& invocation) {
   if (stop_flag().load()) invocation.remark("stopped before the end: there may be more traces");
   const auto timing = fmt::format("\"timing\":{{\"wall_s\":{:.3f}}}", wall_s);
@@ -67,10 +74,16 @@ void close_list(const TracesOptions& options, const TraceWriter& writer, const E
         ending.fields, writer.checked_field(), list, timing));
   } else if (options.count) {
     invocation.result(fmt::format("{}\n", writer.count()));
-  } else if (options.format == "jsonl") {
-    invocation.result(fmt::format("{{\"summary\":true,\"traces\":{},\"complete\":{},{}{}{}}}\n",
-                                  writer.count(), ending.complete, ending.fields,
-                                  writer.checked_field(), timing));
+  } else if (listing != nullptr) {
+    invocation.result(listing->end({writer.count(), ending.complete, ending.exploration,
+                                    ending.remark + writer.checked_remark(),
+                                    ending.fields + writer.checked_field()}));
+  } else if (options.listing.format == "jsonl") {
+    invocation.result(
+        fmt::format("{{\"summary\":true,\"traces\":{},\"complete\":{},\"exploration\":\"{}\","
+                    "\"model\":\"{}\",{}{}{}}}\n",
+                    writer.count(), ending.complete, ending.exploration, runtime::model_hash(model),
+                    ending.fields, writer.checked_field(), timing));
   } else {
     invocation.result(fmt::format("{} {}, {}{}{}\n", writer.count(),
                                   writer.count() == 1 ? "trace" : "traces", ending.exploration,
@@ -185,6 +198,12 @@ bool is_usable(const TracesOptions& options, Invocation& invocation) {
   if (options.sample > 0 && (options.count || options.from > 1)) {
     return refuse("", "--sample does not go with --count or --from");
   }
+  if (!options.certify.file.empty() && options.listing.format == "decreasoner" &&
+      !options.distinct_given) {
+    return refuse("",
+                  "--certify proves a list over HoldsAt and Happens complete; --format "
+                  "decreasoner lists every atom, unless --distinct observable is given");
+  }
   if (!options.certify.file.empty() &&
       (options.sample > 0 || options.from > 1 || options.distinct == "all")) {
     return refuse("",
@@ -197,13 +216,17 @@ bool is_usable(const TracesOptions& options, Invocation& invocation) {
 
 /// What a model without a plan can be asked for, and one with a plan cannot.
 bool asks_for_models(const TracesOptions& options) {
-  return options.sample > 0 || options.from > 1 || options.distinct != "observable" ||
+  return options.sample > 0 || options.from > 1 || options.distinct_given ||
          options.strategy != "auto";
 }
 
 int list_traces(const TracesOptions& options, Invocation& invocation) {
   const auto start = std::chrono::steady_clock::now();
+  if (!options.replay.file.empty()) {
+    return replay_traces(options.model, options.replay, invocation);
+  }
   if (!is_usable(options, invocation)) return 0;
+  if (!check_listing(options.model, options.listing, invocation.sink())) return 0;
   const auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
   if (options.model.stats && !invocation.options().json && !compilation->costs.empty()) {
@@ -223,7 +246,14 @@ int list_traces(const TracesOptions& options, Invocation& invocation) {
   }
   std::optional<TraceCheck> check;
   if (options.check) check.emplace(*compilation->typed, &stop_flag(), invocation.sink());
-  TraceWriter writer({options.format, options.count, options.sample > 0 ? 0 : options.limit},
+  const bool lists = !options.count && !invocation.options().json;
+  const bool one_trace = (options.sample > 0 ? options.sample : options.limit) == 1;
+  const auto listing =
+      lists ? make_listing(options.model, options.listing, one_trace, *compilation, invocation)
+            : nullptr;
+  const StoppedText stopped(lists ? stopped_text(options.listing.format) : "");
+  TraceWriter writer({options.listing.format, options.count, options.sample > 0 ? 0 : options.limit,
+                      listing.get()},
                      check ? &*check : nullptr, certifier, invocation);
   std::optional<Ending> ending;
   if (model.has_constraints) {
@@ -236,7 +266,7 @@ int list_traces(const TracesOptions& options, Invocation& invocation) {
   if (!ending) return 0;
   ending->add(certifier);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  close_list(options, writer, *ending, wall.count(), invocation);
+  close_list(options, model, writer, listing.get(), *ending, wall.count(), invocation);
   return writer.count() == 0 && options.expect_traces ? 1 : 0;
 }
 
@@ -253,7 +283,11 @@ Command add_traces_command(CLI::App& app) {
       "  parallax traces domain.e --from 1000001 --limit 10\n"
       "  parallax traces domain.e --sample 5 --seed 7\n"
       "  parallax traces scenarios/two_regions/scenario.yaml --format jsonl\n"
-      "  parallax traces domain.e --limit 0 --certify=domain.drat");
+      "  parallax traces domain.e --limit 0 --certify=domain.drat\n"
+      "  parallax traces domain.e --format csv > traces.csv\n"
+      "  parallax traces domain.e --limit 0 --format itf --output traces/\n"
+      "  parallax traces old.e --compat decreasoner --format decreasoner\n"
+      "  parallax traces domain.e --replay traces/trace_000001.itf.json");
   add_model_options(*command, options->model);
   command->add_option("--limit", options->limit, "Stop after this many traces; 0: all")
       ->check(CLI::NonNegativeNumber)
@@ -267,11 +301,11 @@ Command add_traces_command(CLI::App& app) {
   command->add_option("--seed", options->seed, "Of --sample")
       ->check(whole_number(0, kMaxSeed))
       ->capture_default_str();
-  command
-      ->add_option("--distinct", options->distinct,
-                   "What tells traces apart: `observable` (HoldsAt and Happens) or `all` atoms")
-      ->check(CLI::IsMember({"observable", "all"}))
-      ->capture_default_str();
+  auto* distinct = command->add_option(
+      "--distinct", options->distinct,
+      "What tells traces apart: `observable` (HoldsAt and Happens) or `all` atoms, which is the "
+      "default of --format decreasoner");
+  distinct->check(CLI::IsMember({"observable", "all"}))->capture_default_str();
   command
       ->add_option("--strategy", options->strategy,
                    "auto, blocking, guarded, tree or graph: the traces and their order are the "
@@ -285,10 +319,15 @@ Command add_traces_command(CLI::App& app) {
       "--check", options->check,
       "Evaluate the model on every trace by independent means; exit 5 if one differs");
   add_certify_option(*command, options->certify);
-  command->add_option("--format", options->format, "text or jsonl")
-      ->check(CLI::IsMember({"text", "jsonl"}))
-      ->capture_default_str();
-  return {command, [options](Invocation& invocation) { return list_traces(*options, invocation); }};
+  add_listing_options(*command, options->listing);
+  add_replay_options(*command, options->replay);
+  return {command, [options, distinct](Invocation& invocation) {
+            options->distinct_given = distinct->count() > 0;
+            if (options->listing.format == "decreasoner" && !options->distinct_given) {
+              options->distinct = "all";
+            }
+            return list_traces(*options, invocation);
+          }};
 }
 
 }  // namespace parallax::tools

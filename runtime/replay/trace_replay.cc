@@ -1,0 +1,181 @@
+#include "runtime/replay/trace_replay.h"
+
+#include "runtime/session/unsat_core.h"
+
+namespace parallax::runtime {
+
+using compiler::AtomKind;
+using Kind = ReplayVerdict::Kind;
+
+namespace {
+
+/// None for the control of a plan and the like, of which traces do not speak.
+const AtomClaims* claims_of(const ClaimedTrace& trace, AtomKind kind,
+                            std::optional<Timepoint> time) {
+  if (kind == AtomKind::kPredicate) return &trace.predicates;
+  if (!time) return nullptr;
+  const auto& point = trace.points[static_cast<std::size_t>(*time)];
+  if (kind == AtomKind::kHoldsAt) return &point.holds;
+  if (kind == AtomKind::kHappens) return &point.happens;
+  return kind == AtomKind::kReleasedAt ? &point.released : nullptr;
+}
+
+}  // namespace
+
+TraceReplay::TraceReplay(const CompiledModel& model, MakeSolver make_solver)
+    : model_(&model),
+      make_solver_(std::move(make_solver)),
+      session_(model, make_solver_()),
+      index_(model) {
+  for (std::size_t f = 0; f < model.fluents.size(); ++f) {
+    if (!model.fluents[f].slot) never_holds_.insert(model.fluents[f].name);
+    if (!model.release_slots[f]) never_released_.insert(model.fluents[f].name);
+  }
+  for (const auto& event : model.events) {
+    if (!event.slot) never_happens_.insert(event.name);
+  }
+}
+
+/// With state constraints a trace ends where they hold first, after at least one step.
+std::pair<Timepoint, Timepoint> TraceReplay::lengths() const {
+  return {model_->has_constraints ? 1 : model_->horizon, model_->horizon};
+}
+
+TraceReplay::Units TraceReplay::units_of(const ClaimedTrace& trace) const {
+  Units units;
+  model_->for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
+                            std::optional<Timepoint> time) {
+    const auto needed = time.value_or(0) + (kind == AtomKind::kHappens ? 1 : 0);
+    if (needed > trace.length()) return;
+    const auto* claims = claims_of(trace, kind, time);
+    if (claims == nullptr) return;
+    const auto value = claims->value(name);
+    if (!value) {
+      ++units.hidden;
+      return;
+    }
+    const auto literal = Literal::positive(variable);
+    units.said.push_back({*value ? literal : ~literal, needed});
+  });
+  return units;
+}
+
+/// Atoms without a variable are false in every trace.
+std::optional<ReplayVerdict> TraceReplay::impossible_claim(const ClaimedTrace& trace) const {
+  ReplayVerdict verdict;
+  verdict.kind = Kind::kFails;
+  const auto look = [&](const char* predicate, const AtomClaims& claims,
+                        const std::unordered_set<std::string>& never) {
+    for (const auto& [name, claim] : claims.listed) {
+      if (!claim.value || !never.contains(name)) continue;
+      verdict.impossible = claim;
+      verdict.impossible_atom =
+          std::string(predicate) + '(' + name + ',' + std::to_string(verdict.timepoint) + ')';
+      return true;
+    }
+    return false;
+  };
+  for (const auto& point : trace.points) {
+    if (look("HoldsAt", point.holds, never_holds_) ||
+        look("Happens", point.happens, never_happens_) ||
+        look("ReleasedAt", point.released, never_released_)) {
+      return verdict;
+    }
+    ++verdict.timepoint;
+  }
+  return std::nullopt;
+}
+
+SolveStatus TraceReplay::solve(const Units& units, Timepoint n, std::span<const Literal> more) {
+  std::vector<Literal> assumptions(more.begin(), more.end());
+  for (const auto& unit : units.said) {
+    if (unit.needed <= n) assumptions.push_back(unit.literal);
+  }
+  return session_.solve(n, assumptions);
+}
+
+ReplayVerdict TraceReplay::replay(const ClaimedTrace& trace) {
+  const auto length = trace.length();
+  PARALLAX_REQUIRE(length >= lengths().first && length <= lengths().second,
+                   "a length that traces of the model can have");
+  const auto units = units_of(trace);
+  if (auto impossible = impossible_claim(trace)) {
+    // Something before it may fail as well.
+    auto earlier = find_failure(units, impossible->timepoint);
+    if (earlier.kind == Kind::kFails && earlier.timepoint < impossible->timepoint) {
+      impossible = std::move(earlier);
+    }
+    impossible->hidden = units.hidden;
+    return *std::move(impossible);
+  }
+  std::vector<Literal> hits;
+  if (model_->has_constraints) {
+    for (Timepoint t = 1; t <= length; ++t) {
+      const auto hit = index_.find(AtomKind::kHit, "hit", t);
+      PARALLAX_REQUIRE(hit.has_value(), "every timepoint from 1 has its hit atom");
+      hits.push_back(t < length ? ~*hit : *hit);
+    }
+  }
+  ReplayVerdict verdict;
+  const auto status = solve(units, length, hits);
+  if (status == SolveStatus::kSatisfiable) {
+    verdict.kind = Kind::kAgrees;
+    verdict.completion =
+        decode_trace(*model_, length, [&](Literal literal) { return session_.value(literal); });
+    verdict.completion.number = trace.number;
+  } else if (status == SolveStatus::kUnsatisfiable) {
+    verdict = find_failure(units, length);
+    if (verdict.kind == Kind::kAgrees) verdict = find_end(units, length);
+  }
+  verdict.hidden = units.hidden;
+  return verdict;
+}
+
+/// The first timepoint up to which nothing goes with the claims; kAgrees if there is none.
+ReplayVerdict TraceReplay::find_failure(const Units& units, Timepoint length) {
+  ReplayVerdict verdict;
+  for (Timepoint n = 0; n <= length; ++n) {
+    const auto status = solve(units, n, {});
+    if (status == SolveStatus::kSatisfiable) continue;
+    verdict.kind = status == SolveStatus::kUnsatisfiable ? Kind::kFails : Kind::kUnknown;
+    verdict.timepoint = n;
+    return verdict;
+  }
+  verdict.kind = Kind::kAgrees;
+  return verdict;
+}
+
+/// Where the state constraints hold too early, or else the end, where they do not.
+ReplayVerdict TraceReplay::find_end(const Units& units, Timepoint length) {
+  ReplayVerdict verdict;
+  std::vector<Literal> no_hits;
+  for (Timepoint t = 1; t < length; ++t) {
+    no_hits.push_back(~*index_.find(AtomKind::kHit, "hit", t));
+    const auto status = solve(units, length, no_hits);
+    if (status == SolveStatus::kSatisfiable) continue;
+    verdict.kind = status == SolveStatus::kUnsatisfiable ? Kind::kNoFirstHit : Kind::kUnknown;
+    verdict.timepoint = t;
+    return verdict;
+  }
+  verdict.kind = Kind::kNoFirstHit;
+  verdict.timepoint = length;
+  return verdict;
+}
+
+std::optional<std::vector<std::uint32_t>> TraceReplay::blame(const ClaimedTrace& trace,
+                                                             Timepoint timepoint) const {
+  // The claims join as definitions: those are never left out of a core.
+  auto model = *model_;
+  const auto origin = static_cast<std::uint32_t>(model.origins.size());
+  model.origins.push_back({{}, "trace"});
+  for (const auto& unit : units_of(trace).said) {
+    if (unit.needed > timepoint) continue;
+    model.clauses.add(std::span(&unit.literal, 1));
+    model.clause_timepoints.push_back(unit.needed);
+    model.clause_origins.push_back(origin);
+    model.clause_is_definition.push_back(true);
+  }
+  return find_unsat_core(model, timepoint, make_solver_());
+}
+
+}  // namespace parallax::runtime

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/trace/list_format.h"
+
+namespace parallax::runtime {
+
+/// Comma-separated values after RFC 4180: one row for each trace and timepoint, one column for each
+/// ground fluent (1 holds, 0 does not), release, event (1 happens; empty at the last timepoint of a
+/// trace, where no event can happen) and user predicate. The columns depend on the model alone. The
+/// last row says how the list ended; it begins with `#`, which plotting programs skip.
+class CsvFormat final : public ListFormat {
+ public:
+  explicit CsvFormat(const CompiledModel& model);
+  std::string begin() override;
+  std::string trace(const Trace& trace) override;
+  std::string end(const ListEnd& end) override;
+
+ private:
+  std::vector<std::string> fluents_, released_, events_, predicates_;
+};
+
+/// A field as RFC 4180 asks: quoted where it holds a comma, a quote or a line end.
+std::string csv_field(const std::string& text);
+
+}  // namespace parallax::runtime

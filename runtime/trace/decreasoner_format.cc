@@ -1,0 +1,230 @@
+#include "runtime/trace/decreasoner_format.h"
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+#include <string_view>
+
+#include "compiler/artifact/origin_kinds.h"
+
+namespace parallax::runtime {
+
+using compiler::AtomKind;
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// The program of 2005 puts a blank behind every comma.
+std::string spaced(std::string_view name) {
+  std::string out;
+  for (const char c : name) {
+    out += c;
+    if (c == ',') out += ' ';
+  }
+  return out;
+}
+
+bool contains(const Names& sorted, const std::string& name) {
+  return std::binary_search(sorted.begin(), sorted.end(), name);
+}
+
+std::string timed(std::string_view predicate, std::string_view name, Timepoint t) {
+  return std::string(predicate) + '(' + spaced(name) + ", " + std::to_string(t) + ')';
+}
+
+std::string line_of(AtomKind kind, std::string_view name, std::optional<Timepoint> time) {
+  if (kind == AtomKind::kHoldsAt) return timed("HoldsAt", name, time.value_or(0));
+  if (kind == AtomKind::kHappens) return timed("Happens", name, time.value_or(0));
+  if (kind == AtomKind::kReleasedAt) return timed("ReleasedAt", name, time.value_or(0));
+  return spaced(name);
+}
+
+void append_sorted(Lines lines, Lines& out) {
+  std::sort(lines.begin(), lines.end());
+  std::move(lines.begin(), lines.end(), std::back_inserter(out));
+}
+
+/// The variables of atoms that no formula of the model mentions: they are denied by clauses of
+/// their own.
+std::vector<bool> unmentioned(const CompiledModel& model) {
+  std::vector<bool> result(static_cast<std::size_t>(model.variable_count()) + 1, false);
+  for (std::size_t i = 0; i < model.clauses.size(); ++i) {
+    if (model.origins[model.clause_origins[i]].what != compiler::kUnmentionedOrigin) continue;
+    for (const auto literal : model.clauses[i]) {
+      result[static_cast<std::size_t>(literal.var())] = true;
+    }
+  }
+  return result;
+}
+
+/// The last argument, if it is a number.
+std::optional<Timepoint> last_number(std::string_view name) {
+  const auto begin = name.find_last_of("(,") + 1;
+  Timepoint number = 0;
+  const auto* end = name.data() + name.size() - 1;
+  const auto [stop, error] = std::from_chars(name.data() + begin, end, number);
+  if (name.empty() || error != std::errc() || stop != end) return std::nullopt;
+  return number;
+}
+
+}  // namespace
+
+DecreasonerFormat::DecreasonerFormat(const CompiledModel& model, const DecreasonerOptions& options)
+    : options_(options), holds_(static_cast<std::size_t>(model.horizon) + 1) {
+  collect(model);
+  for (auto& names : holds_) std::sort(names.begin(), names.end());
+  std::sort(propositions_.begin(), propositions_.end(),
+            [](const Proposition& a, const Proposition& b) { return a.line < b.line; });
+}
+
+void DecreasonerFormat::collect(const CompiledModel& model) {
+  const auto silent = unmentioned(model);
+  const auto add = [&](AtomKind kind, const std::string& name, std::optional<Timepoint> time) {
+    propositions_.push_back({kind, name, time, line_of(kind, name, time)});
+  };
+  model.for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
+                          std::optional<Timepoint> time) {
+    if (silent[static_cast<std::size_t>(variable)]) return;
+    switch (kind) {
+      case AtomKind::kHoldsAt:
+        holds_[static_cast<std::size_t>(*time)].push_back(name);
+        add(kind, name, time);
+        break;
+      case AtomKind::kHappens:
+      case AtomKind::kReleasedAt:
+      case AtomKind::kPredicate:
+        add(kind, name, time);
+        break;
+      case AtomKind::kLocation:
+      case AtomKind::kHit:
+      case AtomKind::kRunning:
+      case AtomKind::kAuxiliary:
+      case AtomKind::kUnused:
+        break;
+    }
+  });
+  // Fluents that nothing releases have no variable here; there, inertia mentions their release.
+  for (Timepoint t = 0; t <= model.horizon; ++t) {
+    for (std::size_t f = 0; f < model.fluents.size(); ++f) {
+      if (!model.release_slots[f]) add(AtomKind::kReleasedAt, model.fluents[f].name, t);
+    }
+  }
+  if (!options_.events_completed) return;
+  for (const auto& event : model.events) add(AtomKind::kHappens, event.name, model.horizon);
+}
+
+bool DecreasonerFormat::is_true(const Trace& trace, const Proposition& proposition) {
+  if (proposition.kind == AtomKind::kPredicate) {
+    return contains(trace.predicates, proposition.name);
+  }
+  const auto t = static_cast<std::size_t>(proposition.time.value_or(0));
+  if (t >= trace.points.size()) return false;
+  const auto& point = trace.points[t];
+  if (proposition.kind == AtomKind::kHoldsAt) return contains(point.holds, proposition.name);
+  if (proposition.kind == AtomKind::kHappens) return contains(point.happens, proposition.name);
+  return contains(point.released, proposition.name);
+}
+
+/// What was true and is no more, then what was false and is true; of the first timepoint all that
+/// holds.
+void DecreasonerFormat::append_changes(const Trace& trace, std::size_t t, Lines& out) const {
+  const auto& now = trace.points[t].holds;
+  Lines gone, come;
+  for (const auto& name : now) {
+    if (t == 0) come.push_back(spaced(name) + '.');
+    if (t == 0 || contains(trace.points[t - 1].holds, name)) continue;
+    // A fluent without a proposition at the timepoint before is not said to begin.
+    if (contains(holds_[t - 1], name)) come.push_back('+' + spaced(name) + '.');
+  }
+  if (t > 0) {
+    for (const auto& name : trace.points[t - 1].holds) {
+      if (!contains(now, name)) gone.push_back('-' + spaced(name) + '.');
+    }
+  }
+  append_sorted(std::move(gone), out);
+  append_sorted(std::move(come), out);
+}
+
+/// User predicates count as atoms of the timepoint that their last argument prints as.
+bool DecreasonerFormat::is_shown_with_time(const Proposition& proposition, Timepoint length) const {
+  if (options_.time_diff) {
+    return proposition.kind == AtomKind::kHoldsAt;
+  }
+  const auto time =
+      proposition.kind == AtomKind::kPredicate ? last_number(proposition.name) : proposition.time;
+  return time && *time >= 0 && *time <= length;
+}
+
+/// All false atoms, then the true ones; events are appended by the caller.
+void DecreasonerFormat::append_state(const Trace& trace, std::size_t t, Lines& out) const {
+  Lines holding;
+  for (const auto& one : propositions_) {
+    const auto time = one.kind == AtomKind::kPredicate ? last_number(one.name) : one.time;
+    if (time != static_cast<Timepoint>(t)) continue;
+    if (!is_true(trace, one)) {
+      out.push_back('!' + one.line + '.');
+    } else if (one.kind != AtomKind::kHappens) {
+      holding.push_back(one.line + '.');
+    }
+  }
+  append_sorted(std::move(holding), out);
+}
+
+void DecreasonerFormat::append_rest(const Trace& trace, Lines& out) const {
+  Lines holding, other;
+  for (const auto& one : propositions_) {
+    if (one.time.value_or(0) > trace.length() || is_shown_with_time(one, trace.length())) continue;
+    if (!is_true(trace, one)) {
+      other.push_back('!' + one.line + '.');
+    } else if (one.kind != AtomKind::kHappens) {
+      holding.push_back(one.line + '.');
+    }
+  }
+  append_sorted(std::move(holding), out);
+  append_sorted(std::move(other), out);
+}
+
+Lines DecreasonerFormat::lines(const Trace& trace) const {
+  Lines out;
+  for (std::size_t t = 0; t < trace.points.size(); ++t) {
+    out.push_back(std::to_string(t));
+    if (options_.time_diff) {
+      append_changes(trace, t, out);
+    } else {
+      append_state(trace, t, out);
+    }
+    Lines events;
+    for (const auto& name : trace.points[t].happens) {
+      events.push_back(timed("Happens", name, static_cast<Timepoint>(t)) + '.');
+    }
+    append_sorted(std::move(events), out);
+  }
+  if (options_.show_predicates) {
+    out.emplace_back("P");
+    append_rest(trace, out);
+  }
+  return out;
+}
+
+std::string DecreasonerFormat::trace(const Trace& trace) {
+  auto now = lines(trace);
+  const bool whole = printed_++ == 0 || !options_.model_diff;
+  std::string out = "---\nmodel " + std::to_string(trace.number) + (whole ? ":\n" : " diff:");
+  if (whole) {
+    for (const auto& line : now) out += line + '\n';
+  } else {
+    out += normal_diff(last_, now) + '\n';
+  }
+  if (options_.model_diff) last_ = std::move(now);
+  return out;
+}
+
+std::string DecreasonerFormat::end(const ListEnd& end) {
+  std::string out = printed_ > 0 ? "---\n" : "";
+  if (end.traces == 0 && end.complete) return out + "no models found" + end.remark + '\n';
+  out += std::to_string(end.traces) + (end.traces == 1 ? " model" : " models");
+  return out + (end.complete ? "" : ", " + end.exploration) + end.remark + '\n';
+}
+
+}  // namespace parallax::runtime

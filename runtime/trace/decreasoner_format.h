@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/trace/line_diff.h"
+#include "runtime/trace/list_format.h"
+
+namespace parallax::runtime {
+
+/// What the options of a model say of its printed form, and what the compiled model does not tell.
+struct DecreasonerOptions {
+  bool time_diff = true;        // what changed, instead of full states
+  bool model_diff = false;      // from model 2 on, the difference from the one before
+  bool show_predicates = true;  // the block `P`
+  /// `completion Happens`: the events of the last timepoint are said to be false.
+  bool events_completed = false;
+};
+
+/// The printed form of the Discrete Event Calculus Reasoner 1.0, `model K:` and what follows. False
+/// atoms are listed only where that program has a proposition for them, that is where some formula
+/// mentions them; a model that was compiled with its meaning knows which these are. The number of
+/// models, which that program prints first, comes last, because models are printed as they are
+/// found.
+class DecreasonerFormat final : public ListFormat {
+ public:
+  /// `model` outlives the format.
+  DecreasonerFormat(const CompiledModel& model, const DecreasonerOptions& options);
+  std::string trace(const Trace& trace) override;
+  std::string end(const ListEnd& end) override;
+  /// The lines below `model K:`.
+  Lines lines(const Trace& trace) const;
+
+ private:
+  struct Proposition {
+    compiler::AtomKind kind;
+    std::string name;
+    std::optional<Timepoint> time;
+    std::string line;  // "Happens(Go(a, b), 3)"
+  };
+
+  void collect(const CompiledModel& model);
+  void append_changes(const Trace& trace, std::size_t t, Lines& out) const;
+  void append_state(const Trace& trace, std::size_t t, Lines& out) const;
+  void append_rest(const Trace& trace, Lines& out) const;
+  static bool is_true(const Trace& trace, const Proposition& proposition);
+  bool is_shown_with_time(const Proposition& proposition, Timepoint length) const;
+
+  DecreasonerOptions options_;
+  std::vector<Proposition> propositions_;        // sorted by line
+  std::vector<std::vector<std::string>> holds_;  // by timepoint: fluents with a proposition, sorted
+  std::int64_t printed_ = 0;
+  Lines last_;  // for model_diff
+};
+
+}  // namespace parallax::runtime

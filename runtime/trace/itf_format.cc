@@ -1,0 +1,164 @@
+#include "runtime/trace/itf_format.h"
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "runtime/trace/atom_text.h"
+
+namespace parallax::runtime {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Names = std::vector<std::string>;
+
+constexpr const char* kDescription = "https://apalache.informal.systems/docs/adr/015adr-trace.html";
+constexpr std::int64_t kLargestInteger = (std::int64_t{1} << 53U) - 1;
+
+std::string dumped(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);  // file names may be any bytes
+}
+
+/// Numbers become integers, large ones in the form that ITF has for them, all else strings.
+Json argument_value(const std::string& text) {
+  std::int64_t number = 0;
+  const auto* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || stop != end) return text;
+  if (number > kLargestInteger || number < -kLargestInteger) return Json{{"#bigint", text}};
+  return number;
+}
+
+Json tuple(const std::string& atom) {
+  auto values = Json::array();
+  if (const auto parts = split_atom(atom)) {
+    for (const auto& argument : parts->arguments) values.push_back(argument_value(argument));
+  }
+  return Json{{"#tup", std::move(values)}};
+}
+
+Json map_of(const SymbolInstances& symbol, const Names& truths) {
+  auto pairs = Json::array();
+  for (const auto& atom : symbol.atoms) {
+    pairs.push_back(
+        Json::array({tuple(atom), std::binary_search(truths.begin(), truths.end(), atom)}));
+  }
+  return Json{{"#map", std::move(pairs)}};
+}
+
+std::string joined(const Names& events) {
+  std::string out;
+  for (const auto& event : events) out += (out.empty() ? "" : "+") + event;
+  return out;
+}
+
+/// Members of an object.
+std::string ending(const ListEnd& end) {
+  return "\"traces\":" + std::to_string(end.traces) +
+         ",\"complete\":" + (end.complete ? "true" : "false") + ',' + end.fields +
+         "\"exploration\":" + dumped(end.exploration);
+}
+
+/// By event symbol, an option as Quint writes it: `None`, or `Some` set of argument tuples.
+Json picks(const std::vector<SymbolInstances>& symbols, const Names& happened) {
+  auto out = Json::object();
+  for (const auto& symbol : symbols) {
+    auto tuples = Json::array();
+    for (const auto& atom : symbol.atoms) {
+      if (std::binary_search(happened.begin(), happened.end(), atom)) tuples.push_back(tuple(atom));
+    }
+    out[symbol.symbol] = tuples.empty()
+                             ? Json{{"tag", "None"}, {"value", {{"#tup", Json::array()}}}}
+                             : Json{{"tag", "Some"}, {"value", {{"#set", std::move(tuples)}}}};
+  }
+  return out;
+}
+
+}  // namespace
+
+ItfFormat::ItfFormat(const CompiledModel& model, ItfOptions options)
+    : model_(&model),
+      options_(std::move(options)),
+      vocabulary_(vocabulary_of(model)),
+      hash_(model_hash(model)) {}
+
+std::string ItfFormat::meta(const Trace& trace, const std::optional<ListEnd>& end) const {
+  Json meta = {{"format", "ITF"},           {"format-description", kDescription},
+               {"source", options_.source}, {"status", "ok"},
+               {"tool", options_.tool},     {"model", hash_},
+               {"trace", trace.number}};
+  if (const auto compat = model_->options.find("compat"); compat != model_->options.end()) {
+    meta["compat"] = compat->second;
+  }
+  auto text = dumped(meta);
+  if (end) text.replace(text.size() - 1, 1, "," + ending(*end) + '}');
+  return text;
+}
+
+std::string ItfFormat::vars() const {
+  auto names = Json::array({kItfAction, kItfPicks});
+  for (const auto& symbol : vocabulary_.fluents) names.push_back(symbol.symbol);
+  for (const auto& symbol : vocabulary_.releasable) {
+    names.push_back(std::string(kItfReleased) + symbol.symbol);
+  }
+  for (const auto& symbol : vocabulary_.predicates) {
+    names.push_back(std::string(kItfPredicate) + symbol.symbol);
+  }
+  return dumped(names);
+}
+
+std::string ItfFormat::state(const Trace& trace, std::size_t t) const {
+  static const Names kNone;
+  const auto& point = trace.points[t];
+  const auto& happened = t > 0 ? trace.points[t - 1].happens : kNone;
+  auto events = Json::array();
+  for (const auto& event : happened) {
+    const auto parts = split_atom(event).value_or(AtomText{event, {}});
+    Json entry = {{"event", parts.symbol}, {"arguments", parts.arguments}};
+    const auto step = trace.points[t - 1].plan_step;
+    const bool planned = step && model_->plan[*step].event == event;
+    const auto declared = options_.declared.find(parts.symbol);
+    if (planned || declared != options_.declared.end()) {
+      const auto& place = planned ? model_->plan[*step].place : declared->second;
+      entry["file"] = place.file;
+      entry["line"] = place.begin.line;
+    }
+    events.push_back(std::move(entry));
+  }
+  Json state = {{"#meta", {{"index", t}, {"events", std::move(events)}}},
+                {kItfAction, t == 0 ? std::string(kItfInit) : joined(happened)},
+                {kItfPicks, picks(vocabulary_.events, happened)}};
+  for (const auto& symbol : vocabulary_.fluents) state[symbol.symbol] = map_of(symbol, point.holds);
+  for (const auto& symbol : vocabulary_.releasable) {
+    state[std::string(kItfReleased) + symbol.symbol] = map_of(symbol, point.released);
+  }
+  for (const auto& symbol : vocabulary_.predicates) {
+    state[std::string(kItfPredicate) + symbol.symbol] = map_of(symbol, trace.predicates);
+  }
+  return dumped(state);
+}
+
+std::string ItfFormat::trace(const Trace& trace) {
+  std::string out = "{\"#meta\":" + meta(trace, std::nullopt) + ",\"vars\":" + vars();
+  out += ",\"states\":[";
+  for (std::size_t t = 0; t < trace.points.size(); ++t) {
+    if (t > 0) out += ',';
+    out += state(trace, t);
+  }
+  return out + "]}\n";
+}
+
+std::string ItfFormat::document(const Trace& trace, const std::optional<ListEnd>& end) const {
+  std::string out = "{\n\"#meta\":" + meta(trace, end) + ",\n\"vars\":" + vars();
+  out += ",\n\"states\":[";
+  for (std::size_t t = 0; t < trace.points.size(); ++t) {
+    out += (t > 0 ? ",\n" : "\n") + state(trace, t);
+  }
+  return out + "\n]\n}\n";
+}
+
+std::string ItfFormat::end(const ListEnd& end) {
+  return "{\"summary\":true," + ending(end) + ",\"model\":\"" + hash_ + "\"}\n";
+}
+
+}  // namespace parallax::runtime

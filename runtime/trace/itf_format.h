@@ -1,0 +1,53 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "runtime/trace/list_format.h"
+#include "runtime/trace/vocabulary.h"
+
+namespace parallax::runtime {
+
+/// What ITF files say of their making.
+struct ItfOptions {
+  std::string tool;    // "parallax 0.3.0"
+  std::string source;  // the model as the user named it
+  /// Where event symbols are declared, for states whose event is no step of a plan.
+  std::map<std::string, compiler::TextPlace, std::less<>> declared;
+};
+
+/// The names that the format gives to what is no fluent.
+inline constexpr std::string_view kItfAction = "mbt::actionTaken";
+inline constexpr std::string_view kItfPicks = "mbt::nondetPicks";
+inline constexpr std::string_view kItfReleased = "ReleasedAt::";
+inline constexpr std::string_view kItfPredicate = "predicate::";
+inline constexpr std::string_view kItfInit = "init";  // the action before the first state
+
+/// Informal Trace Format (Apalache ADR-015): a state for each timepoint. One variable for each
+/// fluent symbol, a map from tuples of arguments to booleans; the same for releases and user
+/// predicates, under a prefix. `mbt::actionTaken` of a state are the events that led to it, joined
+/// by `+`; `mbt::nondetPicks` are their arguments by event symbol. A list of traces is one object a
+/// line and a closing line.
+class ItfFormat final : public ListFormat {
+ public:
+  /// `model` outlives the format.
+  ItfFormat(const CompiledModel& model, ItfOptions options);
+  std::string trace(const Trace& trace) override;
+  std::string end(const ListEnd& end) override;
+  /// One trace as a file of its own: a state on each line, `end` said in its `#meta` if it is
+  /// known.
+  std::string document(const Trace& trace, const std::optional<ListEnd>& end) const;
+
+ private:
+  std::string meta(const Trace& trace, const std::optional<ListEnd>& end) const;
+  std::string vars() const;
+  std::string state(const Trace& trace, std::size_t t) const;
+
+  const CompiledModel* model_;
+  ItfOptions options_;
+  Vocabulary vocabulary_;
+  std::string hash_;
+};
+
+}  // namespace parallax::runtime

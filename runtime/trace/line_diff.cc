@@ -1,0 +1,133 @@
+#include "runtime/trace/line_diff.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace parallax::runtime {
+namespace {
+
+using Index = std::ptrdiff_t;
+
+constexpr Index kMaxEdits = 3000;  // 36 MB of saved ends
+
+/// The lines of either side that are not part of the longest common subsequence.
+class Comparison {
+ public:
+  Comparison(const Lines& a, const Lines& b)
+      : a_(a), b_(b), a_changed_(a.size(), false), b_changed_(b.size(), false) {
+    const auto shorter = std::min(std::ssize(a), std::ssize(b));
+    while (front_ < shorter && same(front_, front_)) ++front_;
+    Index back = 0;
+    while (back < shorter - front_ && same(std::ssize(a) - 1 - back, std::ssize(b) - 1 - back)) {
+      ++back;
+    }
+    a_end_ = std::ssize(a) - back;
+    b_end_ = std::ssize(b) - back;
+    walk_back(reach_end());
+    slide(a_, a_changed_);
+    slide(b_, b_changed_);
+  }
+  bool a_changed(std::size_t i) const { return i < a_changed_.size() && a_changed_[i]; }
+  bool b_changed(std::size_t i) const { return i < b_changed_.size() && b_changed_[i]; }
+
+ private:
+  bool same(Index x, Index y) const {
+    return a_[static_cast<std::size_t>(x)] == b_[static_cast<std::size_t>(y)];
+  }
+  /// The furthest x that `edits` edits reach on the diagonal x - y; nothing was reached: -1.
+  Index end_of(Index edits, Index diagonal) const {
+    if (diagonal < -edits || diagonal > edits) return -1;
+    return ends_[static_cast<std::size_t>(edits)][static_cast<std::size_t>(diagonal + edits)];
+  }
+  Index start_of(Index edits, Index diagonal) const {
+    return std::max(end_of(edits - 1, diagonal - 1) < 0 ? -1 : end_of(edits - 1, diagonal - 1) + 1,
+                    end_of(edits - 1, diagonal + 1));
+  }
+
+  /// Fills `ends_` until the end of both sides is reached; the number of edits, or -1 for too many.
+  Index reach_end() {
+    for (Index edits = 0; edits <= kMaxEdits; ++edits) {
+      ends_.emplace_back(static_cast<std::size_t>(2 * edits + 1), -1);
+      for (Index d = -edits; d <= edits; ++d) {
+        auto x = edits == 0 ? front_ : start_of(edits, d);
+        if (x < front_ || x > a_end_ || x - d > b_end_ || x - d < front_) continue;
+        while (x < a_end_ && x - d < b_end_ && same(x, x - d)) ++x;
+        ends_.back()[static_cast<std::size_t>(d + edits)] = x;
+        if (x == a_end_ && x - d == b_end_) return edits;
+      }
+    }
+    return -1;
+  }
+
+  void walk_back(Index edits) {
+    if (edits < 0) {
+      for (auto x = front_; x < a_end_; ++x) a_changed_[static_cast<std::size_t>(x)] = true;
+      for (auto y = front_; y < b_end_; ++y) b_changed_[static_cast<std::size_t>(y)] = true;
+      return;
+    }
+    for (auto d = a_end_ - b_end_; edits > 0; --edits) {
+      const auto added = end_of(edits - 1, d + 1);
+      const bool deletes = end_of(edits - 1, d - 1) >= 0 && end_of(edits - 1, d - 1) + 1 > added;
+      if (deletes) {
+        a_changed_[static_cast<std::size_t>(end_of(edits - 1, --d))] = true;
+      } else {
+        b_changed_[static_cast<std::size_t>(added - ++d)] = true;
+      }
+    }
+  }
+
+  /// Moves every stretch of changes as far down as equal lines let it.
+  static void slide(const Lines& lines, std::vector<bool>& changed) {
+    for (auto i = lines.size(); i-- > 0;) {
+      if (!changed[i]) continue;
+      auto end = i + 1;
+      while (end < lines.size() && changed[end]) ++end;
+      auto begin = i;
+      while (begin > 0 && changed[begin - 1]) --begin;
+      i = begin;
+      while (end < lines.size() && !changed[end] && lines[begin] == lines[end]) {
+        changed[begin++] = false;
+        changed[end++] = true;
+        while (end < lines.size() && changed[end]) ++end;
+      }
+    }
+  }
+
+  const Lines& a_;
+  const Lines& b_;
+  std::vector<bool> a_changed_, b_changed_;
+  Index front_ = 0, a_end_ = 0, b_end_ = 0;
+  std::vector<std::vector<Index>> ends_;  // by edits, then by diagonal + edits
+};
+
+/// "5" or "5,7" for the lines [begin, end), counted from 1; of none, the one before.
+std::string range_text(std::size_t begin, std::size_t end) {
+  if (end <= begin + 1) return std::to_string(end);
+  return std::to_string(begin + 1) + "," + std::to_string(end);
+}
+
+}  // namespace
+
+std::string normal_diff(const Lines& before, const Lines& after) {
+  const Comparison comparison(before, after);
+  std::string out;
+  std::size_t i = 0, j = 0;
+  while (i < before.size() || j < after.size()) {
+    const auto a_begin = i, b_begin = j;
+    while (comparison.a_changed(i)) ++i;
+    while (comparison.b_changed(j)) ++j;
+    if (i == a_begin && j == b_begin) {
+      ++i;
+      ++j;
+      continue;
+    }
+    const char command = i == a_begin ? 'a' : j == b_begin ? 'd' : 'c';
+    out += range_text(a_begin, i) + command + range_text(b_begin, j) + '\n';
+    for (auto k = a_begin; k < i; ++k) out += "< " + before[k] + '\n';
+    if (command == 'c') out += "---\n";
+    for (auto k = b_begin; k < j; ++k) out += "> " + after[k] + '\n';
+  }
+  return out;
+}
+
+}  // namespace parallax::runtime

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/artifact/compiled_model.h"
+#include "compiler/base/source_file.h"
+
+namespace parallax::runtime {
+
+/// What a text says of an atom, and where.
+struct AtomClaim {
+  bool value = true;
+  base::SourceRange source;
+};
+
+/// What a text says of the atoms of one kind at one timepoint, by printed name.
+struct AtomClaims {
+  /// What is not listed is false. Otherwise nothing is said of it.
+  bool closed = false;
+  std::map<std::string, AtomClaim, std::less<>> listed;
+
+  std::optional<bool> value(const std::string& name) const {
+    const auto found = listed.find(name);
+    if (found != listed.end()) return found->second.value;
+    return closed ? std::optional(false) : std::nullopt;
+  }
+};
+
+struct ClaimedPoint {
+  AtomClaims holds, happens, released;
+  base::SourceRange source;
+};
+
+/// A trace as a file tells it. It need not mention every atom.
+struct ClaimedTrace {
+  std::int64_t number = 0;
+  std::vector<ClaimedPoint> points;  // not empty
+  AtomClaims predicates;
+  base::SourceRange source;
+  compiler::Timepoint length() const { return static_cast<compiler::Timepoint>(points.size()) - 1; }
+};
+
+}  // namespace parallax::runtime

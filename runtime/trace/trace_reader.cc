@@ -1,0 +1,115 @@
+#include "runtime/trace/trace_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compiler/base/diagnostic_codes.h"
+
+namespace parallax::runtime {
+
+using base::DiagnosticCode;
+
+namespace {
+
+bool is_blank(std::string_view text) {
+  return text.find_first_not_of(" \t\r\n") == std::string_view::npos;
+}
+
+/// Does the text hold an object on each line, rather than one object over several? One line that
+/// opens more than it closes settles it. Strings may hold brackets.
+bool first_line_is_whole(std::string_view line) {
+  std::int64_t depth = 0;
+  bool inside = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (inside && c == '\\') {
+      ++i;
+    } else if (c == '"') {
+      inside = !inside;
+    } else if (!inside && (c == '{' || c == '[')) {
+      ++depth;
+    } else if (!inside && (c == '}' || c == ']')) {
+      --depth;
+    }
+  }
+  return depth == 0 && !inside;
+}
+
+std::vector<base::SourceRange> lines_of(base::FileId file, std::string_view text) {
+  std::vector<base::SourceRange> lines;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const auto end = std::min(text.find('\n', begin), text.size());
+    if (!is_blank(text.substr(begin, end - begin))) {
+      lines.push_back({file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)});
+    }
+    begin = end + 1;
+  }
+  return lines;
+}
+
+void note_model(const JsonValue& root, TraceFileHead& head) {
+  const auto meta = root.find("#meta");
+  const auto model = meta ? meta->find("model") : root.find("model");
+  if (!model || !model->is(JsonKind::kString)) return;
+  head.model = std::string(model->text());
+  head.model_source = model->source();
+}
+
+/// Takes the closing line off the list. False, reported, if it does not fit to it.
+bool take_summary(TraceFileHead& head, const base::SourceFiles& files, base::DiagnosticSink& sink) {
+  const auto last = JsonDocument::parse(head.traces.back().source, files, sink);
+  if (!last) return false;
+  note_model(last->root(), head);
+  // A single ITF document is no list.
+  head.closed = head.traces.size() == 1 && last->root().find("states").has_value();
+  if (!last->root().find("summary")) return true;
+  head.traces.pop_back();
+  head.closed = true;
+  const auto count = last->root().find("traces");
+  if (count && count->integer() != std::ssize(head.traces)) {
+    sink.error(DiagnosticCode::kTraceFileShape, count->source(),
+               fmt::format("{} traces, as stand before this line", head.traces.size()),
+               count->text());
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+base::Result<TraceFileHead> open_trace_file(base::FileId file, const base::SourceFiles& files,
+                                            base::DiagnosticSink& sink) {
+  const auto text = files[file].text();
+  const auto size = static_cast<std::uint32_t>(text.size());
+  const auto lines = lines_of(file, text);
+  if (lines.empty()) {
+    return sink.error(DiagnosticCode::kTraceFileSyntax, {file, 0, 0}, "it is empty");
+  }
+  TraceFileHead head;
+  if (lines.size() > 1 && !first_line_is_whole(files.text(lines.front()))) {
+    head.traces.push_back({{file, 0, size}, true});
+  } else {
+    for (const auto& line : lines) head.traces.push_back({line, false});
+  }
+  if (!take_summary(head, files, sink)) return sink.already_reported();
+  if (!head.model && !head.traces.empty()) {  // ITF says it in each trace
+    const auto first = JsonDocument::parse(head.traces.front().source, files, sink);
+    if (!first) return sink.already_reported();
+    note_model(first->root(), head);
+  }
+  return head;
+}
+
+base::Result<ClaimedTrace> read_trace(const TracePlace& place, std::int64_t default_number,
+                                      const base::SourceFiles& files, ClaimReader& reader) {
+  const auto document = JsonDocument::parse(place.source, files, reader.sink());
+  if (!document) return reader.sink().already_reported();
+  const auto root = document->root();
+  if (!root.is(JsonKind::kObject)) return reader.unexpected("the object of a trace", root);
+  auto trace = root.find("states") ? read_itf_trace(root, reader) : read_jsonl_trace(root, reader);
+  if (trace && trace->number == 0) trace->number = default_number;
+  return trace;
+}
+
+}  // namespace parallax::runtime

@@ -1,0 +1,267 @@
+// Every format against a reader that knows nothing but the format's description, and what our own
+// readers make of it.
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <iterator>
+
+#include "compiler/pipeline/compile.h"
+#include "runtime/enumerate/model_enumerator.h"
+#include "runtime/trace/csv_format.h"
+#include "runtime/trace/itf_format.h"
+#include "runtime/trace/trace_reader.h"
+#include "tests/support/csv_reader.h"
+#include "tests/support/itf_reader.h"
+#include "tests/support/random_model.h"
+#include "tests/support/text_model.h"
+
+namespace parallax::test {
+namespace {
+
+using compiler::CompiledModel;
+using runtime::Trace;
+using Names = std::vector<std::string>;
+
+constexpr int kTracesOfOneModel = 20;
+
+/// Trace and model in the order in which they are compared; traces are told apart by this text.
+std::string observed(const Trace& trace) { return runtime::to_jsonl(trace); }
+
+std::string atom_of(const std::string& symbol, const Names& arguments) {
+  std::string out = symbol + '(';
+  for (std::size_t i = 0; i < arguments.size(); ++i) out += (i > 0 ? "," : "") + arguments[i];
+  return out + ')';
+}
+
+/// The trace that an ITF text tells, by the mapping that docs/trace_formats.md describes.
+Trace trace_of(const ItfFile& file) {
+  Trace trace;
+  trace.number = file.meta.at("trace").get<std::int64_t>();
+  trace.points.resize(file.states.size());
+  std::set<std::string> predicates;
+  for (std::size_t t = 0; t < file.states.size(); ++t) {
+    for (const auto& [name, value] : file.states[t]) {
+      if (name == "mbt::nondetPicks") continue;
+      if (name == "mbt::actionTaken") {
+        std::istringstream events(value.get<std::string>());
+        for (std::string event; t > 0 && std::getline(events, event, '+');) {
+          trace.points[t - 1].happens.push_back(event);
+        }
+        if (t == 0) CHECK(value == "init");
+        continue;
+      }
+      const auto colons = name.find("::");
+      const auto symbol = colons == std::string::npos ? name : name.substr(colons + 2);
+      for (const auto& [arguments, truth] : ItfFile::map_of(value)) {
+        if (!truth.get<bool>()) continue;
+        const auto atom = atom_of(symbol, arguments);
+        if (name.starts_with("ReleasedAt::")) {
+          trace.points[t].released.push_back(atom);
+        } else if (name.starts_with("predicate::")) {
+          predicates.insert(atom);
+        } else {
+          trace.points[t].holds.push_back(atom);
+        }
+      }
+    }
+    std::sort(trace.points[t].holds.begin(), trace.points[t].holds.end());
+    std::sort(trace.points[t].released.begin(), trace.points[t].released.end());
+  }
+  trace.predicates.assign(predicates.begin(), predicates.end());
+  return trace;
+}
+
+/// The picks of a state are its events, by symbol.
+void check_picks(const ItfFile& file) {
+  for (const auto& state : file.states) {
+    std::set<std::string> taken, picked;
+    std::istringstream events(state.at("mbt::actionTaken").get<std::string>());
+    for (std::string event; std::getline(events, event, '+');) taken.insert(event);
+    taken.erase("init");
+    for (const auto& [symbol, option] : state.at("mbt::nondetPicks").items()) {
+      if (option.at("tag") == "None") continue;
+      CHECK(option.at("tag") == "Some");
+      for (const auto& tuple : option.at("value").at("#set")) {
+        Names arguments;
+        for (const auto& argument : tuple.at("#tup")) {
+          arguments.push_back(ItfFile::printed(argument));
+        }
+        picked.insert(atom_of(symbol, arguments));
+      }
+    }
+    CHECK(taken == picked);
+  }
+}
+
+/// The traces that a CSV text tells; columns are looked up by name.
+std::vector<Trace> traces_of(const std::string& csv, const CompiledModel& model) {
+  const auto records = read_csv(csv);
+  const auto& head = records.front();
+  std::set<std::string> fluents, events;
+  for (const auto& fluent : model.fluents) fluents.insert(fluent.name);
+  for (const auto& event : model.events) events.insert(event.name);
+  std::vector<Trace> traces;
+  for (std::size_t r = 1; r + 1 < records.size(); ++r) {
+    const auto number = std::stoll(records[r][0]);
+    if (traces.empty() || traces.back().number != number) traces.emplace_back().number = number;
+    CHECK(records[r][1] == std::to_string(traces.back().points.size()));
+    traces.back().predicates.clear();
+    auto& point = traces.back().points.emplace_back();
+    for (std::size_t c = 2; c < head.size(); ++c) {
+      const auto& field = records[r][c];
+      CHECK((field == "0" || field == "1" || (field.empty() && events.contains(head[c]))));
+      if (field != "1") continue;
+      if (fluents.contains(head[c])) {
+        point.holds.push_back(head[c]);
+      } else if (events.contains(head[c])) {
+        point.happens.push_back(head[c]);
+      } else if (head[c].starts_with("ReleasedAt(")) {
+        point.released.push_back(head[c].substr(11, head[c].size() - 12));
+      } else {
+        traces.back().predicates.push_back(head[c]);
+      }
+    }
+    std::sort(point.holds.begin(), point.holds.end());
+    std::sort(point.happens.begin(), point.happens.end());
+    std::sort(point.released.begin(), point.released.end());
+  }
+  return traces;
+}
+
+/// What is claimed, as a trace; every atom must be claimed.
+Trace trace_of(const runtime::ClaimedTrace& claimed, const CompiledModel& model) {
+  Trace trace;
+  trace.number = claimed.number;
+  trace.points.resize(claimed.points.size());
+  const auto take = [](const runtime::AtomClaims& claims, const std::string& name, Names& names) {
+    const auto value = claims.value(name);
+    REQUIRE_MESSAGE(value.has_value(), name);
+    if (*value) names.push_back(name);
+  };
+  for (std::size_t t = 0; t < claimed.points.size(); ++t) {
+    const auto& point = claimed.points[t];
+    for (std::size_t f = 0; f < model.fluents.size(); ++f) {
+      take(point.holds, model.fluents[f].name, trace.points[t].holds);
+      if (!model.release_slots[f]) continue;
+      take(point.released, model.fluents[f].name, trace.points[t].released);
+    }
+    for (const auto& event : model.events) {
+      if (t + 1 < claimed.points.size()) {
+        take(point.happens, event.name, trace.points[t].happens);
+      }
+    }
+    std::sort(trace.points[t].holds.begin(), trace.points[t].holds.end());
+    std::sort(trace.points[t].happens.begin(), trace.points[t].happens.end());
+    std::sort(trace.points[t].released.begin(), trace.points[t].released.end());
+  }
+  for (const auto& [name, claim] : claimed.predicates.listed) {
+    if (claim.value) trace.predicates.push_back(name);
+  }
+  return trace;
+}
+
+/// What our reader finds in a file.
+std::vector<Trace> read_back(const std::string& text, const CompiledModel& model) {
+  base::SourceFiles files;
+  base::DiagnosticSink sink;
+  const auto file = files.add("traces", text);
+  const auto head = runtime::open_trace_file(file, files, sink);
+  REQUIRE(head.has_value());
+  CHECK(head->model == runtime::model_hash(model));
+  const auto vocabulary = runtime::vocabulary_of(model);
+  runtime::ClaimReader reader(vocabulary, sink);
+  std::vector<Trace> traces;
+  for (const auto& place : head->traces) {
+    const auto claimed = runtime::read_trace(place, 1, files, reader);
+    REQUIRE(claimed.has_value());
+    traces.push_back(trace_of(*claimed, model));
+  }
+  return traces;
+}
+
+std::size_t check_formats(const CompiledModel& model) {
+  runtime::SolverSession session(model, runtime::make_cadical_solver());
+  runtime::ModelEnumerator enumerator(session);
+  runtime::ItfFormat itf(model, {"parallax", "model.e", {}});
+  runtime::CsvFormat csv(model);
+  std::vector<Trace> traces;
+  std::string rows = csv.begin(), itf_lines;
+  while (static_cast<int>(traces.size()) < kTracesOfOneModel) {
+    auto trace = enumerator.next();
+    if (!trace) break;
+    const ItfFile file(itf.document(*trace, {}));
+    CHECK(observed(trace_of(file)) == observed(*trace));
+    check_picks(file);
+    const auto line = itf.trace(*trace);
+    CHECK(line.find('\n') == line.size() - 1);
+    CHECK(ItfFile(line).states == file.states);
+    CHECK(observed(read_back(itf.document(*trace, {}), model).at(0)) == observed(*trace));
+    itf_lines += line;
+    rows += csv.trace(*trace);
+    traces.push_back(*std::move(trace));
+  }
+  const runtime::ListEnd end{static_cast<std::int64_t>(traces.size()), false, "stopped", {}, {}};
+  rows += csv.end(end);
+  itf_lines += itf.end(end);
+  const auto from_csv = traces_of(rows, model);
+  const auto from_lines = read_back(itf_lines, model);
+  REQUIRE(from_csv.size() == traces.size());
+  REQUIRE(from_lines.size() == traces.size());
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    CHECK(observed(from_csv[i]) == observed(traces[i]));
+    CHECK(observed(from_lines[i]) == observed(traces[i]));
+  }
+  CHECK(read_csv(rows).back().front().starts_with("# stopped: "));
+  return traces.size();
+}
+
+TEST_CASE("traces of the classic problems survive ITF and CSV and both ways of reading them") {
+  std::size_t models = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(
+           std::filesystem::path(PARALLAX_SOURCE_DIR) / "scenarios/classics")) {
+    if (entry.path().extension() != ".e") continue;
+    CAPTURE(entry.path());
+    compiler::CompileInput input;
+    input.models = {entry.path()};
+    base::SourceFiles files;
+    base::DiagnosticSink sink;
+    const auto compiled = compiler::compile_model(input, files, sink);
+    if (!compiled) continue;  // a text that others load
+    check_formats(compiled->model);
+    ++models;
+  }
+  CHECK(models > 15);
+}
+
+TEST_CASE("traces of random models survive ITF and CSV and both ways of reading them") {
+  std::size_t models = 0, traces = 0;
+  for (std::uint64_t seed = 1; seed <= 250; ++seed) {
+    CAPTURE(seed);
+    const TextModel model(
+        random_model(seed, seed % 5 == 0 ? kSolverSize : kBruteForceSize).print());
+    if (model.ground == nullptr) continue;
+    traces += check_formats(model.compiled);
+    ++models;
+  }
+  CHECK(models > 100);
+  CHECK(traces > 500);
+}
+
+TEST_CASE("an argument beyond the integers of JSON keeps its value") {
+  const TextModel model(
+      "range time 0 1\nsort n: integer\nrange n 9007199254740992 9007199254740993\n"
+      "fluent F(n)\nevent E(n)\n");
+  REQUIRE(model.ground != nullptr);
+  CHECK(check_formats(model.compiled) == 16);
+}
+
+TEST_CASE("a field of a CSV file is quoted where it must be, and only there") {
+  CHECK(runtime::csv_field("F()") == "F()");
+  CHECK(runtime::csv_field("At(a,b)") == "\"At(a,b)\"");
+  CHECK(runtime::csv_field("a\"b") == "\"a\"\"b\"");
+  CHECK(runtime::csv_field("a\nb") == "\"a\nb\"");
+}
+
+}  // namespace
+}  // namespace parallax::test
