@@ -80,7 +80,7 @@ TEST_CASE("a fact that was edited is found at its axiom, with the atoms that dec
   const auto result = lamp.replay("bad.jsonl");
   CHECK(result.code == 1);
   CHECK(result.out.starts_with("trace 7: fails at timepoint 1, m.e:2\n"));
-  CHECK(result.err.find("m.e:2:8-11: error[E7203]: trace 7 fails at timepoint 1: DEC5 for On(): it "
+  CHECK(result.err.find("m.e:2:8-11: error[E7204]: trace 7 fails at timepoint 1: DEC5 for On(): it "
                         "changes without an event at 1") != std::string::npos);
   const auto document = Json::parse(lamp.replay("bad.jsonl", {"--json"}).out);
   CHECK(document["fail"] == 1);
@@ -104,7 +104,7 @@ TEST_CASE("a fact that is left open is found if there is a value for it, and cou
   lamp.cli.write("odd.json", head + R"~({"On":true,"mbt::actionTaken":"Press()"}]})~");
   const auto odd = lamp.replay("odd.json");
   CHECK(odd.code == 1);
-  CHECK(odd.err.find("E7203") != std::string::npos);
+  CHECK(odd.err.find("E7204") != std::string::npos);
   CHECK(odd.err.find("whatever it does not mention") != std::string::npos);
   CHECK(odd.err.find("note") != std::string::npos);  // no single axiom is to blame
 }
@@ -146,7 +146,7 @@ TEST_CASE("with state constraints a trace has to end where they hold first") {
   CHECK(fine.out.find("2 agree, 0 fail") != std::string::npos);
   const auto other = lamp.replay("t.jsonl", {"--until", "HoldsAt(On(),time)", "--other-model"});
   CHECK(other.code == 1);
-  CHECK(other.err.find("E7204") != std::string::npos);
+  CHECK(other.err.find("E7205") != std::string::npos);
   CHECK(other.err.find("the state constraints hold before, at 1") != std::string::npos);
   CHECK(other.err.find("the state constraints do not hold at 2") != std::string::npos);
 }

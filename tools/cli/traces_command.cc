@@ -80,10 +80,10 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
                                     ending.fields + writer.checked_field()}));
   } else if (options.listing.format == "jsonl") {
     invocation.result(
-        fmt::format("{{\"summary\":true,\"traces\":{},\"complete\":{},\"exploration\":\"{}\","
-                    "\"model\":\"{}\",{}{}{}}}\n",
-                    writer.count(), ending.complete, ending.exploration, runtime::model_hash(model),
-                    ending.fields, writer.checked_field(), timing));
+        fmt::format("{{\"summary\":true,\"traces\":{},\"complete\":{},{}{}\"exploration\":\"{}\","
+                    "\"model\":\"{}\",{}}}\n",
+                    writer.count(), ending.complete, ending.fields, writer.checked_field(),
+                    ending.exploration, runtime::model_hash(model), timing));
   } else {
     invocation.result(fmt::format("{} {}, {}{}{}\n", writer.count(),
                                   writer.count() == 1 ? "trace" : "traces", ending.exploration,
