@@ -21,6 +21,7 @@ const std::vector<Section>& sections() {
       {"listing", "listing traces, beside clingo", measure_listing},
       {"first-trace", "the first trace, beside CaDiCaL alone", measure_first_trace},
       {"strategies", "ways to enumerate, side by side", measure_strategies},
+      {"proofs", "a checked proof that a list is complete, beside the list alone", measure_proofs},
       {"examples", "the examples of the reasoner of 2005", measure_examples},
       {"horizons", "compile time over the horizon", measure_horizons},
       {"world", "the two-region world", measure_world},

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <utility>
+
 #include "tools/bench/answers.h"
 #include "tools/bench/bench.h"
 #include "tools/bench/contestants.h"
@@ -52,6 +54,19 @@ void measure_strategies(Bench& bench) {
                 {lists_by("graph", file, 0), lists_by("tree", file, 0),
                  lists_by("guarded", file, 0), lists_by("blocking", file, 0)},
                 "3488");
+}
+
+void measure_proofs(Bench& bench) {
+  bench.begin("all traces with a checked proof that there are no others, beside the list alone");
+  for (const auto& [name, traces] : {std::pair("pigeon_9_8", "0"), std::pair("robot_6_4_m1", "0"),
+                                     std::pair("robot_4_2_4", "3488")}) {
+    const auto file = bench.model_file(name);
+    auto certified = parallax_with({"traces", file, "--limit", "0", "--format", "jsonl",
+                                    "--certify=" + bench.path(std::string(name) + ".drat")});
+    certified.program = "--certify";
+    certified.answer = [](const ChildRun& run) { return jsonl_answer(run.tail); };
+    bench.compare(name, {certified, parallax_lists(file)}, traces);
+  }
 }
 
 }  // namespace parallax::tools

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "compiler/base/diagnostic_codes.h"
@@ -29,11 +30,11 @@ class SetWriter {
   SetWriter(runtime::ExecutionFormula& formula, const runtime::AxiomGroups& axioms)
       : formula_(formula), axioms_(axioms), texts_(formula.model()) {}
 
-  runtime::ProofReport ground(const IndexSet& set, const runtime::ProofLimits& limits) {
+  const runtime::GroundContradiction& ground(const IndexSet& set,
+                                             const runtime::ProofLimits& limits) {
     groups_ = set;
-    auto found = runtime::ground_contradiction(formula_, axioms_, set, limits);
-    clauses_ = std::move(found.clauses);
-    return found.proof;
+    found_ = runtime::ground_contradiction(formula_, axioms_, set, limits);
+    return found_;
   }
 
   std::string text() const {
@@ -74,7 +75,7 @@ class SetWriter {
   }
   std::vector<std::string> instances_of(std::uint32_t group) const {
     std::vector<std::string> out;
-    for (const auto clause : clauses_) {
+    for (const auto clause : found_.clauses) {
       if (axioms_.group_of[formula_.model().clause_origins[clause]] == group) {
         out.push_back(texts_.clause(clause));
       }
@@ -86,7 +87,7 @@ class SetWriter {
   const runtime::AxiomGroups& axioms_;
   runtime::ClauseText texts_;
   IndexSet groups_;
-  std::vector<std::size_t> clauses_;
+  runtime::GroundContradiction found_;
 };
 
 /// What is known of the sets that are not shown.
@@ -95,7 +96,8 @@ std::string claim(const runtime::MinimalSets& found, const SetOptions& options) 
     return found.proven ? "these are all minimal sets" : "stopped: there may be further sets";
   }
   if (found.proven) return "no fewer axioms do";
-  return fmt::format("stopped: fewer may do, but not fewer than {}", found.lower_bound);
+  return fmt::format("stopped: fewer may do, but at least {}",
+                     std::max<std::size_t>(found.lower_bound, 1));
 }
 
 const char* proof_word(ProofVerdict verdict) {
@@ -148,18 +150,20 @@ void print(const runtime::MinimalSets& found, const SetOptions& options,
                     run ? "it" : "each other", claim(found, options), observed_text(run)));
   }
   for (std::size_t i = 0; i < found.sets.size(); ++i) {
-    const auto proof = writer.ground(found.sets[i], limits);
-    if (proof.verdict == ProofVerdict::kRejected) {
-      invocation.sink().error_about(base::DiagnosticCode::kProofRejected, "", proof.reason);
+    const auto& ground = writer.ground(found.sets[i], limits);
+    if (ground.proof.verdict == ProofVerdict::kRejected) {
+      invocation.sink().error_about(base::DiagnosticCode::kProofRejected, "", ground.proof.reason);
     }
+    const auto* proof = proof_word(ground.proof.verdict);
     if (json) {
       sets.push_back({{"size", found.sets[i].size()},
-                      {"proof", proof_word(proof.verdict)},
+                      {"proof", proof},
+                      {"instances_minimal", ground.minimal},
                       {"axioms", writer.json()}});
     } else {
-      invocation.result(fmt::format("set {}: {} (proof {})\n{}", i + 1,
-                                    counted(found.sets[i].size(), "axiom"),
-                                    proof_word(proof.verdict), writer.text()));
+      invocation.result(fmt::format(
+          "set {}: {} (proof {}{})\n{}", i + 1, counted(found.sets[i].size(), "axiom"), proof,
+          ground.minimal ? "" : "; stopped before every instance was needed", writer.text()));
     }
   }
   if (!json) return;
@@ -194,7 +198,8 @@ int explain_sets(const compiler::CompiledModel& model, const SetOptions& options
   print(found, options, run, limits, writer, invocation);
   if (stop_flag().load()) {
     invocation.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
-                                  claim(found, options));
+                                  found.proven ? "not every instance shown is needed"
+                                               : "the sets may not be what was asked for");
     return 0;
   }
   return 1;
