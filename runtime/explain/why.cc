@@ -19,7 +19,7 @@ class Explainer {
  public:
   Explainer(const CompiledModel& model, Timepoint n, const std::vector<bool>& values,
             const WhyOptions& options)
-      : model_(model), n_(n), options_(options), derivation_(model, n, values) {}
+      : model_(model), n_(n), options_(options), index_(model), derivation_(model, n, values) {}
 
   std::vector<WhyStep> run(Literal fact) {
     open_ = {fact};
@@ -93,6 +93,7 @@ class Explainer {
     const auto reason = derivation_.reason(fact.var());
     if (reason == Derivation::kChosen) {
       if (is_forced(fact)) step.kind = WhyKind::kForced;
+      if (const auto released = release_of(fact)) step.premises.push_back(*released);
     } else if (is_inertia(fact)) {
       follow_inertia(fact, step);
     } else {
@@ -103,6 +104,16 @@ class Explainer {
     }
     for (const auto premise : step.premises) open_.push_back(premise);
     steps_.emplace(fact.var(), std::move(step));
+  }
+
+  /// What takes a fluent out of inertia is behind the choice of its value.
+  std::optional<Literal> release_of(Literal fact) const {
+    const auto atom = model_.atom(fact.var());
+    if (atom.kind != AtomKind::kHoldsAt || atom.time.value_or(0) == 0) return std::nullopt;
+    const auto released = index_.find(AtomKind::kReleasedAt, atom.name, atom.time);
+    const bool known = released && derivation_.is_known(*released) &&
+                       derivation_.rank(released->var()) < derivation_.rank(fact.var());
+    return known ? released : std::nullopt;
   }
 
   WhyKind kind_of(std::size_t reason, const WhyStep& step) const {
@@ -164,6 +175,7 @@ class Explainer {
   const CompiledModel& model_;
   Timepoint n_;
   const WhyOptions& options_;
+  compiler::AtomIndex index_;
   Derivation derivation_;
   std::unique_ptr<SatSolver> solver_;  // made for the first choice
   std::vector<Literal> open_;

@@ -122,7 +122,8 @@ std::string WhyText::reason(const WhyStep& step) const {
     case WhyKind::kForced:
       return "open so far, but what comes later admits nothing else";
     case WhyKind::kChosen:
-      return "the model leaves it open; this trace has it so";
+      return (step.premises.empty() ? "" : "as " + premises(step) + ", ") +
+             std::string("the model leaves it open; this trace has it so");
   }
   return {};
 }

@@ -107,6 +107,17 @@ TEST_CASE("a fact that does not hold has a history as well") {
         "completion !Happens(Drop(),3)");
 }
 
+TEST_CASE("behind the value of a released fluent stands its release") {
+  const PlainModel model(
+      "range time 0 2\nfluent F()\nevent E()\n[time] Releases(E(),F(),time).\nHoldsAt(F(),0).\n"
+      "Happens(E(),0).\ncompletion Happens\n");
+  REQUIRE_FALSE(model.sink.has_errors());
+  const auto values = valuations(model.compiled, 1);
+  const auto asked = fact(model.compiled, values[0], AtomKind::kHoldsAt, "F()", 1);
+  CHECK(told(model, runtime::explain_fact(model.compiled, 2, values[0], asked)) ==
+        "stated Happens(E(),0); effect ReleasedAt(F(),1); chosen !HoldsAt(F(),1)");
+}
+
 TEST_CASE("what the model leaves open is a choice, what comes later can take it away") {
   const std::string text =
       "range time 0 1\nfluent F()\nfluent G()\nevent E()\n[time] Terminates(E(),F(),time).\n";
