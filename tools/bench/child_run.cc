@@ -10,10 +10,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 
 namespace parallax::tools {
 namespace {
+
+/// A program on a busy machine gets a part of a processor; one that waits for ever gets none.
+constexpr double kWallPerCpu = 10.0;
 
 /// A descriptor that is closed at the end of its scope.
 class Descriptor {
@@ -31,7 +35,11 @@ class Descriptor {
 };
 
 /// After fork, in the child: only calls that are allowed there.
-[[noreturn]] void become(char* const* argv, const char* folder, int output) {
+[[noreturn]] void become(char* const* argv, const char* folder, int output, rlim_t cpu_s) {
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  const rlimit cpu{cpu_s, cpu_s + 1};
+  ::setrlimit(RLIMIT_CPU, &cpu);
   const int null = ::open("/dev/null", O_RDWR);
   ::dup2(null, STDIN_FILENO);
   ::dup2(output, STDOUT_FILENO);
@@ -82,15 +90,17 @@ std::optional<ChildRun> run_child(const std::vector<std::string>& command,
   const auto begin = std::chrono::steady_clock::now();
   const pid_t child = ::fork();
   if (child < 0) return std::nullopt;
-  if (child == 0) become(argv.data(), options.folder.c_str(), output.number());
+  const auto cpu_s = static_cast<rlim_t>(std::ceil(options.time_limit_s));
+  if (child == 0) become(argv.data(), options.folder.c_str(), output.number(), cpu_s);
   ChildRun run;
-  run.stopped = kill_at_limit(child, options.time_limit_s);
+  run.stopped = kill_at_limit(child, kWallPerCpu * options.time_limit_s);
   int status = 0;
   rusage usage{};
   if (::wait4(child, &status, 0, &usage) != child) return std::nullopt;
   run.cost.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   run.cost.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   run.cost.peak_mb = 1024e-6 * static_cast<double>(usage.ru_maxrss);
+  run.stopped = run.stopped || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU);
   run.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   read_output(output.number(), run);
   return run;

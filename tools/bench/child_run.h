@@ -17,16 +17,16 @@ struct Cost {
 struct ChildRun {
   Cost cost;
   int code = -1;         // exit code, 128 + signal, 127 if there is no such program
-  bool stopped = false;  // killed at the time limit
+  bool stopped = false;  // killed at a time limit
   std::string tail;      // the end of its standard output, at most kTailBytes
 };
 
 inline constexpr std::size_t kTailBytes = 8192;
 
 struct ChildOptions {
-  std::string output;       // file for standard output; written anew
-  std::string folder = {};  // working directory; empty: ours
-  double time_limit_s = 60.0;
+  std::string output;          // file for standard output; written anew
+  std::string folder = {};     // working directory; empty: ours
+  double time_limit_s = 60.0;  // of processor time, rounded up; of wall time ten times as much
 };
 
 /// Runs a program (looked up in PATH, no shell) to its end with standard error discarded. Memory

@@ -88,7 +88,8 @@ int run(int argc, char** argv) {
   app.add_option("--repetitions", options.measure.repetitions, "Runs of which the median counts")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--time-limit", options.measure.time_limit_s, "Seconds a single run may take")
+  app.add_option("--time-limit", options.measure.time_limit_s,
+                 "Seconds of processor time that a single run may take")
       ->check(CLI::Range(0.1, 1e5))
       ->capture_default_str();
   std::string argument;

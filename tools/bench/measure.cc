@@ -29,8 +29,8 @@ void run_once(const Contestant& contestant, const ChildOptions& child, Runs& so_
   if (!run) {
     so_far.remark = "could not be started";
   } else if (run->stopped) {
-    so_far.remark = fmt::format("no end within {:.0f} s, {:.0f} MB so far", child.time_limit_s,
-                                run->cost.peak_mb);
+    so_far.remark = fmt::format("no end within {:.0f} s of cpu, {:.0f} MB so far",
+                                child.time_limit_s, run->cost.peak_mb);
   } else if (run->code == 127) {
     so_far.remark = "not installed";
   } else if (std::count(contestant.good_codes.begin(), contestant.good_codes.end(), run->code) ==

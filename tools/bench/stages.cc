@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <vector>
 
@@ -16,18 +16,18 @@
 namespace parallax::tools {
 namespace {
 
-/// Milliseconds since the last call, or since it was made.
+/// Milliseconds of processor time since the last call, or since it was made.
 class Stopwatch {
  public:
   double lap_ms() {
-    const auto now = std::chrono::steady_clock::now();
-    const std::chrono::duration<double, std::milli> lap = now - begin_;
+    const auto now = std::clock();
+    const auto lap = now - begin_;
     begin_ = now;
-    return lap.count();
+    return 1e3 * static_cast<double>(lap) / CLOCKS_PER_SEC;
   }
 
  private:
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::clock_t begin_ = std::clock();
 };
 
 }  // namespace

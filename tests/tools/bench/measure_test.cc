@@ -51,6 +51,9 @@ TEST_CASE("a program that is not there ends with 127, one beyond its limit is st
   REQUIRE(stopped);
   CHECK(stopped->stopped);
   CHECK(stopped->code == 128 + 9);
+  const auto busy = tools::run_child({"sh", "-c", "while :; do :; done"}, {output.path, "", 1.0});
+  REQUIRE(busy);
+  CHECK(busy->stopped);
   CHECK(!tools::run_child({"true"}, {"/nowhere/output"}));
 }
 
