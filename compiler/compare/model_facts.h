@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compiler/base/source_file.h"
+#include "compiler/compare/fact.h"
+#include "compiler/syntax/ast.h"
+#include "compiler/syntax/loader.h"
+
+namespace parallax::compiler {
+
+/// What the statements of one text say: a fact for every sort, constant, symbol, option and so on,
+/// and one for every formula. A `load` is a fact of its own. In the order of the text.
+std::vector<Fact> text_facts(const Ast& ast, const base::SourceFiles& files);
+
+/// The same for a whole model: the facts of all its files. Of the built-in foundations there is one
+/// fact each, their name.
+std::vector<Fact> model_facts(const ModelAst& model, const base::SourceFiles& files);
+
+/// The facts one a line, declarations first, each group sorted by bytes, no line twice.
+std::string canonical_text(const std::vector<Fact>& facts);
+
+}  // namespace parallax::compiler

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compiler/base/source_file.h"
+#include "compiler/compare/fact.h"
+#include "compiler/plan/lisp_reader.h"
+
+namespace parallax::compiler {
+
+/// A fact for every form of a plan file, as data: layout, comments and case say nothing. A
+/// definition is known by its name. That the forms stand in an order is a fact of its own, since a
+/// later definition replaces an earlier one.
+std::vector<Fact> plan_facts(const LispText& plan, const base::SourceFiles& files);
+
+/// A fact for every entry of a binding table, without comments and layout.
+std::vector<Fact> binding_facts(base::FileId file, const base::SourceFiles& files);
+
+/// The forms in their order, in a layout of our own of at most 100 columns where the data allow.
+std::string canonical_plan(const LispText& plan);
+
+/// A piece of a form that the other one has not, or both, where one stands for the other.
+struct DatumEdit {
+  std::string removed, added;  // on one line; empty: there is none
+  FactPlace old_place, new_place;
+};
+
+/// The smallest pieces in which two forms differ, in the order of the text.
+std::vector<DatumEdit> datum_edits(const LispText& old_plan, DatumId old_form,
+                                   const LispText& new_plan, DatumId new_form,
+                                   const base::SourceFiles& files);
+
+}  // namespace parallax::compiler
