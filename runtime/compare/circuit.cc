@@ -1,0 +1,51 @@
+#include "runtime/compare/circuit.h"
+
+#include <algorithm>
+
+namespace parallax::runtime {
+
+Circuit::Circuit(SatSolver& solver, std::int32_t first_free)
+    : solver_(&solver), next_(first_free), truth_(Literal::positive(next_++)) {
+  solver_->add_clause(std::span(&truth_, 1));
+}
+
+Circuit::Clause Circuit::simplified(std::vector<Literal> literals) const {
+  std::sort(literals.begin(), literals.end(), [](Literal a, Literal b) {
+    return std::pair(a.var(), a.dimacs()) < std::pair(b.var(), b.dimacs());
+  });
+  Clause out;
+  for (const auto literal : literals) {
+    if (literal == ~truth_) continue;
+    const bool opposite = !out.literals.empty() && out.literals.back() == ~literal;
+    if (literal == truth_ || opposite) return {{}, true};
+    if (out.literals.empty() || out.literals.back() != literal) out.literals.push_back(literal);
+  }
+  return out;
+}
+
+Literal Circuit::conjunction(std::vector<Literal> literals) {
+  for (auto& literal : literals) literal = ~literal;
+  return ~disjunction(std::move(literals));
+}
+
+Literal Circuit::disjunction(std::vector<Literal> literals) {
+  auto clause = simplified(std::move(literals));
+  if (clause.satisfied) return truth_;
+  if (clause.literals.empty()) return ~truth_;
+  if (clause.literals.size() == 1) return clause.literals.front();
+  std::vector<std::int32_t> key;
+  for (const auto literal : clause.literals) key.push_back(literal.dimacs());
+  const auto known = gates_.find(key);
+  if (known != gates_.end()) return known->second;
+  const auto gate = new_variable();
+  for (const auto literal : clause.literals) {
+    const Literal implies[] = {gate, ~literal};
+    solver_->add_clause(implies);
+  }
+  clause.literals.push_back(~gate);
+  solver_->add_clause(clause.literals);
+  gates_.emplace(std::move(key), gate);
+  return gate;
+}
+
+}  // namespace parallax::runtime

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "runtime/solver/sat_solver.h"
+
+namespace parallax::runtime {
+
+/// Conjunctions as literals of a solver, the same conjunction always the same literal. Two models
+/// that are mapped into one circuit thus share what they have in common.
+class Circuit {
+ public:
+  /// `first_free`: the first variable of the solver that the circuit may use. The solver outlives
+  /// the circuit.
+  Circuit(SatSolver& solver, std::int32_t first_free);
+
+  Literal truth() const { return truth_; }
+  Literal constant(bool value) const { return value ? truth_ : ~truth_; }
+  Literal new_variable() { return Literal::positive(next_++); }
+  /// A literal that is equivalent to the conjunction.
+  Literal conjunction(std::vector<Literal> literals);
+  Literal disjunction(std::vector<Literal> literals);
+
+  /// A clause without false literals, sorted by variable; empty and `satisfied` if it is true
+  /// whatever the values.
+  struct Clause {
+    std::vector<Literal> literals;
+    bool satisfied = false;
+  };
+  Clause simplified(std::vector<Literal> literals) const;
+
+ private:
+  SatSolver* solver_;
+  std::int32_t next_;
+  Literal truth_;
+  std::map<std::vector<std::int32_t>, Literal> gates_;
+};
+
+}  // namespace parallax::runtime

@@ -1,0 +1,206 @@
+#include "runtime/compare/difference_finder.h"
+
+#include <algorithm>
+
+namespace parallax::runtime {
+namespace {
+
+/// By variable - 1: what the models are compared on.
+std::vector<bool> observed_in(const CompiledModel& model, const SharedVocabulary& vocabulary,
+                              std::optional<Literal> SharedAtom::*side) {
+  std::vector<bool> observed(static_cast<std::size_t>(model.variable_count()), false);
+  for (const auto& atom : vocabulary.shared) {
+    if (atom.needed_horizon() > model.horizon) continue;
+    const auto& literal = atom.*side;
+    if (literal) observed[static_cast<std::size_t>(literal->var()) - 1] = true;
+  }
+  return observed;
+}
+
+}  // namespace
+
+DifferenceFinder::DifferenceFinder(const CompiledModel& first, const CompiledModel& second,
+                                   const SharedVocabulary& vocabulary, std::size_t max_refinements,
+                                   const std::atomic<bool>* stop)
+    : first_(first),
+      second_(second),
+      vocabulary_(vocabulary),
+      max_refinements_(max_refinements),
+      solver_(make_cadical_solver(stop)),
+      circuit_(*solver_, first.variable_count() + 1),
+      first_definitions_(
+          find_definitions(first, observed_in(first, vocabulary, &SharedAtom::first), stop)),
+      second_definitions_(
+          find_definitions(second, observed_in(second, vocabulary, &SharedAtom::second), stop)),
+      verifier_(second, make_cadical_solver(stop)) {
+  add_first();
+  prepare_refutation();
+}
+
+/// The first model with its definitions as gates, so that both models share what they can.
+void DifferenceFinder::add_first() {
+  mapped_first_.emplace(first_, first_definitions_, circuit_,
+                        [](std::int32_t variable) { return Literal::positive(variable); });
+  for (std::size_t c = 0; c < first_.clauses.size(); ++c) {
+    if (first_definitions_.is_gate_clause[c]) continue;
+    const auto clause = mapped_first_->clause(c);
+    if (clause->satisfied) continue;
+    asserted_.insert(*clause);
+    solver_->add_clause(clause->literals);
+  }
+  // Witnesses with little in them are easier to read.
+  for (const auto& atom : vocabulary_.shared) {
+    if (atom.first) solver_->set_phase(~*atom.first);
+  }
+}
+
+void DifferenceFinder::prepare_refutation() {
+  std::vector<Literal> of_second(static_cast<std::size_t>(second_.variable_count()),
+                                 circuit_.constant(false));
+  std::vector<Refutation::Violations> impossible;
+  for (const auto& atom : vocabulary_.shared) {
+    if (atom.needed_horizon() > second_.horizon) continue;
+    if (atom.first && atom.second) {
+      of_second[static_cast<std::size_t>(atom.second->var()) - 1] = *atom.first;
+    } else if (atom.first) {
+      impossible.push_back({atom.needed_horizon(), *atom.first});
+    }
+  }
+  refutation_.emplace(
+      second_, second_definitions_, circuit_, *solver_, asserted_,
+      [&](std::int32_t v) { return of_second[static_cast<std::size_t>(v) - 1]; }, impossible);
+  if (is_determined()) refutation_->require([](std::int32_t) { return false; });
+}
+
+Answer DifferenceFinder::find() { return search(std::nullopt, true); }
+Answer DifferenceFinder::find_any() { return search(std::nullopt, false); }
+
+Answer DifferenceFinder::find_with_fewer(std::size_t events) {
+  if (events == 0) return Answer::kNone;
+  if (!counter_) {
+    std::vector<Literal> happens;
+    for (const auto& atom : vocabulary_.shared) {
+      if (atom.kind == AtomKind::kHappens && atom.time < second_.horizon && atom.first) {
+        happens.push_back(*atom.first);
+      }
+    }
+    counter_.emplace(circuit_, *solver_, happens, events);
+  }
+  return search(~counter_->at_least(events), true);
+}
+
+Answer DifferenceFinder::find(Timepoint by) {
+  const auto status = solve(by, std::nullopt);
+  // Whatever the values of the other variables are, a clause up to `by` is violated.
+  if (status == SolveStatus::kUnsatisfiable) return Answer::kNone;
+  if (status == SolveStatus::kUnknown) return Answer::kUnknown;
+  return verify(by) == SolveStatus::kUnsatisfiable ? describe_found(by) : Answer::kUnknown;
+}
+
+Answer DifferenceFinder::search(std::optional<Literal> assumption, bool describes) {
+  const auto by = second_.horizon;
+  for (;;) {
+    const auto status = solve(by, assumption);
+    if (status == SolveStatus::kUnsatisfiable) return Answer::kNone;
+    if (status == SolveStatus::kUnknown) return Answer::kUnknown;
+    // Where one call answers, what is only counted need not be looked at again.
+    if (!describes && is_determined()) return Answer::kFound;
+    const auto verified = verify(by);
+    if (verified == SolveStatus::kUnsatisfiable) {
+      return describes ? describe_found(by) : Answer::kFound;
+    }
+    if (verified == SolveStatus::kUnknown) return Answer::kUnknown;
+    PARALLAX_REQUIRE(!is_determined(), "definitions leave nothing open but what is free");
+    if (refinements_ == 2 * max_refinements_) return Answer::kUnknown;
+    if (refinements_++ < max_refinements_) {
+      refutation_->require([&](std::int32_t v) { return verifier_.value(Literal::positive(v)); });
+    } else {
+      block(by);  // no more than this one trace is learned
+    }
+  }
+}
+
+SolveStatus DifferenceFinder::solve(Timepoint by, std::optional<Literal> assumption) {
+  refutation_->assume_by(by);
+  if (assumption) solver_->assume(*assumption);
+  const auto status = solver_->solve();
+  if (status != SolveStatus::kSatisfiable) return status;
+  found_.clear();
+  for (const auto& atom : vocabulary_.shared) {
+    found_.push_back(atom.first && solver_->value(*atom.first));
+  }
+  return status;
+}
+
+bool DifferenceFinder::is_true(const SharedAtom& atom) const {
+  return found_[static_cast<std::size_t>(&atom - vocabulary_.shared.data())];
+}
+
+/// Has the second model, up to `by`, a valuation with what was found?
+SolveStatus DifferenceFinder::verify(Timepoint by) {
+  if (impossible(by)) return SolveStatus::kUnsatisfiable;
+  return verifier_.solve(by, observation(by));
+}
+
+std::vector<Literal> DifferenceFinder::observation(Timepoint by) const {
+  std::vector<Literal> literals;
+  for (const auto& atom : vocabulary_.shared) {
+    if (!atom.second || atom.needed_horizon() > by) continue;
+    literals.push_back(is_true(atom) ? *atom.second : ~*atom.second);
+  }
+  return literals;
+}
+std::vector<Literal> DifferenceFinder::observation() const { return observation(excluded_by_); }
+
+std::optional<SharedAtom> DifferenceFinder::impossible(Timepoint by) const {
+  for (const auto& atom : vocabulary_.shared) {
+    if (!atom.second && atom.needed_horizon() <= by && is_true(atom)) return atom;
+  }
+  return std::nullopt;
+}
+std::optional<SharedAtom> DifferenceFinder::impossible() const { return impossible(excluded_by_); }
+
+/// Decodes the trace, and looks for the earliest timepoint: what rules out a part of a trace rules
+/// out the longer ones.
+Answer DifferenceFinder::describe_found(Timepoint by) {
+  trace_ = decode_trace(first_, first_.horizon, [&](Literal literal) {
+    const auto mapped = *mapped_first_->find(literal);
+    return solver_->value(mapped);
+  });
+  Timepoint low = 0;
+  excluded_by_ = by;
+  while (low < excluded_by_) {
+    const auto middle = low + (excluded_by_ - low) / 2;
+    switch (verify(middle)) {
+      case SolveStatus::kUnsatisfiable:
+        excluded_by_ = middle;
+        break;
+      case SolveStatus::kSatisfiable:
+        low = middle + 1;
+        break;
+      case SolveStatus::kUnknown:
+        return Answer::kUnknown;
+    }
+  }
+  return Answer::kFound;
+}
+
+std::size_t DifferenceFinder::events_before(Timepoint t) const {
+  return static_cast<std::size_t>(
+      std::count_if(vocabulary_.shared.begin(), vocabulary_.shared.end(), [&](const auto& atom) {
+        return atom.kind == AtomKind::kHappens && atom.time < t && is_true(atom);
+      }));
+}
+
+void DifferenceFinder::block() { block(first_.horizon); }
+
+void DifferenceFinder::block(Timepoint up_to) {
+  std::vector<Literal> clause;
+  for (const auto& atom : vocabulary_.shared) {
+    if (atom.first && atom.needed_horizon() <= up_to)
+      clause.push_back(is_true(atom) ? ~*atom.first : *atom.first);
+  }
+  solver_->add_clause(clause);
+}
+
+}  // namespace parallax::runtime

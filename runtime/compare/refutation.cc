@@ -1,0 +1,109 @@
+#include "runtime/compare/refutation.h"
+
+#include <map>
+
+namespace parallax::runtime {
+
+using compiler::Timepoint;
+
+std::size_t ClauseSet::Hash::operator()(const Key& key) const {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const auto literal : key) {
+    hash ^= static_cast<std::uint32_t>(literal);
+    hash *= 0x100000001b3ULL;
+    hash ^= hash >> 29U;
+  }
+  return static_cast<std::size_t>(hash);
+}
+
+ClauseSet::Key ClauseSet::key(const Circuit::Clause& clause) {
+  Key key;
+  key.reserve(clause.literals.size());
+  for (const auto literal : clause.literals) key.push_back(literal.dimacs());
+  return key;
+}
+
+Refutation::Refutation(const compiler::CompiledModel& model, const Definitions& definitions,
+                       Circuit& circuit, SatSolver& solver, const ClauseSet& asserted,
+                       const std::function<Literal(std::int32_t)>& observed,
+                       const std::vector<Violations>& impossible)
+    : model_(model),
+      definitions_(definitions),
+      circuit_(circuit),
+      solver_(solver),
+      asserted_(asserted),
+      mapped_(model, definitions, circuit, [&](std::int32_t variable) -> std::optional<Literal> {
+        const auto role = definitions.of[static_cast<std::size_t>(variable) - 1].role;
+        if (role == Role::kFree) return std::nullopt;
+        return observed(variable);
+      }) {
+  std::map<Timepoint, std::vector<Literal>> found;
+  for (const auto& atom : impossible) found[atom.time].push_back(atom.some);
+  for (std::size_t c = 0; c < model.clauses.size(); ++c) {
+    if (!is_relevant(c)) continue;
+    const auto clause = mapped_.clause(c);
+    if (clause) {
+      add(found, c, *clause);
+    } else {
+      open_.push_back(c);
+    }
+  }
+  closed_ = grouped(found);
+  all_ = closed_;
+}
+
+/// What follows from other clauses, or holds by definition, is never needed.
+bool Refutation::is_relevant(std::size_t clause) const {
+  if (definitions_.is_gate_clause[clause]) return false;
+  return model_.origins[model_.clause_origins[clause]].what != compiler::kInvariantOrigin;
+}
+
+void Refutation::add(std::map<Timepoint, std::vector<Literal>>& found, std::size_t clause,
+                     const Circuit::Clause& mapped) {
+  if (mapped.satisfied || asserted_.contains(mapped)) return;
+  auto& violations = found[model_.clause_timepoints[clause]];
+  if (mapped.literals.empty()) return violations.push_back(circuit_.truth());
+  if (mapped.literals.size() == 1) return violations.push_back(~mapped.literals.front());
+  const auto violated = circuit_.new_variable();
+  for (const auto literal : mapped.literals) {
+    const Literal falsified[] = {~violated, ~literal};
+    solver_.add_clause(falsified);
+  }
+  violations.push_back(violated);
+}
+
+std::vector<Refutation::Violations> Refutation::grouped(
+    const std::map<Timepoint, std::vector<Literal>>& found) {
+  std::vector<Violations> out;
+  for (const auto& [time, literals] : found) {
+    const auto some = circuit_.new_variable();
+    auto clause = literals;
+    clause.push_back(~some);
+    solver_.add_clause(clause);
+    out.push_back({time, some});
+  }
+  return out;
+}
+
+void Refutation::require(const std::function<bool(std::int32_t)>& free_value) {
+  auto required = closed_;
+  if (!open_.empty()) {
+    const auto closed = mapped_.closed(free_value);
+    std::map<Timepoint, std::vector<Literal>> found;
+    for (const auto c : open_) add(found, c, *closed.clause(c));
+    const auto more = grouped(found);
+    required.insert(required.end(), more.begin(), more.end());
+    all_.insert(all_.end(), more.begin(), more.end());
+  }
+  std::vector<Literal> clause;
+  for (const auto& violations : required) clause.push_back(violations.some);
+  solver_.add_clause(clause);
+}
+
+void Refutation::assume_by(Timepoint by) const {
+  for (const auto& violations : all_) {
+    if (violations.time > by) solver_.assume(~violations.some);
+  }
+}
+
+}  // namespace parallax::runtime

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <functional>
+#include <unordered_set>
+#include <vector>
+
+#include "runtime/compare/mapped_model.h"
+
+namespace parallax::runtime {
+
+/// Clauses by their literals, for look-up.
+class ClauseSet {
+ public:
+  void insert(const Circuit::Clause& clause) { keys_.insert(key(clause)); }
+  bool contains(const Circuit::Clause& clause) const { return keys_.contains(key(clause)); }
+
+ private:
+  using Key = std::vector<std::int32_t>;
+  struct Hash {
+    std::size_t operator()(const Key& key) const;
+  };
+  static Key key(const Circuit::Clause& clause);
+  std::unordered_set<Key, Hash> keys_;
+};
+
+/// "The observables are no trace of this model", in the clauses of a solver. For given values of
+/// the model's free variables that is: some clause is violated.
+class Refutation {
+ public:
+  /// Of one timepoint; `some` is true only if a clause of it is violated.
+  struct Violations {
+    compiler::Timepoint time = 0;
+    Literal some;
+  };
+
+  /// `observed(v)`: the literal of an observed variable. `asserted` holds anyway, so it cannot be
+  /// what is violated. `impossible`: literals that no trace of the model has. The references
+  /// outlive the object.
+  Refutation(const compiler::CompiledModel& model, const Definitions& definitions, Circuit& circuit,
+             SatSolver& solver, const ClauseSet& asserted,
+             const std::function<Literal(std::int32_t)>& observed,
+             const std::vector<Violations>& impossible);
+
+  /// Requires that these values of the free variables make no trace of the model.
+  void require(const std::function<bool(std::int32_t)>& free_value);
+  /// For the next call: violated by clauses up to `by`.
+  void assume_by(compiler::Timepoint by) const;
+
+ private:
+  bool is_relevant(std::size_t clause) const;
+  void add(std::map<compiler::Timepoint, std::vector<Literal>>& found, std::size_t clause,
+           const Circuit::Clause& mapped);
+  std::vector<Violations> grouped(const std::map<compiler::Timepoint, std::vector<Literal>>& found);
+
+  const compiler::CompiledModel& model_;
+  const Definitions& definitions_;
+  Circuit& circuit_;
+  SatSolver& solver_;
+  const ClauseSet& asserted_;
+  MappedModel mapped_;
+  std::vector<std::size_t> open_;   // clauses that depend on free variables
+  std::vector<Violations> closed_;  // of the others
+  std::vector<Violations> all_;     // with those for all values that were required
+};
+
+}  // namespace parallax::runtime

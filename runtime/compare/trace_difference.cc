@@ -1,0 +1,203 @@
+#include "runtime/compare/trace_difference.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <variant>
+
+#include "runtime/compare/common_count.h"
+#include "runtime/compare/exclusion.h"
+
+namespace parallax::runtime {
+namespace {
+
+/// Counters larger than this are not built; the witness may then have more events than needed.
+constexpr std::size_t kMaxCounter = 4'000'000;
+
+std::string describe(const SharedAtom& atom, const SharedVocabulary& vocabulary) {
+  return std::string(atom.kind == AtomKind::kHappens ? "Happens " : "HoldsAt ") +
+         vocabulary.names[atom.name] + " " + std::to_string(atom.time);
+}
+
+/// One direction: what the first model has and the second has not.
+class Direction {
+ public:
+  Direction(const CompiledModel& first, const CompiledModel& second, SharedVocabulary vocabulary,
+            const std::vector<bool>& second_edited, const DifferenceOptions& options)
+      : first_(first),
+        second_(second),
+        vocabulary_(std::move(vocabulary)),
+        edited_(second_edited),
+        options_(options),
+        finder_(first, second, vocabulary_, options.max_refinements, options.stop) {}
+
+  OneSided run() {
+    OneSided out;
+    out.answer = finder_.find();
+    if (out.answer == Answer::kFound) {
+      keep(finder_);
+      find_earliest();
+      explain();
+      out.witness = std::move(witness_);
+      list(out.count);
+    } else if (out.answer == Answer::kNone) {
+      out.count.exact = true;
+    }
+    out.solve_calls = solve_calls_ + finder_.solve_calls();
+    out.refinements = refinements_ + finder_.refinements();
+    return out;
+  }
+
+ private:
+  void keep(const DifferenceFinder& finder) {
+    witness_.trace = finder.trace();
+    witness_.excluded_by = finder.excluded_by();
+    witness_.events = finder.events_before(witness_.excluded_by);
+    observation_ = finder.observation();
+    const auto impossible = finder.impossible();
+    witness_.impossible =
+        impossible ? std::optional(describe(*impossible, vocabulary_)) : std::nullopt;
+  }
+
+  /// The finder at hand answers most questions for earlier timepoints; what it cannot tell is asked
+  /// of the truncated second model.
+  void find_earliest() {
+    for (;;) {
+      auto answer = Answer::kNone;
+      if (witness_.excluded_by > 0) answer = finder_.find(witness_.excluded_by - 1);
+      if (answer == Answer::kFound) {
+        keep(finder_);
+        continue;
+      }
+      if (answer == Answer::kUnknown && find_exactly(witness_.excluded_by - 1)) continue;
+      break;
+    }
+    find_fewest_events();
+  }
+
+  /// True if the witness got better.
+  bool find_exactly(Timepoint by) {
+    const auto second = truncated(second_, by);
+    DifferenceFinder finder(first_, second, vocabulary_, options_.max_refinements, options_.stop);
+    const auto answer = finder.find();
+    if (answer == Answer::kFound) keep(finder);
+    note(finder, answer);
+    return answer == Answer::kFound;
+  }
+
+  void find_fewest_events() {
+    if (witness_.events == 0) return;
+    const auto by = witness_.excluded_by;
+    const auto happens = std::count_if(
+        vocabulary_.shared.begin(), vocabulary_.shared.end(),
+        [&](const SharedAtom& atom) { return atom.kind == AtomKind::kHappens && atom.time < by; });
+    if (static_cast<std::size_t>(happens) * witness_.events > kMaxCounter) {
+      witness_.is_shortest = false;
+      return;
+    }
+    const auto second = truncated(second_, by);
+    DifferenceFinder finder(first_, second, vocabulary_, options_.max_refinements, options_.stop);
+    auto answer = Answer::kFound;
+    while (answer == Answer::kFound) {
+      answer = finder.find_with_fewer(witness_.events);
+      if (answer == Answer::kFound) keep(finder);
+    }
+    note(finder, answer);
+  }
+
+  void note(const DifferenceFinder& finder, Answer answer) {
+    solve_calls_ += finder.solve_calls();
+    refinements_ += finder.refinements();
+    if (answer == Answer::kUnknown) witness_.is_shortest = false;
+  }
+
+  void explain() {
+    if (witness_.impossible) return;
+    witness_.excluding = excluding_origins(
+        second_, witness_.excluded_by, observation_,
+        [&](std::uint32_t origin) { return origin < edited_.size() && edited_[origin]; },
+        options_.stop);
+  }
+
+  void list(TraceNumber& count) {
+    auto answer = Answer::kFound;
+    while (count.value < options_.list_limit) {
+      answer = finder_.find_any();
+      if (answer != Answer::kFound) break;
+      ++count.value;
+      finder_.block();
+    }
+    count.exact = answer == Answer::kNone;
+    if (count.value == 0) count.value = 1;  // the witness itself
+  }
+
+  const CompiledModel& first_;
+  const CompiledModel& second_;
+  const SharedVocabulary vocabulary_;
+  const std::vector<bool>& edited_;
+  const DifferenceOptions& options_;
+  DifferenceFinder finder_;
+  Witness witness_;
+  std::vector<Literal> observation_;
+  std::int64_t solve_calls_ = 0;  // of finders for truncated models
+  std::size_t refinements_ = 0;
+};
+
+/// A graph with the model that it looks into.
+struct Graph {
+  LayeredModel layered;
+  std::unique_ptr<TraceGraph> graph;
+};
+
+/// Null where the model has none or the limits are hit.
+std::unique_ptr<Graph> graph_of(const CompiledModel& model, const DifferenceOptions& options) {
+  auto split = split_into_windows(model, Distinct::kObservable);
+  if (!std::holds_alternative<LayeredModel>(split)) return nullptr;
+  auto out = std::make_unique<Graph>();
+  out->layered = std::get<LayeredModel>(std::move(split));
+  std::string reason;
+  out->graph = TraceGraph::build(out->layered, options.graph, options.stop, reason);
+  return out->graph == nullptr ? nullptr : std::move(out);
+}
+
+bool is_unsatisfiable(const CompiledModel& model, const DifferenceOptions& options) {
+  SolverSession session(model, make_cadical_solver(options.stop));
+  return session.solve(model.horizon, {}) == SolveStatus::kUnsatisfiable;
+}
+
+/// Exact numbers where the graphs of both models are small. The graph of a model without traces is
+/// not to be built, and not needed.
+void count_with_graphs(const CompiledModel& first, const CompiledModel& second,
+                       const DifferenceOptions& options, TraceDifference& out) {
+  const bool no_first = is_unsatisfiable(first, options);
+  const bool no_second = is_unsatisfiable(second, options);
+  const auto a = no_first ? nullptr : graph_of(first, options);
+  if (a == nullptr && !no_first) return;
+  const auto b = no_second ? nullptr : graph_of(second, options);
+  if (b == nullptr && !no_second) return;
+  const mpz_class of_first = a == nullptr ? mpz_class(0) : a->graph->count();
+  const mpz_class of_second = b == nullptr ? mpz_class(0) : b->graph->count();
+  mpz_class common = 0;
+  if (a != nullptr && b != nullptr) common = count_common(*a->graph, first, *b->graph, second);
+  out.first_count = TraceNumber{of_first, true};
+  out.second_count = TraceNumber{of_second, true};
+  out.lost.count = {of_first - common, true};
+  out.gained.count = {of_second - common, true};
+}
+
+}  // namespace
+
+TraceDifference compare_traces(const CompiledModel& first, const CompiledModel& second,
+                               const DifferenceOptions& options) {
+  TraceDifference out;
+  out.horizon = std::min(first.horizon, second.horizon);
+  const auto a = truncated(first, out.horizon), b = truncated(second, out.horizon);
+  out.vocabulary = shared_vocabulary(a, b, out.horizon);
+  out.lost = Direction(a, b, out.vocabulary, options.second_edited, options).run();
+  out.gained = Direction(b, a, exchanged(out.vocabulary), options.first_edited, options).run();
+  const bool open = !out.lost.count.exact || !out.gained.count.exact;
+  if (open && out.vocabulary.is_same()) count_with_graphs(a, b, options, out);
+  return out;
+}
+
+}  // namespace parallax::runtime

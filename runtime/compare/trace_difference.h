@@ -1,0 +1,67 @@
+#pragma once
+
+#include <gmpxx.h>
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/compare/difference_finder.h"
+#include "runtime/graph/trace_graph.h"
+
+namespace parallax::runtime {
+
+/// At least `value`; exactly so many if `exact`.
+struct TraceNumber {
+  mpz_class value;
+  bool exact = false;
+};
+
+/// A trace that the other model has not. Of all such traces it is one that the other model rules
+/// out by the earliest timepoint (its clauses up to then contradict the trace up to then), and
+/// among those one with the fewest shared events before it.
+struct Witness {
+  Trace trace;
+  Timepoint excluded_by = 0;
+  std::size_t events = 0;  // shared ones before `excluded_by`
+  /// Origins of the other model, a minimal set that rules it out; empty with `impossible`.
+  std::vector<std::uint32_t> excluding;
+  /// An atom of the trace that is false in every trace of the other model: "Happens Go(r1) 2".
+  std::optional<std::string> impossible;
+  bool is_shortest = true;  // else the solver was stopped on the way
+};
+
+/// The traces of one model that the other has not, on what both observe.
+struct OneSided {
+  Answer answer = Answer::kUnknown;
+  std::optional<Witness> witness;
+  TraceNumber count;
+  std::int64_t solve_calls = 0;
+  std::size_t refinements = 0;
+};
+
+struct TraceDifference {
+  Timepoint horizon = 0;
+  SharedVocabulary vocabulary;
+  std::optional<TraceNumber> first_count, second_count;  // of all traces, where they were counted
+  OneSided lost;                                         // of the first, not of the second
+  OneSided gained;                                       // of the second, not of the first
+};
+
+struct DifferenceOptions {
+  std::size_t list_limit = 200;         // traces that are found one by one to be counted
+  std::size_t max_refinements = 200;    // DifferenceFinder
+  GraphLimits graph = {2'000, 4'000};  // for counting beyond `list_limit`
+  /// By origin of each model: belongs to an edited axiom.
+  std::vector<bool> first_edited, second_edited;
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// Compares the traces of two models without state constraints up to the smaller of their horizons.
+TraceDifference compare_traces(const CompiledModel& first, const CompiledModel& second,
+                               const DifferenceOptions& options);
+
+}  // namespace parallax::runtime
