@@ -84,6 +84,10 @@ class Matcher {
   void match_similar() {
     const auto words = [](const Fact& fact) {
       auto all = words_of(fact.text);
+      // Brackets and commas are everywhere.
+      std::erase_if(all, [](std::string_view word) {
+        return std::string_view("()[]{},.").find(word) != std::string_view::npos;
+      });
       std::sort(all.begin(), all.end());
       return all;
     };

@@ -157,7 +157,7 @@ std::vector<Fact> binding_facts(base::FileId file, const base::SourceFiles& file
     const auto begin = clean.entries[i];
     const auto end = i + 1 < clean.entries.size() ? clean.entries[i + 1] : clean.text.size();
     std::string text;
-    for (const auto word : words_of(clean.text.substr(begin, end - begin))) {
+    for (const auto word : words_of(std::string_view(clean.text).substr(begin, end - begin))) {
       if (word != "\n" && word != "\t" && word != "\r") (text += text.empty() ? "" : " ") += word;
     }
     const auto arrow = text.find(" - >");

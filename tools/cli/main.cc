@@ -9,6 +9,7 @@
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/suggest.h"
 #include "tools/cli/command.h"
+#include "tools/cli/diff_command.h"
 #include "tools/cli/explain_command.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/signals.h"
@@ -88,11 +89,11 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version",
                        fmt::format("parallax {} (CaDiCaL {})", kVersion, kCadicalVersion));
   CommonOptions options;
-  std::vector<Command> commands = {add_run_command(app),         add_replay_command(app),
-                                   add_suite_command(app),       add_check_command(app),
-                                   add_traces_command(app),      add_compile_command(app),
-                                   add_diagnostics_command(app), add_explain_command(app),
-                                   add_fmt_command(app),         add_worker_command(app)};
+  std::vector<Command> commands = {
+      add_run_command(app),         add_replay_command(app),  add_suite_command(app),
+      add_check_command(app),       add_traces_command(app),  add_compile_command(app),
+      add_diagnostics_command(app), add_explain_command(app), add_fmt_command(app),
+      add_diff_command(app),        add_worker_command(app)};
   for (auto& command : commands) add_common_options(*command.app, options);
   try {
     app.parse(argc, argv);

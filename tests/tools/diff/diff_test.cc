@@ -1,0 +1,311 @@
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/cli_fixture.h"
+
+namespace parallax::test {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kYale =
+    "range time 0 2\n"
+    "fluent Alive()\n"
+    "fluent Loaded()\n"
+    "event Load()\n"
+    "event Shoot()\n"
+    "[time] Initiates(Load(),Loaded(),time).\n"
+    "[time] HoldsAt(Loaded(),time) -> Terminates(Shoot(),Alive(),time).\n"
+    "HoldsAt(Alive(),0).\n"
+    "!HoldsAt(Loaded(),0).\n";
+
+std::string changed(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  REQUIRE_MESSAGE(at != std::string::npos, from);
+  return text.replace(at, from.size(), to);
+}
+
+struct DiffFixture : CliFixture {
+  /// The document of `parallax diff old.e new.e --json` for two texts.
+  Json diff(const std::string& before, const std::string& after,
+            std::vector<std::string> more = {}) {
+    write("old.e", before);
+    write("new.e", after);
+    more.insert(more.begin(), {"diff", "old.e", "new.e", "--json"});
+    const auto result = parallax(more);
+    code = result.code;
+    err = result.err;
+    return Json::parse(result.out);
+  }
+  int code = -1;
+  std::string err;
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(DiffFixture, "a rewritten model is no difference") {
+  const auto document = diff(kYale,
+                             "; rewritten\nevent Shoot()\nevent Load()\n"
+                             "fluent Loaded()\nfluent Alive()\nrange time 0 2\n"
+                             "!(HoldsAt(Loaded(),0)).\nHoldsAt(Alive(),0).\n"
+                             "[time7] (HoldsAt(Loaded(),time7)) ->\n"
+                             "  Terminates(Shoot(),Alive(),time7).\n"
+                             "[time3] Initiates(Load(),Loaded(),time3).\n");
+  CHECK(code == 0);
+  CHECK(document["equal"] == true);
+  CHECK(document["traces"]["lost"]["answer"] == "none");
+  CHECK(document["traces"]["gained"]["answer"] == "none");
+  const auto text = parallax({"diff", "old.e", "new.e"});
+  CHECK(text.code == 0);
+  CHECK(text.out.ends_with("no difference\n"));
+}
+
+TEST_CASE_FIXTURE(DiffFixture,
+                  "an edited axiom: both places, a shortest witness, what it rests on") {
+  const auto document =
+      diff(kYale, changed(kYale, "HoldsAt(Loaded(),time) -> Terminates", "Terminates"));
+  CHECK(code == 1);
+  CHECK(document["equal"] == false);
+  CHECK(document["declarations"]["changed"].empty());
+  REQUIRE(document["axioms"]["changed"].size() == 1);
+  CHECK(document["axioms"]["changed"][0]["old"]["line"] == 7);
+  CHECK(document["axioms"]["changed"][0]["new"]["file"] == "new.e");
+  const auto& witness = document["traces"]["lost"]["witness"];
+  CHECK(witness["excluded_by"] == 1);
+  CHECK(witness["events"] == 1);
+  CHECK(witness["shortest"] == true);
+  CHECK(witness["timepoints"].size() == 3);
+  CHECK(witness["timepoints"][0]["happens"] == Json({"Shoot()"}));
+  REQUIRE(witness["contradicts"].size() == 1);
+  CHECK(witness["contradicts"][0]["line"] == 7);
+  CHECK(witness["contradicts"][0]["edited"] == true);
+  REQUIRE(witness["edits"].size() == 1);
+  CHECK(witness["edits"][0]["old"]["line"] == 7);
+  const auto text = parallax({"diff", "old.e", "new.e"}).out;
+  CHECK(text.find("~ old.e:7  [time] HoldsAt(Loaded(),time) -> ") != std::string::npos);
+  CHECK(text.find("it depends on the edit") != std::string::npos);
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "of several edits those are named on which a witness depends") {
+  auto after = changed(kYale, "[time] Initiates(Load(),Loaded(),time).\n", "");
+  after = changed(after, "!HoldsAt(Loaded(),0).", "!HoldsAt(Loaded(),0) & HoldsAt(Alive(),0).");
+  after += "[time] Happens(Shoot(),time) -> HoldsAt(Alive(),time) | !HoldsAt(Loaded(),time).\n";
+  const auto document = diff(kYale, after);
+  CHECK(document["axioms"]["removed"].size() == 1);
+  const auto& edits = document["traces"]["lost"]["witness"]["edits"];
+  REQUIRE(edits.size() == 1);
+  CHECK(edits[0]["new"].is_null());
+  CHECK(edits[0]["old"]["line"] == 6);
+  // What contradicts it is inertia alone: nothing that stands in the new text was edited.
+  for (const auto& axiom : document["traces"]["lost"]["witness"]["contradicts"]) {
+    CHECK(axiom["edited"] == false);
+  }
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "numbers are those of the full lists") {
+  const auto document =
+      diff(kYale, changed(kYale, "HoldsAt(Loaded(),time) -> Terminates", "Terminates"),
+           {"--count-limit", "5"});
+  const auto count = [&](const char* name) {
+    return std::stoi(parallax({"traces", name, "--count"}).out);
+  };
+  CHECK(document["traces"]["old"]["value"] == count("old.e"));
+  CHECK(document["traces"]["new"]["value"] == count("new.e"));
+  write("old.jsonl", parallax({"traces", "old.e", "--limit", "0", "--format", "jsonl"}).out);
+  write("new.jsonl", parallax({"traces", "new.e", "--limit", "0", "--format", "jsonl"}).out);
+  const auto lists = Json::parse(parallax({"diff", "old.jsonl", "new.jsonl", "--json"}).out);
+  for (const auto* side : {"lost", "gained"}) {
+    CHECK(document["traces"][side]["count"]["exact"] == true);
+    CHECK(document["traces"][side]["count"]["value"] == lists["traces"][side]["count"]);
+  }
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "different vocabularies and horizons are said") {
+  const auto after = changed(changed(kYale, "event Load()", "event Load()\nevent Wait()"),
+                             "range time 0 2", "range time 0 3");
+  const auto document = diff(kYale, after);
+  CHECK(code == 1);
+  CHECK(document["traces"]["only_new"] == Json({"Wait()"}));
+  CHECK(document["traces"]["horizon"] == 2);
+  CHECK(document["traces"]["lost"]["answer"] == "none");
+  CHECK(document["traces"]["gained"]["answer"] == "none");
+  REQUIRE(document["remarks"].size() == 1);
+  const auto text = parallax({"diff", "old.e", "new.e"}).out;
+  CHECK(text.find("not compared, as only new.e has them: Wait()") != std::string::npos);
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "compiled models are compared with each other and with texts") {
+  write("old.e", kYale);
+  write("new.e", changed(kYale, "!HoldsAt(Loaded(),0).\n", ""));
+  CHECK(parallax({"compile", "old.e", "-o", "old.dec.cnf"}).code == 0);
+  CHECK(parallax({"compile", "new.e", "-o", "new.dec.cnf"}).code == 0);
+  const auto both = parallax({"diff", "old.dec.cnf", "new.dec.cnf"});
+  CHECK(both.code == 1);
+  CHECK(both.out.find("- old.e:9  axiom: !HoldsAt(Loaded(),0)") != std::string::npos);
+  CHECK(both.out.find("gained: ") != std::string::npos);
+  CHECK(parallax({"diff", "old.e", "old.dec.cnf"}).code == 0);
+  CHECK(parallax({"diff", "old.e", "new.dec.cnf"}).code == 1);
+  CHECK(parallax({"diff", "old.e", "old.dec.cnf", "--horizon", "7"}).code == 3);
+  CHECK(parallax({"diff", "old.e", "old.dec.cnf", "--horizon", "1", "--traces-only"}).code == 0);
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "--traces-only looks at the meaning, --no-traces at the text") {
+  write("old.e", kYale);
+  write("new.e", changed(kYale, "!HoldsAt(Loaded(),0).", "!(!(!HoldsAt(Loaded(),0)))."));
+  CHECK(parallax({"diff", "old.e", "new.e"}).code == 1);
+  CHECK(parallax({"diff", "old.e", "new.e", "--traces-only"}).code == 0);
+  CHECK(parallax({"diff", "old.e", "new.e", "--no-traces"}).code == 1);
+  CHECK(parallax({"diff", "old.e", "new.e", "--no-traces", "--traces-only"}).code == 2);
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "loaded files and --with belong to the model") {
+  write("common.e", "fluent Alive()\nevent Shoot()\nrange time 0 1\n");
+  write("old.e", "load common.e\n[time] Terminates(Shoot(),Alive(),time).\n");
+  write("new.e", "fluent Alive()\nload rest.e\n[t] 0=0.\n");
+  write("new.e",
+        "event Shoot()\nfluent Alive()\nrange time 0 1\n"
+        "[time1] Terminates(Shoot(),Alive(),time1).\n");
+  CHECK(parallax({"diff", "old.e", "new.e"}).code == 0);
+  write("start.e", "HoldsAt(Alive(),0).\n");
+  const auto result = parallax({"diff", "old.e", "new.e", "--with", "start.e", "--json"});
+  CHECK(result.code == 0);
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "plans are compared as data, to the smallest piece") {
+  write("other.lisp", read("fetch.lisp"));
+  CHECK(parallax({"diff", "fetch.lisp", "other.lisp"}).code == 0);
+  replace("other.lisp", "(perform (a motion (type going) (pose ?here)))",
+          "(perform (a  motion ; back\n (type GOING) (pose ?there)))");
+  const auto result = parallax({"diff", "fetch.lisp", "other.lisp"});
+  CHECK(result.code == 1);
+  CHECK(result.out.find("?here") != std::string::npos);
+  CHECK(result.out.find("  - fetch.lisp:13  ?here\n  + other.lisp:14  ?there\n") !=
+        std::string::npos);
+  CHECK(parallax({"diff", "robot.bind", "robot.bind"}).code == 0);
+  write("other.bind", read("robot.bind") + "; a remark\n");
+  CHECK(parallax({"diff", "robot.bind", "other.bind"}).code == 0);
+  replace("other.bind", "else manipulation-goal-not-reached", "else manipulation-pose-unreachable");
+  CHECK(parallax({"diff", "robot.bind", "other.bind"}).code == 1);
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "runs are compared by what they report") {
+  const auto report = [](const char* verdict, const char* seed) {
+    return std::string("{\"status\":\"ok\",\"scenario\":\"s.yaml\",\"seed\":") + seed +
+           ",\"verdict\":\"" + verdict +
+           "\",\"simulations\":5,\"traces\":[{\"trace\":1,\"verdict\":\"" + verdict +
+           "\",\"events\":[\"Go(r2)\"],\"initial_state\":[\"In(r1)\"],\"simulations\":5,"
+           "\"clean\":5,\"certified\":{\"confidence\":0.99,\"epsilon\":0.5}}],"
+           "\"discrepancies\":[],\"exploration\":\"all traces explored\"}";
+  };
+  std::filesystem::create_directory(folder() / "a");
+  std::filesystem::create_directory(folder() / "b");
+  write("a/report.json", report("no-discrepancy", "1"));
+  write("b/report.json", report("no-discrepancy", "1"));
+  CHECK(parallax({"diff", "a", "b"}).code == 0);
+  write("b/report.json", report("discrepancy", "2"));
+  const auto result = parallax({"diff", "a", "b/report.json"});
+  CHECK(result.code == 1);
+  CHECK(result.out.find("settings: 1 changed") != std::string::npos);
+  CHECK(result.out.find("results: 2 changed") != std::string::npos);
+  CHECK(result.out.find("trace [Go(r2)] from [In(r1)]: discrepancy") != std::string::npos);
+  write("b/report.json", "{}");
+  CHECK(parallax({"diff", "a", "b"}).code == 2);
+  std::filesystem::create_directory(folder() / "c");
+  CHECK(parallax({"diff", "a", "c"}).code == 2);
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "trace files are sets") {
+  const std::string one =
+      R"x({"trace":1,"timepoints":[{"time":0,"happens":["E()"],"holds":[],"released":[]},)x"
+      R"x({"time":1,"happens":[],"holds":["F()"],"released":[]}],"predicates":[]})x";
+  const std::string two =
+      R"x({"trace":2,"timepoints":[{"time":0,"happens":[],"holds":[],"released":[]},)x"
+      R"x({"time":1,"happens":[],"holds":[],"released":[]}],"predicates":[]})x";
+  const std::string end =
+      R"x({"summary":true,"traces":2,"complete":true,"timing":{"wall_s":1.0}})x";
+  write("a.jsonl", one + "\n" + two + "\n" + end + "\n");
+  write("b.jsonl", two + "\n" + one + "\n" + end + "\n");
+  CHECK(parallax({"diff", "a.jsonl", "b.jsonl"}).code == 0);
+  write("b.jsonl", two + "\n");
+  const auto result = parallax({"diff", "a.jsonl", "b.jsonl"});
+  CHECK(result.code == 1);
+  CHECK(result.out.find("b.jsonl: 1 trace, not known to be all\nlost: 1\n") != std::string::npos);
+  CHECK(result.out.find("leaves all of b.jsonl at timepoint 1") != std::string::npos);
+  for (const auto* bad : {"{", "[]", "{\"timepoints\":[]}", "{\"timepoints\":[{\"holds\":3}]}"}) {
+    write("b.jsonl", std::string(two) + "\n" + bad + "\n");
+    const auto refused = parallax({"diff", "a.jsonl", "b.jsonl"});
+    CHECK(refused.code == 3);
+    CHECK(refused.err.find("b.jsonl:2:1") != std::string::npos);
+    CHECK(refused.err.find("E6101") != std::string::npos);
+  }
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "what cannot be compared is refused with what can") {
+  write("old.e", kYale);
+  CHECK(parallax({"diff", "old.e", "fetch.lisp"}).code == 2);
+  CHECK(parallax({"diff", "old.e", "missing.e"}).code == 2);
+  CHECK(parallax({"diff", "old.e"}).code == 2);
+  CHECK(parallax({"diff", "--textconv", "scenario.yaml"}).code == 2);
+  CHECK(parallax({"diff", "old.e", "old.e", "--textconv", "old.e"}).code == 2);
+  write("bad.e", "fluent F(\n");
+  const auto bad = parallax({"diff", "old.e", "bad.e", "--json"});
+  CHECK(bad.code == 3);
+  CHECK(Json::parse(bad.out)["status"] == "error");
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "a scenario is compared with its plan and constraints") {
+  CHECK(parallax({"diff", "scenario.yaml", "scenario.yaml"}).code == 0);
+  const auto result = parallax({"diff", "scenario.yaml", "edge.yaml", "--json"});
+  CHECK(result.code == 1);
+  CHECK(Json::parse(result.out)["equal"] == false);
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "git shows what models say") {
+  const auto git = [&](std::vector<std::string> arguments) {
+    const std::vector<std::string> identity = {"git", "-c", "user.name=t", "-c",
+                                               "user.email=t@example.org"};
+    arguments.insert(arguments.begin(), identity.begin(), identity.end());
+    ProcessOptions options;
+    options.folder = (folder() / "repository").string();
+    return run_process(arguments, options);
+  };
+  std::filesystem::create_directory(folder() / "repository");
+  REQUIRE(git({"init", "-q"}).code == 0);
+  const std::string program = std::string(PARALLAX_BINARY_DIR) + "/parallax";
+  REQUIRE(git({"config", "diff.dec.textconv", program + " diff --fallback --textconv"}).code == 0);
+  write("repository/.gitattributes", "*.e diff=dec\n");
+  write("repository/m.e", kYale);
+  REQUIRE(git({"add", "."}).code == 0);
+  REQUIRE(git({"commit", "-qm", "one"}).code == 0);
+  SUBCASE("a renamed variable and another order are nothing") {
+    write("repository/m.e",
+          changed(changed(kYale, "[time] Initiates(Load(),Loaded(),time).",
+                          "[time3] Initiates(Load(),Loaded(),time3)."),
+                  "fluent Alive()\nfluent Loaded()\n", "fluent Loaded()\nfluent Alive()\n"));
+    CHECK(git({"diff", "--no-textconv", "--stat"}).out.find("m.e") != std::string::npos);
+    CHECK(git({"diff"}).out.find("@@") == std::string::npos);
+  }
+  SUBCASE("an edit is one line") {
+    write("repository/m.e", changed(kYale, "HoldsAt(Alive(),0).", "!HoldsAt(Alive(),0)."));
+    const auto out = git({"diff", "-U0"}).out;
+    CHECK(out.find("-HoldsAt(Alive(),0).\n") != std::string::npos);
+    CHECK(out.find("+!HoldsAt(Alive(),0).\n") != std::string::npos);
+  }
+  SUBCASE("a revision with an error is shown as it is") {
+    write("repository/m.e", std::string(kYale) + "HoldsAt(.\n");
+    const auto result = git({"diff"});
+    CHECK(result.code == 0);
+    CHECK(result.out.find("+HoldsAt(.\n") != std::string::npos);
+  }
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "a canonical text is a model with the same traces") {
+  write("old.e", kYale);
+  write("new.e", parallax({"diff", "--textconv", "old.e"}).out);
+  const auto result = parallax({"diff", "old.e", "new.e"});
+  CHECK(result.code == 0);
+  CHECK(result.out.ends_with("no difference\n"));
+}
+
+}  // namespace parallax::test

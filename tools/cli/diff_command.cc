@@ -1,0 +1,321 @@
+#include "tools/cli/diff_command.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/diagnostic_printer.h"
+#include "compiler/base/file_io.h"
+#include "tools/diff/model_difference.h"
+#include "tools/diff/revision.h"
+#include "tools/diff/run_facts.h"
+#include "tools/diff/textconv.h"
+#include "tools/diff/trace_set.h"
+
+namespace parallax::tools {
+namespace {
+
+using base::DiagnosticCode;
+using compiler::FactKind;
+using Json = nlohmann::ordered_json;
+
+struct DiffOptions {
+  std::string old_path, new_path;
+  std::string textconv;
+  bool fallback = false;
+  bool stat = false;
+  bool exit_code = false;
+  ModelDiffOptions models;
+  bool no_traces = false;
+  bool traces_only = false;
+};
+
+std::string quoted(const std::string& text) {
+  return Json(base::printable(text)).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// What every kind of comparison ends with: a text, or the fields of a document.
+struct Outcome {
+  bool differs = false;
+  std::string text;
+  std::string kind;    // "model"
+  std::string fields;  // `"axioms":{...},...`
+};
+
+int print(const DiffOptions& options, const Outcome& outcome, Invocation& invocation) {
+  if (invocation.options().json) {
+    invocation.document(
+        fmt::format("{{\"status\":\"ok\",\"equal\":{},\"kind\":\"{}\",\"old\":{},\"new\":{},{}}}\n",
+                    !outcome.differs, outcome.kind, quoted(options.old_path),
+                    quoted(options.new_path), outcome.fields));
+  } else {
+    invocation.result(outcome.text + (outcome.differs ? "" : "no difference\n"));
+  }
+  return outcome.differs ? 1 : 0;
+}
+
+std::string facts_text(const FactReport& report, const char* declarations, const char* axioms,
+                       bool stat) {
+  return to_text(report, FactKind::kDeclaration, declarations, stat) +
+         to_text(report, FactKind::kAxiom, axioms, stat);
+}
+
+std::string facts_fields(const FactReport& report, const char* declarations, const char* axioms) {
+  return fmt::format("\"{}\":{},\"{}\":{}", declarations, to_json(report, FactKind::kDeclaration),
+                     axioms, to_json(report, FactKind::kAxiom));
+}
+
+/// Reports a question that no call answered; the answers that there are count all the same.
+void report_unknown(const ModelDifference& found, Invocation& invocation) {
+  const auto report = [&](const ModelRevision& kept, const ModelRevision& other) {
+    invocation.sink().error_about(
+        DiagnosticCode::kLimitReached, "",
+        fmt::format("for deciding whether {} has a trace that {} has not",
+                    base::printable(kept.name), base::printable(other.name)));
+  };
+  if (found.traces->lost.answer == runtime::Answer::kUnknown) {
+    report(found.old_side, found.new_side);
+  }
+  if (found.traces->gained.answer == runtime::Answer::kUnknown) {
+    report(found.new_side, found.old_side);
+  }
+}
+
+int diff_models(const DiffOptions& options, RevisionKind old_kind, RevisionKind new_kind,
+                Invocation& invocation) {
+  const auto found = compare_models(options.old_path, old_kind, options.new_path, new_kind,
+                                    options.models, invocation);
+  if (!found) return 0;
+  const auto report = found->report();
+  Outcome out;
+  out.kind = "model";
+  out.differs = !found->facts.empty();
+  if (found->traces) {
+    out.differs = out.differs || found->traces->lost.answer == runtime::Answer::kFound ||
+                  found->traces->gained.answer == runtime::Answer::kFound;
+    report_unknown(*found, invocation);
+  }
+  if (invocation.options().json) {
+    out.fields = facts_fields(report, "declarations", "axioms") +
+                 ",\"traces\":" + traces_json(*found) +
+                 ",\"remarks\":" + Json(found->remarks).dump();
+  } else {
+    out.text = facts_text(report, "declarations", "axioms", options.stat);
+    for (const auto& remark : found->remarks) out.text += remark + '\n';
+    out.text += traces_text(*found, options.stat);
+  }
+  // Nothing was found, but not everything was decided: that is no "equal".
+  if (!out.differs && invocation.sink().has_errors()) {
+    if (!invocation.options().json) invocation.result(out.text);
+    return 0;
+  }
+  return print(options, out, invocation);
+}
+
+/// The smallest pieces in which a changed form differs.
+std::string edits_text(const FactReport& report, const PlanRevision& before,
+                       const PlanRevision& after, const base::SourceFiles& files) {
+  std::string out;
+  for (const auto& [i, j] : report.difference.changed) {
+    if (report.old_facts[i].kind != FactKind::kAxiom) continue;
+    out += fmt::format("in {}\n", report.new_facts[j].key.empty() ? report.new_facts[j].shown
+                                                                  : report.new_facts[j].key + ")");
+    const auto edits =
+        datum_edits(*before.lisp, before.lisp->forms[i], *after.lisp, after.lisp->forms[j], files);
+    for (const auto& edit : edits) {
+      if (!edit.removed.empty()) {
+        out += fmt::format("  - {}  {}\n", to_string(edit.old_place), edit.removed);
+      }
+      if (!edit.added.empty()) {
+        out += fmt::format("  + {}  {}\n", to_string(edit.new_place), edit.added);
+      }
+    }
+  }
+  return out;
+}
+
+int diff_plans(const DiffOptions& options, RevisionKind kind, Invocation& invocation) {
+  const auto before = load_plan_revision(options.old_path, kind, invocation);
+  const auto after = load_plan_revision(options.new_path, kind, invocation);
+  if (!before || !after) return 0;
+  const auto report = compare(before->facts, after->facts);
+  Outcome out;
+  out.kind = "plan";
+  out.differs = !report.difference.empty();
+  out.fields = facts_fields(report, "order", "forms");
+  out.text = facts_text(report, "order", "forms", options.stat);
+  if (before->lisp && !options.stat) {
+    out.text += edits_text(report, *before, *after, invocation.files());
+  }
+  return print(options, out, invocation);
+}
+
+int diff_runs(const DiffOptions& options, Invocation& invocation) {
+  const auto before = load_run_facts(options.old_path, invocation);
+  const auto after = load_run_facts(options.new_path, invocation);
+  if (!before || !after) return 0;
+  const auto report = compare(*before, *after);
+  Outcome out;
+  out.kind = "run";
+  out.differs = !report.difference.empty();
+  out.fields = facts_fields(report, "settings", "results");
+  out.text = facts_text(report, "settings", "results", options.stat);
+  return print(options, out, invocation);
+}
+
+std::string side_text(const char* what, const TraceSet& set, const TraceSet& other,
+                      const TraceSetSide& side, bool stat) {
+  auto out = fmt::format("{}: {}\n", what, side.count);
+  if (!side.witness || stat) return out;
+  out += fmt::format("  a shortest such trace of {}, which leaves all of {} at timepoint {}:\n",
+                     set.name, other.name, side.leaves_at);
+  return out + to_text(*side.witness);
+}
+
+Json side_json(const TraceSetSide& side) {
+  Json out = {{"count", side.count}, {"witness", nullptr}};
+  if (!side.witness) return out;
+  out["witness"] = Json::parse(to_jsonl(*side.witness));
+  out["witness"]["leaves_at"] = side.leaves_at;
+  return out;
+}
+
+int diff_trace_files(const DiffOptions& options, Invocation& invocation) {
+  const auto before = load_trace_set(options.old_path, invocation);
+  const auto after = load_trace_set(options.new_path, invocation);
+  if (!before || !after) return 0;
+  const auto lost = only_in(*before, *after), gained = only_in(*after, *before);
+  Outcome out;
+  out.kind = "traces";
+  out.differs = lost.count + gained.count != 0;
+  const Json document = {
+      {"old", {{"count", before->traces.size()}, {"complete", before->complete}}},
+      {"new", {{"count", after->traces.size()}, {"complete", after->complete}}},
+      {"lost", side_json(lost)},
+      {"gained", side_json(gained)}};
+  out.fields = "\"traces\":" + document.dump(-1, ' ', false, Json::error_handler_t::replace);
+  for (const auto* set : {&*before, &*after}) {
+    out.text += fmt::format("{}: {} {}{}\n", set->name, set->traces.size(),
+                            set->traces.size() == 1 ? "trace" : "traces",
+                            set->complete ? "" : ", not known to be all");
+  }
+  out.text += side_text("lost", *before, *after, lost, options.stat);
+  out.text += side_text("gained", *after, *before, gained, options.stat);
+  return print(options, out, invocation);
+}
+
+int convert(const DiffOptions& options, Invocation& invocation) {
+  auto& sink = invocation.sink();
+  if (invocation.options().json) {
+    sink.error_about(DiagnosticCode::kUsage, "",
+                     "--json and the canonical text cannot both go to the output");
+    return 0;
+  }
+  if (!options.fallback) {
+    const auto text = canonical_text_of(options.textconv, invocation);
+    if (text) invocation.result(*text);
+    return 0;
+  }
+  // A revision that was committed with a mistake in it must not stop `git log -p`.
+  Invocation attempt(invocation.options());
+  if (const auto text = canonical_text_of(options.textconv, attempt)) {
+    invocation.result(*text);
+  } else if (const auto raw = base::read_file(options.textconv, sink)) {
+    invocation.result(*raw);
+  }
+  return 0;
+}
+
+bool is_usable(const DiffOptions& options, Invocation& invocation) {
+  const auto refuse = [&](const char* why) {
+    invocation.sink().error_about(DiagnosticCode::kUsage, "", why);
+    return false;
+  };
+  if (!options.textconv.empty() && !options.old_path.empty()) {
+    return refuse("--textconv takes one file and goes with no other");
+  }
+  if (options.textconv.empty() && options.new_path.empty()) {
+    return refuse("two revisions are needed, or --textconv FILE");
+  }
+  if (options.no_traces && options.traces_only) {
+    return refuse("--no-traces and --traces-only leave nothing to compare");
+  }
+  return true;
+}
+
+int run(const DiffOptions& given, Invocation& invocation) {
+  if (!is_usable(given, invocation)) return 0;
+  if (!given.textconv.empty()) return convert(given, invocation);
+  auto options = given;
+  options.models.facts = !options.traces_only;
+  options.models.traces = !options.no_traces;
+  const auto old_kind = kind_of(options.old_path), new_kind = kind_of(options.new_path);
+  if (old_kind && new_kind && has_traces(*old_kind) && has_traces(*new_kind)) {
+    return diff_models(options, *old_kind, *new_kind, invocation);
+  }
+  if (!old_kind || old_kind != new_kind) {
+    invocation.sink().error_about(
+        DiagnosticCode::kUsage, options.new_path,
+        fmt::format("cannot be compared with {}: name two models (.e, .dec.cnf, .yaml), two plans "
+                    "(.lisp), two tables (.bind), two trace files (.jsonl) or two run folders",
+                    base::printable(options.old_path)));
+    return 0;
+  }
+  if (*old_kind == RevisionKind::kRun) return diff_runs(options, invocation);
+  if (*old_kind == RevisionKind::kTraces) return diff_trace_files(options, invocation);
+  return diff_plans(options, *old_kind, invocation);
+}
+
+void add_model_diff_options(CLI::App& command, DiffOptions& options) {
+  auto& model = options.models.load.model;
+  command.add_option("--with", model.models, "Model file that belongs to both models");
+  command.add_option("-I,--include", model.include_dirs, "Folder in which `load` looks");
+  command.add_flag("--allow-outside", model.allow_outside,
+                   "Let `load` leave the folders of the models");
+  command.add_option("--compat", model.compat, "Meaning of the 2005 reasoner where it differs")
+      ->check(CLI::IsMember({"decreasoner"}));
+  command.add_option("--horizon", model.horizon, "Compare traces up to this timepoint")
+      ->check(CLI::Range(0, 1'000'000));
+  command.add_flag("--no-traces", options.no_traces,
+                   "Compare declarations and axioms only; nothing is solved");
+  command.add_flag("--traces-only", options.traces_only, "Compare traces only");
+  command
+      .add_option(
+          "--count-limit", options.models.list_limit,
+          "Lost and gained traces that are counted one by one; a graph counts more of them if it "
+          "has at most 20 times as many transitions")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+Command add_diff_command(CLI::App& app) {
+  auto options = std::make_shared<DiffOptions>();
+  auto* command =
+      app.add_subcommand("diff", "Compare two revisions of a model, a plan, a trace file or a run");
+  command->footer(
+      "Examples:\n"
+      "  parallax diff old.e new.e --horizon 6\n"
+      "  parallax diff old.dec.cnf new.dec.cnf --json\n"
+      "  parallax diff out/monday out/tuesday --stat\n"
+      "  parallax diff --textconv domain.e\n"
+      "Exit code 1 if there is a difference, 0 if there is none. docs/git.md shows how git uses "
+      "it.");
+  command->add_option("old", options->old_path,
+                      "Model (.e, .dec.cnf, .yaml), plan (.lisp, .bind), traces (.jsonl) or run");
+  command->add_option("new", options->new_path, "The other revision");
+  command->add_option("--textconv", options->textconv,
+                      "Print the canonical text of one file instead");
+  command->add_flag("--fallback", options->fallback,
+                    "With --textconv: print a file that has errors as it is");
+  command->add_flag("--stat", options->stat, "Print numbers only");
+  command->add_flag("--exit-code", options->exit_code,
+                    "Accepted for those who know it from git; the exit code always tells");
+  add_model_diff_options(*command, *options);
+  return {command, [options](Invocation& invocation) { return run(*options, invocation); }};
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,99 @@
+#include "tools/diff/attribution.h"
+
+#include <algorithm>
+#include <set>
+
+#include "compiler/cnf/encoder.h"
+#include "compiler/compare/model_facts.h"
+#include "compiler/ground/grounder.h"
+#include "compiler/sema/check.h"
+#include "runtime/session/solver_session.h"
+#include "tools/cli/signals.h"
+
+namespace parallax::tools {
+namespace {
+
+using compiler::AtomKind;
+using compiler::CompiledModel;
+using compiler::Fact;
+using compiler::Literal;
+using compiler::Timepoint;
+
+/// None if the text is no right model.
+std::optional<CompiledModel> compile_text(const std::string& text, Timepoint horizon,
+                                          const ModelOptions& options) {
+  base::SourceFiles files;
+  base::DiagnosticSink sink;
+  const auto input = compile_input(options);
+  const auto file = files.add("variant.e", text);
+  const auto ast = compiler::load_model_text(file, ".", input.load, files, sink);
+  if (!ast) return std::nullopt;
+  compiler::CheckOptions check;
+  check.time_lower = 0;
+  check.time_upper = horizon;
+  const auto typed = compiler::check_model(*ast, files, sink, check);
+  if (!typed) return std::nullopt;
+  auto ground = compiler::ground_model(*typed, input.ground, sink);
+  if (!ground) return std::nullopt;
+  return compiler::encode(*ground);
+}
+
+/// Has the model a trace with these observables?
+bool admits(const CompiledModel& model, const runtime::Trace& trace,
+            const runtime::SharedVocabulary& vocabulary) {
+  const compiler::AtomIndex index(model);
+  std::vector<Literal> observation;
+  for (const auto& atom : vocabulary.shared) {
+    const auto& name = vocabulary.names[atom.name];
+    const auto& point = trace.points[static_cast<std::size_t>(atom.time)];
+    const auto& names = atom.kind == AtomKind::kHoldsAt ? point.holds : point.happens;
+    const bool is_true = std::binary_search(names.begin(), names.end(), name);
+    const auto literal = index.find(atom.kind, name, atom.time);
+    if (!literal && is_true) return false;
+    if (literal) observation.push_back(is_true ? *literal : ~*literal);
+  }
+  runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
+  return session.solve(model.horizon, observation) == runtime::SolveStatus::kSatisfiable;
+}
+
+/// The refusing revision with some edits undone, as a text.
+std::string variant(const std::vector<Fact>& kept, const std::vector<Fact>& refused,
+                    const std::vector<Edit>& undone) {
+  std::set<std::pair<compiler::FactKind, std::string>> without;
+  std::vector<Fact> facts;
+  for (const auto& edit : undone) {
+    if (edit.kept) facts.push_back(kept[*edit.kept]);
+    if (edit.refused) without.emplace(refused[*edit.refused].kind, refused[*edit.refused].text);
+  }
+  for (const auto& fact : refused) {
+    if (!without.contains({fact.kind, fact.text})) facts.push_back(fact);
+  }
+  return compiler::canonical_text(facts);
+}
+
+}  // namespace
+
+std::optional<std::vector<Edit>> responsible_edits(const std::vector<Fact>& kept,
+                                                   const std::vector<Fact>& refused,
+                                                   const std::vector<Edit>& edits,
+                                                   const runtime::Trace& trace,
+                                                   const runtime::SharedVocabulary& vocabulary,
+                                                   const ModelOptions& options) {
+  if (edits.size() > kMaxTriedEdits) return std::nullopt;
+  auto undone = edits;
+  // One edit alone is responsible for what it brings.
+  for (std::size_t i = 0; i < undone.size() && undone.size() > 1;) {
+    if (stop_flag().load()) return std::nullopt;
+    auto fewer = undone;
+    fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+    const auto model = compile_text(variant(kept, refused, fewer), trace.length(), options);
+    if (model && admits(*model, trace, vocabulary)) {
+      undone = std::move(fewer);
+    } else {
+      ++i;
+    }
+  }
+  return undone;
+}
+
+}  // namespace parallax::tools

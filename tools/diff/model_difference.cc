@@ -1,0 +1,150 @@
+#include "tools/diff/model_difference.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "tools/cli/signals.h"
+
+namespace parallax::tools {
+namespace {
+
+using compiler::Fact;
+
+/// By origin: does it stand where an edited fact stands?
+std::vector<bool> edited_origins(const compiler::CompiledModel& model,
+                                 const std::vector<Fact>& facts,
+                                 const std::vector<std::size_t>& edited) {
+  std::set<std::pair<std::string, std::uint32_t>> places;
+  for (const auto i : edited) places.emplace(facts[i].place.file, facts[i].place.line);
+  std::vector<bool> out;
+  for (const auto& origin : model.origins) {
+    out.push_back(places.contains({origin.place.file, origin.place.begin.line}));
+  }
+  return out;
+}
+
+/// The facts of one side that the other has not.
+std::vector<std::size_t> edited_facts(const compiler::FactDifference& facts, bool old_side) {
+  auto out = old_side ? facts.removed : facts.added;
+  for (const auto& [i, j] : facts.changed) out.push_back(old_side ? i : j);
+  return out;
+}
+
+/// `kept`: the side that has the trace.
+std::vector<Edit> edits_of(const compiler::FactDifference& facts, bool old_is_kept) {
+  std::vector<Edit> out;
+  const auto add = [&](std::optional<std::size_t> i, std::optional<std::size_t> j) {
+    out.push_back(old_is_kept ? Edit{i, j} : Edit{j, i});
+  };
+  for (const auto i : facts.removed) add(i, std::nullopt);
+  for (const auto j : facts.added) add(std::nullopt, j);
+  for (const auto& [i, j] : facts.changed) add(i, j);
+  return out;
+}
+
+class ModelComparison {
+ public:
+  ModelComparison(const ModelDiffOptions& options, Invocation& invocation)
+      : options_(options), invocation_(invocation) {
+    options_.load.compile = options.traces;
+  }
+
+  base::Result<ModelDifference> run(const std::string& old_path, RevisionKind old_kind,
+                                    const std::string& new_path, RevisionKind new_kind) {
+    auto a = load_model_revision(old_path, old_kind, options_.load, invocation_);
+    auto b = load_model_revision(new_path, new_kind, options_.load, invocation_);
+    if (!a || !b) return invocation_.sink().already_reported();
+    out_.old_side = *std::move(a);
+    out_.new_side = *std::move(b);
+    if (!align_horizons()) return invocation_.sink().already_reported();
+    if (!align_facts()) return invocation_.sink().already_reported();
+    if (options_.facts) {
+      out_.facts = compiler::compare_facts(out_.old_side.facts, out_.new_side.facts);
+    }
+    if (options_.traces) compare_traces();
+    return std::move(out_);
+  }
+
+ private:
+  /// A text is compiled for the shorter horizon; what is compiled already is cut.
+  bool align_horizons() {
+    auto& a = out_.old_side;
+    auto& b = out_.new_side;
+    if (!options_.traces || a.compiled->horizon == b.compiled->horizon) return true;
+    const auto shorter = std::min(a.compiled->horizon, b.compiled->horizon);
+    out_.remarks.push_back(
+        fmt::format("the horizons differ ({} and {}): traces are compared up to the smaller one",
+                    a.compiled->horizon, b.compiled->horizon));
+    for (auto* side : {&a, &b}) {
+      if (side->kind != RevisionKind::kModel || side->compiled->horizon == shorter) continue;
+      auto load = options_.load;
+      load.model.horizon = shorter;
+      auto again = load_model_revision(side->name, side->kind, load, invocation_);
+      if (!again) return false;
+      *side = *std::move(again);
+    }
+    return true;
+  }
+
+  /// A compiled model has other facts than a text: then both are looked at as compiled.
+  bool align_facts() {
+    const bool mixed = (out_.old_side.kind == RevisionKind::kArtifact) !=
+                       (out_.new_side.kind == RevisionKind::kArtifact);
+    if (!mixed) return true;
+    if (!options_.traces) {
+      invocation_.sink().error_about(
+          base::DiagnosticCode::kUsage, out_.old_side.name,
+          "a text and a compiled model have only compiled facts in common; leave --no-traces out");
+      return false;
+    }
+    use_artifact_facts(out_.old_side);
+    use_artifact_facts(out_.new_side);
+    return true;
+  }
+
+  void compare_traces() {
+    const auto& a = *out_.old_side.compiled;
+    const auto& b = *out_.new_side.compiled;
+    if (a.has_constraints || b.has_constraints) {
+      out_.remarks.emplace_back(
+          "state constraints do not end a trace here: executions are compared up to the horizon");
+    }
+    runtime::DifferenceOptions options;
+    options.list_limit = options_.list_limit;
+    // Whoever asks for more may wait for more.
+    options.graph = {10 * options_.list_limit, 20 * options_.list_limit};
+    options.stop = &stop_flag();
+    options.first_edited = edited_origins(a, out_.old_side.facts, edited_facts(out_.facts, true));
+    options.second_edited = edited_origins(b, out_.new_side.facts, edited_facts(out_.facts, false));
+    out_.traces = runtime::compare_traces(a, b, options);
+    out_.lost_edits = attribute(out_.traces->lost, true);
+    out_.gained_edits = attribute(out_.traces->gained, false);
+  }
+
+  std::optional<std::vector<Edit>> attribute(const runtime::OneSided& side, bool lost) {
+    const bool texts = out_.old_side.is_text && out_.new_side.is_text;
+    if (!side.witness || !texts || !options_.facts) return std::nullopt;
+    const auto& kept = lost ? out_.old_side : out_.new_side;
+    const auto& refused = lost ? out_.new_side : out_.old_side;
+    return responsible_edits(kept.facts, refused.facts, edits_of(out_.facts, lost),
+                             side.witness->trace, out_.traces->vocabulary, options_.load.model);
+  }
+
+  ModelDiffOptions options_;
+  Invocation& invocation_;
+  ModelDifference out_;
+};
+
+}  // namespace
+
+base::Result<ModelDifference> compare_models(const std::string& old_path, RevisionKind old_kind,
+                                             const std::string& new_path, RevisionKind new_kind,
+                                             const ModelDiffOptions& options,
+                                             Invocation& invocation) {
+  return ModelComparison(options, invocation).run(old_path, old_kind, new_path, new_kind);
+}
+
+}  // namespace parallax::tools

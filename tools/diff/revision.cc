@@ -1,0 +1,146 @@
+#include "tools/diff/revision.h"
+
+#include <filesystem>
+
+#include "compiler/artifact/artifact_writer.h"
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
+#include "compiler/compare/artifact_facts.h"
+#include "compiler/compare/model_facts.h"
+#include "tools/cli/scenario_model.h"
+
+namespace parallax::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using compiler::Fact;
+using compiler::FactKind;
+
+/// The facts of model texts that are known to be right: what could be said of them has been said.
+void add_text_facts(const std::vector<std::string>& models, const compiler::LoadOptions& load,
+                    std::vector<Fact>& facts) {
+  base::SourceFiles files;
+  base::DiagnosticSink sink;
+  const std::vector<fs::path> paths(models.begin(), models.end());
+  const auto ast = compiler::load_model(paths, load, files, sink);
+  if (!ast) return;
+  auto more = compiler::model_facts(*ast, files);
+  facts.insert(facts.end(), more.begin(), more.end());
+}
+
+base::Result<ModelRevision> load_texts(const std::string& path, const LoadRevision& options,
+                                       Invocation& invocation) {
+  ModelRevision out{path, RevisionKind::kModel, {}, std::nullopt, true};
+  auto model = options.model;
+  model.models.insert(model.models.begin(), path);
+  const auto load = compile_input(model).load;
+  if (options.compile) {
+    auto compilation = compile_models(model, invocation);
+    if (!compilation) return invocation.sink().already_reported();
+    out.compiled = std::move(compilation->model);
+    add_text_facts(model.models, load, out.facts);
+    return out;
+  }
+  const std::vector<fs::path> paths(model.models.begin(), model.models.end());
+  const auto ast = compiler::load_model(paths, load, invocation.files(), invocation.sink());
+  if (!ast || invocation.sink().has_errors()) return invocation.sink().already_reported();
+  out.facts = compiler::model_facts(*ast, invocation.files());
+  return out;
+}
+
+base::Result<ModelRevision> load_compiled(const std::string& path, const LoadRevision& options,
+                                          Invocation& invocation) {
+  ModelRevision out{path, RevisionKind::kArtifact, {}, std::nullopt, false};
+  auto model = compiler::load_artifact(path, invocation.files(), invocation.sink());
+  if (!model) return invocation.sink().already_reported();
+  const auto horizon = options.model.horizon;
+  if (horizon > model->horizon) {
+    return invocation.sink().error_about(
+        base::DiagnosticCode::kHorizonNotExtensible, path, horizon,
+        fmt::format("it was compiled for the horizon {}", model->horizon));
+  }
+  out.compiled = *std::move(model);
+  use_artifact_facts(out);
+  return out;
+}
+
+base::Result<ModelRevision> load_scenario_revision(const std::string& path,
+                                                   Invocation& invocation) {
+  ModelRevision out{path, RevisionKind::kScenario, {}, std::nullopt, false};
+  auto loaded = load_scenario_model(path, invocation);
+  if (!loaded) return invocation.sink().already_reported();
+  const auto& scenario = loaded->scenario;
+  std::vector<std::string> models;
+  for (const auto& model : scenario.models) models.push_back(model.text);
+  add_text_facts(models, {}, out.facts);
+  for (const auto* part : {&scenario.plan, &scenario.bind}) {
+    if (!*part) continue;
+    const auto kind = part == &scenario.plan ? RevisionKind::kPlan : RevisionKind::kBinding;
+    const auto plan = load_plan_revision((*part)->text, kind, invocation);
+    if (!plan) return invocation.sink().already_reported();
+    out.facts.insert(out.facts.end(), plan->facts.begin(), plan->facts.end());
+  }
+  for (const auto& constraint : scenario.constraints) {
+    const auto& file = invocation.files()[constraint.source.file];
+    out.facts.push_back({FactKind::kAxiom,
+                         "",
+                         "constraint " + constraint.text,
+                         "constraint " + constraint.text,
+                         {file.name(), file.position(constraint.source.begin).line}});
+  }
+  out.compiled = std::move(loaded->compilation.model);
+  return out;
+}
+
+}  // namespace
+
+std::optional<RevisionKind> kind_of(const std::string& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) return RevisionKind::kRun;
+  const auto name = fs::path(path).filename().string();
+  if (name == "report.json") return RevisionKind::kRun;
+  if (compiler::is_artifact_name(name)) return RevisionKind::kArtifact;
+  const auto extension = fs::path(path).extension().string();
+  if (extension == ".e") return RevisionKind::kModel;
+  if (extension == ".yaml" || extension == ".yml") return RevisionKind::kScenario;
+  if (extension == ".lisp") return RevisionKind::kPlan;
+  if (extension == ".bind") return RevisionKind::kBinding;
+  if (extension == ".jsonl" || extension == ".ndjson") return RevisionKind::kTraces;
+  return std::nullopt;
+}
+
+bool has_traces(RevisionKind kind) {
+  return kind == RevisionKind::kModel || kind == RevisionKind::kArtifact ||
+         kind == RevisionKind::kScenario;
+}
+
+base::Result<ModelRevision> load_model_revision(const std::string& path, RevisionKind kind,
+                                                const LoadRevision& options,
+                                                Invocation& invocation) {
+  if (kind == RevisionKind::kArtifact) return load_compiled(path, options, invocation);
+  if (kind == RevisionKind::kScenario) return load_scenario_revision(path, invocation);
+  return load_texts(path, options, invocation);
+}
+
+void use_artifact_facts(ModelRevision& revision) {
+  revision.facts = compiler::artifact_facts(*revision.compiled);
+  revision.is_text = false;
+}
+
+base::Result<PlanRevision> load_plan_revision(const std::string& path, RevisionKind kind,
+                                              Invocation& invocation) {
+  PlanRevision out{path, {}, std::nullopt};
+  const auto file = base::load_text(path, invocation.files(), invocation.sink());
+  if (!file) return invocation.sink().already_reported();
+  if (kind == RevisionKind::kBinding) {
+    out.facts = compiler::binding_facts(*file, invocation.files());
+    return out;
+  }
+  auto lisp = compiler::read_lisp(invocation.files(), *file, invocation.sink());
+  if (!lisp) return invocation.sink().already_reported();
+  out.facts = compiler::plan_facts(*lisp, invocation.files());
+  out.lisp = *std::move(lisp);
+  return out;
+}
+
+}  // namespace parallax::tools

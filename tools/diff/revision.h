@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/artifact/compiled_model.h"
+#include "compiler/compare/fact.h"
+#include "compiler/compare/plan_facts.h"
+#include "tools/cli/command.h"
+#include "tools/cli/model_options.h"
+
+namespace parallax::tools {
+
+enum class RevisionKind : std::uint8_t {
+  kModel,     // .e
+  kArtifact,  // .dec.cnf
+  kScenario,  // .yaml: its models, plan, binding table and constraints
+  kPlan,      // .lisp
+  kBinding,   // .bind
+  kTraces,    // .jsonl, .ndjson
+  kRun,       // a folder, or its report.json
+};
+
+/// What the name of a file or folder says that it is; none for other names.
+std::optional<RevisionKind> kind_of(const std::string& path);
+/// Models, compiled models and scenarios can be compared with one another.
+bool has_traces(RevisionKind kind);
+
+/// One side of a comparison of models.
+struct ModelRevision {
+  std::string name;  // as the user wrote it
+  RevisionKind kind = RevisionKind::kModel;
+  std::vector<compiler::Fact> facts;
+  std::optional<compiler::CompiledModel> compiled;  // if traces are compared
+  /// The facts are those of texts, so that a variant can be written from them and compiled.
+  bool is_text = false;
+};
+
+struct LoadRevision {
+  ModelOptions model;  // include folders, horizon, compat; `models` are put to every model (.e)
+  bool compile = true;
+};
+
+/// Reads and, if asked for, compiles one side.
+base::Result<ModelRevision> load_model_revision(const std::string& path, RevisionKind kind,
+                                                const LoadRevision& options,
+                                                Invocation& invocation);
+
+/// The facts of a compiled model, for comparing one with texts.
+void use_artifact_facts(ModelRevision& revision);
+
+/// A plan or a binding table.
+struct PlanRevision {
+  std::string name;
+  std::vector<compiler::Fact> facts;
+  std::optional<compiler::LispText> lisp;  // of a plan; its form i is fact i
+};
+base::Result<PlanRevision> load_plan_revision(const std::string& path, RevisionKind kind,
+                                              Invocation& invocation);
+
+}  // namespace parallax::tools

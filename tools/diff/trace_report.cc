@@ -1,0 +1,230 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/diff/model_difference.h"
+
+namespace parallax::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using runtime::Answer;
+
+constexpr std::size_t kMaxNames = 10;  // that are listed in one line
+
+std::string number_of(const runtime::TraceNumber& number) {
+  return (number.exact ? "" : "at least ") + number.value.get_str();
+}
+
+std::string some(const std::vector<std::string>& names) {
+  std::string out;
+  for (std::size_t i = 0; i < names.size() && i < kMaxNames; ++i) {
+    out += (i == 0 ? "" : ", ") + names[i];
+  }
+  if (names.size() > kMaxNames) out += fmt::format(" and {} more", names.size() - kMaxNames);
+  return out;
+}
+
+/// The trace up to the timepoint that rules it out; what happens there is beyond it.
+runtime::Trace beginning(const runtime::Witness& witness) {
+  auto trace = witness.trace;
+  trace.points.resize(static_cast<std::size_t>(witness.excluded_by) + 1);
+  trace.points.back().happens.clear();
+  return trace;
+}
+
+std::string indented(const std::string& text) {
+  std::string out;
+  // The first line is the trace's number.
+  for (auto at = text.find('\n') + 1; at < text.size();) {
+    const auto end = text.find('\n', at);
+    out += "    " + text.substr(at, end - at + 1);
+    at = end + 1;
+  }
+  return out;
+}
+
+/// One direction: the names of both sides, and what is known of it.
+struct SideView {
+  const char* name;  // "lost"
+  const ModelRevision& kept;
+  const ModelRevision& refused;
+  const runtime::OneSided& traces;
+  const std::optional<std::vector<Edit>>& edits;
+  std::set<std::string> edited_places;  // of the refusing side
+};
+
+std::string edit_text(const SideView& side, const Edit& edit, bool lost) {
+  // Undoing an edit of the new revision brings the old text back, and the other way round.
+  const auto* kept = edit.kept ? &side.kept.facts[*edit.kept] : nullptr;
+  const auto* refused = edit.refused ? &side.refused.facts[*edit.refused] : nullptr;
+  const auto* before = lost ? kept : refused;
+  const auto* after = lost ? refused : kept;
+  if (before != nullptr && after != nullptr) {
+    return fmt::format("      ~ {}  {}\n        {}  {}\n", to_string(before->place), before->shown,
+                       to_string(after->place), after->shown);
+  }
+  return fmt::format("      {} {}  {}\n", before != nullptr ? '-' : '+',
+                     to_string((before != nullptr ? before : after)->place),
+                     (before != nullptr ? before : after)->shown);
+}
+
+std::string place_of(const compiler::Origin& origin) {
+  return fmt::format("{}:{}", origin.place.file, origin.place.begin.line);
+}
+
+std::string witness_text(const SideView& side, bool lost) {
+  const auto& witness = *side.traces.witness;
+  auto out = fmt::format("  {} such trace of {}, ruled out in {} by timepoint {}:\n",
+                         witness.is_shortest ? "a shortest" : "one", side.kept.name,
+                         side.refused.name, witness.excluded_by);
+  out += indented(to_text(beginning(witness)));
+  if (witness.impossible) {
+    out += fmt::format("    {} is false in every trace of {}\n", *witness.impossible,
+                       side.refused.name);
+  }
+  if (!witness.excluding.empty()) out += "    it contradicts\n";
+  for (const auto i : witness.excluding) {
+    const auto& origin = side.refused.compiled->origins[i];
+    const auto* mark = side.edited_places.contains(place_of(origin)) ? " (edited)" : "";
+    out += fmt::format("      {}  {}: {}{}\n", place_of(origin), origin.what, origin.text, mark);
+  }
+  if (side.edits && !side.edits->empty()) {
+    out +=
+        side.edits->size() == 1 ? "    it depends on the edit\n" : "    it depends on the edits\n";
+    for (const auto& edit : *side.edits) out += edit_text(side, edit, lost);
+  }
+  return out;
+}
+
+std::string side_text(const SideView& side, bool lost, bool stat) {
+  switch (side.traces.answer) {
+    case Answer::kNone:
+      return fmt::format("  {}: none\n", side.name);
+    case Answer::kUnknown:
+      return fmt::format("  {}: unknown\n", side.name);
+    case Answer::kFound:
+      break;
+  }
+  auto out = fmt::format("  {}: {}\n", side.name, number_of(side.traces.count));
+  return stat ? out : out + witness_text(side, lost);
+}
+
+std::set<std::string> edited_places(const std::vector<compiler::Fact>& facts,
+                                    const compiler::FactDifference& difference, bool old_side) {
+  std::set<std::string> out;
+  for (const auto i : old_side ? difference.removed : difference.added) {
+    out.insert(to_string(facts[i].place));
+  }
+  for (const auto& [i, j] : difference.changed) {
+    out.insert(to_string(facts[old_side ? i : j].place));
+  }
+  return out;
+}
+
+SideView view(const ModelDifference& all, bool lost) {
+  if (lost) {
+    return {"lost",           all.old_side,   all.new_side,
+            all.traces->lost, all.lost_edits, edited_places(all.new_side.facts, all.facts, false)};
+  }
+  return {"gained",           all.new_side,     all.old_side,
+          all.traces->gained, all.gained_edits, edited_places(all.old_side.facts, all.facts, true)};
+}
+
+Json json_of(const runtime::TraceNumber& number) {
+  // Beyond 2^53 as a text: JSON readers keep no larger numbers.
+  const bool small = number.value <= mpz_class("9007199254740992");
+  Json out;
+  out["value"] = small ? Json(number.value.get_ui()) : Json(number.value.get_str());
+  out["exact"] = number.exact;
+  return out;
+}
+
+Json json_of(const std::optional<runtime::TraceNumber>& number) {
+  return number ? json_of(*number) : Json(nullptr);
+}
+
+Json json_of(const compiler::Fact& fact) {
+  return {{"text", fact.shown}, {"file", fact.place.file}, {"line", fact.place.line}};
+}
+
+Json witness_json(const SideView& side, bool lost) {
+  const auto& witness = *side.traces.witness;
+  Json out = Json::parse(to_jsonl(witness.trace));
+  out.erase("trace");
+  out["excluded_by"] = witness.excluded_by;
+  out["events"] = witness.events;
+  out["shortest"] = witness.is_shortest;
+  out["impossible"] = witness.impossible ? Json(*witness.impossible) : Json(nullptr);
+  out["contradicts"] = Json::array();
+  for (const auto i : witness.excluding) {
+    const auto& origin = side.refused.compiled->origins[i];
+    out["contradicts"].push_back({{"what", origin.what},
+                                  {"text", origin.text},
+                                  {"file", origin.place.file},
+                                  {"line", origin.place.begin.line},
+                                  {"edited", side.edited_places.contains(place_of(origin))}});
+  }
+  out["edits"] = nullptr;
+  if (!side.edits) return out;
+  out["edits"] = Json::array();
+  for (const auto& edit : *side.edits) {
+    Json kept = edit.kept ? json_of(side.kept.facts[*edit.kept]) : Json(nullptr);
+    Json refused = edit.refused ? json_of(side.refused.facts[*edit.refused]) : Json(nullptr);
+    out["edits"].push_back(lost ? Json{{"old", kept}, {"new", refused}}
+                                : Json{{"old", refused}, {"new", kept}});
+  }
+  return out;
+}
+
+Json side_json(const SideView& side, bool lost) {
+  static constexpr const char* kAnswers[] = {"found", "none", "unknown"};
+  Json out = {{"answer", kAnswers[static_cast<std::size_t>(side.traces.answer)]}};
+  out["count"] =
+      side.traces.answer == Answer::kUnknown ? Json(nullptr) : json_of(side.traces.count);
+  out["witness"] = side.traces.witness ? witness_json(side, lost) : Json(nullptr);
+  out["solver_calls"] = side.traces.solve_calls;
+  out["refinements"] = side.traces.refinements;
+  return out;
+}
+
+}  // namespace
+
+std::string traces_text(const ModelDifference& difference, bool stat) {
+  if (!difference.traces) return {};
+  const auto& traces = *difference.traces;
+  const auto& names = traces.vocabulary;
+  auto out = fmt::format("traces up to timepoint {}, on {} fluents and {} events\n", traces.horizon,
+                         names.fluents, names.events);
+  const auto only = [&](const ModelRevision& side, const std::vector<std::string>& list) {
+    if (list.empty()) return;
+    out += fmt::format("  not compared, as only {} has them: {}\n", side.name, some(list));
+  };
+  only(difference.old_side, names.only_first);
+  only(difference.new_side, names.only_second);
+  out += side_text(view(difference, true), true, stat);
+  out += side_text(view(difference, false), false, stat);
+  if (traces.first_count && traces.second_count) {
+    out += fmt::format("  all: {} in {}, {} in {}\n", number_of(*traces.first_count),
+                       difference.old_side.name, number_of(*traces.second_count),
+                       difference.new_side.name);
+  }
+  return out;
+}
+
+std::string traces_json(const ModelDifference& difference) {
+  if (!difference.traces) return "null";
+  const auto& traces = *difference.traces;
+  Json out = {{"horizon", traces.horizon},
+              {"shared_fluents", traces.vocabulary.fluents},
+              {"shared_events", traces.vocabulary.events},
+              {"only_old", traces.vocabulary.only_first},
+              {"only_new", traces.vocabulary.only_second},
+              {"old", json_of(traces.first_count)},
+              {"new", json_of(traces.second_count)}};
+  out["lost"] = side_json(view(difference, true), true);
+  out["gained"] = side_json(view(difference, false), false);
+  return out.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace parallax::tools

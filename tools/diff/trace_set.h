@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/trace/trace.h"
+#include "tools/cli/command.h"
+
+namespace parallax::tools {
+
+/// The traces of a file, each once, as sets of what holds and happens.
+struct TraceSet {
+  std::string name;
+  std::vector<runtime::Trace> traces;  // in the order of the file
+  bool closed = false;                 // the file says how the list ended
+  bool complete = false;               // and that these are all traces
+};
+
+/// Reads lines of `parallax traces --format jsonl` (E6101). Linear in the file.
+base::Result<TraceSet> load_trace_set(const std::string& path, Invocation& invocation);
+
+/// The traces with changes only, sorted, and what is known of the list.
+std::string canonical_text(const TraceSet& set);
+
+/// The traces of one set that the other has not.
+struct TraceSetSide {
+  std::size_t count = 0;
+  /// The one that leaves all traces of the other set at the earliest timepoint; among those the one
+  /// with the fewest events before it, then the first of the file.
+  std::optional<runtime::Trace> witness;
+  std::int64_t leaves_at = 0;
+};
+TraceSetSide only_in(const TraceSet& set, const TraceSet& other);
+
+}  // namespace parallax::tools
