@@ -69,6 +69,7 @@ class ArtifactReader {
   bool read_clauses() { return provenance_.read_clauses(); }
   bool read_step() { return provenance_.read_step(); }
   bool read_argument() { return provenance_.read_argument(); }
+  bool read_cut() { return provenance_.read_cut(); }
 
   bool read_size(std::string_view what, std::int64_t& size);
   bool read_flag(bool& flag);
@@ -105,6 +106,7 @@ const std::vector<ArtifactReader::Entry>& ArtifactReader::entries() {
       {"clauses", &Reader::read_clauses, false, true},
       {"step", &Reader::read_step, false, false},
       {"argument", &Reader::read_argument, false, false},
+      {"cut", &Reader::read_cut, false, false},
   };
   return table;
 }

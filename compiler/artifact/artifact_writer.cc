@@ -198,6 +198,13 @@ class ArtifactWriter {
       out_ += '\n';
       for (const auto& [name, value] : step.arguments) write_argument(name, value);
     }
+    for (const auto& cut : model_.plan_cuts) {
+      places_.write_file(cut.place, out_);
+      out_ += "c dec cut";
+      word(cut.form);
+      places_.write_place(cut.place, out_);
+      out_ += '\n';
+    }
   }
   void write_argument(std::string_view name, const PlanValue& value) {
     out_ += "c dec argument";

@@ -5,7 +5,8 @@ namespace {
 
 constexpr AtomKind kAllKinds[] = {AtomKind::kHoldsAt,   AtomKind::kHappens,   AtomKind::kReleasedAt,
                                   AtomKind::kPredicate, AtomKind::kLocation,  AtomKind::kHit,
-                                  AtomKind::kRunning,   AtomKind::kAuxiliary, AtomKind::kUnused};
+                                  AtomKind::kRunning,   AtomKind::kSucceeded, AtomKind::kResult,
+                                  AtomKind::kRegister,  AtomKind::kAuxiliary, AtomKind::kUnused};
 
 }  // namespace
 
@@ -25,6 +26,12 @@ std::string_view to_string(AtomKind kind) {
       return "Hit";
     case AtomKind::kRunning:
       return "Running";
+    case AtomKind::kSucceeded:
+      return "Succeeded";
+    case AtomKind::kResult:
+      return "Result";
+    case AtomKind::kRegister:
+      return "Register";
     case AtomKind::kAuxiliary:
       return "Auxiliary";
     case AtomKind::kUnused:

@@ -11,6 +11,8 @@ std::vector<std::string> names_of(const std::vector<GroundName>& ground) {
   return names;
 }
 
+std::string plan_cut_atom(std::size_t number) { return "BOUND(" + std::to_string(number) + ")"; }
+
 Atom CompiledModel::atom(std::int32_t v) const {
   PARALLAX_REQUIRE(v >= 1 && v <= variable_count(), "a variable of the model");
   if (v <= base()) return fixed[static_cast<std::size_t>(v) - 1];

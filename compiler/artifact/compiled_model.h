@@ -25,6 +25,9 @@ enum class AtomKind : std::uint8_t {
   kLocation,   // the plan's control is at a location: name "L3"
   kHit,        // the state constraints hold at this timepoint
   kRunning,    // the plan has not ended at this timepoint
+  kSucceeded,  // the perform of a location at the timepoint before succeeded: name "L3"
+  kResult,     // what that perform returned: name "cup1"
+  kRegister,   // a returned object that the plan still knows: name "?item1=cup1"
   kAuxiliary,  // stands for a subformula; no name
   kUnused,     // no clause mentions it
 };
@@ -110,6 +113,15 @@ struct PlanStep {
   TextPlace place = {};  // as in Origin
 };
 
+/// A form whose unrolling was cut: executions that get there are known up to there only.
+struct PlanCut {
+  std::string form;  // "loop", or the function that calls itself
+  base::SourceRange source;
+  TextPlace place = {};  // as in Origin
+};
+/// The name of the location atom that stands for the cut with this number: `BOUND(0)`.
+std::string plan_cut_atom(std::size_t number);
+
 /// A text that took part in the compilation.
 struct SourceText {
   std::string name;
@@ -159,7 +171,8 @@ struct CompiledModel {
   std::vector<bool> clause_is_definition;     // defines an auxiliary: true in itself, says nothing
   std::vector<Section> sections;              // cover the clauses, in order
   std::vector<Origin> origins;
-  std::vector<PlanStep> plan;    // by location number; empty without a plan
+  std::vector<PlanStep> plan;      // by location number; empty without a plan
+  std::vector<PlanCut> plan_cuts;  // empty if the whole plan was unrolled
   bool has_constraints = false;  // kHit atoms exist
 
   std::int32_t base() const { return static_cast<std::int32_t>(fixed.size()); }

@@ -108,6 +108,7 @@ void describe_sources(CompiledModel& model, const base::SourceFiles& files) {
   }
   assign_ids(model.origins);
   for (auto& step : model.plan) step.place = place_of(step.source, files);
+  for (auto& cut : model.plan_cuts) cut.place = place_of(cut.source, files);
 }
 
 void sort_clauses(CompiledModel& model) {

@@ -91,6 +91,15 @@ bool ProvenanceReader::read_step() {
   return cursor_.end_of_line();
 }
 
+bool ProvenanceReader::read_cut() {
+  PlanCut cut;
+  if (!cursor_.word("the form that was cut", cut.form)) return false;
+  cut.source = cursor_.last();
+  if (!places_.read_place(cursor_, cut.place)) return false;
+  model_.plan_cuts.push_back(std::move(cut));
+  return cursor_.end_of_line();
+}
+
 bool ProvenanceReader::read_argument() {
   if (model_.plan.empty()) {
     return cursor_.fail(DiagnosticCode::kArtifactMissing, "c dec step EVENT");

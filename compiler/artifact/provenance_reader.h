@@ -24,6 +24,7 @@ class ProvenanceReader {
   bool read_clauses();
   bool read_step();
   bool read_argument();
+  bool read_cut();
 
   /// The runs of each section, in the order of `model.sections`, whose `begin` are set.
   const std::vector<std::vector<ClauseRun>>& runs() const { return runs_; }

@@ -125,6 +125,9 @@ std::string GroundModel::atom_name(const GroundAtom& atom) const {
     case AtomKind::kLocation:
     case AtomKind::kHit:
     case AtomKind::kRunning:
+    case AtomKind::kSucceeded:
+    case AtomKind::kResult:
+    case AtomKind::kRegister:
       return names_[atom.index];
     case AtomKind::kAuxiliary:
     case AtomKind::kUnused:

@@ -31,6 +31,8 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, TypedModel& model,
   if (!binding) return sink.already_reported();
   UnrollOptions options;
   options.entry = input.entry;
+  options.max_call_depth = input.max_call_depth;
+  options.max_loop = input.max_loop;
   for (const auto& object : model.objects) options.constants.push_back(object.name);
   for (const auto& symbol : model.symbols) {
     if (symbol.kind == SymbolKind::kFluent) options.fluents.push_back(symbol.name);
@@ -111,7 +113,8 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
   if (plan && !encode_plan(plan->graph, plan->formulas, plan->events, *ground, grounder, sink)) {
     return sink.already_reported();
   }
-  if (!constraints->empty() && !encode_constraints(*constraints, *ground, grounder, sink)) {
+  if (!constraints->empty() &&
+      !encode_constraints(*constraints, input.hits_at_start ? 0 : 1, *ground, grounder, sink)) {
     return sink.already_reported();
   }
   Compilation result;
@@ -120,6 +123,7 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
   result.model.has_constraints = !constraints->empty();
   if (plan) {
     result.model.plan = plan_steps(plan->graph);
+    result.model.plan_cuts = plan_cuts(plan->graph);
     result.plan = std::move(plan->graph);
   }
   describe(input, files, result.model);

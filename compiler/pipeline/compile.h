@@ -23,6 +23,8 @@ struct PlanInput {
   base::FileId binding;
   std::optional<std::string> entry;      // the function to run; the default is the last one defined
   const PoseLocator* locator = nullptr;  // outlives the call
+  std::int32_t max_call_depth = 8;       // as in UnrollOptions
+  std::int32_t max_loop = 16;
 };
 
 /// A state constraint: a text in the source files, and the place that messages name, which is
@@ -38,10 +40,11 @@ struct CompileInput {
   std::optional<std::int64_t> horizon;  // replaces the range of `time`
   std::optional<PlanInput> plan;
   std::vector<ConstraintText> constraints;
+  bool hits_at_start = false;  // the constraints may also hold at timepoint 0
   GroundOptions ground;
   std::string producer;  // the program and its version, for the artifact; may be empty
-  bool costs = false;  // also count what each axiom costs
-  bool lint = false;  // also report what is legal but hardly meant (W21xx)
+  bool costs = false;    // also count what each axiom costs
+  bool lint = false;     // also report what is legal but hardly meant (W21xx)
 };
 
 struct Compilation {

@@ -4,12 +4,13 @@
 
 namespace parallax::compiler {
 
-base::Status encode_constraints(const std::vector<StateConstraint>& constraints, GroundModel& model,
-                                FormulaGrounder& grounder, base::DiagnosticSink& sink) {
+base::Status encode_constraints(const std::vector<StateConstraint>& constraints, Timepoint first,
+                                GroundModel& model, FormulaGrounder& grounder,
+                                base::DiagnosticSink& sink) {
   const auto origin = model.add_origin(constraints.front().source, "state constraint");
   auto& formulas = model.formulas();
   std::vector<bool> ever(constraints.size(), false);
-  for (Timepoint t = 1; t <= model.horizon(); ++t) {
+  for (Timepoint t = first; t <= model.horizon(); ++t) {
     std::vector<FormulaId> parts;
     for (std::size_t i = 0; i < constraints.size(); ++i) {
       const auto& constraint = constraints[i];

@@ -14,9 +14,10 @@ struct StateConstraint {
   base::SourceRange source;
 };
 
-/// Defines an atom `hit` for every timepoint from 1 on: all constraints hold there. An instance
-/// that names a timepoint before 0 does not hold.
-base::Status encode_constraints(const std::vector<StateConstraint>& constraints, GroundModel& model,
-                                FormulaGrounder& grounder, base::DiagnosticSink& sink);
+/// Defines an atom `hit` for every timepoint from `first` on: all constraints hold there. An
+/// instance that names a timepoint before 0 does not hold.
+base::Status encode_constraints(const std::vector<StateConstraint>& constraints, Timepoint first,
+                                GroundModel& model, FormulaGrounder& grounder,
+                                base::DiagnosticSink& sink);
 
 }  // namespace parallax::compiler

@@ -2,10 +2,13 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <map>
+#include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/pipeline/plan_registers.h"
+#include "compiler/pipeline/register_step.h"
+#include "compiler/plan/plan_liveness.h"
 
 namespace parallax::compiler {
 
@@ -16,11 +19,26 @@ namespace {
 /// A place of control: locations first, then terminals.
 using NodeNumber = std::size_t;
 
+/// How many of the terminals before this one are bounds.
+std::size_t cut_number(const PlanGraph& graph, std::size_t terminal) {
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < terminal; ++i) {
+    if (graph.terminals[graph.terminals.id_at(i)].kind == TerminalKind::kBound) ++number;
+  }
+  return number;
+}
+
 class PlanEncoder {
  public:
   PlanEncoder(const PlanGraph& graph, const PlanFormulas& formulas, GroundModel& model,
               FormulaGrounder& grounder, base::DiagnosticSink& sink)
-      : graph_(graph), formulas_(formulas), model_(model), grounder_(grounder), sink_(sink) {
+      : graph_(graph),
+        formulas_(formulas),
+        liveness_(plan_liveness(graph)),
+        registers_(graph, formulas, model, grounder, sink),
+        model_(model),
+        grounder_(grounder),
+        sink_(sink) {
     for (std::uint32_t i = 0; i < model.events().size(); ++i) {
       event_numbers_.emplace(model.terms().text(model.events()[i], model.typed()), i);
     }
@@ -51,17 +69,22 @@ class PlanEncoder {
   }
 
  private:
+  /// What a location performs: an event for every reading of the registers it depends on.
+  struct Performed {
+    PlanRegisters::Reading reading;
+    std::uint32_t event = 0;
+  };
+
   bool resolve_events() {
     for (const auto& location : graph_.locations) {
-      const auto found = event_numbers_.find(location.event);
-      if (found != event_numbers_.end()) {
-        events_.push_back(found->second);
-        continue;
-      }
-      if (!location.event.empty() && location.event.find('?') != std::string::npos) {
-        sink_.error(DiagnosticCode::kPlanModelValue, location.source, location.event);
-      } else {
-        sink_.error(DiagnosticCode::kPlanEventUnknown, location.source, location.event);
+      events_.emplace_back();
+      for (auto& reading : registers_.readings(location.event)) {
+        const auto found = event_numbers_.find(reading.text);
+        if (found == event_numbers_.end()) {
+          sink_.error(DiagnosticCode::kPlanEventUnknown, location.source, reading.text);
+          break;
+        }
+        events_.back().push_back({std::move(reading), found->second});
       }
     }
     return sink_.error_count() == errors_at_start_;
@@ -69,14 +92,15 @@ class PlanEncoder {
 
   std::string node_name(NodeNumber node) const {
     if (node < graph_.locations.size()) return fmt::format("L{}", node);
-    const auto& terminal = graph_.terminals[graph_.terminals.id_at(node - graph_.locations.size())];
+    const auto place = node - graph_.locations.size();
+    const auto& terminal = graph_.terminals[graph_.terminals.id_at(place)];
     switch (terminal.kind) {
       case TerminalKind::kDone:
         return "DONE";
       case TerminalKind::kFailed:
         return fmt::format("FAILED({})", terminal.detail);
       case TerminalKind::kBound:
-        return fmt::format("BOUND({},{})", node - graph_.locations.size(), terminal.detail);
+        return plan_cut_atom(cut_number(graph_, place));
     }
     return {};
   }
@@ -84,16 +108,6 @@ class PlanEncoder {
   std::uint32_t origin_of(NodeNumber node) const {
     // A terminal's clauses belong to the plan's first step: it has no text of its own.
     return origins_.empty() ? 0 : origins_[node < origins_.size() ? node : 0];
-  }
-
-  std::optional<FormulaId> at(const CheckedFormula& formula, Timepoint t, base::SourceRange blame) {
-    grounder_.start(blame);
-    if (formula.time) grounder_.bind(*formula.time, model_.terms().integer(t));
-    const auto value = grounder_.ground(formula.formula);
-    if (!value && !grounder_.failed()) {
-      sink_.error(DiagnosticCode::kNothingToSay, blame, model_.horizon());
-    }
-    return value;
   }
 
   /// Adds `condition` to the incoming conditions of every node that `target` leads to at t.
@@ -111,7 +125,7 @@ class PlanEncoder {
       } else {
         const auto id = std::get<BranchId>(to);
         const auto& branch = graph_.branches[id];
-        const auto guard = at(formulas_.guards[id.index()], t, branch.source);
+        const auto guard = registers_.ground(formulas_.guards[id.index()], t, t, branch.source);
         if (!guard) return;
         todo.emplace_back(branch.if_false, model_.formulas().conjunction(reached, ~*guard));
         todo.emplace_back(branch.if_true, model_.formulas().conjunction(reached, *guard));
@@ -140,9 +154,13 @@ class PlanEncoder {
     std::map<std::uint32_t, std::vector<FormulaId>> performed_by;
     for (NodeNumber node = 0; node < graph_.locations.size(); ++node) {
       if (!here[node]) continue;
-      model_.require(formulas.implication(*here[node], model_.happens(events_[node], t)),
-                     origin_of(node));
-      performed_by[events_[node]].push_back(*here[node]);
+      for (const auto& performed : events_[node]) {
+        const auto now =
+            formulas.conjunction(*here[node], registers_.condition(performed.reading, t));
+        model_.require(formulas.implication(now, model_.happens(performed.event, t)),
+                       origin_of(node));
+        performed_by[performed.event].push_back(now);
+      }
     }
     for (std::uint32_t e = 0; e < model_.events().size(); ++e) {
       const auto& symbol = model_.typed().symbols[model_.terms()[model_.events()[e]].symbol];
@@ -155,6 +173,7 @@ class PlanEncoder {
 
   void leave(const std::vector<std::optional<FormulaId>>& here, Timepoint t,
              std::vector<std::vector<FormulaId>>& incoming) {
+    RegisterStep step(graph_, formulas_, liveness_, registers_, model_, t);
     for (NodeNumber node = 0; node < here.size(); ++node) {
       if (!here[node]) continue;
       if (node >= graph_.locations.size()) {
@@ -163,13 +182,18 @@ class PlanEncoder {
       }
       const auto id = graph_.locations.id_at(node);
       const auto& location = graph_.locations[id];
-      const auto success =
-          at(formulas_.success[node], t + location.success.time_offset, location.success.source);
+      const auto success = step.success(id);
       if (!success) return;
       auto& formulas = model_.formulas();
-      route(location.on_success, formulas.conjunction(*here[node], *success), t + 1, incoming);
-      route(location.on_failure, formulas.conjunction(*here[node], ~*success), t + 1, incoming);
+      const auto ok = model_.named_atom(AtomKind::kSucceeded, node_name(node), t + 1);
+      model_.require(formulas.equivalence(ok, formulas.conjunction(*here[node], *success)),
+                     origin_of(node));
+      const auto failed = formulas.conjunction(*here[node], ~ok);
+      step.leave(id, ok, failed, origin_of(node));
+      route(location.on_success, ok, t + 1, incoming);
+      route(location.on_failure, failed, t + 1, incoming);
     }
+    step.finish(origin_of(0));
   }
 
   /// True at the horizon if the plan would go on: at a location, or where unrolling was cut.
@@ -190,13 +214,15 @@ class PlanEncoder {
 
   const PlanGraph& graph_;
   const PlanFormulas& formulas_;
+  PlanLiveness liveness_;
+  PlanRegisters registers_;
   GroundModel& model_;
   FormulaGrounder& grounder_;
   base::DiagnosticSink& sink_;
   std::size_t errors_at_start_ = sink_.error_count();
   std::map<std::string, std::uint32_t> event_numbers_;
-  std::vector<std::uint32_t> events_;   // by location
-  std::vector<std::uint32_t> origins_;  // by location
+  std::vector<std::vector<Performed>> events_;  // by location
+  std::vector<std::uint32_t> origins_;          // by location
 };
 
 }  // namespace
@@ -205,6 +231,15 @@ base::Status encode_plan(const PlanGraph& graph, const PlanFormulas& formulas,
                          const std::set<std::string>& plan_events, GroundModel& model,
                          FormulaGrounder& grounder, base::DiagnosticSink& sink) {
   return PlanEncoder(graph, formulas, model, grounder, sink).run(plan_events);
+}
+
+std::vector<PlanCut> plan_cuts(const PlanGraph& graph) {
+  std::vector<PlanCut> cuts;
+  for (const auto& terminal : graph.terminals) {
+    if (terminal.kind != TerminalKind::kBound) continue;
+    cuts.push_back({terminal.detail, terminal.source.value_or(base::SourceRange{}), {}});
+  }
+  return cuts;
 }
 
 std::vector<PlanStep> plan_steps(const PlanGraph& graph) {

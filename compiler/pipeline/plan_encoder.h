@@ -13,16 +13,21 @@
 namespace parallax::compiler {
 
 /// Unrolls the plan's control flow together with the model. Control is at exactly one location or
-/// terminal per timepoint (atoms `L0`, `DONE`, `FAILED(class)`); at a location its event happens;
-/// whether it succeeded is decided by its success formula, never freely; a terminal is never left.
-/// Events of `plan_events` (all symbols that the binding table can produce) happen only where a
-/// location performs them; other events are the model's own.
-/// Size: reachable (location, timepoint) pairs times edges.
+/// terminal per timepoint (atoms `L0`, `DONE`, `FAILED(class)`, `BOUND(0)`); at a location its
+/// event happens; whether it succeeded (atom `L0` of kind kSucceeded, one timepoint later) is
+/// decided by its success formula, never freely; a terminal is never left. What a perform returns
+/// is any one object that makes its formula true (kResult), kept in a register (kRegister) while
+/// the plan has use for it. Events of `plan_events` (all symbols that the binding table can
+/// produce) happen only where a location performs them; other events are the model's own. Size:
+/// reachable (location, timepoint) pairs times edges.
 base::Status encode_plan(const PlanGraph& graph, const PlanFormulas& formulas,
                          const std::set<std::string>& plan_events, GroundModel& model,
                          FormulaGrounder& grounder, base::DiagnosticSink& sink);
 
 /// The plan's steps for the artifact, by location number.
 std::vector<PlanStep> plan_steps(const PlanGraph& graph);
+
+/// The places where unrolling was cut, in the order of the graph's terminals.
+std::vector<PlanCut> plan_cuts(const PlanGraph& graph);
 
 }  // namespace parallax::compiler

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -9,14 +10,25 @@
 
 namespace parallax::compiler {
 
-/// The formulas of a plan graph, checked against the model: by location and by branch.
+/// A formula of the plan, checked against the model.
+struct PlanFormula {
+  CheckedFormula checked;
+  /// The model's variable that stands for each register (`?item1`) of the text. The formula
+  /// quantifies over them; whoever grounds it gives each its value first.
+  std::map<ModelValueId, VariableId> registers;
+  /// Of a perform that returns something: the quantified variable that is returned.
+  std::optional<VariableId> returned;
+};
+
 struct PlanFormulas {
-  std::vector<CheckedFormula> success;
-  std::vector<CheckedFormula> guards;
+  std::vector<PlanFormula> success;    // by location
+  std::vector<PlanFormula> guards;     // by branch
+  std::vector<SortId> register_sorts;  // by register: what it can hold
 };
 
 /// Parses and checks success conditions and guards; they become part of the model's stores, so
-/// this comes before grounding. Reports at the binding's formula, with a note at the perform.
+/// this comes before grounding. Reports at the binding's formula what is wrong with it, E4001 if it
+/// returns a variable that its outermost `{...}` does not bind.
 base::Result<PlanFormulas> check_plan_formulas(const PlanGraph& graph, TypedModel& model,
                                                base::SourceFiles& files,
                                                base::DiagnosticSink& sink);

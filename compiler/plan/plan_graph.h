@@ -26,7 +26,7 @@ struct BranchTag {
   static constexpr bool kOrdered = true;  // order of discovery
 };
 struct ModelValueTag {
-  static constexpr bool kOrdered = true;  // order of the locations that bind them
+  static constexpr bool kOrdered = true;  // order of the locations that bind them first
 };
 using LocationId = base::Id<LocationTag>;
 using TerminalId = base::Id<TerminalTag>;
@@ -80,12 +80,12 @@ struct PlanLocation {
   PlanTarget on_failure;
 };
 
-/// A value that only the model determines: what a location's success formula quantifies over.
-/// In a cycle it is what the location found last.
+/// A register for a value that only the model determines: what the success formula of the locations
+/// that bind it quantifies over. It keeps what was found last; a plan that still knows an earlier
+/// value binds the next one in another register.
 struct ModelValue {
   std::string name;      // unique, starts with `?`: "?i1"
-  std::string variable;  // the quantified variable of the success formula: "i"
-  LocationId bound_by;
+  std::string variable;  // the quantified variable of the success formulas: "i"
 };
 
 /// A silent decision by the model's state at the timepoint at which control passes through.

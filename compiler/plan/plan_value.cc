@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 namespace parallax::compiler {
 namespace {
 
@@ -85,9 +87,23 @@ ValueId ValueStore::intern(Value value) {
   auto text = fingerprint(value);
   const auto found = ids_.find(text);
   if (found != ids_.end()) return found->second;
+  note_registers(value);
   const auto id = values_.add(std::move(value));
   ids_.emplace(std::move(text), id);
   return id;
+}
+
+void ValueStore::note_registers(Value& value) const {
+  auto& out = value.registers;
+  const auto include = [&](ValueId part) {
+    const auto& more = values_[part].registers;
+    out.insert(out.end(), more.begin(), more.end());
+  };
+  if (value.kind == ValueKind::kModel) out = {value.model};
+  if (value.kind == ValueKind::kCons) include(value.head), include(value.tail);
+  for (const auto& [key, part] : value.keys) include(part);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
 }
 
 ValueId ValueStore::symbol(std::string_view name) {

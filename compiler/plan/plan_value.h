@@ -47,6 +47,7 @@ struct Value {
   DesignatorKind designator = DesignatorKind::kMotion;
   std::vector<std::pair<std::string, ValueId>> keys;  // kDesignator: in written order
   ModelValueId model;
+  std::vector<ModelValueId> registers;  // of the model values in it, sorted; set by the store
 };
 
 /// More values than any plan needs; a loop that builds ever longer lists reaches it.
@@ -86,6 +87,8 @@ class ValueStore {
   std::string print(ValueId id) const;
 
  private:
+  void note_registers(Value& value) const;
+
   base::Store<ValueId, Value> values_;
   std::map<std::string, ValueId> ids_;
   ValueId truth_;

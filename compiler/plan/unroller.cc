@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <map>
+#include <set>
 #include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
@@ -53,6 +54,7 @@ class Explorer {
   std::optional<PlanTarget> perform(PlanState& state, const StopPerform& stop);
   std::optional<PlanTarget> question(PlanState& state, const StopQuestion& stop);
   base::Result<std::string> guard_text(const StopQuestion& stop);
+  ModelValueId free_register(const PlanState& state, DatumId form, const std::string& variable);
   PlanTarget terminal(TerminalKind kind, std::string detail, std::optional<DatumId> at);
   std::vector<base::SourceRange> calls(const PlanState& state) const;
 
@@ -68,6 +70,7 @@ class Explorer {
   std::map<StateKey, LocationId> locations_;
   std::map<StateKey, BranchId> branches_;
   std::map<std::string, TerminalId> terminals_;
+  std::map<std::pair<std::uint32_t, std::string>, std::vector<ModelValueId>> registers_;
   bool failed_ = false;
   bool full_ = false;  // the limit of locations was reached and reported
 };
@@ -138,8 +141,7 @@ std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform&
   locations_.emplace(std::move(key), id);
   auto result = values_.truth();
   if (entry->returns) {
-    const auto name = fmt::format("?{}{}", *entry->returns, graph_.values.size() + 1);
-    const auto value = graph_.values.add({name, *entry->returns, id});
+    const auto value = free_register(state, stop.form, *entry->returns);
     graph_.locations[id].result = value;
     result = values_.model(value);
   }
@@ -149,6 +151,25 @@ std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform&
   jobs_.push_back({std::move(state), std::nullopt, Job::Edge::kSuccess, id.index()});
   jobs_.back().state.stack.push_back(result);
   return id;
+}
+
+/// The first register of this perform that the plan does not refer to any more.
+ModelValueId Explorer::free_register(const PlanState& state, DatumId form,
+                                     const std::string& variable) {
+  std::set<ModelValueId> taken;
+  const auto note = [&](ValueId value) {
+    const auto& registers = values_[value].registers;
+    taken.insert(registers.begin(), registers.end());
+  };
+  for (const auto value : state.stack) note(value);
+  for (const auto& frame : state.frames) note(frame.pending.value);
+  auto& own = registers_[{form.index(), variable}];
+  for (const auto value : own) {
+    if (!taken.contains(value)) return value;
+  }
+  const auto name = fmt::format("?{}{}", variable, graph_.values.size() + 1);
+  own.push_back(graph_.values.add({name, variable}));
+  return own.back();
 }
 
 base::Result<std::string> Explorer::guard_text(const StopQuestion& stop) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "compiler/artifact/atom_kinds.h"
+
 namespace parallax::runtime {
 
 using compiler::AtomKind;
@@ -12,10 +14,11 @@ using compiler::Literal;
 CompletenessClaim::CompletenessClaim(const CompiledModel& model)
     : model_(model),
       index_(model),
-      variables_(model.variable_count() + (model.has_constraints ? 2 * model.horizon + 1 : 0)) {
+      variables_(model.variable_count() + (model.has_constraints ? 2 * model.horizon + 2 : 0)) {
   model.for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
                           std::optional<Timepoint> time) {
-    if (kind != AtomKind::kHoldsAt && kind != AtomKind::kHappens) return;
+    const bool result = kind == AtomKind::kResult && model.has_constraints;
+    if (kind != AtomKind::kHoldsAt && kind != AtomKind::kHappens && !result) return;
     observables_.push_back({Literal::positive(variable), kind, time.value_or(0), name});
   });
 }
@@ -23,7 +26,9 @@ CompletenessClaim::CompletenessClaim(const CompiledModel& model)
 /// Two traces of this length are one if they agree on the keys.
 bool CompletenessClaim::is_key(const Observable& observable, Timepoint length) const {
   if (!model_.has_constraints) return true;
-  return observable.kind == AtomKind::kHappens && observable.time < length;
+  // What a perform returned is known one timepoint later.
+  const auto last = observable.kind == AtomKind::kResult ? length : length - 1;
+  return observable.kind != AtomKind::kHoldsAt && observable.time <= last;
 }
 
 void CompletenessClaim::add(const Trace& trace) {
@@ -31,6 +36,11 @@ void CompletenessClaim::add(const Trace& trace) {
   for (std::size_t i = 0; i < observables_.size(); ++i) {
     const auto& observable = observables_[i];
     if (!is_key(observable, found.length)) continue;
+    if (observable.kind == AtomKind::kResult) {
+      const auto& before = trace.points[static_cast<std::size_t>(observable.time) - 1];
+      found.values[i] = before.returned == observable.name;
+      continue;
+    }
     const auto& point = trace.points[static_cast<std::size_t>(observable.time)];
     const auto& names = observable.kind == AtomKind::kHoldsAt ? point.holds : point.happens;
     found.values[i] = std::binary_search(names.begin(), names.end(), observable.name);
@@ -63,8 +73,13 @@ void CompletenessClaim::visit_model(const Visit& visit) const {
   }
 }
 
-/// A trace that ends at n reaches n, and the constraints hold there and at no earlier timepoint but
-/// 0. One that goes on reaches the horizon without that.
+/// The trace is its initial state, where the constraints hold.
+Literal CompletenessClaim::ends_at_start() const {
+  return Literal::positive(model_.variable_count() + 2 * model_.horizon + 2);
+}
+
+/// A trace that ends at n reaches n, and the constraints hold there and at no earlier timepoint (0
+/// counts if it has a hit atom). One that goes on reaches the horizon without that.
 void CompletenessClaim::visit_length(Timepoint n, const Visit& visit) const {
   const auto last = n == 0 ? model_.horizon : n;
   const auto imply = [&](Literal consequence) {
@@ -77,6 +92,7 @@ void CompletenessClaim::visit_length(Timepoint n, const Visit& visit) const {
     PARALLAX_REQUIRE(hit.has_value(), "every timepoint from 1 has its hit atom");
     imply(t == n ? *hit : ~*hit);
   }
+  if (const auto hit = index_.find(AtomKind::kHit, "hit", 0)) imply(~*hit);
   if (n > 0) return;
   if (const auto running = index_.find(AtomKind::kRunning, "running", last)) imply(*running);
 }
@@ -84,6 +100,11 @@ void CompletenessClaim::visit_length(Timepoint n, const Visit& visit) const {
 void CompletenessClaim::visit_lengths(const Visit& visit) const {
   if (!model_.has_constraints) return;
   std::vector<Literal> some;
+  if (const auto hit = index_.find(AtomKind::kHit, "hit", 0)) {
+    const Literal clause[] = {~ends_at_start(), *hit};
+    visit(clause);
+    some.push_back(ends_at_start());
+  }
   for (Timepoint n = shortest_; n <= model_.horizon; ++n) {
     some.push_back(ends(n));
     visit_length(n, visit);
@@ -95,7 +116,9 @@ void CompletenessClaim::visit_traces(const Visit& visit) const {
   std::vector<Literal> clause;
   for (const auto& found : traces_) {
     clause.clear();
-    if (model_.has_constraints) clause.push_back(~ends(found.length));
+    if (model_.has_constraints) {
+      clause.push_back(found.length > 0 ? ~ends(found.length) : ~ends_at_start());
+    }
     for (std::size_t i = 0; i < observables_.size(); ++i) {
       if (!is_key(observables_[i], found.length)) continue;
       clause.push_back(found.values[i] ? ~observables_[i].literal : observables_[i].literal);
@@ -122,8 +145,7 @@ void CompletenessClaim::write_dimacs(std::ostream& out) const {
   }
   for (const auto& observable : observables_) {
     out << fmt::format("c map {} {}({},{})\n", observable.literal.dimacs(),
-                       observable.kind == AtomKind::kHoldsAt ? "HoldsAt" : "Happens",
-                       observable.name, observable.time);
+                       compiler::to_string(observable.kind), observable.name, observable.time);
   }
   out << fmt::format("p cnf {} {}\n", variables_, clauses);
   std::string line;

@@ -16,9 +16,10 @@ namespace parallax::runtime {
 ///
 /// Without state constraints a trace is a valuation of HoldsAt and Happens at the full horizon, and
 /// its clause says that one of them is different. With constraints a trace is a sequence of events
-/// up to the first hit. Then the formula also chooses a length, by variables beyond those of the
-/// model: `ends` n implies the clauses of the timepoints up to n, that the constraints hold at n
-/// and not before; a blocking clause binds the length that its trace has.
+/// and of what performs returned, up to the first hit. Then the formula also chooses a length, by
+/// variables beyond those of the model: `ends` n implies the clauses of the timepoints up to n,
+/// that the constraints hold at n and not before; a blocking clause binds the length that its trace
+/// has.
 class CompletenessClaim {
  public:
   /// `model` outlives the claim.
@@ -51,6 +52,7 @@ class CompletenessClaim {
   bool is_key(const Observable& observable, Timepoint length) const;
   compiler::Literal reaches(Timepoint t) const;
   compiler::Literal ends(Timepoint n) const;
+  compiler::Literal ends_at_start() const;
   void visit_model(const Visit& visit) const;
   void visit_lengths(const Visit& visit) const;
   void visit_length(Timepoint n, const Visit& visit) const;

@@ -1,25 +1,89 @@
 #include "runtime/enumerate/canonical.h"
 
+#include <algorithm>
+
 namespace parallax::runtime {
+namespace {
+
+/// Goes through the literals in order. Most are settled in one valuation and cannot change, so
+/// whole blocks are asked about at once: can any literal of the block that is not as preferred
+/// become so? If none can, the block stays as it is; else a smaller block is asked about, down to
+/// one literal.
+class CanonicalSearch {
+ public:
+  CanonicalSearch(SolverSession& session, Timepoint n, std::span<const Literal> assumptions,
+                  std::span<const Literal> order)
+      : session_(session), n_(n), order_(order), fixed_(assumptions.begin(), assumptions.end()) {}
+
+  /// False if the solver was stopped.
+  bool run() {
+    while (at_ < order_.size()) {
+      const auto end = std::min(at_ + block_, order_.size());
+      const auto open = unpreferred(end);
+      const auto status = open.empty() ? SolveStatus::kUnsatisfiable : solve_any(open);
+      if (status == SolveStatus::kUnknown) return false;
+      if (status == SolveStatus::kUnsatisfiable) {
+        keep(end);
+        block_ *= 2;
+      } else if (block_ == 1) {
+        keep(end);  // it is as preferred now
+      } else {
+        block_ = std::max<std::size_t>(1, std::min(block_, order_.size() - at_) / 4);
+      }
+    }
+    return true;
+  }
+  std::vector<Literal> take() { return std::move(fixed_); }
+
+ private:
+  std::vector<Literal> unpreferred(std::size_t end) const {
+    std::vector<Literal> out;
+    for (std::size_t i = at_; i < end; ++i) {
+      const auto literal = order_[i];
+      if (!session_.value(literal) && !session_.is_fixed(~literal)) out.push_back(literal);
+    }
+    return out;
+  }
+  /// The block keeps the values of the last valuation.
+  void keep(std::size_t end) {
+    for (; at_ < end; ++at_) {
+      fixed_.push_back(session_.value(order_[at_]) ? order_[at_] : ~order_[at_]);
+    }
+  }
+  SolveStatus solve_any(std::vector<Literal> some) {
+    if (some.size() == 1) {
+      fixed_.push_back(some.front());
+      const auto status = session_.solve(n_, fixed_);
+      fixed_.pop_back();
+      return status;
+    }
+    const auto wanted = session_.new_variable();
+    some.push_back(~wanted);
+    session_.add_clause(some);
+    fixed_.push_back(wanted);
+    const auto status = session_.solve(n_, fixed_);
+    fixed_.pop_back();
+    const auto retired = ~wanted;
+    session_.add_clause(std::span(&retired, 1));
+    return status;
+  }
+
+  SolverSession& session_;
+  Timepoint n_;
+  std::span<const Literal> order_;
+  std::vector<Literal> fixed_;
+  std::size_t at_ = 0;
+  std::size_t block_ = 1024;
+};
+
+}  // namespace
 
 std::vector<Literal> make_canonical(SolverSession& session, Timepoint n,
                                     std::span<const Literal> assumptions,
                                     std::span<const Literal> order) {
-  std::vector<Literal> fixed(assumptions.begin(), assumptions.end());
-  for (const auto preferred : order) {
-    if (session.value(preferred)) {
-      fixed.push_back(preferred);
-      continue;
-    }
-    if (session.is_fixed(~preferred)) {
-      fixed.push_back(~preferred);
-      continue;
-    }
-    fixed.push_back(preferred);
-    const auto status = session.solve(n, fixed);
-    if (status == SolveStatus::kUnknown) return {};
-    if (status == SolveStatus::kUnsatisfiable) fixed.back() = ~preferred;
-  }
+  CanonicalSearch search(session, n, assumptions, order);
+  if (!search.run()) return {};
+  auto fixed = search.take();
   fixed.erase(fixed.begin(), fixed.begin() + static_cast<std::ptrdiff_t>(assumptions.size()));
   return fixed;
 }

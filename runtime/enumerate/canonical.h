@@ -10,7 +10,8 @@ namespace parallax::runtime {
 /// Moves the session's valuation to the first one in lexicographic order: `order` lists literals
 /// by weight, each in its preferred polarity. The session must hold a valuation found with horizon
 /// `n` under `assumptions`. Afterwards value() gives the first valuation, whatever the solver
-/// found before. At most one call for each literal that the valuation at hand violates.
+/// found before. A few calls where nothing can be improved; about log2 of the length of `order` for
+/// each literal that can.
 /// Returns the literals as they are in it, in the order given; kUnknown from the solver ends the
 /// walk early and gives an empty list.
 std::vector<Literal> make_canonical(SolverSession& session, Timepoint n,

@@ -1,6 +1,8 @@
 #include "runtime/enumerate/plan_enumerator.h"
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
 #include "runtime/enumerate/canonical.h"
 
@@ -20,34 +22,39 @@ std::string_view to_string(Exploration exploration) {
   return {};
 }
 
-PlanEnumerator::PlanEnumerator(SolverSession& session)
-    : session_(&session), index_(session.model()) {
+PlanEnumerator::PlanEnumerator(SolverSession& session, const PlanEnumeratorOptions& options)
+    : session_(&session), options_(options), index_(session.model()) {
   PARALLAX_REQUIRE(session.model().has_constraints, "the model was compiled with constraints");
+  if (index_.find(AtomKind::kHit, "hit", 0)) first_ = 0;
+  n_ = first_ - 1;
 }
 
-/// Hit at n and at no earlier timepoint but 0: an execution has at least one step.
-std::vector<Literal> PlanEnumerator::first_hit(Timepoint n) const {
+/// Hit at n and, unless all hits count, at no earlier timepoint.
+std::vector<Literal> PlanEnumerator::hit_at(Timepoint n) const {
   std::vector<Literal> literals;
-  for (Timepoint t = 1; t <= n; ++t) {
+  for (Timepoint t = options_.all_hits ? n : first_; t <= n; ++t) {
     const auto hit = index_.find(AtomKind::kHit, "hit", t);
-    PARALLAX_REQUIRE(hit.has_value(), "every timepoint from 1 has its hit atom");
+    PARALLAX_REQUIRE(hit.has_value(), "every timepoint from the first has its hit atom");
     literals.push_back(t < n ? ~*hit : *hit);
   }
   return literals;
 }
 
 void PlanEnumerator::prepare_orders(Timepoint n) {
-  event_order_.clear();
+  key_order_.clear();
   start_order_.clear();
   state_order_.clear();
-  session_->model().for_each_atom(
-      [&](std::int32_t variable, AtomKind kind, const std::string&, std::optional<Timepoint> when) {
-        const auto literal = Literal::positive(variable);
-        const auto time = when.value_or(0);
-        if (kind == AtomKind::kHappens && time < n) event_order_.push_back(literal);
-        if (kind != AtomKind::kHoldsAt || time > n) return;
-        (time == 0 ? start_order_ : state_order_).push_back(~literal);
-      });
+  std::map<std::pair<Timepoint, std::string>, Literal> results;
+  session_->model().for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
+                                      std::optional<Timepoint> when) {
+    const auto literal = Literal::positive(variable);
+    const auto time = when.value_or(0);
+    if (kind == AtomKind::kHappens && time < n) key_order_.push_back(literal);
+    if (kind == AtomKind::kResult && time <= n) results.emplace(std::pair(time, name), literal);
+    if (kind != AtomKind::kHoldsAt || time > n) return;
+    (time == 0 ? start_order_ : state_order_).push_back(~literal);
+  });
+  for (const auto& [what, literal] : results) key_order_.push_back(literal);
 }
 
 std::optional<Trace> PlanEnumerator::next() {
@@ -60,7 +67,7 @@ std::optional<Trace> PlanEnumerator::next() {
       prepare_orders(++n_);
       guard_ = session_->new_variable();
     }
-    auto assumptions = first_hit(n_);
+    auto assumptions = hit_at(n_);
     assumptions.push_back(*guard_);
     const auto status = session_->solve(n_, assumptions);
     if (status == SolveStatus::kUnknown) {
@@ -75,23 +82,24 @@ std::optional<Trace> PlanEnumerator::next() {
       continue;
     }
     auto fixed = std::move(assumptions);
+    const auto head = fixed.size();
     const auto extend = [&](const std::vector<Literal>& order) {
       auto literals = make_canonical(*session_, n_, fixed, order);
       fixed.insert(fixed.end(), literals.begin(), literals.end());
       return literals;
     };
-    auto key = extend(event_order_);
-    extend(start_order_);
+    auto key = extend(key_order_);
+    const auto start = extend(start_order_);
+    if (options_.split_initial) key.insert(key.end(), start.begin(), start.end());
     extend(state_order_);
-    if (fixed.size() != static_cast<std::size_t>(n_) + 1 + event_order_.size() +
-                            start_order_.size() + state_order_.size()) {
+    if (fixed.size() != head + key_order_.size() + start_order_.size() + state_order_.size()) {
       done_ = true;  // the solver was stopped on the way
       return std::nullopt;
     }
     auto trace = decode_trace(session_->model(), n_,
                               [&](Literal literal) { return session_->value(literal); });
     trace.number = ++found_;
-    note_alternatives(fixed, trace);
+    note_alternatives(fixed, head, trace);
     for (auto& literal : key) literal = ~literal;
     key.push_back(~*guard_);
     session_->add_clause(key);
@@ -115,18 +123,20 @@ bool PlanEnumerator::has_alternative(std::span<const Literal> fixed,
   return found;
 }
 
-/// `fixed`: what defines the length, then the events, the initial state and the states after it.
-void PlanEnumerator::note_alternatives(std::span<const Literal> fixed, Trace& trace) {
-  const auto head = static_cast<std::size_t>(n_) + 1 + event_order_.size();
+/// `fixed`: `length` literals that define the length, then the key, the initial state and the
+/// states after it.
+void PlanEnumerator::note_alternatives(std::span<const Literal> fixed, std::size_t length,
+                                       Trace& trace) {
+  const auto head = length + key_order_.size();
   const auto start = fixed.subspan(head, start_order_.size());
   const auto states = fixed.subspan(head + start.size());
-  trace.other_initial_states = has_alternative(fixed.first(head), start);
+  trace.other_initial_states = !options_.split_initial && has_alternative(fixed.first(head), start);
   trace.other_outcomes = has_alternative(fixed.first(head + start.size()), states);
 }
 
 bool PlanEnumerator::admits(const Trace& trace, const std::map<std::string, bool>& last_state) {
   const auto n = trace.length();
-  auto assumptions = first_hit(n);
+  auto assumptions = hit_at(n);
   // What has no variable is false in every trace.
   for (const auto& fluent : session_->model().fluents) {
     const auto wanted = last_state.find(fluent.name);
@@ -142,6 +152,9 @@ bool PlanEnumerator::admits(const Trace& trace, const std::map<std::string, bool
     if (kind == AtomKind::kHappens && time < n) {
       const auto& point = trace.points[static_cast<std::size_t>(time)];
       assumptions.push_back(among(point.happens) ? literal : ~literal);
+    } else if (kind == AtomKind::kResult && time <= n) {
+      const auto& point = trace.points[static_cast<std::size_t>(time) - 1];
+      assumptions.push_back(point.returned == name ? literal : ~literal);
     } else if (kind == AtomKind::kHoldsAt && time == 0) {
       assumptions.push_back(among(trace.points.front().holds) ? literal : ~literal);
     } else if (kind == AtomKind::kHoldsAt && time == n) {
@@ -156,23 +169,61 @@ bool PlanEnumerator::admits(const Trace& trace, const std::map<std::string, bool
 /// Is there an execution that never meets the constraints and goes on beyond the horizon?
 void PlanEnumerator::finish() {
   done_ = true;
-  std::vector<Literal> assumptions;
-  for (Timepoint t = 1; t <= n_; ++t) {
-    assumptions.push_back(~*index_.find(AtomKind::kHit, "hit", t));
+  std::vector<Literal> unmet;
+  for (Timepoint t = first_; t <= n_ && !options_.all_hits; ++t) {
+    unmet.push_back(~*index_.find(AtomKind::kHit, "hit", t));
   }
-  const auto running = index_.find(AtomKind::kRunning, "running", n_);
-  if (running) assumptions.push_back(*running);
-  switch (session_->solve(n_, assumptions)) {
-    case SolveStatus::kSatisfiable:
-      exploration_ = Exploration::kCompleteUpToBound;
-      break;
-    case SolveStatus::kUnsatisfiable:
-      exploration_ = Exploration::kAllTracesExplored;
-      break;
-    case SolveStatus::kUnknown:
-      exploration_ = Exploration::kStopped;
-      break;
+  const bool planned = index_.find(AtomKind::kRunning, "running", n_).has_value();
+  const auto cuts = find_cuts(unmet);
+  if (cuts == SolveStatus::kUnknown) return;
+  const auto steps = planned ? find_step(unmet) : session_->solve(n_, unmet);
+  if (steps == SolveStatus::kUnknown) return;
+  const bool open = cuts == SolveStatus::kSatisfiable || steps == SolveStatus::kSatisfiable;
+  exploration_ = open ? Exploration::kCompleteUpToBound : Exploration::kAllTracesExplored;
+}
+
+/// Asks for every cut by itself whether some execution comes to it.
+SolveStatus PlanEnumerator::find_cuts(std::span<const Literal> unmet) {
+  std::vector<Literal> assumptions(unmet.begin(), unmet.end());
+  for (std::size_t cut = 0; cut < session_->model().plan_cuts.size(); ++cut) {
+    const auto there = index_.find(AtomKind::kLocation, compiler::plan_cut_atom(cut), n_);
+    if (!there) continue;
+    assumptions.push_back(*there);
+    const auto status = session_->solve(n_, assumptions);
+    assumptions.pop_back();
+    if (status == SolveStatus::kUnknown) return status;
+    if (status == SolveStatus::kSatisfiable) open_ends_.cuts.push_back(cut);
   }
+  return open_ends_.cuts.empty() ? SolveStatus::kUnsatisfiable : SolveStatus::kSatisfiable;
+}
+
+/// The first step at which some execution stands at the horizon.
+SolveStatus PlanEnumerator::find_step(std::span<const Literal> unmet) {
+  std::vector<std::pair<std::size_t, Literal>> steps;
+  for (std::size_t step = 0; step < session_->model().plan.size(); ++step) {
+    const auto there = index_.find(AtomKind::kLocation, 'L' + std::to_string(step), n_);
+    if (there) steps.emplace_back(step, *there);
+  }
+  for (;;) {
+    const auto wanted = session_->new_variable();
+    std::vector<Literal> clause = {~wanted};
+    for (const auto& [step, there] : steps) clause.push_back(there);
+    session_->add_clause(clause);
+    std::vector<Literal> assumptions(unmet.begin(), unmet.end());
+    assumptions.push_back(wanted);
+    const auto status = session_->solve(n_, assumptions);
+    const auto retired = ~wanted;
+    session_->add_clause(std::span(&retired, 1));
+    if (status == SolveStatus::kUnknown) return status;
+    if (status == SolveStatus::kUnsatisfiable) break;
+    // Whatever step the solver came upon: is there an earlier one?
+    const auto found = std::find_if(steps.begin(), steps.end(), [&](const auto& entry) {
+      return session_->value(entry.second);
+    });
+    open_ends_.step = found->first;
+    steps.erase(found, steps.end());
+  }
+  return open_ends_.step ? SolveStatus::kSatisfiable : SolveStatus::kUnsatisfiable;
 }
 
 }  // namespace parallax::runtime

@@ -21,17 +21,33 @@ enum class Exploration : std::uint8_t {
 };
 std::string_view to_string(Exploration exploration);
 
+struct PlanEnumeratorOptions {
+  /// Every prefix that ends in a hit is a trace, not only the one up to the first hit.
+  bool all_hits = false;
+  /// Every initial state is a trace of its own, not only every key.
+  bool split_initial = false;
+};
+
+/// Where executions go on that were not followed: none of them met the constraints before.
+struct OpenEnds {
+  std::vector<std::size_t> cuts;    // of CompiledModel::plan_cuts: reached within the horizon
+  std::optional<std::size_t> step;  // the first of CompiledModel::plan that would come next
+};
+
 /// The traces of a model (with or without a plan) that end where the state constraints hold for
-/// the first time, at a timepoint n >= 1. Two traces are one if their event sequences are equal;
+/// the first time, at the first timepoint that has a hit atom (1, of a violation 0) or later. Two
+/// traces are one if their event sequences and the objects that their performs returned are equal;
 /// the first initial state in canonical order stands for them. Shortest first; among equals the
 /// order of the model's events decides. Deterministic: the order does not depend on the solver's.
 class PlanEnumerator {
  public:
   /// `session` outlives the enumerator; its model has state constraints.
-  explicit PlanEnumerator(SolverSession& session);
+  explicit PlanEnumerator(SolverSession& session, const PlanEnumeratorOptions& options = {});
   std::optional<Trace> next();
   /// Final once `next` has answered none.
   Exploration exploration() const { return exploration_; }
+  /// Why it is complete up to the bound only.
+  const OpenEnds& open_ends() const { return open_ends_; }
 
   /// Does the model admit, for the trace's events and initial state, a last state in which each of
   /// these fluents has the value given? One solver call.
@@ -39,21 +55,28 @@ class PlanEnumerator {
 
  private:
   bool has_alternative(std::span<const Literal> fixed, std::span<const Literal> different);
-  void note_alternatives(std::span<const Literal> fixed, Trace& trace);
-  std::vector<Literal> first_hit(Timepoint n) const;
+  void note_alternatives(std::span<const Literal> fixed, std::size_t length, Trace& trace);
+  std::vector<Literal> hit_at(Timepoint n) const;
   void prepare_orders(Timepoint n);
   void finish();
+  SolveStatus find_cuts(std::span<const Literal> unmet);
+  SolveStatus find_step(std::span<const Literal> unmet);
 
   SolverSession* session_;
+  PlanEnumeratorOptions options_;
   compiler::AtomIndex index_;
+  Timepoint first_ = 1;  // with a hit atom
   Timepoint n_ = 0;
-  std::optional<Literal> guard_;      // switches the blocking clauses of length n_ on
-  std::vector<Literal> event_order_;  // Happens before n_, true preferred: the trace's key
+  std::optional<Literal> guard_;  // switches the blocking clauses of length n_ on
+  /// Happens before n_, then what performs returned up to n_, by time and name; true preferred: the
+  /// trace's key.
+  std::vector<Literal> key_order_;
   std::vector<Literal> start_order_;  // HoldsAt at 0, false preferred
   std::vector<Literal> state_order_;  // HoldsAt from 1 to n_, false preferred
   std::int64_t found_ = 0;
   bool done_ = false;
   Exploration exploration_ = Exploration::kStopped;
+  OpenEnds open_ends_;
 };
 
 }  // namespace parallax::runtime

@@ -28,6 +28,12 @@ std::string atom_text(const Atom& atom) {
       return "the state constraints hold at " + std::to_string(atom.time.value_or(0));
     case AtomKind::kRunning:
       return "the plan goes on at " + std::to_string(atom.time.value_or(0));
+    case AtomKind::kSucceeded:
+      return timed("the plan has succeeded at (");
+    case AtomKind::kResult:
+      return timed("the perform before returned (");
+    case AtomKind::kRegister:
+      return timed("the plan knows (");
     case AtomKind::kPredicate:
     case AtomKind::kAuxiliary:
     case AtomKind::kUnused:

@@ -99,6 +99,9 @@ void DecreasonerFormat::collect(const CompiledModel& model) {
       case AtomKind::kLocation:
       case AtomKind::kHit:
       case AtomKind::kRunning:
+      case AtomKind::kSucceeded:
+      case AtomKind::kResult:
+      case AtomKind::kRegister:
       case AtomKind::kAuxiliary:
       case AtomKind::kUnused:
         break;

@@ -49,6 +49,15 @@ Trace decode_trace(const CompiledModel& model, Timepoint length,
       case AtomKind::kLocation:
         if (*time < length) point.plan_step = step_number(name, model.plan.size());
         break;
+      case AtomKind::kSucceeded:
+        trace.points[static_cast<std::size_t>(*time) - 1].succeeded = true;
+        break;
+      case AtomKind::kResult:
+        trace.points[static_cast<std::size_t>(*time) - 1].returned = name;
+        break;
+      case AtomKind::kRegister:
+        point.registers.emplace(name.substr(0, name.find('=')), name.substr(name.find('=') + 1));
+        break;
       case AtomKind::kPredicate:
       case AtomKind::kHit:
       case AtomKind::kRunning:
@@ -74,6 +83,7 @@ std::string event_key(const Trace& trace) {
       if (i > 0) key += '+';
       key += happens[i];
     }
+    if (trace.points[t].returned) key += '=' + *trace.points[t].returned;
     key += ';';
   }
   return key;

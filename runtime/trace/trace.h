@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,11 @@ struct TracePoint {
   std::vector<std::string> released;
   /// The plan's step that is performed here: an index into CompiledModel::plan.
   std::optional<std::size_t> plan_step;
+  /// Did that step succeed? If it is one that returns something, what it returned.
+  bool succeeded = false;
+  std::optional<std::string> returned;
+  /// The returned objects that the plan still knows here, by register: `?item1`, `cup1`.
+  std::map<std::string, std::string> registers;
 };
 
 /// One execution trace: timepoints 0 .. length, events at 0 .. length - 1.
@@ -39,7 +45,7 @@ Trace decode_trace(const CompiledModel& model, Timepoint length,
                    const std::function<bool(compiler::Literal)>& value);
 
 /// The events of the trace, in order, as one stable text: `Go(r2);PickUp();` (several events of one
-/// timepoint are joined by `+`).
+/// timepoint are joined by `+`); what a perform returned stands behind it: `Detect(cup)=cup1;`.
 std::string event_key(const Trace& trace);
 
 /// Changes only: what holds at 0, then per timepoint the events, what ceased and what began.

@@ -41,6 +41,7 @@ class TextFormat final : public TraceFormat {
       append(out, "+ ", only_in(point.holds, before->holds));
     }
     append(out, "> ", point.happens);
+    if (point.returned) append(out, "= ", {*point.returned});
     return out;
   }
   std::string tail(const Names&) const override { return ""; }
@@ -56,7 +57,8 @@ class JsonlFormat final : public TraceFormat {
   }
   std::string point(const TracePoint*, const TracePoint& point) const override {
     return ",\"happens\":" + json_list(point.happens) + ",\"holds\":" + json_list(point.holds) +
-           ",\"released\":" + json_list(point.released) + '}';
+           ",\"released\":" + json_list(point.released) +
+           (point.returned ? ",\"returned\":" + nlohmann::json(*point.returned).dump() : "") + '}';
   }
   std::string tail(const Names& predicates) const override {
     return "],\"predicates\":" + json_list(predicates) + "}\n";

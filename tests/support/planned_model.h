@@ -35,20 +35,19 @@ class PlannedModel {
     if (::mkdtemp(name.data()) == nullptr) return;
     const auto path = std::filesystem::path(name) / "model.e";
     std::ofstream(path) << model;
-    compiler::CompileInput input;
-    input.models = {path};
-    input.horizon = horizon;
-    input.plan = compiler::PlanInput{files_.add("plan.lisp", plan),
-                                     files_.add("plan.bind", binding), std::nullopt, &rooms_};
-    const auto text = files_.add("constraint", constraint);
-    const base::SourceRange range{text, 0, static_cast<std::uint32_t>(constraint.size())};
-    input.constraints = {{range, range}};
-    auto result = compiler::compile_model(input, files_, sink_);
-    if (result) compilation_ = *std::move(result);
+    compile({path}, plan, binding, constraint, horizon, rooms_);
     std::filesystem::remove_all(name);
   }
 
+  /// Of model files that stay; `locator` outlives the call.
+  PlannedModel(const std::vector<std::filesystem::path>& models, const std::string& plan,
+               const std::string& binding, const std::string& constraint, std::int64_t horizon,
+               const compiler::PoseLocator& locator) {
+    compile(models, plan, binding, constraint, horizon, locator);
+  }
+
   const compiler::CompiledModel& compiled() const { return compilation_->model; }
+  const compiler::TypedModel& typed() const { return *compilation_->typed; }
 
   /// The ids of what was reported, in order, blank-separated.
   std::string codes() const {
@@ -60,25 +59,45 @@ class PlannedModel {
     return out;
   }
 
+  const compiler::PlanGraph& graph() const { return *compilation_->plan; }
+  bool compiles() const { return compilation_.has_value(); }
+
   struct Found {
     std::vector<std::string> keys;
     runtime::Exploration exploration = runtime::Exploration::kStopped;
+    runtime::OpenEnds open_ends;
   };
   /// Every trace is checked on the way.
-  Found keys() const {
+  Found keys(const runtime::PlanEnumeratorOptions& options = {}) const {
     TraceChecker checker(*compilation_->typed);
     runtime::SolverSession session(compiled(), runtime::make_cadical_solver());
-    runtime::PlanEnumerator enumerator(session);
+    runtime::PlanEnumerator enumerator(session, options);
     Found found;
     while (const auto trace = enumerator.next()) {
       checker.check(*trace);
       found.keys.push_back(runtime::event_key(*trace));
     }
     found.exploration = enumerator.exploration();
+    found.open_ends = enumerator.open_ends();
     return found;
   }
 
  private:
+  void compile(const std::vector<std::filesystem::path>& models, const std::string& plan,
+               const std::string& binding, const std::string& constraint, std::int64_t horizon,
+               const compiler::PoseLocator& locator) {
+    compiler::CompileInput input;
+    input.models = models;
+    input.horizon = horizon;
+    input.plan = compiler::PlanInput{files_.add("plan.lisp", plan),
+                                     files_.add("plan.bind", binding), std::nullopt, &locator};
+    const auto text = files_.add("constraint", constraint);
+    const base::SourceRange range{text, 0, static_cast<std::uint32_t>(constraint.size())};
+    input.constraints = {{range, range}};
+    auto result = compiler::compile_model(input, files_, sink_);
+    if (result) compilation_ = *std::move(result);
+  }
+
   base::SourceFiles files_;
   base::DiagnosticSink sink_;
   TwoRooms rooms_;

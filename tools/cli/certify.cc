@@ -71,6 +71,7 @@ void TraceCertifier::conclude(const std::string& exploration) {
       verdict_ = "proof not checked";
       return;
   }
+  if (!option_.keep) return;
   invocation_.remark(fmt::format("{}: {} bytes, {} lemmas, refutes {}",
                                  files_->proof_path().string(), certificate.proof_bytes,
                                  certificate.statistics.lemmas, files_->formula_path().string()));
@@ -83,7 +84,7 @@ std::string TraceCertifier::remark(const std::string& exploration) const {
 std::string TraceCertifier::fields() const {
   const auto short_form = verdict_ == "no proof" ? "none" : verdict_.substr(6);
   auto out = fmt::format("\"proof\":\"{}\",", short_form);
-  if (verdict_ == "proof checked") {
+  if (verdict_ == "proof checked" && option_.keep) {
     const auto text = [](const std::filesystem::path& path) {
       return nlohmann::json(path.string())
           .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

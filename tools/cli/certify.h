@@ -11,6 +11,7 @@ namespace parallax::tools {
 /// `--certify[=FILE]`: whether a list of traces is complete, as a checked proof.
 struct CertifyOption {
   std::string file;  // empty: not asked for
+  bool keep = true;  // false: the files are gone when the command ends, so nobody is told of them
 };
 /// `--certify` takes its file after `=` only, so that a model may follow it.
 void add_certify_option(CLI::App& command, CertifyOption& option);
@@ -39,6 +40,7 @@ class TraceCertifier {
   bool refuted() const { return verdict_ == "proof not accepted"; }
   /// `no proof`, `proof checked`, `proof not accepted` or `proof not checked`.
   const std::string& verdict() const { return verdict_; }
+  std::string proof_file() const { return files_ ? files_->proof_path().string() : ""; }
   /// ` (proof checked)` after what claims to be complete, else nothing.
   std::string remark(const std::string& exploration) const;
   /// `"proof":"checked","proof_file":"..",`: none, checked, not accepted, not checked.

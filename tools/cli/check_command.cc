@@ -52,9 +52,8 @@ int check(const CheckOptions& check_options, Invocation& invocation) {
   if (!models.empty()) {
     auto input_options = options;
     input_options.models = models;
-    auto input = compile_input(input_options);
-    input.lint = !check_options.no_lint;
-    (void)compiler::compile_model(input, invocation.files(), invocation.sink());
+    input_options.lint = !check_options.no_lint;
+    (void)compile_models(input_options, invocation);
   }
   if (invocation.sink().has_errors()) return 0;
   if (invocation.options().json) {
@@ -78,6 +77,7 @@ Command add_check_command(CLI::App& app) {
       "  parallax check domain.e --allow W2102 --diagnostics=sarif 2> report.sarif\n"
       "Several .e files are one model; every .yaml file is a scenario of its own.");
   add_model_options(*command, options->model);
+  add_plan_options(*command, options->model);
   command->add_option("--allow", options->allow, "Do not report warnings of this code")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -81,6 +81,7 @@ Command add_check_command(CLI::App& app);
 Command add_compile_command(CLI::App& app);
 Command add_suite_command(CLI::App& app);
 Command add_traces_command(CLI::App& app);
+Command add_verify_command(CLI::App& app);
 Command add_diagnostics_command(CLI::App& app);
 Command add_fmt_command(CLI::App& app);
 Command add_worker_command(CLI::App& app);

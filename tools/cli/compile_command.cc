@@ -55,8 +55,9 @@ int compile_and_write(const CompileOptions& options, Invocation& invocation) {
   if (options.emit == "cnf") {
     text = compiler::to_artifact(compilation->model, {.projection_line = !options.no_projection});
   } else if (!compilation->plan) {
-    sink.error_about(base::DiagnosticCode::kUsage, "",
-                     fmt::format("--emit={} needs a scenario with a plan", options.emit));
+    sink.error_about(
+        base::DiagnosticCode::kUsage, "",
+        fmt::format("--emit={} needs a plan (--plan, or a scenario with one)", options.emit));
     return 0;
   } else if (options.emit == "cfg") {
     text = compiler::dump_text(*compilation->plan, invocation.files());
@@ -95,8 +96,11 @@ Command add_compile_command(CLI::App& app) {
       "Examples:\n"
       "  parallax compile domain.e start.e --horizon 6 -o start.dec.cnf\n"
       "  parallax compile domain.e --stats -o domain.dec.cnf\n"
-      "  parallax compile scenarios/two_regions/edge.yaml --emit=cfg");
+      "  parallax compile scenarios/two_regions/edge.yaml --emit=cfg\n"
+      "  parallax compile domain.e start.e --plan fetch.lisp --bind robot.bind \\\n"
+      "      --regions scenario.yaml --emit=cfg-dot -o plan.dot");
   add_model_options(*command, options->model);
+  add_plan_options(*command, options->model);
   command->add_flag("--no-projection-line", options->no_projection,
                     "Leave out `c t pmc` and `c p show`, for readers that take no comment there");
   command->add_flag("--stats", options->model.stats,

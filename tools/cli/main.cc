@@ -25,6 +25,7 @@ constexpr const char* kFooter =
     "  parallax run scenarios/two_regions/edge.yaml --jobs 2\n"
     "  parallax replay out/edge\n"
     "  parallax traces model.e --limit 0\n"
+    "  parallax verify scenario.yaml --property \"!HoldsAt(Broken(),time)\"\n"
     "  parallax compile model.e -o model.dec.cnf\n"
     "  parallax explain model.e --why \"HoldsAt(F(),3)\"\n"
     "Exit codes: 0 nothing to report, 1 finding, 2 usage, 3 input rejected, 4 inconclusive,\n"
@@ -90,10 +91,10 @@ int run(int argc, char** argv) {
                        fmt::format("parallax {} (CaDiCaL {})", kVersion, kCadicalVersion));
   CommonOptions options;
   std::vector<Command> commands = {
-      add_run_command(app),         add_replay_command(app),  add_suite_command(app),
-      add_check_command(app),       add_traces_command(app),  add_compile_command(app),
-      add_diagnostics_command(app), add_explain_command(app), add_fmt_command(app),
-      add_diff_command(app),        add_worker_command(app)};
+      add_run_command(app),    add_replay_command(app),      add_suite_command(app),
+      add_check_command(app),  add_traces_command(app),      add_compile_command(app),
+      add_verify_command(app), add_diagnostics_command(app), add_explain_command(app),
+      add_fmt_command(app),    add_diff_command(app),        add_worker_command(app)};
   for (auto& command : commands) add_common_options(*command.app, options);
   try {
     app.parse(argc, argv);

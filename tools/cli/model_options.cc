@@ -27,6 +27,24 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
                      "Formula over `time`: traces end where it holds for the first time");
 }
 
+void add_plan_options(CLI::App& command, ModelOptions& options) {
+  auto* plan = command.add_option("--plan", options.plan, "Plan to unroll with the models (.lisp)");
+  auto* bind = command.add_option("--bind", options.bind, "What the plan's designators mean");
+  plan->needs(bind);
+  bind->needs(plan);
+  command.add_option("--plan-entry", options.plan_entry, "The plan's function to run")->needs(plan);
+  command
+      .add_option("--regions", options.regions, "Scenario whose regions the plan's poses lie in")
+      ->needs(plan);
+  command
+      .add_option("--max-loop", options.max_loop, "Iterations of a loop that nothing static ends")
+      ->check(whole_number(1, 10'000))
+      ->capture_default_str();
+  command.add_option("--max-call-depth", options.max_call_depth, "Active calls of one function")
+      ->check(whole_number(1, 1'000))
+      ->capture_default_str();
+}
+
 compiler::CompileInput compile_input(const ModelOptions& options) {
   compiler::CompileInput input;
   for (const auto& model : options.models) input.models.emplace_back(model);
@@ -36,6 +54,7 @@ compiler::CompileInput compile_input(const ModelOptions& options) {
   if (!options.compat.empty()) input.ground.meaning = compiler::Meaning::kDecreasoner;
   input.ground.stop = &stop_flag();
   input.costs = options.stats;
+  input.lint = options.lint;
   input.producer = fmt::format("parallax {}", kVersion);
   return input;
 }

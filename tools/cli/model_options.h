@@ -17,9 +17,19 @@ struct ModelOptions {
   std::string compat;              // "decreasoner", or empty for the standard meaning
   std::int64_t horizon = -1;       // -1: as the model says
   std::vector<std::string> until;  // state constraints
-  bool stats = false;              // count what each axiom costs; commands offer it themselves
+  std::string property;            // `verify`: traces end where this formula does not hold
+  std::string plan, bind;          // Lisp file and binding table; both or none
+  std::string plan_entry;          // the function to run; empty: as the plan says
+  std::string regions;             // the scenario whose regions the plan's poses lie in
+  std::int32_t max_loop = 16;      // iterations of a loop that nothing static ends
+  std::int32_t max_call_depth = 8;
+  bool lint = false;   // `check`: report what is legal but hardly meant
+  bool stats = false;  // count what each axiom costs; commands offer it themselves
 };
 void add_model_options(CLI::App& command, ModelOptions& options);
+
+/// --plan and what belongs to it.
+void add_plan_options(CLI::App& command, ModelOptions& options);
 
 compiler::CompileInput compile_input(const ModelOptions& options);
 

@@ -64,6 +64,18 @@ compiler::ConstraintText constraint_text(const harness::LocatedText& text,
   return {{file, 0, size}, text.source};
 }
 
+/// Traces are to end where the property does not hold, also right at the start.
+void look_for_violations(const std::string& property, compiler::CompileInput& input,
+                         Invocation& invocation) {
+  constexpr std::string_view kHead = "!(";
+  const auto text = std::string(kHead) + property + ")";
+  const auto shown = invocation.files().add("--property", property);
+  const auto file = invocation.files().add("--property", text);
+  input.constraints = {{{file, 0, static_cast<std::uint32_t>(text.size())},
+                        {shown, 0, static_cast<std::uint32_t>(property.size())}}};
+  input.hits_at_start = true;
+}
+
 base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scenario,
                                                    const RegionLocator& locator,
                                                    Invocation& invocation) {
@@ -99,7 +111,7 @@ struct Switches {
 };
 
 base::Result<ScenarioModel> load(const std::filesystem::path& path, Invocation& invocation,
-                                 const Switches& switches) {
+                                 const Switches& switches, const std::string& property = {}) {
   auto& sink = invocation.sink();
   auto scenario = harness::load_scenario(path, invocation.files(), sink);
   if (!scenario) return sink.already_reported();
@@ -108,6 +120,7 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Invocation& 
   auto input = compile_input(*scenario, locator, invocation);
   if (!input) return sink.already_reported();
   switches.apply(*input);
+  if (!property.empty()) look_for_violations(property, *input, invocation);
   auto compilation = compiler::compile_model(*input, invocation.files(), sink);
   if (!compilation) return sink.already_reported();
   const auto& model = compilation->model;
@@ -117,6 +130,32 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Invocation& 
   }
   return ScenarioModel{*std::move(scenario), *std::move(compilation),
                        harness::hash_of_sources(invocation.files()), std::move(scenario_hash)};
+}
+
+/// Reads plan, binding table and regions; without --regions no pose lies anywhere. `regions` holds
+/// what the locator points to.
+base::Status add_plan(const ModelOptions& options, std::optional<harness::Scenario>& regions,
+                      std::optional<RegionLocator>& locator, compiler::CompileInput& input,
+                      Invocation& invocation) {
+  auto& sink = invocation.sink();
+  static const harness::RegionSet kNowhere;
+  if (!options.regions.empty()) {
+    auto scenario = harness::load_scenario(options.regions, invocation.files(), sink);
+    if (!scenario) return sink.already_reported();
+    regions = *std::move(scenario);
+  }
+  locator.emplace(regions ? regions->mapping->regions() : kNowhere);
+  const auto plan = base::load_text(options.plan, invocation.files(), sink);
+  const auto bind = base::load_text(options.bind, invocation.files(), sink);
+  if (!plan || !bind) return sink.already_reported();
+  input.plan = compiler::PlanInput{.plan = *plan,
+                                   .binding = *bind,
+                                   .entry = std::nullopt,
+                                   .locator = &*locator,
+                                   .max_call_depth = options.max_call_depth,
+                                   .max_loop = options.max_loop};
+  if (!options.plan_entry.empty()) input.plan->entry = options.plan_entry;
+  return base::Unit{};
 }
 
 base::Result<compiler::Compilation> compile(const ModelOptions& options, Invocation& invocation,
@@ -130,7 +169,7 @@ base::Result<compiler::Compilation> compile(const ModelOptions& options, Invocat
     return compiled;
   }
   if (options.models.size() == 1 && (first.ends_with(".yaml") || first.ends_with(".yml"))) {
-    auto loaded = load(first, invocation, switches);
+    auto loaded = load(first, invocation, switches, options.property);
     if (!loaded) return invocation.sink().already_reported();
     return std::move(loaded->compilation);
   }
@@ -141,6 +180,12 @@ base::Result<compiler::Compilation> compile(const ModelOptions& options, Invocat
     const base::SourceRange range{file, 0, static_cast<std::uint32_t>(formula.size())};
     input.constraints.push_back({range, range});
   }
+  std::optional<harness::Scenario> regions;
+  std::optional<RegionLocator> locator;
+  if (!options.plan.empty() && !add_plan(options, regions, locator, input, invocation)) {
+    return invocation.sink().already_reported();
+  }
+  if (!options.property.empty()) look_for_violations(options.property, input, invocation);
   return compiler::compile_model(input, invocation.files(), invocation.sink());
 }
 

@@ -118,6 +118,11 @@ base::Result<harness::CampaignTrace> EnumeratedTraces::convert(const runtime::Tr
       event.source = invocation_->files().place(step.source);
       for (const auto& [name, value] : step.arguments) {
         std::visit([&, key = name](const auto& v) { event.plan_arguments[key] = v; }, value);
+        // An object that the plan knows from the model is named by its register.
+        if (const auto* text = std::get_if<std::string>(&value)) {
+          const auto known = point.registers.find(*text);
+          if (known != point.registers.end()) event.plan_arguments[name] = known->second;
+        }
       }
     }
     out.events.push_back(std::move(event));

@@ -8,6 +8,7 @@
 #include "runtime/trace/vocabulary.h"
 #include "tools/cli/certify.h"
 #include "tools/cli/limits.h"
+#include "tools/cli/open_ends.h"
 #include "tools/cli/scenario_model.h"
 #include "tools/cli/signals.h"
 #include "tools/cli/trace_listing.h"
@@ -31,6 +32,8 @@ struct TracesOptions {
   std::int64_t from = 1;
   std::int64_t sample = 0;
   std::int64_t seed = 1;
+  std::string hits = "first";
+  bool split_initial = false;
   CertifyOption certify;
 };
 
@@ -50,6 +53,7 @@ runtime::TraceQuery query_of(const TracesOptions& options) {
 struct Ending {
   std::string exploration;
   bool complete = false;
+  std::vector<std::string> bounds = {};  // why it is complete up to the bound only
   std::string remark = {}, fields = {};  // of the certifier
 
   void add(TraceCertifier& certifier) {
@@ -65,13 +69,14 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
                 const TraceWriter& writer, runtime::ListFormat* listing, const Ending& ending,
                 double wall_s, Invocation& invocation) {
   if (stop_flag().load()) invocation.remark("stopped before the end: there may be more traces");
+  for (const auto& bound : ending.bounds) invocation.remark(bound);
   const auto timing = fmt::format("\"timing\":{{\"wall_s\":{:.3f}}}", wall_s);
   if (invocation.options().json) {
     const auto list = options.count ? "" : fmt::format("\"list\":[{}],", writer.list());
     invocation.document(fmt::format(
-        "{{\"status\":\"{}\",\"traces\":{},\"complete\":{},\"exploration\":\"{}\",{}{}{}{}}}\n",
+        "{{\"status\":\"{}\",\"traces\":{},\"complete\":{},\"exploration\":\"{}\",{}{}{}{}{}}}\n",
         writer.agreed() ? "ok" : "error", writer.count(), ending.complete, ending.exploration,
-        ending.fields, writer.checked_field(), list, timing));
+        bounds_field(ending.bounds), ending.fields, writer.checked_field(), list, timing));
   } else if (options.count) {
     invocation.result(fmt::format("{}\n", writer.count()));
   } else if (listing != nullptr) {
@@ -136,16 +141,19 @@ int count_only(const TracesOptions& options, const compiler::CompiledModel& mode
 }
 
 /// Traces with a plan or constraints.
-Ending enumerate_plan(const compiler::CompiledModel& model, TraceWriter& writer) {
+Ending enumerate_plan(const TracesOptions& options, const compiler::CompiledModel& model,
+                      TraceWriter& writer) {
   runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
-  runtime::PlanEnumerator enumerator(session);
+  runtime::PlanEnumerator enumerator(
+      session, {.all_hits = options.hits == "all", .split_initial = options.split_initial});
   while (!writer.full() && !stop_flag().load()) {
     const auto trace = enumerator.next();
     if (!trace) break;
     writer.write(*trace);
   }
   return {std::string(runtime::to_string(enumerator.exploration())),
-          enumerator.exploration() == runtime::Exploration::kAllTracesExplored};
+          enumerator.exploration() == runtime::Exploration::kAllTracesExplored,
+          open_end_texts(model, enumerator.open_ends())};
 }
 
 /// Traces of a model; none if the strategy cannot be had.
@@ -210,6 +218,11 @@ bool is_usable(const TracesOptions& options, Invocation& invocation) {
                   "--certify proves a whole list over HoldsAt and Happens complete; it does not "
                   "go with --sample, --from or --distinct all");
   }
+  if (!options.certify.file.empty() && (options.hits == "all" || options.split_initial)) {
+    return refuse("",
+                  "--certify proves a list of first hits complete; it does not go with "
+                  "--hits=all or --split-initial");
+  }
   if (options.count && options.from > 1) return refuse("", "--count does not go with --from");
   return true;
 }
@@ -257,7 +270,7 @@ int list_traces(const TracesOptions& options, Invocation& invocation) {
                      check ? &*check : nullptr, certifier, invocation);
   std::optional<Ending> ending;
   if (model.has_constraints) {
-    ending = enumerate_plan(model, writer);
+    ending = enumerate_plan(options, model, writer);
   } else if (options.sample > 0) {
     ending = sample(options, model, writer, invocation);
   } else {
@@ -289,6 +302,7 @@ Command add_traces_command(CLI::App& app) {
       "  parallax traces old.e --compat decreasoner --format decreasoner\n"
       "  parallax traces domain.e --replay traces/trace_000001.itf.json");
   add_model_options(*command, options->model);
+  add_plan_options(*command, options->model);
   command->add_option("--limit", options->limit, "Stop after this many traces; 0: all")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
@@ -319,6 +333,13 @@ Command add_traces_command(CLI::App& app) {
       "--check", options->check,
       "Evaluate the model on every trace by independent means; exit 5 if one differs");
   add_certify_option(*command, options->certify);
+  command
+      ->add_option("--hits", options->hits,
+                   "Where traces end: first (at the first hit of the constraints) or all (at each)")
+      ->check(CLI::IsMember({"first", "all"}))
+      ->capture_default_str();
+  command->add_flag("--split-initial", options->split_initial,
+                    "List every initial state, not only every sequence of events");
   add_listing_options(*command, options->listing);
   add_replay_options(*command, options->replay);
   return {command, [options, distinct](Invocation& invocation) {

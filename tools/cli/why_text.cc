@@ -57,6 +57,12 @@ std::string WhyText::state(Literal literal) const {
       return is ? "the state constraints hold" : "the state constraints do not hold";
     case AtomKind::kRunning:
       return is ? "the plan goes on" : "the plan has ended";
+    case AtomKind::kSucceeded:
+      return "the perform at " + atom.name + (is ? " succeeded" : " did not succeed");
+    case AtomKind::kResult:
+      return "the perform before " + std::string(is ? "returned " : "did not return ") + atom.name;
+    case AtomKind::kRegister:
+      return std::string(is ? "the plan knows " : "the plan does not know ") + atom.name;
     case AtomKind::kPredicate:
     case AtomKind::kAuxiliary:
     case AtomKind::kUnused:

@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include "compiler/pipeline/compile.h"
+#include "compiler/plan/plan_repeats.h"
+#include "runtime/enumerate/dead_steps.h"
 #include "tests/support/planned_model.h"
 
 namespace parallax::test {
@@ -93,6 +95,131 @@ TEST_CASE("a plan that outlasts the horizon is complete up to the bound only") {
   const auto found = cut.keys();
   CHECK(found.keys.empty());
   CHECK(found.exploration == Exploration::kCompleteUpToBound);
+}
+
+constexpr const char* kShut = "HoldsAt(At(a1),0).\n!HoldsAt(Lit(a1),0).\n!HoldsAt(Lit(b2),0).\n";
+
+TEST_CASE("what was not followed is named: the step at the horizon, the loop that was cut") {
+  PlannedModel cut(std::string(kRooms) + kShut, kPlan, kBinding, "HoldsAt(Lit(b2),time)", 2);
+  REQUIRE(cut.codes() == "");
+  const auto ends = cut.keys().open_ends;
+  CHECK(ends.cuts.empty());
+  CHECK(ends.step == 2);  // switching in b2
+
+  // Driving to and fro for ever, with a variable that makes every round a new state.
+  const std::string endless = R"(
+(defun go () (perform (a motion (type going) (pose (make-pose-stamped "map" 0.0
+  (make-3d-vector 0.5 0 0) (make-identity-rotation))))))
+(let ((?n 0)) (loop do (incf ?n) (go)))
+)";
+  PlannedModel loop(std::string(kRooms) + kShut, endless, kBinding, "HoldsAt(At(b2),time)", 20);
+  REQUIRE(loop.codes() == "");
+  const auto found = loop.keys();
+  CHECK(found.exploration == Exploration::kCompleteUpToBound);
+  REQUIRE(found.open_ends.cuts == std::vector<std::size_t>{0});
+  CHECK(!found.open_ends.step);
+  REQUIRE(loop.compiled().plan_cuts.size() == 1);
+  CHECK(loop.compiled().plan_cuts[0].form == "loop");
+  CHECK(loop.compiled().plan_cuts[0].place.begin.line == 4);
+
+  PlannedModel shorter(std::string(kRooms) + kShut, endless, kBinding, "HoldsAt(At(b2),time)", 9);
+  CHECK(shorter.keys().open_ends.cuts.empty());
+  CHECK(shorter.keys().open_ends.step == 9);
+}
+
+constexpr const char* kCups = R"(
+sort cup
+sort colour
+cup c1, c2, c3
+colour red, blue
+predicate Is(cup,colour)
+fluent Seen(cup)
+fluent Held(cup)
+event Look(colour)
+event Grab(cup)
+Is(c1,red).
+Is(c2,red).
+Is(c3,blue).
+[cup,colour1,colour2] Is(cup,colour1) & Is(cup,colour2) -> colour1=colour2.
+[cup,time] Initiates(Grab(cup),Held(cup),time).
+[cup] !HoldsAt(Held(cup),0).
+)";
+constexpr const char* kCupBinding = R"(
+motion detecting (:object type ?y) -> Look(?y) ok: exists c. Is(c,?y) & Seen(c) @t
+    returns c ; else perception-object-not-found
+action picking-up (:object ?o) -> Grab(?o) ok: Held(?o) @t+1
+)";
+
+TEST_CASE("any of the objects that a formula admits is returned, and each pick is a trace") {
+  const std::string plan = R"(
+(let ((?c (perform (a motion (type detecting) (object (an object (type red)))))))
+  (perform (an action (type picking-up) (object ?c))))
+)";
+  PlannedModel model(std::string(kCups) + "[cup] HoldsAt(Seen(cup),0).\n", plan, kCupBinding,
+                     "{cup} HoldsAt(Held(cup),time)", 3);
+  REQUIRE(model.codes() == "");
+  const auto found = model.keys();
+  CHECK(found.keys == std::vector<std::string>{"Look(red)=c1;Grab(c1);", "Look(red)=c2;Grab(c2);"});
+  CHECK(found.exploration == Exploration::kAllTracesExplored);
+}
+
+TEST_CASE("two objects known at once are kept apart, and compared") {
+  const std::string plan = R"(
+(defun look () (perform (a motion (type detecting) (object (an object (type red))))))
+(let ((?a (look)) (?b (look)))
+  (unless (eq ?a ?b)
+    (perform (an action (type picking-up) (object ?b)))
+    (when (eq ?a 'c1)
+      (perform (an action (type picking-up) (object ?a))))))
+)";
+  PlannedModel model(std::string(kCups) + "[cup] HoldsAt(Seen(cup),0).\n", plan, kCupBinding,
+                     "HoldsAt(Held(c1),time) & HoldsAt(Held(c2),time)", 6);
+  REQUIRE(model.codes() == "");
+  CHECK(model.keys().keys ==
+        std::vector<std::string>{"Look(red)=c1;Look(red)=c2;Grab(c2);Grab(c1);"});
+}
+
+TEST_CASE("a result that the formula does not quantify over is refused") {
+  const char* const binding =
+      "motion detecting (:object type ?y) -> Look(?y) ok: Seen(c1) @t returns cup\n";
+  PlannedModel model(kCups, "(perform (a motion (type detecting) (object (an object (type red)))))",
+                     binding, "{cup} HoldsAt(Held(cup),time)", 2);
+  CHECK(model.codes() == "E4001");
+  const char* const unknown =
+      "motion detecting (:object type ?y) -> Look(?y) ok: Seen(c1) @t returns x\n";
+  PlannedModel other(kCups, "(perform (a motion (type detecting) (object (an object (type red)))))",
+                     unknown, "{cup} HoldsAt(Held(cup),time)", 2);
+  CHECK(other.codes() == "E4001");
+}
+
+TEST_CASE("repetitions that cannot succeed are dead, those that a change helps are not") {
+  const auto dead = [](const std::string& plan, const std::string& start) {
+    PlannedModel model(std::string(kRooms) + start, plan, kBinding, "HoldsAt(Lit(b2),time)", 8);
+    REQUIRE(model.compiles());
+    std::vector<std::vector<std::size_t>> earlier;
+    for (const auto& attempts : compiler::earlier_attempts(model.graph())) {
+      earlier.emplace_back();
+      for (const auto attempt : attempts) earlier.back().push_back(attempt.index());
+    }
+    runtime::SolverSession session(model.compiled(), runtime::make_cadical_solver());
+    return runtime::dead_steps(session, earlier);
+  };
+  const auto with_handler = [](const std::string& handler) {
+    return "(defparameter *b* (make-pose-stamped \"map\" 0.0 (make-3d-vector 1.5 0 0) "
+           "(make-identity-rotation)))\n"
+           "(with-retry-counters ((n 2)) (with-failure-handling ((low-level-failure (e) " +
+           handler + ")) (perform (an action (type switching) (object (an object (name b2)))))))";
+  };
+  // From a1 the lamp in b2 cannot be switched, however often.
+  CHECK(dead(with_handler("(do-retry n (retry))"), kShut) == std::vector<std::size_t>{1, 2});
+  // After driving there it can; only a further retry would be of no use, and is never reached.
+  CHECK(
+      dead(with_handler("(do-retry n (perform (a motion (type going) (pose *b*))) (retry))"), kShut)
+          .empty());
+  // If the lamp may be lit, switching it off can be followed by switching it on.
+  CHECK(dead(with_handler("(do-retry n (retry))"), "HoldsAt(At(b2),0).\n").empty());
+  // No counter: the step repeats itself.
+  CHECK(dead(with_handler("(retry)"), kShut) == std::vector<std::size_t>{0});
 }
 
 TEST_CASE("alternatives of a trace are noted, and asked about") {

@@ -1,0 +1,99 @@
+#include "runtime/enumerate/dead_steps.h"
+
+#include <optional>
+#include <string>
+
+namespace parallax::runtime {
+namespace {
+
+using compiler::AtomKind;
+
+/// The question for one step.
+class RepeatedStep {
+ public:
+  RepeatedStep(SolverSession& session, const compiler::AtomIndex& index, std::size_t step,
+               const std::vector<std::size_t>& earlier)
+      : session_(session), index_(index), step_(step), horizon_(session.model().horizon) {
+    follow_failures(earlier);
+  }
+
+  bool is_dead() {
+    std::vector<Literal> tries;
+    std::vector<Literal> successes;
+    for (Timepoint t = 1; t < horizon_; ++t) {
+      const auto failed = failed_[static_cast<std::size_t>(t)];
+      const auto tried = at(AtomKind::kLocation, step_, t);
+      const auto succeeded = at(AtomKind::kSucceeded, step_, t + 1);
+      if (failed && tried) tries.push_back(both(*failed, *tried));
+      if (failed && succeeded) successes.push_back(both(*failed, *succeeded));
+    }
+    if (solve(any(tries), horizon_) != SolveStatus::kSatisfiable) return false;
+    if (solve(any(successes), horizon_) != SolveStatus::kUnsatisfiable) return false;
+    // An execution need not have a continuation up to the horizon.
+    for (Timepoint t = 2; t < horizon_; ++t) {
+      const auto failed = failed_[static_cast<std::size_t>(t) - 1];
+      const auto succeeded = at(AtomKind::kSucceeded, step_, t);
+      if (!failed || !succeeded) continue;
+      if (solve(both(*failed, *succeeded), t) != SolveStatus::kUnsatisfiable) return false;
+    }
+    return true;
+  }
+
+ private:
+  std::optional<Literal> at(AtomKind kind, std::size_t step, Timepoint t) const {
+    return index_.find(kind, 'L' + std::to_string(step), t);
+  }
+  SolveStatus solve(Literal wanted, Timepoint n) {
+    return session_.solve(n, std::span(&wanted, 1));
+  }
+  /// A literal that implies one of the others.
+  Literal any(std::vector<Literal> literals) {
+    const auto out = session_.new_variable();
+    literals.push_back(~out);
+    session_.add_clause(literals);
+    return out;
+  }
+  /// A literal that implies both.
+  Literal both(Literal a, Literal b) {
+    const auto out = session_.new_variable();
+    session_.add_clause(std::vector{~out, a});
+    session_.add_clause(std::vector{~out, b});
+    return out;
+  }
+  /// failed_[t] implies that an earlier attempt failed before t.
+  void follow_failures(const std::vector<std::size_t>& earlier) {
+    failed_.assign(static_cast<std::size_t>(horizon_) + 1, std::nullopt);
+    for (Timepoint t = 1; t <= horizon_; ++t) {
+      std::vector<Literal> ways;
+      if (const auto before = failed_[static_cast<std::size_t>(t) - 1]) ways.push_back(*before);
+      for (const auto attempt : earlier) {
+        const auto tried = at(AtomKind::kLocation, attempt, t - 1);
+        if (!tried) continue;
+        const auto succeeded = at(AtomKind::kSucceeded, attempt, t);
+        ways.push_back(succeeded ? both(*tried, ~*succeeded) : *tried);
+      }
+      if (!ways.empty()) failed_[static_cast<std::size_t>(t)] = any(std::move(ways));
+    }
+  }
+
+  SolverSession& session_;
+  const compiler::AtomIndex& index_;
+  std::size_t step_;
+  Timepoint horizon_;
+  std::vector<std::optional<Literal>> failed_;
+};
+
+}  // namespace
+
+std::vector<std::size_t> dead_steps(SolverSession& session,
+                                    const std::vector<std::vector<std::size_t>>& earlier) {
+  const compiler::AtomIndex index(session.model());
+  std::vector<std::size_t> dead;
+  for (std::size_t step = 0; step < earlier.size(); ++step) {
+    if (earlier[step].empty()) continue;
+    if (RepeatedStep(session, index, step, earlier[step]).is_dead()) dead.push_back(step);
+  }
+  return dead;
+}
+
+}  // namespace parallax::runtime

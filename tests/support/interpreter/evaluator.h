@@ -1,0 +1,103 @@
+#pragma once
+
+#include <functional>
+#include <list>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/support/interpreter/datum.h"
+#include "tests/support/interpreter/world.h"
+
+namespace parallax::test {
+
+/// One pick among the objects that a perform could return.
+struct Pick {
+  std::size_t chosen = 0;
+  std::size_t choices = 0;
+};
+
+struct Ending {
+  enum class Kind { kDone, kFailed, kHit, kBeyond };
+  Kind kind = Kind::kDone;
+  std::string text;  // kHit: the trace's key; kFailed: the class
+};
+
+/// Variables that a body sees, innermost last.
+struct Scope {
+  std::map<std::string, PlanItem> variables;
+  std::map<std::string, const Datum*> functions;  // flet and labels: (name parameters body...)
+  std::shared_ptr<Scope> functions_scope;         // what these functions see
+  std::shared_ptr<Scope> outer;
+};
+using ScopePtr = std::shared_ptr<Scope>;
+
+/// One execution of a plan. Failures look for a handler before anything is unwound, as conditions
+/// of Lisp do; jumps are C++ exceptions, so clean-ups run on their way.
+class Evaluator {
+ public:
+  /// `program` and `world` outlive the evaluator. Picks beyond the given ones are the first choice.
+  Evaluator(const std::vector<Datum>& program, World& world, int horizon, std::vector<Pick> picks);
+  Ending run();
+  const std::vector<Pick>& picks() const { return picks_; }
+
+ private:
+  struct Block {
+    std::string name;
+    int id = 0;
+  };
+
+  struct Handler {
+    const std::vector<Datum>* clauses = nullptr;  // ((class (e) body...) ...)
+    ScopePtr scope;
+    int id = 0;
+    std::vector<Block> blocks;
+  };
+
+  Ending ended(Ending ending) const;
+  PlanItem eval(const Datum& form, const ScopePtr& scope);
+  PlanItem body(const std::vector<Datum>& forms, std::size_t from, const ScopePtr& scope);
+  PlanItem list_form(const Datum& form, const ScopePtr& scope);
+  bool control(const Datum& form, const ScopePtr& scope, PlanItem& out);
+  bool binding(const Datum& form, const ScopePtr& scope, PlanItem& out);
+  bool loops(const Datum& form, const ScopePtr& scope, PlanItem& out);
+  bool failures(const Datum& form, const ScopePtr& scope, PlanItem& out);
+  bool acting(const Datum& form, const ScopePtr& scope, PlanItem& out);
+  PlanItem call(const Datum& form, const ScopePtr& scope);
+  PlanItem builtin(const std::string& name, const std::vector<PlanItem>& arguments);
+  PlanItem apply(const std::vector<Datum>& parameters, const std::vector<Datum>& forms,
+                 std::size_t from, const std::vector<PlanItem>& arguments, const ScopePtr& outer,
+                 const std::string& name);
+  PlanItem in_block(const std::string& name, const std::function<PlanItem()>& run);
+  PlanItem loop_form(const Datum& form, const ScopePtr& scope);
+  PlanItem handling(const std::vector<Datum>& clauses, const Datum& form, std::size_t from,
+                    const ScopePtr& scope);
+  PlanItem attempt(const Datum& form, const ScopePtr& scope);
+  PlanItem cleaned_up(const Datum& form, const ScopePtr& scope);
+  PlanItem designator(const Datum& form, const ScopePtr& scope);
+  PlanItem designator_value(const Datum& datum, const ScopePtr& scope);
+  PlanItem perform(const PlanItem& what);
+  [[noreturn]] void signal(const std::string& failure);
+  bool matches(const Datum& clause_class, const std::string& failure) const;
+  bool below(std::string failure, const std::string& ancestor) const;
+  void set(const Datum& place, PlanItem value, const ScopePtr& scope);
+  PlanItem* find(const std::string& name, const ScopePtr& scope);
+
+  World& world_;
+  int horizon_;
+  std::vector<Pick> picks_;
+  std::size_t next_pick_ = 0;
+  int time_ = 0;
+  int steps_ = 0;
+  std::string key_;
+  ScopePtr globals_;
+  std::map<std::string, const Datum*> functions_;
+  std::map<std::string, std::string> parents_;  // of failure classes
+  std::vector<const Datum*> main_;
+  std::vector<Handler> handlers_;  // active ones, innermost last
+  std::vector<Block> blocks_;      // of the function that runs, innermost last
+  int next_id_ = 0;
+};
+
+}  // namespace parallax::test

@@ -1,0 +1,206 @@
+#include <exception>
+#include <stdexcept>
+#include <utility>
+
+#include "tests/support/interpreter/evaluator.h"
+#include "tests/support/interpreter/jumps.h"
+
+namespace parallax::test {
+namespace {
+
+constexpr const char* kRetry = "%retry";
+
+const Datum& unquoted(const Datum& datum) {
+  return datum.head() == "quote" ? datum.items[1] : datum;
+}
+
+}  // namespace
+
+bool Evaluator::below(std::string failure, const std::string& ancestor) const {
+  for (;;) {
+    if (failure == ancestor) return true;
+    const auto parent = parents_.find(failure);
+    if (parent == parents_.end()) return false;
+    failure = parent->second;
+  }
+}
+
+bool Evaluator::matches(const Datum& named, const std::string& failure) const {
+  if (!named.is_list()) return below(failure, named.text);
+  for (const auto& item : named.items) {
+    if (!item.is("or") && below(failure, unquoted(item).text)) return true;
+  }
+  return false;
+}
+
+/// Handlers are asked from the inside outwards, on top of what has failed.
+void Evaluator::signal(const std::string& failure) {
+  const auto active = handlers_;
+  for (auto i = active.size(); i-- > 0;) {
+    const auto& handler = active[i];
+    handlers_.assign(active.begin(), active.begin() + static_cast<std::ptrdiff_t>(i));
+    blocks_ = handler.blocks;
+    if (handler.clauses == nullptr) throw Leave{handler.id, symbol_item("%failed")};
+    for (const auto& clause : *handler.clauses) {
+      if (!matches(unquoted(clause.items[0]), failure)) continue;
+      auto scope = std::make_shared<Scope>();
+      scope->outer = handler.scope;
+      scope->variables[kRetry] = number_item(handler.id);
+      if (!clause.items[1].items.empty()) {
+        PlanItem value = symbol_item(failure);
+        value.kind = PlanItem::Kind::kFailure;
+        scope->variables[clause.items[1].items[0].text] = value;
+      }
+      body(clause.items, 2, scope);
+      break;  // it fell through: the same failure goes on outwards
+    }
+  }
+  throw Unhandled{failure};
+}
+
+PlanItem Evaluator::handling(const std::vector<Datum>& clauses, const Datum& form, std::size_t from,
+                             const ScopePtr& scope) {
+  return in_block("nil", [&] {
+    const int id = ++next_id_;
+    const auto outer = handlers_;
+    const auto blocks = blocks_;
+    for (;;) {
+      handlers_ = outer;
+      blocks_ = blocks;
+      handlers_.push_back({&clauses, scope, id, blocks});
+      try {
+        return body(form.items, from, scope);
+      } catch (const Again& again) {
+        if (again.handling != id) throw;
+      }
+    }
+  });
+}
+
+/// A form whose failure, of whatever class, is reported to the caller by the symbol %failed.
+PlanItem Evaluator::attempt(const Datum& form, const ScopePtr& scope) {
+  return in_block("%attempt", [&] {
+    handlers_.push_back({nullptr, scope, blocks_.back().id, blocks_});
+    return eval(form, scope);
+  });
+}
+
+PlanItem Evaluator::cleaned_up(const Datum& form, const ScopePtr& scope) {
+  const auto handlers = handlers_;
+  const auto blocks = blocks_;
+  PlanItem out;
+  std::exception_ptr jump;
+  try {
+    out = eval(form.items[1], scope);
+  } catch (const Stop&) {
+    throw;
+  } catch (...) {
+    jump = std::current_exception();
+  }
+  handlers_ = handlers;
+  blocks_ = blocks;
+  body(form.items, 2, scope);
+  if (jump) std::rethrow_exception(jump);
+  return out;
+}
+
+bool Evaluator::failures(const Datum& form, const ScopePtr& scope, PlanItem& out) {
+  const auto head = form.head();
+  const auto& items = form.items;
+  if (head == "with-failure-handling") {
+    out = handling(items[1].items, form, 2, scope);
+  } else if (head == "retry") {
+    throw Again{static_cast<int>(find(kRetry, scope)->number)};
+  } else if (head == "fail") {
+    std::string what = "simple-plan-failure";
+    if (items.size() > 1 && items[1].kind != Datum::Kind::kString) {
+      const auto value = eval(items[1], scope);
+      what = value.text;
+    }
+    signal(what);
+  } else if (head == "with-retry-counters") {
+    auto inner = std::make_shared<Scope>();
+    inner->outer = scope;
+    for (const auto& counter : items[1].items) {
+      inner->variables["%counter " + counter.items[0].text] = eval(counter.items[1], scope);
+    }
+    out = body(items, 2, inner);
+  } else if (head == "do-retry") {
+    auto* counter = find("%counter " + items[1].text, scope);
+    if (counter->number > 0) {
+      counter->number -= 1;
+      out = body(items, 2, scope);
+    }
+  } else if (head == "get-counter") {
+    out = *find("%counter " + items[1].text, scope);
+  } else if (head == "unwind-protect") {
+    out = cleaned_up(form, scope);
+  } else if (head == "try-in-order") {
+    for (std::size_t i = 1; i < items.size(); ++i) {
+      out = attempt(items[i], scope);
+      if (out.text != "%failed") return true;
+    }
+    signal("composite-failure");
+  } else {
+    return false;
+  }
+  return true;
+}
+
+bool Evaluator::acting(const Datum& form, const ScopePtr& scope, PlanItem& out) {
+  const auto head = form.head();
+  if (head == "perform") {
+    out = perform(eval(form.items[1], scope));
+  } else if (head == "a" || head == "an") {
+    out = designator(form, scope);
+  } else if (head == "holds") {
+    out = true_item(world_.holds(eval(form.items[1], scope).items));
+  } else {
+    return false;
+  }
+  return true;
+}
+
+PlanItem Evaluator::designator(const Datum& form, const ScopePtr& scope) {
+  PlanItem out;
+  out.kind = PlanItem::Kind::kDesignator;
+  out.text = form.items[1].text;
+  for (std::size_t i = 2; i < form.items.size(); ++i) {
+    const auto& key = form.items[i].items;
+    if (form.items[i].head() == "when") {
+      if (eval(key[1], scope).is_nil()) continue;
+      out.keys.emplace_back(key[2].items[0].text, designator_value(key[2].items[1], scope));
+    } else {
+      out.keys.emplace_back(key[0].text, designator_value(key[1], scope));
+    }
+  }
+  return out;
+}
+
+/// Symbols stand for themselves; variables, special variables and designators are evaluated.
+PlanItem Evaluator::designator_value(const Datum& datum, const ScopePtr& scope) {
+  if (datum.is_list()) return eval(datum, scope);
+  const bool variable = datum.kind == Datum::Kind::kSymbol &&
+                        (datum.text.starts_with("?") || datum.text.starts_with("*"));
+  if (variable || datum.kind != Datum::Kind::kSymbol) return eval(datum, scope);
+  return symbol_item(datum.text);
+}
+
+PlanItem Evaluator::perform(const PlanItem& what) {
+  if (time_ == horizon_) throw Stop{false};
+  const auto outcome = world_.perform(what);
+  ++time_;
+  key_ += outcome.event;
+  auto result = true_item(true);
+  if (outcome.success && !outcome.returns.empty()) {
+    if (next_pick_ == picks_.size()) picks_.push_back({0, outcome.returns.size()});
+    result = symbol_item(outcome.returns[picks_[next_pick_++].chosen]);
+    key_ += '=' + result.text;
+  }
+  key_ += ';';
+  if (world_.hit()) throw Stop{true};
+  if (!outcome.success) signal(outcome.failure_class);
+  return result;
+}
+
+}  // namespace parallax::test

@@ -1,0 +1,110 @@
+// `parallax verify`, and the plan on the command line.
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/cli_fixture.h"
+
+namespace parallax::test {
+namespace {
+
+std::vector<std::string> with_plan(std::vector<std::string> arguments) {
+  for (const auto* word : {"domain.e", "start.e", "--plan", "fetch.lisp", "--bind", "robot.bind",
+                           "--regions", "scenario.yaml", "--horizon", "6"}) {
+    arguments.emplace_back(word);
+  }
+  return arguments;
+}
+
+TEST_CASE("verify: one shortest trace, and its events named by their performs") {
+  const CliFixture cli;
+  const auto result =
+      cli.parallax(with_plan({"verify", "--check", "--property", "!HoldsAt(Holding(),time)"}));
+  CHECK(result.code == 1);
+  CHECK(result.out.starts_with("violated at timepoint 2\n"));
+  CHECK(result.out.find("  0 Go(r2) at fetch.lisp:11:5, succeeded\n") != std::string::npos);
+  CHECK(result.out.find("  1 PickUp() at fetch.lisp:12:5, succeeded\n") != std::string::npos);
+  CHECK(result.out.find("Place") == std::string::npos);
+}
+
+TEST_CASE("verify: a property of the start is violated without a step") {
+  const CliFixture cli;
+  const auto result =
+      cli.parallax(with_plan({"verify", "--json", "--property", "HoldsAt(RobotIn(r2),time)"}));
+  CHECK(result.code == 1);
+  const auto answer = nlohmann::json::parse(result.out);
+  CHECK(answer["verdict"] == "violated");
+  CHECK(answer["timepoint"] == 0);
+  CHECK(answer["performed"].empty());
+}
+
+TEST_CASE("verify: holds to the end of the plan, or up to the horizon only") {
+  const CliFixture cli;
+  auto result = cli.parallax(
+      {"verify", "scenario.yaml", "--property", "{region} HoldsAt(RobotIn(region),time)"});
+  CHECK(result.code == 0);
+  CHECK(result.out ==
+        "holds up to horizon 6 (proof checked), and every path of the plan has ended by then\n");
+  result = cli.parallax({"verify", "domain.e", "start.e", "--plan", "fetch.lisp", "--bind",
+                         "robot.bind", "--regions", "scenario.yaml", "--horizon", "3", "--property",
+                         "!(HoldsAt(BoxIn(r1),time))", "--json"});
+  CHECK(result.code == 0);
+  const auto answer = nlohmann::json::parse(result.out);
+  CHECK(answer["verdict"] == "holds");
+  CHECK(answer["proof"] == "checked");
+  CHECK(!answer.contains("proof_file"));
+  CHECK(answer["exploration"] == "complete up to bound");
+  CHECK(answer["bounds"] ==
+        nlohmann::json::array({"the plan goes on beyond timepoint 3 with Place(r1) at "
+                               "fetch.lisp:14:5"}));
+}
+
+TEST_CASE("verify: the proof is kept where the user says") {
+  const CliFixture cli;
+  const auto result = cli.parallax({"verify", "scenario.yaml", "--certify=safe.drat", "--property",
+                                    "{region} HoldsAt(RobotIn(region),time)", "--json"});
+  CHECK(result.code == 0);
+  CHECK(nlohmann::json::parse(result.out)["proof_file"] == "safe.drat");
+  CHECK(std::filesystem::exists(cli.folder() / "safe.drat"));
+  CHECK(cli.read("safe.drat.cnf").find("p cnf ") != std::string::npos);
+}
+
+TEST_CASE("verify: a property may look back, and needs no plan") {
+  const CliFixture cli;
+  const auto result = cli.parallax({"verify", "domain.e", "start.e", "--horizon", "2", "--property",
+                                    "Happens(PickUp(),time-1) -> HoldsAt(Holding(),time)"});
+  CHECK(result.code == 1);  // picking up where no box is
+  CHECK(result.out.starts_with("violated at timepoint 1\n"));
+}
+
+TEST_CASE("verify: what is wrong with a property is reported in it") {
+  const CliFixture cli;
+  const auto result = cli.parallax(with_plan({"verify", "--property", "HoldsAt(Hloding(),time)"}));
+  CHECK(result.code == 3);
+  CHECK(result.err.find("--property") != std::string::npos);
+  CHECK(result.err.find("Holding") != std::string::npos);
+}
+
+TEST_CASE("the plan of the command line is compiled, drawn and enumerated") {
+  const CliFixture cli;
+  auto result = cli.parallax(with_plan({"compile", "--emit", "cfg"}));
+  CHECK(result.code == 0);
+  CHECK(result.out.starts_with("entry L0\nL0 Go(r2) at fetch.lisp:11"));
+  result = cli.parallax(with_plan({"compile", "--emit", "cfg-dot"}));
+  CHECK(result.code == 0);
+  CHECK(result.out.starts_with("digraph plan {"));
+  result = cli.parallax({"traces", "domain.e", "start.e", "--plan", "fetch.lisp", "--bind",
+                         "robot.bind", "--regions", "scenario.yaml", "--horizon", "6", "--until",
+                         "HoldsAt(BoxIn(r1),time)"});
+  CHECK(result.code == 0);
+  CHECK(result.out.find("\n1 trace, all traces explored") != std::string::npos);
+  result = cli.parallax({"traces", "domain.e", "start.e", "--plan", "fetch.lisp", "--bind",
+                         "robot.bind", "--horizon", "4"});
+  CHECK(result.code == 3);
+  CHECK(result.err.find("CPL031") != std::string::npos);
+  CHECK(cli.parallax({"traces", "domain.e", "--plan", "fetch.lisp"}).code == 2);
+}
+
+}  // namespace
+}  // namespace parallax::test

@@ -1,0 +1,235 @@
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "runtime/enumerate/plan_enumerator.h"
+#include "tools/cli/certify.h"
+#include "tools/cli/open_ends.h"
+#include "tools/cli/scenario_model.h"
+#include "tools/cli/signals.h"
+#include "tools/cli/trace_check.h"
+#include "tools/cli/trace_feed.h"
+
+namespace parallax::tools {
+namespace {
+
+struct VerifyOptions {
+  ModelOptions model;
+  CertifyOption certify;
+  bool check = false;
+};
+
+/// A folder for a proof that nobody asked to keep.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::error_code error;
+    auto name = std::filesystem::temp_directory_path(error).string() + "/parallax_proof_XXXXXX";
+    if (!error && ::mkdtemp(name.data()) != nullptr) path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code error;
+    if (!path_.empty()) std::filesystem::remove_all(path_, error);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  /// Empty if there is none.
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// The answer, before it is printed.
+struct Answer {
+  std::optional<runtime::Trace> violation;
+  runtime::Exploration exploration = runtime::Exploration::kStopped;
+  std::vector<std::string> bounds;
+  std::string proof;       // "proof checked"; empty where there is nothing to prove
+  std::string proof_file;  // where it is kept
+};
+
+Answer ask(const compiler::CompiledModel& model) {
+  runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
+  runtime::PlanEnumerator enumerator(session);
+  Answer answer;
+  answer.violation = enumerator.next();
+  answer.exploration = enumerator.exploration();
+  answer.bounds = open_end_texts(model, enumerator.open_ends());
+  return answer;
+}
+
+/// Has a solver that starts afresh prove that there is no violation, and the proof checked by other
+/// means. False: it could not be written, reported.
+bool prove(const VerifyOptions& options, const compiler::CompiledModel& model, Answer& answer,
+           Invocation& invocation) {
+  const TemporaryFolder folder;
+  auto certify = options.certify;
+  if (certify.file.empty()) {
+    certify.keep = false;
+    certify.file = folder.path() + "/verify.drat";
+  }
+  TraceCertifier certifier(certify, options.model.models, model, invocation);
+  if (!certifier.ready()) return false;
+  certifier.conclude(std::string(runtime::to_string(answer.exploration)));
+  answer.proof = certifier.verdict();
+  if (certify.keep && answer.proof == "proof checked") answer.proof_file = certifier.proof_file();
+  return true;
+}
+
+std::string verdict(const Answer& answer) {
+  if (answer.violation) return "violated";
+  return answer.exploration == runtime::Exploration::kStopped ? "inconclusive" : "holds";
+}
+
+/// What was performed at t: where in the plan, and how it went.
+struct PerformedStep {
+  std::string event;
+  std::string place;    // empty for an event that no plan performs
+  std::string outcome;  // "succeeded", "failed: CLASS"; empty without a plan
+};
+
+std::vector<PerformedStep> steps_at(const compiler::CompiledModel& model,
+                                    const runtime::TracePoint& point) {
+  std::vector<PerformedStep> out;
+  for (const auto& event : point.happens) {
+    PerformedStep step{event, {}, {}};
+    if (point.plan_step) {
+      const auto& performed = model.plan[*point.plan_step];
+      const auto symbol = performed.event.substr(0, performed.event.find('('));
+      // Other events of the timepoint are the model's own.
+      if (event.starts_with(symbol + '(')) {
+        step.place = place_text(performed.place);
+        step.outcome = point.succeeded ? "succeeded" : "failed: " + performed.failure_class;
+      }
+    }
+    out.push_back(std::move(step));
+  }
+  return out;
+}
+
+std::string trace_text(const compiler::CompiledModel& model, const runtime::Trace& trace) {
+  std::string out = runtime::to_text(trace) + "performed\n";
+  for (std::size_t t = 0; t + 1 < trace.points.size(); ++t) {
+    for (const auto& step : steps_at(model, trace.points[t])) {
+      out += fmt::format("  {} {}", t, step.event);
+      if (!step.place.empty()) out += fmt::format(" at {}, {}", step.place, step.outcome);
+      out += '\n';
+    }
+  }
+  return out;
+}
+
+std::string answer_text(const compiler::CompiledModel& model, const Answer& answer) {
+  if (answer.violation) {
+    return fmt::format("violated at timepoint {}\n{}", answer.violation->length(),
+                       trace_text(model, *answer.violation));
+  }
+  if (answer.exploration == runtime::Exploration::kStopped) {
+    return "stopped before the end: nothing is known\n";
+  }
+  auto out = fmt::format("holds up to horizon {}", model.horizon);
+  if (!answer.proof.empty()) out += fmt::format(" ({})", answer.proof);
+  if (answer.exploration == runtime::Exploration::kAllTracesExplored && !model.plan.empty()) {
+    out += ", and every path of the plan has ended by then";
+  }
+  return out + '\n';
+}
+
+std::string answer_json(const compiler::CompiledModel& model, const Answer& answer, double wall_s) {
+  nlohmann::ordered_json out;
+  out["status"] = "ok";
+  out["verdict"] = verdict(answer);
+  out["horizon"] = model.horizon;
+  out["exploration"] = runtime::to_string(answer.exploration);
+  if (!answer.bounds.empty()) out["bounds"] = answer.bounds;
+  if (answer.violation) {
+    out["timepoint"] = answer.violation->length();
+    auto performed = nlohmann::ordered_json::array();
+    for (std::size_t t = 0; t + 1 < answer.violation->points.size(); ++t) {
+      for (const auto& step : steps_at(model, answer.violation->points[t])) {
+        performed.push_back({{"time", t}, {"event", step.event}});
+        if (step.place.empty()) continue;
+        performed.back()["place"] = step.place;
+        performed.back()["outcome"] = step.outcome;
+      }
+    }
+    out["performed"] = std::move(performed);
+    out["trace"] = nlohmann::ordered_json::parse(runtime::to_jsonl(*answer.violation));
+  }
+  if (!answer.proof.empty()) out["proof"] = answer.proof.substr(std::string("proof ").size());
+  if (!answer.proof_file.empty()) out["proof_file"] = answer.proof_file;
+  out["timing"]["wall_s"] = wall_s;
+  return out.dump() + '\n';
+}
+
+int verify(const VerifyOptions& options, Invocation& invocation) {
+  const auto start = std::chrono::steady_clock::now();
+  if (!options.model.until.empty() || names_artifact(options.model)) {
+    invocation.sink().error_about(
+        base::DiagnosticCode::kUsage, options.model.models.front(),
+        "verify needs the texts of the model and --property instead of --until");
+    return 0;
+  }
+  const auto compilation = compile_models(options.model, invocation);
+  if (!compilation) return 0;
+  const auto& model = compilation->model;
+  auto answer = ask(model);
+  // Nothing can go wrong in a model without executions.
+  if (!answer.violation && answer.exploration != runtime::Exploration::kStopped &&
+      report_if_unsatisfiable(model, 0, invocation.sink())) {
+    return 0;
+  }
+  const bool holds = !answer.violation && answer.exploration != runtime::Exploration::kStopped;
+  if (holds && !prove(options, model, answer, invocation)) return 0;
+  if (answer.violation && options.check) {
+    TraceCheck check(*compilation->typed, &stop_flag(), invocation.sink());
+    check.check(*answer.violation);
+  }
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  if (invocation.options().json) {
+    invocation.document(answer_json(model, answer, wall.count()));
+  } else {
+    invocation.result(answer_text(model, answer));
+    for (const auto& bound : answer.bounds) invocation.remark(bound);
+  }
+  if (answer.violation) return 1;
+  return answer.exploration == runtime::Exploration::kStopped ? 4 : 0;
+}
+
+}  // namespace
+
+Command add_verify_command(CLI::App& app) {
+  auto options = std::make_shared<VerifyOptions>();
+  auto* command = app.add_subcommand(
+      "verify", "Is there an initial state and a path of the plan that violates a property?");
+  command->footer(
+      "Examples:\n"
+      "  parallax verify domain.e start.e --plan fetch.lisp --bind robot.bind \\\n"
+      "      --regions scenario.yaml --horizon 6 --property \"!HoldsAt(Holding(),time)\"\n"
+      "  parallax verify scenarios/two_regions/scenario.yaml \\\n"
+      "      --property \"{region} HoldsAt(RobotIn(region),time)\"\n"
+      "The property is a formula over `time`, the last timepoint; it may also look back. The "
+      "answer\n"
+      "is one shortest trace (exit code 1), or that it holds up to the horizon (0), with a proof "
+      "that\n"
+      "is checked by independent means and kept under --certify. A scenario's own constraints play "
+      "no\n"
+      "part.");
+  add_model_options(*command, options->model);
+  add_plan_options(*command, options->model);
+  command
+      ->add_option("--property", options->model.property, "Formula that should hold at all times")
+      ->required();
+  add_certify_option(*command, options->certify);
+  command->add_flag("--check", options->check,
+                    "Evaluate the model on the trace by independent means; exit 5 if it differs");
+  return {command, [options](Invocation& invocation) { return verify(*options, invocation); }};
+}
+
+}  // namespace parallax::tools
