@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "compiler/base/diagnostic_codes.h"
-#include "runtime/enumerate/model_enumerator.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/explain/why.h"
+#include "runtime/graph/trace_counter.h"
 #include "tools/cli/explain_place.h"
 #include "tools/cli/signals.h"
 #include "tools/cli/trace_fact.h"
@@ -27,25 +27,37 @@ struct ValuedTrace {
   std::vector<bool> values;
 };
 
-template <typename Enumerator>
-std::optional<runtime::Trace> nth(Enumerator& enumerator, std::int64_t number,
-                                  std::int64_t& found) {
+/// A trace by its number; else how many there are, in digits.
+struct Found {
   std::optional<runtime::Trace> trace;
-  for (found = 0; found < number; ++found) {
-    trace = enumerator.next();
-    if (!trace) break;
+  std::string count;
+};
+
+Found find_planned(const compiler::CompiledModel& model, std::int64_t number) {
+  runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
+  runtime::PlanEnumerator enumerator(session);
+  Found found;
+  std::int64_t count = 0;
+  for (; count < number; ++count) {
+    found.trace = enumerator.next();
+    if (!found.trace) break;
   }
-  return trace;
+  found.count = std::to_string(count);
+  return found;
 }
 
-std::optional<runtime::Trace> find_trace(runtime::SolverSession& session, std::int64_t number,
-                                         std::int64_t& found) {
-  if (session.model().has_constraints) {
-    runtime::PlanEnumerator enumerator(session);
-    return nth(enumerator, number, found);
-  }
-  runtime::ModelEnumerator enumerator(session);
-  return nth(enumerator, number, found);
+Found find_trace(const compiler::CompiledModel& model, std::int64_t number) {
+  if (model.has_constraints) return find_planned(model, number);
+  runtime::TraceQuery query;
+  query.wanted = number;
+  query.stop = &stop_flag();
+  runtime::ModelTraces traces(model, query);
+  traces.seek(static_cast<long>(number - 1));
+  Found found;
+  found.trace = traces.next();
+  query.wanted = 0;
+  if (!found.trace) found.count = runtime::count_traces(model, query).count.get_str();
+  return found;
 }
 
 /// Every atom as the trace has it; what it does not show is the solver's choice.
@@ -81,10 +93,8 @@ std::optional<ValuedTrace> value(const compiler::CompiledModel& model,
 
 base::Result<ValuedTrace> load_trace(const compiler::CompiledModel& model, std::int64_t number,
                                      Invocation& invocation) {
-  runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
-  std::int64_t found = 0;
-  const auto trace = find_trace(session, number, found);
-  const auto valued = trace ? value(model, *trace) : std::nullopt;
+  const auto found = find_trace(model, number);
+  const auto valued = found.trace ? value(model, *found.trace) : std::nullopt;
   if (valued) return *valued;
   if (stop_flag().load()) {
     return invocation.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
@@ -92,7 +102,7 @@ base::Result<ValuedTrace> load_trace(const compiler::CompiledModel& model, std::
   }
   return invocation.sink().error_about(
       base::DiagnosticCode::kNoSuchTrace, "--trace", number,
-      found == 0 ? "the model has none" : fmt::format("the model has {}", found));
+      found.count == "0" ? "the model has none" : fmt::format("the model has {}", found.count));
 }
 
 /// The last timepoint at which the atom of a fact can be.
