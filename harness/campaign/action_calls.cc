@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <optional>
+#include <string>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/sample_runner.h"
@@ -8,13 +10,25 @@
 namespace parallax::harness {
 namespace {
 
+/// What the controller calls an argument of the plan; none if it is not taken.
+std::optional<std::string> taken_as(const ActionBinding& binding, const std::string& name) {
+  if (!binding.from_plan) return name;
+  for (const auto& [from, to] : *binding.from_plan) {
+    if (name == from) return to;
+    if (name.starts_with(from + ".")) return to + name.substr(from.size());
+  }
+  return std::nullopt;
+}
+
 ActionCall call_for(const ActionBinding& binding, const TraceEvent& event) {
   const GroundFluent ground{event.text, event.symbol, event.arguments};
   ActionCall call{binding.controller, binding.arguments, binding.time_limit_s};
   for (auto& [name, value] : call.arguments) {
     if (auto* text = std::get_if<std::string>(&value)) *text = with_arguments(*text, ground);
   }
-  for (const auto& [name, value] : event.plan_arguments) call.arguments[name] = value;
+  for (const auto& [name, value] : event.plan_arguments) {
+    if (const auto taken = taken_as(binding, name)) call.arguments[*taken] = value;
+  }
   return call;
 }
 

@@ -5,6 +5,17 @@
 #include "compiler/base/contract.h"
 
 namespace parallax::harness {
+namespace {
+
+/// Does the trace put the body of `outside` somewhere? Then that fluent differs already.
+bool predicts_inside(const std::vector<std::string>& holds, const StateMapping& mapping,
+                     const std::string& outside) {
+  return std::any_of(holds.begin(), holds.end(), [&](const std::string& text) {
+    return mapping.outside_text(ground_fluent(text)) == outside;
+  });
+}
+
+}  // namespace
 
 Judgement judge(const StateMapping& mapping, const std::vector<GroundFluent>& fluents,
                 const CampaignTrace& trace, const std::vector<State>& observations) {
@@ -13,18 +24,35 @@ Judgement judge(const StateMapping& mapping, const std::vector<GroundFluent>& fl
   for (std::size_t t = 0; t < observations.size(); ++t) {
     std::vector<DivergingFluent> differing;
     for (const auto& fluent : fluents) {
-      const auto observed = mapping.holds(fluent, observations[t], &out.missing);
-      if (!observed) continue;  // ignored on purpose
-      if (t + 1 == observations.size()) out.last_state[fluent.text] = *observed;
+      const auto reading = mapping.read(fluent, observations[t], &out.missing);
+      if (!reading) continue;  // ignored on purpose
       const bool predicted =
           std::binary_search(trace.holds[t].begin(), trace.holds[t].end(), fluent.text);
-      if (*observed != predicted) {
-        differing.push_back({fluent.text, static_cast<std::int64_t>(t), predicted, *observed});
+      // What is neither so nor so differs from both.
+      const bool neither = *reading == Reading::kNeither;
+      const bool observed = neither ? !predicted : *reading == Reading::kHolds;
+      if (t + 1 == observations.size()) {
+        out.last_state[fluent.text] = observed;
+        out.in_no_state = out.in_no_state || neither;
       }
+      if (observed != predicted) {
+        differing.push_back({fluent.text, static_cast<std::int64_t>(t), predicted, observed});
+      }
+    }
+    for (const auto& text : mapping.outside(fluents, observations[t])) {
+      if (predicts_inside(trace.holds[t], mapping, text)) continue;  // differs above
+      differing.push_back({text, static_cast<std::int64_t>(t), false, true});
+      if (t + 1 == observations.size()) out.in_no_state = true;
     }
     if (!differing.empty() && !out.first_divergence) {
       out.first_divergence = static_cast<std::int64_t>(t);
       out.first = differing;
+    }
+    if (differing.empty()) {
+      out.parted.reset();
+    } else if (!out.parted) {
+      out.parted = static_cast<std::int64_t>(t);
+      out.at_parting = differing;
     }
     if (t + 1 == observations.size()) out.last = std::move(differing);
   }
@@ -54,6 +82,10 @@ State mapped_part(const StateMapping& mapping, const std::vector<GroundFluent>& 
     PARALLAX_REQUIRE(binding != nullptr, "the mapping was checked against the model's fluents");
     if (const auto* flagged = std::get_if<FlagBinding>(&binding->condition)) {
       take(with_arguments(flagged->variable, fluent));
+    } else if (const auto* range = std::get_if<RangeBinding>(&binding->condition)) {
+      take(with_arguments(range->variable, fluent));
+    } else if (const auto* equal = std::get_if<EqualsBinding>(&binding->condition)) {
+      take(with_arguments(equal->variable, fluent));
     } else if (const auto* inside = std::get_if<InsideBinding>(&binding->condition)) {
       const auto* region = mapping.regions().find(fluent.arguments.at(inside->region_argument));
       for (const auto axis : kAxes) {

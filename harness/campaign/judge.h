@@ -17,9 +17,13 @@ namespace parallax::harness {
 struct Judgement {
   std::optional<std::int64_t> first_divergence;  // timepoint
   std::vector<DivergingFluent> first;            // what differs there
-  std::vector<DivergingFluent> last;             // what differs at the last timepoint
-  std::map<std::string, bool> last_state;        // every compared fluent at the last timepoint
-  std::set<std::string> missing;                 // variables that the mapping asks for in vain
+  /// Where the simulation left the trace and did not come back; none if the last state agrees.
+  std::optional<std::int64_t> parted;
+  std::vector<DivergingFluent> at_parting;  // what differs there
+  std::vector<DivergingFluent> last;        // what differs at the last timepoint
+  std::map<std::string, bool> last_state;   // every compared fluent at the last timepoint
+  bool in_no_state = false;       // the last state is one that no state of a model stands for
+  std::set<std::string> missing;  // variables that the mapping asks for in vain
   bool matches() const { return last.empty(); }
 };
 

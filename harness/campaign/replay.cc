@@ -8,23 +8,13 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/compare.h"
 #include "harness/campaign/journal.h"
+#include "harness/campaign/recorded_run.h"
 #include "harness/campaign/sample_runner.h"
 
 namespace parallax::harness {
 namespace {
 
 using base::DiagnosticCode;
-
-/// A repetition in the journal marks a discrepancy: it was made because of one.
-std::optional<SampleId> default_sample(const JournalText& journal) {
-  std::optional<SampleId> first;
-  for (const auto& [key, record] : journal.samples) {
-    if (record.status != SampleStatus::kOk) continue;
-    if (record.phase == Phase::kConfirm) return SampleId{record.trace, record.sample};
-    if (!first) first = SampleId{record.trace, record.sample};
-  }
-  return first;
-}
 
 /// What keeps a repetition from meaning anything.
 std::string obstacle(const JournalHeader& header, const std::string& scenario_hash,

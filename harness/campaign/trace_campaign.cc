@@ -152,7 +152,8 @@ class TraceCampaign {
       add_clean_run(tally_, record.initial, record.observations.back());
     } else {
       const bool admitted =
-          plan_->trace.other_outcomes && context_.feed.admits(plan_->trace, judgement.last_state);
+          context_.scenario.match_model && !judgement.in_no_state && plan_->trace.other_outcomes &&
+          context_.feed.admits(plan_->trace, judgement.last_state);
       if (stopped()) return Step{TraceEnd::kStopped};  // then the solver was, too
       if (!admitted) return accept_discrepancy(std::move(record), judgement);
       tally_.add_clean_elsewhere();
@@ -228,7 +229,7 @@ class TraceCampaign {
   }
 
   void add_own_caveats(TraceResult& result) const {
-    if (plan_->trace.other_outcomes) {
+    if (plan_->trace.other_outcomes && context_.scenario.match_model) {
       result.caveats.push_back(
           "the model leaves the outcome of these events open; an end state counts as predicted if "
           "the model admits it");

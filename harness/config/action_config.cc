@@ -58,16 +58,16 @@ class ArgumentReader {
       unknown_argument(*controller_, name, entry.key_range, sink_);
       return false;
     }
-    const bool wants_body = argument->unit == "body";
-    if (const auto* whole = std::get_if<std::int64_t>(&value); whole != nullptr && !wants_body) {
+    const bool wants_name = is_name(*argument);
+    if (const auto* whole = std::get_if<std::int64_t>(&value); whole != nullptr && !wants_name) {
       value = static_cast<double>(*whole);  // `1` is as good a length as `1.0`
     }
-    const bool right = wants_body ? std::holds_alternative<std::string>(value)
+    const bool right = wants_name ? std::holds_alternative<std::string>(value)
                                   : std::holds_alternative<double>(value);
     if (!right) {
       sink_.error(DiagnosticCode::kWrongYamlKind, entry.value.range, fmt::format("`{}`", name),
                   describe(entry.value),
-                  wants_body ? std::string("the name of a body")
+                  wants_name ? fmt::format("the name of a `{}`", argument->unit)
                              : fmt::format("a number [{}]", argument->unit));
     }
     return right;
@@ -87,6 +87,25 @@ const ControllerSpec* known_controller(const std::string& name, base::SourceRang
   auto error = sink.error(DiagnosticCode::kUnknownController, range, name);
   add_suggestion(error, name, known, "controllers");
   return nullptr;
+}
+
+/// `from_plan`: names of the plan's arguments and what the controller calls them.
+void read_from_plan(const YamlNode& node, const ControllerSpec* controller, ActionBinding& action,
+                    base::DiagnosticSink& sink) {
+  const YamlFields all(node, fmt::format("`from_plan` of `{}`", action.event), sink);
+  action.from_plan.emplace();
+  for (const auto& entry : node.entries) {
+    const auto to = read_text(entry.value, fmt::format("`{}`", entry.key), sink);
+    if (!to) continue;
+    const bool known =
+        controller == nullptr ||
+        std::any_of(controller->arguments.begin(), controller->arguments.end(),
+                    [&](const ArgumentSpec& argument) {
+                      return argument.name == *to || argument.name.starts_with(*to + ".");
+                    });
+    if (!known) unknown_argument(*controller, *to, entry.value.range, sink);
+    action.from_plan->emplace(entry.key, *to);
+  }
 }
 
 std::optional<ActionBinding> read_action(const YamlEntry& entry, bool built_in,
@@ -118,6 +137,10 @@ std::optional<ActionBinding> read_action(const YamlEntry& entry, bool built_in,
   ArgumentReader reader(*pattern, table, sink);
   for (const auto& argument : entry.value.entries) {
     if (argument.key == "controller" || argument.key == "time_limit_s") continue;
+    if (argument.key == "from_plan") {
+      read_from_plan(argument.value, table, action, sink);
+      continue;
+    }
     reader.read(argument.key, argument);
   }
   action.arguments = reader.take();

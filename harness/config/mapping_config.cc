@@ -12,26 +12,6 @@ namespace {
 
 using base::DiagnosticCode;
 
-Region read_region(const YamlEntry& entry, base::DiagnosticSink& sink) {
-  Region region;
-  region.name = entry.key;
-  region.source = entry.key_range;
-  YamlFields fields(entry.value, fmt::format("the region `{}`", entry.key), sink);
-  fields.only({"x", "y", "z", "yaw"});
-  for (const auto axis : kAxes) {
-    const auto* bounds = fields.find(to_string(axis));
-    if (bounds == nullptr) continue;
-    const auto name = fmt::format("`{}` of the region `{}`", to_string(axis), entry.key);
-    if (!bounds->is_list()) {
-      sink.error(DiagnosticCode::kWrongYamlKind, bounds->range, name, describe(*bounds),
-                 "a list of a lower and an upper bound");
-    } else if (const auto interval = read_interval(*bounds, name, sink)) {
-      region.on(axis) = *interval;
-    }
-  }
-  return region;
-}
-
 void read_flag_name(const YamlFields& fields, std::string_view key, const SymbolPattern& pattern,
                     std::optional<std::string>& out) {
   fields.text(key, out);
@@ -58,6 +38,58 @@ InsideBinding read_inside(const YamlFields& fields, const SymbolPattern& pattern
   }
   read_flag_name(fields, "unless", pattern, binding.unless);
   read_flag_name(fields, "only_if", pattern, binding.only_if);
+  fields.boolean("drawn", binding.drawn);
+  return binding;
+}
+
+/// The text under `key`, with the names of parameters replaced by their positions.
+std::string read_pattern_text(const YamlFields& fields, std::string_view key,
+                              const SymbolPattern& pattern) {
+  std::string text;
+  fields.text(key, text);
+  const auto* node = fields.find(key);
+  return node == nullptr ? text : with_positions(text, pattern, node->range, fields.sink());
+}
+
+FlagBinding read_flag(YamlFields& fields, const SymbolPattern& pattern) {
+  fields.only({"flag", "at_start"});
+  FlagBinding binding;
+  binding.variable = read_pattern_text(fields, "flag", pattern);
+  fields.boolean("at_start", binding.at_start);
+  return binding;
+}
+
+RangeBinding read_range(YamlFields& fields, const SymbolPattern& pattern) {
+  fields.only({"range", "holds", "fails", "at_start"});
+  RangeBinding binding;
+  binding.variable = read_pattern_text(fields, "range", pattern);
+  for (const auto& [key, interval] :
+       {std::pair{"holds", &binding.holds}, std::pair{"fails", &binding.fails}}) {
+    const auto* node = fields.require(key);
+    if (node == nullptr) continue;
+    if (const auto read = read_interval(*node, fmt::format("`{}`", key), fields.sink())) {
+      *interval = *read;
+    }
+    if (interval->lower > interval->upper) {
+      fields.sink().error(DiagnosticCode::kReversedSampling, node->range, fmt::format("`{}`", key),
+                          interval->lower, interval->upper);
+    }
+  }
+  if (binding.holds.lower <= binding.fails.upper && binding.fails.lower <= binding.holds.upper &&
+      fields.find("fails") != nullptr) {
+    fields.sink().error(DiagnosticCode::kYamlOutOfBounds, fields.find("fails")->range, "`fails`",
+                        "an interval that meets `holds`", "apart from it");
+  }
+  fields.number("at_start", kAnyNumber, binding.at_start);
+  return binding;
+}
+
+EqualsBinding read_equals(YamlFields& fields, const SymbolPattern& pattern) {
+  fields.only({"equals", "text"});
+  EqualsBinding binding;
+  binding.variable = read_pattern_text(fields, "equals", pattern);
+  fields.require("text");
+  binding.text = read_pattern_text(fields, "text", pattern);
   return binding;
 }
 
@@ -79,14 +111,18 @@ std::optional<FluentBinding> read_binding(const YamlEntry& entry, base::Diagnost
   YamlFields fields(value, fmt::format("the mapping of `{}`", pattern->symbol), sink);
   if (!value.is_map()) return std::nullopt;
   if (fields.find("flag") != nullptr) {
-    fields.only({"flag"});
-    FlagBinding flag;
-    fields.text("flag", flag.variable);
-    flag.variable = with_positions(flag.variable, *pattern, fields.find("flag")->range, sink);
-    binding.condition = flag;
+    binding.condition = read_flag(fields, *pattern);
     return binding;
   }
-  fields.only({"inside", "body", "unless", "only_if", "flag"});
+  if (fields.find("range") != nullptr) {
+    binding.condition = read_range(fields, *pattern);
+    return binding;
+  }
+  if (fields.find("equals") != nullptr) {
+    binding.condition = read_equals(fields, *pattern);
+    return binding;
+  }
+  fields.only({"inside", "body", "unless", "only_if", "drawn", "flag", "range", "equals"});
   if (fields.require("inside") == nullptr) return std::nullopt;
   binding.condition = read_inside(fields, *pattern);
   return binding;
@@ -105,20 +141,6 @@ void refuse_repeated(Bindings& bindings, Name name, base::DiagnosticSink& sink) 
 }
 
 }  // namespace
-
-std::vector<Region> read_regions(const YamlNode& node, bool& gaps_allowed,
-                                 base::DiagnosticSink& sink) {
-  static constexpr std::array<std::string_view, 2> kGaps = {"error", "allowed"};
-  std::vector<Region> regions;
-  YamlFields fields(node, "`regions`", sink);
-  fields.only({"cells", "gaps"});
-  gaps_allowed = fields.choice("gaps", "value of `gaps`", kGaps) == std::size_t{1};
-  const auto* cells = fields.require("cells");
-  if (cells == nullptr) return regions;
-  const YamlFields all(*cells, "`cells`", sink);
-  for (const auto& entry : cells->entries) regions.push_back(read_region(entry, sink));
-  return regions;
-}
 
 std::vector<FluentBinding> read_mapping(const YamlNode& node, base::DiagnosticSink& sink) {
   std::vector<FluentBinding> bindings;

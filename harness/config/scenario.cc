@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <system_error>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
+#include "harness/world/mobile_check.h"
 #include "harness/world/world_check.h"
 
 namespace parallax::harness {
@@ -16,6 +19,29 @@ using base::DiagnosticCode;
 
 constexpr std::int64_t kMaxHorizon = 1'000'000;
 
+/// Regions where things are laid down at the start must have something below them.
+void check_supported_starts(const Scenario& scenario, base::DiagnosticSink& sink) {
+  const auto at = [](const Region& region, Axis axis) -> std::optional<double> {
+    const auto& start = region.start[static_cast<std::size_t>(axis)];
+    if (!start && !region.on(axis)) return std::nullopt;
+    return start ? start->midpoint() : region.on(axis)->midpoint();
+  };
+  std::vector<NamedPoint> points;
+  for (const Region& region : scenario.mapping->regions().regions()) {
+    const auto& bottom = region.start[static_cast<std::size_t>(Axis::kBottom)];
+    const auto x = at(region, Axis::kX), y = at(region, Axis::kY);
+    if (!bottom || bottom->lower != bottom->upper || !x || !y) continue;
+    const auto& o = region.frame_start;
+    points.push_back({region.name, {*x + o[0], *y + o[1], bottom->lower + o[2]}});
+  }
+  if (points.empty()) return;
+  for (const auto& name : unsupported_points(scenario.world, points)) {
+    const Region* region = scenario.mapping->regions().find(name);
+    sink.error(DiagnosticCode::kBadWorld, region->source, "regions/" + name,
+               "nothing in the world is below the middle of its start");
+  }
+}
+
 class ScenarioReader {
  public:
   ScenarioReader(const YamlNode& root, const base::SourceFiles& files, base::DiagnosticSink& sink)
@@ -23,8 +49,12 @@ class ScenarioReader {
 
   void read(Scenario& scenario) {
     fields_.only({"include", "name", "model", "plan", "bind", "constraints", "horizon", "world",
-                  "regions", "mapping", "actions", "sampling", "criterion", "simulator", "limits",
-                  "expect"});
+                  "regions", "mapping", "actions", "sampling", "criterion", "match", "simulator",
+                  "limits", "expect"});
+    static constexpr std::array<std::string_view, 2> kMatches = {"model", "trace"};
+    if (fields_.choice("match", "value of `match`", kMatches) == std::size_t{1}) {
+      scenario.match_model = false;
+    }
     fields_.text("name", scenario.title);
     read_problem(scenario);
     read_simulation(scenario);
@@ -84,10 +114,10 @@ class ScenarioReader {
   void read_meaning(Scenario& scenario) {
     const auto* regions = fields_.require("regions");
     const auto* mapping = fields_.require("mapping");
-    bool gaps_allowed = false;
     const auto errors_before = sink_.error_count();
+    std::vector<RegionSection> sections;
     if (regions != nullptr) {
-      scenario.region_list = read_regions(*regions, gaps_allowed, sink_);
+      sections = read_regions(*regions, scenario.world, sink_);
       scenario.regions_source = key_range("regions");
     }
     const bool regions_read = sink_.error_count() == errors_before;
@@ -102,8 +132,20 @@ class ScenarioReader {
       read_sampling(*node, scenario, sink_);
     }
     if (!regions_read) return;  // a region without its bounds would be reported once more
-    auto cells = RegionSet::make(scenario.region_list, gaps_allowed, sink_);
-    if (cells) scenario.mapping.emplace(std::move(*cells), std::move(bindings));
+    std::vector<RegionFamily> families;
+    std::map<std::string, base::SourceRange> seen;
+    for (auto& section : sections) {
+      for (const auto& region : section.regions) {
+        const auto [twin, fresh] = seen.emplace(region.name, region.source);
+        if (fresh || section.name.empty()) continue;
+        sink_.error(DiagnosticCode::kRegionDuplicate, region.source, region.name)
+            .note(twin->second, "the first definition is here");
+      }
+      auto set = RegionSet::make(section.regions, section.gaps_allowed, sink_);
+      if (set) families.push_back({section.name, *std::move(set), std::move(section.functions)});
+    }
+    if (sink_.error_count() != errors_before || families.empty()) return;
+    scenario.mapping.emplace(RegionMap(std::move(families)), std::move(bindings));
   }
 
   base::SourceRange key_range(std::string_view key) const {
@@ -169,6 +211,7 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
   if (built_in && scenario.mapping && sink.error_count() == errors_before) {
     const auto parameters = observables(scenario.world);
     if (!check_variables(scenario, parameters, sink)) return sink.already_reported();
+    check_supported_starts(scenario, sink);
   }
   if (sink.error_count() != errors_before) return sink.already_reported();
   return scenario;

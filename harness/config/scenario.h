@@ -23,11 +23,14 @@ struct LocatedText {
 /// Event symbol -> controller with its fixed arguments; what the plan says of a perform is laid
 /// over them (a pose `target` becomes target.x, target.y, target.z, target.yaw).
 /// In a text argument "{0}" stands for the event's argument 0.
+/// With `from_plan`, only the arguments that it names are taken from the plan, under new names;
+/// a name stands for all that begins with it and a dot.
 struct ActionBinding {
   std::string event;
   std::size_t arity = 0;
   std::string controller;
   State arguments;
+  std::optional<std::map<std::string, std::string>> from_plan;
   double time_limit_s = 60.0;
   base::SourceRange source;
 };
@@ -75,13 +78,15 @@ struct Scenario {
   std::int32_t horizon = 0;
   base::SourceRange horizon_source;
   WorldSpec world;
-  std::vector<Region> region_list;  // as written, before RegionSet::make
   std::optional<StateMapping> mapping;
   std::vector<ActionBinding> actions;  // sorted by event
   std::vector<SampledDimension> sampling;
   double sampling_inset_m = 1e-6;  // [m, rad] how far draws stay inside their cuboid
   base::SourceRange regions_source, mapping_source, actions_source, sampling_source;
   CriterionSpec criterion;
+  /// An end state that the model admits for the start and events of a trace is no discrepancy, even
+  /// if it is not the trace's; false: only the trace's own counts.
+  bool match_model = true;
   SimulatorSpec simulator;
   Limits limits;
   std::optional<Expectation> expect;

@@ -18,13 +18,20 @@ std::vector<std::string> names_of(const std::vector<Parameter>& parameters) {
 }
 
 /// The variables that a binding reads, as far as they do not depend on the fluent's arguments.
-std::vector<std::string> variables_of(const FluentBinding& binding, const RegionSet& regions) {
+std::vector<std::string> variables_of(const FluentBinding& binding, const RegionMap& regions) {
   std::vector<std::string> out;
   if (const auto* flag = std::get_if<FlagBinding>(&binding.condition)) {
     out.push_back(flag->variable);
+  } else if (const auto* range = std::get_if<RangeBinding>(&binding.condition)) {
+    out.push_back(range->variable);
+  } else if (const auto* equal = std::get_if<EqualsBinding>(&binding.condition)) {
+    out.push_back(equal->variable);
   } else if (const auto* inside = std::get_if<InsideBinding>(&binding.condition)) {
     for (const auto axis : kAxes) {
-      const bool bounded = !regions.regions().empty() && regions.regions().front().on(axis);
+      const auto& all = regions.regions();
+      const bool bounded =
+          !all.empty() && std::all_of(all.begin(), all.end(),
+                                      [&](const Region& r) { return r.on(axis).has_value(); });
       if (bounded) out.push_back(fmt::format("{}.{}", inside->body, to_string(axis)));
     }
     if (inside->unless) out.push_back(*inside->unless);

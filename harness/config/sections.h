@@ -17,9 +17,17 @@ namespace parallax::harness {
 /// `world`: solver, friction, floor, bodies, joints, robot (docs/scenario_format.md).
 WorldSpec read_world(const YamlNode& node, base::DiagnosticSink& sink);
 
-/// `regions: cells`, as written; `gaps_allowed` from `regions: gaps`.
-std::vector<Region> read_regions(const YamlNode& node, bool& gaps_allowed,
-                                 base::DiagnosticSink& sink);
+/// One family of `regions`, as written.
+struct RegionSection {
+  std::string name;  // empty: the only one
+  std::vector<Region> regions;
+  bool gaps_allowed = false;
+  std::vector<std::string> functions;
+};
+
+/// `regions`: `cells` of one family, or `sets` of families. Frames are looked up in `world`.
+std::vector<RegionSection> read_regions(const YamlNode& node, const WorldSpec& world,
+                                        base::DiagnosticSink& sink);
 
 /// `mapping`: one binding per fluent symbol.
 std::vector<FluentBinding> read_mapping(const YamlNode& node, base::DiagnosticSink& sink);

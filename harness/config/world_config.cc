@@ -5,6 +5,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
+#include "harness/config/world_sections.h"
 #include "harness/world/world_check.h"
 
 namespace parallax::harness {
@@ -12,18 +13,17 @@ namespace {
 
 using base::DiagnosticCode;
 
-void read_vector(const YamlFields& fields, std::string_view key, Eigen::Vector3d& out) {
-  if (const auto values = fields.numbers(key, 3)) {
-    out = Eigen::Vector3d((*values)[0], (*values)[1], (*values)[2]);
-  }
-}
-
 SolverSpec read_solver(const YamlNode& node, base::DiagnosticSink& sink) {
   SolverSpec solver;
   YamlFields fields(node, "`solver`", sink);
   fields.only({"timestep_s", "gravity_m_s2", "erp", "cfm", "surface_layer_m",
                "max_correcting_velocity_m_s", "start_penetration_m", "max_contacts_per_pair",
-               "sleep_linear_m_s", "sleep_angular_rad_s", "sleep_after_s"});
+               "sleep_linear_m_s", "sleep_angular_rad_s", "sleep_after_s", "contact_erp",
+               "contact_cfm", "held_after_s", "held_clearance_m"});
+  fields.number("contact_erp", kPositive, solver.contact_erp);
+  fields.number("contact_cfm", kNotNegative, solver.contact_cfm);
+  fields.number("held_after_s", kNotNegative, solver.held_after_s);
+  fields.number("held_clearance_m", kAnyNumber, solver.held_clearance_m);
   fields.number("timestep_s", kPositive, solver.timestep_s);
   fields.number("gravity_m_s2", kAnyNumber, solver.gravity_m_s2);
   fields.number("erp", kNotNegative, solver.erp);
@@ -38,57 +38,6 @@ SolverSpec read_solver(const YamlNode& node, base::DiagnosticSink& sink) {
   return solver;
 }
 
-/// One word for all boxes of a body, or a list of them under `shapes`.
-BoxShape read_shape(const YamlNode& node, std::string what, base::DiagnosticSink& sink) {
-  BoxShape shape;
-  YamlFields fields(node, std::move(what), sink);
-  fields.only({"size_m", "at_m"});
-  fields.require("size_m");
-  read_vector(fields, "size_m", shape.size_m);
-  read_vector(fields, "at_m", shape.p_BS);
-  return shape;
-}
-
-void read_shapes(const YamlFields& fields, BodySpec& body) {
-  const auto* list = fields.find("shapes");
-  if (list == nullptr) {
-    if (fields.require("size_m") == nullptr) return;
-    BoxShape shape;
-    read_vector(fields, "size_m", shape.size_m);
-    body.shapes.push_back(shape);
-    return;
-  }
-  if (const auto* size = fields.find("size_m")) {
-    fields.sink().error(DiagnosticCode::kUnknownKey, size->range, "size_m",
-                        fields.what() + ", which has `shapes`");
-  }
-  if (!list->is_list()) {
-    fields.sink().error(DiagnosticCode::kWrongYamlKind, list->range, "`shapes`", describe(*list),
-                        "a list of boxes");
-    return;
-  }
-  for (const auto& item : list->items) {
-    body.shapes.push_back(read_shape(item, "a shape of " + fields.what(), fields.sink()));
-  }
-}
-
-BodySpec read_body(const YamlEntry& entry, base::DiagnosticSink& sink) {
-  BodySpec body;
-  body.name = entry.key;
-  YamlFields fields(entry.value, fmt::format("the body `{}`", entry.key), sink);
-  fields.only({"size_m", "shapes", "mass_kg", "material", "position_m", "yaw_rad", "gravity",
-               "collides", "settable"});
-  read_shapes(fields, body);
-  fields.number("mass_kg", kNotNegative, body.mass_kg);
-  fields.text("material", body.material);
-  read_vector(fields, "position_m", body.p_WB);
-  fields.number("yaw_rad", kAnyNumber, body.yaw_rad);
-  fields.boolean("gravity", body.gravity);
-  fields.boolean("collides", body.collides);
-  fields.texts("settable", body.settable);
-  return body;
-}
-
 void read_axis(const YamlFields& fields, JointSpec& joint) {
   static constexpr std::array<std::string_view, 3> kWords = {"x", "y", "z"};
   const auto* axis = fields.find("axis");
@@ -101,14 +50,15 @@ void read_axis(const YamlFields& fields, JointSpec& joint) {
 }
 
 JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
-  static constexpr std::array<std::string_view, 2> kTypes = {"slider", "fixed"};
+  static constexpr std::array<std::string_view, 3> kTypes = {"slider", "fixed", "gantry"};
   JointSpec joint;
   joint.name = entry.key;
   YamlFields fields(entry.value, fmt::format("the joint `{}`", entry.key), sink);
-  fields.only({"type", "parent", "child", "axis", "range_m", "max_force_n"});
-  if (fields.choice("type", "type of joint", kTypes) == std::size_t{1}) {
-    joint.type = JointType::kFixed;
-  }
+  fields.only(
+      {"type", "parent", "child", "axis", "range_m", "max_force_n", "max_torque_nm", "handle"});
+  const auto type = fields.choice("type", "type of joint", kTypes);
+  if (type == std::size_t{1}) joint.type = JointType::kFixed;
+  if (type == std::size_t{2}) joint.type = JointType::kGantry;
   fields.text("parent", joint.parent);
   if (joint.parent == "world") joint.parent.clear();
   fields.require("child");
@@ -119,24 +69,9 @@ JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
     joint.high_m = (*range)[1];
   }
   fields.number("max_force_n", kNotNegative, joint.max_force_n);
+  fields.number("max_torque_nm", kNotNegative, joint.max_torque_nm);
+  if (const auto* handle = fields.find("handle")) joint.handle = read_handle(*handle, sink);
   return joint;
-}
-
-RobotSpec read_robot(const YamlNode& node, base::DiagnosticSink& sink) {
-  RobotSpec robot;
-  YamlFields fields(node, "`robot`", sink);
-  fields.only({"base_joint", "base_body", "reach_joint", "lift_joint", "finger_joint",
-               "near_pad_body", "far_pad_body", "grip_force_n", "opening_m"});
-  fields.text("base_joint", robot.base_joint);
-  fields.text("base_body", robot.base_body);
-  fields.text("reach_joint", robot.reach_joint);
-  fields.text("lift_joint", robot.lift_joint);
-  fields.text("finger_joint", robot.finger_joint);
-  fields.text("near_pad_body", robot.near_pad_body);
-  fields.text("far_pad_body", robot.far_pad_body);
-  fields.number("grip_force_n", kNotNegative, robot.grip_force_n);
-  fields.number("opening_m", kPositive, robot.opening_m);
-  return robot;
 }
 
 /// Keys are `default` or two materials joined by a hyphen, in either order.
@@ -197,7 +132,8 @@ WorldSpec read_world(const YamlNode& node, base::DiagnosticSink& sink) {
   const auto errors_before = sink.error_count();
   WorldSpec world;
   YamlFields fields(node, "`world`", sink);
-  fields.only({"include", "solver", "friction", "floor_material", "bodies", "joints", "robot"});
+  fields.only(
+      {"include", "solver", "friction", "floor_material", "bodies", "joints", "places", "robot"});
   fields.text("floor_material", world.floor_material);
   if (const auto* solver = fields.find("solver")) world.solver = read_solver(*solver, sink);
   if (const auto* bodies = fields.require("bodies")) {
@@ -208,7 +144,11 @@ WorldSpec read_world(const YamlNode& node, base::DiagnosticSink& sink) {
     const YamlFields all(*joints, "`joints`", sink);
     for (const auto& entry : joints->entries) world.joints.push_back(read_joint(entry, sink));
   }
-  if (const auto* robot = fields.find("robot")) world.robot = read_robot(*robot, sink);
+  if (const auto* places = fields.find("places")) {
+    const YamlFields all(*places, "`places`", sink);
+    for (const auto& entry : places->entries) world.places.push_back(read_place(entry, sink));
+  }
+  if (const auto* robot = fields.find("robot")) read_robot(*robot, world, sink);
   if (const auto* friction = fields.find("friction")) {
     world.friction = read_friction(*friction, materials_of(world), sink);
   }
@@ -216,6 +156,7 @@ WorldSpec read_world(const YamlNode& node, base::DiagnosticSink& sink) {
   const auto by_name = [](const auto& a, const auto& b) { return a.name < b.name; };
   std::sort(world.bodies.begin(), world.bodies.end(), by_name);
   std::sort(world.joints.begin(), world.joints.end(), by_name);
+  std::sort(world.places.begin(), world.places.end(), by_name);
   if (sink.error_count() != errors_before) return world;
   for (const auto& problem : check_world(world)) {
     auto error = sink.error(DiagnosticCode::kBadWorld, range_of(node, problem.path), problem.path,

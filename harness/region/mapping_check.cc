@@ -11,7 +11,7 @@ namespace {
 
 using base::DiagnosticCode;
 
-std::vector<std::string> region_names(const RegionSet& regions) {
+std::vector<std::string> region_names(const RegionMap& regions) {
   std::vector<std::string> names;
   for (const auto& region : regions.regions()) names.push_back(region.name);
   return names;
@@ -26,7 +26,7 @@ void report_unmapped(const std::string& symbol, const std::vector<std::string>& 
 }
 
 void check_region(const FluentBinding& binding, const GroundFluent& fluent,
-                  const RegionSet& regions, base::DiagnosticSink& sink) {
+                  const RegionMap& regions, base::DiagnosticSink& sink) {
   const auto* inside = std::get_if<InsideBinding>(&binding.condition);
   if (inside == nullptr) return;
   if (inside->region_argument >= fluent.arguments.size()) {

@@ -16,7 +16,7 @@ double unwrapped(double angle, const Interval& interval) {
 
 /// On which axes a region's closure has the point below its upper bound.
 struct Membership {
-  std::array<bool, 4> below_upper{};
+  std::array<bool, kAxes.size()> below_upper{};
   bool half_open = true;  // on all axes that the region bounds
   bool turned = false;    // an angle had to be moved by full turns
   auto rank() const {
@@ -31,7 +31,7 @@ std::optional<bool> below_upper(const Interval& interval, double value) {
 }
 
 /// None if the point lies outside the region's closure.
-std::optional<Membership> membership(const Region& region, const std::array<double, 4>& point) {
+std::optional<Membership> membership(const Region& region, const Point& point) {
   Membership result;
   for (const Axis axis : kAxes) {
     const auto& bound = region.on(axis);
@@ -64,6 +64,8 @@ std::string_view to_string(Axis axis) {
       return "z";
     case Axis::kYaw:
       return "yaw";
+    case Axis::kBottom:
+      return "bottom";
   }
   return "";
 }
@@ -81,10 +83,11 @@ const Region* RegionSet::find(std::string_view name) const {
   return found == regions_.end() ? nullptr : &*found;
 }
 
-const Region* RegionSet::locate(const std::array<double, 4>& point) const {
+const Region* RegionSet::locate(const Point& point, std::string_view frame) const {
   const Region* best = nullptr;
   Membership best_membership;
   for (const auto& region : regions_) {
+    if (region.frame != frame) continue;
     const auto here = membership(region, point);
     if (!here) continue;
     // Regions do not overlap, so that no other one has the point in its half-open cuboid; only

@@ -11,9 +11,12 @@
 
 namespace parallax::harness {
 
-enum class Axis : std::uint8_t { kX, kY, kZ, kYaw };
-inline constexpr std::array<Axis, 4> kAxes = {Axis::kX, Axis::kY, Axis::kZ, Axis::kYaw};
-std::string_view to_string(Axis axis);            // "x", "y", "z", "yaw"
+/// kBottom is the height of a body's lowest point.
+enum class Axis : std::uint8_t { kX, kY, kZ, kYaw, kBottom };
+inline constexpr std::array<Axis, 5> kAxes = {Axis::kX, Axis::kY, Axis::kZ, Axis::kYaw,
+                                              Axis::kBottom};
+using Point = std::array<double, kAxes.size()>;   // by Axis
+std::string_view to_string(Axis axis);            // "x", "y", "z", "yaw", "bottom"
 std::optional<Axis> axis_from(std::string_view);  // none for another word
 
 /// [lower, upper) or, where `closed`, [lower, upper]; metres or radians.
@@ -31,8 +34,14 @@ struct Interval {
 /// A cuboid over some of the axes; an axis that is not bounded does not matter.
 struct Region {
   std::string name;
-  std::array<std::optional<Interval>, 4> bounds;  // by Axis
+  std::array<std::optional<Interval>, kAxes.size()> bounds;  // by Axis
   base::SourceRange source;
+  /// Where starts are drawn, on axes where that is narrower than the bounds.
+  std::array<std::optional<Interval>, kAxes.size()> start;
+  /// Body in whose frame the bounds are; empty: the world. `frame_start` is where it is at a reset
+  /// (no turn).
+  std::string frame;
+  std::array<double, 3> frame_start{};
   const std::optional<Interval>& on(Axis axis) const {
     return bounds[static_cast<std::size_t>(axis)];
   }
@@ -52,10 +61,42 @@ class RegionSet {
   const std::vector<Region>& regions() const { return regions_; }
   const Region* find(std::string_view name) const;
   /// The region that contains the point; axes the set does not bound are ignored. None: outside.
-  const Region* locate(const std::array<double, 4>& point) const;
+  /// Regions of another frame do not count.
+  const Region* locate(const Point& point, std::string_view frame = {}) const;
 
  private:
   std::vector<Region> regions_;
+};
+
+/// What a family of regions is asked for by the functions of a plan's binding table; all if empty.
+struct RegionFamily {
+  std::string name;
+  RegionSet set;
+  std::vector<std::string> functions;  // "region", "place", "gaze"
+};
+
+/// All regions of a scenario. Those of one family and one frame are disjoint; families are about
+/// different things (where robots stand, where items lie), and their regions may overlap.
+class RegionMap {
+ public:
+  RegionMap(RegionSet only);  // NOLINT(google-explicit-constructor): one family is a map, too
+  explicit RegionMap(std::vector<RegionFamily> families);
+
+  /// All regions, family by family.
+  const std::vector<Region>& regions() const { return regions_; }
+  const Region* find(std::string_view name) const;
+  /// Does the point, in the frame of `region` (one of regions()), belong to it?
+  bool contains(const Region& region, const Point& point) const;
+  /// The region in the frame of the world that `function` of a plan finds for a point.
+  const Region* locate(std::string_view function, const Point& point) const;
+  /// Is the region one that `function` asks for?
+  bool answers(std::string_view function, const Region& region) const;
+
+ private:
+  const RegionFamily& family_of(const Region& region) const;
+  std::vector<RegionFamily> families_;
+  std::vector<Region> regions_;
+  std::vector<std::size_t> family_;  // by region
 };
 
 }  // namespace parallax::harness

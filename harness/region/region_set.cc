@@ -67,6 +67,7 @@ std::optional<Interval> shared(Axis axis, const Interval& a, const Interval& b) 
 
 /// The cuboid that two regions over the same axes share, as text; empty if they do not overlap.
 std::string overlap(const Region& a, const Region& b) {
+  if (a.frame != b.frame) return {};
   std::vector<std::string> parts;
   for (const Axis axis : kAxes) {
     if (!a.on(axis)) continue;
@@ -79,6 +80,7 @@ std::string overlap(const Region& a, const Region& b) {
 
 /// Does `other` go on where `region` ends on `axis`?
 bool takes_over(const Region& other, const Region& region, Axis axis) {
+  if (other.frame != region.frame) return false;
   for (const Axis each : kAxes) {
     if (!region.on(each)) continue;
     if (each != axis) {

@@ -44,7 +44,15 @@ class DemandCollector {
     const FluentBinding* binding = mapping_.find(fluent.symbol);
     PARALLAX_REQUIRE(binding != nullptr, "the mapping was checked against the model's fluents");
     if (const auto* flagged = std::get_if<FlagBinding>(&binding->condition)) {
-      if (wanted) needs_flag(flagged->variable, fluent, *binding);
+      if (wanted && !flagged->at_start) needs_flag(flagged->variable, fluent, *binding);
+      if (!wanted && flagged->at_start) excludes_flag(flagged->variable, fluent, *binding);
+    } else if (const auto* range = std::get_if<RangeBinding>(&binding->condition)) {
+      const auto& interval = wanted ? range->holds : range->fails;
+      if (range->at_start < interval.lower || range->at_start > interval.upper) {
+        needs_value(range->variable, range->at_start, fluent, wanted, *binding);
+      }
+    } else if (const auto* equal = std::get_if<EqualsBinding>(&binding->condition)) {
+      if (wanted) needs_flag(equal->variable, fluent, *binding);
     } else if (const auto* inside = std::get_if<InsideBinding>(&binding->condition)) {
       add_inside(fluent, wanted, *inside, *binding);
     }
@@ -61,11 +69,29 @@ class DemandCollector {
                          binding.source, fluent.symbol});
   }
 
+  void excludes_flag(const std::string& pattern, const GroundFluent& fluent,
+                     const FluentBinding& binding) {
+    if (!at_reset_) return;
+    problems_.push_back({fmt::format("`{}` does not hold, but a reset makes `{}` true", fluent.text,
+                                     with_arguments(pattern, fluent)),
+                         binding.source, fluent.symbol});
+  }
+
+  void needs_value(const std::string& pattern, double value, const GroundFluent& fluent,
+                   bool wanted, const FluentBinding& binding) {
+    if (!at_reset_) return;
+    problems_.push_back(
+        {fmt::format("`{}` {}, but a reset makes `{}` {}", fluent.text,
+                     wanted ? "holds" : "does not hold", with_arguments(pattern, fluent), value),
+         binding.source, fluent.symbol});
+  }
+
   void add_inside(const GroundFluent& fluent, bool wanted, const InsideBinding& inside,
                   const FluentBinding& binding) {
     if (wanted && inside.only_if) needs_flag(*inside.only_if, fluent, binding);
     // A false fluent says where the body is not only if no flag can be the reason for it.
     if (!wanted && (inside.only_if || (inside.unless && !at_reset_))) return;
+    if (!inside.drawn && at_reset_) return;
     const Region* region = mapping_.regions().find(fluent.arguments.at(inside.region_argument));
     PARALLAX_REQUIRE(region != nullptr, "the mapping was checked against the regions");
     auto& demand = demands_[with_arguments(inside.body, fluent)];
@@ -120,9 +146,9 @@ class StartBuilder {
                       first.fluent, entry.fluent, body, first.region->name));
     }
     for (const Axis axis : kAxes) {
-      if (!first.region->on(axis)) continue;
-      narrow(variable(body, axis), *first.region->on(axis),
-             fmt::format("region `{}`", first.region->name));
+      if (const auto range = start_range(*first.region, axis)) {
+        narrow(variable(body, axis), *range, fmt::format("region `{}`", first.region->name));
+      }
     }
   }
 
@@ -134,6 +160,20 @@ class StartBuilder {
   }
 
  private:
+  /// In the world at a reset.
+  static std::optional<Interval> start_range(const Region& region, Axis axis) {
+    const auto& narrower = region.start[static_cast<std::size_t>(axis)];
+    if (!narrower && !region.on(axis)) return std::nullopt;
+    Interval range = narrower ? *narrower : *region.on(axis);
+    double shift = 0.0;
+    if (axis == Axis::kX) shift = region.frame_start[0];
+    if (axis == Axis::kY) shift = region.frame_start[1];
+    if (axis == Axis::kZ || axis == Axis::kBottom) shift = region.frame_start[2];
+    range.lower += shift;
+    range.upper += shift;
+    return range;
+  }
+
   void narrow(const std::string& name, const Interval& by, const std::string& what) {
     const auto [at, fresh] = dimensions_.emplace(name, by);
     if (fresh) return;
@@ -163,6 +203,10 @@ class StartBuilder {
       bool overlaps = true;
       for (const Axis axis : kAxes) {
         if (!entry.region->on(axis)) continue;
+        if (!entry.region->frame.empty()) {
+          overlaps = false;  // where the frame is, only the first observation shows
+          break;
+        }
         const auto found = dimensions_.find(variable(body, axis));
         if (found == dimensions_.end()) {
           problems_.push_back(
@@ -217,6 +261,7 @@ std::map<std::string, Interval> StateMapping::cells(
   for (const auto& [body, demand] : collected.demands()) {
     if (demand.inside.empty()) continue;
     const Region* region = demand.inside.front().region;
+    if (!region->frame.empty()) continue;  // its bounds move
     for (const Axis axis : kAxes) {
       if (region->on(axis)) result.emplace(variable(body, axis), *region->on(axis));
     }
@@ -235,10 +280,23 @@ std::vector<std::string> StateMapping::wrong_at_start(const std::vector<GroundFl
       start.emplace(with_arguments(pattern, fluent), false);
     };
     if (const auto* flagged = std::get_if<FlagBinding>(&binding->condition)) {
-      lower_flag(flagged->variable);
+      start.emplace(with_arguments(flagged->variable, fluent), flagged->at_start);
+    } else if (const auto* range = std::get_if<RangeBinding>(&binding->condition)) {
+      start.emplace(with_arguments(range->variable, fluent), range->at_start);
+    } else if (const auto* equal = std::get_if<EqualsBinding>(&binding->condition)) {
+      start.emplace(with_arguments(equal->variable, fluent), std::string());
     } else if (const auto* inside = std::get_if<InsideBinding>(&binding->condition)) {
       if (inside->unless) lower_flag(*inside->unless);
       if (inside->only_if) lower_flag(*inside->only_if);
+      if (!inside->drawn) continue;
+      const Region* region = regions_.find(fluent.arguments.at(inside->region_argument));
+      if (region != nullptr && !region->frame.empty()) {
+        static constexpr std::array<const char*, 3> kItems = {".x", ".y", ".z"};
+        for (std::size_t i = 0; i < kItems.size(); ++i) {
+          start.emplace(region->frame + kItems[i], region->frame_start[i]);
+        }
+        start.emplace(region->frame + ".yaw", 0.0);
+      }
     }
     const auto observed = holds(fluent, start);
     if (observed && *observed != true_fluents.contains(fluent.text)) wrong.push_back(fluent.text);

@@ -1,8 +1,9 @@
 #include "harness/region/state_mapping.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace parallax::harness {
 namespace {
@@ -36,19 +37,26 @@ std::optional<bool> flag(const State& state, const std::string& variable,
   return std::nullopt;
 }
 
-bool holds_inside(const InsideBinding& binding, const GroundFluent& fluent, const State& state,
-                  const RegionSet& regions, std::set<std::string>* missing) {
-  const std::string body = with_arguments(binding.body, fluent);
-  const Region* region = regions.find(fluent.arguments.at(binding.region_argument));
-  PARALLAX_REQUIRE(region != nullptr, "the mapping was checked against the regions");
-  std::array<double, 4> point{};
-  bool complete = true;
-  for (const Axis axis : kAxes) {
-    if (!region->on(axis)) continue;
-    const auto value = number(state, fmt::format("{}.{}", body, to_string(axis)), missing);
-    complete = complete && value.has_value();
-    point[static_cast<std::size_t>(axis)] = value.value_or(0.0);
+/// Takes a point of the world into the frame of a body, as far as the region bounds it.
+void into_frame(const std::string& frame, const State& state, std::set<std::string>* missing,
+                Point& point) {
+  const auto at = [&](const char* item) {
+    return number(state, fmt::format("{}.{}", frame, item), missing).value_or(0.0);
+  };
+  const double yaw = at("yaw");
+  double& x = point[static_cast<std::size_t>(Axis::kX)];
+  double& y = point[static_cast<std::size_t>(Axis::kY)];
+  const double dx = x - at("x"), dy = y - at("y");
+  x = std::cos(yaw) * dx + std::sin(yaw) * dy;
+  y = std::cos(yaw) * dy - std::sin(yaw) * dx;
+  point[static_cast<std::size_t>(Axis::kYaw)] -= yaw;
+  for (const Axis axis : {Axis::kZ, Axis::kBottom}) {
+    point[static_cast<std::size_t>(axis)] -= at("z");
   }
+}
+
+bool flags_allow(const InsideBinding& binding, const GroundFluent& fluent, const State& state,
+                 std::set<std::string>* missing) {
   const auto allowed = [&](const std::optional<std::string>& variable, bool wanted) {
     if (!variable) return true;
     return flag(state, with_arguments(*variable, fluent), missing) == wanted;
@@ -56,8 +64,52 @@ bool holds_inside(const InsideBinding& binding, const GroundFluent& fluent, cons
   // Both are evaluated, so that every missing variable is named.
   const bool not_excluded = allowed(binding.unless, false);
   const bool enabled = allowed(binding.only_if, true);
-  return complete && not_excluded && enabled && regions.locate(point) == region;
+  return not_excluded && enabled;
 }
+
+bool holds_inside(const InsideBinding& binding, const GroundFluent& fluent, const State& state,
+                  const RegionMap& regions, std::set<std::string>* missing) {
+  const std::string body = with_arguments(binding.body, fluent);
+  const Region* region = regions.find(fluent.arguments.at(binding.region_argument));
+  PARALLAX_REQUIRE(region != nullptr, "the mapping was checked against the regions");
+  Point point{};
+  bool complete = true;
+  for (const Axis axis : kAxes) {
+    // A point in a turned frame takes both x and y.
+    const bool needed = region->on(axis).has_value() ||
+                        (!region->frame.empty() && (axis == Axis::kX || axis == Axis::kY));
+    if (!needed) continue;
+    const auto value = number(state, fmt::format("{}.{}", body, to_string(axis)), missing);
+    complete = complete && value.has_value();
+    point[static_cast<std::size_t>(axis)] = value.value_or(0.0);
+  }
+  if (!region->frame.empty()) into_frame(region->frame, state, missing, point);
+  return flags_allow(binding, fluent, state, missing) && complete &&
+         regions.contains(*region, point);
+}
+
+Reading read_range(const RangeBinding& binding, const GroundFluent& fluent, const State& state,
+                   std::set<std::string>* missing) {
+  const auto value = number(state, with_arguments(binding.variable, fluent), missing);
+  if (!value) return Reading::kFails;
+  const auto within = [&](const Interval& i) { return *value >= i.lower && *value <= i.upper; };
+  if (within(binding.holds)) return Reading::kHolds;
+  return within(binding.fails) ? Reading::kFails : Reading::kNeither;
+}
+
+bool equals(const EqualsBinding& binding, const GroundFluent& fluent, const State& state,
+            std::set<std::string>* missing) {
+  const std::string variable = with_arguments(binding.variable, fluent);
+  const Value* value = look_up(state, variable, missing);
+  if (value == nullptr) return false;
+  if (const auto* text = std::get_if<std::string>(value)) {
+    return *text == with_arguments(binding.text, fluent);
+  }
+  if (missing != nullptr) missing->insert(variable);
+  return false;
+}
+
+Reading reading(bool holds) { return holds ? Reading::kHolds : Reading::kFails; }
 
 }  // namespace
 
@@ -98,7 +150,7 @@ std::string with_arguments(std::string_view pattern, const GroundFluent& fluent)
   return result;
 }
 
-StateMapping::StateMapping(RegionSet regions, std::vector<FluentBinding> bindings)
+StateMapping::StateMapping(RegionMap regions, std::vector<FluentBinding> bindings)
     : regions_(std::move(regions)), bindings_(std::move(bindings)) {
   std::stable_sort(
       bindings_.begin(), bindings_.end(),
@@ -112,19 +164,61 @@ const FluentBinding* StateMapping::find(std::string_view symbol) const {
   return found == bindings_.end() || found->fluent != symbol ? nullptr : &*found;
 }
 
-std::optional<bool> StateMapping::holds(const GroundFluent& fluent, const State& state,
-                                        std::set<std::string>* missing) const {
+std::optional<Reading> StateMapping::read(const GroundFluent& fluent, const State& state,
+                                          std::set<std::string>* missing) const {
   const FluentBinding* binding = find(fluent.symbol);
   PARALLAX_REQUIRE(binding != nullptr, "the mapping was checked against the model's fluents");
   if (const auto* inside = std::get_if<InsideBinding>(&binding->condition)) {
     PARALLAX_REQUIRE(inside->region_argument < fluent.arguments.size(),
                      "the mapping was checked against the model's fluents");
-    return holds_inside(*inside, fluent, state, regions_, missing);
+    return reading(holds_inside(*inside, fluent, state, regions_, missing));
   }
   if (const auto* flagged = std::get_if<FlagBinding>(&binding->condition)) {
-    return flag(state, with_arguments(flagged->variable, fluent), missing).value_or(false);
+    return reading(flag(state, with_arguments(flagged->variable, fluent), missing).value_or(false));
+  }
+  if (const auto* range = std::get_if<RangeBinding>(&binding->condition)) {
+    return read_range(*range, fluent, state, missing);
+  }
+  if (const auto* equal = std::get_if<EqualsBinding>(&binding->condition)) {
+    return reading(equals(*equal, fluent, state, missing));
   }
   return std::nullopt;
+}
+
+std::optional<bool> StateMapping::holds(const GroundFluent& fluent, const State& state,
+                                        std::set<std::string>* missing) const {
+  const auto result = read(fluent, state, missing);
+  if (!result) return std::nullopt;
+  return *result == Reading::kHolds;
+}
+
+std::string StateMapping::outside_text(const GroundFluent& fluent) const {
+  const FluentBinding* binding = find(fluent.symbol);
+  const auto* inside =
+      binding == nullptr ? nullptr : std::get_if<InsideBinding>(&binding->condition);
+  if (inside == nullptr) return {};
+  std::vector<std::string> arguments = fluent.arguments;
+  arguments.at(inside->region_argument) = "outside";
+  return fmt::format("{}({})", fluent.symbol, fmt::join(arguments, ","));
+}
+
+std::vector<std::string> StateMapping::outside(const std::vector<GroundFluent>& fluents,
+                                               const State& state) const {
+  // By text: is the body in some region?
+  std::map<std::string, bool> found;
+  for (const GroundFluent& fluent : fluents) {
+    const FluentBinding* binding = find(fluent.symbol);
+    if (binding == nullptr) continue;
+    const auto* inside = std::get_if<InsideBinding>(&binding->condition);
+    if (inside == nullptr || !flags_allow(*inside, fluent, state, nullptr)) continue;
+    const std::string text = outside_text(fluent);
+    found[text] = found[text] || holds_inside(*inside, fluent, state, regions_, nullptr);
+  }
+  std::vector<std::string> bodies;
+  for (const auto& [text, in_some] : found) {
+    if (!in_some) bodies.push_back(text);
+  }
+  return bodies;
 }
 
 }  // namespace parallax::harness

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -20,11 +21,27 @@ struct InsideBinding {
   std::size_t region_argument = 0;
   std::optional<std::string> unless;  // "box.held"
   std::optional<std::string> only_if;
+  bool drawn = true;  // false: a reset puts the body there by itself, nothing is drawn
 };
 
 /// Fluent holds iff a boolean variable is true; "{0}.held" takes argument 0 of the fluent.
 struct FlagBinding {
   std::string variable;
+  bool at_start = false;  // its value after a reset
+};
+
+/// Fluent holds iff a variable lies in one interval, and does not iff it lies in the other one:
+/// between the two it does neither, which is no state of the model ("a drawer half open").
+struct RangeBinding {
+  std::string variable;
+  Interval holds, fails;
+  double at_start = 0.0;
+};
+
+/// Fluent holds iff a variable has this text; "{0}" stands for argument 0. Empty after a reset.
+struct EqualsBinding {
+  std::string variable;
+  std::string text;
 };
 
 /// Said on purpose: this fluent has no continuous meaning and is not compared.
@@ -33,7 +50,7 @@ struct IgnoredBinding {};
 struct FluentBinding {
   std::string fluent;  // symbol name, "RobotIn"
   std::size_t arity = 0;
-  std::variant<InsideBinding, FlagBinding, IgnoredBinding> condition;
+  std::variant<InsideBinding, FlagBinding, RangeBinding, EqualsBinding, IgnoredBinding> condition;
   base::SourceRange source;
 };
 
@@ -63,12 +80,15 @@ bool is_angle(std::string_view variable);
 /// "{0}.held" with the fluent's arguments put in. A number beyond the last one stays as it is.
 std::string with_arguments(std::string_view pattern, const GroundFluent& fluent);
 
+/// What a continuous state says of a fluent.
+enum class Reading : std::uint8_t { kFails, kHolds, kNeither };
+
 /// m and its inverse, from one binding per fluent symbol.
 class StateMapping {
  public:
-  StateMapping(RegionSet regions, std::vector<FluentBinding> bindings);
+  StateMapping(RegionMap regions, std::vector<FluentBinding> bindings);
   const FluentBinding* find(std::string_view symbol) const;
-  const RegionSet& regions() const { return regions_; }
+  const RegionMap& regions() const { return regions_; }
   const std::vector<FluentBinding>& bindings() const { return bindings_; }
 
   /// Can every fluent of the model be read from a continuous state? Reports each symbol without a
@@ -81,8 +101,19 @@ class StateMapping {
   /// Errors: an unbound symbol or a region that does not exist is a contract violation, checked
   /// when the scenario is loaded; a variable that the state lacks makes the fluent false and is
   /// appended to `missing`.
+  std::optional<Reading> read(const GroundFluent& fluent, const State& state,
+                              std::set<std::string>* missing = nullptr) const;
+  /// The same with kNeither as false.
   std::optional<bool> holds(const GroundFluent& fluent, const State& state,
                             std::set<std::string>* missing = nullptr) const;
+
+  /// Bodies that are in none of the regions that the fluents of one symbol can name, although no
+  /// `unless` or `only_if` takes them out: a state that no state of the model stands for, even
+  /// where all these fluents are false. One text a body, "RobotAt(outside)".
+  std::vector<std::string> outside(const std::vector<GroundFluent>& fluents,
+                                   const State& state) const;
+  /// "RobotAt(outside)" for a fluent that puts a body into a region; empty for others.
+  std::string outside_text(const GroundFluent& fluent) const;
 
   /// Inverse of m for a start: the cuboid in which every fluent of `true_fluents` holds and every
   /// other one of `fluents` does not. `extra` gives the dimensions that no fluent bounds
@@ -104,7 +135,7 @@ class StateMapping {
                                           State start) const;
 
  private:
-  RegionSet regions_;
+  RegionMap regions_;
   std::vector<FluentBinding> bindings_;  // sorted by symbol
 };
 

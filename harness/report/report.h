@@ -5,6 +5,7 @@
 
 #include "compiler/base/diagnostic.h"
 #include "harness/campaign/campaign_result.h"
+#include "harness/campaign/rates.h"
 #include "harness/campaign/replay.h"
 
 namespace parallax::harness {
@@ -30,6 +31,10 @@ base::Status write_report(const CampaignResult& result, const std::filesystem::p
 
 std::string replay_text(const ReplayResult& result, const ReportStyle& style);
 std::string replay_json(const ReplayResult& result);
+
+/// A table: per trace the causes with counts, rates and intervals.
+std::string rates_text(const RatesResult& result);
+std::string rates_json(const RatesResult& result);
 
 /// 0 no discrepancy, 1 discrepancy or no trace at all, 4 inconclusive; an interruption's 130 or 143
 /// is the caller's.

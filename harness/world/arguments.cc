@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "compiler/base/contract.h"
 
@@ -16,6 +17,20 @@ const ArgumentSpec* find_argument(const ControllerSpec& spec, std::string_view n
 
 std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
 
+const PlaceSpec* find_place(const WorldSpec& world, std::string_view name) {
+  const auto found = std::find_if(world.places.begin(), world.places.end(),
+                                  [&](const PlaceSpec& place) { return place.name == name; });
+  return found == world.places.end() ? nullptr : &*found;
+}
+
+bool is_kind(const WorldLayout& layout, std::string_view name) {
+  for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
+    const BodySpec& body = layout.bodies[layout.bodies.id_at(i)];
+    if (layout.is_free[i] && (body.kind.empty() ? body.name : body.kind) == name) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::optional<double> as_number(const Value& value) {
@@ -24,20 +39,48 @@ std::optional<double> as_number(const Value& value) {
   return std::nullopt;
 }
 
+std::string wrong_name(const ArgumentSpec& argument, std::string_view name, const WorldSpec& world,
+                       const WorldLayout& layout) {
+  const auto fault = [&](const char* what) {
+    return "argument " + quoted(argument.name) + ": " + quoted(name) + " " + what;
+  };
+  if (argument.unit == "body" || argument.unit == "graspable") {
+    const auto body = layout.find_body(name);
+    if (!body || !layout.is_free[body->index()]) return fault("does not name a free body");
+    if (argument.unit == "graspable" && !layout.bodies[*body].grasp) return fault("has no `grasp`");
+  } else if (argument.unit == "arm") {
+    const auto is_it = [&](const ArmSpec& arm) { return arm.name == name; };
+    if (!world.mobile ||
+        std::none_of(world.mobile->arms.begin(), world.mobile->arms.end(), is_it)) {
+      return fault("does not name an arm");
+    }
+  } else if (argument.unit == "place") {
+    if (find_place(world, name) == nullptr) return fault("does not name a place");
+  } else if (argument.unit == "drawer") {
+    const auto slider = layout.find_slider(name);
+    if (!slider) return fault("does not name a slider");
+    const JointSpec& joint = layout.sliders[*slider];
+    if (!joint.handle) return fault("has no `handle`");
+    if (!joint.low_m || !joint.high_m) return fault("has no stops");
+  } else if (argument.unit == "kind" && !is_kind(layout, name)) {
+    return fault("is no kind of a free body");
+  }
+  return {};
+}
+
 std::variant<Arguments, std::string> Arguments::check(const ControllerSpec& spec,
-                                                      const State& given,
+                                                      const State& given, const WorldSpec& world,
                                                       const WorldLayout& layout) {
-  Arguments arguments(spec);
+  Arguments arguments(spec, world, layout);
   for (const auto& [name, value] : given) {
     const ArgumentSpec* known = find_argument(spec, name);
     if (known == nullptr) return quoted(spec.name) + " takes no argument " + quoted(name);
-    if (known->unit == "body") {
+    if (is_name(*known)) {
       const auto* text = std::get_if<std::string>(&value);
-      const auto body = text == nullptr ? std::nullopt : layout.find_body(*text);
-      if (!body || !layout.is_free[body->index()]) {
-        return "argument " + quoted(name) + " does not name a free body";
-      }
-      arguments.bodies_.emplace(name, *body);
+      if (text == nullptr) return "argument " + quoted(name) + " is not a name";
+      const std::string fault = wrong_name(*known, *text, world, layout);
+      if (!fault.empty()) return fault;
+      arguments.names_.emplace(name, *text);
       continue;
     }
     const std::optional<double> number = as_number(value);
@@ -57,14 +100,28 @@ std::variant<Arguments, std::string> Arguments::check(const ControllerSpec& spec
 double Arguments::number(std::string_view name) const {
   if (const auto found = numbers_.find(name); found != numbers_.end()) return found->second;
   const ArgumentSpec* known = find_argument(*spec_, name);
-  PARALLAX_REQUIRE(known != nullptr, "an argument of the controller's table");
-  return known->fallback;
+  return known == nullptr ? std::numeric_limits<double>::quiet_NaN() : known->fallback;
+}
+
+std::optional<std::string> Arguments::text(std::string_view name) const {
+  const auto found = names_.find(name);
+  if (found == names_.end()) return std::nullopt;
+  return found->second;
 }
 
 std::optional<BodyId> Arguments::body(std::string_view name) const {
-  const auto found = bodies_.find(name);
-  if (found == bodies_.end()) return std::nullopt;
-  return found->second;
+  const auto found = text(name);
+  return found ? layout_->find_body(*found) : std::nullopt;
+}
+
+std::optional<SliderId> Arguments::slider(std::string_view name) const {
+  const auto found = text(name);
+  return found ? layout_->find_slider(*found) : std::nullopt;
+}
+
+const PlaceSpec* Arguments::place(std::string_view name) const {
+  const auto found = text(name);
+  return found ? find_place(*world_, *found) : nullptr;
 }
 
 }  // namespace parallax::harness

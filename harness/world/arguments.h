@@ -11,26 +11,39 @@
 
 namespace parallax::harness {
 
-/// The arguments of one action, checked against the controller's table.
+/// The arguments of one action, checked against the controller's table and the world's names.
 class Arguments {
  public:
   /// A message instead if an argument is unknown, missing, of the wrong kind or not finite.
+  /// `world` outlives the arguments.
   static std::variant<Arguments, std::string> check(const ControllerSpec& spec, const State& given,
+                                                    const WorldSpec& world,
                                                     const WorldLayout& layout);
 
-  /// `name` must be in the table; its fallback (possibly NaN) unless given.
+  /// `name` must be in the table; its fallback (possibly NaN) unless given; NaN if the controller
+  /// has no such argument.
   double number(std::string_view name) const;
   /// None unless given.
+  std::optional<std::string> text(std::string_view name) const;
   std::optional<BodyId> body(std::string_view name) const;
+  std::optional<SliderId> slider(std::string_view name) const;
+  const PlaceSpec* place(std::string_view name) const;
 
  private:
-  explicit Arguments(const ControllerSpec& spec) : spec_(&spec) {}
+  Arguments(const ControllerSpec& spec, const WorldSpec& world, const WorldLayout& layout)
+      : spec_(&spec), world_(&world), layout_(&layout) {}
   const ControllerSpec* spec_;  // of the static table
+  const WorldSpec* world_;
+  const WorldLayout* layout_;
   std::map<std::string, double, std::less<>> numbers_;
-  std::map<std::string, BodyId, std::less<>> bodies_;
+  std::map<std::string, std::string, std::less<>> names_;
 };
 
 /// A number whether it was written as 1 or as 1.0.
 std::optional<double> as_number(const Value& value);
+
+/// What is wrong with `name` as an argument of this kind in this world; empty if nothing is.
+std::string wrong_name(const ArgumentSpec& argument, std::string_view name, const WorldSpec& world,
+                       const WorldLayout& layout);
 
 }  // namespace parallax::harness

@@ -15,14 +15,22 @@ constexpr double kLeastLimit_s = 0.3;  // so that a motion of no distance can en
 
 std::string metres(double value_m) { return fmt::format("{:.3f} m", value_m); }
 
+double patience_s(double distance_m, const Motion& motion) {
+  return kPatience * nominal_time_s(distance_m, motion) + kLeastLimit_s;
+}
+
 std::optional<Outcome> PhasedController::tick(double time_s) {
   if (refusal_) return refusal_;
   while (current_ < phases_.size()) {
-    const Phase& phase = phases_[current_];
     if (!begun_) {
-      phase_end_s_ = time_s + phase.begin();
+      insert_at_ = current_ + 1;
+      const auto begin = phases_[current_].begin;  // the list may grow meanwhile
+      phase_end_s_ = time_s + begin();
+      insert_at_.reset();
       begun_ = true;
+      if (refusal_) return refusal_;
     }
+    const Phase& phase = phases_[current_];
     const bool done = phase.done();
     if (!done && time_s < phase_end_s_) return std::nullopt;
     if (!done && overdue_.empty()) overdue_ = phase.name;
@@ -34,7 +42,13 @@ std::optional<Outcome> PhasedController::tick(double time_s) {
 
 void PhasedController::add(std::string_view name, std::function<double()> begin,
                            std::function<bool()> done) {
-  phases_.push_back(Phase{name, std::move(begin), std::move(done)});
+  Phase phase{name, std::move(begin), std::move(done)};
+  if (!insert_at_) {
+    phases_.push_back(std::move(phase));
+    return;
+  }
+  phases_.insert(phases_.begin() + static_cast<std::ptrdiff_t>(*insert_at_), std::move(phase));
+  ++*insert_at_;
 }
 
 void PhasedController::add_pause(std::string_view name, double duration_s) {
@@ -45,17 +59,14 @@ void PhasedController::add_pause(std::string_view name, double duration_s) {
       [left = steps]() mutable { return left-- <= 0; });
 }
 
-void PhasedController::add_move(std::string_view name, Axis axis, std::function<double()> target,
-                                Motion motion) {
+void PhasedController::add_step(std::function<void()> what) {
   add(
-      name,
-      [this, axis, target = std::move(target), motion] {
-        const double goal_m = target();
-        robot().move_to(axis, goal_m, motion);
-        return kPatience * nominal_time_s(goal_m - robot().position_m(axis), motion) +
-               kLeastLimit_s;
+      "step",
+      [what = std::move(what)] {
+        what();
+        return 0.0;
       },
-      [this, axis] { return robot().at_rest(axis); });
+      [] { return true; });
 }
 
 void PhasedController::refuse(std::string reason, State margins) {

@@ -1,23 +1,29 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "harness/world/arguments.h"
 #include "harness/world/grasp_monitor.h"
+#include "harness/world/mobile_robot.h"
+#include "harness/world/perception.h"
 #include "harness/world/robot.h"
 
 namespace parallax::harness {
 
-/// What a controller acts on. All outlive the controller.
+/// What a controller acts on. All outlive the controller. One of the robots is there.
 struct ControlContext {
-  Robot& robot;
-  const GraspMonitor& grasp;
+  const WorldSpec& spec;
   const OdeWorld& world;
-  const RobotSpec& spec;
+  const GraspMonitor& grasp;
+  Robot* line = nullptr;
+  MobileRobot* mobile = nullptr;
+  Perception* perception = nullptr;  // of the mobile robot
 };
 
 /// One action while it runs.
@@ -30,11 +36,6 @@ class Controller {
 };
 
 using ControllerFactory = std::unique_ptr<Controller> (*)(const ControlContext&, const Arguments&);
-
-std::unique_ptr<Controller> make_going(const ControlContext& context, const Arguments& arguments);
-std::unique_ptr<Controller> make_picking_up(const ControlContext& context,
-                                            const Arguments& arguments);
-std::unique_ptr<Controller> make_placing(const ControlContext& context, const Arguments& arguments);
 
 /// The factory of a name in controllers(), or null.
 ControllerFactory find_factory(std::string_view name);
@@ -55,15 +56,19 @@ class PhasedController : public Controller {
  protected:
   explicit PhasedController(const ControlContext& context) : context_(context) {}
 
-  Robot& robot() const { return context_.robot; }
   const ControlContext& context() const { return context_; }
+  const OdeWorld& world() const { return context_.world; }
+  const std::string& name_of(BodyId id) const { return world().layout().bodies[id].name; }
+  /// At the end, or, while a phase begins, right behind it.
   void add(std::string_view name, std::function<double()> begin, std::function<bool()> done);
   /// Waits.
   void add_pause(std::string_view name, double duration_s);
-  /// Moves one axis to `target` (asked when the phase begins), for at most twice the nominal time.
-  void add_move(std::string_view name, Axis axis, std::function<double()> target, Motion motion);
+  /// Does something that takes no time.
+  void add_step(std::function<void()> what);
   /// Skips all phases: the next tick returns `outcome`.
   void refuse(std::string reason, State margins = {});
+  bool refused() const { return refusal_.has_value(); }
+  std::string_view overdue() const { return overdue_; }
 
   /// The judgement after the last phase. `overdue` names the first phase that met its limit.
   virtual Outcome judge(std::string_view overdue) = 0;
@@ -72,11 +77,15 @@ class PhasedController : public Controller {
   ControlContext context_;
   std::vector<Phase> phases_;
   std::size_t current_ = 0;
+  std::optional<std::size_t> insert_at_;  // while a phase begins
   bool begun_ = false;
   double phase_end_s_ = 0.0;
   std::string_view overdue_;
   std::optional<Outcome> refusal_;
 };
+
+/// How long a motion of `distance_m` may take before it counts as overdue [s].
+double patience_s(double distance_m, const Motion& motion);
 
 /// "0.713 m", for reasons.
 std::string metres(double value_m);

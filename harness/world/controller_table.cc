@@ -4,7 +4,8 @@
 #include <array>
 #include <limits>
 
-#include "harness/world/controller.h"
+#include "harness/world/line_controller.h"
+#include "harness/world/mobile_controller.h"
 
 namespace parallax::harness {
 namespace {
@@ -12,47 +13,162 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 constexpr std::string_view kUnusedPose = "accepted and unused: this robot works along one line";
+constexpr std::string_view kSettle = "rest at the end";
+
+constexpr ArgumentSpec number(std::string_view name, std::string_view unit, double fallback,
+                              std::string_view help) {
+  return {name, unit, false, fallback, true, help};
+}
+constexpr ArgumentSpec any_number(std::string_view name, std::string_view unit,
+                                  std::string_view help) {
+  return {name, unit, false, kNone, false, help};
+}
+constexpr ArgumentSpec named(std::string_view name, std::string_view what, std::string_view help,
+                             bool required = true) {
+  return {name, what, required, 0.0, false, help};
+}
+constexpr ArgumentSpec settle(double fallback_s) {
+  return {"settle_s", "s", false, fallback_s, false, kSettle};
+}
 
 constexpr std::array kGoing = {
     ArgumentSpec{"target.x", "m", true, 0.0, false, "where robot.x is to be"},
-    ArgumentSpec{"target.y", "m", false, kNone, false, kUnusedPose},
-    ArgumentSpec{"target.z", "m", false, kNone, false, kUnusedPose},
-    ArgumentSpec{"target.yaw", "rad", false, kNone, false, kUnusedPose},
-    ArgumentSpec{"max_speed_m_s", "m/s", false, 0.6, true, "cruising speed of the base"},
-    ArgumentSpec{"acceleration_m_s2", "m/s^2", false, 0.8, true, "of the base"},
-    ArgumentSpec{"goal_tolerance_m", "m", false, 0.005, true,
-                 "the base brakes when so near, and fails when it ends farther away"},
+    any_number("target.y", "m", kUnusedPose),
+    any_number("target.z", "m", kUnusedPose),
+    any_number("target.yaw", "rad", kUnusedPose),
+    number("max_speed_m_s", "m/s", 0.6, "cruising speed of the base"),
+    number("acceleration_m_s2", "m/s^2", 0.8, "of the base"),
+    number("goal_tolerance_m", "m", 0.005,
+           "the base brakes when so near, and fails when it ends farther away"),
     ArgumentSpec{"settle_s", "s", false, 0.2, true, "rest at the goal"},
 };
 
 constexpr std::array kPickingUp = {
-    ArgumentSpec{"object", "body", true, 0.0, false, "the free body to pick up"},
+    named("object", "body", "the free body to pick up"),
     ArgumentSpec{"grip_force_n", "n", false, kNone, true,
                  "squeezing force; unless given, the robot's"},
-    ArgumentSpec{"tool_tolerance_m", "m", false, 0.012, true,
-                 "the reach axis brakes when so near to the object"},
+    number("tool_tolerance_m", "m", 0.012, "the reach axis brakes when so near to the object"),
     ArgumentSpec{"grasp_height_m", "m", false, 0.0, false,
                  "middle of the pads above the object's origin"},
-    ArgumentSpec{"max_speed_m_s", "m/s", false, 0.25, true, "of reach and lift"},
-    ArgumentSpec{"lift_speed_m_s", "m/s", false, 0.15, true, "of the lift when loaded"},
-    ArgumentSpec{"close_speed_m_s", "m/s", false, 0.05, true, "of the driven pad"},
-    ArgumentSpec{"hold_s", "s", false, 0.2, true, "squeezing before the lift"},
-    ArgumentSpec{"settle_s", "s", false, 0.25, true, "rest after the lift"},
+    number("max_speed_m_s", "m/s", 0.25, "of reach and lift"),
+    number("lift_speed_m_s", "m/s", 0.15, "of the lift when loaded"),
+    number("close_speed_m_s", "m/s", 0.05, "of the driven pad"),
+    number("hold_s", "s", 0.2, "squeezing before the lift"),
+    number("settle_s", "s", 0.25, "rest after the lift"),
 };
 
 constexpr std::array kPlacing = {
     ArgumentSpec{"target.x", "m", true, 0.0, false, "where the tool is to let go"},
-    ArgumentSpec{"target.y", "m", false, kNone, false, kUnusedPose},
-    ArgumentSpec{"target.z", "m", false, kNone, false, kUnusedPose},
-    ArgumentSpec{"target.yaw", "rad", false, kNone, false, kUnusedPose},
-    ArgumentSpec{"object", "body", false, 0.0, false,
-                 "the body that must be held; unless given, whichever is"},
-    ArgumentSpec{"tool_tolerance_m", "m", false, 0.012, true,
-                 "the reach axis brakes when so near to the target"},
-    ArgumentSpec{"max_speed_m_s", "m/s", false, 0.25, true, "of reach and of the empty lift"},
-    ArgumentSpec{"lower_speed_m_s", "m/s", false, 0.15, true, "of the loaded lift"},
-    ArgumentSpec{"open_speed_m_s", "m/s", false, 0.10, true, "of the driven pad"},
-    ArgumentSpec{"settle_s", "s", false, 0.25, true, "rest after the gripper has left"},
+    any_number("target.y", "m", kUnusedPose),
+    any_number("target.z", "m", kUnusedPose),
+    any_number("target.yaw", "rad", kUnusedPose),
+    named("object", "body", "the body that must be held; unless given, whichever is", false),
+    number("tool_tolerance_m", "m", 0.012, "the reach axis brakes when so near to the target"),
+    number("max_speed_m_s", "m/s", 0.25, "of reach and of the empty lift"),
+    number("lower_speed_m_s", "m/s", 0.15, "of the loaded lift"),
+    number("open_speed_m_s", "m/s", 0.10, "of the driven pad"),
+    number("settle_s", "s", 0.25, "rest after the gripper has left"),
+};
+
+constexpr std::array kDrive = {
+    named("place", "place", "where to drive, unless the target says", false),
+    any_number("target.x", "m", "laid over the place"),
+    any_number("target.y", "m", "laid over the place"),
+    any_number("target.z", "m", "accepted and unused"),
+    any_number("target.yaw", "rad", "laid over the place; the heading at the end"),
+    number("max_speed_m_s", "m/s", 0.6, "cruising speed"),
+    number("acceleration_m_s2", "m/s^2", 1.0, "of start and braking"),
+    number("max_yaw_rate_rad_s", "rad/s", 0.8, "of the turn at the goal"),
+    number("yaw_acceleration_rad_s2", "rad/s^2", 1.5, "of the same"),
+    number("stop_within_m", "m", 0.002, "[rad] the base brakes when so near to the goal"),
+    number("goal_tolerance_m", "m", 0.05, "farther away it has failed"),
+    number("yaw_tolerance_rad", "rad", 0.05, "turned farther away it has failed"),
+    number("sweep_step_m", "m", 0.01, "between the places that are tried before driving"),
+    settle(0.5),
+};
+
+constexpr std::array kLook = {
+    named("place", "place", "what to look at", false),
+    any_number("target.x", "m", "accepted and unused where a place is named"),
+    any_number("target.y", "m", "as target.x"),
+    any_number("target.z", "m", "as target.x"),
+    any_number("target.yaw", "rad", "as target.x"),
+    settle(0.1),
+};
+
+constexpr std::array kDetect = {
+    named("kind", "kind", "what to look for: `kind` of a body, or its name"),
+    number("points", "1", 9, "points along the body that rays are cast at"),
+    number("points_needed", "1", 5, "of them, to be in the cone and not hidden"),
+    settle(0.1),
+};
+
+constexpr std::array kPickUp = {
+    named("arm", "arm", "which arm"),
+    named("object", "graspable", "the body to pick up"),
+    ArgumentSpec{"effort_n", "n", false, kNone, true,
+                 "squeezing force; unless given, that of the grasp"},
+    number("clearance_m", "m", 0.005, "of each pad before it closes"),
+    number("standoff_m", "m", 0.10, "of the last, straight stretch"),
+    number("max_speed_m_s", "m/s", 0.25, "of the tool"),
+    number("approach_speed_m_s", "m/s", 0.15, "on the last stretch"),
+    number("hold_s", "s", 0.4, "squeezing before the lift"),
+    number("lift_m", "m", 0.12, "height of the lift"),
+    number("lift_speed_m_s", "m/s", 0.10, "of the lift"),
+    number("lift_acceleration_m_s2", "m/s^2", 0.3, "of the lift"),
+    settle(0.3),
+};
+
+constexpr std::array kPlace = {
+    named("arm", "arm", "which arm"),
+    named("object", "body", "what must be held; unless given, whatever is", false),
+    named("place", "place", "where the lowest point is to be", false),
+    any_number("target.x", "m", "laid over the place"),
+    any_number("target.y", "m", "laid over the place"),
+    any_number("target.z", "m", "laid over the place"),
+    any_number("target.yaw", "rad", "accepted and unused"),
+    number("hover_m", "m", 0.12, "above the place before and after"),
+    number("max_speed_m_s", "m/s", 0.25, "of the tool"),
+    number("lower_speed_m_s", "m/s", 0.10, "of the loaded tool going down"),
+    number("goal_tolerance_m", "m", 0.05, "farther beside the place it has failed"),
+    settle(0.5),
+};
+
+constexpr std::array kMoveDrawer = {
+    named("arm", "arm", "which arm"),
+    named("joint", "drawer", "the slider to move"),
+    number("effort_n", "n", 60.0, "squeezing force"),
+    number("clearance_m", "m", 0.005, "of each pad before it closes"),
+    number("standoff_m", "m", 0.20, "of the last, straight stretch"),
+    number("max_speed_m_s", "m/s", 0.25, "of the tool"),
+    number("approach_speed_m_s", "m/s", 0.15, "on the last stretch"),
+    number("pull_speed_m_s", "m/s", 0.15, "of the drawer"),
+    number("hold_s", "s", 0.1, "squeezing before the pull"),
+    number("stop_tolerance_m", "m", 0.02, "farther from its stop it has failed"),
+    settle(0.3),
+};
+
+constexpr std::array kPark = {
+    named("arm", "arm", "which arm"),
+    number("max_speed_m_s", "m/s", 0.25, "of the tool"),
+    settle(0.2),
+};
+
+constexpr std::array kMoveTorso = {
+    named("place", "place", "its z is the height above the lowest", false),
+    any_number("height_m", "m", "laid over the place"),
+    number("max_speed_m_s", "m/s", 0.05, "of the torso"),
+};
+
+constexpr std::array kOpenGripper = {
+    named("arm", "arm", "which arm"),
+    settle(0.5),
+};
+
+constexpr std::array kRegrip = {
+    named("arm", "arm", "which arm"),
+    number("effort_n", "n", 40.0, "squeezing force from now on"),
+    number("hold_s", "s", 0.3, "squeezing before the end"),
 };
 
 struct Entry {
@@ -60,11 +176,27 @@ struct Entry {
   ControllerFactory factory;
 };
 
+constexpr RobotKind kMobile = RobotKind::kMobile;
+
 constexpr std::array kTable = {
+    Entry{{"close-drawer", kMoveDrawer, "pushes a drawer shut by its handle", kMobile},
+          &make_close_drawer},
+    Entry{{"detect", kDetect, "looks for bodies of a kind where the camera points", kMobile},
+          &make_detect},
+    Entry{{"drive", kDrive, "drives straight to a pose and turns there", kMobile}, &make_drive},
     Entry{{"going", kGoing, "drives the base along x"}, &make_going},
+    Entry{{"look", kLook, "points the camera at a place", kMobile}, &make_look},
+    Entry{{"move-torso", kMoveTorso, "lifts or lowers the torso", kMobile}, &make_move_torso},
+    Entry{{"open-drawer", kMoveDrawer, "pulls a drawer open by its handle", kMobile},
+          &make_open_drawer},
+    Entry{{"open-gripper", kOpenGripper, "opens a gripper wide", kMobile}, &make_open_gripper},
+    Entry{{"park", kPark, "brings the tool to where it is carried", kMobile}, &make_park},
+    Entry{{"pick-up", kPickUp, "grasps a body by friction and lifts it", kMobile}, &make_pick_up},
     Entry{{"picking-up", kPickingUp, "grasps a body between the pads and lifts it"},
           &make_picking_up},
+    Entry{{"place", kPlace, "sets down what is held", kMobile}, &make_place},
     Entry{{"placing", kPlacing, "sets down what is held"}, &make_placing},
+    Entry{{"regrip", kRegrip, "squeezes what is held with another force", kMobile}, &make_regrip},
 };
 
 constexpr auto kSpecs = [] {
@@ -74,6 +206,12 @@ constexpr auto kSpecs = [] {
 }();
 
 }  // namespace
+
+bool is_name(const ArgumentSpec& argument) {
+  static constexpr std::array<std::string_view, 6> kNames = {"arm",  "body",      "drawer",
+                                                             "kind", "graspable", "place"};
+  return std::find(kNames.begin(), kNames.end(), argument.unit) != kNames.end();
+}
 
 std::span<const ControllerSpec> controllers() { return kSpecs; }
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "harness/world/controller.h"
+#include "harness/world/line_controller.h"
 
 namespace parallax::harness {
 namespace {
@@ -11,10 +11,10 @@ constexpr double kCarryTolerance_m = 0.005;
 constexpr Motion kRaise{0.15, 0.5, 0.001, 6.0};
 
 /// Drives the base so that robot.x becomes target.x.
-class Going final : public PhasedController {
+class Going final : public LineController {
  public:
   Going(const ControlContext& context, const Arguments& arguments)
-      : PhasedController(context),
+      : LineController(context),
         target_x_m_(arguments.number("target.x")),
         tolerance_m_(arguments.number("goal_tolerance_m")) {
     const double goal_m = base_goal();

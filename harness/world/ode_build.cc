@@ -38,12 +38,12 @@ Eigen::Vector3d centre_of_mass_B(const BodySpec& body) {
 dMass mass_in_link(const BodySpec& body, const BodyInLink& place) {
   dMass total;
   dMassSetZero(&total);
-  dMatrix3 R;
-  to_ode(place.R_LB, R);
   for (const BoxShape& shape : body.shapes) {
     dMass part;
     dMassSetBoxTotal(&part, body.mass_kg * shape.size_m.prod() / volume_m3(body), shape.size_m.x(),
                      shape.size_m.y(), shape.size_m.z());
+    dMatrix3 R;
+    to_ode(place.R_LB * rotation_z(shape.yaw_rad), R);
     dMassRotate(&part, R);
     const Eigen::Vector3d p_LS = place.p_LB + place.R_LB * shape.p_BS;
     dMassTranslate(&part, p_LS.x(), p_LS.y(), p_LS.z());
@@ -61,11 +61,17 @@ void OdeBuilder::build() {
   engine_.layout = lay_out(spec_);
   engine_.solver = spec_.solver;
   engine_.touches.resize(engine_.layout.bodies.size());
+  grippers_ = grippers(spec_);
+  if (!grippers_.empty()) {
+    const BodyId pad = *engine_.layout.find_body(grippers_.front().near_pad_body);
+    robot_assembly_ = engine_.layout.assembly_of[pad.index()];
+  }
   collect_friction();
   create_world();
   create_links();
   create_geoms();
   create_sliders();
+  create_gantries();
 }
 
 void OdeBuilder::collect_friction() {
@@ -113,8 +119,6 @@ void OdeBuilder::create_world() {
 
 void OdeBuilder::create_links() {
   const WorldLayout& layout = engine_.layout;
-  const auto pad = layout.find_body(spec_.robot.near_pad_body);
-  const std::uint32_t robot = pad ? layout.assembly_of[pad->index()] : 0;
   engine_.in_link.resize(layout.bodies.size());
   for (const Link& link : layout.links) {
     const BodySpec& first = layout.bodies[link.members.front()];
@@ -150,8 +154,10 @@ void OdeBuilder::create_links() {
     to_ode(R_LW.transpose(), R);
     dBodySetRotation(body, R);
     engine_.links.push_back(body);
-    engine_.never_sleeps.push_back(robot != 0 &&
-                                   layout.assembly_of[link.members.front().index()] == robot);
+    engine_.masses_kg.push_back(mass_kg);
+    engine_.never_sleeps.push_back(robot_assembly_ != 0 &&
+                                   layout.assembly_of[link.members.front().index()] ==
+                                       robot_assembly_);
   }
 }
 
@@ -159,16 +165,17 @@ GeomInfo OdeBuilder::info_for(BodyId id) const {
   const WorldLayout& layout = engine_.layout;
   const BodySpec& body = layout.bodies[id];
   GeomInfo info{id, layout.assembly_of[id.index()], material_index(body.material),
-                ContactRole::kWorld};
-  const auto pad = layout.find_body(spec_.robot.near_pad_body);
+                ContactRole::kWorld, 0};
   if (layout.is_free[id.index()]) {
     info.role = ContactRole::kFree;
-  } else if (body.name == spec_.robot.near_pad_body) {
-    info.role = ContactRole::kNearPad;
-  } else if (body.name == spec_.robot.far_pad_body) {
-    info.role = ContactRole::kFarPad;
-  } else if (pad && info.assembly != 0 && info.assembly == layout.assembly_of[pad->index()]) {
-    info.role = ContactRole::kOtherPart;
+  } else if (robot_assembly_ != 0 && info.assembly == robot_assembly_) {
+    info.role = ContactRole::kPart;
+  }
+  for (std::uint32_t gripper = 0; gripper < grippers_.size(); ++gripper) {
+    const bool near = body.name == grippers_[gripper].near_pad_body;
+    if (!near && body.name != grippers_[gripper].far_pad_body) continue;
+    info.role = near ? ContactRole::kNearPad : ContactRole::kFarPad;
+    info.gripper = gripper;
   }
   return info;
 }
@@ -203,7 +210,8 @@ void OdeBuilder::create_box(const BoxShape& shape, BodyId id, GeomInfo& info) {
                             shape.size_m.y(), shape.size_m.z());
   dGeomSetData(geom, &info);
   dMatrix3 R;
-  to_ode(place.R_LB, R);
+  const Eigen::Matrix3d R_LS = place.R_LB * rotation_z(shape.yaw_rad);
+  to_ode(R_LS, R);
   if (!link) {
     dGeomSetPosition(geom, p.x(), p.y(), p.z());
     dGeomSetRotation(geom, R);
@@ -211,17 +219,18 @@ void OdeBuilder::create_box(const BoxShape& shape, BodyId id, GeomInfo& info) {
   }
   dGeomSetBody(geom, engine_.links[link->index()]);
   // A geom with an offset costs a little more in each step.
-  if (p.isZero(0.0) && place.R_LB.isIdentity(0.0)) return;
+  if (p.isZero(0.0) && R_LS.isIdentity(0.0)) return;
   dGeomSetOffsetPosition(geom, p.x(), p.y(), p.z());
   dGeomSetOffsetRotation(geom, R);
 }
 
+dxBody* OdeBuilder::body_of(const std::string& name) const {
+  if (name.empty()) return nullptr;
+  const auto link = engine_.layout.link_of[engine_.layout.find_body(name)->index()];
+  return link ? engine_.links[link->index()] : nullptr;
+}
+
 void OdeBuilder::create_sliders() {
-  const auto body_of = [this](const std::string& name) -> dxBody* {
-    if (name.empty()) return nullptr;
-    const auto link = engine_.layout.link_of[engine_.layout.find_body(name)->index()];
-    return link ? engine_.links[link->index()] : nullptr;
-  };
   for (const JointSpec& spec : engine_.layout.sliders) {
     dxJoint* joint = dJointCreateSlider(engine_.world, nullptr);
     dJointAttach(joint, body_of(spec.child), body_of(spec.parent));
@@ -231,6 +240,53 @@ void OdeBuilder::create_sliders() {
     if (spec.high_m) dJointSetSliderParam(joint, dParamHiStop, *spec.high_m);
     engine_.sliders.push_back(joint);
   }
+}
+
+void OdeBuilder::create_gantries() {
+  for (const JointSpec& spec : engine_.layout.gantries) {
+    Gantry gantry;
+    gantry.child = body_of(spec.child);
+    gantry.parent = body_of(spec.parent);
+    gantry.child_id = *engine_.layout.find_body(spec.child);
+    const BodySpec& child = engine_.layout.bodies[gantry.child_id];
+    Eigen::Matrix3d R_PW = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d p_WP = Eigen::Vector3d::Zero();
+    gantry.start_yaw_rad = child.yaw_rad;
+    if (!spec.parent.empty()) {
+      gantry.parent_id = *engine_.layout.find_body(spec.parent);
+      const BodySpec& parent = engine_.layout.bodies[gantry.parent_id];
+      R_PW = rotation_z(-parent.yaw_rad);
+      p_WP = parent.p_WB;
+      gantry.start_yaw_rad -= parent.yaw_rad;
+    }
+    gantry.start_P = R_PW * (child.p_WB - p_WP);
+    gantry.linear = dJointCreateLMotor(engine_.world, nullptr);
+    dJointAttach(gantry.linear, gantry.child, gantry.parent);
+    dJointSetLMotorNumAxes(gantry.linear, 3);
+    gantry.angular = dJointCreateAMotor(engine_.world, nullptr);
+    dJointAttach(gantry.angular, gantry.child, gantry.parent);
+    dJointSetAMotorMode(gantry.angular, dAMotorUser);
+    dJointSetAMotorNumAxes(gantry.angular, 3);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d linear = R_PW.transpose().col(axis);
+      const Eigen::Vector3d angular = Eigen::Vector3d::Unit(axis);
+      dJointSetLMotorAxis(gantry.linear, axis, gantry.parent == nullptr ? 0 : 2, linear.x(),
+                          linear.y(), linear.z());
+      dJointSetAMotorAxis(gantry.angular, axis, 0, angular.x(), angular.y(), angular.z());
+    }
+    engine_.gantries.push_back(gantry);
+  }
+}
+
+void set_free_mass(OdeWorld::Engine& engine, BodyId id, double mass_kg) {
+  const std::optional<LinkId> link = engine.layout.link_of[id.index()];
+  BodySpec body = engine.layout.bodies[id];
+  body.mass_kg = mass_kg;
+  // From scratch each time, so that no rounding of earlier resets is left.
+  dMass mass = mass_in_link(body, engine.in_link[id.index()]);
+  std::fill_n(mass.c, 3, 0.0);
+  dBodySetMass(engine.links[link->index()], &mass);
+  engine.masses_kg[link->index()] = mass_kg;
 }
 
 }  // namespace parallax::harness

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -16,21 +17,32 @@ const GeomInfo& info_of(dGeomID geom) { return *static_cast<const GeomInfo*>(dGe
 
 bool moves(dBodyID body) { return body != nullptr && dBodyIsEnabled(body) != 0; }
 
-void note_touch(const GeomInfo& self, ContactRole other, std::vector<Touch>& touches) {
+/// A body at rest on something that begins to move gains less speed in a step than the threshold
+/// of sleep, and its time is up: it would fall asleep again in every step. So what moves keeps
+/// awake what it touches.
+void keep_awake(const SolverSpec& solver, dBodyID mover, dBodyID other) {
+  if (mover == nullptr || other == nullptr || dBodyIsEnabled(mover) == 0) return;
+  constexpr double kShareOfThreshold = 0.1;
+  const dReal* v = dBodyGetLinearVel(mover);
+  const double speed_m_s = std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]);
+  if (speed_m_s > kShareOfThreshold * solver.sleep_linear_m_s) dBodyEnable(other);
+}
+
+void note_touch(const GeomInfo& self, const GeomInfo& other, std::vector<Touch>& touches) {
   if (self.role != ContactRole::kFree) return;
   Touch& touch = touches[self.body->index()];
-  switch (other) {
+  switch (other.role) {
     case ContactRole::kWorld:
     case ContactRole::kFree:
       touch.support = true;
       break;
     case ContactRole::kNearPad:
-      touch.near_pad = true;
+      touch.near_pads |= 1U << other.gripper;
       break;
     case ContactRole::kFarPad:
-      touch.far_pad = true;
+      touch.far_pads |= 1U << other.gripper;
       break;
-    case ContactRole::kOtherPart:
+    case ContactRole::kPart:
       break;
   }
 }
@@ -44,6 +56,17 @@ int contact_points(dGeomID a, dGeomID b, std::int64_t limit,
                   &out[0].geom, sizeof(dContact));
 }
 
+void set_stiffness(const SolverSpec& solver, dSurfaceParameters& surface) {
+  if (solver.contact_erp) {
+    surface.mode |= dContactSoftERP;
+    surface.soft_erp = *solver.contact_erp;
+  }
+  if (solver.contact_cfm) {
+    surface.mode |= dContactSoftCFM;
+    surface.soft_cfm = *solver.contact_cfm;
+  }
+}
+
 void add_contacts(void* data, dGeomID a, dGeomID b) {
   auto& engine = *static_cast<OdeWorld::Engine*>(data);
   const dBodyID body_a = dGeomGetBody(a), body_b = dGeomGetBody(b);
@@ -52,6 +75,8 @@ void add_contacts(void* data, dGeomID a, dGeomID b) {
   const int count = contact_points(a, b, engine.solver.max_contacts_per_pair, contacts);
   if (count == 0) return;
 
+  keep_awake(engine.solver, body_a, body_b);
+  keep_awake(engine.solver, body_b, body_a);
   const GeomInfo& info_a = info_of(a);
   const GeomInfo& info_b = info_of(b);
   const double mu = engine.friction[info_a.material * engine.material_count + info_b.material];
@@ -60,13 +85,14 @@ void add_contacts(void* data, dGeomID a, dGeomID b) {
     surface = dSurfaceParameters{};
     surface.mode = dContactApprox1;
     surface.mu = mu;
+    set_stiffness(engine.solver, surface);
     dJointAttach(dJointCreateContact(engine.world, engine.contact_group,
                                      &contacts[static_cast<std::size_t>(i)]),
                  body_a, body_b);
   }
   engine.statistics.contacts += count;
-  note_touch(info_a, info_b.role, engine.touches);
-  note_touch(info_b, info_a.role, engine.touches);
+  note_touch(info_a, info_b, engine.touches);
+  note_touch(info_b, info_a, engine.touches);
 }
 
 struct OverlapSearch {

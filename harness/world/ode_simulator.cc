@@ -8,6 +8,7 @@
 #include "compiler/base/contract.h"
 #include "harness/world/arguments.h"
 #include "harness/world/controller.h"
+#include "harness/world/mobile_observation.h"
 #include "harness/world/ode_process.h"
 #include "harness/world/start_state.h"
 #include "harness/world/world_check.h"
@@ -39,13 +40,38 @@ struct OdeSimulator::Impl {
 
   explicit Impl(const WorldSpec& world_spec)
       : spec(checked(world_spec)), world(spec), grasp(spec, world) {
-    if (!spec.robot.base_body.empty()) robot.emplace(spec, world);
+    if (spec.mobile) {
+      mobile.emplace(spec, world);
+      perception.emplace(world, *mobile);
+    } else if (!spec.robot.base_body.empty()) {
+      line.emplace(spec, world);
+    }
+  }
+
+  bool can(const ControllerSpec& controller) const {
+    return controller.robot == RobotKind::kLine ? line.has_value() : mobile.has_value();
+  }
+  void reset_robot() {
+    grasp.reset();
+    if (line) line->reset();
+    if (mobile) mobile->reset();
+    if (perception) perception->reset();
+  }
+  void drive_motors() {
+    if (line) line->drive_motors();
+    if (mobile) mobile->drive_motors();
+  }
+  void brake_all() {
+    if (line) line->brake_all();
+    if (mobile) mobile->brake_all();
   }
 
   WorldSpec spec;
   OdeWorld world;
   GraspMonitor grasp;
-  std::optional<Robot> robot;
+  std::optional<Robot> line;
+  std::optional<MobileRobot> mobile;
+  std::optional<Perception> perception;
   Phase phase = Phase::kFresh;
   Watcher watcher = nullptr;
   void* watcher_context = nullptr;
@@ -70,8 +96,8 @@ SimulatorInfo OdeSimulator::info() {
   info.determinism = "bitwise";
   info.seeds = true;
   info.parameters = observables(impl_->spec);
-  if (impl_->robot) {
-    for (const ControllerSpec& spec : controllers()) info.actions.emplace_back(spec.name);
+  for (const ControllerSpec& spec : controllers()) {
+    if (impl_->can(spec)) info.actions.emplace_back(spec.name);
   }
   info.timestep_s = impl_->spec.solver.timestep_s;
   return info;
@@ -83,8 +109,7 @@ Outcome OdeSimulator::reset(const State& initial, std::uint64_t seed) {
   if (start.status != SimStatus::kOk) return {start.status, start.reason, 0.0, {}};
 
   const std::optional<Overlap> overlap = impl_->world.reset(start.placements, seed);
-  impl_->grasp.reset();
-  if (impl_->robot) impl_->robot->reset();
+  impl_->reset_robot();
   if (overlap) {
     return {SimStatus::kInvalidStart,
             fmt::format("`{}` overlaps `{}` by {:.1f} mm", overlap->first, overlap->second,
@@ -103,15 +128,21 @@ Outcome OdeSimulator::act(std::string_view action, const State& arguments,
     return {SimStatus::kLost, "the state of the world has exploded", 0.0, {}};
   }
   const ControllerSpec* spec = find_controller(action);
-  if (spec == nullptr || !impl_->robot) {
+  if (spec == nullptr || !impl_->can(*spec)) {
     return {SimStatus::kUnsupported, fmt::format("no action `{}`", action), 0.0, {}};
   }
-  const auto checked_arguments = Arguments::check(*spec, arguments, impl_->world.layout());
+  const auto checked_arguments =
+      Arguments::check(*spec, arguments, impl_->spec, impl_->world.layout());
   if (const auto* message = std::get_if<std::string>(&checked_arguments)) {
     return {SimStatus::kUnsupported, *message, 0.0, {}};
   }
   enter_ode();
-  const ControlContext context{*impl_->robot, impl_->grasp, impl_->world, impl_->spec.robot};
+  const ControlContext context{impl_->spec,
+                               impl_->world,
+                               impl_->grasp,
+                               impl_->line ? &*impl_->line : nullptr,
+                               impl_->mobile ? &*impl_->mobile : nullptr,
+                               impl_->perception ? &*impl_->perception : nullptr};
   const std::unique_ptr<Controller> controller =
       find_factory(action)(context, std::get<Arguments>(checked_arguments));
 
@@ -123,7 +154,7 @@ Outcome OdeSimulator::act(std::string_view action, const State& arguments,
       return *std::move(outcome);
     }
     if (!(static_cast<double>(steps) * timestep_s <= sim_time_limit_s)) break;
-    impl_->robot->drive_motors();
+    impl_->drive_motors();
     if (!impl_->world.step()) {
       impl_->phase = Impl::Phase::kLost;
       return {SimStatus::kLost, "the state of the world has exploded", time_s, {}};
@@ -132,7 +163,7 @@ Outcome OdeSimulator::act(std::string_view action, const State& arguments,
     time_s = static_cast<double>(steps) * timestep_s;
     if (impl_->watcher != nullptr) impl_->watcher(impl_->watcher_context, time_s, *this);
   }
-  impl_->robot->brake_all();  // takes effect in the next action
+  impl_->brake_all();  // takes effect in the next action
   return {SimStatus::kTruncated,
           fmt::format("`{}` took longer than {} s", action, sim_time_limit_s),
           time_s,
@@ -157,11 +188,14 @@ State OdeSimulator::state() const {
     state[prefix + "yaw"] = turn.yaw_rad;
     state[prefix + "held"] = impl_->grasp.held(id);
   }
-  if (impl_->robot) {
-    state["robot.x"] = impl_->robot->base_x_m();
-    state["tool.x"] = impl_->robot->tool().x();
-    state["tool.z"] = impl_->robot->tool().z();
-    state["opening"] = impl_->robot->opening_m();
+  if (impl_->line) {
+    state["robot.x"] = impl_->line->base_x_m();
+    state["tool.x"] = impl_->line->tool().x();
+    state["tool.z"] = impl_->line->tool().z();
+    state["opening"] = impl_->line->opening_m();
+  }
+  if (impl_->mobile) {
+    observe_mobile(impl_->world, *impl_->mobile, *impl_->perception, impl_->grasp, state);
   }
   state["digest"] = fmt::format("{:016x}", impl_->world.digest());
   return state;

@@ -2,6 +2,7 @@
 
 #include <ode/ode.h>
 
+#include <Eigen/Geometry>
 #include <bit>
 #include <chrono>
 #include <cmath>
@@ -124,11 +125,19 @@ std::optional<Overlap> OdeWorld::reset(std::span<const Placement> placements, st
                                  p_BL.z());
     place_at_rest(engine_->links[index], placement.p_WB + p_BL_W, placement.yaw_rad,
                   engine_->never_sleeps[index]);
+    if (engine_->layout.is_free[first.index()]) {
+      const double mass_kg = placement.mass_kg;
+      const double specified_kg = engine_->layout.bodies[first].mass_kg;
+      set_free_mass(*engine_, first, mass_kg > 0.0 ? mass_kg : specified_kg);
+    }
     ++index;
   }
   for (std::size_t i = 0; i < engine_->sliders.size(); ++i) {
     const SliderId id = engine_->layout.sliders.id_at(i);
     set_motor(id, 0.0, engine_->layout.sliders[id].max_force_n);
+  }
+  for (std::size_t i = 0; i < engine_->gantries.size(); ++i) {
+    set_gantry(engine_->layout.gantries.id_at(i), Eigen::Vector3d::Zero(), 0.0);
   }
   std::fill(engine_->touches.begin(), engine_->touches.end(), Touch{});
   seed_ode(seed);
@@ -171,6 +180,11 @@ void OdeWorld::set_motor(SliderId id, double velocity_m_s, double max_force_n) {
   }
 }
 
+double OdeWorld::mass_kg(BodyId id) const {
+  const std::optional<LinkId> link = engine_->layout.link_of[id.index()];
+  return link ? engine_->masses_kg[link->index()] : 0.0;
+}
+
 Eigen::Vector3d OdeWorld::position(BodyId id) const {
   const BodyInLink& place = engine_->in_link[id.index()];
   const std::optional<LinkId> link = engine_->layout.link_of[id.index()];
@@ -189,7 +203,8 @@ Eigen::Matrix3d OdeWorld::rotation(BodyId id) const {
 Bounds OdeWorld::bounds(BodyId id, const BoxShape& shape) const {
   const Eigen::Matrix3d R_WB = rotation(id);
   const Eigen::Vector3d centre = position(id) + R_WB * shape.p_BS;
-  const Eigen::Vector3d half = 0.5 * (R_WB.cwiseAbs() * shape.size_m);
+  const Eigen::Matrix3d R_WS = R_WB * Eigen::AngleAxisd(shape.yaw_rad, Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d half = 0.5 * (R_WS.cwiseAbs() * shape.size_m);
   return Bounds{centre - half, centre + half};
 }
 

@@ -17,12 +17,27 @@ namespace parallax::harness {
 struct Placement {
   Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();
   double yaw_rad = 0.0;
+  double mass_kg = 0.0;  // of a free body; 0: as specified
 };
 
 /// What touched a free body in the last step.
 struct Touch {
-  bool near_pad = false, far_pad = false;
-  bool support = false;  // anything that is not the robot
+  std::uint32_t near_pads = 0, far_pads = 0;  // bit g: a pad of gripper g
+  bool support = false;                       // anything that is not the robot
+  bool near_pad(std::uint32_t gripper = 0) const { return (near_pads >> gripper & 1U) != 0; }
+  bool far_pad(std::uint32_t gripper = 0) const { return (far_pads >> gripper & 1U) != 0; }
+};
+
+/// A box that need not be part of the world.
+struct Probe {
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d p_WS = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d R_WS = Eigen::Matrix3d::Identity();
+};
+
+struct RayHit {
+  std::string body;  // or "floor"
+  double distance_m = 0.0;
 };
 
 struct Overlap {
@@ -72,6 +87,22 @@ class OdeWorld {
   /// A velocity motor that gives at most `max_force_n`. Wakes the bodies that it moves.
   void set_motor(SliderId id, double velocity_m_s, double max_force_n);
 
+  /// Where the child of a gantry is, from its default place, in the frame of the parent [m].
+  Eigen::Vector3d gantry_position_m(GantryId id) const;
+  /// The child's turn about z against the parent, 0 at the default; within half a turn.
+  double gantry_yaw_rad(GantryId id) const;
+  /// Velocities in the parent's frame; the forces are those of the joint.
+  void set_gantry(GantryId id, const Eigen::Vector3d& velocity_m_s, double yaw_rate_rad_s);
+
+  /// The first body, or "floor", that the box overlaps by more than `tolerance_m`; the deepest of
+  /// its contacts counts. Bodies in `ignored` do not.
+  std::optional<Overlap> find_obstacle(const Probe& probe, const BodyMask& ignored,
+                                       double tolerance_m) const;
+  /// The nearest thing on the way from `from_W` to `to_W` that is not in `ignored`.
+  std::optional<RayHit> cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
+                                 const BodyMask& ignored) const;
+
+  double mass_kg(BodyId id) const;
   Eigen::Vector3d position(BodyId id) const;  // of the body's origin in the world [m]
   Eigen::Matrix3d rotation(BodyId id) const;  // R_WB (3 x 3)
   Bounds bounds(BodyId id) const;

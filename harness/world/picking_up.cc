@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "harness/world/controller.h"
+#include "harness/world/line_controller.h"
 
 namespace parallax::harness {
 namespace {
@@ -16,10 +16,10 @@ constexpr double kCloseAcceleration_m_s2 = 0.5;
 constexpr double kCloseGrace_s = 0.5;
 
 /// Raises, opens, moves the tool over the object, lowers, squeezes, lifts.
-class PickingUp final : public PhasedController {
+class PickingUp final : public LineController {
  public:
   PickingUp(const ControlContext& context, const Arguments& arguments)
-      : PhasedController(context), arguments_(arguments), object_(*arguments.body("object")) {
+      : LineController(context), arguments_(arguments), object_(*arguments.body("object")) {
     const Eigen::Vector3d p_TO = object_from_tool();
     const double reach_m = robot().position_m(Axis::kReach) + p_TO.x();
     const double beyond_m = robot().beyond_stops_m(Axis::kReach, reach_m);
@@ -65,7 +65,7 @@ class PickingUp final : public PhasedController {
         "raising", Axis::kLift, [] { return 0.0; }, free);
     add_move(
         "opening", Axis::kFinger,
-        [this] { return robot().finger_position_for(context().spec.opening_m); }, free);
+        [this] { return robot().finger_position_for(robot_spec().opening_m); }, free);
     add_move(
         "reaching", Axis::kReach,
         [this] { return robot().position_m(Axis::kReach) + object_from_tool().x(); }, over);
@@ -85,14 +85,14 @@ class PickingUp final : public PhasedController {
     robot().brake(Axis::kReach);
     const double given = arguments_.number("grip_force_n");
     const double speed = arguments_.number("close_speed_m_s");
-    robot().squeeze(std::isnan(given) ? context().spec.grip_force_n : given, speed,
+    robot().squeeze(std::isnan(given) ? robot_spec().grip_force_n : given, speed,
                     kCloseAcceleration_m_s2);
     return robot().opening_m() / speed + arguments_.number("hold_s") + kCloseGrace_s;
   }
 
   bool squeezed_long_enough() {
     const Touch& touch = context().world.touch(object_);
-    squeezed_steps_ = touch.near_pad && touch.far_pad ? squeezed_steps_ + 1 : 0;
+    squeezed_steps_ = touch.near_pad() && touch.far_pad() ? squeezed_steps_ + 1 : 0;
     return static_cast<double>(squeezed_steps_) * context().world.timestep_s() >=
            arguments_.number("hold_s");
   }

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "harness/world/controller.h"
+#include "harness/world/line_controller.h"
 
 namespace parallax::harness {
 namespace {
@@ -19,10 +19,10 @@ constexpr double kOvertravel_m = 0.003;
 constexpr int kSupportSteps = 5;  // of contact in a row before the load counts as supported
 
 /// Moves what is held over the target, lowers it until something supports it, lets go.
-class Placing final : public PhasedController {
+class Placing final : public LineController {
  public:
   Placing(const ControlContext& context, const Arguments& arguments)
-      : PhasedController(context), arguments_(arguments), object_(find_held()) {
+      : LineController(context), arguments_(arguments), object_(find_held()) {
     const Motion free{arguments_.number("max_speed_m_s"), kToolAcceleration_m_s2, kAxisTolerance_m,
                       kFreeApproachRate_hz};
     const auto carry_height = [] { return 0.0; };
@@ -87,7 +87,7 @@ class Placing final : public PhasedController {
         [this] { return robot().at_rest(Axis::kLift); });
     add_move(
         "opening", Axis::kFinger,
-        [this] { return robot().finger_position_for(context().spec.opening_m); }, opening);
+        [this] { return robot().finger_position_for(robot_spec().opening_m); }, opening);
     add_move(
         "raising", Axis::kLift, [] { return 0.0; }, free);
     add_pause("settling", arguments_.number("settle_s"));

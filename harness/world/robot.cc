@@ -36,7 +36,7 @@ Extent extent_along(const Eigen::Vector3d& axis, const Bounds& bounds) {
 }  // namespace
 
 Robot::Robot(const WorldSpec& spec, OdeWorld& world) : world_(world) {
-  const RobotSpec& roles = spec.robot;
+  const LineRobotSpec& roles = spec.robot;
   drive(Axis::kBase).slider = slider_named(world, roles.base_joint);
   drive(Axis::kReach).slider = slider_named(world, roles.reach_joint);
   drive(Axis::kLift).slider = slider_named(world, roles.lift_joint);

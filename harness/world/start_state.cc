@@ -18,16 +18,18 @@ bool can_set(const BodySpec& body, std::string_view item) {
   return std::find(body.settable.begin(), body.settable.end(), item) != body.settable.end();
 }
 
-void set_item(Placement& placement, std::string_view item, double value) {
+void set_item(Placement& placement, const BodySpec& body, std::string_view item, double value) {
   if (item == "x") placement.p_WB.x() = value;
   if (item == "y") placement.p_WB.y() = value;
   if (item == "z") placement.p_WB.z() = value;
   if (item == "yaw") placement.yaw_rad = value;
+  if (item == "bottom") placement.p_WB.z() = value - lowest_point_m(body);
+  if (item == "mass") placement.mass_kg = value;
 }
 
 /// Moves the whole assembly of the base along x. False when the drive does not go there.
-bool shift_robot(const WorldSpec& spec, const WorldLayout& layout, BodyId base, double x_m,
-                 std::vector<Placement>& placements) {
+bool shift_line_robot(const WorldSpec& spec, const WorldLayout& layout, BodyId base, double x_m,
+                      std::vector<Placement>& placements) {
   const double shift_m = x_m - layout.bodies[base].p_WB.x();
   if (const auto drive = layout.find_slider(spec.robot.base_joint)) {
     const JointSpec& joint = layout.sliders[*drive];
@@ -41,14 +43,42 @@ bool shift_robot(const WorldSpec& spec, const WorldLayout& layout, BodyId base, 
   return true;
 }
 
+/// Puts the base at `target` and everything that hangs on it where it belongs beside it.
+void move_mobile_robot(const WorldLayout& layout, BodyId base, const Placement& target,
+                       std::vector<Placement>& placements) {
+  const Placement before = placements[base.index()];
+  const double turn = target.yaw_rad - before.yaw_rad;
+  const double c = std::cos(turn), s = std::sin(turn);
+  const std::uint32_t assembly = layout.assembly_of[base.index()];
+  for (std::size_t i = 0; i < placements.size(); ++i) {
+    if (layout.assembly_of[i] != assembly) continue;
+    const Eigen::Vector3d d = placements[i].p_WB - before.p_WB;
+    placements[i].p_WB =
+        target.p_WB + Eigen::Vector3d(c * d.x() - s * d.y(), s * d.x() + c * d.y(), d.z());
+    placements[i].yaw_rad += turn;
+  }
+}
+
 }  // namespace
+
+double lowest_point_m(const BodySpec& body) {
+  double lowest_m = 0.0;
+  bool first = true;
+  for (const BoxShape& shape : body.shapes) {
+    const double low_m = shape.p_BS.z() - 0.5 * shape.size_m.z();
+    if (first || low_m < lowest_m) lowest_m = low_m;
+    first = false;
+  }
+  return lowest_m;
+}
 
 StartState read_start_state(const WorldSpec& spec, const WorldLayout& layout, const State& given) {
   StartState start;
   for (const BodySpec& body : layout.bodies) {
-    start.placements.push_back({body.p_WB, body.yaw_rad});
+    start.placements.push_back({body.p_WB, body.yaw_rad, 0.0});
   }
-  const std::optional<BodyId> base = layout.find_body(spec.robot.base_body);
+  const std::optional<BodyId> base = layout.find_body(base_body(spec));
+  Placement robot = base ? start.placements[base->index()] : Placement{};
   for (const auto& [name, value] : given) {
     const std::optional<double> number = as_number(value);
     if (!number || !std::isfinite(*number)) {
@@ -59,7 +89,10 @@ StartState read_start_state(const WorldSpec& spec, const WorldLayout& layout, co
     const std::string_view item = dot == std::string::npos ? "" : whole.substr(dot + 1);
     const std::string_view owner = whole.substr(0, dot == std::string::npos ? 0 : dot);
     if (owner == "robot" && base && can_set(layout.bodies[*base], item)) {
-      if (shift_robot(spec, layout, *base, *number, start.placements)) continue;
+      set_item(robot, layout.bodies[*base], item, *number);
+      if (spec.mobile || shift_line_robot(spec, layout, *base, *number, start.placements)) {
+        continue;
+      }
       return refusal(SimStatus::kInvalidStart,
                      fmt::format("robot.x = {} lies beyond the end of the drive", *number));
     }
@@ -67,8 +100,12 @@ StartState read_start_state(const WorldSpec& spec, const WorldLayout& layout, co
     if (!body || !layout.is_free[body->index()] || !can_set(layout.bodies[*body], item)) {
       return refusal(SimStatus::kUnsupported, fmt::format("`{}` cannot be set", name));
     }
-    set_item(start.placements[body->index()], item, *number);
+    if (item == "mass" && *number <= 0.0) {
+      return refusal(SimStatus::kInvalidStart, fmt::format("{} = {} is no mass", name, *number));
+    }
+    set_item(start.placements[body->index()], layout.bodies[*body], item, *number);
   }
+  if (spec.mobile && base) move_mobile_robot(layout, *base, robot, start.placements);
   return start;
 }
 

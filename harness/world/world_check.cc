@@ -10,12 +10,14 @@
 #include <utility>
 
 #include "compiler/base/suggest.h"
+#include "harness/world/mobile_check.h"
+#include "harness/world/mobile_observation.h"
 #include "harness/world/world_layout.h"
 
 namespace parallax::harness {
 namespace {
 
-const std::array<std::string, 4> kSettable = {"x", "y", "yaw", "z"};
+const std::array<std::string, 6> kSettable = {"bottom", "mass", "x", "y", "yaw", "z"};
 
 class WorldChecker {
  public:
@@ -33,6 +35,8 @@ class WorldChecker {
     check_unique("joints", joint_names_);
     check_children();
     if (problems_.empty() && has_robot()) check_robot();
+    if (problems_.empty()) check_mobile(spec_, problems_);
+    if (problems_.empty()) check_geometry(spec_, problems_);
     return std::move(problems_);
   }
 
@@ -119,7 +123,7 @@ class WorldChecker {
   }
 
   bool is_base(const BodySpec& body) const {
-    return !spec_.robot.base_body.empty() && body.name == spec_.robot.base_body;
+    return body.name == base_body(spec_) && !body.name.empty();
   }
 
   bool is_jointed(const BodySpec& body) const {
@@ -132,10 +136,14 @@ class WorldChecker {
     const std::string path = "bodies/" + body.name + "/settable";
     for (const std::string& item : body.settable) {
       if (std::find(kSettable.begin(), kSettable.end(), item) == kSettable.end()) {
-        add(path, "`" + item + "` is none of x, y, z, yaw",
+        add(path, "`" + item + "` is none of x, y, z, yaw, bottom, mass",
             base::nearest_name(item, kSettable, 1).value_or(""));
       } else if (is_base(body)) {
-        if (item != "x") add(path, "the robot's base takes x only, not `" + item + "`");
+        const bool planar = spec_.mobile && (item == "y" || item == "yaw");
+        if (item != "x" && !planar) {
+          add(path, fmt::format("the robot's base takes {} only, not `{}`",
+                                spec_.mobile ? "x, y and yaw" : "x", item));
+        }
       } else if (body.mass_kg == 0.0 || is_jointed(body)) {
         add(path, "only free bodies and the robot's base can be placed at reset");
         return;
@@ -150,6 +158,11 @@ class WorldChecker {
     if (joint.parent == joint.child) add(path + "/child", "is the parent itself");
     require_not_negative(path + "/max_force_n", joint.max_force_n);
     if (joint.type == JointType::kFixed) return;
+    if (joint.type == JointType::kGantry) {
+      require_positive(path + "/max_force_n", joint.max_force_n);
+      require_positive(path + "/max_torque_nm", joint.max_torque_nm);
+      return;
+    }
     if (!joint.axis_W.allFinite() || joint.axis_W.norm() < 1e-9) {
       add(path + "/axis_W", "has no direction");
     }
@@ -176,7 +189,7 @@ class WorldChecker {
   }
 
   bool has_robot() const {
-    const RobotSpec& r = spec_.robot;
+    const LineRobotSpec& r = spec_.robot;
     return !(r.base_joint.empty() && r.base_body.empty() && r.reach_joint.empty() &&
              r.lift_joint.empty() && r.finger_joint.empty() && r.near_pad_body.empty() &&
              r.far_pad_body.empty());
@@ -197,7 +210,7 @@ class WorldChecker {
   }
 
   void check_robot() {
-    const RobotSpec& robot = spec_.robot;
+    const LineRobotSpec& robot = spec_.robot;
     const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ();
     check_axis("base_joint", robot.base_joint, &x);
     check_axis("reach_joint", robot.reach_joint, &x);
@@ -254,7 +267,10 @@ std::vector<Parameter> observables(const WorldSpec& spec) {
       all.push_back({body.name + "." + item, "rad", can_set(body, item)});
     }
   }
-  if (const auto base = layout.find_body(spec.robot.base_body)) {
+  if (spec.mobile) {
+    const auto more = mobile_parameters(spec, layout);
+    all.insert(all.end(), more.begin(), more.end());
+  } else if (const auto base = layout.find_body(spec.robot.base_body)) {
     all.push_back({"robot.x", "m", can_set(layout.bodies[*base], "x")});
     for (const char* name : {"tool.x", "tool.z", "opening"}) all.push_back({name, "m", false});
   }

@@ -12,9 +12,11 @@ namespace parallax::harness {
 
 struct BodyTag {};
 struct SliderTag {};
+struct GantryTag {};
 struct LinkTag {};
 using BodyId = base::Id<BodyTag>;      // in WorldLayout::bodies
 using SliderId = base::Id<SliderTag>;  // in WorldLayout::sliders
+using GantryId = base::Id<GantryTag>;  // in WorldLayout::gantries
 using LinkId = base::Id<LinkTag>;      // in WorldLayout::links
 
 /// Bodies that are welded together and move as one.
@@ -26,6 +28,7 @@ struct Link {
 struct WorldLayout {
   base::Store<BodyId, BodySpec> bodies;        // sorted by name
   base::Store<SliderId, JointSpec> sliders;    // sorted by name
+  base::Store<GantryId, JointSpec> gantries;   // sorted by name
   base::Store<LinkId, Link> links;             // sorted by the name of their first member
   std::vector<std::optional<LinkId>> link_of;  // by body; none: static
   /// By body. Bodies of one assembly hang together by joints and never collide with each other;
@@ -35,7 +38,11 @@ struct WorldLayout {
 
   std::optional<BodyId> find_body(std::string_view name) const;
   std::optional<SliderId> find_slider(std::string_view name) const;
+  std::optional<GantryId> find_gantry(std::string_view name) const;
 };
+
+/// By BodyId.
+using BodyMask = std::vector<bool>;
 
 /// `spec` must pass check_world.
 WorldLayout lay_out(const WorldSpec& spec);

@@ -8,12 +8,26 @@
 #include <utility>
 #include <vector>
 
+#include "harness/world/robot_spec.h"
+
 namespace parallax::harness {
 
-/// One box of a body, axis-aligned in the body's frame B.
+/// One box of a body, turned about the z axis of the body's frame B.
 struct BoxShape {
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_BS = Eigen::Vector3d::Zero();  // centre of the shape in B [m]
+  double yaw_rad = 0.0;
+};
+
+/// How a gripper takes hold of a body.
+struct GraspSpec {
+  Eigen::Vector3d p_BG = Eigen::Vector3d::Zero();  // middle of the pads from the body's origin [m]
+  /// Offset and wrist turn with the body's heading, or with the robot's.
+  bool follows_body = true;
+  double wrist_rad = 0.0;   // of the pads' line against the frame above; 0: pads squeeze along y
+  bool from_above = false;  // else level, along the robot's heading
+  double width_m = 0.05;    // of the part that the pads close on
+  double effort_n = 20.0;   // squeezing force
 };
 
 /// Boxes that move as one. A body that no joint names is free; the floor is built in and called
@@ -27,13 +41,26 @@ struct BodySpec {
   double yaw_rad = 0.0;
   bool gravity = true;
   bool collides = true;
-  /// Which of x, y, z, yaw a scenario may set at reset; the others keep their default. The
-  /// robot's base body takes x only, and carries the whole robot along.
+  /// Which of x, y, z, yaw, bottom, mass a scenario may set at reset; the others keep their
+  /// default. The robot's base body takes x (and, of a mobile robot, y and yaw) and carries the
+  /// whole robot along.
   std::vector<std::string> settable;
+  std::string kind;  // what a camera recognises it as; empty: its name
+  std::optional<GraspSpec> grasp;
 };
 
-/// kFixed welds two bodies into one rigid body, so it neither bends nor costs time.
-enum class JointType : std::uint8_t { kSlider, kFixed };
+/// kFixed welds two bodies into one rigid body, so it neither bends nor costs time. kGantry
+/// carries the child along x, y and z of the parent and turns it about z, upright at all times;
+/// with the world as parent its height is that of the floor relief, whatever the load.
+enum class JointType : std::uint8_t { kSlider, kFixed, kGantry };
+
+/// Where a gripper takes hold of the child of a slider to move it.
+struct HandleSpec {
+  Eigen::Vector3d p_CH = Eigen::Vector3d::Zero();  // middle of the grip in the child's frame [m]
+  Eigen::Vector3d approach = Eigen::Vector3d::UnitX();  // last stretch of the tool's way, world
+  double wrist_rad = 0.0;                               // of the pads' line, world
+  double width_m = 0.016;
+};
 
 /// Position 0 is the default placement; positive moves the child along axis_W.
 struct JointSpec {
@@ -43,7 +70,9 @@ struct JointSpec {
   std::string child;
   Eigen::Vector3d axis_W = Eigen::Vector3d::UnitX();  // at the default placement
   std::optional<double> low_m, high_m;                // stops
-  double max_force_n = 0.0;                           // motor; 0 leaves the joint free
+  double max_force_n = 0.0;     // motor, or dry friction where nothing drives it; 0: free
+  double max_torque_nm = 50.0;  // of a gantry about z
+  std::optional<HandleSpec> handle;
 };
 
 /// Coulomb friction by pair of materials; the key is sorted ("box", "pad").
@@ -52,23 +81,12 @@ struct FrictionSpec {
   std::map<std::pair<std::string, std::string>, double> pairs;
 };
 
-/// Roles that the controllers need, by joint and body name. All empty: a world without a robot.
-struct RobotSpec {
-  std::string base_joint;    // drives along x
-  std::string base_body;     // what "robot.x" reports
-  std::string reach_joint;   // moves the tool along x relative to the base
-  std::string lift_joint;    // moves the tool along z; position 0 is the carry height
-  std::string finger_joint;  // the driven pad
-  std::string near_pad_body, far_pad_body;
-  double grip_force_n = 20.0;
-  double opening_m = 0.09;  // between the pads' inner faces when open
-};
-
 struct SolverSpec {
   double timestep_s = 0.002;
   double gravity_m_s2 = -9.81;
   double erp = 0.2;
   double cfm = 1e-5;
+  std::optional<double> contact_erp, contact_cfm;  // of contacts, where they differ
   double surface_layer_m = 0.001;
   double max_correcting_velocity_m_s = 1.0;
   double start_penetration_m = 0.002;  // deeper at reset: invalid start
@@ -77,6 +95,19 @@ struct SolverSpec {
   double sleep_linear_m_s = 0.01;
   double sleep_angular_rad_s = 0.02;
   double sleep_after_s = 0.3;
+  // A body is held when both pads of a gripper have touched it for so long, and its lowest point
+  // was so far above everything below it.
+  double held_after_s = 0.2;
+  double held_clearance_m = 0.010;
+};
+
+/// A point with a heading that actions can name: in the world, or in the frame of a body that
+/// moves ("the middle of the upper drawer").
+struct PlaceSpec {
+  std::string name;
+  std::string frame;  // body, or empty for the world
+  Eigen::Vector3d p_FP = Eigen::Vector3d::Zero();
+  double yaw_rad = 0.0;
 };
 
 /// Everything the engine needs; pure data, read from the scenario's `world` section.
@@ -86,7 +117,18 @@ struct WorldSpec {
   std::string floor_material = "floor";
   std::vector<BodySpec> bodies;  // any order: the engine creates them sorted by name
   std::vector<JointSpec> joints;
-  RobotSpec robot;
+  std::vector<PlaceSpec> places;  // sorted by name
+  LineRobotSpec robot;
+  std::optional<MobileRobotSpec> mobile;  // then `robot` is empty
 };
+
+/// The pads of all grippers: one of a line robot, one for each arm of a mobile one.
+struct GripperSpec {
+  std::string near_pad_body, far_pad_body;
+};
+std::vector<GripperSpec> grippers(const WorldSpec& spec);
+
+/// The body that "robot" stands for; empty without a robot.
+std::string base_body(const WorldSpec& spec);
 
 }  // namespace parallax::harness

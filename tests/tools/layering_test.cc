@@ -108,6 +108,7 @@ const std::map<std::string, std::vector<std::string>>& allowed() {
        {"compiler/base", "harness/region", "harness/world", "harness/confidence",
         "harness/sampling"}},
       {"harness/campaign", harness},
+      {"harness/draw", {"compiler/base", "harness/region", "harness/world"}},
       {"harness/report", harness},
   };
   return table;

@@ -84,6 +84,8 @@ Command add_traces_command(CLI::App& app);
 Command add_verify_command(CLI::App& app);
 Command add_diagnostics_command(CLI::App& app);
 Command add_fmt_command(CLI::App& app);
+Command add_rates_command(CLI::App& app);
+Command add_draw_command(CLI::App& app);
 Command add_worker_command(CLI::App& app);
 
 /// {"status": "error", "diagnostics": [...]} and a newline.

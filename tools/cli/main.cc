@@ -94,7 +94,8 @@ int run(int argc, char** argv) {
       add_run_command(app),    add_replay_command(app),      add_suite_command(app),
       add_check_command(app),  add_traces_command(app),      add_compile_command(app),
       add_verify_command(app), add_diagnostics_command(app), add_explain_command(app),
-      add_fmt_command(app),    add_diff_command(app),        add_worker_command(app)};
+      add_fmt_command(app),    add_diff_command(app),        add_worker_command(app),
+      add_rates_command(app),  add_draw_command(app)};
   for (auto& command : commands) add_common_options(*command.app, options);
   try {
     app.parse(argc, argv);

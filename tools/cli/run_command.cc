@@ -24,6 +24,7 @@ struct RunOptions {
   bool resume = false;
   bool keep_going = false;
   std::string criterion;
+  std::string match;
   double confidence = 0.0;  // 0: as the scenario says
   double epsilon = 0.0;
   std::int64_t max_runs = 0;
@@ -34,6 +35,7 @@ void apply(const RunOptions& options, harness::Scenario& scenario) {
   auto& criterion = scenario.criterion;
   if (options.criterion == "paper") criterion.kind = harness::CriterionKind::kPaper;
   if (options.criterion == "clean-runs") criterion.kind = harness::CriterionKind::kCleanRuns;
+  if (!options.match.empty()) scenario.match_model = options.match == "model";
   if (options.confidence > 0) criterion.confidence_level = options.confidence;
   if (options.epsilon > 0) criterion.epsilon = options.epsilon;
   if (options.max_runs > 0) scenario.limits.max_runs = options.max_runs;
@@ -131,6 +133,10 @@ Command add_run_command(CLI::App& app) {
                     "Go on with the next trace after a discrepancy");
   command->add_option("--criterion", options->criterion, "When a trace has been tried enough")
       ->check(CLI::IsMember({"clean-runs", "paper"}));
+  command
+      ->add_option("--match", options->match,
+                   "What an end state is held against: the trace, or all ends the model admits")
+      ->check(CLI::IsMember({"trace", "model"}));
   command->add_option("--confidence", options->confidence, "Confidence level C of the claim")
       ->check(finite_range(0.5, 0.999999));
   command->add_option("--epsilon", options->epsilon, "Discrepancy probability to exclude")

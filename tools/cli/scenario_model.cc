@@ -15,19 +15,21 @@ namespace {
 /// The plan's poses are located with the regions that the simulation is mapped with.
 class RegionLocator final : public compiler::PoseLocator {
  public:
-  explicit RegionLocator(const harness::RegionSet& regions) : regions_(&regions) {}
+  explicit RegionLocator(const harness::RegionMap& regions) : regions_(&regions) {}
 
-  std::optional<std::string> region_of(std::string_view,
+  std::optional<std::string> region_of(std::string_view function,
                                        const compiler::Pose& pose) const override {
-    const auto* region = regions_->locate(point(pose));
+    const auto* region = regions_->locate(function, point(pose));
     if (region == nullptr) return std::nullopt;
     return region->name;
   }
 
-  std::optional<Nearest> nearest(std::string_view, const compiler::Pose& pose) const override {
+  std::optional<Nearest> nearest(std::string_view function,
+                                  const compiler::Pose& pose) const override {
     std::optional<Nearest> best;
     const auto at = point(pose);
     for (const auto& region : regions_->regions()) {
+      if (!region.frame.empty() || !regions_->answers(function, region)) continue;
       double squared_m2 = 0.0;
       for (const auto axis : {harness::Axis::kX, harness::Axis::kY, harness::Axis::kZ}) {
         const auto& bound = region.on(axis);
@@ -43,10 +45,11 @@ class RegionLocator final : public compiler::PoseLocator {
   }
 
  private:
-  static std::array<double, 4> point(const compiler::Pose& pose) {
-    return {pose.x_m, pose.y_m, pose.z_m, compiler::yaw_rad(pose)};
+  /// A place is a point that something lies at: its height is that of the lowest point.
+  static harness::Point point(const compiler::Pose& pose) {
+    return {pose.x_m, pose.y_m, pose.z_m, compiler::yaw_rad(pose), pose.z_m};
   }
-  const harness::RegionSet* regions_;
+  const harness::RegionMap* regions_;
 };
 
 /// Where a formula of the scenario can be parsed: in the file itself if it stands there word for
@@ -138,7 +141,7 @@ base::Status add_plan(const ModelOptions& options, std::optional<harness::Scenar
                       std::optional<RegionLocator>& locator, compiler::CompileInput& input,
                       Invocation& invocation) {
   auto& sink = invocation.sink();
-  static const harness::RegionSet kNowhere;
+  static const harness::RegionMap kNowhere{harness::RegionSet()};
   if (!options.regions.empty()) {
     auto scenario = harness::load_scenario(options.regions, invocation.files(), sink);
     if (!scenario) return sink.already_reported();

@@ -45,7 +45,7 @@ RegionSet set_of(std::vector<Region> regions, bool gaps_allowed = false) {
   return *set;
 }
 
-std::string located(const RegionSet& set, std::array<double, 4> point) {
+std::string located(const RegionSet& set, Point point) {
   const Region* region = set.locate(point);
   return region == nullptr ? "-" : region->name;
 }
@@ -87,7 +87,7 @@ std::vector<Region> random_tiling(const CounterRng& rng, std::size_t axes, std::
 
 /// Independent oracle: the only region with the point in its interior once it was moved upwards on
 /// every axis (downwards at the top of the whole cuboid) by less than any region's width.
-std::string owner_by_nudging(const std::vector<Region>& regions, std::array<double, 4> point,
+std::string owner_by_nudging(const std::vector<Region>& regions, Point point,
                              std::size_t axes) {
   for (std::size_t a = 0; a < axes; ++a) point[a] += point[a] == 2.25 ? -1e-9 : 1e-9;
   std::string owner = "-";
@@ -140,7 +140,7 @@ TEST_CASE("regions: every point of a random tiling, borders too, belongs to exac
     const auto set = set_of(regions);
     for (std::uint64_t k = 0; k < 400; ++k) {
       // Half of the coordinates lie on some region's border.
-      std::array<double, 4> point{};
+      Point point{};
       for (std::size_t a = 0; a < axes; ++a) {
         const auto base = 1000 + 16 * k + 4 * a;
         const auto& bound = *regions[rng.bits(base) % regions.size()].bounds[a];

@@ -20,8 +20,15 @@ BoxShape box(double x_m, double y_m, double z_m, Eigen::Vector3d p_BS = Eigen::V
 
 JointSpec slider(std::string name, std::string parent, std::string child, Eigen::Vector3d axis_W,
                  double low_m, double high_m, double max_force_n) {
-  return {std::move(name), JointType::kSlider, std::move(parent), std::move(child), axis_W, low_m,
-          high_m,          max_force_n};
+  JointSpec spec;
+  spec.name = std::move(name);
+  spec.parent = std::move(parent);
+  spec.child = std::move(child);
+  spec.axis_W = axis_W;
+  spec.low_m = low_m;
+  spec.high_m = high_m;
+  spec.max_force_n = max_force_n;
+  return spec;
 }
 
 void add_robot(WorldSpec& spec) {

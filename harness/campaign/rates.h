@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/campaign/campaign.h"
+
+namespace parallax::harness {
+
+/// How often one cause was the first to lead a simulation away from its trace for good.
+struct CauseRate {
+  std::string cause;  // "Go(bTable): navigation-pose-unreachable"
+  std::int64_t count = 0;
+  double rate = 0.0, lower = 0.0, upper = 0.0;  // Clopper and Pearson 1934
+  std::int64_t example = 0;                     // number of the first such sample
+  std::string reason;                           // what that one said
+};
+
+struct TraceRates {
+  std::int64_t number = 0;
+  std::string trace;  // its events
+  std::int64_t runs = 0;
+  std::int64_t lost = 0;
+  std::int64_t rejected = 0;      // invalid starts that were drawn again
+  CauseRate any;                  // any discrepancy at all
+  std::vector<CauseRate> causes;  // most frequent first
+};
+
+struct RatesOptions {
+  std::uint64_t seed = 1;
+  std::int64_t jobs = 1;
+  std::int64_t runs = 300;   // of each trace
+  std::int64_t trace = 0;    // 0: all of them
+  double confidence = 0.95;  // of each interval
+  const std::atomic<bool>* stop = nullptr;
+};
+
+struct RatesResult {
+  std::string scenario;
+  std::uint64_t seed = 0;
+  double confidence = 0.0;
+  bool complete = true;  // false: stopped
+  std::vector<TraceRates> traces;
+};
+
+/// Simulates each trace `runs` times from uniform starts, whatever comes out, and counts what a
+/// campaign would call a discrepancy by its cause. Reports as run_campaign does.
+base::Result<RatesResult> estimate_rates(const Scenario& scenario, TraceFeed& traces,
+                                         const SimulatorFactory& make_simulator,
+                                         const RatesOptions& options, base::DiagnosticSink& sink);
+
+}  // namespace parallax::harness

@@ -1,0 +1,37 @@
+#include "harness/campaign/recorded_run.h"
+
+#include <fmt/format.h>
+
+#include "compiler/base/diagnostic_codes.h"
+
+namespace parallax::harness {
+
+std::optional<SampleId> default_sample(const JournalText& journal) {
+  std::optional<SampleId> first;
+  for (const auto& [key, record] : journal.samples) {
+    if (record.status != SampleStatus::kOk) continue;
+    if (record.phase == Phase::kConfirm) return SampleId{record.trace, record.sample};
+    if (!first) first = SampleId{record.trace, record.sample};
+  }
+  return first;
+}
+
+base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir,
+                                            std::optional<SampleId> id, base::SourceFiles& files,
+                                            base::DiagnosticSink& sink) {
+  using base::DiagnosticCode;
+  const auto journal = read_journal(run_dir, files, sink);
+  if (!journal) return sink.already_reported();
+  if (!journal->header) return sink.error_about(DiagnosticCode::kNoJournal, run_dir.string());
+  if (!id) id = default_sample(*journal);
+  const auto found =
+      id ? journal->samples.find({id->trace, id->sample, Phase::kCertify}) : journal->samples.end();
+  if (found == journal->samples.end()) {
+    const auto name = id ? fmt::format("{}.{}", id->trace, id->sample) : std::string("at all");
+    return sink.error_about(DiagnosticCode::kNoSuchSample, run_dir.string(), name);
+  }
+  const auto& trace = journal->traces.at(found->second.trace);
+  return RecordedRun{found->second, trace.calls, trace.events};
+}
+
+}  // namespace parallax::harness

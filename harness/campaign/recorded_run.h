@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "harness/campaign/journal.h"
+#include "harness/campaign/replay.h"
+
+namespace parallax::harness {
+
+/// One recorded simulation with what was asked of the simulator.
+struct RecordedRun {
+  SampleRecord record;
+  std::vector<ActionCall> calls;    // per event
+  std::vector<std::string> events;  // as the trace has them
+};
+
+/// The first discrepancy of a run (a repetition in the journal marks it), else its first sample.
+std::optional<SampleId> default_sample(const JournalText& journal);
+
+/// Reads it from the journal of a run folder. Without `id`: the first discrepancy, else the first
+/// sample. Reports what replay_sample reports.
+base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir,
+                                            std::optional<SampleId> id, base::SourceFiles& files,
+                                            base::DiagnosticSink& sink);
+
+}  // namespace parallax::harness

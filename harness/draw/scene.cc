@@ -1,0 +1,43 @@
+#include "harness/draw/scene.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace parallax::harness {
+namespace {
+
+SceneKind kind_of(const WorldLayout& layout, const WorldSpec& spec, BodyId id) {
+  if (!layout.link_of[id.index()]) return SceneKind::kFurniture;
+  if (layout.is_free[id.index()]) return SceneKind::kItem;
+  const auto base = layout.find_body(base_body(spec));
+  if (!base || layout.assembly_of[id.index()] != layout.assembly_of[base->index()]) {
+    return SceneKind::kDrawer;
+  }
+  const std::string& name = layout.bodies[id].name;
+  const auto all = grippers(spec);
+  const bool pad = std::any_of(all.begin(), all.end(), [&](const GripperSpec& gripper) {
+    return gripper.near_pad_body == name || gripper.far_pad_body == name;
+  });
+  return pad ? SceneKind::kGripper : SceneKind::kRobot;
+}
+
+}  // namespace
+
+Scene scene_of(const OdeWorld& world, const WorldSpec& spec) {
+  Scene scene;
+  const WorldLayout& layout = world.layout();
+  for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
+    const BodyId id = layout.bodies.id_at(i);
+    const Eigen::Matrix3d R_WB = world.rotation(id);
+    for (const BoxShape& shape : layout.bodies[id].shapes) {
+      const Eigen::Matrix3d R_WS =
+          R_WB * Eigen::AngleAxisd(shape.yaw_rad, Eigen::Vector3d::UnitZ());
+      scene.boxes.push_back({layout.bodies[id].name,
+                             kind_of(layout, spec, id),
+                             {shape.size_m, world.position(id) + R_WB * shape.p_BS, R_WS}});
+    }
+  }
+  return scene;
+}
+
+}  // namespace parallax::harness

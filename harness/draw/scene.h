@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/world/ode_world.h"
+
+namespace parallax::harness {
+
+/// Decides the colour. kDrawer: carried by a joint of the furniture.
+enum class SceneKind : std::uint8_t { kFurniture, kDrawer, kRobot, kGripper, kItem };
+
+struct SceneBox {
+  std::string body;
+  SceneKind kind = SceneKind::kFurniture;
+  Probe box;
+};
+
+/// A world as it stands, box by box.
+struct Scene {
+  std::vector<SceneBox> boxes;  // in order of the bodies' names
+};
+
+Scene scene_of(const OdeWorld& world, const WorldSpec& spec);
+
+}  // namespace parallax::harness

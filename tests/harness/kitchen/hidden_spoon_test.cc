@@ -1,0 +1,72 @@
+#include <doctest/doctest.h>
+
+#include "tests/harness/kitchen/kitchen_world.h"
+
+namespace parallax::harness {
+namespace {
+
+/// The spoon in the middle drawer at (x, y) of the drawer's frame, seen and taken from a stance.
+struct Attempt {
+  bool seen = false, taken = false;
+  std::string reason;
+};
+
+Attempt fetch(const WorldSpec& spec, double robot_x_m, double robot_y_m, double x_d_m,
+              double y_d_m) {
+  Kitchen kitchen(spec);
+  kitchen.start({{"robot.x", robot_x_m},
+                 {"robot.y", robot_y_m},
+                 {"spoon1.x", 1.54 + x_d_m},
+                 {"spoon1.y", 0.90 + y_d_m},
+                 {"spoon1.bottom", 0.53}});
+  REQUIRE(ok(kitchen.open("dMid")));
+  REQUIRE(ok(kitchen.park()));
+  REQUIRE(ok(kitchen.look("dMid")));
+  Attempt attempt;
+  const Outcome seen = kitchen.detect("spoon");
+  attempt.seen = ok(seen);
+  CHECK(kitchen.flag("spoon1.perceived") == attempt.seen);
+  const Outcome taken = kitchen.pick("spoon1");
+  attempt.taken = ok(taken);
+  attempt.reason = attempt.seen ? taken.reason : seen.reason;
+  return attempt;
+}
+
+TEST_CASE("a spoon in the middle of the drawer is seen and taken from every stance") {
+  for (const double d : {0.0, 0.06, 0.12}) {
+    const Attempt attempt = fetch(kitchen_world(), 0.66 + d, d, -0.05, 0.0);
+    CAPTURE(attempt.reason);
+    CHECK(attempt.seen);
+    CHECK(attempt.taken);
+  }
+}
+
+TEST_CASE("a spoon in a far corner is out of the camera's cone, and in it with a wider one") {
+  const Attempt narrow = fetch(kitchen_world(), 0.78, 0.12, -0.22, 0.115);
+  CHECK_FALSE(narrow.seen);
+  CHECK_FALSE(narrow.taken);
+  CHECK(narrow.reason.starts_with("object-not-found"));
+
+  WorldSpec wide = kitchen_world();
+  wide.mobile->camera.half_angle_rad = 0.5;
+  CHECK(fetch(wide, 0.78, 0.12, -0.22, 0.115).seen);
+}
+
+TEST_CASE("a spoon at the back is seen but cannot be taken where furniture is above it") {
+  const Attempt attempt = fetch(kitchen_world(), 0.72, 0.06, 0.20, 0.0);
+  CAPTURE(attempt.reason);
+  CHECK(attempt.seen);
+  CHECK_FALSE(attempt.taken);
+  CHECK(attempt.reason.starts_with("manipulation-pose-unreachable"));
+}
+
+TEST_CASE("what is seen from outside the reach is not taken, and is with a longer arm") {
+  WorldSpec low = kitchen_world();
+  for (ArmSpec& arm : low.mobile->arms) arm.max_reach_m = 0.80;
+  const Attempt attempt = fetch(low, 0.66, 0.0, -0.05, 0.1);
+  CHECK_FALSE(attempt.taken);
+  CHECK(fetch(kitchen_world(), 0.66, 0.0, -0.05, 0.1).taken);
+}
+
+}  // namespace
+}  // namespace parallax::harness

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "harness/config/scenario.h"
+#include "harness/world/ode_simulator.h"
+
+namespace parallax::harness {
+
+/// The world of scenarios/kitchen, as the scenario files say.
+const WorldSpec& kitchen_world();
+
+BodySpec& body_of(WorldSpec& spec, std::string_view name);
+JointSpec& joint_of(WorldSpec& spec, std::string_view name);
+
+/// Short names for what the plans do. Every action is allowed 60 s.
+class Kitchen {
+ public:
+  explicit Kitchen(const WorldSpec& spec) : simulator_(spec) {}
+
+  /// Must succeed.
+  void start(const State& initial);
+  Outcome act(std::string_view controller, const State& arguments);
+  Outcome open(const std::string& drawer) { return move("open-drawer", drawer); }
+  Outcome close(const std::string& drawer) { return move("close-drawer", drawer); }
+  Outcome look(const std::string& place) { return act("look", {{"place", place}}); }
+  Outcome detect(const std::string& kind) { return act("detect", {{"kind", kind}}); }
+  Outcome pick(const std::string& item);
+  Outcome park() { return act("park", {{"arm", std::string("left")}}); }
+  Outcome drive(const std::string& place) { return act("drive", {{"place", place}}); }
+
+  double number(std::string_view name);
+  bool flag(std::string_view name);
+  OdeSimulator& simulator() { return simulator_; }
+
+ private:
+  Outcome move(std::string_view controller, const std::string& drawer);
+  OdeSimulator simulator_;
+};
+
+bool ok(const Outcome& outcome);
+
+}  // namespace parallax::harness

@@ -1,0 +1,90 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "tests/harness/kitchen/kitchen_world.h"
+
+namespace parallax::harness {
+namespace {
+
+TEST_CASE("driving ends at the place with its heading, arms still parked, from any start") {
+  Kitchen kitchen(kitchen_world());
+  for (const double d : {-0.07, 0.0, 0.07}) {
+    kitchen.start({{"robot.x", 0.72 + d}, {"robot.y", 0.06 - d}, {"robot.yaw", d}});
+    CHECK(kitchen.number("robot.yaw") == doctest::Approx(d));
+    CHECK(kitchen.flag("left.parked"));
+    REQUIRE(ok(kitchen.drive("bTable")));
+    CHECK(std::abs(kitchen.number("robot.x") + 0.10) < 0.01);
+    CHECK(std::abs(kitchen.number("robot.y") - 0.58) < 0.01);
+    CHECK(std::abs(std::abs(kitchen.number("robot.yaw")) - M_PI) < 0.02);
+    CHECK(kitchen.flag("left.parked"));
+    CHECK(kitchen.flag("right.parked"));
+  }
+}
+
+TEST_CASE("an item is set down where it was asked for") {
+  Kitchen kitchen(kitchen_world());
+  kitchen.start({{"milk1.mass", 0.5}});
+  REQUIRE(ok(kitchen.look("pw1")));
+  REQUIRE(ok(kitchen.detect("milk")));
+  REQUIRE(ok(kitchen.pick("milk1")));
+  REQUIRE(ok(kitchen.park()));
+  REQUIRE(ok(kitchen.drive("bTable")));
+  REQUIRE(ok(kitchen.act("place", {{"arm", std::string("left")}, {"place", std::string("pt1")}})));
+  CHECK(std::abs(kitchen.number("milk1.x") + 0.82) < 0.02);
+  CHECK(std::abs(kitchen.number("milk1.y") - 0.475) < 0.02);
+  CHECK(std::abs(kitchen.number("milk1.bottom") - 0.86) < 0.002);
+  CHECK_FALSE(kitchen.flag("milk1.held"));
+}
+
+TEST_CASE("what is let go falls to the floor") {
+  Kitchen kitchen(kitchen_world());
+  kitchen.start({{"milk1.mass", 0.5}});
+  REQUIRE(ok(kitchen.look("pw1")));
+  REQUIRE(ok(kitchen.detect("milk")));
+  REQUIRE(ok(kitchen.pick("milk1")));
+  REQUIRE(ok(kitchen.park()));
+  REQUIRE(ok(kitchen.drive("bTable")));
+  REQUIRE(ok(kitchen.act("open-gripper", {{"arm", std::string("left")}})));
+  CHECK(kitchen.number("milk1.bottom") < 0.05);
+}
+
+TEST_CASE("the torso lifts camera and arms and refuses heights beyond its stops") {
+  Kitchen kitchen(kitchen_world());
+  kitchen.start({});
+  const double tool_m = kitchen.number("left.z");
+  REQUIRE(ok(kitchen.act("move-torso", {{"height_m", 0.2}})));
+  CHECK(kitchen.number("left.z") == doctest::Approx(tool_m + 0.2).epsilon(0.01));
+  CHECK(kitchen.flag("left.parked"));
+  CHECK_FALSE(ok(kitchen.act("move-torso", {{"height_m", 1.0}})));
+}
+
+TEST_CASE("unknown items are not picked up, and empty grippers place nothing") {
+  Kitchen kitchen(kitchen_world());
+  kitchen.start({});
+  CHECK(kitchen.pick("milk1").reason.starts_with("object-not-found"));
+  const Outcome placed =
+      kitchen.act("place", {{"arm", std::string("left")}, {"place", std::string("pw1")}});
+  CHECK(placed.reason.starts_with("object-not-held"));
+}
+
+TEST_CASE("every run after a reset with the same start gives the same bits, in any simulator") {
+  const auto digest = [](Kitchen& kitchen) {
+    kitchen.start({{"robot.x", 0.7}, {"spoon1.bottom", 0.53}, {"milk1.mass", 0.8}});
+    REQUIRE(ok(kitchen.open("dMid")));
+    REQUIRE(ok(kitchen.look("dMid")));
+    kitchen.detect("spoon");
+    kitchen.pick("spoon1");
+    const State state = kitchen.simulator().state();
+    return std::get<std::string>(state.find("digest")->second);
+  };
+  Kitchen first(kitchen_world()), second(kitchen_world());
+  const std::string once = digest(first);
+  CHECK(digest(first) == once);
+  second.start({{"milk1.mass", 0.9}});
+  CHECK(ok(second.drive("bTable")));
+  CHECK(digest(second) == once);
+}
+
+}  // namespace
+}  // namespace parallax::harness

@@ -1,0 +1,64 @@
+#include <doctest/doctest.h>
+
+#include "tests/harness/kitchen/kitchen_world.h"
+
+namespace parallax::harness {
+namespace {
+
+/// What becomes of a carton of this mass between the counter and the table.
+enum class Fate { kNotLifted, kLostOnTheWay, kDelivered };
+
+Fate carry(const WorldSpec& spec, double mass_kg, double speed_m_s = 0.6) {
+  Kitchen kitchen(spec);
+  kitchen.start({{"robot.x", 0.72}, {"robot.y", 0.06}, {"milk1.mass", mass_kg}});
+  REQUIRE(ok(kitchen.look("pw1")));
+  REQUIRE(ok(kitchen.detect("milk")));
+  if (!ok(kitchen.pick("milk1"))) return Fate::kNotLifted;
+  REQUIRE(ok(kitchen.park()));
+  REQUIRE(
+      ok(kitchen.act("drive", {{"place", std::string("bTable")}, {"max_speed_m_s", speed_m_s}})));
+  return kitchen.flag("milk1.held") ? Fate::kDelivered : Fate::kLostOnTheWay;
+}
+
+constexpr double kFull_kg = 0.92, kHalf_kg = 0.6, kTooHeavy_kg = 1.2;
+
+TEST_CASE("a full carton slips from the gripper on the way, a half full one does not") {
+  CHECK(carry(kitchen_world(), kHalf_kg) == Fate::kDelivered);
+  CHECK(carry(kitchen_world(), kFull_kg) == Fate::kLostOnTheWay);
+  CHECK(carry(kitchen_world(), kTooHeavy_kg) == Fate::kNotLifted);
+}
+
+TEST_CASE("more grip, more friction, less speed or an even floor keep the carton in the gripper") {
+  WorldSpec grip = kitchen_world();
+  body_of(grip, "milk1").grasp->effort_n = 40.0;
+  CHECK(carry(grip, kFull_kg) == Fate::kDelivered);
+
+  WorldSpec friction = kitchen_world();
+  friction.friction.pairs[{"carton", "pad"}] = 0.6;
+  CHECK(carry(friction, kFull_kg) == Fate::kDelivered);
+
+  CHECK(carry(kitchen_world(), kFull_kg, 0.25) == Fate::kDelivered);
+
+  WorldSpec even = kitchen_world();
+  even.mobile->relief_amplitude_m = 0.0;
+  CHECK(carry(even, kFull_kg) == Fate::kDelivered);
+  even.mobile->relief_amplitude_m = kitchen_world().mobile->relief_amplitude_m;
+  CHECK(carry(even, kFull_kg) == Fate::kLostOnTheWay);
+}
+
+TEST_CASE("regripping with more force saves a full carton") {
+  Kitchen kitchen(kitchen_world());
+  kitchen.start({{"robot.x", 0.72}, {"robot.y", 0.06}, {"milk1.mass", kFull_kg}});
+  REQUIRE(ok(kitchen.look("pw1")));
+  REQUIRE(ok(kitchen.detect("milk")));
+  REQUIRE(ok(kitchen.pick("milk1")));
+  REQUIRE(ok(kitchen.act("regrip", {{"arm", std::string("left")}, {"effort_n", 40.0}})));
+  REQUIRE(ok(kitchen.park()));
+  REQUIRE(ok(kitchen.drive("bTable")));
+  CHECK(kitchen.flag("milk1.held"));
+  CHECK(kitchen.flag("milk1.held_by.left"));
+  CHECK_FALSE(kitchen.flag("milk1.held_by.right"));
+}
+
+}  // namespace
+}  // namespace parallax::harness

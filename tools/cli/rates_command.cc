@@ -1,0 +1,72 @@
+#include <memory>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "harness/campaign/rates.h"
+#include "harness/report/report.h"
+#include "tools/cli/command.h"
+#include "tools/cli/scenario_model.h"
+#include "tools/cli/signals.h"
+#include "tools/cli/simulator_factory.h"
+#include "tools/cli/trace_feed.h"
+
+namespace parallax::tools {
+namespace {
+
+struct Options {
+  std::string scenario;
+  harness::RatesOptions rates;
+};
+
+int run_rates(const Options& options, Invocation& invocation) {
+  const auto loaded = load_scenario_model(options.scenario, invocation);
+  if (!loaded) return 0;
+  const auto& model = loaded->compilation.model;
+  if (!model.has_constraints) {
+    invocation.sink().error(base::DiagnosticCode::kNothingToSimulate,
+                            base::SourceRange{loaded->scenario.source, 0, 0});
+    return 0;
+  }
+  EnumeratedTraces traces(model, invocation);
+  auto rates = options.rates;
+  rates.stop = &stop_flag();
+  const auto result = harness::estimate_rates(loaded->scenario, traces, simulator_factory(*loaded),
+                                              rates, invocation.sink());
+  if (!result) return 0;
+  if (invocation.options().json) {
+    invocation.document(harness::rates_json(*result));
+  } else {
+    invocation.result(harness::rates_text(*result));
+  }
+  return result->complete ? 0 : 4;
+}
+
+}  // namespace
+
+Command add_rates_command(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand(
+      "rates", "How often does each trace go wrong, and why: uniform runs, counted by cause");
+  command->footer(
+      "Examples:\n"
+      "  parallax rates scenarios/kitchen/plan2.yaml --trace 2 --runs 400 --jobs 2\n"
+      "  parallax rates scenarios/two_regions/edge.yaml --runs 100 --json\n"
+      "Exit codes: 0 estimated, 4 stopped before all runs were made.");
+  command->add_option("scenario", options->scenario, "Scenario file (YAML)")->required();
+  command->add_option("--trace", options->rates.trace, "Only this trace; default: all")
+      ->check(whole_number(1, 1'000'000));
+  command->add_option("--runs", options->rates.runs, "Simulations of each trace")
+      ->check(whole_number(1, 1'000'000))
+      ->capture_default_str();
+  command->add_option("--confidence", options->rates.confidence, "Confidence of each interval")
+      ->check(finite_range(0.5, 0.999999))
+      ->capture_default_str();
+  command->add_option("--seed", options->rates.seed, "Seed of every random choice")
+      ->check(whole_number(0, kMaxSeed))
+      ->capture_default_str();
+  command->add_option("-j,--jobs", options->rates.jobs, "Simulations at the same time")
+      ->check(whole_number(1, 256))
+      ->capture_default_str();
+  return {command, [options](Invocation& invocation) { return run_rates(*options, invocation); }};
+}
+
+}  // namespace parallax::tools
