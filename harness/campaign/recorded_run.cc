@@ -31,7 +31,7 @@ base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir
     return sink.error_about(DiagnosticCode::kNoSuchSample, run_dir.string(), name);
   }
   const auto& trace = journal->traces.at(found->second.trace);
-  return RecordedRun{found->second, trace.calls, trace.events};
+  return RecordedRun{*journal->header, *id, found->second, trace.calls, trace.events};
 }
 
 }  // namespace parallax::harness

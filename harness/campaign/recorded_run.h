@@ -11,6 +11,8 @@ namespace parallax::harness {
 
 /// One recorded simulation with what was asked of the simulator.
 struct RecordedRun {
+  JournalHeader header;  // of the journal
+  SampleId id;
   SampleRecord record;
   std::vector<ActionCall> calls;    // per event
   std::vector<std::string> events;  // as the trace has them

@@ -66,30 +66,21 @@ base::Result<ReplayResult> replay_sample(const std::filesystem::path& run_dir,
                                          std::optional<SampleId> id,
                                          const std::string& scenario_hash, Simulator& simulator,
                                          base::SourceFiles& files, base::DiagnosticSink& sink) {
-  const auto journal = read_journal(run_dir, files, sink);
-  if (!journal) return sink.already_reported();
-  if (!journal->header) return sink.error_about(DiagnosticCode::kNoJournal, run_dir.string());
-  if (!id) id = default_sample(*journal);
-  const auto found =
-      id ? journal->samples.find({id->trace, id->sample, Phase::kCertify}) : journal->samples.end();
-  if (found == journal->samples.end()) {
-    const auto name = id ? fmt::format("{}.{}", id->trace, id->sample) : std::string("at all");
-    return sink.error_about(DiagnosticCode::kNoSuchSample, run_dir.string(), name);
-  }
-  const auto& record = found->second;
+  const auto run = read_recorded_run(run_dir, id, files, sink);
+  if (!run) return sink.already_reported();
+  const auto& record = run->record;
   ReplayResult result;
-  result.id = *id;
+  result.id = run->id;
   result.seed = record.seed;
   result.digest = record.digest;
   result.timepoints = record.observations.size();
-  result.reason = obstacle(*journal->header, scenario_hash, simulator.info());
+  result.reason = obstacle(run->header, scenario_hash, simulator.info());
   if (result.reason.empty() && record.status == SampleStatus::kLost) {
     result.reason = "the simulator was lost in this simulation, so there is nothing to compare";
   }
   result.outcome = ReplayOutcome::kCannot;
   if (!result.reason.empty()) return result;
-  const auto& calls = journal->traces.at(record.trace).calls;
-  const auto again = repeat_sample(calls, record, simulator, [] { return false; });
+  const auto again = repeat_sample(run->calls, record, simulator, [] { return false; });
   if (again->status != SampleStatus::kOk) {
     result.reason =
         fmt::format("the simulator was {}: {}", to_string(again->status), again->reason);
