@@ -7,6 +7,7 @@
 #include "harness/draw/scene_svg.h"
 #include "harness/world/ode_simulator.h"
 #include "tools/cli/command.h"
+#include "tools/cli/sample_option.h"
 #include "tools/cli/scenario_model.h"
 
 namespace parallax::tools {
@@ -54,21 +55,11 @@ int draw_start(const Options& options, Invocation& invocation) {
 /// A picture of the start and one after each action of a recorded simulation.
 int draw_run(const Options& options, Invocation& invocation) {
   auto& sink = invocation.sink();
-  std::optional<harness::SampleId> id;
-  if (!options.sample.empty()) {
-    id = harness::parse_sample_id(options.sample);
-    if (!id) {
-      sink.error_about(
-          base::DiagnosticCode::kUsage, "",
-          fmt::format("--sample takes TRACE.SAMPLE such as 2.4, not `{}`", options.sample));
-      return 0;
-    }
-  }
-  const auto header = harness::read_run_header(options.what, invocation.files(), sink);
-  if (!header) return 0;
-  const auto run = harness::read_recorded_run(options.what, id, invocation.files(), sink);
+  const auto id = parse_sample_option(options.sample, sink);
+  if (!id) return 0;
+  const auto run = harness::read_recorded_run(options.what, *id, invocation.files(), sink);
   if (!run) return 0;
-  const auto scenario = harness::load_scenario(header->scenario, invocation.files(), sink);
+  const auto scenario = harness::load_scenario(run->header.scenario, invocation.files(), sink);
   if (!scenario) return 0;
   if (!scenario->simulator.command.empty()) {
     sink.error_about(base::DiagnosticCode::kUsage, "",

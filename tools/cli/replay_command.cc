@@ -6,6 +6,7 @@
 #include "harness/campaign/replay.h"
 #include "harness/report/report.h"
 #include "tools/cli/command.h"
+#include "tools/cli/sample_option.h"
 #include "tools/cli/scenario_model.h"
 #include "tools/cli/signals.h"
 #include "tools/cli/simulator_factory.h"
@@ -20,16 +21,8 @@ struct ReplayOptions {
 
 int replay(const ReplayOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
-  std::optional<harness::SampleId> id;
-  if (!options.sample.empty()) {
-    id = harness::parse_sample_id(options.sample);
-    if (!id) {
-      sink.error_about(
-          base::DiagnosticCode::kUsage, "",
-          fmt::format("--sample takes TRACE.SAMPLE such as 2.4, not `{}`", options.sample));
-      return 0;
-    }
-  }
+  const auto id = parse_sample_option(options.sample, sink);
+  if (!id) return 0;
   // The journal is no source of the scenario: it is read into a set of its own.
   base::SourceFiles journal_files;
   base::DiagnosticSink journal_sink;
@@ -46,7 +39,7 @@ int replay(const ReplayOptions& options, Invocation& invocation) {
     return 0;
   }
   const auto simulator = simulator_factory(*loaded)();
-  const auto result = harness::replay_sample(options.run_dir, id, loaded->sources_hash, *simulator,
+  const auto result = harness::replay_sample(options.run_dir, *id, loaded->sources_hash, *simulator,
                                              invocation.files(), sink);
   if (!result) return 0;
   if (result->outcome == harness::ReplayOutcome::kCannot) {
