@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <vector>
 
 namespace parallax::test {
 
@@ -20,6 +22,20 @@ inline std::optional<std::filesystem::path> peer_examples() {
   if (fs::is_directory(folder / "examples", error)) return folder;
   std::cout << "SKIPPED: no examples of the 2005 reasoner (PARALLAX_PEER_EXAMPLES)\n";
   return std::nullopt;
+}
+
+/// The examples that come with an answer (the same name with `.txt`), sorted.
+inline std::vector<std::filesystem::path> answered_examples(const std::filesystem::path& root) {
+  std::vector<std::filesystem::path> examples;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "examples")) {
+    auto answer = entry.path();
+    answer.replace_extension(".txt");
+    if (entry.path().extension() == ".e" && std::filesystem::exists(answer)) {
+      examples.push_back(entry.path());
+    }
+  }
+  std::sort(examples.begin(), examples.end());
+  return examples;
 }
 
 }  // namespace parallax::test

@@ -20,14 +20,14 @@ struct TextModel {
   std::unique_ptr<compiler::GroundModel> ground;
   compiler::CompiledModel compiled;
 
-  explicit TextModel(const std::string& text) {
+  explicit TextModel(const std::string& text, const compiler::GroundOptions& options = {}) {
     const auto file = files.add("test.e", text);
     auto ast = compiler::load_model_text(file, ".", {}, files, sink);
     if (!ast) return;
     auto checked = compiler::check_model(*ast, files, sink);
     if (!checked) return;
     typed = std::make_unique<compiler::TypedModel>(*std::move(checked));
-    auto grounded = compiler::ground_model(*typed, {}, sink);
+    auto grounded = compiler::ground_model(*typed, options, sink);
     if (!grounded) return;
     ground = std::make_unique<compiler::GroundModel>(*std::move(grounded));
     compiled = compiler::encode(*ground);

@@ -206,18 +206,6 @@ std::set<Model> enumerate(const fs::path& example, const fs::path& root, bool wi
   return models;
 }
 
-/// The examples that come with an answer, sorted.
-std::vector<fs::path> answered_examples(const fs::path& root) {
-  std::vector<fs::path> examples;
-  for (const auto& entry : fs::recursive_directory_iterator(root / "examples")) {
-    auto answer = entry.path();
-    answer.replace_extension(".txt");
-    if (entry.path().extension() == ".e" && fs::exists(answer)) examples.push_back(entry.path());
-  }
-  std::sort(examples.begin(), examples.end());
-  return examples;
-}
-
 TEST_CASE("the models of every example are the recorded ones") {
   const auto root = peer_examples();
   if (!root) return;

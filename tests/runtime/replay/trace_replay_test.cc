@@ -10,6 +10,7 @@
 #include "compiler/pipeline/compile.h"
 #include "runtime/enumerate/model_enumerator.h"
 #include "tests/runtime/enumerate/brute_force.h"
+#include "tests/support/classic_models.h"
 #include "tests/support/random_model.h"
 #include "tests/support/text_model.h"
 
@@ -167,29 +168,20 @@ TEST_CASE("edited and incomplete traces of random models: brute force gives the 
 
 TEST_CASE("single edits of traces of the classic problems: the evaluator gives the same verdict") {
   int models = 0, failed = 0, agreed = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(
-           std::filesystem::path(PARALLAX_SOURCE_DIR) / "scenarios/classics")) {
-    if (entry.path().extension() != ".e") continue;
-    CAPTURE(entry.path());
-    compiler::CompileInput input;
-    input.models = {entry.path()};
-    base::SourceFiles files;
-    base::DiagnosticSink sink;
-    const auto compiled = compiler::compile_model(input, files, sink);
-    if (!compiled) continue;  // a text that others load
-    const compiler::ReferenceEvaluator evaluator(*compiled->typed);
+  for_each_classic([&](const compiler::Compilation& compiled) {
+    const compiler::ReferenceEvaluator evaluator(*compiled.typed);
     REQUIRE(!evaluator.refusal());
-    runtime::SolverSession session(compiled->model, runtime::make_cadical_solver());
+    runtime::SolverSession session(compiled.model, runtime::make_cadical_solver());
     runtime::ModelEnumerator enumerator(session);
     const auto trace = enumerator.next();
-    if (!trace) continue;
+    if (!trace) return;
     ++models;
-    TraceReplay replay(compiled->model, [] { return runtime::make_cadical_solver(); });
+    TraceReplay replay(compiled.model, [] { return runtime::make_cadical_solver(); });
     FuzzRandom random(static_cast<std::uint64_t>(models));
     for (int round = 0; round < 20; ++round) {
       auto valuation = tools::valuation_of(*trace);
-      auto claims = claims_of(valuation, compiled->model);
-      if (round > 0) edit(compiled->model, random, claims);
+      auto claims = claims_of(valuation, compiled.model);
+      if (round > 0) edit(compiled.model, random, claims);
       for (std::size_t t = 0; t < claims.points.size(); ++t) {
         valuation.holds[t] = truths(claims.points[t].holds);
         valuation.happens[t] = truths(claims.points[t].happens);
@@ -200,7 +192,7 @@ TEST_CASE("single edits of traces of the classic problems: the evaluator gives t
       CHECK((verdict.kind == Kind::kAgrees) == !evaluator.check(valuation).has_value());
       ++(verdict.kind == Kind::kAgrees ? agreed : failed);
     }
-  }
+  });
   CHECK(models > 15);
   CHECK(agreed >= models);
   CHECK(failed > 200);

@@ -18,17 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> answered_examples(const fs::path& root) {
-  std::vector<fs::path> examples;
-  for (const auto& entry : fs::recursive_directory_iterator(root / "examples")) {
-    auto answer = entry.path();
-    answer.replace_extension(".txt");
-    if (entry.path().extension() == ".e" && fs::exists(answer)) examples.push_back(entry.path());
-  }
-  std::sort(examples.begin(), examples.end());
-  return examples;
-}
-
 compiler::Compilation compiled_example(const fs::path& example, const fs::path& root) {
   compiler::CompileInput input;
   input.models = {example};

@@ -11,6 +11,7 @@
 #include "runtime/trace/csv_format.h"
 #include "runtime/trace/itf_format.h"
 #include "runtime/trace/trace_reader.h"
+#include "tests/support/classic_models.h"
 #include "tests/support/csv_reader.h"
 #include "tests/support/itf_reader.h"
 #include "tests/support/random_model.h"
@@ -218,19 +219,10 @@ std::size_t check_formats(const CompiledModel& model) {
 
 TEST_CASE("traces of the classic problems survive ITF and CSV and both ways of reading them") {
   std::size_t models = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(
-           std::filesystem::path(PARALLAX_SOURCE_DIR) / "scenarios/classics")) {
-    if (entry.path().extension() != ".e") continue;
-    CAPTURE(entry.path());
-    compiler::CompileInput input;
-    input.models = {entry.path()};
-    base::SourceFiles files;
-    base::DiagnosticSink sink;
-    const auto compiled = compiler::compile_model(input, files, sink);
-    if (!compiled) continue;  // a text that others load
-    check_formats(compiled->model);
+  for_each_classic([&](const compiler::Compilation& compiled) {
+    check_formats(compiled.model);
     ++models;
-  }
+  });
   CHECK(models > 15);
 }
 
