@@ -199,8 +199,7 @@ class Splitter {
     });
   }
 
-  /// Writes every clause into its window; those of fixed variables alone that no window claims are
-  /// satisfiable if the model is, and constrain no trace.
+  /// Writes every clause into its window.
   void collect() {
     std::vector<WindowClauses> windows(static_cast<std::size_t>(model_.horizon) + 1);
     std::vector<std::map<std::int32_t, std::int32_t>> locals(windows.size());
@@ -217,7 +216,10 @@ class Splitter {
           window = components_.window(static_cast<std::size_t>(literal.var()) - 1);
         }
       }
-      if (window == kNoWindow && !clause.empty()) continue;
+      if (window == kNoWindow && !clause.empty()) {
+        out_.has_unplaced = true;
+        continue;
+      }
       window = std::max(window, kStart);
       const auto index = static_cast<std::size_t>(window + 1);
       write(clause, window, windows[index], locals[index]);

@@ -43,6 +43,9 @@ struct LayeredModel {
   std::vector<std::uint32_t> step_at;    // by timepoint: index into `steps`
   std::vector<std::int32_t> true_fixed;  // fixed variables that are true in every trace
   std::vector<std::int32_t> open_fixed;  // those whose value is not the same in every trace
+  /// There are clauses that no window has, over fixed variables alone. They distinguish no traces,
+  /// but there is none if they cannot hold.
+  bool has_unplaced = false;
 };
 
 /// Splits the model into windows, or says why it cannot be split: "a clause of FILE:LINE spans

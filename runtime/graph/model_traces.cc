@@ -3,97 +3,152 @@
 #include <utility>
 #include <variant>
 
+#include "runtime/enumerate/model_enumerator.h"
 #include "runtime/enumerate/trace_tree.h"
 
 namespace parallax::runtime {
 namespace {
 
-/// Up to so many traces blocking is quicker than finding every state.
-constexpr std::int64_t kFirst = 64;
-/// Up to so many it is quick enough, if no more are wanted.
+/// More than so many traces repay a graph that takes some seconds.
 constexpr std::int64_t kFew = 1000;
+/// What lies so far ahead is not worth to be found one by one.
+constexpr std::int64_t kFar = 64;
+/// A trace that costs a search more conflicts than this is a solver's to find.
+constexpr std::int64_t kConflicts = 1000;
+/// Transitions are found by search some hundred times faster than traces by a solver that is to
+/// give them in order. So a graph that stays small is tried first, and larger ones as traces come.
+constexpr GraphLimits kSmall = {500'000, 50'000, 10'000};
+constexpr GraphLimits kMedium = {2'000'000, 500'000, 200'000};
 
 }  // namespace
 
-ModelGraph build_graph(const CompiledModel& model, const TraceQuery& query) {
-  ModelGraph result;
-  auto split = split_into_windows(model, query.distinct);
-  if (auto* layered = std::get_if<LayeredModel>(&split)) {
-    result.layered = std::make_unique<LayeredModel>(std::move(*layered));
-    result.graph = TraceGraph::build(*result.layered, query.limits, query.stop, result.reason);
-  } else {
-    result.reason = std::get<std::string>(split);
-  }
-  return result;
-}
-
 ModelTraces::ModelTraces(const CompiledModel& model, TraceQuery query)
-    : model_(model), query_(query), session_(model, make_cadical_solver(query.stop)) {
-  source_ = std::make_unique<ModelEnumerator>(session_, query.distinct);
+    : model_(model), query_(query) {
+  const auto within = [&](const GraphLimits& limits) {
+    return GraphLimits{std::min(limits.nodes, query.limits.nodes),
+                       std::min(limits.edges, query.limits.edges),
+                       std::min(limits.conflicts, query.limits.conflicts)};
+  };
   switch (query.strategy) {
     case Strategy::kAuto:
-      is_final_ = query.wanted > 0 && query.wanted <= kFew;
+      if (query.wanted > 0 && query.wanted <= kFew) {
+        use_search(kConflicts);
+      } else {
+        attempts_ = {{kFar, query.limits}, {1, within(kMedium)}, {0, within(kSmall)}};
+        attempt_graph();
+        if (source_ == nullptr) use_search(kConflicts);
+      }
+      break;
+    case Strategy::kSearch:
+      use_search(std::numeric_limits<std::int64_t>::max());
       break;
     case Strategy::kBlocking:
       break;
     case Strategy::kGuarded:
-      source_ = make_guarded_blocking(session_, query.distinct);
+      source_ = make_guarded_blocking(session(), query.distinct);
       break;
     case Strategy::kTree:
-      source_ = make_trace_tree(session_, query.distinct);
+      source_ = make_trace_tree(session(), query.distinct);
       break;
     case Strategy::kGraph:
-      // The graph needs a model that has a trace.
-      if (session_.solve(model.horizon, {}) != SolveStatus::kSatisfiable) break;
-      use_graph();
+      use_graph(query.limits);
       if (paths_ == nullptr) refusal_ = remark_;
       break;
   }
+  if (source_ == nullptr) source_ = std::make_unique<ModelEnumerator>(session(), query.distinct);
 }
 
-void ModelTraces::use_graph() {
-  graph_ = build_graph(model_, query_);
-  remark_ = graph_.graph == nullptr ? graph_.reason : GraphPaths::obstacle(*graph_.graph, model_);
+SolverSession& ModelTraces::session() {
+  if (!session_) session_.emplace(model_, make_cadical_solver(query_.stop));
+  return *session_;
+}
+
+void ModelTraces::use_search(std::int64_t conflicts) {
+  auto search = std::make_unique<SearchTraces>(model_, query_.distinct, query_.stop, conflicts);
+  search_ = search.get();
+  source_ = std::move(search);
+}
+
+void ModelTraces::use_graph(const GraphLimits& limits) {
+  remark_.clear();
+  is_tried_ = true;
+  if (graph_.layered == nullptr) {
+    auto split = split_into_windows(model_, query_.distinct);
+    if (auto* layered = std::get_if<LayeredModel>(&split)) {
+      graph_.layered = std::make_unique<LayeredModel>(std::move(*layered));
+    } else {
+      remark_ = std::get<std::string>(split);
+      return;
+    }
+  }
+  // What no window has is the solver's to decide.
+  if (graph_.layered->has_unplaced && given_ == 0 &&
+      session().solve(model_.horizon, {}) != SolveStatus::kSatisfiable) {
+    return;
+  }
+  graph_.graph = TraceGraph::build(*graph_.layered, limits, query_.stop, remark_);
+  if (graph_.graph == nullptr) return;
+  remark_ = GraphPaths::obstacle(*graph_.graph, model_);
   if (!remark_.empty()) return;
   auto paths = std::make_unique<GraphPaths>(*graph_.graph, model_);
+  if (given_ > 0) paths->seek(given_);
   paths_ = paths.get();
+  search_ = nullptr;
   source_ = std::move(paths);
 }
 
-/// From here on the graph gives the traces, or the tree.
-void ModelTraces::leave_blocking() {
-  is_final_ = true;
-  use_graph();
-  if (paths_ != nullptr) {
-    paths_->seek(given_);
-    return;
-  }
+void ModelTraces::use_tree() {
   // The blocking clauses must not hold in the tree.
+  search_ = nullptr;
   tree_session_.emplace(model_, make_cadical_solver(query_.stop));
   source_ = make_trace_tree(*tree_session_, query_.distinct);
   for (std::int64_t i = 0; i < given_ && source_->next(); ++i) continue;
 }
 
+/// After the last attempt the tree takes over from a solver that excludes what it has found.
+void ModelTraces::attempt_graph() {
+  const auto limits = attempts_.back().limits;
+  attempts_.pop_back();
+  if (can_grow()) use_graph(limits);
+  if (paths_ != nullptr) attempts_.clear();
+  if (paths_ == nullptr && search_ == nullptr && !tree_session_ && attempts_.empty()) use_tree();
+}
+
+/// The search met too many conflicts: by now the graph or a solver is better.
+void ModelTraces::leave_search() {
+  search_ = nullptr;
+  if (!is_tried_) use_graph(kSmall);
+  if (paths_ != nullptr) return;
+  if (given_ == 0) {
+    source_ = std::make_unique<ModelEnumerator>(session(), query_.distinct);
+  } else {
+    use_tree();
+  }
+}
+
 std::optional<Trace> ModelTraces::next() {
-  if (!is_final_ && given_ == kFirst) leave_blocking();
+  if (is_due()) attempt_graph();
   auto trace = source_->next();
+  if (!trace && search_ != nullptr && search_->gave_up()) {
+    leave_search();
+    trace = source_->next();
+  }
   if (trace) ++given_;
   return trace;
 }
 
 bool ModelTraces::print_next(const TraceFormat& format, std::string& out) {
-  if (!is_final_ && given_ == kFirst) leave_blocking();
+  if (paths_ == nullptr) return TraceSource::print_next(format, out);
   const bool found = source_->print_next(format, out);
   if (found) ++given_;
   return found;
 }
 
 void ModelTraces::seek(const mpz_class& before) {
-  if (query_.strategy == Strategy::kAuto && before >= kFirst) {
-    // What lies so far ahead is not worth to be found one by one.
-    if (given_ < kFirst) is_final_ = false;
-    while (given_ < kFirst && next()) continue;
-    if (!is_final_ && given_ == kFirst) leave_blocking();
+  if (query_.strategy == Strategy::kAuto && paths_ == nullptr && before >= kFar) {
+    attempts_.clear();
+    if (can_grow()) use_graph(query_.limits);
+    if (paths_ == nullptr) use_tree();
   }
   if (paths_ != nullptr) {
     paths_->seek(before);
@@ -105,7 +160,7 @@ void ModelTraces::seek(const mpz_class& before) {
 SourceStats ModelTraces::stats() const {
   auto stats = source_->stats();
   stats.remark = remark_;
-  if (paths_ != nullptr) stats.solve_calls += session_.solve_calls();
+  if (paths_ != nullptr && session_) stats.solve_calls += session_->solve_calls();
   return stats;
 }
 

@@ -9,23 +9,27 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
-#include "runtime/enumerate/model_enumerator.h"
+#include "runtime/enumerate/search_traces.h"
 #include "runtime/graph/graph_paths.h"
 #include "runtime/graph/trace_graph.h"
+#include "runtime/session/solver_session.h"
 
 namespace parallax::runtime {
 
 enum class Strategy : std::uint8_t {
-  kAuto,      // a few by blocking, then the graph, or else the tree
+  kAuto,      // what suits the model and the number of traces
+  kSearch,    // propagation and backtracking, no solver
   kBlocking,  // one clause for each trace
   kGuarded,   // clauses that are retired with the first half of the horizon
   kTree,      // assumed prefixes, clauses that are retired with them
   kGraph,     // the paths of the layered graph
 };
 
-inline constexpr std::array<std::pair<Strategy, std::string_view>, 5> kStrategyNames = {{
+inline constexpr std::array<std::pair<Strategy, std::string_view>, 6> kStrategyNames = {{
     {Strategy::kAuto, "auto"},
+    {Strategy::kSearch, "search"},
     {Strategy::kBlocking, "blocking"},
     {Strategy::kGuarded, "guarded"},
     {Strategy::kTree, "tree"},
@@ -42,11 +46,10 @@ struct TraceQuery {
 
 /// The layered graph of a model, or why it has none.
 struct ModelGraph {
-  std::unique_ptr<LayeredModel> layered;
+  std::unique_ptr<LayeredModel> layered;  // none: no graph of any size
   std::unique_ptr<TraceGraph> graph;
   std::string reason;
 };
-ModelGraph build_graph(const CompiledModel& model, const TraceQuery& query);
 
 /// The traces of a model without constraints at its full horizon, by the strategy that is asked for
 /// or the one that suits.
@@ -67,18 +70,32 @@ class ModelTraces final : public TraceSource {
   void seek(const mpz_class& before);
 
  private:
-  void use_graph();
-  void leave_blocking();
+  /// The graph is tried when so many traces have been given.
+  struct Attempt {
+    std::int64_t given;
+    GraphLimits limits;
+  };
+
+  SolverSession& session();
+  void use_search(std::int64_t conflicts);
+  void use_graph(const GraphLimits& limits);
+  void attempt_graph();
+  void leave_search();
+  bool is_due() const { return !attempts_.empty() && attempts_.back().given == given_; }
+  /// Has the graph not been tried yet, or was it too large only?
+  bool can_grow() const { return !is_tried_ || (graph_.layered && !graph_.graph); }
+  void use_tree();
 
   const CompiledModel& model_;
   TraceQuery query_;
-  SolverSession session_;
-  std::optional<SolverSession> tree_session_;
+  std::vector<Attempt> attempts_;  // that are still to be made; the last one first
+  std::optional<SolverSession> session_, tree_session_;
   ModelGraph graph_;
   std::unique_ptr<TraceSource> source_;
-  GraphPaths* paths_ = nullptr;  // `source_`, if it is the graph
+  GraphPaths* paths_ = nullptr;     // `source_`, if it is the graph
+  SearchTraces* search_ = nullptr;  // `source_`, if it is a search
   std::int64_t given_ = 0;
-  bool is_final_ = true;  // `source_` stays to the end
+  bool is_tried_ = false;  // there was an attempt at the graph
   std::string refusal_;
   std::string remark_;  // why the graph was not used
 };

@@ -4,16 +4,10 @@
 #include <utility>
 
 namespace parallax::runtime {
-namespace {
-
-constexpr const char* kStopped = "it was stopped";
-constexpr const char* kTooLarge = "the graph has too many states";
-
-}  // namespace
 
 TraceGraph::TraceGraph(const LayeredModel& model, const GraphLimits& limits,
                        const std::atomic<bool>* stop)
-    : model_(model), limits_(limits), start_(model, model.start, true, stop) {
+    : model_(model), limits_(limits), stop_(stop), start_(model, model.start, true, stop) {
   for (const auto& step : model.steps) {
     steps_.push_back(std::make_unique<StepSolver>(model, step, false, stop));
   }
@@ -44,11 +38,8 @@ std::uint32_t TraceGraph::intern_events(Bits events) {
 }
 
 bool TraceGraph::expand(std::string& reason) {
-  auto moves = start_.moves({}, {}, limits_.nodes);
-  if (!moves) {
-    reason = kTooLarge;
-    return false;
-  }
+  auto moves = start_.moves({}, {}, {limits_.nodes, limits_.conflicts});
+  if (!moves) return give_up(reason);
   std::map<Bits, std::vector<Bits>> starts;
   for (auto& move : *moves) starts[move.observed].push_back(std::move(move.hidden));
   for (auto& [observed, hidden] : starts) {
@@ -68,10 +59,7 @@ bool TraceGraph::expand(std::string& reason) {
     next.erase(std::unique(next.begin(), next.end()), next.end());
     total += next.size();
     layers_.push_back(std::move(next));
-    if (total > limits_.nodes) {
-      reason = kTooLarge;
-      return false;
-    }
+    if (total > limits_.nodes) return give_up(reason);
   }
   return true;
 }
@@ -80,11 +68,8 @@ bool TraceGraph::expand_node(std::uint32_t step, std::uint32_t node, std::string
   std::map<std::pair<Bits, Bits>, std::vector<Bits>> ways;  // by events and observed
   const auto& from = *nodes_[node];
   for (const auto& hidden : from.hidden) {
-    auto moves = steps_[step]->moves(from.observed, hidden, limits_.edges);
-    if (!moves) {
-      reason = kStopped;
-      return false;
-    }
+    auto moves = steps_[step]->moves(from.observed, hidden, {limits_.edges, limits_.conflicts});
+    if (!moves) return give_up(reason);
     for (auto& move : *moves) {
       ways[{std::move(move.events), std::move(move.observed)}].push_back(std::move(move.hidden));
     }
@@ -96,8 +81,11 @@ bool TraceGraph::expand_node(std::uint32_t step, std::uint32_t node, std::string
     edges.push_back({intern_events(way.first), intern({way.second, std::move(hidden)})});
   }
   edge_count_ += edges.size();
-  if (edge_count_ <= limits_.edges) return true;
-  reason = kTooLarge;
+  return edge_count_ <= limits_.edges || give_up(reason);
+}
+
+bool TraceGraph::give_up(std::string& reason) const {
+  reason = stop_ != nullptr && stop_->load() ? "it was stopped" : "the graph has too many states";
   return false;
 }
 

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -32,14 +33,16 @@ struct GraphEdge {
 };
 
 struct GraphLimits {
-  std::size_t nodes = 2'000'000;   // of all layers together
-  std::size_t edges = 20'000'000;  // that are stored
+  std::size_t nodes = 2'000'000;                                      // of all layers together
+  std::size_t edges = 20'000'000;                                     // that are stored
+  std::int64_t conflicts = std::numeric_limits<std::int64_t>::max();  // of the search for them
 };
 
 /// The traces of a model as the paths of a layered graph: every distinct state of a window is asked
 /// for its successors once, whatever leads to it and whenever, so that cost grows with states and
 /// not with traces. A path from the start to the last layer is a trace, and distinct paths are
-/// distinct traces. Needs a satisfiable model.
+/// distinct traces, provided that clauses which no window has can hold
+/// (LayeredModel::has_unplaced).
 class TraceGraph {
  public:
   /// None if the solver was stopped or a limit was hit; `reason` says which. `model` outlives the
@@ -70,6 +73,7 @@ class TraceGraph {
   TraceGraph(const LayeredModel& model, const GraphLimits& limits, const std::atomic<bool>* stop);
   bool expand(std::string& reason);
   bool expand_node(std::uint32_t step, std::uint32_t node, std::string& reason);
+  bool give_up(std::string& reason) const;
   void count_back();
   std::uint32_t intern(GraphNode node);
   std::uint32_t intern_events(Bits events);
@@ -78,6 +82,7 @@ class TraceGraph {
 
   const LayeredModel& model_;
   GraphLimits limits_;
+  const std::atomic<bool>* stop_;
   StepSolver start_;
   std::vector<std::unique_ptr<StepSolver>> steps_;
   std::map<GraphNode, std::uint32_t> node_index_;

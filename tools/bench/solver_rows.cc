@@ -44,14 +44,14 @@ void measure_strategies(Bench& bench) {
   for (const int limit : {5'000, 50'000}) {
     const auto file = bench.model_file("distant_4_6");
     bench.compare(fmt::format("distant_4_6, {} traces", limit),
-                  {lists_by("tree", file, limit), lists_by("guarded", file, limit),
-                   lists_by("blocking", file, limit)},
+                  {lists_by("search", file, limit), lists_by("tree", file, limit),
+                   lists_by("guarded", file, limit), lists_by("blocking", file, limit)},
                   std::to_string(limit));
   }
   bench.begin("ways to enumerate, where the trace graph applies");
   const auto file = bench.model_file("robot_4_2_4");
   bench.compare("robot_4_2_4",
-                {lists_by("graph", file, 0), lists_by("tree", file, 0),
+                {lists_by("graph", file, 0), lists_by("search", file, 0), lists_by("tree", file, 0),
                  lists_by("guarded", file, 0), lists_by("blocking", file, 0)},
                 "3488");
 }

@@ -37,6 +37,12 @@ struct TracesOptions {
   CertifyOption certify;
 };
 
+std::vector<std::string> strategy_names() {
+  std::vector<std::string> names;
+  for (const auto& [strategy, name] : runtime::kStrategyNames) names.emplace_back(name);
+  return names;
+}
+
 runtime::TraceQuery query_of(const TracesOptions& options) {
   runtime::TraceQuery query;
   query.distinct =
@@ -322,9 +328,9 @@ Command add_traces_command(CLI::App& app) {
   distinct->check(CLI::IsMember({"observable", "all"}))->capture_default_str();
   command
       ->add_option("--strategy", options->strategy,
-                   "auto, blocking, guarded, tree or graph: the traces and their order are the "
-                   "same, the time is not")
-      ->check(CLI::IsMember({"auto", "blocking", "guarded", "tree", "graph"}))
+                   "auto, search, graph, tree, guarded or blocking: the traces and their order are "
+                   "the same, the time is not")
+      ->check(CLI::IsMember(strategy_names()))
       ->capture_default_str();
   command->add_flag("--stats", options->model.stats,
                     "Show on standard error how traces were found and what each axiom costs");

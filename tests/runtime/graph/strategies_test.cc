@@ -74,7 +74,8 @@ void compare(const compiler::CompiledModel& model, Distinct distinct, Seen& seen
   if (wanted.size() == kLimit) return;
   ++seen.models;
   seen.traces += wanted.size();
-  for (const auto strategy : {Strategy::kAuto, Strategy::kGuarded, Strategy::kTree}) {
+  for (const auto strategy :
+       {Strategy::kAuto, Strategy::kSearch, Strategy::kGuarded, Strategy::kTree}) {
     for (const bool pieces : {false, true}) {
       const auto found = lines(model, query(strategy, distinct), pieces);
       if (distinct == Distinct::kAll) {
