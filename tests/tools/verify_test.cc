@@ -86,6 +86,20 @@ TEST_CASE("verify: what is wrong with a property is reported in it") {
   CHECK(result.err.find("Holding") != std::string::npos);
 }
 
+TEST_CASE("check warns of retries that cannot help in the model") {
+  const CliFixture cli;
+  cli.write("stubborn.lisp",
+            "(with-retry-counters ((n 2))\n"
+            "  (with-failure-handling ((manipulation-low-level-failure (e) (do-retry n (retry))))\n"
+            "    (perform (an action (type picking-up) (object (an object (name box)))))))\n");
+  const auto result = cli.parallax({"check", "domain.e", "start.e", "--horizon", "5", "--plan",
+                                    "stubborn.lisp", "--bind", "robot.bind"});
+  CHECK(result.code == 0);
+  CHECK(result.err.find("stubborn.lisp:3:5") != std::string::npos);
+  CHECK(result.err.find("W-DEAD") != std::string::npos);
+  CHECK(result.err.find("2 repetitions can be reached") != std::string::npos);
+}
+
 TEST_CASE("the plan of the command line is compiled, drawn and enumerated") {
   const CliFixture cli;
   auto result = cli.parallax(with_plan({"compile", "--emit", "cfg"}));

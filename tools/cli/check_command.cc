@@ -3,6 +3,7 @@
 
 #include "compiler/artifact/artifact_writer.h"
 #include "compiler/base/diagnostic_codes.h"
+#include "tools/cli/dead_retries.h"
 #include "tools/cli/model_options.h"
 #include "tools/cli/scenario_model.h"
 
@@ -42,7 +43,8 @@ int check(const CheckOptions& check_options, Invocation& invocation) {
   for (const auto& path : options.models) {
     // Reports into the sink; a result says only that there was nothing to report.
     if (is_scenario(path)) {
-      (void)load_scenario_model(path, invocation);
+      const auto loaded = load_scenario_model(path, invocation);
+      if (loaded) report_dead_retries(loaded->compilation, invocation.sink());
     } else if (compiler::is_artifact_name(path)) {
       (void)compiler::load_artifact(path, invocation.files(), invocation.sink());
     } else {
@@ -53,7 +55,8 @@ int check(const CheckOptions& check_options, Invocation& invocation) {
     auto input_options = options;
     input_options.models = models;
     input_options.lint = !check_options.no_lint;
-    (void)compile_models(input_options, invocation);
+    const auto compilation = compile_models(input_options, invocation);
+    if (compilation) report_dead_retries(*compilation, invocation.sink());
   }
   if (invocation.sink().has_errors()) return 0;
   if (invocation.options().json) {
