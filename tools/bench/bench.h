@@ -73,6 +73,7 @@ void measure_listing(Bench& bench);
 void measure_first_trace(Bench& bench);
 void measure_strategies(Bench& bench);
 void measure_proofs(Bench& bench);
+void measure_plan(Bench& bench);
 void measure_world(Bench& bench);
 void measure_demo(Bench& bench);
 

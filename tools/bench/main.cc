@@ -24,6 +24,7 @@ const std::vector<Section>& sections() {
       {"proofs", "a checked proof that a list is complete, beside the list alone", measure_proofs},
       {"examples", "the examples of the reasoner of 2005", measure_examples},
       {"horizons", "compile time over the horizon", measure_horizons},
+      {"plan", "a long plan in the kitchen", measure_plan},
       {"world", "the two-region world", measure_world},
       {"demo", "the demo", measure_demo},
   };
