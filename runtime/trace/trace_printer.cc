@@ -25,8 +25,21 @@ void append(std::string& out, std::string_view mark, const Names& names) {
   }
 }
 
+bool is_plain(char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; }
+
 /// `["A","B"]`; atoms are names and numbers, but a name in the text may need escapes.
-std::string json_list(const Names& names) { return nlohmann::json(names).dump(); }
+std::string json_list(const Names& names) {
+  std::string out = "[";
+  for (const auto& name : names) {
+    if (out.size() > 1) out += ',';
+    if (std::all_of(name.begin(), name.end(), is_plain)) {
+      out.append(1, '"').append(name).append(1, '"');
+    } else {
+      out += nlohmann::json(name).dump();
+    }
+  }
+  return out += ']';
+}
 
 class TextFormat final : public TraceFormat {
  public:

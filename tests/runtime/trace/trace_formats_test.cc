@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "compiler/pipeline/compile.h"
 #include "runtime/enumerate/model_enumerator.h"
@@ -253,6 +254,16 @@ TEST_CASE("a field of a CSV file is quoted where it must be, and only there") {
   CHECK(runtime::csv_field("At(a,b)") == "\"At(a,b)\"");
   CHECK(runtime::csv_field("a\"b") == "\"a\"\"b\"");
   CHECK(runtime::csv_field("a\nb") == "\"a\nb\"");
+}
+
+TEST_CASE("a name in a JSON line is escaped where it must be") {
+  Trace trace;
+  trace.number = 1;
+  trace.points.resize(1);
+  trace.points[0].holds = {"A()", "a\"b\\c", "a\nb\x01", "\xc3\xa9"};
+  const auto line = nlohmann::json::parse(runtime::to_jsonl(trace));
+  CHECK(line["timepoints"][0]["holds"] == trace.points[0].holds);
+  CHECK(line["timepoints"][0]["happens"].empty());
 }
 
 }  // namespace
