@@ -4,6 +4,7 @@
 
 #include "runtime/enumerate/trace_tree.h"
 #include "runtime/graph/trace_sampler.h"
+#include "tests/support/classic_models.h"
 #include "tests/support/random_model.h"
 #include "tests/support/text_model.h"
 
@@ -120,6 +121,16 @@ TEST_CASE("every strategy gives the same traces in the same order") {
   CHECK(seen.models > 800);
   CHECK(seen.lists > 300);
   CHECK(seen.traces > 5000);
+}
+
+TEST_CASE("every strategy gives the same traces of the classic problems") {
+  Seen seen;
+  for_each_classic([&](const compiler::Compilation& compiled) {
+    compare(compiled.model, Distinct::kObservable, seen);
+    compare(compiled.model, Distinct::kAll, seen);
+  });
+  CHECK(seen.models > 20);
+  CHECK(seen.lists > 10);
 }
 
 TEST_CASE("a level with many children is halved and the list stays the same") {
