@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "tests/compiler/lint/lint_text.h"
+#include "tests/support/random.h"
 
 namespace parallax::test {
 namespace {
@@ -42,22 +43,6 @@ TEST_CASE("conditions that can hold are left alone") {
     CHECK_MESSAGE(!impossible(condition), condition);
   }
 }
-
-/// SplitMix64 (Steele, Lea, Flood 2014).
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint32_t below(std::uint32_t bound) {
-    state_ += 0x9E3779B97F4A7C15ULL;
-    auto z = state_;
-    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
-    return static_cast<std::uint32_t>((z ^ (z >> 31U)) % bound);
-  }
-
- private:
-  std::uint64_t state_;
-};
 
 /// A random conjunction of literals over n1 and n2 in 0..3, with what it says.
 struct Conjunction {

@@ -6,9 +6,12 @@
 #include <string>
 
 #include "compiler/plan/number.h"
+#include "tests/support/random.h"
 
 namespace parallax::compiler {
 namespace {
+
+using test::Random;
 
 struct Reading {
   base::SourceFiles files;
@@ -150,22 +153,6 @@ TEST_CASE("reader: several errors come out of one run") {
   const auto reading = read("#.a (b . c) #S(d) 1/0");
   CHECK(reading.sink.error_count() == 4);
 }
-
-/// A small generator of our own: the same data everywhere.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint32_t below(std::uint32_t limit) {
-    state_ += 0x9E3779B97F4A7C15ULL;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
-    return static_cast<std::uint32_t>((z ^ (z >> 31U)) % limit);
-  }
-
- private:
-  std::uint64_t state_;
-};
 
 std::string random_text(Random& random) {
   constexpr std::string_view kLetters = "abzAZ019?*-+/.:|\\\"'`,;#()[] \t\n&<=>~\xC3\xA4";

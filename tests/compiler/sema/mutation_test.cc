@@ -9,6 +9,7 @@
 #include "compiler/syntax/printer.h"
 #include "tests/compiler/front_end.h"
 #include "tests/compiler/typed_text.h"
+#include "tests/support/random.h"
 
 namespace parallax::test {
 namespace {
@@ -54,29 +55,13 @@ range level 0 3
 range offset 1 2
 )";
 
-/// SplitMix64 (Steele, Lea, Flood 2014).
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::size_t below(std::size_t bound) {
-    state_ += 0x9E3779B97F4A7C15ULL;
-    auto z = state_;
-    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
-    return static_cast<std::size_t>((z ^ (z >> 31U)) % bound);
-  }
-
- private:
-  std::uint64_t state_;
-};
-
 std::string damaged(Random& random) {
   constexpr std::string_view kPieces = "()[]{}.,:;!&|<->=+*/^% \n\tAaz09_@\r\xC3\xFF";
   std::string text(kModel);
   const auto count = 1 + random.below(4);
   for (std::size_t i = 0; i < count; ++i) {
     const auto at = random.below(text.size());
-    const auto length = std::min(random.below(12), text.size() - at);
+    const auto length = std::min<std::size_t>(random.below(12), text.size() - at);
     switch (random.below(4)) {
       case 0:
         text.erase(at, length);

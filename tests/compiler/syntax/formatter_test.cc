@@ -15,6 +15,7 @@
 #include "compiler/syntax/foundations.h"
 #include "tests/compiler/front_end.h"
 #include "tests/support/peer_examples.h"
+#include "tests/support/random.h"
 
 namespace parallax::test {
 namespace {
@@ -158,22 +159,6 @@ TEST_CASE("formatter: the examples of the 2005 reasoner") {
   }
   CHECK(count > 20);
 }
-
-/// SplitMix64 (Steele, Lea, Flood 2014).
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint32_t below(std::uint32_t bound) {
-    state_ += 0x9E3779B97F4A7C15ULL;
-    auto z = state_;
-    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
-    return static_cast<std::uint32_t>((z ^ (z >> 31U)) % bound);
-  }
-
- private:
-  std::uint64_t state_;
-};
 
 /// A formula with random blanks, line breaks and comments between its tokens.
 class TextGenerator {

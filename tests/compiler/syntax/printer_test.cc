@@ -10,6 +10,7 @@
 
 #include "tests/compiler/front_end.h"
 #include "tests/compiler/syntax/tree_text.h"
+#include "tests/support/random.h"
 
 namespace parallax::test {
 namespace {
@@ -19,22 +20,6 @@ using compiler::Node;
 using compiler::NodeId;
 using compiler::NodeKind;
 using compiler::Operator;
-
-/// SplitMix64 (Steele, Lea, Flood 2014): the same trees on every machine.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint32_t below(std::uint32_t bound) {
-    state_ += 0x9E3779B97F4A7C15ULL;
-    auto z = state_;
-    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBULL;
-    return static_cast<std::uint32_t>((z ^ (z >> 31U)) % bound);
-  }
-
- private:
-  std::uint64_t state_;
-};
 
 constexpr std::string_view kNames = "a time27 Cat _x 0 12 0.5 Happens";
 
