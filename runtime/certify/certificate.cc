@@ -37,9 +37,17 @@ ProofReport check_files(const ProofFiles& files, const ProofLimits& limits) {
   return check_proof(formula, proof, DratFormat::kBinary, limits);
 }
 
+/// The log of a search. It may use many variables of its own.
+ProofReport check_log(const ProofFiles& files, ProofLimits limits) {
+  if (!files.flush()) return {};
+  limits.more_variables = 1U << 20U;
+  return check_files(files, limits);
+}
+
 /// Makes the proof and has it checked.
 ProofReport make_proof(const CompletenessClaim& claim, ProofFiles& files, const ProofLimits& limits,
                        base::DiagnosticSink& sink) {
+  if (!files.restart(sink)) return {ProofVerdict::kNotFinished, {}, {}};
   switch (write_proof(claim, files, limits)) {
     case SolveStatus::kUnsatisfiable:
       break;
@@ -55,11 +63,15 @@ ProofReport make_proof(const CompletenessClaim& claim, ProofFiles& files, const 
 }  // namespace
 
 Certificate prove(const CompletenessClaim& claim, ProofFiles& files, const ProofLimits& limits,
-                  base::DiagnosticSink& sink) {
+                  base::DiagnosticSink& sink, bool logged) {
   if (!write_formula(claim, files, sink)) return {};
-  const auto report = make_proof(claim, files, limits, sink);
+  const auto log = logged ? check_log(files, limits) : ProofReport{};
+  const bool log_fine = log.verdict == ProofVerdict::kAccepted;
+  const auto report = log_fine ? log : make_proof(claim, files, limits, sink);
+  if (log_fine && !files.close(sink)) return {};
   const auto subject = files.proof_path().string();
-  Certificate certificate{report.verdict, report.statistics, 0};
+  Certificate certificate{report.verdict, report.statistics, 0,
+                          log_fine ? ProofOrigin::kSearch : ProofOrigin::kFreshSolve};
   if (report.verdict == ProofVerdict::kRejected) {
     sink.error_about(DiagnosticCode::kProofRejected, subject, report.reason);
   } else if (report.verdict == ProofVerdict::kNotFinished) {

@@ -13,8 +13,9 @@ using compiler::Literal;
 
 CompletenessClaim::CompletenessClaim(const CompiledModel& model)
     : model_(model),
+      lengths_(model),
       index_(model),
-      variables_(model.variable_count() + (model.has_constraints ? 2 * model.horizon + 2 : 0)) {
+      variables_(model.has_constraints ? lengths_.last() : model.variable_count()) {
   model.for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
                           std::optional<Timepoint> time) {
     const bool result = kind == AtomKind::kResult && model.has_constraints;
@@ -48,14 +49,11 @@ void CompletenessClaim::add(const Trace& trace) {
   traces_.push_back(std::move(found));
 }
 
-/// The clauses of timepoint t, 1 .. horizon, hold.
-Literal CompletenessClaim::reaches(Timepoint t) const {
-  return Literal::positive(model_.variable_count() + t);
-}
-
-/// The trace ends at n, 1 .. horizon; 0: it goes on beyond the horizon.
-Literal CompletenessClaim::ends(Timepoint n) const {
-  return Literal::positive(model_.variable_count() + model_.horizon + 1 + n);
+std::vector<Literal> CompletenessClaim::given() const {
+  std::vector<Literal> literals;
+  if (model_.has_constraints) return literals;
+  for (Timepoint t = 1; t <= model_.horizon; ++t) literals.push_back(lengths_.reaches(t));
+  return literals;
 }
 
 void CompletenessClaim::visit_model(const Visit& visit) const {
@@ -68,46 +66,52 @@ void CompletenessClaim::visit_model(const Visit& visit) const {
       continue;
     }
     guarded.assign(model_.clauses[i].begin(), model_.clauses[i].end());
-    guarded.push_back(~reaches(t));
+    guarded.push_back(~lengths_.reaches(t));
     visit(guarded);
   }
 }
 
-/// The trace is its initial state, where the constraints hold.
-Literal CompletenessClaim::ends_at_start() const {
-  return Literal::positive(model_.variable_count() + 2 * model_.horizon + 2);
-}
-
 /// A trace that ends at n reaches n, and the constraints hold there and at no earlier timepoint (0
-/// counts if it has a hit atom). One that goes on reaches the horizon without that.
-void CompletenessClaim::visit_length(Timepoint n, const Visit& visit) const {
-  const auto last = n == 0 ? model_.horizon : n;
+/// counts if it has a hit atom).
+void CompletenessClaim::visit_end(Timepoint n, const Visit& visit) const {
   const auto imply = [&](Literal consequence) {
-    const Literal clause[] = {~ends(n), consequence};
+    const Literal clause[] = {~lengths_.ends(n), consequence};
     visit(clause);
   };
-  for (Timepoint t = 1; t <= last; ++t) {
-    imply(reaches(t));
+  for (Timepoint t = 1; t <= n; ++t) imply(lengths_.reaches(t));
+  for (Timepoint t = 0; t <= n; ++t) {
     const auto hit = index_.find(AtomKind::kHit, "hit", t);
-    PARALLAX_REQUIRE(hit.has_value(), "every timepoint from 1 has its hit atom");
-    imply(t == n ? *hit : ~*hit);
+    PARALLAX_REQUIRE(hit.has_value() || t == 0, "every timepoint from 1 has its hit atom");
+    if (hit) imply(t == n ? *hit : ~*hit);
   }
-  if (const auto hit = index_.find(AtomKind::kHit, "hit", 0)) imply(~*hit);
-  if (n > 0) return;
-  if (const auto running = index_.find(AtomKind::kRunning, "running", last)) imply(*running);
+}
+
+/// One that goes on reaches the horizon without that.
+void CompletenessClaim::visit_going_on(const Visit& visit) const {
+  const auto imply = [&](Literal consequence) {
+    const Literal clause[] = {~lengths_.goes_on(), consequence};
+    visit(clause);
+  };
+  for (Timepoint t = 1; t <= model_.horizon; ++t) imply(lengths_.reaches(t));
+  for (Timepoint t = 0; t <= model_.horizon; ++t) {
+    if (const auto hit = index_.find(AtomKind::kHit, "hit", t)) imply(~*hit);
+  }
+  if (const auto running = index_.find(AtomKind::kRunning, "running", model_.horizon)) {
+    imply(*running);
+  }
 }
 
 void CompletenessClaim::visit_lengths(const Visit& visit) const {
   if (!model_.has_constraints) return;
   std::vector<Literal> some;
-  if (const auto hit = index_.find(AtomKind::kHit, "hit", 0)) {
-    const Literal clause[] = {~ends_at_start(), *hit};
-    visit(clause);
-    some.push_back(ends_at_start());
+  if (may_go_on_) {
+    some.push_back(lengths_.goes_on());
+    visit_going_on(visit);
   }
-  for (Timepoint n = shortest_; n <= model_.horizon; ++n) {
-    some.push_back(ends(n));
-    visit_length(n, visit);
+  const bool hits_at_start = index_.find(AtomKind::kHit, "hit", 0).has_value();
+  for (Timepoint n = hits_at_start ? 0 : 1; n <= model_.horizon; ++n) {
+    some.push_back(lengths_.ends(n));
+    visit_end(n, visit);
   }
   visit(some);
 }
@@ -116,9 +120,7 @@ void CompletenessClaim::visit_traces(const Visit& visit) const {
   std::vector<Literal> clause;
   for (const auto& found : traces_) {
     clause.clear();
-    if (model_.has_constraints) {
-      clause.push_back(found.length > 0 ? ~ends(found.length) : ~ends_at_start());
-    }
+    if (model_.has_constraints) clause.push_back(~lengths_.ends(found.length));
     for (std::size_t i = 0; i < observables_.size(); ++i) {
       if (!is_key(observables_[i], found.length)) continue;
       clause.push_back(found.values[i] ? ~observables_[i].literal : observables_[i].literal);

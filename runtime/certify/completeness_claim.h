@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compiler/artifact/compiled_model.h"
+#include "runtime/session/length_variables.h"
 #include "runtime/trace/trace.h"
 
 namespace parallax::runtime {
@@ -26,12 +27,15 @@ class CompletenessClaim {
   explicit CompletenessClaim(const CompiledModel& model);
 
   /// For models with constraints: executions that do not end by the horizon may be left.
-  void limit_to_horizon() { shortest_ = 1; }
+  void limit_to_horizon() { may_go_on_ = false; }
   /// Traces as they were listed. Memory: one bit for each observable atom.
   void add(const Trace& trace);
   std::int64_t traces() const { return static_cast<std::int64_t>(traces_.size()); }
 
   std::int64_t variables() const { return variables_; }
+  /// What a search for traces may take for granted: without state constraints the claim is about
+  /// the whole horizon.
+  std::vector<compiler::Literal> given() const;
   using Visit = std::function<void(std::span<const compiler::Literal>)>;
   void for_each_clause(const Visit& visit) const;
   /// With comments that name the variables of observable atoms. Returns when the stream fails.
@@ -50,20 +54,19 @@ class CompletenessClaim {
   };
 
   bool is_key(const Observable& observable, Timepoint length) const;
-  compiler::Literal reaches(Timepoint t) const;
-  compiler::Literal ends(Timepoint n) const;
-  compiler::Literal ends_at_start() const;
   void visit_model(const Visit& visit) const;
   void visit_lengths(const Visit& visit) const;
-  void visit_length(Timepoint n, const Visit& visit) const;
+  void visit_end(Timepoint n, const Visit& visit) const;
+  void visit_going_on(const Visit& visit) const;
   void visit_traces(const Visit& visit) const;
 
   const CompiledModel& model_;
+  LengthVariables lengths_;
   compiler::AtomIndex index_;
   std::vector<Observable> observables_;
   std::vector<Found> traces_;
   std::int64_t variables_;
-  Timepoint shortest_ = 0;  // 0 stands for a trace that goes on
+  bool may_go_on_ = true;
 };
 
 }  // namespace parallax::runtime

@@ -51,6 +51,13 @@ ProofFiles::~ProofFiles() {
   fs::remove(formula_part(), ignored);
 }
 
+base::Status ProofFiles::restart(base::DiagnosticSink& sink) {
+  std::fclose(std::exchange(proof_, nullptr));  // what was lost does not matter any more
+  proof_ = std::fopen(proof_part().c_str(), "wb");
+  if (proof_ == nullptr) return not_writable(proof_path_, errno, sink);
+  return base::Unit{};
+}
+
 base::Status ProofFiles::close(base::DiagnosticSink& sink) {
   errno = 0;
   const bool failed =

@@ -31,6 +31,10 @@ class ProofFiles {
   std::filesystem::path formula_part() const { return formula_path().string() + ".part"; }
   std::filesystem::path proof_part() const { return proof_path_.string() + ".part"; }
 
+  /// What was written so far can be read. False: a part of it was lost.
+  bool flush() const { return std::fflush(proof_) == 0 && std::ferror(proof_) == 0; }
+  /// Drops what was written to the proof; reports kFileNotWritable.
+  base::Status restart(base::DiagnosticSink& sink);
   /// Everything was written to the disk; reports kFileNotWritable.
   base::Status close(base::DiagnosticSink& sink);
   /// Gives them their names.

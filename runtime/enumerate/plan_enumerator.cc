@@ -65,7 +65,7 @@ std::optional<Trace> PlanEnumerator::next() {
         return std::nullopt;
       }
       prepare_orders(++n_);
-      guard_ = session_->new_variable();
+      guard_ = session_->lengths().ends(n_);
     }
     auto assumptions = hit_at(n_);
     assumptions.push_back(*guard_);
@@ -173,13 +173,17 @@ void PlanEnumerator::finish() {
   for (Timepoint t = first_; t <= n_ && !options_.all_hits; ++t) {
     unmet.push_back(~*index_.find(AtomKind::kHit, "hit", t));
   }
-  const bool planned = index_.find(AtomKind::kRunning, "running", n_).has_value();
-  const auto cuts = find_cuts(unmet);
-  if (cuts == SolveStatus::kUnknown) return;
-  const auto steps = planned ? find_step(unmet) : session_->solve(n_, unmet);
-  if (steps == SolveStatus::kUnknown) return;
-  const bool open = cuts == SolveStatus::kSatisfiable || steps == SolveStatus::kSatisfiable;
-  exploration_ = open ? Exploration::kCompleteUpToBound : Exploration::kAllTracesExplored;
+  const auto running = index_.find(AtomKind::kRunning, "running", n_);
+  auto going_on = unmet;
+  if (running) going_on.push_back(*running);
+  const auto open = session_->solve(n_, going_on);
+  if (open == SolveStatus::kUnknown) return;
+  if (open == SolveStatus::kSatisfiable) {
+    if (find_cuts(unmet) == SolveStatus::kUnknown) return;
+    if (running && find_step(unmet) == SolveStatus::kUnknown) return;
+  }
+  exploration_ = open == SolveStatus::kSatisfiable ? Exploration::kCompleteUpToBound
+                                                   : Exploration::kAllTracesExplored;
 }
 
 /// Asks for every cut by itself whether some execution comes to it.

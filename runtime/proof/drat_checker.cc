@@ -53,6 +53,10 @@ bool DratChecker::normalize(std::span<const std::int64_t> clause) {
 DratChecker::Outcome DratChecker::hold() {
   const auto added = clauses_.add(clause_);
   if (!added) return Outcome::kNoRoom;
+  for (const auto literal : clause_) {
+    if (literal >= occurs_.size()) occurs_.resize(literal + 1U);
+    occurs_[literal] = true;
+  }
   refuted_ = !propagator_.attach(*added) || propagator_.propagate() != ProofClauses::kNone;
   return propagator_.stopped() ? Outcome::kStopped : Outcome::kFine;
 }
@@ -123,6 +127,7 @@ DratChecker::Outcome DratChecker::follows() {
 /// The negation of the clause is assigned and led to no conflict.
 DratChecker::Outcome DratChecker::follows_by_resolution(Code pivot, std::size_t root) {
   const auto complement = negated(pivot);
+  if (complement >= occurs_.size() || !occurs_[complement]) return Outcome::kFine;
   for (Ref clause = clauses_.first(); clause != clauses_.end(); clause = clauses_.next(clause)) {
     if (clauses_.is_removed(clause)) continue;
     const auto literals = std::as_const(clauses_).literals(clause);

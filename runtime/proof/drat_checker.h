@@ -34,7 +34,8 @@ struct ProofStatistics {
 /// that has the complement (RAT). Deleting a clause that supports an assigned literal is ignored,
 /// as is usual: more clauses refute no less, and the clauses that a step is checked against are
 /// always those that are held. Literals are in DIMACS convention. Cost of a RUP step: what is
-/// propagated; a RAT step looks at every clause once more.
+/// propagated; a RAT step looks at every clause once more, unless
+/// the complement of its first literal never occurred.
 class DratChecker {
  public:
   /// `variables`: of the formula.
@@ -76,6 +77,7 @@ class DratChecker {
   bool refuted_ = false;
   std::vector<Code> clause_;  // the one in work: distinct literals, in the order given
   std::vector<Code> sorted_;
+  std::vector<bool> occurs_;  // by literal: in some clause that was ever held
   ProofStatistics statistics_;
 };
 

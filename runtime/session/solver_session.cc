@@ -5,8 +5,11 @@
 namespace parallax::runtime {
 
 SolverSession::SolverSession(const CompiledModel& model, std::unique_ptr<SatSolver> solver)
-    : model_(&model), solver_(std::move(solver)), variable_count_(model.variable_count()) {
-  for (Timepoint t = 1; t <= model.horizon; ++t) guards_.push_back(new_variable());
+    : model_(&model),
+      solver_(std::move(solver)),
+      lengths_(model),
+      variable_count_(lengths_.last()) {
+  for (Timepoint t = 1; t <= model.horizon; ++t) guards_.push_back(lengths_.reaches(t));
   std::vector<Literal> guarded;
   for (std::size_t i = 0; i < model.clauses.size(); ++i) {
     const auto clause = model.clauses[i];

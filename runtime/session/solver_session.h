@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compiler/artifact/compiled_model.h"
+#include "runtime/session/length_variables.h"
 #include "runtime/solver/sat_solver.h"
 
 namespace parallax::runtime {
@@ -20,6 +21,7 @@ class SolverSession {
   SolverSession(const CompiledModel& model, std::unique_ptr<SatSolver> solver);
 
   const CompiledModel& model() const { return *model_; }
+  const LengthVariables& lengths() const { return lengths_; }
   /// A variable of the session's own, for guards.
   Literal new_variable();
   void add_clause(std::span<const Literal> clause) { solver_->add_clause(clause); }
@@ -37,6 +39,7 @@ class SolverSession {
  private:
   const CompiledModel* model_;  // outlives the session
   std::unique_ptr<SatSolver> solver_;
+  LengthVariables lengths_;
   std::int32_t variable_count_ = 0;
   std::vector<Literal> guards_;  // by timepoint - 1
   std::vector<bool> values_;     // by variable - 1

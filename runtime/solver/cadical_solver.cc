@@ -11,9 +11,13 @@ class CadicalSolver final : public SatSolver {
     solver_.set("quiet", 1);
     if (stop != nullptr) solver_.connect_terminator(&terminator_);
   }
-  CadicalSolver(std::FILE* proof, ProofForm form, const std::atomic<bool>* stop)
+  CadicalSolver(std::FILE* proof, ProofForm form, const std::atomic<bool>* stop, ProofUse use)
       : CadicalSolver(stop) {
     solver_.set("binary", form == ProofForm::kBinary ? 1 : 0);
+    if (use == ProofUse::kIncremental) {
+      solver_.set("elim", 0);
+      solver_.set("decompose", 0);
+    }
     solver_.trace_proof(proof, "proof");
   }
 
@@ -83,8 +87,8 @@ std::unique_ptr<SatSolver> make_cadical_solver(const std::atomic<bool>* stop) {
 }
 
 std::unique_ptr<SatSolver> make_proving_solver(std::FILE* proof, ProofForm form,
-                                               const std::atomic<bool>* stop) {
-  return std::make_unique<CadicalSolver>(proof, form, stop);
+                                               const std::atomic<bool>* stop, ProofUse use) {
+  return std::make_unique<CadicalSolver>(proof, form, stop, use);
 }
 
 }  // namespace parallax::runtime

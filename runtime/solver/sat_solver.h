@@ -54,10 +54,18 @@ std::unique_ptr<SatSolver> make_cadical_solver(const std::atomic<bool>* stop = n
 
 enum class ProofForm : std::uint8_t { kBinary, kText };
 
+enum class ProofUse : std::uint8_t {
+  kOneCall,
+  /// Without eliminating and substituting variables: a later call may bring their clauses back, and
+  /// CaDiCaL does not write that down.
+  kIncremental,
+};
+
 /// The same solver; what it learns and deletes goes to `proof` as DRAT, until it finds a
 /// contradiction that rests on no assumption. The stream outlives the solver and is the caller's to
 /// flush and to ask for errors.
 std::unique_ptr<SatSolver> make_proving_solver(std::FILE* proof, ProofForm form,
-                                               const std::atomic<bool>* stop = nullptr);
+                                               const std::atomic<bool>* stop = nullptr,
+                                               ProofUse use = ProofUse::kOneCall);
 
 }  // namespace parallax::runtime

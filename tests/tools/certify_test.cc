@@ -41,8 +41,10 @@ TEST_CASE("the summary says whether the list was proved to be complete") {
   CHECK(holds(cli.read("m.drat.cnf"), "HoldsAt(G(),1)\np cnf "));
   const auto lines = cli.parallax({"traces", "m.e", "--certify=q.drat", "--format", "jsonl"});
   CHECK(holds(lines.out,
-              "\"complete\":true,\"proof\":\"checked\",\"proof_file\":\"q.drat\","
-              "\"formula_file\":\"q.drat.cnf\""));
+              "\"complete\":true,\"proof\":\"checked\",\"proof_origin\":\"search\","
+              "\"proof_file\":\"q.drat\",\"formula_file\":\"q.drat.cnf\""));
+  const auto tree = cli.parallax({"traces", "m.e", "--certify", "--strategy", "tree", "--json"});
+  CHECK(holds(tree.out, "\"proof\":\"checked\",\"proof_origin\":\"fresh solve\""));
 }
 
 TEST_CASE("an unsatisfiable model is certified, listed or counted") {

@@ -84,7 +84,7 @@ const std::map<std::string, std::vector<std::string>>& allowed() {
       {"runtime/proof", {"compiler/base"}},
       {"runtime/trace", front},
       {"runtime/certify",
-       {"compiler/base", "compiler/artifact", "runtime/proof", "runtime/solver",
+       {"compiler/base", "compiler/artifact", "runtime/proof", "runtime/solver", "runtime/session",
         "runtime/trace"}},
       {"runtime/explain",
        {"compiler/base", "compiler/artifact", "runtime/proof", "runtime/solver"}},

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "runtime/certify/logged_solver.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/cli/signals.h"
 
@@ -49,7 +50,12 @@ void TraceCertifier::decline(const std::string& reason) {
                                  files_->proof_path().string(), reason);
 }
 
-void TraceCertifier::conclude(const std::string& exploration) {
+std::unique_ptr<runtime::SatSolver> TraceCertifier::solver() {
+  if (!files_) return runtime::make_cadical_solver(&stop_flag());
+  return runtime::make_logged_solver(files_->proof(), *claim_, &stop_flag());
+}
+
+void TraceCertifier::conclude(const std::string& exploration, bool searched) {
   if (!files_) return;
   if (!is_whole(exploration)) return decline("the list was stopped before its end");
   if (exploration == runtime::to_string(runtime::Exploration::kCompleteUpToBound)) {
@@ -59,10 +65,11 @@ void TraceCertifier::conclude(const std::string& exploration) {
   limits.stop = &stop_flag();
   const auto memory_mb = invocation_.options().memory_limit_mb;
   if (memory_mb > 0) limits.bytes = static_cast<std::size_t>(memory_mb) << 19U;  // the half
-  const auto certificate = runtime::prove(*claim_, *files_, limits, invocation_.sink());
+  const auto certificate = runtime::prove(*claim_, *files_, limits, invocation_.sink(), searched);
   switch (certificate.verdict) {
     case runtime::ProofVerdict::kAccepted:
       verdict_ = "proof checked";
+      origin_ = certificate.origin == runtime::ProofOrigin::kSearch ? "search" : "fresh solve";
       break;
     case runtime::ProofVerdict::kRejected:
       verdict_ = "proof not accepted";
@@ -72,9 +79,11 @@ void TraceCertifier::conclude(const std::string& exploration) {
       return;
   }
   if (!option_.keep) return;
-  invocation_.remark(fmt::format("{}: {} bytes, {} lemmas, refutes {}",
+  invocation_.remark(fmt::format("{}: {} bytes, {} lemmas, by {}, refutes {}",
                                  files_->proof_path().string(), certificate.proof_bytes,
-                                 certificate.statistics.lemmas, files_->formula_path().string()));
+                                 certificate.statistics.lemmas,
+                                 origin_ == "search" ? "the search itself" : "a fresh solve",
+                                 files_->formula_path().string()));
 }
 
 std::string TraceCertifier::remark(const std::string& exploration) const {
@@ -84,6 +93,7 @@ std::string TraceCertifier::remark(const std::string& exploration) const {
 std::string TraceCertifier::fields() const {
   const auto short_form = verdict_ == "no proof" ? "none" : verdict_.substr(6);
   auto out = fmt::format("\"proof\":\"{}\",", short_form);
+  if (verdict_ == "proof checked") out += fmt::format("\"proof_origin\":\"{}\",", origin_);
   if (verdict_ == "proof checked" && option_.keep) {
     const auto text = [](const std::filesystem::path& path) {
       return nlohmann::json(path.string())

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "runtime/certify/certificate.h"
+#include "runtime/solver/sat_solver.h"
 #include "tools/cli/command.h"
 
 namespace parallax::tools {
@@ -26,13 +28,17 @@ class TraceCertifier {
                  const runtime::CompiledModel& model, Invocation& invocation);
 
   bool is_asked() const { return claim_.has_value(); }
+  /// A solver for the search, whose work is logged as a proof where one is asked for. It has to be
+  /// gone before the list is concluded.
+  std::unique_ptr<runtime::SatSolver> solver();
   /// The files can be written. False: reported.
   bool ready() const { return !option_.file.empty() == files_.has_value(); }
   void add(const runtime::Trace& trace) {
     if (claim_) claim_->add(trace);
   }
   /// Makes and checks the proof; `exploration`: what is known of the traces that were not listed.
-  void conclude(const std::string& exploration);
+  /// `searched`: the solver above found that there are no others.
+  void conclude(const std::string& exploration, bool searched);
   /// Warns that there is nothing to prove.
   void decline(const std::string& reason);
 
@@ -43,7 +49,10 @@ class TraceCertifier {
   std::string proof_file() const { return files_ ? files_->proof_path().string() : ""; }
   /// ` (proof checked)` after what claims to be complete, else nothing.
   std::string remark(const std::string& exploration) const;
-  /// `"proof":"checked","proof_file":"..",`: none, checked, not accepted, not checked.
+  /// What made an accepted proof: `search` or `fresh solve`.
+  const std::string& origin() const { return origin_; }
+  /// `"proof":"checked","proof_origin":"search","proof_file":"..",`: none, checked, not accepted,
+  /// not checked; the rest only with a proof that was accepted.
   std::string fields() const;
 
  private:
@@ -51,7 +60,7 @@ class TraceCertifier {
   Invocation& invocation_;
   std::optional<runtime::ProofFiles> files_;
   std::optional<runtime::CompletenessClaim> claim_;
-  std::string verdict_ = "no proof";
+  std::string verdict_ = "no proof", origin_;
 };
 
 }  // namespace parallax::tools

@@ -50,12 +50,13 @@ struct Answer {
   std::optional<runtime::Trace> violation;
   runtime::Exploration exploration = runtime::Exploration::kStopped;
   std::vector<std::string> bounds;
-  std::string proof;       // "proof checked"; empty where there is nothing to prove
-  std::string proof_file;  // where it is kept
+  std::string proof;         // "proof checked"; empty where there is nothing to prove
+  std::string proof_origin;  // what made it, if it was accepted
+  std::string proof_file;    // where it is kept
 };
 
-Answer ask(const compiler::CompiledModel& model) {
-  runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
+Answer ask(const compiler::CompiledModel& model, TraceCertifier& certifier) {
+  runtime::SolverSession session(model, certifier.solver());
   runtime::PlanEnumerator enumerator(session);
   Answer answer;
   answer.violation = enumerator.next();
@@ -64,22 +65,22 @@ Answer ask(const compiler::CompiledModel& model) {
   return answer;
 }
 
-/// Has a solver that starts afresh prove that there is no violation, and the proof checked by other
-/// means. False: it could not be written, reported.
-bool prove(const VerifyOptions& options, const compiler::CompiledModel& model, Answer& answer,
-           Invocation& invocation) {
-  const TemporaryFolder folder;
+/// The proof is made and checked in any case, and kept if that was asked for.
+CertifyOption proof_option(const VerifyOptions& options, const TemporaryFolder& folder) {
   auto certify = options.certify;
   if (certify.file.empty()) {
     certify.keep = false;
     certify.file = folder.path() + "/verify.drat";
   }
-  TraceCertifier certifier(certify, options.model.models, model, invocation);
-  if (!certifier.ready()) return false;
-  certifier.conclude(std::string(runtime::to_string(answer.exploration)));
+  return certify;
+}
+
+/// Has the proof that there is no violation made and checked.
+void prove(const CertifyOption& certify, TraceCertifier& certifier, Answer& answer) {
+  certifier.conclude(std::string(runtime::to_string(answer.exploration)), true);
   answer.proof = certifier.verdict();
+  answer.proof_origin = certifier.origin();
   if (certify.keep && answer.proof == "proof checked") answer.proof_file = certifier.proof_file();
-  return true;
 }
 
 std::string verdict(const Answer& answer) {
@@ -163,6 +164,7 @@ std::string answer_json(const compiler::CompiledModel& model, const Answer& answ
     out["trace"] = nlohmann::ordered_json::parse(runtime::to_jsonl(*answer.violation));
   }
   if (!answer.proof.empty()) out["proof"] = answer.proof.substr(std::string("proof ").size());
+  if (!answer.proof_origin.empty()) out["proof_origin"] = answer.proof_origin;
   if (!answer.proof_file.empty()) out["proof_file"] = answer.proof_file;
   out["timing"]["wall_s"] = wall_s;
   return out.dump() + '\n';
@@ -179,14 +181,18 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   const auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
   const auto& model = compilation->model;
-  auto answer = ask(model);
+  const TemporaryFolder folder;
+  const auto certify = proof_option(options, folder);
+  TraceCertifier certifier(certify, options.model.models, model, invocation);
+  if (!certifier.ready()) return 0;
+  auto answer = ask(model, certifier);
   // Nothing can go wrong in a model without executions.
   if (!answer.violation && answer.exploration != runtime::Exploration::kStopped &&
       report_if_unsatisfiable(model, 0, invocation.sink())) {
     return 0;
   }
   const bool holds = !answer.violation && answer.exploration != runtime::Exploration::kStopped;
-  if (holds && !prove(options, model, answer, invocation)) return 0;
+  if (holds) prove(certify, certifier, answer);
   if (answer.violation && options.check) {
     TraceCheck check(*compilation->typed, &stop_flag(), invocation.sink());
     check.check(*answer.violation);

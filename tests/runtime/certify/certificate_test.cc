@@ -3,8 +3,11 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <fstream>
+#include <functional>
 
+#include "runtime/certify/logged_solver.h"
 #include "runtime/enumerate/model_enumerator.h"
 #include "tests/support/planned_model.h"
 #include "tests/support/random_model.h"
@@ -91,6 +94,57 @@ TEST_CASE("the proof of a complete list is accepted, that of a list without one 
   CHECK(folder.names() == std::vector<std::string>{"p.drat", "p.drat.cnf"});
 }
 
+/// Lists all traces in a search that is logged, unless there are more than 60; has what `damage`
+/// made of the log checked.
+std::optional<runtime::Certificate> prove_by_log(const compiler::CompiledModel& model,
+                                                 const Folder& folder,
+                                                 const std::function<void(std::FILE*)>& damage) {
+  base::DiagnosticSink sink;
+  auto files = runtime::ProofFiles::create(folder.file("p.drat"), sink);
+  REQUIRE(files);
+  runtime::CompletenessClaim claim(model);
+  {
+    runtime::SolverSession session(model, runtime::make_logged_solver(files->proof(), claim));
+    runtime::ModelEnumerator enumerator(session);
+    while (const auto trace = enumerator.next()) {
+      claim.add(*trace);
+      if (claim.traces() > 60) return std::nullopt;
+    }
+  }
+  damage(files->proof());
+  const auto certificate = runtime::prove(claim, *files, {}, sink, true);
+  CHECK(sink.error_count() == 0);
+  CHECK(certificate.verdict == ProofVerdict::kAccepted);
+  return certificate;
+}
+
+TEST_CASE("the log of a search is accepted; where it is not, a fresh solve makes the proof") {
+  const Folder folder;
+  int searched = 0, fresh = 0;
+  std::int64_t traces = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const TextModel model(random_model(seed, kSolverSize).print());
+    if (model.sink.has_errors()) continue;
+    CAPTURE(seed);
+    const auto whole = prove_by_log(model.compiled, folder, [](std::FILE*) {});
+    if (!whole) continue;
+    CHECK(whole->origin == runtime::ProofOrigin::kSearch);
+    traces += whole->statistics.lemmas > 0 ? 1 : 0;
+    ++searched;
+    if (seed % 4 != 0) continue;
+    // What is no proof in any form, or nothing at all.
+    const auto damaged = prove_by_log(model.compiled, folder, [&](std::FILE* log) {
+      if (seed % 8 == 0) std::fputs("nonsense", log);
+      if (seed % 8 != 0) REQUIRE(std::freopen(nullptr, "wb", log) != nullptr);
+    });
+    REQUIRE(damaged);
+    fresh += damaged->origin == runtime::ProofOrigin::kFreshSolve ? 1 : 0;
+  }
+  CHECK(searched > 80);
+  CHECK(traces > 60);
+  CHECK(fresh > 15);
+}
+
 constexpr const char* kDoors = R"(
 sort room
 room a1, b2
@@ -135,6 +189,48 @@ TEST_CASE("traces of a plan are all traces, or all up to the horizon") {
   }
 }
 
+TEST_CASE("the log of a search for traces of a plan is a proof, with a bound and without") {
+  const Folder folder;
+  for (const int horizon : {1, 2, 3}) {
+    CAPTURE(horizon);
+    PlannedModel model(kDoors, kPlan, kBinding, "HoldsAt(At(b2),time)", horizon);
+    base::DiagnosticSink sink;
+    auto files = runtime::ProofFiles::create(folder.file("p.drat"), sink);
+    REQUIRE(files);
+    runtime::CompletenessClaim claim(model.compiled());
+    {
+      runtime::SolverSession session(model.compiled(),
+                                     runtime::make_logged_solver(files->proof(), claim));
+      runtime::PlanEnumerator enumerator(session);
+      while (const auto trace = enumerator.next()) claim.add(*trace);
+      if (enumerator.exploration() == runtime::Exploration::kCompleteUpToBound) {
+        claim.limit_to_horizon();
+      }
+    }
+    const auto certificate = runtime::prove(claim, *files, {}, sink, true);
+    CHECK(certificate.verdict == ProofVerdict::kAccepted);
+    CHECK(certificate.origin == runtime::ProofOrigin::kSearch);
+  }
+}
+
+TEST_CASE("a proof that is stopped is neither accepted nor kept") {
+  const TextModel model("range time 0 1\nfluent F()\nHoldsAt(F(),0).\n!HoldsAt(F(),0).\n");
+  const Folder folder;
+  {
+    base::DiagnosticSink sink;
+    auto files = runtime::ProofFiles::create(folder.file("p.drat"), sink);
+    REQUIRE(files);
+    const std::atomic<bool> stop = true;
+    runtime::ProofLimits limits;
+    limits.stop = &stop;
+    const runtime::CompletenessClaim claim(model.compiled);
+    CHECK(runtime::prove(claim, *files, limits, sink).verdict == ProofVerdict::kNotFinished);
+    CHECK(base::info(sink.sorted().front().code).id == "E7302");
+    CHECK(sink.exit_code() == 4);
+  }
+  CHECK(folder.names().empty());
+}
+
 TEST_CASE("files that cannot be written are refused before the work, and nothing stays behind") {
   const Folder folder;
   const auto code = [&](const fs::path& path) {
@@ -160,18 +256,26 @@ TEST_CASE("files that cannot be written are refused before the work, and nothing
   CHECK(folder.names().empty());
 }
 
-TEST_CASE("a disk that takes no more is noticed") {
+TEST_CASE("a disk that takes no more is noticed, whether the search was logged or not") {
   const TextModel model("range time 0 1\nfluent F()\nHoldsAt(F(),0).\n!HoldsAt(F(),0).\n");
-  const Folder folder;
-  base::DiagnosticSink sink;
-  fs::create_symlink("/dev/full", folder.file("p.drat.part"));
-  auto files = runtime::ProofFiles::create(folder.file("p.drat"), sink);
-  REQUIRE(files);
-  const auto certificate =
-      runtime::prove(runtime::CompletenessClaim(model.compiled), *files, {}, sink);
-  CHECK(certificate.verdict == ProofVerdict::kNotFinished);
-  REQUIRE(sink.error_count() == 1);
-  CHECK(base::info(sink.sorted().front().code).id == "E0005");
+  for (const bool logged : {false, true}) {
+    CAPTURE(logged);
+    const Folder folder;
+    base::DiagnosticSink sink;
+    fs::create_symlink("/dev/full", folder.file("p.drat.part"));
+    auto files = runtime::ProofFiles::create(folder.file("p.drat"), sink);
+    REQUIRE(files);
+    const runtime::CompletenessClaim claim(model.compiled);
+    if (logged) {
+      CHECK(
+          runtime::SolverSession(model.compiled, runtime::make_logged_solver(files->proof(), claim))
+              .solve(1, {}) == runtime::SolveStatus::kUnsatisfiable);
+    }
+    const auto certificate = runtime::prove(claim, *files, {}, sink, logged);
+    CHECK(certificate.verdict == ProofVerdict::kNotFinished);
+    REQUIRE(sink.error_count() == 1);
+    CHECK(base::info(sink.sorted().front().code).id == "E0005");
+  }
 }
 
 }  // namespace
