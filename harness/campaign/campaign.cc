@@ -94,6 +94,7 @@ class Campaign {
       if (!trace) return sink_.already_reported();
       if (!*trace) {
         result_.exploration = traces_.exploration();
+        result_.bounds = traces_.bounds();
         return true;
       }
       if (max_traces > 0 && static_cast<std::int64_t>(result_.traces.size()) >= max_traces) {

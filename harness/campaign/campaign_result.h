@@ -69,8 +69,9 @@ struct CampaignResult {
   std::string title;     // what the scenario calls itself; may be empty
   std::uint64_t seed = 0;
   CampaignVerdict verdict = CampaignVerdict::kInconclusive;
-  std::string exploration;    // "all traces explored" | "complete up to bound" | "stopped"
-  bool interrupted = false;   // the stop flag was raised
+  std::string exploration;          // "all traces explored" | "complete up to bound" | "stopped"
+  std::vector<std::string> bounds;  // what was not followed, if complete up to a bound
+  bool interrupted = false;         // the stop flag was raised
   bool journal_open = false;  // if not, the run folder is not this run's, or holds nothing of it
   CriterionSpec criterion;
   SimulatorInfo simulator;

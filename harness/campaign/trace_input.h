@@ -39,6 +39,8 @@ class TraceFeed {
   /// What may be said when `next` has answered none: "all traces explored", "complete up to
   /// bound" or "stopped".
   virtual std::string exploration() const = 0;
+  /// Why it is complete up to a bound only, one sentence each: the forms of the plan that were cut.
+  virtual std::vector<std::string> bounds() const { return {}; }
   /// All ground fluents of the model, sorted.
   virtual const std::vector<std::string>& fluents() const = 0;
   /// Does the model let the events of `trace`, from its initial state, end in a state in which each

@@ -124,6 +124,7 @@ Json json_of(const CampaignResult& result, bool with_timing) {
     out["discrepancies"].push_back(json_of(found, result.replay_folder));
   }
   out["exploration"] = result.exploration;
+  if (!result.bounds.empty()) out["bounds"] = result.bounds;
   out["interrupted"] = result.interrupted;
   if (with_timing) {
     const auto& timing = result.timing;

@@ -225,6 +225,7 @@ class TextReport {
   void foot() {
     out_ += fmt::format("\nverdict: {}\n", verdict_word(result_.verdict));
     line("traces", fmt::format("{}, {}", result_.traces.size(), exploration()));
+    for (const auto& bound : result_.bounds) line("bound", bound);
     line("simulations", fmt::format("{}", result_.simulations));
     if (result_.traces.empty() && !result_.interrupted) {
       line("note", "no trace, so nothing was compared");

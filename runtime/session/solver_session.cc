@@ -4,42 +4,106 @@
 
 namespace parallax::runtime {
 
-SolverSession::SolverSession(const CompiledModel& model, std::unique_ptr<SatSolver> solver)
+SolverSession::SolverSession(const CompiledModel& model, std::unique_ptr<SatSolver> solver,
+                             Loading loading)
     : model_(&model),
       solver_(std::move(solver)),
       lengths_(model),
-      variable_count_(lengths_.last()) {
+      variable_count_(lengths_.last()),
+      loading_(loading) {
   for (Timepoint t = 1; t <= model.horizon; ++t) guards_.push_back(lengths_.reaches(t));
-  std::vector<Literal> guarded;
-  for (std::size_t i = 0; i < model.clauses.size(); ++i) {
-    const auto clause = model.clauses[i];
-    const auto t = model.clause_timepoints[i];
-    guarded.assign(clause.begin(), clause.end());
-    // A definition of an auxiliary is harmless at any horizon.
-    if (t > 0 && !model.clause_is_definition[i]) {
-      guarded.push_back(~guards_[static_cast<std::size_t>(t) - 1]);
-    }
-    solver_->add_clause(guarded);
-  }
-  // The first solution that the search tries is the canonical one as often as possible.
-  for (std::int32_t v = 1; v <= model.variable_count(); ++v) {
-    solver_->set_phase(~Literal::positive(v));
-  }
+  values_.resize(static_cast<std::size_t>(model.variable_count()));
+  if (loading_ == Loading::kWhole) load(model.horizon);
 }
 
 Literal SolverSession::new_variable() { return Literal::positive(++variable_count_); }
 
-SolveStatus SolverSession::solve(Timepoint n, std::span<const Literal> assumptions) {
-  for (std::size_t i = 0; i < guards_.size(); ++i) {
-    solver_->assume(static_cast<Timepoint>(i) < n ? guards_[i] : ~guards_[i]);
+/// The solver numbers variables in the order in which it meets them, unless the whole model is
+/// loaded: then the numbers are ours.
+Literal SolverSession::in_solver(Literal literal) {
+  const auto place = static_cast<std::size_t>(literal.var()) - 1;
+  if (place >= solver_variables_.size()) {
+    solver_variables_.resize(static_cast<std::size_t>(variable_count_), 0);
   }
-  for (const auto literal : assumptions) solver_->assume(literal);
+  auto& number = solver_variables_[place];
+  if (number == 0) {
+    number = loading_ == Loading::kWhole ? literal.var() : ++solver_variable_count_;
+    // The first solution that the search tries is the canonical one as often as possible.
+    if (literal.var() <= model_->variable_count()) solver_->set_phase(~Literal::positive(number));
+  }
+  const auto known = Literal::positive(number);
+  return literal.is_positive() ? known : ~known;
+}
+
+void SolverSession::add_clause(std::span<const Literal> clause) {
+  scratch_.clear();
+  for (const auto literal : clause) scratch_.push_back(in_solver(literal));
+  solver_->add_clause(scratch_);
+}
+
+bool SolverSession::is_fixed(Literal literal) const {
+  const auto place = static_cast<std::size_t>(literal.var()) - 1;
+  if (place >= solver_variables_.size() || solver_variables_[place] == 0) return false;
+  const auto known = Literal::positive(solver_variables_[place]);
+  return solver_->is_fixed(literal.is_positive() ? known : ~known);
+}
+
+void SolverSession::sort_by_timepoint() {
+  clauses_at_.resize(static_cast<std::size_t>(model_->horizon) + 1);
+  for (std::size_t i = 0; i < model_->clauses.size(); ++i) {
+    clauses_at_[static_cast<std::size_t>(model_->clause_timepoints[i])].push_back(
+        static_cast<std::uint32_t>(i));
+  }
+}
+
+void SolverSession::load_clause(std::size_t clause) {
+  const auto t = model_->clause_timepoints[clause];
+  const auto literals = model_->clauses[clause];
+  scratch_.clear();
+  for (const auto literal : literals) scratch_.push_back(in_solver(literal));
+  // A definition of an auxiliary is harmless at any horizon.
+  if (t > 0 && !model_->clause_is_definition[clause]) {
+    scratch_.push_back(~in_solver(guards_[static_cast<std::size_t>(t) - 1]));
+  }
+  solver_->add_clause(scratch_);
+}
+
+/// Hands over the clauses up to timepoint n. Variables are numbered as in the model, as far as
+/// they are new: the order in which a search decides follows it.
+void SolverSession::load(Timepoint n) {
+  if (n <= loaded_) return;
+  std::vector<bool> used(values_.size());
+  std::vector<std::uint32_t> clauses;
+  if (clauses_at_.empty()) sort_by_timepoint();
+  for (Timepoint t = loaded_ + 1; t <= n; ++t) {
+    const auto& more = clauses_at_[static_cast<std::size_t>(t)];
+    clauses.insert(clauses.end(), more.begin(), more.end());
+  }
+  std::sort(clauses.begin(), clauses.end());
+  for (const auto clause : clauses) {
+    for (const auto literal : model_->clauses[clause]) {
+      used[static_cast<std::size_t>(literal.var()) - 1] = true;
+    }
+  }
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (used[v]) in_solver(Literal::positive(static_cast<std::int32_t>(v) + 1));
+  }
+  for (const auto clause : clauses) load_clause(clause);
+  loaded_ = n;
+}
+
+SolveStatus SolverSession::solve(Timepoint n, std::span<const Literal> assumptions) {
+  load(std::min(n, model_->horizon));
+  for (Timepoint t = 1; t <= loaded_; ++t) {
+    const auto guard = in_solver(guards_[static_cast<std::size_t>(t) - 1]);
+    solver_->assume(t <= n ? guard : ~guard);
+  }
+  for (const auto literal : assumptions) solver_->assume(in_solver(literal));
   const auto status = solver_->solve();
   if (status == SolveStatus::kSatisfiable) {
-    const auto count = model_->variable_count();
-    values_.resize(static_cast<std::size_t>(count));
-    for (std::int32_t v = 1; v <= count; ++v) {
-      values_[static_cast<std::size_t>(v) - 1] = solver_->value(Literal::positive(v));
+    for (std::size_t v = 0; v < values_.size(); ++v) {
+      const bool known = v < solver_variables_.size() && solver_variables_[v] != 0;
+      values_[v] = known && solver_->value(Literal::positive(solver_variables_[v]));
     }
   }
   return status;

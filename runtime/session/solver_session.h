@@ -13,18 +13,27 @@ namespace parallax::runtime {
 using compiler::CompiledModel;
 using compiler::Timepoint;
 
-/// One solver loaded with one compiled model, whose horizon is chosen per call. Every clause of
-/// timepoint t carries the guard of t; a call with horizon n assumes the guards 1 .. n and drops
-/// the others, so learned clauses survive from one horizon to the next.
+/// When a session hands clauses to its solver.
+enum class Loading : std::uint8_t {
+  kAsNeeded,  // those of a timepoint with the first call that needs them
+  kWhole,     // all before the first call, with the model's own numbers: for solvers that log
+};
+
+/// One solver for one compiled model, whose horizon is chosen per call. Every clause of timepoint
+/// t carries the guard of t; a call with horizon n assumes the guards 1 .. n and drops the others,
+/// so learned clauses survive from one horizon to the next. As a rule the solver is handed the
+/// clauses of a timepoint, and comes to know their variables, with the first call that needs them:
+/// short horizons pay nothing for the long one.
 class SolverSession {
  public:
-  SolverSession(const CompiledModel& model, std::unique_ptr<SatSolver> solver);
+  SolverSession(const CompiledModel& model, std::unique_ptr<SatSolver> solver,
+                Loading loading = Loading::kAsNeeded);
 
   const CompiledModel& model() const { return *model_; }
   const LengthVariables& lengths() const { return lengths_; }
   /// A variable of the session's own, for guards.
   Literal new_variable();
-  void add_clause(std::span<const Literal> clause) { solver_->add_clause(clause); }
+  void add_clause(std::span<const Literal> clause);
   /// Is there a valuation with horizon `n` under these assumptions? `values()` has it afterwards.
   SolveStatus solve(Timepoint n, std::span<const Literal> assumptions);
   /// Value of a literal in the valuation that the last satisfiable call found; it stays available
@@ -33,16 +42,28 @@ class SolverSession {
   /// Evaluates every clause of horizon `n` on the valuation at hand, without the solver: a solver
   /// that answers wrongly is a broken contract. Linear in the clauses.
   void require_model(Timepoint n) const;
-  bool is_fixed(Literal literal) const { return solver_->is_fixed(literal); }
+  bool is_fixed(Literal literal) const;
   std::int64_t solve_calls() const { return solver_->solve_calls(); }
+  /// The largest horizon that was asked for, whose clauses the solver has; -1: none yet.
+  Timepoint loaded() const { return loaded_; }
 
  private:
+  void load(Timepoint n);
+  void load_clause(std::size_t clause);
+  void sort_by_timepoint();
+  Literal in_solver(Literal literal);
   const CompiledModel* model_;  // outlives the session
   std::unique_ptr<SatSolver> solver_;
   LengthVariables lengths_;
   std::int32_t variable_count_ = 0;
+  Loading loading_;
   std::vector<Literal> guards_;  // by timepoint - 1
   std::vector<bool> values_;     // by variable - 1
+  Timepoint loaded_ = -1;
+  std::vector<std::vector<std::uint32_t>> clauses_at_;  // by timepoint; filled when first needed
+  std::vector<std::int32_t> solver_variables_;          // by variable - 1; 0: not handed over yet
+  std::int32_t solver_variable_count_ = 0;
+  std::vector<Literal> scratch_;
 };
 
 }  // namespace parallax::runtime

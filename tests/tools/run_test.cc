@@ -47,6 +47,40 @@ TEST_CASE("Example 1: the box is fetched, ninety clean runs support p below five
   CHECK(result["discrepancies"].empty());
 }
 
+TEST_CASE("every hit is a trace of its own if asked for, and what was not followed is named") {
+  const CliFixture cli;
+  cli.write("short.yaml",
+            "include: common.yaml\n"
+            "name: only the way there\n"
+            "model: [domain.e, start.e]\n"
+            "plan: fetch.lisp\n"
+            "bind: robot.bind\n"
+            "horizon: 3\n"
+            "constraints: [\"HoldsAt(RobotIn(r2),time)\"]\n");
+  const std::vector<std::string> base = {"short.yaml", "--epsilon", "0.5", "--confidence", "0.5"};
+  auto arguments = base;
+  arguments.insert(arguments.end(), {"--out", "first"});
+  const auto first = run_json(cli, arguments, 0);
+  CHECK(first["iterations"] == 1);
+  CHECK(first["exploration"] == "all traces explored");
+  CHECK_FALSE(first.contains("bounds"));
+  arguments = base;
+  arguments.insert(arguments.end(), {"--hits", "all", "--out", "all"});
+  const auto all = run_json(cli, arguments, 0);
+  CHECK(all["iterations"] == 2);
+  CHECK(all["traces"][0]["events"] == Json({"Go(r2)"}));
+  CHECK(all["traces"][1]["events"] == Json({"Go(r2)", "PickUp()"}));
+  CHECK(all["exploration"] == "complete up to bound");
+  REQUIRE(all["bounds"].size() == 1);
+  const auto bound = all["bounds"][0].get<std::string>();
+  CHECK(bound.find("the plan goes on beyond timepoint 3 with Place(") == 0);
+  CHECK(bound.find("fetch.lisp:") != std::string::npos);
+  CHECK(cli.read("all/report.txt").find(bound) != std::string::npos);
+  arguments = base;
+  arguments.insert(arguments.end(), {"--split-initial", "--out", "split"});
+  CHECK(run_json(cli, arguments, 0)["iterations"] == 1);
+}
+
 TEST_CASE("placing at the edge: physics carries the box over the border for some starts") {
   const CliFixture cli;
   const auto result = run_json(cli, {"edge.yaml", "--jobs", "2", "--out", "run"}, 1);

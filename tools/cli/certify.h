@@ -5,6 +5,7 @@
 #include <string>
 
 #include "runtime/certify/certificate.h"
+#include "runtime/session/solver_session.h"
 #include "runtime/solver/sat_solver.h"
 #include "tools/cli/command.h"
 
@@ -31,6 +32,10 @@ class TraceCertifier {
   /// A solver for the search, whose work is logged as a proof where one is asked for. It has to be
   /// gone before the list is concluded.
   std::unique_ptr<runtime::SatSolver> solver();
+  /// How a session is to load it.
+  runtime::Loading loading() const {
+    return files_ ? runtime::Loading::kWhole : runtime::Loading::kAsNeeded;
+  }
   /// The files can be written. False: reported.
   bool ready() const { return !option_.file.empty() == files_.has_value(); }
   void add(const runtime::Trace& trace) {

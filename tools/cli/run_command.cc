@@ -28,6 +28,8 @@ struct RunOptions {
   double confidence = 0.0;  // 0: as the scenario says
   double epsilon = 0.0;
   std::int64_t max_runs = 0;
+  std::string hits = "first";
+  bool split_initial = false;
 };
 
 /// The command line has the last word over the scenario.
@@ -82,7 +84,9 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
                base::SourceRange{loaded->scenario.source, 0, 0});
     return 0;
   }
-  EnumeratedTraces traces(model, invocation);
+  EnumeratedTraces traces(
+      model, invocation,
+      {.all_hits = options.hits == "all", .split_initial = options.split_initial});
   const auto campaign = campaign_options(options, *loaded, invocation);
   const auto result = harness::run_campaign(loaded->scenario, traces, simulator_factory(*loaded),
                                             campaign, invocation.files(), sink);
@@ -143,6 +147,13 @@ Command add_run_command(CLI::App& app) {
       ->check(finite_range(1e-6, 0.5));
   command->add_option("--max-runs", options->max_runs, "Simulations per trace before giving up")
       ->check(whole_number(1, 1'000'000));
+  command
+      ->add_option("--hits", options->hits,
+                   "Where traces end: first (at the first hit of the constraints) or all (at each)")
+      ->check(CLI::IsMember({"first", "all"}))
+      ->capture_default_str();
+  command->add_flag("--split-initial", options->split_initial,
+                    "Try every initial state, not only every sequence of events");
   return {command,
           [options](Invocation& invocation) { return run_scenario(*options, invocation); }};
 }

@@ -1,5 +1,7 @@
 #include "tools/cli/trace_feed.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -9,6 +11,7 @@
 #include "harness/region/state_mapping.h"
 #include "runtime/explain/contradiction.h"
 #include "runtime/session/unsat_core.h"
+#include "tools/cli/open_ends.h"
 #include "tools/cli/signals.h"
 
 namespace parallax::tools {
@@ -51,13 +54,15 @@ bool report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Tim
   return true;
 }
 
-EnumeratedTraces::EnumeratedTraces(const compiler::CompiledModel& model, Invocation& invocation)
+EnumeratedTraces::EnumeratedTraces(const compiler::CompiledModel& model, Invocation& invocation,
+                                   const runtime::PlanEnumeratorOptions& options)
     : model_(&model),
       invocation_(&invocation),
+      split_initial_(options.split_initial),
       fluents_(compiler::names_of(model.fluents)),
       session_(std::make_unique<runtime::SolverSession>(
           model, runtime::make_cadical_solver(&stop_flag()))),
-      enumerator_(std::make_unique<runtime::PlanEnumerator>(*session_)) {
+      enumerator_(std::make_unique<runtime::PlanEnumerator>(*session_, options)) {
   std::sort(fluents_.begin(), fluents_.end());
 }
 
@@ -76,6 +81,10 @@ base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next() {
 
 std::string EnumeratedTraces::exploration() const {
   return std::string(runtime::to_string(enumerator_->exploration()));
+}
+
+std::vector<std::string> EnumeratedTraces::bounds() const {
+  return open_end_texts(*model_, enumerator_->open_ends());
 }
 
 bool EnumeratedTraces::admits(const harness::CampaignTrace& trace,
@@ -98,6 +107,9 @@ base::Result<harness::CampaignTrace> EnumeratedTraces::convert(const runtime::Tr
   harness::CampaignTrace out;
   out.number = trace.number;
   out.key = runtime::event_key(trace);
+  // Traces of the same events are told apart by where they start.
+  if (split_initial_)
+    out.key += fmt::format(" from {}", fmt::join(trace.points.front().holds, ";"));
   out.other_initial_states = trace.other_initial_states;
   out.other_outcomes = trace.other_outcomes;
   for (const auto& point : trace.points) out.holds.push_back(point.holds);

@@ -17,9 +17,11 @@ namespace parallax::tools {
 class EnumeratedTraces final : public harness::TraceFeed {
  public:
   /// `model` and `invocation` outlive the feed.
-  EnumeratedTraces(const compiler::CompiledModel& model, Invocation& invocation);
+  EnumeratedTraces(const compiler::CompiledModel& model, Invocation& invocation,
+                   const runtime::PlanEnumeratorOptions& options = {});
   base::Result<std::optional<harness::CampaignTrace>> next() override;
   std::string exploration() const override;
+  std::vector<std::string> bounds() const override;
   const std::vector<std::string>& fluents() const override { return fluents_; }
   bool admits(const harness::CampaignTrace& trace,
               const std::map<std::string, bool>& last_state) override;
@@ -31,6 +33,7 @@ class EnumeratedTraces final : public harness::TraceFeed {
 
   const compiler::CompiledModel* model_;
   Invocation* invocation_;
+  bool split_initial_;
   std::vector<std::string> fluents_;
   std::unique_ptr<runtime::SolverSession> session_;
   std::unique_ptr<runtime::PlanEnumerator> enumerator_;

@@ -62,7 +62,7 @@ bool leaves_proof(const runtime::TraceQuery& query, const TraceCertifier& certif
 std::optional<Ending> list_logged(const runtime::TraceQuery& query,
                                   const compiler::CompiledModel& model, TraceCertifier& certifier,
                                   TraceWriter& writer, runtime::SourceStats& stats) {
-  runtime::SolverSession session(model, certifier.solver());
+  runtime::SolverSession session(model, certifier.solver(), certifier.loading());
   runtime::ModelEnumerator enumerator(session, query.distinct);
   const auto most = query.strategy == Strategy::kAuto ? kLogged : INT64_MAX;
   while (!writer.full() && writer.count() < most && !stop_flag().load()) {
@@ -98,7 +98,7 @@ std::optional<Ending> draw(const SearchOptions& options, const compiler::Compile
 
 Ending list_plan_traces(const SearchOptions& options, const compiler::CompiledModel& model,
                         TraceCertifier& certifier, TraceWriter& writer) {
-  runtime::SolverSession session(model, certifier.solver());
+  runtime::SolverSession session(model, certifier.solver(), certifier.loading());
   runtime::PlanEnumerator enumerator(
       session, {.all_hits = options.hits == "all", .split_initial = options.split_initial});
   while (!writer.full() && !stop_flag().load()) {
@@ -147,7 +147,7 @@ std::optional<CountedTraces> count_model_traces(const SearchOptions& options,
   query.wanted = 0;
   if (leaves_proof(query, certifier)) {
     // Only of a model without traces the number is proved.
-    runtime::SolverSession session(model, certifier.solver());
+    runtime::SolverSession session(model, certifier.solver(), certifier.loading());
     if (session.solve(model.horizon, {}) == runtime::SolveStatus::kUnsatisfiable) {
       return CountedTraces{"0", "blocking", {"complete", true, {}, true}};
     }

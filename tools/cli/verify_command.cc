@@ -56,7 +56,7 @@ struct Answer {
 };
 
 Answer ask(const compiler::CompiledModel& model, TraceCertifier& certifier) {
-  runtime::SolverSession session(model, certifier.solver());
+  runtime::SolverSession session(model, certifier.solver(), certifier.loading());
   runtime::PlanEnumerator enumerator(session);
   Answer answer;
   answer.violation = enumerator.next();

@@ -104,7 +104,8 @@ std::optional<runtime::Certificate> prove_by_log(const compiler::CompiledModel& 
   REQUIRE(files);
   runtime::CompletenessClaim claim(model);
   {
-    runtime::SolverSession session(model, runtime::make_logged_solver(files->proof(), claim));
+    runtime::SolverSession session(model, runtime::make_logged_solver(files->proof(), claim),
+                                   runtime::Loading::kWhole);
     runtime::ModelEnumerator enumerator(session);
     while (const auto trace = enumerator.next()) {
       claim.add(*trace);
@@ -200,7 +201,8 @@ TEST_CASE("the log of a search for traces of a plan is a proof, with a bound and
     runtime::CompletenessClaim claim(model.compiled());
     {
       runtime::SolverSession session(model.compiled(),
-                                     runtime::make_logged_solver(files->proof(), claim));
+                                     runtime::make_logged_solver(files->proof(), claim),
+                                     runtime::Loading::kWhole);
       runtime::PlanEnumerator enumerator(session);
       while (const auto trace = enumerator.next()) claim.add(*trace);
       if (enumerator.exploration() == runtime::Exploration::kCompleteUpToBound) {
@@ -267,9 +269,10 @@ TEST_CASE("a disk that takes no more is noticed, whether the search was logged o
     REQUIRE(files);
     const runtime::CompletenessClaim claim(model.compiled);
     if (logged) {
-      CHECK(
-          runtime::SolverSession(model.compiled, runtime::make_logged_solver(files->proof(), claim))
-              .solve(1, {}) == runtime::SolveStatus::kUnsatisfiable);
+      CHECK(runtime::SolverSession(model.compiled,
+                                   runtime::make_logged_solver(files->proof(), claim),
+                                   runtime::Loading::kWhole)
+                .solve(1, {}) == runtime::SolveStatus::kUnsatisfiable);
     }
     const auto certificate = runtime::prove(claim, *files, {}, sink, logged);
     CHECK(certificate.verdict == ProofVerdict::kNotFinished);
