@@ -27,4 +27,9 @@ base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir
                                             std::optional<SampleId> id, base::SourceFiles& files,
                                             base::DiagnosticSink& sink);
 
+/// What keeps a repetition of the run by `simulator`, with scenario files of this hash, from
+/// meaning anything; empty: nothing.
+std::string obstacle_to_repeat(const JournalHeader& header, const std::string& scenario_hash,
+                               const SimulatorInfo& simulator);
+
 }  // namespace parallax::harness

@@ -16,25 +16,6 @@ namespace {
 
 using base::DiagnosticCode;
 
-/// What keeps a repetition from meaning anything.
-std::string obstacle(const JournalHeader& header, const std::string& scenario_hash,
-                     const SimulatorInfo& simulator) {
-  if (header.scenario_hash != scenario_hash) {
-    return fmt::format(
-        "the scenario, or a file that it reads, has changed: its hash was {}, now "
-        "it is {}",
-        header.scenario_hash, scenario_hash);
-  }
-  if (simulator.name.empty()) {
-    return fmt::format("the simulator did not start: {}", simulator.version);
-  }
-  if (header.simulator.name != simulator.name || header.simulator.version != simulator.version) {
-    return fmt::format("it was recorded with {} {}, this is {} {}", header.simulator.name,
-                       header.simulator.version, simulator.name, simulator.version);
-  }
-  return {};
-}
-
 std::optional<std::int64_t> whole(std::string_view text) {
   std::int64_t value = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -74,7 +55,7 @@ base::Result<ReplayResult> replay_sample(const std::filesystem::path& run_dir,
   result.seed = record.seed;
   result.digest = record.digest;
   result.timepoints = record.observations.size();
-  result.reason = obstacle(run->header, scenario_hash, simulator.info());
+  result.reason = obstacle_to_repeat(run->header, scenario_hash, simulator.info());
   if (result.reason.empty() && record.status == SampleStatus::kLost) {
     result.reason = "the simulator was lost in this simulation, so there is nothing to compare";
   }

@@ -21,6 +21,22 @@ SceneKind kind_of(const WorldLayout& layout, const WorldSpec& spec, BodyId id) {
   return pad ? SceneKind::kGripper : SceneKind::kRobot;
 }
 
+std::vector<SceneArm> arms_of(const OdeWorld& world, const MobileRobotSpec& robot) {
+  const WorldLayout& layout = world.layout();
+  const auto base = layout.find_body(robot.base_body);
+  const auto torso = layout.find_slider(robot.torso_joint);
+  const double lift_m = torso ? world.slider_position_m(*torso) : 0.0;
+  std::vector<SceneArm> arms;
+  for (const ArmSpec& arm : robot.arms) {
+    const auto palm = layout.find_body(arm.palm_body);
+    if (!base || !palm) continue;
+    const Eigen::Vector3d p_BS = arm.p_BS + lift_m * Eigen::Vector3d::UnitZ();
+    arms.push_back(
+        {arm.name, world.position(*base) + world.rotation(*base) * p_BS, world.position(*palm)});
+  }
+  return arms;
+}
+
 }  // namespace
 
 Scene scene_of(const OdeWorld& world, const WorldSpec& spec) {
@@ -37,6 +53,7 @@ Scene scene_of(const OdeWorld& world, const WorldSpec& spec) {
                              {shape.size_m, world.position(id) + R_WB * shape.p_BS, R_WS}});
     }
   }
+  if (spec.mobile) scene.arms = arms_of(world, *spec.mobile);
   return scene;
 }
 

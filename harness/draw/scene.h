@@ -17,9 +17,17 @@ struct SceneBox {
   Probe box;
 };
 
+/// From a shoulder to its palm. The simulator has no body there; without the line a hand would
+/// hang in the air.
+struct SceneArm {
+  std::string name;
+  Eigen::Vector3d from_W = Eigen::Vector3d::Zero(), to_W = Eigen::Vector3d::Zero();
+};
+
 /// A world as it stands, box by box.
 struct Scene {
   std::vector<SceneBox> boxes;  // in order of the bodies' names
+  std::vector<SceneArm> arms;
 };
 
 Scene scene_of(const OdeWorld& world, const WorldSpec& spec);

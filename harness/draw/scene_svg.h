@@ -1,30 +1,28 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "harness/draw/scene.h"
+#include "harness/draw/scene_view.h"
 #include "harness/region/region.h"
 
 namespace parallax::harness {
 
 struct SvgOptions {
   std::string title;                   // above the pictures
-  std::string subtitle;                // below the title
+  std::string subtitle;                // below the title, two lines at most
   const RegionMap* regions = nullptr;  // drawn in the view from above, unless null
-  double pixels_per_m = 220.0;
+  double pixels_per_m = 220.0;         // less where the picture would be wider than 6000 pixels
 };
 
-/// What both views show: the box around every scene given, with a margin.
-struct SceneFrame {
-  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();
-};
-SceneFrame frame_around(const Scene& scene);
+/// The box around all the scenes and the floor, with a margin; not empty. Regions (null: none)
+/// widen it at most to three times its size.
+SceneFrame frame_around(const std::vector<Scene>& scenes, const RegionMap* regions);
 
 /// An SVG picture with a view from above (x to the right, y up) and one from the side (looking
-/// along +y: x to the right, z up). Boxes nearer to the viewer cover those behind them. Regions of
-/// moving frames are not drawn.
+/// along +y: x to the right, z up), axes and a scale. Boxes nearer to the viewer cover those behind
+/// them; furniture and robots are translucent. Regions of moving frames are not drawn.
 std::string scene_svg(const Scene& scene, const SceneFrame& frame, const SvgOptions& options);
 
 }  // namespace parallax::harness

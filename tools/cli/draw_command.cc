@@ -1,19 +1,23 @@
 #include <filesystem>
-#include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
+#include "harness/campaign/compare.h"
 #include "harness/campaign/recorded_run.h"
 #include "harness/draw/scene_svg.h"
 #include "harness/world/ode_simulator.h"
 #include "tools/cli/command.h"
 #include "tools/cli/sample_option.h"
 #include "tools/cli/scenario_model.h"
+#include "tools/cli/signals.h"
 
 namespace parallax::tools {
 namespace {
 
 namespace fs = std::filesystem;
+using base::DiagnosticCode;
 
 struct Options {
   std::string what;  // scenario file or run folder
@@ -22,34 +26,100 @@ struct Options {
   bool no_regions = false;
 };
 
-bool write_picture(const fs::path& path, const std::string& text, Invocation& invocation) {
-  std::error_code error;
-  if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (file) return true;
-  invocation.sink().error_about(base::DiagnosticCode::kFileNotWritable, path.string(),
-                                "the picture was not written");
-  return false;
-}
+/// The world after one action, with what stands above its picture.
+struct Picture {
+  std::string title, subtitle;
+  harness::Scene scene;
+};
+
+class Writer {
+ public:
+  Writer(const Options& options, const harness::Scenario& scenario,
+         const std::vector<harness::Scene>& scenes, Invocation& invocation)
+      : invocation_(invocation) {
+    if (!options.no_regions) svg_.regions = &scenario.mapping->regions();
+    frame_ = harness::frame_around(scenes, svg_.regions);
+  }
+
+  bool write(const fs::path& path, const std::string& title, const std::string& subtitle,
+             const harness::Scene& scene) {
+    svg_.title = title;
+    svg_.subtitle = subtitle;
+    std::error_code error;
+    if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
+    const auto text = harness::scene_svg(scene, frame_, svg_);
+    if (!base::write_file_atomically(path, text, invocation_.sink())) return false;
+    written_.push_back(path.string());
+    return true;
+  }
+
+  void report() const {
+    if (invocation_.options().json) {
+      const nlohmann::ordered_json document = {{"status", "ok"}, {"pictures", written_}};
+      return invocation_.document(document.dump() + "\n");
+    }
+    for (const auto& path : written_) invocation_.result(path + "\n");
+  }
+
+ private:
+  Invocation& invocation_;
+  harness::SvgOptions svg_;
+  harness::SceneFrame frame_;
+  std::vector<std::string> written_;
+};
 
 /// The world as it stands at a reset without a drawn start.
 int draw_start(const Options& options, Invocation& invocation) {
-  const auto scenario = harness::load_scenario(options.what, invocation.files(), invocation.sink());
-  if (!scenario) return 0;
-  const harness::OdeWorld world(scenario->world);
-  const auto scene = harness::scene_of(world, scenario->world);
-  harness::SvgOptions svg;
-  svg.title = scenario->title.empty() ? scenario->name : scenario->title;
-  svg.subtitle = "left: from above; right: from the side. Metres: x to the right.";
-  if (!options.no_regions) svg.regions = &scenario->mapping->regions();
-  const fs::path out = options.out.empty() ? fs::path("scene.svg") : fs::path(options.out);
-  if (write_picture(out, harness::scene_svg(scene, harness::frame_around(scene), svg),
-                    invocation)) {
-    invocation.result(out.string() + "\n");
+  auto& sink = invocation.sink();
+  if (!options.sample.empty()) {
+    sink.error_about(DiagnosticCode::kUsage, "", "--sample is for folders of runs");
+    return 0;
   }
+  const auto scenario = harness::load_scenario(options.what, invocation.files(), sink);
+  if (!scenario) return 0;
+  if (scenario->world.bodies.empty()) {
+    sink.error_about(DiagnosticCode::kUsage, options.what, "the scenario has no `world` to draw");
+    return 0;
+  }
+  const harness::OdeWorld world(scenario->world);
+  const std::vector<harness::Scene> scenes = {harness::scene_of(world, scenario->world)};
+  Writer writer(options, *scenario, scenes, invocation);
+  const auto& title = scenario->title.empty() ? scenario->name : scenario->title;
+  const fs::path out = options.out.empty() ? fs::path("scene.svg") : fs::path(options.out);
+  if (writer.write(out, title, "before a start is drawn", scenes.front())) writer.report();
   return 0;
+}
+
+/// Simulates a recorded run again; fails, having reported, where it is another one than recorded.
+base::Result<std::vector<Picture>> simulate(const harness::RecordedRun& run,
+                                            const harness::Scenario& scenario,
+                                            harness::OdeSimulator& simulator,
+                                            const std::string& folder, base::DiagnosticSink& sink) {
+  const auto reset = simulator.reset(run.record.initial, run.record.seed);
+  if (reset.status != harness::SimStatus::kOk) {
+    return sink.error_about(DiagnosticCode::kReplayImpossible, folder, reset.reason);
+  }
+  std::vector<Picture> pictures;
+  const auto take = [&](const std::string& title, const std::string& subtitle) {
+    pictures.push_back({title, subtitle, harness::scene_of(simulator.world(), scenario.world)});
+  };
+  take("start", fmt::format("simulation {}.{}", run.id.trace, run.id.sample));
+  for (std::size_t i = 0; i < run.calls.size() && !stop_flag().load(); ++i) {
+    const auto& call = run.calls[i];
+    const auto outcome = simulator.act(call.controller, call.arguments, call.time_limit_s);
+    if (outcome.status == harness::SimStatus::kLost) break;  // there is no state to draw
+    const auto& recorded = run.record.outcomes;
+    if (i < recorded.size() && (recorded[i].status != outcome.status ||
+                                !harness::bit_equal(recorded[i].sim_time_s, outcome.sim_time_s))) {
+      return sink.error_about(
+          DiagnosticCode::kReplayImpossible, folder,
+          fmt::format("action {}, {}, ended otherwise than recorded", i + 1, run.events.at(i)));
+    }
+    take(fmt::format("{}: {} ({})", i + 1, run.events.at(i), call.controller),
+         fmt::format("{}, {:.2f} s{}{}", to_string(outcome.status), outcome.sim_time_s,
+                     outcome.reason.empty() ? "" : ": ", outcome.reason));
+  }
+  return pictures;
 }
 
 /// A picture of the start and one after each action of a recorded simulation.
@@ -57,46 +127,42 @@ int draw_run(const Options& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto id = parse_sample_option(options.sample, sink);
   if (!id) return 0;
-  const auto run = harness::read_recorded_run(options.what, *id, invocation.files(), sink);
-  if (!run) return 0;
-  const auto scenario = harness::load_scenario(run->header.scenario, invocation.files(), sink);
-  if (!scenario) return 0;
-  if (!scenario->simulator.command.empty()) {
-    sink.error_about(base::DiagnosticCode::kUsage, "",
+  // The journal is no source of the scenario: it is read into a set of its own.
+  base::SourceFiles journal_files;
+  base::DiagnosticSink journal_sink;
+  const auto run = harness::read_recorded_run(options.what, *id, journal_files, journal_sink);
+  if (!run) {
+    (void)harness::read_recorded_run(options.what, *id, invocation.files(), sink);
+    return 0;
+  }
+  const auto loaded = load_scenario_model(run->header.scenario, invocation);
+  if (!loaded) return 0;
+  const auto& scenario = loaded->scenario;
+  if (!scenario.simulator.command.empty()) {
+    sink.error_about(DiagnosticCode::kUsage, options.what,
                      "only worlds of the built-in simulator can be drawn");
     return 0;
   }
-  harness::OdeSimulator simulator(scenario->world);
-  const auto start = simulator.reset(run->record.initial, run->record.seed);
-  if (start.status != harness::SimStatus::kOk) {
-    sink.error_about(base::DiagnosticCode::kReplayImpossible, options.what, start.reason);
+  harness::OdeSimulator simulator(scenario.world);
+  const auto obstacle =
+      harness::obstacle_to_repeat(run->header, loaded->sources_hash, simulator.info());
+  if (!obstacle.empty()) {
+    sink.error_about(DiagnosticCode::kReplayImpossible, options.what, obstacle);
     return 0;
   }
+  const auto pictures = simulate(*run, scenario, simulator, options.what, sink);
+  if (!pictures) return 0;
+  std::vector<harness::Scene> scenes;
+  for (const auto& picture : *pictures) scenes.push_back(picture.scene);
+  Writer writer(options, scenario, scenes, invocation);
   const fs::path folder =
       options.out.empty() ? fs::path(options.what) / "pictures" : fs::path(options.out);
-  harness::SvgOptions svg;
-  if (!options.no_regions) svg.regions = &scenario->mapping->regions();
-  const auto frame = harness::frame_around(harness::scene_of(simulator.world(), scenario->world));
-  std::string written;
-  const auto draw = [&](std::size_t number, const std::string& title, const std::string& subtitle) {
-    svg.title = title;
-    svg.subtitle = subtitle;
-    const auto path = folder / fmt::format("{:02}.svg", number);
-    const auto scene = harness::scene_of(simulator.world(), scenario->world);
-    if (!write_picture(path, harness::scene_svg(scene, frame, svg), invocation)) return false;
-    written += path.string() + "\n";
-    return true;
-  };
-  if (!draw(0, "start", "")) return 0;
-  for (std::size_t i = 0; i < run->calls.size(); ++i) {
-    const auto& call = run->calls[i];
-    const auto outcome = simulator.act(call.controller, call.arguments, call.time_limit_s);
-    const auto title = fmt::format("{}: {} ({})", i + 1, run->events.at(i), call.controller);
-    const auto subtitle = fmt::format("{}, {:.2f} s {}", to_string(outcome.status),
-                                      outcome.sim_time_s, outcome.reason);
-    if (!draw(i + 1, title, subtitle)) return 0;
+  for (std::size_t i = 0; i < pictures->size(); ++i) {
+    const auto& picture = (*pictures)[i];
+    const auto path = folder / fmt::format("{:02}.svg", i);
+    if (!writer.write(path, picture.title, picture.subtitle, picture.scene)) return 0;
   }
-  invocation.result(written);
+  writer.report();
   return 0;
 }
 
@@ -118,7 +184,8 @@ Command add_draw_command(CLI::App& app) {
       "  parallax draw out/plan2                      the run's first discrepancy, action by "
       "action\n"
       "  parallax draw out/plan2 --sample 1.3 -o pictures\n"
-      "Each picture shows the world from above and from the side.");
+      "Each picture shows the world from above and from the side.\n"
+      "Exit codes: 0 drawn, 3 the scenario has changed since the run.");
   command->add_option("what", options->what, "Scenario file, or folder of a run")->required();
   command->add_option("-o,--out", options->out,
                       "File (of a scenario; default scene.svg) or folder (of a run; default "

@@ -8,11 +8,6 @@
 
 namespace parallax::tools {
 
-/// Text for XML 1.0, in elements and attributes alike: markup and line ends other than plain ones
-/// as entities, characters that XML cannot hold (controls, U+FFFE, U+FFFF) and bytes that are no
-/// UTF-8 as `\x1B`.
-std::string xml_escaped(std::string_view text);
-
 /// The report of a suite: a testsuite for each group, a testcase for each case. A case that has not
 /// finished is an error, so that a crash of the suite is never a case less. `cases` and `results`
 /// run parallel; cases of one group must stand together. `timestamp` is ISO 8601.
