@@ -65,11 +65,14 @@ class Estimator {
                          info->version);
     }
     if (info && !check_against_simulator(scenario_, *info, sink_)) return sink_.already_reported();
+    std::int64_t last = 0;
+    bool seen_all = false;
     while (result.complete) {
       auto trace = traces_.next();
       if (!trace) return sink_.already_reported();
-      if (!*trace) break;
-      const std::int64_t number = (*trace)->number;
+      seen_all = !*trace;
+      if (seen_all) break;
+      const std::int64_t number = last = (*trace)->number;
       if (options_.trace != 0 && number != options_.trace) continue;
       auto rates = one_trace(std::move(**trace), result.complete);
       if (!rates) return sink_.already_reported();
@@ -77,6 +80,13 @@ class Estimator {
       if (number == options_.trace) break;
     }
     pool_.close();
+    if (seen_all) result.complete = traces_.exploration() != "stopped";
+    if (seen_all && result.complete && last < options_.trace) {
+      return sink_.error_about(DiagnosticCode::kNoSuchTrace, scenario_.name, options_.trace,
+                               last == 0   ? "the scenario has none"
+                               : last == 1 ? "the scenario has only one"
+                                           : fmt::format("the scenario has {}", last));
+    }
     return result;
   }
 

@@ -38,11 +38,11 @@ std::string rates_text(const RatesResult& result) {
     for (const CauseRate& rate : trace.causes) {
       out += fmt::format("  {:>6} of {:<6} {:<26} {}\n", rate.count, trace.runs, percent(rate),
                          rate.cause);
-      if (!rate.reason.empty()) {
-        out += fmt::format("{:45}sample {}: {}\n", "", rate.example, rate.reason);
-      }
+      out += fmt::format("{:46}first in sample {}{}{}\n", "", rate.example,
+                         rate.reason.empty() ? "" : ": ", rate.reason);
     }
   }
+  if (result.complete && result.traces.empty()) out += "\nno trace, so nothing was simulated\n";
   if (!result.complete) out += "\nstopped before all runs were made\n";
   return out;
 }

@@ -137,6 +137,9 @@ int draw_run(const Options& options, Invocation& invocation) {
   }
   const auto loaded = load_scenario_model(run->header.scenario, invocation);
   if (!loaded) return 0;
+  if (journal_sink.warning_count() > 0) {  // now they can be located
+    (void)harness::read_recorded_run(options.what, *id, invocation.files(), sink);
+  }
   const auto& scenario = loaded->scenario;
   if (!scenario.simulator.command.empty()) {
     sink.error_about(DiagnosticCode::kUsage, options.what,

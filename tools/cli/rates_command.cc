@@ -37,7 +37,8 @@ int run_rates(const Options& options, Invocation& invocation) {
   } else {
     invocation.result(harness::rates_text(*result));
   }
-  return result->complete ? 0 : 4;
+  if (!result->complete) return 4;
+  return result->traces.empty() ? 1 : 0;
 }
 
 }  // namespace
@@ -50,7 +51,8 @@ Command add_rates_command(CLI::App& app) {
       "Examples:\n"
       "  parallax rates scenarios/kitchen/plan2.yaml --trace 2 --runs 400 --jobs 2\n"
       "  parallax rates scenarios/two_regions/edge.yaml --runs 100 --json\n"
-      "Exit codes: 0 estimated, 4 stopped before all runs were made.");
+      "Sample N starts as simulation N of `parallax run` with the same seed does.\n"
+      "Exit codes: 0 estimated, 1 no trace, 4 stopped before all runs were made.");
   command->add_option("scenario", options->scenario, "Scenario file (YAML)")->required();
   command->add_option("--trace", options->rates.trace, "Only this trace; default: all")
       ->check(whole_number(1, 1'000'000));

@@ -1,0 +1,288 @@
+// `parallax draw` as users run it: pictures of worlds and of recorded simulations.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/support/xml.h"
+#include "tests/tools/cli_fixture.h"
+
+namespace parallax::test {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Box2 {
+  double x0 = 0.0, y0 = 0.0, x1 = 0.0, y1 = 0.0;
+  double x() const { return 0.5 * (x0 + x1); }
+  bool meets(const Box2& other) const {
+    return x0 < other.x1 && other.x0 < x1 && y0 < other.y1 && other.y0 < y1;
+  }
+};
+
+Box2 bounds_of_polygon(const XmlElement& polygon) {
+  auto text = polygon.at("points");
+  std::replace(text.begin(), text.end(), ',', ' ');
+  std::istringstream in(text);
+  Box2 out{1e9, 1e9, -1e9, -1e9};
+  int corners = 0;
+  for (double x = 0.0, y = 0.0; in >> x >> y; ++corners) {
+    out = {std::min(out.x0, x), std::min(out.y0, y), std::max(out.x1, x), std::max(out.y1, y)};
+  }
+  CHECK(in.eof());
+  CHECK(corners >= 3);
+  return out;
+}
+
+double number(const XmlElement& element, const std::string& attribute) {
+  return std::stod(element.at(attribute));
+}
+
+/// Of text that starts at x, as wide as the average of a sans-serif font makes it.
+Box2 bounds_of_text(const XmlElement& text) {
+  const double font = number(text, "font-size"), x = number(text, "x"), y = number(text, "y");
+  const double width = 0.5 * font * static_cast<double>(text.text.size());
+  const bool centred = text.attributes.contains("text-anchor");
+  const double left = centred ? x - 0.5 * width : x;
+  return {left, y - 0.7 * font, left + width, y};
+}
+
+Box2 view_box(const XmlElement& svg) {
+  std::istringstream in(svg.at("viewBox"));
+  Box2 out;
+  in >> out.x0 >> out.y0 >> out.x1 >> out.y1;
+  REQUIRE_FALSE(in.fail());
+  CHECK(number(svg, "width") == out.x1);
+  CHECK(number(svg, "height") == out.y1);
+  return out;
+}
+
+/// Well-formed, everything within the view box, no label on another one.
+XmlElement checked_picture(const std::string& text) {
+  XmlElement svg = parse_xml(text);
+  CHECK(svg.name == "svg");
+  const Box2 view = view_box(svg);
+  const auto check_within = [&](const Box2& box, const std::string& what) {
+    CAPTURE(what);
+    CHECK(box.x0 >= view.x0);
+    CHECK(box.y0 >= view.y0);
+    CHECK(box.x1 <= view.x1);
+    CHECK(box.y1 <= view.y1);
+  };
+  for (const auto* polygon : svg.all("polygon")) {
+    check_within(bounds_of_polygon(*polygon), polygon->children.at(0).text);
+  }
+  for (const auto* line : svg.all("line")) {
+    const double x1 = number(*line, "x1"), x2 = number(*line, "x2");
+    const double y1 = number(*line, "y1"), y2 = number(*line, "y2");
+    check_within({std::min(x1, x2), std::min(y1, y2), std::max(x1, x2), std::max(y1, y2)}, "line");
+  }
+  for (const auto* rect : svg.all("rect")) {
+    if (rect->at("width") == "100%") continue;
+    const double x = number(*rect, "x"), y = number(*rect, "y");
+    check_within({x, y, x + number(*rect, "width"), y + number(*rect, "height")}, "rect");
+  }
+  std::vector<Box2> labels;
+  for (const auto* label : svg.all("text")) {
+    CAPTURE(label->text);
+    const Box2 box = bounds_of_text(*label);
+    check_within(box, label->text);
+    for (const Box2& other : labels) CHECK_FALSE(box.meets(other));
+    labels.push_back(box);
+  }
+  return svg;
+}
+
+/// The polygon of a body of one box in the view from above, which comes first.
+Box2 body(const XmlElement& svg, const std::string& name) {
+  for (const auto* polygon : svg.all("polygon")) {
+    if (polygon->children.at(0).text == name) return bounds_of_polygon(*polygon);
+  }
+  FAIL("no body " << name);
+  return {};
+}
+
+bool has_text(const XmlElement& svg, const std::string& wanted) {
+  const auto texts = svg.all("text");
+  return std::any_of(texts.begin(), texts.end(),
+                     [&](const XmlElement* text) { return text->text == wanted; });
+}
+
+/// From the scale at the lower right: its length in pixels and in metres.
+double pixels_per_m(const XmlElement& svg) {
+  for (const auto* label : svg.all("text")) {
+    if (!label->text.ends_with(" m")) continue;
+    const auto& bar = svg.all("path").back()->at("d");  // "M404.0 353.0v8m0 -4H514.0m0 -4v8"
+    const double left = std::stod(bar.substr(1));
+    return (std::stod(bar.substr(bar.find('H') + 1)) - left) / std::stod(label->text);
+  }
+  FAIL("no scale");
+  return 0.0;
+}
+
+std::string absolute(const std::string& scenario) {
+  return std::string(PARALLAX_SOURCE_DIR) + "/scenarios/" + scenario;
+}
+
+TEST_CASE("a world is drawn with its bodies, regions and a scale") {
+  const CliFixture cli;
+  const auto result = cli.parallax({"draw", "edge.yaml", "-o", "sub/world.svg"});
+  CHECK(result.code == 0);
+  CHECK(result.out == "sub/world.svg\n");
+  const auto svg = checked_picture(cli.read("sub/world.svg"));
+  for (const auto* text : {"place the box at the edge of r1", "r1", "r2", "box", "0.5 m", "x", "y",
+                           "z", "from above", "from the side"}) {
+    CAPTURE(text);
+    CHECK(has_text(svg, text));
+  }
+  // As the scenario says: the box of 7 cm stands 1 m to the right of the base.
+  const double scale = pixels_per_m(svg);
+  const auto box = body(svg, "box");
+  CHECK(box.x1 - box.x0 == doctest::Approx(0.07 * scale).epsilon(0.02));
+  CHECK(box.x() - body(svg, "base").x() == doctest::Approx(1.0 * scale).epsilon(0.005));
+  CHECK(svg.all("rect").size() == 3);  // the background and two regions
+
+  REQUIRE(cli.parallax({"draw", "edge.yaml", "--no-regions", "-o", "bare.svg"}).code == 0);
+  CHECK(checked_picture(cli.read("bare.svg")).all("rect").size() == 1);
+  const auto document = cli.parallax({"draw", "edge.yaml", "--json"});
+  CHECK(Json::parse(document.out)["pictures"] == Json({"scene.svg"}));
+  CHECK(cli.read("scene.svg") == cli.read("sub/world.svg"));
+}
+
+TEST_CASE("the worlds of the repository are drawn whole, without a label on another") {
+  const CliFixture cli;
+  for (const std::string name : {"kitchen/plan2", "kitchen/plan3", "warehouse/restock"}) {
+    CAPTURE(name);
+    REQUIRE(cli.parallax({"draw", absolute(name + ".yaml"), "-o", "world.svg"}).code == 0);
+    const auto svg = checked_picture(cli.read("world.svg"));
+    CHECK(svg.all("polygon").size() > 20);
+    CHECK(has_text(svg, name.starts_with("kitchen") ? "bWork" : "atBins"));
+    CHECK(has_text(svg, name.starts_with("kitchen") ? "spoon1" : "drum"));
+  }
+}
+
+TEST_CASE("each action of a recorded simulation has its picture, which shows what was observed") {
+  const CliFixture cli;
+  REQUIRE(cli.parallax({"run", "edge.yaml", "--seed", "5", "--out", "run"}).code == 1);
+  const auto result = cli.parallax({"draw", "run"});
+  CHECK(result.code == 0);
+  CHECK(result.out ==
+        "run/pictures/00.svg\nrun/pictures/01.svg\nrun/pictures/02.svg\n"
+        "run/pictures/03.svg\nrun/pictures/04.svg\n");
+  Json sample;  // the second simulation is the one that went wrong
+  std::istringstream journal(cli.read("run/journal.ndjson"));
+  for (std::string line; std::getline(journal, line);) {
+    const auto read = Json::parse(line);
+    if (read.contains("observations") && read["sample"] == 2) sample = read;
+  }
+  REQUIRE(sample.contains("observations"));
+  const std::vector<std::string> titles = {"start", "1: Go(r2) (going)", "2: PickUp() (picking-up)",
+                                           "3: Go(r1) (going)", "4: Place(r1) (placing)"};
+  std::string views;
+  for (std::size_t i = 0; i < titles.size(); ++i) {
+    CAPTURE(i);
+    const auto svg = checked_picture(cli.read("run/pictures/0" + std::to_string(i) + ".svg"));
+    CHECK(has_text(svg, titles[i]));
+    const auto& seen = sample["observations"][i];
+    const double apart = seen["box.x"].get<double>() - seen["robot.x"].get<double>();
+    CHECK(body(svg, "box").x() - body(svg, "base").x() ==
+          doctest::Approx(apart * pixels_per_m(svg)).scale(100.0).epsilon(0.01));
+    // All pictures of a run show the same part of the world.
+    if (i == 0) views = svg.at("viewBox");
+    CHECK(svg.at("viewBox") == views);
+  }
+  CHECK(has_text(parse_xml(cli.read("run/pictures/00.svg")), "simulation 1.2"));
+
+  const auto before = files_below(cli.folder() / "run/pictures");
+  REQUIRE(cli.parallax({"draw", "run", "--sample", "1.2", "-o", "again"}).code == 0);
+  CHECK(files_below(cli.folder() / "again") == before);
+  REQUIRE(cli.parallax({"draw", "run", "--sample", "1.1", "-o", "other"}).code == 0);
+  CHECK(files_below(cli.folder() / "other") != before);
+}
+
+TEST_CASE("names that XML cannot hold, a far body and a long reason leave the picture whole") {
+  const CliFixture cli;
+  cli.replace("edge.yaml", "name: place the box at the edge of r1",
+              "name: \"a < b & \\\"c\\\" > d \\u0007 " + std::string(400, 'w') + "\"");
+  cli.replace("common.yaml", "include: world.yaml",
+              "include: world.yaml\n  bodies: {'<far & \"high\">': {size_m: [0.1, 0.1, 0.1], "
+              "mass_kg: 0, material: steel, position_m: [90, 3, 0.2]}}");
+  const auto result = cli.parallax({"draw", "edge.yaml", "-o", "world.svg"});
+  CAPTURE(result.err);
+  REQUIRE(result.code == 0);
+  const auto svg = checked_picture(cli.read("world.svg"));
+  CHECK(number(svg, "width") < 10000.0);
+  bool far = false;
+  for (const auto* polygon : svg.all("polygon")) {
+    far = far || polygon->children.at(0).text == "<far & \"high\">";
+  }
+  CHECK(far);
+}
+
+TEST_CASE("what cannot be drawn is told with its exit code") {
+  const CliFixture cli;
+  const auto complains = [&](const std::vector<std::string>& words, int code,
+                             const std::string& part) {
+    auto arguments = words;
+    arguments.insert(arguments.begin(), "draw");
+    const auto result = cli.parallax(arguments);
+    CAPTURE(result.err);
+    CHECK(result.code == code);
+    CHECK(result.out.empty());
+    CHECK(result.err.find(part) != std::string::npos);
+  };
+  complains({"missing.yaml"}, 2, "missing.yaml: error");
+  complains({"edge.yaml", "--sample", "1.1"}, 2, "--sample");
+  cli.write("broken.yaml", "name: [");
+  complains({"broken.yaml"}, 3, "broken.yaml:1:");
+  cli.write("taken", "");
+  complains({"edge.yaml", "-o", "taken/world.svg"}, 2, "taken/world.svg");
+  std::filesystem::create_directory(cli.folder() / "empty");
+  complains({"empty"}, 2, "no journal");
+
+  REQUIRE(cli.parallax({"run", "edge.yaml", "--out", "run"}).code == 1);
+  complains({"run", "--sample", "1.9"}, 2, "no simulation 1.9");
+  complains({"run", "--sample", "one"}, 2, "--sample");
+  const auto journal = cli.read("run/journal.ndjson");
+  SUBCASE("a journal of which only the first line was written has no simulation") {
+    cli.write("run/journal.ndjson", journal.substr(0, journal.find('\n') + 1));
+    complains({"run"}, 2, "no simulation");
+  }
+  SUBCASE("a first line that was cut off is no journal") {
+    cli.write("run/journal.ndjson", journal.substr(0, 40));
+    complains({"run"}, 2, "no journal");
+  }
+  SUBCASE("a foreign line is named with its place") {
+    cli.write("run/journal.ndjson", journal.substr(0, journal.find('\n') + 1) + "{}\n");
+    complains({"run"}, 3, "run/journal.ndjson:2:");
+  }
+  SUBCASE("a scenario that has changed since shows other simulations") {
+    cli.replace("world.yaml", "mass_kg: 0.3", "mass_kg: 0.31");
+    complains({"run"}, 3, "has changed");
+  }
+  SUBCASE("a record that was tampered with is not what happens") {
+    auto changed = journal;
+    const auto at = changed.find("\"sim_time_s\":");
+    REQUIRE(at != std::string::npos);
+    changed[at + 13] = changed[at + 13] == '9' ? '8' : '9';
+    cli.write("run/journal.ndjson", changed);
+    complains({"run"}, 3, "ended otherwise than recorded");
+  }
+}
+
+TEST_CASE("a run whose last line was cut off is drawn as far as it goes, with a warning") {
+  const CliFixture cli;
+  REQUIRE(cli.parallax({"run", "edge.yaml", "--seed", "5", "--out", "run"}).code == 1);
+  auto journal = cli.read("run/journal.ndjson");
+  cli.write("run/journal.ndjson", journal.substr(0, journal.size() - 30));
+  const auto result = cli.parallax({"draw", "run", "--sample", "1.1"});
+  CHECK(result.code == 0);
+  CHECK(result.err.find("run/journal.ndjson") != std::string::npos);
+  CHECK(files_below(cli.folder() / "run/pictures").size() == 5);
+}
+
+}  // namespace
+}  // namespace parallax::test

@@ -1,0 +1,244 @@
+// `parallax rates` as users run it: counts by cause, their intervals, limits and bad input.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/cli_fixture.h"
+
+namespace parallax::test {
+namespace {
+
+using Json = nlohmann::json;
+
+Json rates(const CliFixture& cli, std::vector<std::string> arguments, int expected_code = 0) {
+  arguments.insert(arguments.begin(), "rates");
+  arguments.push_back("--json");
+  const auto result = cli.parallax(arguments);
+  CAPTURE(result.err);
+  CAPTURE(result.out);
+  CHECK(result.code == expected_code);
+  REQUIRE(Json::accept(result.out));
+  return Json::parse(result.out);
+}
+
+/// P(X <= k) for n draws with probability p, term by term.
+double binomial_cdf(int k, int n, double p) {
+  double sum = 0.0;
+  for (int i = 0; i <= k; ++i) {
+    sum += std::exp(std::lgamma(n + 1.0) - std::lgamma(i + 1.0) - std::lgamma(n - i + 1.0) +
+                    i * std::log(p) + (n - i) * std::log1p(-p));
+  }
+  return sum;
+}
+
+/// The p at which a decreasing function of it crosses `level`.
+template <typename Function>
+double crossing(const Function& decreasing, double level) {
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (decreasing(middle) > level ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// The interval of Clopper and Pearson by its definition: the p under which a count as extreme as
+/// this one has half of what the confidence leaves.
+void check_interval(const Json& rate, int runs, double confidence) {
+  const int count = rate["count"];
+  CAPTURE(rate.dump());
+  CAPTURE(runs);
+  const double tail = 0.5 * (1.0 - confidence);
+  const double lower =
+      count == 0 ? 0.0
+                 : crossing([&](double p) { return binomial_cdf(count - 1, runs, p); }, 1.0 - tail);
+  const double upper =
+      count == runs ? 1.0 : crossing([&](double p) { return binomial_cdf(count, runs, p); }, tail);
+  CHECK(rate["rate"].get<double>() == doctest::Approx(static_cast<double>(count) / runs));
+  CHECK(rate["lower"].get<double>() == doctest::Approx(lower).epsilon(1e-7));
+  CHECK(rate["upper"].get<double>() == doctest::Approx(upper).epsilon(1e-7));
+}
+
+TEST_CASE("counts by cause add up to all discrepancies, the most frequent first") {
+  const CliFixture cli;
+  // Box and robot are uniform over a metre each, the arm reaches 0.6 m: out of reach in 82 %. The
+  // soft grip loses some of the boxes that it reaches.
+  cli.replace("wrong_model.yaml", "include: common.yaml",
+              "include: common.yaml\nworld: {friction: {box-pad: 0}}");
+  const auto result = rates(cli, {"wrong_model.yaml", "--runs", "60"});
+  CHECK(result["status"] == "ok");
+  CHECK(result["complete"] == true);
+  REQUIRE(result["traces"].size() == 1);
+  const auto& trace = result["traces"][0];
+  CHECK(trace["runs"] == 60);
+  CHECK(trace["lost"] == 0);
+  CHECK(trace["events"] == "PickUp() Go(r1) Place(r1)");
+  REQUIRE(trace["causes"].size() == 2);
+  int sum = 0, before = 60;
+  for (const auto& cause : trace["causes"]) {
+    const int count = cause["count"];
+    CHECK(count > 0);
+    CHECK(count <= before);
+    before = count;
+    sum += count;
+    CHECK(cause["example"].get<int>() >= 1);
+    CHECK(cause["example"].get<int>() <= 60);
+    check_interval(cause, 60, 0.95);
+  }
+  CHECK(trace["any"]["count"] == sum);
+  CHECK(sum == 60);  // without friction nothing is ever held
+  CHECK(trace["causes"][0]["cause"] == "PickUp(): out of reach");
+}
+
+TEST_CASE("a rate that geometry gives lies within its interval") {
+  const CliFixture cli;
+  const auto result =
+      rates(cli, {"wrong_model.yaml", "--runs", "80", "--confidence", "0.999", "--jobs", "2"});
+  CHECK(result["confidence"] == 0.999);
+  const auto& any = result["traces"][0]["any"];
+  check_interval(any, 80, 0.999);
+  CHECK(any["lower"].get<double>() < 0.82);
+  CHECK(any["upper"].get<double>() > 0.82);
+}
+
+TEST_CASE("intervals of no and of nothing but discrepancies end at zero and at one") {
+  const CliFixture cli;
+  const auto clean = rates(cli, {"scenario.yaml", "--runs", "6"})["traces"][0];
+  CHECK(clean["any"]["count"] == 0);
+  CHECK(clean["causes"].empty());
+  check_interval(clean["any"], 6, 0.95);
+  CHECK(clean["any"]["upper"].get<double>() == doctest::Approx(1 - std::pow(0.025, 1.0 / 6)));
+  cli.replace("common.yaml", "include: world.yaml",
+              "include: world.yaml\n  friction: {box-pad: 0}");
+  const auto failing = rates(cli, {"scenario.yaml", "--runs", "6"})["traces"][0];
+  CHECK(failing["any"]["count"] == 6);
+  check_interval(failing["any"], 6, 0.95);
+  CHECK(failing["any"]["upper"] == 1.0);
+}
+
+TEST_CASE("nothing that is printed depends on the number of jobs") {
+  const CliFixture cli;
+  for (const bool json : {false, true}) {
+    std::vector<std::string> printed;
+    for (const auto* jobs : {"1", "2"}) {
+      std::vector<std::string> words = {"rates", "wrong_model.yaml", "--runs",
+                                        "10",    "--jobs",           jobs};
+      if (json) words.emplace_back("--json");
+      printed.push_back(cli.parallax(words).out);
+    }
+    CHECK(printed[0].size() > 100);
+    CHECK(printed[0] == printed[1]);
+  }
+}
+
+TEST_CASE("sample N is simulation N of a run with the same seed") {
+  const CliFixture cli;
+  for (const auto* seed : {"1", "5"}) {
+    CAPTURE(seed);
+    const auto run = cli.parallax(
+        {"run", "edge.yaml", "--seed", seed, "--json", "--out", std::string("run") + seed});
+    REQUIRE(run.code == 1);
+    const auto first = Json::parse(run.out)["discrepancies"][0]["sample"];
+    const auto counted =
+        rates(cli, {"edge.yaml", "--seed", seed, "--runs", std::to_string(first.get<int>())});
+    CHECK(counted["traces"][0]["any"]["count"] == 1);
+    CHECK(counted["traces"][0]["causes"][0]["example"] == first);
+  }
+}
+
+TEST_CASE("--trace picks one of the traces and changes nothing about it") {
+  const CliFixture cli;
+  cli.replace("start.e", "HoldsAt(BoxIn(r2),0).\n", "!HoldsAt(Holding(),0).\n");
+  cli.replace("wrong_model.yaml", "plan: hasty.lisp", "plan: either.lisp");
+  cli.write("either.lisp", R"((defun pose-at (?x)
+  (make-pose-stamped "map" 0.0 (make-3d-vector ?x 0 0) (make-identity-rotation)))
+(def-cram-function fetch ()
+  (when (holds '(box-in r2))
+    (let ((?there (pose-at 1.2)))
+      (perform (a motion (type going) (pose ?there)))))
+  (perform (an action (type picking-up) (object (an object (name box)))))
+  (let ((?here (pose-at 0.5)))
+    (perform (a motion (type going) (pose ?here)))
+    (perform (an action (type placing) (object (an object (name box)))
+                        (target (a location (pose ?here)))))))
+(fetch)
+)");
+  const auto all = rates(cli, {"wrong_model.yaml", "--runs", "4"});
+  REQUIRE(all["traces"].size() == 2);
+  for (int number = 1; number <= 2; ++number) {
+    const auto one =
+        rates(cli, {"wrong_model.yaml", "--runs", "4", "--trace", std::to_string(number)});
+    REQUIRE(one["traces"].size() == 1);
+    CHECK(one["complete"] == true);
+    CHECK(one["traces"][0] == all["traces"][static_cast<std::size_t>(number - 1)]);
+  }
+  const auto none = cli.parallax({"rates", "wrong_model.yaml", "--runs", "4", "--trace", "3"});
+  CHECK(none.code == 2);
+  CHECK(none.out.empty());
+  CHECK(none.err.find("there is no trace 3: the scenario has 2") != std::string::npos);
+}
+
+TEST_CASE("starts that interpenetrate are drawn again, and counted") {
+  const CliFixture cli;
+  // A post over the fifth of the lane, but for the 7 cm of the box.
+  cli.replace("common.yaml", "include: world.yaml",
+              "include: world.yaml\n  bodies: {post: {size_m: [0.13, 0.07, 0.07], mass_kg: 0, "
+              "material: steel, position_m: [1.5, 0, 0.035]}}");
+  const auto trace = rates(cli, {"wrong_model.yaml", "--runs", "40"})["traces"][0];
+  CHECK(trace["runs"] == 40);
+  // Negative binomial with p = 0.2: 10 expected, with a standard deviation of 3.5.
+  CHECK(trace["rejected"].get<int>() >= 1);
+  CHECK(trace["rejected"].get<int>() <= 28);
+}
+
+TEST_CASE("a limit or a signal leaves a partial result that says so") {
+  const CliFixture cli;
+  const auto limited = rates(cli, {"scenario.yaml", "--runs", "1000000", "--time-limit", "1"}, 4);
+  CHECK(limited["complete"] == false);
+  CHECK(limited["traces"][0]["runs"].get<int>() < 1'000'000);
+  CHECK(limited["traces"][0]["any"]["count"] == 0);
+
+  for (const int signal : {SIGINT, SIGTERM}) {
+    ProcessOptions options;
+    int looks = 0;
+    options.signal_when = [&] { return ++looks > 100 ? signal : 0; };
+    const auto stopped = cli.parallax({"rates", "scenario.yaml", "--runs", "1000000"}, options);
+    CHECK(stopped.code == 128 + signal);
+  }
+}
+
+TEST_CASE("what cannot be estimated is told with its exit code") {
+  const CliFixture cli;
+  const auto complains = [&](const std::vector<std::string>& words, int code,
+                             const std::string& part) {
+    auto arguments = words;
+    arguments.insert(arguments.begin(), "rates");
+    const auto result = cli.parallax(arguments);
+    CAPTURE(result.err);
+    CHECK(result.code == code);
+    CHECK((result.err + result.out).find(part) != std::string::npos);
+  };
+  complains({"missing.yaml"}, 2, "missing.yaml");
+  complains({"scenario.yaml", "--runs", "0"}, 2, "--runs");
+  complains({"scenario.yaml", "--runs", "ten"}, 2, "--runs");
+  complains({"scenario.yaml", "--confidence", "1"}, 2, "--confidence");
+  complains({"scenario.yaml", "--jobs", "0"}, 2, "--jobs");
+  complains({"scenario.yaml", "--job", "2"}, 2, "--jobs");
+
+  cli.replace("edge.yaml", "horizon: 6", "horizon: 2");
+  complains({"edge.yaml"}, 1, "no trace");
+  const auto none = rates(cli, {"edge.yaml"}, 1);
+  CHECK(none["traces"].empty());
+
+  cli.replace("wrong_model.yaml", "constraints:\n", "limits: {max_runs: 5}\n#");
+  cli.replace("wrong_model.yaml", "  - \"{region}", "#");
+  complains({"wrong_model.yaml"}, 3, "needs `constraints`");
+  cli.write("broken.yaml", "name: [");
+  complains({"broken.yaml"}, 3, "broken.yaml:1:");
+}
+
+}  // namespace
+}  // namespace parallax::test
