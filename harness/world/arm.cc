@@ -1,5 +1,6 @@
 #include "harness/world/arm.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -103,6 +104,16 @@ double Arm::opening_m() const {
 double Arm::wrist_rad() const { return world_.gantry_yaw_rad(gantry_); }
 
 Eigen::Vector3d Arm::pad_line() const { return world_.rotation(palm_) * pad_line_P_; }
+
+Eigen::Vector3d Arm::palm_offset() const { return world_.position(palm_) - tool(); }
+
+double Arm::palm_half_extent_m(const Eigen::Vector3d& direction_W, double wrist_rad) const {
+  const Eigen::AngleAxisd turn_back(this->wrist_rad() - wrist_rad, Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d direction_P =
+      world_.rotation(palm_).transpose() * (turn_back * direction_W);
+  const Eigen::Vector3d& size_m = world_.layout().bodies[palm_].shapes.front().size_m;
+  return 0.5 * direction_P.cwiseAbs().dot(size_m);
+}
 
 void Arm::drive_motors() {
   const double step_s = world_.timestep_s();

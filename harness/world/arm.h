@@ -33,6 +33,10 @@ class Arm {
   double opening_m() const;      // between the pads' inner faces
   double wrist_rad() const;
   Eigen::Vector3d pad_line() const;  // from the far pad to the near one, world, unit
+  /// The middle of the palm, seen from the tool [m]; the same whatever way the wrist is turned.
+  Eigen::Vector3d palm_offset() const;
+  /// How far the palm reaches from its middle along `direction_W` once the wrist is at `wrist_rad`.
+  double palm_half_extent_m(const Eigen::Vector3d& direction_W, double wrist_rad) const;
   const ArmSpec& spec() const { return spec_; }
   std::uint32_t gripper() const { return gripper_; }
   /// All bodies that move with the palm.

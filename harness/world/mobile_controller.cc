@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace parallax::harness {
@@ -15,8 +16,9 @@ constexpr Motion kWrist{1.5, 4.0, 0.005, 10.0};  // radians
 constexpr Motion kFinger{0.10, 0.5, 0.001, 10.0};
 constexpr double kCloseSpeed_m_s = 0.05;
 constexpr double kCloseGrace_s = 0.5;
-/// Ways of a load that was just lifted begin in touch with what it lay on.
-constexpr double kTouching_m = 0.002;
+/// Room round the arm that a way is looked for with, the most first. The last is for ways that
+/// begin in touch, as that of a load that was just lifted.
+constexpr std::array kRoom_m = {0.015, 0.005, -0.002};
 
 }  // namespace
 
@@ -81,11 +83,13 @@ void MobileController::add_tool_path(std::string_view name, std::function<Eigen:
       [this, name, target = std::move(target), touched] {
         BodyMask ignored = robot().parts();
         if (touched) ignored[touched->index()] = true;
-        const Sweep sweep(world(), arm_and_load(), ignored, kTouching_m);
         const Eigen::Vector3d goal = target();
         const double ceiling_m = std::max(robot().carry_point(arm()).z(), arm().tool().z()) + 0.1;
-        const ToolPath path =
-            find_tool_path(sweep, arm().tool(), goal, -robot().base().heading(), ceiling_m);
+        ToolPath path;
+        for (std::size_t i = 0; i < kRoom_m.size() && path.corners.empty(); ++i) {
+          const Sweep sweep(world(), arm_and_load(), ignored, -kRoom_m[i]);
+          path = find_tool_path(sweep, arm().tool(), goal, -robot().base().heading(), ceiling_m);
+        }
         if (path.corners.empty()) {
           refuse_with(kManipulationUnreachable,
                       path.blocked ? fmt::format("no free way for the {} arm: `{}` meets `{}`",

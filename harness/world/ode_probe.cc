@@ -9,6 +9,7 @@ namespace {
 
 struct Search {
   const BodyMask& ignored;
+  bool floor_counts = true;
   double best = 0.0;  // depth of an overlap, or distance along a ray
   bool nearest = false;
   const GeomInfo* found = nullptr;
@@ -21,7 +22,7 @@ void visit(void* data, dGeomID a, dGeomID b) {
   auto& search = *static_cast<Search*>(data);
   const dGeomID other = dGeomGetData(a) == nullptr ? b : a;
   const GeomInfo& info = info_of(other);
-  if (info.body && search.ignored[info.body->index()]) return;
+  if (info.body ? search.ignored[info.body->index()] : !search.floor_counts) return;
   std::array<dContactGeom, 8> contacts;
   const int count =
       dCollide(a, b, static_cast<int>(contacts.size()), contacts.data(), sizeof(dContactGeom));
@@ -39,6 +40,21 @@ void visit_all(OdeWorld::Engine& engine, dGeomID probe, Search& search) {
   for (dxSpace* const space : {engine.static_space, engine.movable_space}) {
     dSpaceCollide2(probe, reinterpret_cast<dGeomID>(space), &search, &visit);
   }
+}
+
+/// Finds the first thing that a ray meets.
+void visit_ray(OdeWorld::Engine& engine, const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
+               Search& search) {
+  const Eigen::Vector3d way = to_W - from_W;
+  const double length_m = way.norm();
+  if (length_m == 0.0) return;
+  const dGeomID ray = dCreateRay(nullptr, length_m);
+  dGeomRaySet(ray, from_W.x(), from_W.y(), from_W.z(), way.x() / length_m, way.y() / length_m,
+              way.z() / length_m);
+  dGeomRaySetLength(ray, length_m);
+  search.nearest = true;
+  visit_all(engine, ray, search);
+  dGeomDestroy(ray);
 }
 
 std::string name_of(const OdeWorld::Engine& engine, const GeomInfo& info) {
@@ -66,19 +82,21 @@ std::optional<Overlap> OdeWorld::find_obstacle(const Probe& probe, const BodyMas
 
 std::optional<RayHit> OdeWorld::cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
                                          const BodyMask& ignored) const {
-  const Eigen::Vector3d way = to_W - from_W;
-  const double length_m = way.norm();
-  if (length_m == 0.0) return std::nullopt;
-  const dGeomID ray = dCreateRay(nullptr, length_m);
-  dGeomRaySet(ray, from_W.x(), from_W.y(), from_W.z(), way.x() / length_m, way.y() / length_m,
-              way.z() / length_m);
-  dGeomRaySetLength(ray, length_m);
   Search search{ignored};
-  search.nearest = true;
-  visit_all(*engine_, ray, search);
-  dGeomDestroy(ray);
+  visit_ray(*engine_, from_W, to_W, search);
   if (search.found == nullptr) return std::nullopt;
   return RayHit{name_of(*engine_, *search.found), search.best};
+}
+
+std::optional<double> OdeWorld::ray_meets(const Eigen::Vector3d& from_W,
+                                          const Eigen::Vector3d& to_W, BodyId id) const {
+  BodyMask others(engine_->layout.bodies.size(), true);
+  others[id.index()] = false;
+  Search search{others};
+  search.floor_counts = false;
+  visit_ray(*engine_, from_W, to_W, search);
+  if (search.found == nullptr) return std::nullopt;
+  return search.best;
 }
 
 }  // namespace parallax::harness

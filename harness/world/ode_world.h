@@ -98,9 +98,13 @@ class OdeWorld {
   /// its contacts counts. Bodies in `ignored` do not.
   std::optional<Overlap> find_obstacle(const Probe& probe, const BodyMask& ignored,
                                        double tolerance_m) const;
-  /// The nearest thing on the way from `from_W` to `to_W` that is not in `ignored`.
+  /// The nearest thing on the way from `from_W` to `to_W` that is not in `ignored`; the floor is
+  /// met from both sides.
   std::optional<RayHit> cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
                                  const BodyMask& ignored) const;
+  /// Where the body is first met on that way, whatever else there is [m].
+  std::optional<double> ray_meets(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
+                                  BodyId id) const;
 
   double mass_kg(BodyId id) const;
   Eigen::Vector3d position(BodyId id) const;  // of the body's origin in the world [m]

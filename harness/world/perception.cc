@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace parallax::harness {
 namespace {
@@ -38,6 +40,18 @@ std::vector<Eigen::Vector3d> sample_points(const BodySpec& body, int count) {
     points.push_back(point);
   }
   return points;
+}
+
+/// Coordinate by coordinate, the lower of two: rays that clip an edge do not move it.
+Eigen::Vector3d median(std::vector<Eigen::Vector3d> points) {
+  const auto middle = static_cast<std::ptrdiff_t>((points.size() - 1) / 2);
+  Eigen::Vector3d result;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    std::nth_element(points.begin(), points.begin() + middle, points.end(),
+                     [axis](const auto& a, const auto& b) { return a(axis) < b(axis); });
+    result(axis) = points[static_cast<std::size_t>(middle)](axis);
+  }
+  return result;
 }
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -88,17 +102,15 @@ std::string Perception::gaze() const {
   return off_rad <= robot_.spec().camera.half_angle_rad ? gaze_.name : std::string();
 }
 
-Eigen::Vector3d Perception::middle_of_chord(const Eigen::Vector3d& from,
-                                            const Eigen::Vector3d& direction, BodyId id) const {
-  BodyMask others(world_.layout().bodies.size(), true);
-  others[id.index()] = false;
-  const double far_m = robot_.spec().camera.max_range_m + 1.0;
-  const Eigen::Vector3d beyond = from + far_m * direction;
-  const auto front = world_.cast_ray(from, beyond, others);
-  const auto back = world_.cast_ray(beyond, from, others);
-  const bool hits = front && back && front->body != "floor" && back->body != "floor";
-  if (!hits) return world_.position(id);  // a ray into a hollow
-  return from + 0.5 * (front->distance_m + far_m - back->distance_m) * direction;
+Eigen::Vector3d Perception::middle_of_chord(const Eigen::Vector3d& from, const Eigen::Vector3d& aim,
+                                            BodyId id) const {
+  const Bounds box = own_bounds(world_.layout().bodies[id]);
+  const Eigen::Vector3d direction = (aim - from).normalized();
+  const Eigen::Vector3d beyond = aim + (box.high - box.low).norm() * direction;
+  const auto front_m = world_.ray_meets(from, beyond, id);
+  const auto back_m = world_.ray_meets(beyond, from, id);
+  if (!front_m || !back_m) return aim;  // a ray through a hollow
+  return 0.5 * (from + *front_m * direction + beyond - *back_m * direction);
 }
 
 Sighting Perception::sight(BodyId id, int points) const {
@@ -110,6 +122,7 @@ Sighting Perception::sight(BodyId id, int points) const {
   const Eigen::Vector3d gaze = place_in_world(gaze_) - p_WC;
   const Eigen::Vector3d p_WB = world_.position(id);
   const Eigen::Matrix3d R_WB = world_.rotation(id);
+  std::vector<Eigen::Vector3d> estimates;
   for (const Eigen::Vector3d& point : sample_points(world_.layout().bodies[id], points)) {
     const Eigen::Vector3d way = p_WB + R_WB * point - p_WC;
     const double distance_m = way.norm();
@@ -120,10 +133,10 @@ Sighting Perception::sight(BodyId id, int points) const {
       sighting.hidden_by = hit->body;
       continue;
     }
-    ++sighting.seen;
-    sighting.p_W += middle_of_chord(p_WC, way / distance_m, id) - R_WB * point;
+    estimates.push_back(middle_of_chord(p_WC, p_WC + way, id) - R_WB * point);
   }
-  if (sighting.seen > 0) sighting.p_W /= sighting.seen;
+  sighting.seen = static_cast<int>(estimates.size());
+  if (!estimates.empty()) sighting.p_W = median(std::move(estimates));
   return sighting;
 }
 

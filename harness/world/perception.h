@@ -29,7 +29,7 @@ struct Sighting {
 };
 
 /// A camera that sees points of bodies by casting rays, and what was made of it. An estimate is the
-/// mean of the middles of the stretches that the rays have inside the body: how a body of known
+/// median of the middles of the stretches that the rays have inside the body: how a body of known
 /// shape is found, with an error that depends on the view.
 class Perception {
  public:
@@ -60,8 +60,8 @@ class Perception {
   std::vector<BodyId> bodies_of_kind(const std::string& kind) const;
 
  private:
-  /// Half way between where a ray enters a body and where it leaves it.
-  Eigen::Vector3d middle_of_chord(const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
+  /// Half way between where a ray at `aim` enters a body and where it leaves it.
+  Eigen::Vector3d middle_of_chord(const Eigen::Vector3d& from, const Eigen::Vector3d& aim,
                                   BodyId id) const;
   void store(BodyId id, const Eigen::Vector3d& p_W, const std::string& frame);
   Eigen::Vector3d from_frame(const std::string& frame, const Eigen::Vector3d& p_F) const;

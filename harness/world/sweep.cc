@@ -8,7 +8,8 @@ namespace parallax::harness {
 
 Sweep::Sweep(const OdeWorld& world, const BodyMask& bodies, const BodyMask& ignored,
              double tolerance_m)
-    : world_(world), ignored_(ignored), tolerance_m_(tolerance_m) {
+    : world_(world), ignored_(ignored), tolerance_m_(std::max(tolerance_m, 0.0)) {
+  const Eigen::Vector3d room = Eigen::Vector3d::Constant(2.0 * std::max(-tolerance_m, 0.0));
   const WorldLayout& layout = world.layout();
   for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
     if (!bodies[i]) continue;
@@ -19,8 +20,8 @@ Sweep::Sweep(const OdeWorld& world, const BodyMask& bodies, const BodyMask& igno
     for (const BoxShape& shape : layout.bodies[id].shapes) {
       const Eigen::Matrix3d R_WS =
           R_WB * Eigen::AngleAxisd(shape.yaw_rad, Eigen::Vector3d::UnitZ());
-      parts_.push_back(
-          {layout.bodies[id].name, {shape.size_m, world.position(id) + R_WB * shape.p_BS, R_WS}});
+      parts_.push_back({layout.bodies[id].name,
+                        {shape.size_m + room, world.position(id) + R_WB * shape.p_BS, R_WS}});
     }
   }
 }

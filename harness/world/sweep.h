@@ -20,7 +20,8 @@ struct Obstacle {
 /// as they stand at construction, against everything else that is not in `ignored`.
 class Sweep {
  public:
-  /// Overlaps of at most `tolerance_m` count as touching.
+  /// Overlaps of at most `tolerance_m` count as touching; a negative one asks for so much room all
+  /// round.
   Sweep(const OdeWorld& world, const BodyMask& bodies, const BodyMask& ignored, double tolerance_m);
 
   /// The first obstacle on the straight way by `way`, looked at every `step_m`, ends included.

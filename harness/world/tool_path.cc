@@ -5,7 +5,7 @@
 namespace parallax::harness {
 namespace {
 
-constexpr double kStep_m = 0.015;    // of the sweeps
+constexpr double kStep_m = 0.010;    // of the sweeps
 constexpr double kRetreat_m = 0.05;  // between the retreats that are tried
 constexpr int kRetreats = 11;        // up to 0.5 m
 constexpr double kHeight_m = 0.10;   // between the heights

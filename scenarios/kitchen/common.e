@@ -185,7 +185,8 @@ HoldsAt(Holding(arm,item),time) & ({base} HoldsAt(RobotAt(base),time) & Serves(b
 HoldsAt(Accessible(place),time) & !HoldsAt(Occupied(place),time) ->
 Initiates(PlaceAt(arm,item,place),BelievedAt(item,place),time).
 
-; Drawers are opened by a free hand unless one above is open, and closed by a free hand.
+; Drawers are opened by a free hand unless one above is open, and pushed shut by either hand, also one
+; that holds something.
 [arm,drawer,time]
 ({base} HoldsAt(RobotAt(base),time) & Serves(base,drawer)) & HoldsAt(HandFree(arm),time) &
 !HoldsAt(Obstructed(drawer),time) ->
@@ -195,10 +196,10 @@ Initiates(OpenDrawer(arm,drawer),DrawerOpen(drawer),time).
 !HoldsAt(Obstructed(drawer),time) ->
 Terminates(OpenDrawer(arm,drawer),Parked(arm),time).
 [arm,drawer,time]
-({base} HoldsAt(RobotAt(base),time) & Serves(base,drawer)) & HoldsAt(HandFree(arm),time) ->
+({base} HoldsAt(RobotAt(base),time) & Serves(base,drawer)) ->
 Terminates(CloseDrawer(arm,drawer),DrawerOpen(drawer),time).
 [arm,drawer,time]
-({base} HoldsAt(RobotAt(base),time) & Serves(base,drawer)) & HoldsAt(HandFree(arm),time) ->
+({base} HoldsAt(RobotAt(base),time) & Serves(base,drawer)) ->
 Terminates(CloseDrawer(arm,drawer),Parked(arm),time).
 
 ; An opened gripper drops what it holds.

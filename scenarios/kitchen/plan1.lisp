@@ -42,7 +42,7 @@
         (exe:perform (desig:a motion (type detecting) (object (desig:an object (type ?type))))))))
   (cpl:fail 'common-fail:object-nowhere-to-be-found))
 
-;; Drawers are closed again, also the one that the spoon was in; then the left hand holds the spoon.
+;; Drawers are closed again, also the one that the spoon was in; the hand that holds the spoon pushes.
 (def-cram-function fetch-from-drawers (?type)
   (dolist (?drawer '(:d-top :d-mid :d-low))
     (exe:perform (desig:an action (type opening) (arm left)
@@ -57,7 +57,7 @@
                                     (object (desig:an object (type ?type)))))))
       (when ?found
         (pick-up ?found)
-        (exe:perform (desig:an action (type closing) (arm right)
+        (exe:perform (desig:an action (type closing) (arm left)
                                (object (desig:an object (name ?drawer)))))
         (return-from fetch-from-drawers ?found)))
     (exe:perform (desig:an action (type closing) (arm left)

@@ -42,8 +42,8 @@
         (exe:perform (desig:a motion (type detecting) (object (desig:an object (type ?type))))))))
   (cpl:fail 'common-fail:object-nowhere-to-be-found))
 
-(def-cram-function close-drawer (?drawer ?arm)
-  (exe:perform (desig:an action (type closing) (arm ?arm)
+(def-cram-function close-drawer (?drawer)
+  (exe:perform (desig:an action (type closing) (arm left)
                          (object (desig:an object (name ?drawer))))))
 
 (def-cram-function fetch-from-drawers (?type)
@@ -60,9 +60,9 @@
                                     (object (desig:an object (type ?type)))))))
       (when ?found
         (pick-up ?found)
-        (close-drawer ?drawer :right)
+        (close-drawer ?drawer)
         (return-from fetch-from-drawers ?found)))
-    (close-drawer ?drawer :left))
+    (close-drawer ?drawer))
   (cpl:fail 'common-fail:object-nowhere-to-be-found))
 
 (def-cram-function deliver (?object ?spot)
