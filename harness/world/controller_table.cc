@@ -134,7 +134,7 @@ constexpr std::array kPlace = {
     settle(0.5),
 };
 
-constexpr std::array kMoveDrawer = {
+constexpr std::array kOpenDrawer = {
     named("arm", "arm", "which arm"),
     named("joint", "drawer", "the slider to move"),
     number("effort_n", "n", 60.0, "squeezing force"),
@@ -144,6 +144,16 @@ constexpr std::array kMoveDrawer = {
     number("approach_speed_m_s", "m/s", 0.15, "on the last stretch"),
     number("pull_speed_m_s", "m/s", 0.15, "of the drawer"),
     number("hold_s", "s", 0.1, "squeezing before the pull"),
+    number("stop_tolerance_m", "m", 0.02, "farther from its stop it has failed"),
+    settle(0.3),
+};
+
+constexpr std::array kCloseDrawer = {
+    named("arm", "arm", "which arm"),
+    named("joint", "drawer", "the slider to move"),
+    number("standoff_m", "m", 0.20, "of the stretch before the palm meets the handle"),
+    number("max_speed_m_s", "m/s", 0.25, "of the tool"),
+    number("pull_speed_m_s", "m/s", 0.15, "of the drawer"),
     number("stop_tolerance_m", "m", 0.02, "farther from its stop it has failed"),
     settle(0.3),
 };
@@ -179,7 +189,7 @@ struct Entry {
 constexpr RobotKind kMobile = RobotKind::kMobile;
 
 constexpr std::array kTable = {
-    Entry{{"close-drawer", kMoveDrawer, "pushes a drawer shut by its handle", kMobile},
+    Entry{{"close-drawer", kCloseDrawer, "pushes a drawer shut by its handle", kMobile},
           &make_close_drawer},
     Entry{{"detect", kDetect, "looks for bodies of a kind where the camera points", kMobile},
           &make_detect},
@@ -187,7 +197,7 @@ constexpr std::array kTable = {
     Entry{{"going", kGoing, "drives the base along x"}, &make_going},
     Entry{{"look", kLook, "points the camera at a place", kMobile}, &make_look},
     Entry{{"move-torso", kMoveTorso, "lifts or lowers the torso", kMobile}, &make_move_torso},
-    Entry{{"open-drawer", kMoveDrawer, "pulls a drawer open by its handle", kMobile},
+    Entry{{"open-drawer", kOpenDrawer, "pulls a drawer open by its handle", kMobile},
           &make_open_drawer},
     Entry{{"open-gripper", kOpenGripper, "opens a gripper wide", kMobile}, &make_open_gripper},
     Entry{{"park", kPark, "brings the tool to where it is carried", kMobile}, &make_park},

@@ -48,11 +48,14 @@ class PickUp final : public MobileController {
     target_ = *perception().believed(object_) + turn * grasp_.p_BG -
               to_near * (0.5 * arm().spec().opening_m - 0.5 * grasp_.width_m - clearance_m);
     if (!require_reach(target_, fmt::format("`{}`", name_of(object_)))) return;
-    const double standoff_m = number("standoff_m");
-    const Eigen::Vector3d standoff =
-        grasp_.from_above ? Eigen::Vector3d(target_ + standoff_m * Eigen::Vector3d::UnitZ())
-                          : Eigen::Vector3d(target_ - standoff_m * robot().base().heading());
-    add_phases(wrist, standoff);
+    add_phases(wrist, target_ - number("standoff_m") * way_in());
+  }
+
+  /// Straight down, or level between the pads, so that neither pad brushes the body on its way.
+  Eigen::Vector3d way_in() const {
+    if (grasp_.from_above) return -Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d along = to_near_.cross(Eigen::Vector3d::UnitZ()).normalized();
+    return along.dot(robot().base().heading()) < 0.0 ? Eigen::Vector3d(-along) : along;
   }
 
   void add_phases(double wrist, const Eigen::Vector3d& standoff) {
@@ -85,7 +88,7 @@ class PickUp final : public MobileController {
 
   /// Brings the near pad to the body, so that the far one does not tip it over.
   void add_touching() {
-    static constexpr Motion kTouching{0.03, 0.3, 0.0005, 10.0};
+    static constexpr Motion kTouching{0.02, 1.0, 0.0005, 10.0};
     const double way_m = number("clearance_m") + kSearch_m;
     add_tool_move_until(
         "touching", [this, way_m] { return Eigen::Vector3d(arm().tool() - way_m * to_near_); },

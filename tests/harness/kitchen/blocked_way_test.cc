@@ -1,5 +1,8 @@
 #include <doctest/doctest.h>
 
+#include <string>
+#include <utility>
+
 #include "tests/harness/kitchen/kitchen_world.h"
 
 namespace parallax::harness {
@@ -54,6 +57,24 @@ TEST_CASE("a drawer that was opened can be closed again, and its load rides alon
   REQUIRE(ok(kitchen.close("dMid")));
   CHECK(kitchen.number("dMid.q") < 0.02);
   CHECK(kitchen.number("spoon1.x") == doctest::Approx(1.49).epsilon(0.01));
+}
+
+TEST_CASE("the hand that holds the spoon pushes each drawer shut and keeps the spoon") {
+  const std::pair<std::string, double> drawers[] = {{"dTop", 0.70}, {"dMid", 0.53}, {"dLow", 0.36}};
+  for (const auto& [name, floor_m] : drawers) {
+    const std::string drawer = name;
+    CAPTURE(drawer);
+    Kitchen kitchen(kitchen_world());
+    kitchen.start({{"spoon1.bottom", floor_m}, {"spoon1.x", 1.49}, {"spoon1.y", 0.89}});
+    REQUIRE(ok(kitchen.open(drawer)));
+    REQUIRE(ok(kitchen.look(drawer)));
+    REQUIRE(ok(kitchen.detect("spoon")));
+    REQUIRE(ok(kitchen.pick("spoon1")));
+    REQUIRE(ok(kitchen.close(drawer)));
+    CHECK(kitchen.number(drawer + ".q") < 0.02);
+    REQUIRE(ok(kitchen.park()));
+    CHECK(kitchen.flag("spoon1.held_by.left"));
+  }
 }
 
 }  // namespace

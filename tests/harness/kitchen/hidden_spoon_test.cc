@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "tests/harness/kitchen/kitchen_world.h"
 
 namespace parallax::harness {
@@ -50,6 +52,19 @@ TEST_CASE("a spoon in a far corner is out of the camera's cone, and in it with a
   WorldSpec wide = kitchen_world();
   wide.mobile->camera.half_angle_rad = 0.5;
   CHECK(fetch(wide, 0.78, 0.12, -0.22, 0.115).seen);
+}
+
+TEST_CASE("where a spoon is believed to be does not depend on how much of it is in sight") {
+  for (const double y_m : {0.80, 0.90, 1.00}) {
+    Kitchen kitchen(kitchen_world());
+    kitchen.start({{"spoon1.x", 1.40}, {"spoon1.y", y_m}, {"spoon1.bottom", 0.53}});
+    REQUIRE(ok(kitchen.open("dMid")));
+    REQUIRE(ok(kitchen.look("dMid")));
+    const Outcome seen = kitchen.detect("spoon");
+    REQUIRE(ok(seen));
+    CHECK(std::abs(kitchen.number("spoon1.seen.x") - kitchen.number("spoon1.x")) < 0.003);
+    CHECK(std::abs(kitchen.number("spoon1.seen.y") - kitchen.number("spoon1.y")) < 0.003);
+  }
 }
 
 TEST_CASE("a spoon at the back is seen but cannot be taken where furniture is above it") {

@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "tests/harness/kitchen/kitchen_world.h"
 
 namespace parallax::harness {
@@ -20,12 +22,25 @@ Fate carry(const WorldSpec& spec, double mass_kg, double speed_m_s = 0.6) {
   return kitchen.flag("milk1.held") ? Fate::kDelivered : Fate::kLostOnTheWay;
 }
 
-constexpr double kFull_kg = 0.92, kHalf_kg = 0.6, kTooHeavy_kg = 1.2;
+constexpr double kFull_kg = 1.02, kHalf_kg = 0.6, kTooHeavy_kg = 1.2;
 
 TEST_CASE("a full carton slips from the gripper on the way, a half full one does not") {
   CHECK(carry(kitchen_world(), kHalf_kg) == Fate::kDelivered);
   CHECK(carry(kitchen_world(), kFull_kg) == Fate::kLostOnTheWay);
   CHECK(carry(kitchen_world(), kTooHeavy_kg) == Fate::kNotLifted);
+}
+
+TEST_CASE("a carton is lifted however it is turned against the robot") {
+  for (const double yaw_rad : {-0.3, -0.1, 0.1, 0.3}) {
+    CAPTURE(yaw_rad);
+    Kitchen kitchen(kitchen_world());
+    kitchen.start({{"robot.yaw", -0.1}, {"milk1.yaw", yaw_rad}, {"milk1.mass", 1.05}});
+    REQUIRE(ok(kitchen.look("pw1")));
+    REQUIRE(ok(kitchen.detect("milk")));
+    CHECK(ok(kitchen.pick("milk1")));
+    const double in_grip_m = kitchen.number("left.z") - kitchen.number("milk1.bottom");
+    CHECK(std::abs(in_grip_m - 0.157) < 0.003);
+  }
 }
 
 TEST_CASE("more grip, more friction, less speed or an even floor keep the carton in the gripper") {
