@@ -1,14 +1,19 @@
 #include "compiler/pipeline/compile.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <set>
 #include <utility>
 
 #include "compiler/artifact/describe.h"
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/cnf/encoder.h"
 #include "compiler/ground/grounder.h"
 #include "compiler/lint/lint.h"
 #include "compiler/pipeline/constraint_encoder.h"
 #include "compiler/pipeline/plan_encoder.h"
+#include "compiler/pipeline/plan_formula_text.h"
 #include "compiler/pipeline/plan_formulas.h"
 #include "compiler/plan/plan_binding.h"
 #include "compiler/plan/unroller.h"
@@ -25,6 +30,38 @@ struct CheckedPlan {
   std::set<std::string> events;
 };
 
+/// The constants that the object of an entry can be: those of the sort of its place in the formula.
+base::Result<std::vector<std::string>> candidates(const ObjectBinding& binding,
+                                                  const TypedModel& model,
+                                                  base::DiagnosticSink& sink) {
+  std::string text;
+  for (const auto& piece : binding.formula) {
+    text += piece.kind == TemplatePiece::Kind::kText ? piece.text : piece.variable;
+  }
+  const auto sort = sort_by_use(model, text, binding.variable);
+  if (!sort) {
+    return sink.error(base::DiagnosticCode::kBindingSyntax, binding.formula_source,
+                      fmt::format("a formula that says something of {}", binding.variable),
+                      "another one");
+  }
+  std::vector<std::string> out;
+  for (const auto& object : model.objects) {
+    const auto fits = [&](SortId of) { return model.is_subsort(of, *sort); };
+    if (std::any_of(object.sorts.begin(), object.sorts.end(), fits)) out.push_back(object.name);
+  }
+  return out;
+}
+
+/// The range of `time` where nobody gives one: up to the longest path of the plan.
+void set_horizon(const PlanGraph& graph, std::int64_t max_horizon, TypedModel& model) {
+  auto& time = model.sorts[*model.core.time];
+  const bool given =
+      time.ranges.size() != 1 || time.ranges[0].declared.begin != time.declared.begin;
+  if (given) return;
+  const auto longest = longest_path(graph).value_or(max_horizon);
+  time.ranges[0].upper = std::clamp(longest, std::int64_t{1}, max_horizon);
+}
+
 base::Result<CheckedPlan> check_plan(const PlanInput& input, TypedModel& model,
                                      base::SourceFiles& files, base::DiagnosticSink& sink) {
   auto binding = parse_plan_binding(files, input.binding, sink);
@@ -33,16 +70,24 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, TypedModel& model,
   options.entry = input.entry;
   options.max_call_depth = input.max_call_depth;
   options.max_loop = input.max_loop;
+  options.location_samples = input.location_samples;
   for (const auto& object : model.objects) options.constants.push_back(object.name);
   for (const auto& symbol : model.symbols) {
     if (symbol.kind == SymbolKind::kFluent) options.fluents.push_back(symbol.name);
+  }
+  for (const auto& object : binding->objects) {
+    auto names = candidates(object, model, sink);
+    if (!names) return sink.already_reported();
+    options.candidates.push_back(*std::move(names));
   }
   auto graph = unroll_plan(files, input.plan, *binding, *input.locator, options, sink);
   if (!graph) return sink.already_reported();
   auto formulas = check_plan_formulas(*graph, model, files, sink);
   if (!formulas) return sink.already_reported();
   std::set<std::string> events;
-  for (const auto& entry : binding->entries) events.insert(entry.event_symbol);
+  for (const auto& entry : binding->entries) {
+    if (!entry.plan) events.insert(entry.event_symbol);
+  }
   return CheckedPlan{*std::move(graph), *std::move(formulas), std::move(events)};
 }
 
@@ -92,6 +137,7 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
     check.time_lower = 0;
     check.time_upper = input.horizon;
   }
+  if (input.plan) check.usual_time_upper = input.plan->max_horizon;
   check.keep_causal_definitions = input.ground.meaning == Meaning::kDecreasoner;
   auto typed = check_model(*ast, files, sink, check);
   if (!typed) return sink.already_reported();
@@ -104,6 +150,7 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
   if (input.plan) {
     auto checked = check_plan(*input.plan, *typed, files, sink);
     if (checked) plan = *std::move(checked);
+    if (plan && !input.horizon) set_horizon(plan->graph, input.plan->max_horizon, *typed);
   }
   if (!constraints || (input.plan && !plan)) return sink.already_reported();
 

@@ -25,6 +25,10 @@ struct PlanInput {
   const PoseLocator* locator = nullptr;  // outlives the call
   std::int32_t max_call_depth = 8;       // as in UnrollOptions
   std::int32_t max_loop = 16;
+  std::int32_t location_samples = 0;
+  /// Where neither input nor model give a horizon: as many timepoints as the longest path of the
+  /// plan has performs, at most so many.
+  std::int64_t max_horizon = 50;
 };
 
 /// A state constraint: a text in the source files, and the place that messages name, which is

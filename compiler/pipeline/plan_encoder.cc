@@ -99,6 +99,8 @@ class PlanEncoder {
         return "DONE";
       case TerminalKind::kFailed:
         return fmt::format("FAILED({})", terminal.detail);
+      case TerminalKind::kNever:
+        return "NEVER";
       case TerminalKind::kBound:
         return plan_cut_atom(cut_number(graph_, place));
     }
@@ -125,12 +127,27 @@ class PlanEncoder {
       } else {
         const auto id = std::get<BranchId>(to);
         const auto& branch = graph_.branches[id];
-        const auto guard = registers_.ground(formulas_.guards[id.index()], t, t, branch.source);
+        const auto guard = decision(id, t);
         if (!guard) return;
         todo.emplace_back(branch.if_false, model_.formulas().conjunction(reached, ~*guard));
         todo.emplace_back(branch.if_true, model_.formulas().conjunction(reached, *guard));
       }
     }
+  }
+
+  /// What a branch goes by at t. None: reported.
+  std::optional<FormulaId> decision(BranchId id, Timepoint t) {
+    const auto& branch = graph_.branches[id];
+    if (branch.free) {
+      return model_.named_atom(AtomKind::kLocation, fmt::format("CHOICE({})", id.index()), t);
+    }
+    return registers_.ground(formulas_.guards[id.index()], t, t, branch.source);
+  }
+
+  bool is_never(NodeNumber node) const {
+    if (node < graph_.locations.size()) return false;
+    const auto id = graph_.terminals.id_at(node - graph_.locations.size());
+    return graph_.terminals[id].kind == TerminalKind::kNever;
   }
 
   /// Makes the location atoms of timepoint t: control is where it came to, and nowhere else.
@@ -139,6 +156,10 @@ class PlanEncoder {
     std::vector<std::optional<FormulaId>> here(incoming.size());
     for (NodeNumber node = 0; node < incoming.size(); ++node) {
       if (incoming[node].empty()) continue;
+      if (is_never(node)) {
+        for (const auto reached : incoming[node]) model_.require(~reached, origin_of(0));
+        continue;
+      }
       const auto pc = model_.named_atom(AtomKind::kLocation, node_name(node), t);
       auto& formulas = model_.formulas();
       model_.require(formulas.equivalence(pc, formulas.disjunction(incoming[node])),

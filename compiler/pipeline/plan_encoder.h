@@ -17,9 +17,10 @@ namespace parallax::compiler {
 /// event happens; whether it succeeded (atom `L0` of kind kSucceeded, one timepoint later) is
 /// decided by its success formula, never freely; a terminal is never left. What a perform returns
 /// is any one object that makes its formula true (kResult), kept in a register (kRegister) while
-/// the plan has use for it. Events of `plan_events` (all symbols that the binding table can
-/// produce) happen only where a location performs them; other events are the model's own. Size:
-/// reachable (location, timepoint) pairs times edges.
+/// the plan has use for it. A free branch goes where its own atom says (`CHOICE(0)`). Events of
+/// `plan_events` (all symbols that the binding table can produce) happen only where a location
+/// performs them; other events are the model's own. Size: reachable (location, timepoint) pairs
+/// times edges.
 base::Status encode_plan(const PlanGraph& graph, const PlanFormulas& formulas,
                          const std::set<std::string>& plan_events, GroundModel& model,
                          FormulaGrounder& grounder, base::DiagnosticSink& sink);

@@ -49,7 +49,8 @@ std::optional<WordQuantifier> read_quantifier(std::string_view text, std::size_t
   return std::nullopt;
 }
 
-/// The sort of the first argument place that the name stands at.
+}  // namespace
+
 std::optional<SortId> sort_by_use(const TypedModel& model, std::string_view text,
                                   std::string_view name) {
   struct Open {
@@ -75,8 +76,6 @@ std::optional<SortId> sort_by_use(const TypedModel& model, std::string_view text
   }
   return std::nullopt;
 }
-
-}  // namespace
 
 std::string replace_word(std::string_view text, std::string_view name, std::string_view by) {
   std::string out;

@@ -20,6 +20,10 @@ struct PlanFormulaText {
 /// keeps its name, and the checker reports it. Linear in the text times its variables.
 PlanFormulaText to_model_syntax(const TypedModel& model, std::string_view formula);
 
+/// The sort of the first argument place that the name stands at.
+std::optional<SortId> sort_by_use(const TypedModel& model, std::string_view text,
+                                  std::string_view name);
+
 /// The sort that a variable's name begins with: `item` of `item12`.
 std::optional<SortId> sort_of_variable(const TypedModel& model, std::string_view variable);
 

@@ -29,6 +29,10 @@ class PlanFormulaChecker {
       add(location.success.formula, returned, location.success.source, out_.success);
     }
     for (const auto& branch : graph_.branches) {
+      if (branch.free) {
+        out_.guards.push_back({});  // nobody grounds it
+        continue;
+      }
       add(branch.guard, std::nullopt, branch.source, out_.guards);
     }
     if (failed_) return sink_.already_reported();

@@ -22,7 +22,7 @@ struct PlanFormula {
 
 struct PlanFormulas {
   std::vector<PlanFormula> success;    // by location
-  std::vector<PlanFormula> guards;     // by branch
+  std::vector<PlanFormula> guards;     // by branch; of free ones empty
   std::vector<SortId> register_sorts;  // by register: what it can hold
 };
 

@@ -105,6 +105,7 @@ bool BindingParser::parse_keys(BindingEntry& entry) {
 }
 
 bool BindingParser::parse_arguments(BindingEntry& entry) {
+  constexpr std::size_t kMaxArguments = 100;
   if (!take("(")) return true;
   int depth = 0;
   auto begin = i_;
@@ -121,6 +122,9 @@ bool BindingParser::parse_arguments(BindingEntry& entry) {
       });
       if (pieces->empty() && c == ')' && entry.event_arguments.empty()) return ++i_, true;  // E()
       if (pieces->empty()) return expected("an argument of the event");
+      if (entry.event_arguments.size() == kMaxArguments) {
+        return expected(fmt::format("at most {} arguments", kMaxArguments));
+      }
       entry.event_arguments.push_back(std::move(*pieces));
       begin = i_ + 1;
       if (c == ')') return ++i_, true;
@@ -133,6 +137,7 @@ bool BindingParser::parse_arguments(BindingEntry& entry) {
 
 bool BindingParser::parse_event(BindingEntry& entry) {
   if (!take("->")) return expected(entry.keys.empty() ? "`(`, `->` or `=`" : "`->`");
+  if (take_word("plan")) return parse_plan_call(entry);
   return name("the event", entry.event_symbol) && parse_arguments(entry);
 }
 
@@ -179,6 +184,8 @@ bool BindingParser::parse_tail(BindingEntry& entry) {
 void BindingParser::parse_entry() {
   BindingEntry entry;
   const auto begin = i_;
+  if (take_word("query")) return parse_query(begin);
+  if (take_word("object")) return parse_object(begin);
   entry.kind = take_word("motion") ? PerformKind::kMotion : PerformKind::kAction;
   if (entry.kind == PerformKind::kAction) take_word("action");
   std::vector<std::string> types;
@@ -188,10 +195,9 @@ void BindingParser::parse_entry() {
     parse_alias({entry.kind, std::move(types), {}, {}, {}, 0});
     return;
   }
-  if (!parse_keys(entry) || !parse_event(entry) || !parse_formula(entry) || !parse_tail(entry) ||
-      !repeat_mapping(entry) || !check_variables(entry)) {
-    return;
-  }
+  if (!parse_keys(entry) || !parse_event(entry)) return;
+  if (!entry.plan && (!parse_formula(entry) || !parse_tail(entry))) return;
+  if (!repeat_mapping(entry) || !check_variables(entry)) return;
   for (auto& type : types) {
     entry.type = std::move(type);
     add(entry);

@@ -63,6 +63,14 @@ class BindingParser {
   bool parse_arguments(BindingEntry& entry);
   bool parse_formula(BindingEntry& entry);
   bool parse_tail(BindingEntry& entry);
+  // binding_declarations.cc
+  void parse_query(std::size_t begin);
+  void parse_object(std::size_t begin);
+  bool parse_plan_call(BindingEntry& entry);
+  bool variable(std::string& out);
+  bool variables(std::vector<std::string>& out);
+  bool parse_formula_now(BindingEntry& entry);
+  bool at_end();
   bool repeat_mapping(BindingEntry& entry);
   bool check_variables(const BindingEntry& entry);
   bool add(const BindingEntry& entry);

@@ -13,7 +13,8 @@ struct BindingText {
   std::vector<std::size_t> entries;  // where entries start
 };
 
-/// An entry starts with `motion` or `action` at the start of a line or behind a separating `;`.
+/// An entry starts with `motion`, `action`, `query` or `object` at the start of a line or behind a
+/// separating `;`.
 BindingText clean_binding(std::string_view file);
 
 }  // namespace parallax::compiler

@@ -16,6 +16,7 @@ struct BuiltinCall {
   std::span<const ValueId> args;
   const FailureClasses& classes;
   ValueStore& values;
+  std::int64_t location_samples = 0;
 
   BuiltinFailure wrong(std::size_t index, std::string_view wanted) const {
     const auto kind = values.kind(args[index]) == ValueKind::kModel && wanted == "a list"

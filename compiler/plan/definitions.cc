@@ -130,7 +130,9 @@ void PlanCompiler::define_function(DatumId form, Items items) {
   const auto& name = data_.name(items[1]);
   if (forms().contains(name))
     return unsupported(form, fmt::format("`{}` is a built-in form", name));
-  functions_.emplace(name, declare_function(form, name, items[2]));
+  const auto function = declare_function(form, name, items[2]);
+  code_.functions.emplace(name, function.unit);
+  functions_.emplace(name, function);
   function_order_.push_back(name);
 }
 

@@ -38,6 +38,7 @@ const std::map<std::string_view, PlanCompiler::FormFunction>& PlanCompiler::form
       {"return", &C::form_return},
       {"return-from", &C::form_return_from},
       {"holds", &C::form_holds},
+      {"prolog", &C::form_holds},
       {"dolist", &C::form_dolist},
       {"dotimes", &C::form_dotimes},
       {"loop", &C::form_loop},

@@ -236,14 +236,14 @@ void PlanCompiler::form_projection_check(DatumId form, Items /*items*/) {
   emit_constant(values_.nil(), form);
 }
 
-/// (holds '(fluent argument...)) asks the model now.
+/// (holds '(fluent argument...)) and (prolog '(query argument...)) ask the model now.
 void PlanCompiler::form_holds(DatumId form, Items items) {
   if (items.size() != 2) {
     malformed(form, "expected a quoted fluent such as '(holding left box)");
     return emit_constant(values_.nil(), form);
   }
   compile(items[1]);
-  emit(PlanOp::kHolds, 0, 0, form);
+  emit(PlanOp::kHolds, form_name(form) == "prolog" ? 1 : 0, 0, form);
 }
 
 }  // namespace parallax::compiler

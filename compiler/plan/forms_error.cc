@@ -48,7 +48,6 @@ constexpr Hint kRejected[] = {
     {"defclass", "there are no classes"},
     {"defmethod", "there are no generic functions; write a function"},
     {"defgeneric", "there are no generic functions; write a function"},
-    {"prolog", "ask the model with `holds`"},
     {"apply", "call the function with its arguments"},
     {"lambda", "a lambda is only an argument of funcall, mapcar, mapc, every and some"},
     {"function", "a function value is only an argument of funcall, mapcar, mapc, every and some"},

@@ -7,28 +7,14 @@
 #include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
-#include "compiler/plan/lisp_token.h"
+#include "compiler/plan/lisp_reader_state.h"
 
 namespace parallax::compiler {
-namespace {
 
 using base::DiagnosticCode;
 using base::SourceRange;
 
-enum class OpenKind : std::uint8_t {
-  kList,
-  kPrefix,   // 'x and the like: takes one datum
-  kFeature,  // #+ or #-: takes the feature expression
-  kSkip,     // takes one datum and drops it
-};
-
-struct Open {
-  OpenKind kind = OpenKind::kList;
-  std::uint32_t begin = 0;
-  std::size_t first_child = 0;  // kList: index into the stack of finished children
-  std::string_view word;        // kPrefix: the symbol at the head of the list
-  bool negated = false;         // kFeature: #-
-};
+namespace {
 
 /// True if `feature` holds with the feature set {seecer}.
 bool feature_holds(const LispData& data, DatumId feature) {
@@ -43,47 +29,9 @@ bool feature_holds(const LispData& data, DatumId feature) {
   return all;
 }
 
-class Reader {
- public:
-  Reader(const base::SourceFiles& files, base::FileId file, base::DiagnosticSink& sink)
-      : file_(file), cursor_(files[file].text()), sink_(sink) {}
+}  // namespace
 
-  base::Result<LispText> read();
-
- private:
-  SourceRange range(std::uint32_t begin) const { return {file_, begin, cursor_.position()}; }
-  base::DiagnosticBuilder unreadable(SourceRange where, std::string_view text) {
-    failed_ = true;
-    return sink_.error(DiagnosticCode::kUnreadableDatum, where, text);
-  }
-  bool suppressed() const { return skips_ != 0; }
-  bool push(Open open);
-  void pop();
-  void deliver(DatumId datum);
-  void deliver_once(DatumId datum, std::optional<DatumId>& wrapped);
-  void close_list();
-  void read_next();
-  void read_string();
-  void read_token();
-  void read_symbol(const LispToken& token, std::uint32_t begin);
-  void read_sharp();
-  void read_character(std::uint32_t begin);
-  void reject_macro(std::uint32_t begin);
-  void report_open_list();
-
-  base::FileId file_;
-  LispCursor cursor_;
-  base::DiagnosticSink& sink_;
-  LispText out_;
-  std::vector<Open> open_;
-  std::vector<DatumId> finished_;          // children of the open lists
-  std::size_t skips_ = 0;                  // open kSkip frames
-  std::optional<SourceRange> column_one_;  // first `(` at column 1 inside an open list
-  bool failed_ = false;
-  bool stopped_ = false;
-};
-
-bool Reader::push(Open open) {
+bool LispReader::push(OpenDatum open) {
   if (open_.size() >= kMaxLispDepth) {
     unreadable(range(open.begin), fmt::format("nested deeper than {}", kMaxLispDepth));
     stopped_ = true;
@@ -94,13 +42,13 @@ bool Reader::push(Open open) {
   return true;
 }
 
-void Reader::pop() {
+void LispReader::pop() {
   if (open_.back().kind == OpenKind::kSkip) --skips_;
   open_.pop_back();
 }
 
 /// Hands a finished datum to what waits for it: prefixes wrap it and pass it on.
-void Reader::deliver(DatumId datum) {
+void LispReader::deliver(DatumId datum) {
   if (out_.data.size() > kMaxLispData) {
     unreadable(out_.data.source(datum), fmt::format("more than {} data", kMaxLispData));
     stopped_ = true;
@@ -114,12 +62,12 @@ void Reader::deliver(DatumId datum) {
   }
 }
 
-void Reader::deliver_once(DatumId datum, std::optional<DatumId>& wrapped) {
+void LispReader::deliver_once(DatumId datum, std::optional<DatumId>& wrapped) {
   if (open_.empty()) {
     out_.forms.push_back(datum);
     return;
   }
-  const Open top = open_.back();
+  const OpenDatum top = open_.back();
   switch (top.kind) {
     case OpenKind::kList:
       finished_.push_back(datum);
@@ -143,7 +91,7 @@ void Reader::deliver_once(DatumId datum, std::optional<DatumId>& wrapped) {
   }
 }
 
-void Reader::close_list() {
+void LispReader::close_list() {
   const auto begin = cursor_.position();
   cursor_.skip(1);
   if (open_.empty()) {
@@ -155,7 +103,7 @@ void Reader::close_list() {
     pop();
   }
   if (open_.empty()) return;
-  const Open top = open_.back();
+  const OpenDatum top = open_.back();
   pop();
   const auto children = std::span(finished_).subspan(top.first_child);
   const auto list = out_.data.add_list(children, range(top.begin));
@@ -163,117 +111,7 @@ void Reader::close_list() {
   deliver(list);
 }
 
-void Reader::read_string() {
-  const auto begin = cursor_.position();
-  cursor_.skip(1);
-  std::string text;
-  while (!cursor_.at_end()) {
-    char c = cursor_.take();
-    if (c == '"') {
-      return deliver(out_.data.add_named(DatumKind::kString, text, "", range(begin)));
-    }
-    if (c == '\\' && !cursor_.at_end()) c = cursor_.take();
-    text += c;
-  }
-  unreadable({file_, begin, begin + 1}, "this string does not end");
-  stopped_ = true;
-}
-
-void Reader::read_token() {
-  const auto begin = cursor_.position();
-  const auto token = scan_token(cursor_);
-  if (token.unterminated) {
-    unreadable({file_, begin, begin + 1}, "this symbol does not end");
-    stopped_ = true;
-    return;
-  }
-  if (!token.escaped) {
-    Number number;
-    switch (Number::parse(token.text, number)) {
-      case Number::Parse::kNumber:
-        return deliver(out_.data.add_number(number, range(begin)));
-      case Number::Parse::kOutOfRange:
-        unreadable(range(begin), "this number is out of range");
-        return deliver(out_.data.add_number(Number(0), range(begin)));
-      case Number::Parse::kZeroDenominator:
-        unreadable(range(begin), "this ratio has the denominator 0");
-        return deliver(out_.data.add_number(Number(0), range(begin)));
-      case Number::Parse::kNotANumber:
-        break;
-    }
-    if (token.text.find_first_not_of('.') == std::string::npos) {
-      unreadable(range(begin), "dotted pairs are not read");
-      return;
-    }
-  }
-  read_symbol(token, begin);
-}
-
-void Reader::read_symbol(const LispToken& token, std::uint32_t begin) {
-  if (token.first_colon < 0) {
-    return deliver(out_.data.add_named(DatumKind::kSymbol, token.text, "", range(begin)));
-  }
-  const auto colon = static_cast<std::size_t>(token.first_colon);
-  const auto colons = static_cast<std::size_t>(token.colons);
-  const std::string_view text = token.text;
-  const auto name = text.substr(std::min(colon + colons, text.size()));
-  const bool together = text.substr(colon, colons).find_first_not_of(':') == std::string_view::npos;
-  const bool well_formed = together && !token.ends_with_colon && colons <= (colon == 0 ? 1U : 2U);
-  if (!well_formed) unreadable(range(begin), "misplaced `:` in this symbol");
-  const auto kind = colon == 0 ? DatumKind::kKeyword : DatumKind::kSymbol;
-  deliver(out_.data.add_named(kind, name, text.substr(0, colon), range(begin)));
-}
-
-void Reader::read_character(std::uint32_t begin) {
-  cursor_.skip(2);
-  const auto name_begin = cursor_.position();
-  if (cursor_.at_end()) {
-    unreadable(range(begin), "a character is missing after `#\\`");
-    return;
-  }
-  const bool delimiter = is_lisp_delimiter(cursor_.take());
-  while (!delimiter && !cursor_.at_end() && !is_lisp_delimiter(cursor_.peek())) cursor_.skip(1);
-  const auto name = cursor_.since(name_begin);
-  deliver(out_.data.add_named(DatumKind::kCharacter, name, "", range(begin)));
-}
-
-/// Reports the macro and goes on behind its letters, so that the datum after it is read plainly.
-void Reader::reject_macro(std::uint32_t begin) {
-  cursor_.skip(1);
-  while (cursor_.peek() >= '0' && cursor_.peek() <= '9') cursor_.skip(1);
-  const bool list_follows = cursor_.peek() == '(';
-  if (!cursor_.at_end() && !list_follows) cursor_.skip(1);
-  if (suppressed()) return;
-  failed_ = true;
-  sink_.error(DiagnosticCode::kUnsupportedReaderMacro, range(begin),
-              list_follows ? std::string("#(") : std::string(cursor_.since(begin)));
-}
-
-void Reader::read_sharp() {
-  const auto begin = cursor_.position();
-  switch (cursor_.peek(1)) {
-    case '\'':
-      cursor_.skip(2);
-      push({OpenKind::kPrefix, begin, 0, "function", false});
-      return;
-    case '+':
-    case '-': {
-      const bool negated = cursor_.peek(1) == '-';
-      cursor_.skip(2);
-      push({OpenKind::kFeature, begin, 0, {}, negated});
-      return;
-    }
-    case '\\':
-      return read_character(begin);
-    case ':':  // an uninterned symbol, as in (in-package #:demo)
-      cursor_.skip(2);
-      return read_token();
-    default:
-      return reject_macro(begin);
-  }
-}
-
-void Reader::read_next() {
+void LispReader::read_next() {
   const auto begin = cursor_.position();
   const auto prefix = [&](std::size_t length, std::string_view word) {
     cursor_.skip(length);
@@ -308,7 +146,7 @@ void Reader::read_next() {
   }
 }
 
-void Reader::report_open_list() {
+void LispReader::report_open_list() {
   const auto& outermost = open_.front();
   const SourceRange where{file_, outermost.begin, outermost.begin + 1};
   if (outermost.kind != OpenKind::kList) {
@@ -319,7 +157,7 @@ void Reader::report_open_list() {
   if (column_one_) error.note(*column_one_, "a form starts in column 1 here, inside that list");
 }
 
-base::Result<LispText> Reader::read() {
+base::Result<LispText> LispReader::read() {
   out_.file = file_;
   while (!stopped_) {
     std::uint32_t comment = 0;
@@ -337,11 +175,9 @@ base::Result<LispText> Reader::read() {
   return std::move(out_);
 }
 
-}  // namespace
-
 base::Result<LispText> read_lisp(const base::SourceFiles& files, base::FileId file,
                                  base::DiagnosticSink& sink) {
-  return Reader(files, file, sink).read();
+  return LispReader(files, file, sink).read();
 }
 
 }  // namespace parallax::compiler

@@ -62,18 +62,28 @@ base::DiagnosticBuilder PerformResolver::unbound(ValueId designator, SourceRange
   return error;
 }
 
-/// The first entry in written order all of whose keys the designator has.
-const BindingEntry* PerformResolver::find_entry(ValueId designator, SourceRange source) {
+const BindingEntry* PerformResolver::matching_entry(ValueId designator) const {
   const auto kind = perform_kind(values_[designator]);
-  const auto type = values_.key(designator, "type");
+  const auto type = kind ? values_.key(designator, "type") : std::nullopt;
+  if (!type) return nullptr;
   for (const auto& entry : binding_.entries) {
-    if (!kind || !type || entry.kind != *kind || values_[*type].text != entry.type) continue;
+    if (entry.kind != *kind || values_[*type].text != entry.type) continue;
     bool complete = true;
     for (const auto& key : entry.keys) complete = complete && key_value(designator, key.key);
     if (complete) return &entry;
   }
-  unbound(designator, source);
   return nullptr;
+}
+
+const BindingEntry* PerformResolver::find_entry(ValueId designator, SourceRange source) {
+  const auto* entry = matching_entry(designator);
+  if (entry == nullptr) unbound(designator, source);
+  return entry;
+}
+
+const BindingEntry* PerformResolver::find_plan(ValueId designator) const {
+  const auto* entry = matching_entry(designator);
+  return entry != nullptr && entry->plan ? entry : nullptr;
 }
 
 Result<std::string> PerformResolver::model_name(const ModelNames& names, std::string_view name,
@@ -128,15 +138,11 @@ PerformResolver::Target PerformResolver::target(ValueId id) const {
     const bool location =
         value.kind == ValueKind::kDesignator && value.designator == DesignatorKind::kLocation;
     if (!location) return {std::nullopt, relation, id};
-    std::optional<ValueId> next = key_value(id, "target");
-    for (const auto& [key, item] : value.keys) {
-      if (next) break;
-      if (key == "side" || key == "reachable-for" || key == "visible-for") continue;
-      relation = key;
-      next = item;
-    }
-    if (!next) return {};
-    id = *next;
+    const auto leading = leading_key(value);
+    if (!leading) return {};
+    const auto& [key, next] = value.keys[*leading];
+    if (normalise_key(key) != "target") relation = key;
+    id = next;
   }
 }
 
@@ -199,81 +205,9 @@ Result<std::string> PerformResolver::substitute(const BindingEntry& entry, const
   return out;
 }
 
-void PerformResolver::flatten(const std::string& name, ValueId id, PlanArguments& out) const {
-  const auto& value = values_[id];
-  const auto pose = target(id).pose;
-  if (pose) {
-    out.emplace(name + ".x", pose->x_m);
-    out.emplace(name + ".y", pose->y_m);
-    out.emplace(name + ".z", pose->z_m);
-    out.emplace(name + ".yaw", yaw_rad(*pose));
-    return;
-  }
-  switch (value.kind) {
-    case ValueKind::kSymbol:
-      out.emplace(name, constants_.find(value.text).value_or(value.text));
-      return;
-    case ValueKind::kString:
-      out.emplace(name, value.text);
-      return;
-    case ValueKind::kNumber:
-      if (value.number.is_integer()) {
-        out.emplace(name, value.number.numerator());
-      } else {
-        out.emplace(name, value.number.value());
-      }
-      return;
-    case ValueKind::kModel:
-      out.emplace(name, graph_.values[value.model].name);
-      return;
-    case ValueKind::kDesignator:
-      for (const auto& [key, item] : value.keys) {
-        flatten(key == "name" ? name : fmt::format("{}.{}", name, key), item, out);
-      }
-      return;
-    case ValueKind::kVector:
-      out.emplace(name + ".x", value.pose.x_m);
-      out.emplace(name + ".y", value.pose.y_m);
-      out.emplace(name + ".z", value.pose.z_m);
-      return;
-    case ValueKind::kCons: {
-      std::size_t index = 0;
-      for (const auto item : values_.elements(id).value_or(std::vector<ValueId>())) {
-        flatten(fmt::format("{}.{}", name, index++), item, out);
-      }
-      return;
-    }
-    case ValueKind::kNil:
-    case ValueKind::kQuaternion:
-    case ValueKind::kPose:
-    case ValueKind::kFailure:
-    case ValueKind::kCounter:
-      return;
-  }
-}
-
-/// Every key but the type. Of two keys with one role the second keeps its own name.
-PlanArguments PerformResolver::arguments(ValueId designator) const {
-  PlanArguments out;
-  std::vector<std::string> roles;
-  for (const auto& [key, value] : values_[designator].keys) {
-    if (key == "type") continue;
-    auto role = normalise_key(key);
-    for (const auto& taken : roles) {
-      if (taken == role) role = key;
-    }
-    roles.push_back(role);
-    flatten(role, value, out);
-  }
-  return out;
-}
-
-Result<PerformResolver::Resolved> PerformResolver::resolve(ValueId designator, SourceRange source) {
-  Resolved out;
-  out.entry = find_entry(designator, source);
-  if (out.entry == nullptr) return sink_.already_reported();
-  const auto& entry = *out.entry;
-  auto& location = out.location;
+Result<PlanLocation> PerformResolver::resolve(const BindingEntry& entry, ValueId designator,
+                                              SourceRange source) {
+  PlanLocation location;
   location.source = source;
   location.event_symbol = entry.event_symbol;
   std::string joined;
@@ -294,16 +228,45 @@ Result<PerformResolver::Resolved> PerformResolver::resolve(ValueId designator, S
   }
   location.failure_class = *failure;
   location.arguments = arguments(designator);
+  return location;
+}
+
+/// The text of a formula whose variables stand for values of the plan.
+Result<std::string> PerformResolver::fill(const Template& pieces, const Variables& variables,
+                                          SourceRange source) {
+  std::string out;
+  for (const auto& piece : pieces) {
+    const auto bound = variables.find(piece.variable);
+    if (piece.kind == TemplatePiece::Kind::kText || bound == variables.end()) {
+      out += piece.text;
+      continue;
+    }
+    const auto text = piece.kind == TemplatePiece::Kind::kMapped
+                          ? mapped(piece.function, bound->second, piece.variable, source)
+                          : constant(bound->second, piece.variable, source);
+    if (!text) return sink_.already_reported();
+    out += *text;
+  }
   return out;
 }
 
-Result<std::string> PerformResolver::fluent(ValueId list, SourceRange source) {
+Result<std::string> PerformResolver::question(ValueId list, bool query_only, SourceRange source) {
   const auto items = values_.elements(list);
   if (!items || items->empty() || values_.kind(items->front()) != ValueKind::kSymbol) {
-    return sink_.error(DiagnosticCode::kPlanValue, source, "holds",
+    return sink_.error(DiagnosticCode::kPlanValue, source, query_only ? "prolog" : "holds",
                        "expected a quoted fluent such as '(holding left box)");
   }
-  const auto name = model_name(fluents_, values_[items->front()].text, source);
+  const auto& head = values_[items->front()].text;
+  for (const auto& query : binding_.queries) {
+    if (query.name != head || query.variables.size() + 1 != items->size()) continue;
+    Variables variables;
+    for (std::size_t i = 1; i < items->size(); ++i) {
+      variables.emplace(query.variables[i - 1], (*items)[i]);
+    }
+    return fill(query.formula, variables, source);
+  }
+  if (query_only) return unbound_query(head, items->size() - 1, source);
+  const auto name = model_name(fluents_, head, source);
   if (!name) return sink_.already_reported();
   std::string out = *name + "(";
   for (std::size_t i = 1; i < items->size(); ++i) {
@@ -312,6 +275,18 @@ Result<std::string> PerformResolver::fluent(ValueId list, SourceRange source) {
     out += (i == 1 ? "" : ",") + *argument;
   }
   return out + ")";
+}
+
+base::DiagnosticBuilder PerformResolver::unbound_query(std::string_view name, std::size_t arguments,
+                                                       SourceRange source) {
+  auto error = sink_.error(DiagnosticCode::kUnboundDesignator, source,
+                           fmt::format("query `{}` with {} arguments", name, arguments));
+  std::vector<std::string> names;
+  for (const auto& query : binding_.queries) names.push_back(query.name);
+  if (const auto near = base::nearest_name(name, names, 3)) {
+    error.note(fmt::format("the nearest query is `{}`", *near));
+  }
+  return error;
 }
 
 }  // namespace parallax::compiler

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/result.h"
@@ -15,13 +18,16 @@
 
 namespace parallax::compiler {
 
+/// The key of a location that says where it is; the others only narrow it.
+std::optional<std::size_t> leading_key(const Value& location);
+
 /// Says what one performed designator means in the model: event, success formula, failure class
 /// and the arguments for a controller.
 class PerformResolver {
  public:
   PerformResolver(const PlanBinding& binding, const PoseLocator& locator, ModelNames constants,
                   ModelNames fluents, const FailureClasses& classes, const PlanGraph& graph,
-                  const ValueStore& values, base::DiagnosticSink& sink)
+                  ValueStore& values, base::DiagnosticSink& sink)
       : binding_(binding),
         locator_(locator),
         constants_(std::move(constants)),
@@ -31,15 +37,33 @@ class PerformResolver {
         values_(values),
         sink_(sink) {}
 
-  struct Resolved {
-    PlanLocation location;  // without targets, calls and result
-    const BindingEntry* entry = nullptr;
-  };
-  /// CPL030 without a binding, CPL031 outside all regions, CPL032 and CPL033 for wrong values.
-  base::Result<Resolved> resolve(ValueId designator, base::SourceRange source);
+  /// The first entry in written order all of whose keys the designator has; null: CPL030.
+  const BindingEntry* find_entry(ValueId designator, base::SourceRange source);
+  /// The same without a report, if it is an action that a function of the plan carries out.
+  const BindingEntry* find_plan(ValueId designator) const;
+  /// The location without targets, calls and result. CPL031 outside all regions, CPL032 and CPL033
+  /// for wrong values.
+  base::Result<PlanLocation> resolve(const BindingEntry& entry, ValueId designator,
+                                     base::SourceRange source);
+  /// The value that a variable of the entry stands for.
+  base::Result<ValueId> variable(const BindingEntry& entry, ValueId designator,
+                                 std::string_view name, base::SourceRange source);
 
-  /// The text of `(holds '(fluent argument...))`.
-  base::Result<std::string> fluent(ValueId list, base::SourceRange source);
+  /// The text of `(holds '(fluent argument...))`, or of a query; `query_only`: CPL030 if it is
+  /// none.
+  base::Result<std::string> question(ValueId list, bool query_only, base::SourceRange source);
+
+  /// An object that the event needs the name of and the plan has neither named nor detected; the
+  /// way there: designators from the value of a key inwards, each with the key that leads on.
+  struct Reference {
+    const ObjectBinding* binding = nullptr;
+    std::vector<std::pair<ValueId, std::size_t>> path;  // the performed designator first
+    ValueId object;
+  };
+  std::optional<Reference> reference(const BindingEntry& entry, ValueId designator) const;
+  /// What must hold for the object of the reference to be the one with this name.
+  base::Result<std::string> candidate(const Reference& reference, std::string_view name,
+                                      base::SourceRange source);
 
   /// A value as an argument of the model: a constant, an integer, the name of a model value.
   base::Result<std::string> constant(ValueId value, std::string_view what,
@@ -51,11 +75,14 @@ class PerformResolver {
     std::string relation;  // otherwise: in, on, ... and the object there
     std::optional<ValueId> object;
   };
-  const BindingEntry* find_entry(ValueId designator, base::SourceRange source);
+  using Variables = std::map<std::string, ValueId, std::less<>>;
+  base::Result<std::string> fill(const Template& pieces, const Variables& variables,
+                                 base::SourceRange source);
+  base::DiagnosticBuilder unbound_query(std::string_view name, std::size_t arguments,
+                                        base::SourceRange source);
   base::DiagnosticBuilder unbound(ValueId designator, base::SourceRange source);
+  const BindingEntry* matching_entry(ValueId designator) const;
   std::optional<ValueId> key_value(ValueId designator, std::string_view key) const;
-  base::Result<ValueId> variable(const BindingEntry& entry, ValueId designator,
-                                 std::string_view name, base::SourceRange source);
   Target target(ValueId value) const;
   base::Result<std::string> mapped(std::string_view function, ValueId value, std::string_view key,
                                    base::SourceRange source);
@@ -72,7 +99,7 @@ class PerformResolver {
   ModelNames fluents_;
   const FailureClasses& classes_;
   const PlanGraph& graph_;
-  const ValueStore& values_;
+  ValueStore& values_;
   base::DiagnosticSink& sink_;
 };
 

@@ -73,6 +73,11 @@ bool BindingParser::check_variables(const BindingEntry& entry) {
   };
   for (const auto& argument : entry.event_arguments) check(argument, entry.source);
   check(entry.formula, entry.formula_source);
+  Template passed;
+  for (const auto& variable : entry.plan_arguments) {
+    passed.push_back({TemplatePiece::Kind::kVariable, {}, variable, {}});
+  }
+  check(passed, entry.source);
   return good;
 }
 
@@ -122,7 +127,7 @@ void BindingParser::expand_aliases() {
 base::Result<PlanBinding> BindingParser::parse() {
   end_ = cleaned_.entries.empty() ? text_.size() : cleaned_.entries.front();
   skip_blanks();
-  if (i_ != end_) expected("an entry that starts with `motion` or `action`");
+  if (i_ != end_) expected("an entry that starts with `motion`, `action`, `query` or `object`");
   for (std::size_t n = 0; n < cleaned_.entries.size(); ++n) {
     i_ = cleaned_.entries[n];
     end_ = n + 1 < cleaned_.entries.size() ? cleaned_.entries[n + 1] : text_.size();

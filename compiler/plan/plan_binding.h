@@ -49,14 +49,38 @@ struct BindingEntry {
   std::int32_t time_offset = 0;        // @t: 0, @t+1: 1
   std::optional<std::string> returns;  // the quantified variable of the formula that is the result
   std::string failure_class = "simple-plan-failure";
-  base::SourceRange source;  // the entry's head
+  std::optional<std::string> plan;          // instead of an event: the plan's function to run
+  std::vector<std::string> plan_arguments;  // the variables that it is called with
+  base::SourceRange source;                 // the entry's head
+  base::SourceRange formula_source;
+  base::SourceRange failure_source;
+};
+
+/// What a question of the plan means: (prolog '(name argument...)).
+struct QueryBinding {
+  std::string name;
+  std::vector<std::string> variables;
+  Template formula;  // at the time of the question
+  base::SourceRange source;
+  base::SourceRange formula_source;
+};
+
+/// Which objects an object designator without a name can mean.
+struct ObjectBinding {
+  std::vector<BindingKey> keys;
+  std::string variable;  // the object: "?o"
+  Template formula;      // at the time of the perform
+  std::string failure_class = "designator-reference-failure";
+  base::SourceRange source;
   base::SourceRange formula_source;
   base::SourceRange failure_source;
 };
 
 /// The binding table: what the designators of a plan mean in the model.
 struct PlanBinding {
-  std::vector<BindingEntry> entries;  // in source order, aliases expanded
+  std::vector<BindingEntry> entries;   // in source order, aliases expanded
+  std::vector<QueryBinding> queries;   // in source order
+  std::vector<ObjectBinding> objects;  // the first that fits is taken
   /// The types of one kind, each once, in source order; for messages.
   std::vector<std::string> types(PerformKind kind) const;
 };
@@ -71,6 +95,9 @@ struct PlanBinding {
 ///         returns i ; else perception-object-not-found
 ///     action opening|accessing (:arm :object) -> Open(?o)  ok: IsOpen(?o) @t+1
 ///     action navigating = going
+///     action fetching (:object ?o :arm ?a) -> plan fetch(?o,?a)
+///     object (:type ?y) ok: TypeOf(?o,?y) & Perceived(?o) @t  returns ?o
+///     query object-in-hand (?o) ok: exists arm. Holding(arm,?o) @t
 ///
 /// A key without a variable binds the usual one: :target ?p, :object ?o, another its first letter.
 /// A bare `place` in the formula repeats `place(...)` of the event. Reports E4001 (syntax), E4002

@@ -36,8 +36,9 @@ std::optional<std::uint32_t> find_builtin(std::string_view name) {
 }
 
 BuiltinResult call_builtin(std::uint32_t builtin, std::span<const ValueId> arguments,
-                           const FailureClasses& classes, ValueStore& values) {
-  return table()[builtin].function(BuiltinCall{arguments, classes, values});
+                           const FailureClasses& classes, std::int64_t location_samples,
+                           ValueStore& values) {
+  return table()[builtin].function(BuiltinCall{arguments, classes, values, location_samples});
 }
 
 }  // namespace parallax::compiler

@@ -37,8 +37,10 @@ struct BuiltinFailure {
 };
 using BuiltinResult = std::variant<ValueId, ModelEquality, BuiltinFailure>;
 
-/// Computes one built-in; pure but for new values in the store. The number of arguments is right.
+/// Computes one built-in; `location_samples`: further solutions of a location. Pure but for new
+/// values in the store. The number of arguments is right.
 BuiltinResult call_builtin(std::uint32_t builtin, std::span<const ValueId> arguments,
-                           const FailureClasses& classes, ValueStore& values);
+                           const FailureClasses& classes, std::int64_t location_samples,
+                           ValueStore& values);
 
 }  // namespace parallax::compiler

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,7 +26,7 @@ enum class PlanOp : std::uint8_t {
   kJump,          // to a
   kJumpIfNil,     // pop; to a if it was nil
   kBuiltin,       // pop b arguments, push the result of built-in a
-  kHolds,         // pop a fluent; push t or nil: the model decides
+  kHolds,         // pop a fluent (a = 1: a query); push t or nil: the model decides
   kDesignator,    // push an empty designator of kind a
   kAddKey,        // pop a value; add it under key (string) a to the designator on top
   kPerform,       // pop a designator; push the result: the model decides
@@ -88,6 +89,7 @@ struct PlanCode {
   std::vector<PlanGlobal> globals;
   std::vector<std::string> strings;
   FailureClasses classes;
+  std::map<std::string, std::uint32_t, std::less<>> functions;  // the plan's own: their units
 };
 
 }  // namespace parallax::compiler

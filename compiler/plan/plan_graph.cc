@@ -22,6 +22,8 @@ std::string terminal_text(const PlanTerminal& terminal, const base::SourceFiles&
       return "DONE";
     case TerminalKind::kFailed:
       return fmt::format("FAILED({})", terminal.detail);
+    case TerminalKind::kNever:
+      return "NEVER";
     case TerminalKind::kBound:
       return terminal.source
                  ? fmt::format("BOUND({} at {})", terminal.detail, files.place(*terminal.source))
@@ -97,8 +99,9 @@ std::string dump_text(const PlanGraph& graph, const base::SourceFiles& files) {
   }
   for (std::size_t i = 0; i < graph.branches.size(); ++i) {
     const auto& branch = graph.branches[graph.branches.id_at(i)];
-    out += fmt::format("B{} {} at {}\n  true -> {}\n  false -> {}\n", i, branch.guard,
-                       files.place(branch.source), to_string(graph, branch.if_true, files),
+    out += fmt::format("B{} {}{} at {}\n  true -> {}\n  false -> {}\n", i,
+                       branch.free ? "free: " : "", branch.guard, files.place(branch.source),
+                       to_string(graph, branch.if_true, files),
                        to_string(graph, branch.if_false, files));
   }
   return out;

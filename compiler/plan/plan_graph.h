@@ -40,6 +40,7 @@ enum class TerminalKind : std::uint8_t {
   kDone,    // the plan is over
   kFailed,  // a failure that nobody handled; the prefix is a valid execution all the same
   kBound,   // unrolling was cut here: nothing is known of what follows
+  kNever,   // no execution comes here: it rules out ways that a free branch could go
 };
 
 /// One terminal per kind and detail (kBound: and form).
@@ -88,12 +89,14 @@ struct ModelValue {
   std::string variable;  // the quantified variable of the success formulas: "i"
 };
 
-/// A silent decision by the model's state at the timepoint at which control passes through.
+/// A silent decision by the model's state at the timepoint at which control passes through, or a
+/// free one: both ways are explored.
 struct PlanBranch {
   std::string guard;  // formula text as in SuccessCondition, evaluated at the current timepoint
   base::SourceRange source;
   PlanTarget if_true;
   PlanTarget if_false;
+  bool free = false;  // nothing decides; the guard only says what is chosen
 };
 
 struct PlanGraph {

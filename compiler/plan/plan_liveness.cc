@@ -58,7 +58,9 @@ PlanLiveness plan_liveness(const PlanGraph& graph) {
   const RegisterNames names(graph);
   PlanLiveness out;
   for (const auto& location : graph.locations) out.locations.push_back(read_by(names, location));
-  for (const auto& branch : graph.branches) out.branches.push_back(names.in(branch.guard));
+  for (const auto& branch : graph.branches) {
+    out.branches.push_back(branch.free ? RegisterSet() : names.in(branch.guard));
+  }
   for (bool changed = !graph.values.empty(); changed;) {
     changed = false;
     for (auto i = graph.branches.size(); i-- > 0;) {

@@ -117,7 +117,7 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
     case PlanOp::kBuiltin:
       return builtin(state, instruction);
     case PlanOp::kHolds:
-      return StopQuestion{pop(state), instruction.source};
+      return StopQuestion{pop(state), instruction.source, instruction.a != 0};
     case PlanOp::kDesignator: {
       Value value;
       value.kind = ValueKind::kDesignator;
@@ -203,7 +203,8 @@ PlanMachine::Step PlanMachine::builtin(PlanState& state, const PlanInstruction& 
   const auto count = static_cast<std::ptrdiff_t>(instruction.b);
   const std::vector<ValueId> arguments(state.stack.end() - count, state.stack.end());
   state.stack.resize(state.stack.size() - arguments.size());
-  auto result = call_builtin(instruction.a, arguments, code_.classes, values_);
+  auto result =
+      call_builtin(instruction.a, arguments, code_.classes, limits_.location_samples, values_);
   if (const auto* value = std::get_if<ValueId>(&result)) {
     state.stack.push_back(*value);
     return {};
@@ -267,6 +268,12 @@ PlanMachine::Step PlanMachine::call(PlanState& state, const PlanInstruction& ins
   frame.performs = state.performs;
   state.frames.push_back(frame);
   return {};
+}
+
+std::optional<PlanStop> PlanMachine::enter(PlanState& state, std::uint32_t unit,
+                                           const std::vector<ValueId>& arguments, DatumId form) {
+  state.stack.insert(state.stack.end(), arguments.begin(), arguments.end());
+  return call(state, {PlanOp::kCall, unit, 0, form});
 }
 
 /// Counts an iteration of a loop that nothing static ends.

@@ -22,6 +22,7 @@ struct StopPerform {
 struct StopQuestion {                           // only the model knows
   std::variant<ValueId, ModelEquality> fluent;  // a fluent's list, or whether two values are equal
   DatumId form;
+  bool query_only = false;  // of `prolog`: the list is a query of the binding table
 };
 struct StopDone {};
 struct StopFailed {
@@ -39,6 +40,7 @@ struct MachineLimits {
   std::uint32_t max_call_depth = 8;
   std::int64_t max_loop = 16;
   std::int64_t max_steps = 5000000;
+  std::int64_t location_samples = 0;
 };
 
 /// Executes plan code on one state at a time, silently, up to the next thing that is not silent.
@@ -55,6 +57,9 @@ class PlanMachine {
   PlanStop run(PlanState& state);
   /// Lets the current step fail instead of answering; run goes on from there.
   std::optional<PlanStop> raise(PlanState& state, ValueId failure);
+  /// Lets a function of the plan answer; run goes into it.
+  std::optional<PlanStop> enter(PlanState& state, std::uint32_t unit,
+                                const std::vector<ValueId>& arguments, DatumId form);
 
  private:
   using Step = std::optional<PlanStop>;  // empty: go on

@@ -48,6 +48,7 @@ struct PlanState {
   std::vector<PlanGuard> guards;
   std::vector<ValueId> stack;
   std::uint32_t performs = 0;  // on the path so far; not part of the state's identity
+  std::uint32_t missed = 0;    // references that failed since the last perform; the same
 };
 
 /// Equal for equal states. Without `counters`, states that differ only in how often an endless loop

@@ -50,6 +50,9 @@ struct Value {
   std::vector<ModelValueId> registers;  // of the model values in it, sorted; set by the store
 };
 
+/// How many further solutions of a location `next-solution` has gone through.
+inline constexpr std::string_view kSolutionKey = "solution";
+
 /// More values than any plan needs; a loop that builds ever longer lists reaches it.
 inline constexpr std::size_t kMaxPlanValues = 250000;
 

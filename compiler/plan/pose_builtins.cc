@@ -93,12 +93,20 @@ BuiltinResult stamp_pose(const BuiltinCall& c) {
 BuiltinResult identity(const BuiltinCall& c) { return c.args[0]; }
 
 BuiltinResult next_solution(const BuiltinCall& c) {
-  // A new sample of a location is the same region in the model: there is no other solution.
-  const auto& value = c.values[c.args[0]];
+  // A new sample of a location is the same region in the model: as many as were asked for, which
+  // differ in nothing but their number.
+  auto value = c.values[c.args[0]];
   const bool location =
       value.kind == ValueKind::kDesignator && value.designator == DesignatorKind::kLocation;
   if (!location) return c.wrong(0, "a location designator");
-  return c.values.nil();
+  std::int64_t number = 0;
+  if (const auto last = c.values.key(c.args[0], kSolutionKey)) {
+    number = c.values[*last].number.numerator();
+    value.keys.pop_back();
+  }
+  if (number >= c.location_samples) return c.values.nil();
+  value.keys.emplace_back(kSolutionKey, c.values.number(Number(number + 1)));
+  return c.values.intern(std::move(value));
 }
 
 BuiltinResult property(const BuiltinCall& c) {

@@ -2,78 +2,17 @@
 
 #include <fmt/core.h>
 
-#include <map>
 #include <set>
 #include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/plan/lisp_reader.h"
-#include "compiler/plan/perform_resolver.h"
 #include "compiler/plan/plan_compiler.h"
-#include "compiler/plan/plan_machine.h"
+#include "compiler/plan/plan_explorer.h"
 
 namespace parallax::compiler {
-namespace {
 
 using base::DiagnosticCode;
-using StateKey = std::vector<std::uint32_t>;
-
-/// An execution that waits to be continued, and the edge that it gives a target to.
-struct Job {
-  enum class Edge : std::uint8_t { kEntry, kSuccess, kFailure, kTrue, kFalse };
-  PlanState state;
-  std::optional<ValueId> failure;  // goes on by failing
-  Edge edge = Edge::kEntry;
-  std::uint32_t owner = 0;  // location or branch
-};
-
-/// Explores the states of a plan depth first, success before failure, and writes the graph.
-class Explorer {
- public:
-  Explorer(const LispData& data, const PlanCode& code, const PlanBinding& binding,
-           const PoseLocator& locator, const UnrollOptions& options, ValueStore& values,
-           base::DiagnosticSink& sink)
-      : data_(data),
-        code_(code),
-        options_(options),
-        values_(values),
-        sink_(sink),
-        machine_(code, data,
-                 {static_cast<std::uint32_t>(std::max(options.max_call_depth, 1)), options.max_loop,
-                  options.max_steps},
-                 values, sink),
-        resolver_(binding, locator, ModelNames(options.constants), ModelNames(options.fluents),
-                  code.classes, graph_, values, sink) {}
-
-  base::Result<PlanGraph> explore();
-
- private:
-  void set(const Job& job, PlanTarget target);
-  std::optional<PlanTarget> advance(Job& job);
-  std::optional<PlanTarget> stopped(PlanState& state, const PlanStop& stop);
-  std::optional<PlanTarget> perform(PlanState& state, const StopPerform& stop);
-  std::optional<PlanTarget> question(PlanState& state, const StopQuestion& stop);
-  base::Result<std::string> guard_text(const StopQuestion& stop);
-  ModelValueId free_register(const PlanState& state, DatumId form, const std::string& variable);
-  PlanTarget terminal(TerminalKind kind, std::string detail, std::optional<DatumId> at);
-  std::vector<base::SourceRange> calls(const PlanState& state) const;
-
-  const LispData& data_;
-  const PlanCode& code_;
-  const UnrollOptions& options_;
-  ValueStore& values_;
-  base::DiagnosticSink& sink_;
-  PlanGraph graph_;
-  PlanMachine machine_;
-  PerformResolver resolver_;
-  std::vector<Job> jobs_;
-  std::map<StateKey, LocationId> locations_;
-  std::map<StateKey, BranchId> branches_;
-  std::map<std::string, TerminalId> terminals_;
-  std::map<std::pair<std::uint32_t, std::string>, std::vector<ModelValueId>> registers_;
-  bool failed_ = false;
-  bool full_ = false;  // the limit of locations was reached and reported
-};
 
 void Explorer::set(const Job& job, PlanTarget target) {
   switch (job.edge) {
@@ -131,11 +70,16 @@ std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform&
     full_ = true;
     return std::nullopt;
   }
-  auto resolved = resolver_.resolve(stop.designator, data_.source(stop.form));
+  const auto source = data_.source(stop.form);
+  const auto* entry = resolver_.find_entry(stop.designator, source);
+  if (entry == nullptr) return std::nullopt;
+  if (const auto object = resolver_.reference(*entry, stop.designator)) {
+    return refer(state, stop, *object);
+  }
+  auto resolved = resolver_.resolve(*entry, stop.designator, source);
   if (!resolved) return std::nullopt;
-  auto& location = resolved->location;
+  auto& location = *resolved;
   location.calls = calls(state);
-  const auto* entry = resolved->entry;
   const auto failure = values_.failure(location.failure_class);
   const auto id = graph_.locations.add(std::move(location));
   locations_.emplace(std::move(key), id);
@@ -146,9 +90,10 @@ std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform&
     result = values_.model(value);
   }
   ++state.performs;
+  state.missed = 0;
   // The last job is taken first: success.
-  jobs_.push_back({state, failure, Job::Edge::kFailure, id.index()});
-  jobs_.push_back({std::move(state), std::nullopt, Job::Edge::kSuccess, id.index()});
+  jobs_.push_back({state, failure, {}, Job::Edge::kFailure, id.index()});
+  jobs_.push_back({std::move(state), {}, {}, Job::Edge::kSuccess, id.index()});
   jobs_.back().state.stack.push_back(result);
   return id;
 }
@@ -175,7 +120,7 @@ ModelValueId Explorer::free_register(const PlanState& state, DatumId form,
 base::Result<std::string> Explorer::guard_text(const StopQuestion& stop) {
   const auto source = data_.source(stop.form);
   if (const auto* fluent = std::get_if<ValueId>(&stop.fluent)) {
-    return resolver_.fluent(*fluent, source);
+    return resolver_.question(*fluent, stop.query_only, source);
   }
   const auto& equality = std::get<ModelEquality>(stop.fluent);
   const auto left = resolver_.constant(equality.left, "eq", source);
@@ -191,12 +136,11 @@ std::optional<PlanTarget> Explorer::question(PlanState& state, const StopQuestio
   for (const char c : *guard) key.push_back(static_cast<unsigned char>(c));
   const auto found = branches_.find(key);
   if (found != branches_.end()) return found->second;
-  const auto id =
-      graph_.branches.add({*guard, data_.source(stop.form), TerminalId(0), TerminalId(0)});
+  const auto id = branch(*guard, false, stop.form);
   branches_.emplace(std::move(key), id);
-  jobs_.push_back({state, std::nullopt, Job::Edge::kFalse, id.index()});
+  jobs_.push_back({state, {}, {}, Job::Edge::kFalse, id.index()});
   jobs_.back().state.stack.push_back(values_.nil());
-  jobs_.push_back({std::move(state), std::nullopt, Job::Edge::kTrue, id.index()});
+  jobs_.push_back({std::move(state), {}, {}, Job::Edge::kTrue, id.index()});
   jobs_.back().state.stack.push_back(values_.truth());
   return id;
 }
@@ -220,13 +164,19 @@ std::optional<PlanTarget> Explorer::advance(Job& job) {
   if (job.failure) {
     if (auto stop = machine_.raise(job.state, *job.failure)) return stopped(job.state, *stop);
   }
-  const auto stop = machine_.run(job.state);
-  return stopped(job.state, stop);
+  if (job.act) return perform(job.state, *job.act);
+  for (;;) {
+    auto stop = machine_.run(job.state);
+    const auto* act = std::get_if<StopPerform>(&stop);
+    const auto* entry = act != nullptr ? resolver_.find_plan(act->designator) : nullptr;
+    if (entry == nullptr) return stopped(job.state, stop);
+    if (auto ended = run_plan(job.state, *act, *entry)) return stopped(job.state, *ended);
+  }
 }
 
 base::Result<PlanGraph> Explorer::explore() {
   if (!machine_.run_definitions()) return sink_.already_reported();
-  jobs_.push_back({machine_.start(), std::nullopt, Job::Edge::kEntry, 0});
+  jobs_.push_back({machine_.start(), {}, {}, Job::Edge::kEntry, 0});
   while (!jobs_.empty() && !full_) {
     auto job = std::move(jobs_.back());
     jobs_.pop_back();
@@ -239,8 +189,6 @@ base::Result<PlanGraph> Explorer::explore() {
   if (failed_) return sink_.already_reported();
   return std::move(graph_);
 }
-
-}  // namespace
 
 base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files, base::FileId plan,
                                     const PlanBinding& binding, const PoseLocator& locator,

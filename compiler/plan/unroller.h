@@ -25,6 +25,9 @@ struct UnrollOptions {
   /// they are.
   std::vector<std::string> constants;
   std::vector<std::string> fluents;
+  /// The model's constants that each object entry of the binding table can mean.
+  std::vector<std::vector<std::string>> candidates;
+  std::int32_t location_samples = 0;  // further solutions of a location before there is none
 };
 
 /// Runs the plan on its static values and forks where the model decides: at the outcome of every

@@ -17,6 +17,8 @@ struct CheckOptions {
   /// lower bound that nobody gives is 0.
   std::optional<std::int64_t> time_lower = std::nullopt;
   std::optional<std::int64_t> time_upper = std::nullopt;
+  /// The upper bound where neither says one.
+  std::optional<std::int64_t> usual_time_upper = std::nullopt;
   /// False for a part of a model (a library file): missing ranges are then warnings.
   bool complete_model = true;
   /// Keep the definitions of ECCausal.e also where nothing mentions what they define: the atoms are

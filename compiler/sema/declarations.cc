@@ -247,10 +247,12 @@ class Declarer {
 
   void override_time() {
     const auto time = model_.find_sort("time");
-    if (!time || (!options_.time_lower && !options_.time_upper)) return;
+    if (!time) return;
     Sort& sort = model_.sorts[*time];
     auto lower = options_.time_lower;
     auto upper = options_.time_upper;
+    if (!upper && sort.ranges.empty()) upper = options_.usual_time_upper;
+    if (!lower && !upper) return;
     Sort::Range range{0, 0, sort.declared};
     for (const auto& given : sort.ranges) {
       if (!options_.time_lower) lower = std::min(lower.value_or(given.lower), given.lower);

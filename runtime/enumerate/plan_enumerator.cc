@@ -44,6 +44,7 @@ void PlanEnumerator::prepare_orders(Timepoint n) {
   key_order_.clear();
   start_order_.clear();
   state_order_.clear();
+  choice_order_.clear();
   std::map<std::pair<Timepoint, std::string>, Literal> results;
   session_->model().for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
                                       std::optional<Timepoint> when) {
@@ -51,6 +52,9 @@ void PlanEnumerator::prepare_orders(Timepoint n) {
     const auto time = when.value_or(0);
     if (kind == AtomKind::kHappens && time < n) key_order_.push_back(literal);
     if (kind == AtomKind::kResult && time <= n) results.emplace(std::pair(time, name), literal);
+    if (kind == AtomKind::kLocation && time <= n && name.starts_with("CHOICE")) {
+      choice_order_.push_back(literal);
+    }
     if (kind != AtomKind::kHoldsAt || time > n) return;
     (time == 0 ? start_order_ : state_order_).push_back(~literal);
   });
@@ -92,7 +96,9 @@ std::optional<Trace> PlanEnumerator::next() {
     const auto start = extend(start_order_);
     if (options_.split_initial) key.insert(key.end(), start.begin(), start.end());
     extend(state_order_);
-    if (fixed.size() != head + key_order_.size() + start_order_.size() + state_order_.size()) {
+    extend(choice_order_);
+    if (fixed.size() != head + key_order_.size() + start_order_.size() + state_order_.size() +
+                            choice_order_.size()) {
       done_ = true;  // the solver was stopped on the way
       return std::nullopt;
     }
@@ -129,7 +135,7 @@ void PlanEnumerator::note_alternatives(std::span<const Literal> fixed, std::size
                                        Trace& trace) {
   const auto head = length + key_order_.size();
   const auto start = fixed.subspan(head, start_order_.size());
-  const auto states = fixed.subspan(head + start.size());
+  const auto states = fixed.subspan(head + start.size(), state_order_.size());
   trace.other_initial_states = !options_.split_initial && has_alternative(fixed.first(head), start);
   trace.other_outcomes = has_alternative(fixed.first(head + start.size()), states);
 }

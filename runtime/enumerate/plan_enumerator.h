@@ -73,6 +73,9 @@ class PlanEnumerator {
   std::vector<Literal> key_order_;
   std::vector<Literal> start_order_;  // HoldsAt at 0, false preferred
   std::vector<Literal> state_order_;  // HoldsAt from 1 to n_, false preferred
+  /// Free choices of the plan, true preferred: of the same events the ways that the text names
+  /// first.
+  std::vector<Literal> choice_order_;
   std::int64_t found_ = 0;
   bool done_ = false;
   Exploration exploration_ = Exploration::kStopped;

@@ -4,11 +4,11 @@
 load common.e
 
 [base,time]
-HoldsAt(Parked(left),time) & HoldsAt(Parked(right),time) ->
-Initiates(Go(base),RobotAt(base),time).
+  HoldsAt(Parked(left),time) & HoldsAt(Parked(right),time) ->
+    Initiates(Go(base),RobotAt(base),time).
 [base1,base2,time]
-HoldsAt(Parked(left),time) & HoldsAt(Parked(right),time) & base1!=base2 ->
-Terminates(Go(base1),RobotAt(base2),time).
+  HoldsAt(Parked(left),time) & HoldsAt(Parked(right),time) & base1!=base2 ->
+    Terminates(Go(base1),RobotAt(base2),time).
 [base,place,time]
-HoldsAt(Parked(left),time) & HoldsAt(Parked(right),time) & !HoldsAt(RobotAt(base),time) ->
-Terminates(Go(base),LookingAt(place),time).
+  HoldsAt(Parked(left),time) & HoldsAt(Parked(right),time) & !HoldsAt(RobotAt(base),time) ->
+    Terminates(Go(base),LookingAt(place),time).

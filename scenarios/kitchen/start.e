@@ -12,6 +12,6 @@ HoldsAt(TorsoAt(torsoLow),0).
 [item] !HoldsAt(Perceived(item),0).
 [item,place] !HoldsAt(BelievedAt(item,place),0).
 [item]
-item!=spoon1 ->
-HoldsAt(ItemAt(item,pw1),0) | HoldsAt(ItemAt(item,pw2),0) | HoldsAt(ItemAt(item,pw3),0).
+  item!=spoon1 ->
+    HoldsAt(ItemAt(item,pw1),0) | HoldsAt(ItemAt(item,pw2),0) | HoldsAt(ItemAt(item,pw3),0).
 {drawer} HoldsAt(ItemAt(spoon1,drawer),0).

@@ -30,7 +30,7 @@ class TwoRooms final : public compiler::PoseLocator {
 class PlannedModel {
  public:
   PlannedModel(const std::string& model, const std::string& plan, const std::string& binding,
-               const std::string& constraint, std::int64_t horizon) {
+               const std::string& constraint, std::optional<std::int64_t> horizon) {
     std::string name = (std::filesystem::temp_directory_path() / "parallax_model_XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) return;
     const auto path = std::filesystem::path(name) / "model.e";
@@ -41,8 +41,8 @@ class PlannedModel {
 
   /// Of model files that stay; `locator` outlives the call.
   PlannedModel(const std::vector<std::filesystem::path>& models, const std::string& plan,
-               const std::string& binding, const std::string& constraint, std::int64_t horizon,
-               const compiler::PoseLocator& locator) {
+               const std::string& binding, const std::string& constraint,
+               std::optional<std::int64_t> horizon, const compiler::PoseLocator& locator) {
     compile(models, plan, binding, constraint, horizon, locator);
   }
 
@@ -84,8 +84,8 @@ class PlannedModel {
 
  private:
   void compile(const std::vector<std::filesystem::path>& models, const std::string& plan,
-               const std::string& binding, const std::string& constraint, std::int64_t horizon,
-               const compiler::PoseLocator& locator) {
+               const std::string& binding, const std::string& constraint,
+               std::optional<std::int64_t> horizon, const compiler::PoseLocator& locator) {
     compiler::CompileInput input;
     input.models = models;
     input.horizon = horizon;

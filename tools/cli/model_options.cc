@@ -43,6 +43,17 @@ void add_plan_options(CLI::App& command, ModelOptions& options) {
   command.add_option("--max-call-depth", options.max_call_depth, "Active calls of one function")
       ->check(whole_number(1, 1'000))
       ->capture_default_str();
+  command
+      .add_option("--location-samples", options.location_samples,
+                  "Further solutions that `next-solution` has of a location")
+      ->check(whole_number(0, 1'000))
+      ->capture_default_str();
+  command
+      .add_option("--max-horizon", options.max_horizon,
+                  "Without --horizon and a range of `time`: the longest path of the plan, but no "
+                  "more than this")
+      ->check(whole_number(1, 10'000))
+      ->capture_default_str();
 }
 
 compiler::CompileInput compile_input(const ModelOptions& options) {

@@ -23,8 +23,10 @@ struct ModelOptions {
   std::string regions;             // the scenario whose regions the plan's poses lie in
   std::int32_t max_loop = 16;      // iterations of a loop that nothing static ends
   std::int32_t max_call_depth = 8;
-  bool lint = false;   // `check`: report what is legal but hardly meant
-  bool stats = false;  // count what each axiom costs; commands offer it themselves
+  std::int32_t location_samples = 0;  // further solutions that `next-solution` gives
+  std::int64_t max_horizon = 50;      // of plans, where nothing says the horizon
+  bool lint = false;                  // `check`: report what is legal but hardly meant
+  bool stats = false;                 // count what each axiom costs; commands offer it themselves
 };
 void add_model_options(CLI::App& command, ModelOptions& options);
 

@@ -25,7 +25,7 @@ class RegionLocator final : public compiler::PoseLocator {
   }
 
   std::optional<Nearest> nearest(std::string_view function,
-                                  const compiler::Pose& pose) const override {
+                                 const compiler::Pose& pose) const override {
     std::optional<Nearest> best;
     const auto at = point(pose);
     for (const auto& region : regions_->regions()) {
@@ -156,7 +156,9 @@ base::Status add_plan(const ModelOptions& options, std::optional<harness::Scenar
                                    .entry = std::nullopt,
                                    .locator = &*locator,
                                    .max_call_depth = options.max_call_depth,
-                                   .max_loop = options.max_loop};
+                                   .max_loop = options.max_loop,
+                                   .location_samples = options.location_samples,
+                                   .max_horizon = options.max_horizon};
   if (!options.plan_entry.empty()) input.plan->entry = options.plan_entry;
   return base::Unit{};
 }

@@ -76,7 +76,21 @@ TEST_CASE("binding: mistakes are located, several per run") {
   };
   const Case cases[] = {
       {"walking (:target ?p)",
-       "E4001 1:1 expected an entry that starts with `motion` or `action`, found `walking`\n"},
+       "E4001 1:1 expected an entry that starts with `motion`, `action`, `query` or `object`, "
+       "found `walking`\n"},
+      {"query held (o) ok: F(?o) @t", "E4001 1:13 expected a variable such as `?o`, found `o)`\n"},
+      {"query held (?o) ok: F(?o) @t+1",
+       "E4001 1:31 expected a formula `@t`, not `@t+1`, before, found the end of the entry\n"},
+      {"query held (?o) ok: F(?x) @t", "E4003 1:21 the keys bind no variable `?x`\n"},
+      {"query held (?o) ok: F(?o) @t\nquery held (?x) ok: G(?x) @t",
+       "E4002 2:1 query `held` with the same keys is bound twice\n"},
+      {"object (:type ?y) ok: F(?o) @t else x",
+       "E4001 1:32 expected `returns` and the variable that stands for the object, found `else`\n"},
+      {"object (:type ?y) ok: F(?z) @t returns ?o", "E4003 1:23 the keys bind no variable `?z`\n"},
+      {"action fetching (:object ?o) -> plan fetch(?x)",
+       "E4003 1:1 the keys bind no variable `?x`\n"},
+      {"action fetching (:object ?o) -> plan fetch(?o) ok: F(?o) @t",
+       "E4001 1:48 expected the next entry, found `ok:`\n"},
       {"motion going (:target ?p) Go(?p)", "E4001 1:27 expected `->`, found `Go(?p)`\n"},
       {"motion going (:target ?p) -> Go(?p) else x",
        "E4001 1:37 expected `ok:` and the formula of success, found `else`\n"},

@@ -66,6 +66,11 @@ const Case kCases[] = {
      "no binding for motion `goin` with the keys (:target)"},
     {"(perform (a motion (type going)))", "CPL030",
      "no binding for motion `going` with the keys ()"},
+    {"(prolog '(in-hand left box))", "CPL030", "no binding for query `in-hand` with 2 arguments"},
+    {"(prolog '(and (in-hand box) (in-hand cup)))", "CPL030",
+     "no binding for query `and` with 2 arguments"},
+    {"(prolog 'in-hand)", "CPL008",
+     "`prolog`: expected a quoted fluent such as '(holding left box)"},
     {"(perform 5)", "CPL030", "no binding for 5: only motions and actions are performed"},
     {"(perform (an action (type picking-up) (arm left) (object (an object (type box)))))", "CPL033",
      "the performed designator gives `?o` a designator without a name; name it, or detect it "

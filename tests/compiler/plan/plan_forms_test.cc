@@ -208,6 +208,58 @@ TEST_CASE("forms: a silent loop over the model is cut, never endless") {
   CHECK(plan.events(std::string(16, '-')).back().find("BOUND(loop") == 0);
 }
 
+TEST_CASE("forms: an action can be a function of the plan") {
+  const std::string binding = std::string(kBinding) +
+                              "action fetching (:object ?o :arm ?a) -> plan fetch(?o,?a)\n"
+                              "action wandering () -> plan nowhere()\n"
+                              "action waving (:arm ?a) -> plan fetch(?a)\n";
+  const std::string fetch = prelude() + R"(
+(defun fetch (?what ?arm)
+  (go1)
+  (perform (an action (type picking-up) (arm ?arm) (object ?what)))
+  ?what)
+)";
+  const auto plan = unroll(fetch + R"(
+(let ((?got (perform (an action (type fetching) (arm left) (object (an object (name box)))))))
+  (when (eq (desig-prop-value ?got :name) 'box) (sig)))
+)",
+                           {}, binding);
+  REQUIRE(plan.codes().empty());
+  CHECK(plan.events("+++") == Strings{"Go(r1)", "PickUp(left,box)", "Signal()", "DONE"});
+  CHECK(plan.events("-") == Strings{"Go(r1)", "FAILED(navigation-pose-unreachable)"});
+  CHECK(unroll("(perform (an action (type wandering)))", {}, binding).codes() == Strings{"CPL010"});
+  CHECK(unroll(fetch + "(perform (an action (type waving) (arm left)))", {}, binding).codes() ==
+        Strings{"CPL007"});
+  // What calls itself without performing anything is found as in any other call.
+  CHECK(unroll("(defun fetch (?o ?a) (perform (an action (type fetching) (object ?o) (arm ?a))))"
+               "(fetch 'box 'left)",
+               {}, binding)
+            .codes() == Strings{"CPL050"});
+}
+
+TEST_CASE("forms: next-solution gives as many further locations as asked for") {
+  const std::string text = prelude() + R"(
+(let ((?where (a location (pose *p1*))) (tries 0))
+  (loop while ?where do (incf tries) (perform (a motion (type going) (target ?where)))
+                        (setf ?where (next-solution ?where)))
+  (dotimes (i tries) (sig)))
+)";
+  UnrollOptions options;
+  for (int samples = 0; samples < 3; ++samples) {
+    options.location_samples = samples;
+    const auto plan = unroll(text, options);
+    REQUIRE(plan.graph.has_value());
+    const std::size_t performs = 2 * (static_cast<std::size_t>(samples) + 1);
+    const auto events = plan.events(std::string(performs, '+'));
+    REQUIRE(events.size() == performs + 1);
+    CHECK(events.back() == "DONE");
+    CHECK(events[performs / 2 - 1] == "Go(r1)");
+    // The controller and the reader of a trace are told which sample it is.
+    const auto& last = plan.graph->locations[LocationId(static_cast<std::uint32_t>(samples))];
+    CHECK(last.arguments.contains("target.solution") == (samples > 0));
+  }
+}
+
 TEST_CASE("forms: conditional properties of designators") {
   const std::string text = prelude() + R"(
 (defun grasp (?arm)

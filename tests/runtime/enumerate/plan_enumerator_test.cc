@@ -127,69 +127,17 @@ TEST_CASE("what was not followed is named: the step at the horizon, the loop tha
   CHECK(shorter.keys().open_ends.step == 9);
 }
 
-constexpr const char* kCups = R"(
-sort cup
-sort colour
-cup c1, c2, c3
-colour red, blue
-predicate Is(cup,colour)
-fluent Seen(cup)
-fluent Held(cup)
-event Look(colour)
-event Grab(cup)
-Is(c1,red).
-Is(c2,red).
-Is(c3,blue).
-[cup,colour1,colour2] Is(cup,colour1) & Is(cup,colour2) -> colour1=colour2.
-[cup,time] Initiates(Grab(cup),Held(cup),time).
-[cup] !HoldsAt(Held(cup),0).
-)";
-constexpr const char* kCupBinding = R"(
-motion detecting (:object type ?y) -> Look(?y) ok: exists c. Is(c,?y) & Seen(c) @t
-    returns c ; else perception-object-not-found
-action picking-up (:object ?o) -> Grab(?o) ok: Held(?o) @t+1
-)";
-
-TEST_CASE("any of the objects that a formula admits is returned, and each pick is a trace") {
-  const std::string plan = R"(
-(let ((?c (perform (a motion (type detecting) (object (an object (type red)))))))
-  (perform (an action (type picking-up) (object ?c))))
-)";
-  PlannedModel model(std::string(kCups) + "[cup] HoldsAt(Seen(cup),0).\n", plan, kCupBinding,
-                     "{cup} HoldsAt(Held(cup),time)", 3);
+TEST_CASE("the longest path of a plan is the horizon where nothing says one") {
+  PlannedModel model(kRooms, kPlan, kBinding, "HoldsAt(At(b2),time)", std::nullopt);
   REQUIRE(model.codes() == "");
-  const auto found = model.keys();
-  CHECK(found.keys == std::vector<std::string>{"Look(red)=c1;Grab(c1);", "Look(red)=c2;Grab(c2);"});
-  CHECK(found.exploration == Exploration::kAllTracesExplored);
-}
-
-TEST_CASE("two objects known at once are kept apart, and compared") {
-  const std::string plan = R"(
-(defun look () (perform (a motion (type detecting) (object (an object (type red))))))
-(let ((?a (look)) (?b (look)))
-  (unless (eq ?a ?b)
-    (perform (an action (type picking-up) (object ?b)))
-    (when (eq ?a 'c1)
-      (perform (an action (type picking-up) (object ?a))))))
-)";
-  PlannedModel model(std::string(kCups) + "[cup] HoldsAt(Seen(cup),0).\n", plan, kCupBinding,
-                     "HoldsAt(Held(c1),time) & HoldsAt(Held(c2),time)", 6);
-  REQUIRE(model.codes() == "");
-  CHECK(model.keys().keys ==
-        std::vector<std::string>{"Look(red)=c1;Look(red)=c2;Grab(c2);Grab(c1);"});
-}
-
-TEST_CASE("a result that the formula does not quantify over is refused") {
-  const char* const binding =
-      "motion detecting (:object type ?y) -> Look(?y) ok: Seen(c1) @t returns cup\n";
-  PlannedModel model(kCups, "(perform (a motion (type detecting) (object (an object (type red)))))",
-                     binding, "{cup} HoldsAt(Held(cup),time)", 2);
-  CHECK(model.codes() == "E4001");
-  const char* const unknown =
-      "motion detecting (:object type ?y) -> Look(?y) ok: Seen(c1) @t returns x\n";
-  PlannedModel other(kCups, "(perform (a motion (type detecting) (object (an object (type red)))))",
-                     unknown, "{cup} HoldsAt(Held(cup),time)", 2);
-  CHECK(other.codes() == "E4001");
+  CHECK(model.compiled().horizon == 3);
+  CHECK(model.keys().exploration == Exploration::kAllTracesExplored);
+  PlannedModel cycle(kRooms,
+                     "(loop do (perform (an action (type switching) (object (an object "
+                     "(name a1))))))",
+                     kBinding, "HoldsAt(At(b2),time)", std::nullopt);
+  REQUIRE(cycle.codes() == "");
+  CHECK(cycle.compiled().horizon == 50);
 }
 
 TEST_CASE("repetitions that cannot succeed are dead, those that a change helps are not") {

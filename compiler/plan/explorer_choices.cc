@@ -1,0 +1,121 @@
+// Performs that are no single event: functions of the plan, objects that are only described.
+#include <fmt/core.h>
+
+#include <utility>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/plan/plan_explorer.h"
+
+namespace parallax::compiler {
+
+using base::DiagnosticCode;
+
+/// The perform of an action that is a function of the plan: runs it.
+std::optional<PlanStop> Explorer::run_plan(PlanState& state, const StopPerform& stop,
+                                           const BindingEntry& entry) {
+  const auto function = code_.functions.find(*entry.plan);
+  if (function == code_.functions.end()) {
+    sink_.error(DiagnosticCode::kUnknownPlanForm, entry.source, *entry.plan);
+    return StopError{};
+  }
+  const auto wanted = code_.units[function->second].parameters;
+  if (wanted != entry.plan_arguments.size()) {
+    sink_
+        .error(DiagnosticCode::kPlanArguments, entry.source, *entry.plan,
+               fmt::format("the binding gives {} arguments, the function takes {}",
+                           entry.plan_arguments.size(), wanted))
+        .note(data_.source(code_.units[function->second].source), "defined here");
+    return StopError{};
+  }
+  std::vector<ValueId> arguments;
+  for (const auto& name : entry.plan_arguments) {
+    const auto value = resolver_.variable(entry, stop.designator, name, data_.source(stop.form));
+    if (!value) return StopError{};
+    arguments.push_back(*value);
+  }
+  return machine_.enter(state, function->second, arguments, stop.form);
+}
+
+BranchId Explorer::branch(std::string guard, bool free, DatumId form) {
+  return graph_.branches.add(
+      {std::move(guard), data_.source(form), TerminalId(0), TerminalId(0), free});
+}
+
+/// The same perform with the object named.
+StopPerform Explorer::named(const StopPerform& stop, const PerformResolver::Reference& reference,
+                            std::string_view name) {
+  auto value = values_[reference.object];
+  value.keys.emplace_back("name", values_.symbol(name));
+  auto id = values_.intern(std::move(value));
+  for (auto step = reference.path.rbegin(); step != reference.path.rend(); ++step) {
+    auto outer = values_[step->first];
+    outer.keys[step->second].second = id;
+    id = values_.intern(std::move(outer));
+  }
+  return {id, stop.form};
+}
+
+/// Any one of the candidates whose formula holds: free branches choose, and a choice that does not
+/// hold is no execution.
+bool Explorer::choose(const PlanState& state, const StopPerform& stop,
+                      const PerformResolver::Reference& reference, BranchId some) {
+  const auto& names =
+      options_.candidates[static_cast<std::size_t>(reference.binding - binding_.objects.data())];
+  const auto never = terminal(TerminalKind::kNever, {}, std::nullopt);
+  std::string any;
+  std::optional<BranchId> before;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto guard = resolver_.candidate(reference, names[i], data_.source(stop.form));
+    if (!guard) return false;
+    any += (any.empty() ? "(" : " | (") + *guard + ")";
+    const auto test = branch(*guard, false, stop.form);
+    graph_.branches[test].if_false = never;
+    jobs_.push_back({state, {}, named(stop, reference, names[i]), Job::Edge::kTrue, test.index()});
+    PlanTarget here = test;
+    std::optional<BranchId> choice;
+    if (i + 1 < names.size()) {
+      choice = branch(fmt::format("{} is meant", names[i]), true, stop.form);
+      graph_.branches[*choice].if_true = test;
+      here = *choice;
+    }
+    (before ? graph_.branches[*before].if_false : graph_.branches[some].if_true) = here;
+    before = choice;
+  }
+  graph_.branches[some].guard = any;
+  return true;
+}
+
+/// A perform of an object that the plan describes only.
+std::optional<PlanTarget> Explorer::refer(PlanState& state, const StopPerform& stop,
+                                          const PerformResolver::Reference& reference) {
+  const auto& binding = *reference.binding;
+  const auto index = static_cast<std::size_t>(&binding - binding_.objects.data());
+  const auto source = data_.source(stop.form);
+  if (index >= options_.candidates.size() || options_.candidates[index].empty()) {
+    sink_.error(DiagnosticCode::kDesignatorValue, source, "performed", "object",
+                "a description that no constant of the model can meet");
+    return std::nullopt;
+  }
+  const auto failure = code_.classes.canonical(binding.failure_class);
+  if (!failure) {
+    sink_.error(DiagnosticCode::kUnknownFailureClass, binding.failure_source,
+                binding.failure_class);
+    return std::nullopt;
+  }
+  // Nothing but this ends a plan that tries again and again at one timepoint.
+  if (++state.missed > static_cast<std::uint32_t>(options_.max_loop)) {
+    return terminal(TerminalKind::kBound, "perform", stop.form);
+  }
+  auto key = state_key(state, values_, true);
+  key.push_back(stop.designator.index());
+  key.push_back(state.missed);
+  const auto found = references_.find(key);
+  if (found != references_.end()) return found->second;
+  const auto some = branch({}, false, stop.form);
+  references_.emplace(std::move(key), some);
+  jobs_.push_back({state, values_.failure(*failure), {}, Job::Edge::kFalse, some.index()});
+  if (!choose(state, stop, reference, some)) return std::nullopt;
+  return some;
+}
+
+}  // namespace parallax::compiler
