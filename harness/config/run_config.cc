@@ -113,12 +113,36 @@ Limits read_limits(const YamlNode& node, base::DiagnosticSink& sink) {
   return limits;
 }
 
+namespace {
+
+RateExpectation read_rate(const YamlNode& node, base::DiagnosticSink& sink) {
+  RateExpectation rate;
+  YamlFields fields(node, "`rate`", sink);
+  fields.only({"between", "trace", "runs"});
+  fields.integer("trace", 1, kMaxRuns, rate.trace);
+  fields.integer("runs", 1, kMaxRuns, rate.runs);
+  const auto* between = fields.require("between");
+  const auto bounds = fields.numbers("between", 2);
+  if (between == nullptr || !bounds) return rate;
+  rate.lower = (*bounds)[0];
+  rate.upper = (*bounds)[1];
+  if (!(rate.lower >= 0.0 && rate.lower <= rate.upper && rate.upper <= 1.0)) {
+    sink.error(DiagnosticCode::kYamlOutOfBounds, between->range, "`between`",
+               fmt::format("{:g} and {:g}", rate.lower, rate.upper),
+               "two numbers from 0 to 1, the lower first");
+  }
+  return rate;
+}
+
+}  // namespace
+
 Expectation read_expectation(const YamlNode& node, base::DiagnosticSink& sink) {
   static constexpr std::array<std::string_view, 3> kVerdicts = {"discrepancy", "no-discrepancy",
                                                                 "inconclusive"};
   Expectation expect;
   YamlFields fields(node, "`expect`", sink);
-  fields.only({"verdict", "iterations", "max_simulations", "fluents"});
+  fields.only(
+      {"verdict", "iterations", "max_simulations", "fluents", "rate", "time_limit_s", "fast"});
   if (const auto verdict = fields.choice("verdict", "verdict", kVerdicts)) {
     expect.verdict = std::string(kVerdicts[*verdict]);
   }
@@ -126,6 +150,9 @@ Expectation read_expectation(const YamlNode& node, base::DiagnosticSink& sink) {
   fields.integer("max_simulations", 0, std::numeric_limits<std::int64_t>::max(),
                  expect.max_simulations);
   fields.texts("fluents", expect.fluents);
+  if (const auto* rate = fields.find("rate")) expect.rate = read_rate(*rate, sink);
+  fields.number("time_limit_s", kTimeout, expect.time_limit_s);
+  fields.boolean("fast", expect.fast);
   return expect;
 }
 

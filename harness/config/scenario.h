@@ -59,11 +59,23 @@ struct Limits {
 };
 
 /// What `parallax suite` and the tests hold the result against.
+/// How often uniform runs of one trace give any discrepancy (`parallax rates`).
+struct RateExpectation {
+  std::int64_t trace = 1, runs = 100;
+  double lower = 0.0, upper = 1.0;  // meets the interval that was measured, with 95 % confidence
+};
+
 struct Expectation {
   std::optional<std::string> verdict;
   std::optional<std::int64_t> iterations;
   std::optional<std::int64_t> max_simulations;
   std::vector<std::string> fluents;  // each of these must be among the diverging ones
+  std::optional<RateExpectation> rate;
+  std::optional<double> time_limit_s;  // of each process of the case
+  bool fast = false;                   // belongs to the part of a suite that is always run
+
+  /// Is anything expected of a whole run?
+  bool of_run() const { return verdict || iterations || max_simulations || !fluents.empty(); }
 };
 
 /// A scenario file as checked data. Paths are resolved against the file's folder.

@@ -14,12 +14,14 @@ namespace {
 
 struct Options {
   std::string scenario;
+  std::string match;
   harness::RatesOptions rates;
 };
 
 int run_rates(const Options& options, Invocation& invocation) {
-  const auto loaded = load_scenario_model(options.scenario, invocation);
+  auto loaded = load_scenario_model(options.scenario, invocation);
   if (!loaded) return 0;
+  if (!options.match.empty()) loaded->scenario.match_model = options.match == "model";
   const auto& model = loaded->compilation.model;
   if (!model.has_constraints) {
     invocation.sink().error(base::DiagnosticCode::kNothingToSimulate,
@@ -59,6 +61,10 @@ Command add_rates_command(CLI::App& app) {
   command->add_option("--runs", options->rates.runs, "Simulations of each trace")
       ->check(whole_number(1, 1'000'000))
       ->capture_default_str();
+  command
+      ->add_option("--match", options->match,
+                   "What an end state is held against: the trace, or all ends the model admits")
+      ->check(CLI::IsMember({"trace", "model"}));
   command->add_option("--confidence", options->rates.confidence, "Confidence of each interval")
       ->check(finite_range(0.5, 0.999999))
       ->capture_default_str();

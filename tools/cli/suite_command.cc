@@ -27,6 +27,7 @@ struct SuiteOptions {
   bool update_goldens = false;
   bool force = false;
   bool rerun_failed = false;
+  bool fast = false;
 };
 
 std::string environment(const char* name) {
@@ -46,6 +47,12 @@ base::Result<Shard> shard_of(const SuiteOptions& options, base::DiagnosticSink& 
       fmt::format("--shard: `{}` is not of the form I/N with 1 <= I <= N <= {}", text, kMaxShards));
 }
 
+/// Expectations of models bring a limit of their own; scenarios say that they are fast.
+bool is_fast(const SuiteCase& one) {
+  const auto* scenario = std::get_if<harness::Expectation>(&one.check);
+  return scenario == nullptr || scenario->fast;
+}
+
 /// The cases that are asked for; those that passed last time leave under --rerun-failed.
 base::Result<std::vector<SuiteCase>> wanted_cases(const SuiteOptions& options,
                                                   const EarlierResults& earlier,
@@ -53,7 +60,7 @@ base::Result<std::vector<SuiteCase>> wanted_cases(const SuiteOptions& options,
   auto cases = find_cases(options.paths, invocation.files(), invocation.sink());
   if (!cases) return invocation.sink().already_reported();
   std::erase_if(*cases, [&](const SuiteCase& one) {
-    return one.name().find(options.only) == std::string::npos;
+    return one.name().find(options.only) == std::string::npos || (options.fast && !is_fast(one));
   });
   if (cases->empty()) {
     return invocation.sink().error_about(base::DiagnosticCode::kNoCases, options.paths.front());
@@ -179,11 +186,14 @@ Command add_suite_command(CLI::App& app) {
   command->footer(
       "Examples:\n"
       "  parallax suite scenarios --jobs 2\n"
+      "  parallax suite scenarios --fast              without the long simulations\n"
       "  parallax suite scenarios/classics --only zoo\n"
       "  parallax suite scenarios --shard 2/5 --junit suite.xml");
   command->add_option("paths", options->paths, "Scenarios, manifests, or folders that hold some")
       ->required();
   command->add_option("--only", options->only, "Only cases whose name (file:id) contains this");
+  command->add_flag("--fast", options->fast,
+                    "Only expectations of models, and scenarios that say `fast: true`");
   command->add_option("--out", options->out, "Folder of the runs, made anew, and the results")
       ->capture_default_str();
   command->add_option("--junit", options->junit, "Write a JUnit report to this file");

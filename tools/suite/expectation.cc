@@ -38,4 +38,22 @@ std::vector<std::string> unmet(const harness::Expectation& expect, std::string_v
   return out;
 }
 
+std::vector<std::string> unmet(const harness::RateExpectation& expect,
+                               std::string_view rates_document) {
+  const auto rates = nlohmann::json::parse(rates_document, nullptr, false);
+  if (rates.is_discarded() || !rates.is_object() || rates.value("status", "") != "ok" ||
+      rates.value("traces", nlohmann::json::array()).size() != 1) {
+    return {"the runs gave no rate"};
+  }
+  const auto& any = rates["traces"][0]["any"];
+  const double rate = any.value("rate", -1.0);
+  const double lower = any.value("lower", 2.0), upper = any.value("upper", -1.0);
+  if (lower <= expect.upper && upper >= expect.lower) return {};
+  return {fmt::format(
+      "discrepancies in {} of {} runs of trace {}, {:.1f} % [{:.1f}, {:.1f}], expected {:g} to "
+      "{:g} %",
+      any.value("count", std::int64_t{-1}), rates["traces"][0].value("runs", std::int64_t{-1}),
+      expect.trace, 100 * rate, 100 * lower, 100 * upper, 100 * expect.lower, 100 * expect.upper)};
+}
+
 }  // namespace parallax::tools

@@ -31,22 +31,51 @@ void report_no_answer(const ChildResult& child, CaseResult& result) {
   result.problems = {no_answer(child.code)};
 }
 
+void add_limit(const harness::Expectation& expect, std::vector<std::string>& words) {
+  if (!expect.time_limit_s) return;
+  words.insert(words.end(), {"--time-limit", fmt::format("{}", *expect.time_limit_s)});
+}
+
+void run_rates(const SuiteCase& one, const harness::Expectation& expect,
+               const RunnerOptions& options, const std::atomic<bool>& stop, CaseResult& result) {
+  const auto& rate = *expect.rate;
+  std::vector<std::string> words = {"rates",
+                                    one.file,
+                                    "--json",
+                                    "--seed",
+                                    std::to_string(options.seed),
+                                    "--trace",
+                                    std::to_string(rate.trace),
+                                    "--runs",
+                                    std::to_string(rate.runs),
+                                    "--quiet",
+                                    "--color=never"};
+  add_limit(expect, words);
+  const auto child = run_this_program(words, stop);
+  result.messages += child.err;
+  if (child.code != 0) return report_no_answer(child, result);
+  for (auto& problem : unmet(rate, child.out)) result.problems.push_back(std::move(problem));
+}
+
 void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
                   const RunnerOptions& options, const std::atomic<bool>& stop, CaseResult& result) {
+  if (expect.rate) run_rates(one, expect, options, stop, result);
+  if (expect.rate && (!expect.of_run() || result.outcome == Outcome::kError)) return;
   auto name = one.file;
   std::replace(name.begin(), name.end(), '/', '_');
   const auto folder = options.out / name;
   std::error_code ignored;
   fs::remove_all(folder, ignored);
-  const auto child =
-      run_this_program({"run", one.file, "--json", "--seed", std::to_string(options.seed), "--out",
-                        folder.string(), "--quiet", "--color=never"},
-                       stop);
-  result.messages = child.err;
+  std::vector<std::string> words = {
+      "run",   one.file,        "--json",  "--seed",       std::to_string(options.seed),
+      "--out", folder.string(), "--quiet", "--color=never"};
+  add_limit(expect, words);
+  const auto child = run_this_program(words, stop);
+  result.messages += child.err;
   // Exit code 1 is a finding and 4 a verdict that may be the expected one; both give a document.
   const bool answered = child.code == 0 || child.code == 1 || child.code == 4;
   if (!answered) return report_no_answer(child, result);
-  result.problems = unmet(expect, child.out);
+  for (auto& problem : unmet(expect, child.out)) result.problems.push_back(std::move(problem));
 }
 
 std::vector<std::string> traces_command(const harness::ManifestCase& one) {
