@@ -10,6 +10,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
 #include "harness/world/mobile_check.h"
+#include "harness/world/region_support.h"
 #include "harness/world/world_check.h"
 
 namespace parallax::harness {
@@ -39,6 +40,22 @@ void check_supported_starts(const Scenario& scenario, base::DiagnosticSink& sink
     const Region* region = scenario.mapping->regions().find(name);
     sink.error(DiagnosticCode::kBadWorld, region->source, "regions/" + name,
                "nothing in the world is below the middle of its start");
+  }
+}
+
+/// Regions where bodies come to lie must have something in them to lie on.
+void check_supported_regions(const Scenario& scenario, base::DiagnosticSink& sink) {
+  std::vector<NamedBox> boxes;
+  for (const Region& region : scenario.mapping->regions().regions()) {
+    const auto &x = region.on(Axis::kX), &y = region.on(Axis::kY), &z = region.on(Axis::kBottom);
+    if (!x || !y || !z || !region.frame.empty()) continue;
+    boxes.push_back({region.name, {x->lower, y->lower, z->lower}, {x->upper, y->upper, z->upper}});
+  }
+  if (boxes.empty()) return;
+  for (const auto& name : boxes_without_support(scenario.world, boxes)) {
+    const Region* region = scenario.mapping->regions().find(name);
+    sink.error(DiagnosticCode::kBadWorld, region->source, "regions/" + name,
+               "nothing in the world reaches into it, so no body can come to lie there");
   }
 }
 
@@ -212,6 +229,7 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
     const auto parameters = observables(scenario.world);
     if (!check_variables(scenario, parameters, sink)) return sink.already_reported();
     check_supported_starts(scenario, sink);
+    if (sink.error_count() == errors_before) check_supported_regions(scenario, sink);
   }
   if (sink.error_count() != errors_before) return sink.already_reported();
   return scenario;

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "harness/world/world_spec.h"
+
+namespace parallax::harness {
+
+/// A part of the world in which the lowest point of a body is to come to rest [m].
+struct NamedBox {
+  std::string name;
+  Eigen::Vector3d low_W = Eigen::Vector3d::Zero(), high_W = Eigen::Vector3d::Zero();
+};
+
+/// The names of the boxes in which nothing can ever come to rest: they hold no part of a body that
+/// is not free, however far the drawers are pulled out, and are too high for a stack of all free
+/// bodies on the floor. `spec` must pass check_world.
+std::vector<std::string> boxes_without_support(const WorldSpec& spec,
+                                               const std::vector<NamedBox>& boxes);
+
+}  // namespace parallax::harness

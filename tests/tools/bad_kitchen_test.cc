@@ -1,0 +1,91 @@
+// Impossible geometry in a whole scenario: one located message before anything is simulated.
+
+#include <doctest/doctest.h>
+
+#include "tests/tools/cli_fixture.h"
+
+namespace parallax::test {
+namespace {
+
+/// A copy of the kitchen, to be spoilt.
+class Kitchen : public CliFixture {
+ public:
+  Kitchen() {
+    std::filesystem::copy(std::filesystem::path(PARALLAX_SOURCE_DIR) / "scenarios" / "kitchen",
+                          folder() / "kitchen");
+  }
+  /// Lays something over the world of all plans.
+  void lay_over(const std::string& world) const {
+    replace("kitchen/common.yaml", "  include: world.yaml", "  include: world.yaml\n  " + world);
+  }
+};
+
+void check_refused(const Kitchen& cli, const std::string& place, const std::string& text) {
+  for (const auto* command : {"check", "run", "rates"}) {
+    CAPTURE(command);
+    const auto result = cli.parallax({command, "kitchen/plan2.yaml"});
+    CAPTURE(result.err);
+    CHECK(result.code == 3);
+    CHECK(result.out.empty());
+    CHECK(result.err.find("kitchen/" + place) != std::string::npos);
+    CHECK(result.err.find(text) != std::string::npos);
+    const auto first = result.err.find("error[");
+    CHECK(result.err.find("error[", first + 1) == std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(cli.folder() / "out"));
+  }
+}
+
+TEST_CASE("a drawer that is longer than its bay") {
+  const Kitchen cli;
+  // A wall behind the drawers, and a box of one of them that goes through it.
+  cli.lay_over(
+      "bodies: {wall: {size_m: [0.02, 2, 1], mass_kg: 0, material: wood, "
+      "position_m: [1.87, 0.9, 0.5]}, drawer_mid: {shapes: [{size_m: [0.7, 0.4, 0.1], "
+      "at_m: [0.1, 0, 0]}]}}");
+  check_refused(cli, "world.yaml:", "joints/dMid/range_m: `drawer_mid` meets `wall`");
+}
+
+TEST_CASE("a handle that no arm reaches") {
+  const Kitchen cli;
+  cli.lay_over("joints: {dLow: {handle: {at_m: [-0.325, -0.2, 3]}}}");
+  check_refused(cli, "common.yaml:", "joints/dLow/handle: is ");
+}
+
+TEST_CASE("a region of the starts in the air") {
+  const Kitchen cli;
+  cli.replace("kitchen/common.yaml", "start: {x: [1.41, 1.51], y: [0.06, 0.09], bottom: 0.85}",
+              "start: {x: [1.41, 1.51], y: [0.06, 0.09], bottom: 0.865}");
+  check_refused(cli, "common.yaml:", "regions/pw1: nothing in the world is below");
+}
+
+TEST_CASE("a region of the goals outside the world") {
+  const Kitchen cli;
+  cli.replace("kitchen/common.yaml", "pt4: {x: [-0.95, -0.72]", "pt4: {x: [-9.95, -9.72]");
+  check_refused(cli, "common.yaml:", "regions/pt4: nothing in the world reaches into it");
+}
+
+TEST_CASE("a region of the robot that the plan's poses are not in") {
+  const Kitchen cli;
+  cli.replace("kitchen/common.yaml", "bWork: {x: [0.64, 0.80]", "bWork: {x: [40.64, 40.80]");
+  check_refused(cli, "plan2.lisp:", "lies outside all regions of `region`");
+}
+
+TEST_CASE("starts that always interpenetrate: a bounded number, and the pair that collides") {
+  const Kitchen cli;
+  cli.lay_over(
+      "bodies: {block: {size_m: [0.2, 0.2, 0.2], mass_kg: 0, material: wood, "
+      "position_m: [0.72, 0.06, 0.3]}}");
+  for (const auto* command : {"run", "rates"}) {
+    CAPTURE(command);
+    const auto result = cli.parallax({command, "kitchen/plan2.yaml"});
+    CAPTURE(result.err);
+    CHECK(result.code == 3);
+    for (const auto* part : {"common.yaml:", "100 starts in a row", "`base`", "`block`"}) {
+      CAPTURE(part);
+      CHECK(result.err.find(part) != std::string::npos);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace parallax::test
