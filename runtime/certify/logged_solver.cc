@@ -33,6 +33,8 @@ class LoggedSolver final : public SatSolver {
   bool failed(Literal literal) const override { return solver_->failed(literal); }
   bool is_fixed(Literal literal) const override { return solver_->is_fixed(literal); }
   void set_phase(Literal literal) override { solver_->set_phase(literal); }
+  void limit_conflicts(std::int64_t most) override { solver_->limit_conflicts(most); }
+  std::int64_t conflicts() const override { return solver_->conflicts(); }
   std::int64_t solve_calls() const override { return solver_->solve_calls(); }
 
  private:

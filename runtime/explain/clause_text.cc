@@ -1,5 +1,8 @@
 #include "runtime/explain/clause_text.h"
 
+#include <algorithm>
+#include <tuple>
+
 namespace parallax::runtime {
 
 using compiler::Atom;
@@ -92,7 +95,7 @@ std::string ClauseText::meaning(Literal literal, Budget& budget) const {
   return text;
 }
 
-/// Puts what a disjunction stands for in its place.
+/// Puts what a disjunction stands for in its place. In the order of time, then by bytes.
 std::vector<Literal> ClauseText::flattened(std::span<const Literal> literals) const {
   std::vector<Literal> flat, open(literals.rbegin(), literals.rend());
   while (!open.empty() && flat.size() < kMaxParts) {
@@ -107,6 +110,14 @@ std::vector<Literal> ClauseText::flattened(std::span<const Literal> literals) co
     open.insert(open.end(), rest.rbegin(), rest.rend());
   }
   flat.insert(flat.end(), open.rbegin(), open.rend());
+  std::stable_sort(flat.begin(), flat.end(), [&](Literal a, Literal b) {
+    const auto key = [&](Literal literal) {
+      const auto& atom = model_.atom(literal.var());
+      const bool last = is_auxiliary(literal.var());
+      return std::tuple(last, atom.time.value_or(0), last ? std::string() : atom_text(atom));
+    };
+    return key(a) < key(b);
+  });
   return flat;
 }
 

@@ -86,7 +86,8 @@ ProofReport check(ExecutionFormula& formula, const std::vector<std::size_t>& cla
 }  // namespace
 
 GroundContradiction ground_contradiction(ExecutionFormula& formula, const AxiomGroups& axioms,
-                                         const IndexSet& groups, const ProofLimits& limits) {
+                                         const IndexSet& groups, const ProofLimits& limits,
+                                         Effort& effort) {
   GroundContradiction result;
   const auto all = candidates(formula.model(), axioms, groups);
   GroupSolver solver(formula.variables(), all.size(), limits.stop);
@@ -96,7 +97,7 @@ GroundContradiction ground_contradiction(ExecutionFormula& formula, const AxiomG
   std::iota(kept.begin(), kept.end(), 0U);
   if (solver.solve(kept) == SolveStatus::kUnsatisfiable) {
     kept = solver.core();
-    result.minimal = shrink(solver, kept);
+    result.minimal = shrink(solver, kept, &effort);
   }
   for (const auto k : kept) result.clauses.push_back(all[k]);
   result.proof = check(formula, result.clauses, limits);

@@ -12,7 +12,7 @@ namespace parallax::runtime {
 /// The clauses behind one set of groups.
 struct GroundContradiction {
   /// Indices into the model's clauses, by group and then by timepoint, definitions left out: no one
-  /// of them can go, unless the search was stopped (then `minimal` is false).
+  /// of them can go, unless the search was stopped or the effort spent (then `minimal` is false).
   std::vector<std::size_t> clauses;
   bool minimal = false;
   /// What the checker says of a proof that these clauses contradict each other.
@@ -22,6 +22,7 @@ struct GroundContradiction {
 /// Finds ground instances of the groups' axioms that contradict each other. `groups` is a
 /// contradictory set of `axioms`.
 GroundContradiction ground_contradiction(ExecutionFormula& formula, const AxiomGroups& axioms,
-                                         const IndexSet& groups, const ProofLimits& limits);
+                                         const IndexSet& groups, const ProofLimits& limits,
+                                         Effort& effort);
 
 }  // namespace parallax::runtime

@@ -14,10 +14,15 @@ void GroupSolver::add(std::span<const Literal> clause, std::uint32_t group) {
   solver_->add_clause(clause_);
 }
 
-SolveStatus GroupSolver::solve(const IndexSet& groups) {
+SolveStatus GroupSolver::solve(const IndexSet& groups, Effort* effort) {
   asked_ = groups;
   for (const auto group : groups) solver_->assume(selector(group));
-  return solver_->solve();
+  if (effort == nullptr) return solver_->solve();
+  const auto before = solver_->conflicts();
+  solver_->limit_conflicts(effort->share());
+  const auto status = solver_->solve();
+  effort->spend(solver_->conflicts() - before);
+  return status;
 }
 
 IndexSet GroupSolver::core() const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/explain/axiom_groups.h"
+#include "runtime/explain/effort.h"
 #include "runtime/explain/execution_formula.h"
 #include "runtime/solver/sat_solver.h"
 
@@ -23,7 +24,8 @@ class GroupSolver {
   void add(std::span<const Literal> clause, std::uint32_t group);
   void add_definition(std::span<const Literal> clause) { solver_->add_clause(clause); }
 
-  SolveStatus solve(const IndexSet& groups);
+  /// kUnknown also where the effort, which may be null, did not suffice.
+  SolveStatus solve(const IndexSet& groups, Effort* effort = nullptr);
   /// After kUnsatisfiable: the groups that the solver used, a subset of those that were asked for.
   IndexSet core() const;
   /// After kSatisfiable: groups whose clauses hold in the valuation found, among them those asked

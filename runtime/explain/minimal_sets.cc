@@ -106,15 +106,23 @@ bool add_corrections(GroupSolver& solver, IndexSet consistent, HittingSets& hitt
 
 }  // namespace
 
-bool shrink(GroupSolver& solver, IndexSet& contradiction) {
-  IndexSet needed;
+bool shrink(GroupSolver& solver, IndexSet& contradiction, Effort* effort) {
+  IndexSet needed;  // or not known to go
+  bool minimal = true;
   auto candidates = contradiction;
+  const auto keep = [&](std::uint32_t group) {
+    needed.insert(std::lower_bound(needed.begin(), needed.end(), group), group);
+  };
   while (!candidates.empty()) {
+    if (effort != nullptr && effort->is_spent()) {
+      contradiction = joined(needed, candidates);
+      return false;
+    }
     const auto tried = candidates.back();
     candidates.pop_back();
-    switch (solver.solve(joined(needed, candidates))) {
+    switch (solver.solve(joined(needed, candidates), effort)) {
       case SolveStatus::kSatisfiable:
-        needed.insert(std::lower_bound(needed.begin(), needed.end(), tried), tried);
+        keep(tried);
         break;
       case SolveStatus::kUnsatisfiable: {
         const auto used = solver.core();
@@ -124,12 +132,13 @@ bool shrink(GroupSolver& solver, IndexSet& contradiction) {
         break;
       }
       case SolveStatus::kUnknown:
-        contradiction = joined(needed, joined(candidates, {tried}));
-        return false;
+        minimal = false;
+        keep(tried);
+        break;
     }
   }
   contradiction = std::move(needed);
-  return true;
+  return minimal;
 }
 
 MinimalSets smallest_set(GroupSolver& solver, const std::atomic<bool>* stop) {

@@ -20,8 +20,9 @@ struct MinimalSets {
 };
 
 /// Makes a contradictory set minimal by leaving out one member after the other; what the solver did
-/// not use goes as well. None if the solver was stopped; the set is then as far as it came.
-bool shrink(GroupSolver& solver, IndexSet& contradiction);
+/// not use goes as well. False if the solver was stopped, or the effort (null: any) did not
+/// suffice; the set is then contradictory, and as small as it came.
+bool shrink(GroupSolver& solver, IndexSet& contradiction, Effort* effort = nullptr);
 
 /// A contradiction with as few groups as possible, by the duality of minimal contradictions and
 /// minimal corrections (Ignatiev, Previti, Liffiton and Marques-Silva 2015). If the solver is

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cadical.hpp>
+#include <climits>
 
 #include "runtime/solver/sat_solver.h"
 
@@ -9,6 +11,7 @@ class CadicalSolver final : public SatSolver {
  public:
   explicit CadicalSolver(const std::atomic<bool>* stop) : terminator_(stop) {
     solver_.set("quiet", 1);
+    solver_.connect_learner(&learned_);
     if (stop != nullptr) solver_.connect_terminator(&terminator_);
   }
   CadicalSolver(std::FILE* proof, ProofForm form, const std::atomic<bool>* stop, ProofUse use)
@@ -61,6 +64,10 @@ class CadicalSolver final : public SatSolver {
     return literal.is_positive() ? sign > 0 : sign < 0;
   }
   void set_phase(Literal literal) override { solver_.phase(literal.dimacs()); }
+  void limit_conflicts(std::int64_t most) override {
+    solver_.limit("conflicts", static_cast<int>(std::min<std::int64_t>(most, INT_MAX)));
+  }
+  std::int64_t conflicts() const override { return learned_.clauses; }
   std::int64_t solve_calls() const override { return calls_; }
 
  private:
@@ -73,7 +80,17 @@ class CadicalSolver final : public SatSolver {
    private:
     const std::atomic<bool>* stop_;
   };
+  class LearnedClauses final : public CaDiCaL::Learner {
+   public:
+    bool learning(int) override {
+      ++clauses;
+      return false;  // the literals are of no interest
+    }
+    void learn(int) override {}
+    std::int64_t clauses = 0;
+  };
   StopFlag terminator_;
+  LearnedClauses learned_;
   // CaDiCaL's queries are not const in 1.5.3.
   mutable CaDiCaL::Solver solver_;
   State state_ = State::kReady;

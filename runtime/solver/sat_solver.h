@@ -44,6 +44,11 @@ class SatSolver {
   virtual bool is_fixed(Literal literal) const = 0;
   /// The value that the search tries first.
   virtual void set_phase(Literal literal) = 0;
+  /// The next call of solve answers kUnknown after so many conflicts. Unlike time, this is the same
+  /// on every machine.
+  virtual void limit_conflicts(std::int64_t most) = 0;
+  /// Conflicts so far: clauses that were learned.
+  virtual std::int64_t conflicts() const = 0;
   /// Calls of solve so far.
   virtual std::int64_t solve_calls() const = 0;
 };

@@ -31,9 +31,10 @@ class SetWriter {
       : formula_(formula), axioms_(axioms), texts_(formula.model()) {}
 
   const runtime::GroundContradiction& ground(const IndexSet& set,
-                                             const runtime::ProofLimits& limits) {
+                                             const runtime::ProofLimits& limits,
+                                             runtime::Effort& effort) {
     groups_ = set;
-    found_ = runtime::ground_contradiction(formula_, axioms_, set, limits);
+    found_ = runtime::ground_contradiction(formula_, axioms_, set, limits, effort);
     return found_;
   }
 
@@ -74,12 +75,15 @@ class SetWriter {
     return formula_.model().origins[axioms_.origins[group].front()];
   }
   std::vector<std::string> instances_of(std::uint32_t group) const {
-    std::vector<std::string> out;
+    std::vector<std::pair<compiler::Timepoint, std::string>> found;
+    const auto& model = formula_.model();
     for (const auto clause : found_.clauses) {
-      if (axioms_.group_of[formula_.model().clause_origins[clause]] == group) {
-        out.push_back(texts_.clause(clause));
-      }
+      if (axioms_.group_of[model.clause_origins[clause]] != group) continue;
+      found.emplace_back(model.clause_timepoints[clause], texts_.clause(clause));
     }
+    std::sort(found.begin(), found.end());
+    std::vector<std::string> out;
+    for (auto& [time, text] : found) out.push_back(std::move(text));
     return out;
   }
 
@@ -89,6 +93,13 @@ class SetWriter {
   IndexSet groups_;
   runtime::GroundContradiction found_;
 };
+
+/// What finding needed instances may cost, for all sets together: a fraction of the time there is.
+runtime::Effort effort_of(double time_limit_s) {
+  constexpr double kMost = 100'000, kEachSecond = 5'000;  // conflicts
+  const auto most = time_limit_s > 0 ? std::min(kMost, kEachSecond * time_limit_s) : kMost;
+  return runtime::Effort(static_cast<std::int64_t>(most));
+}
 
 /// What is known of the sets that are not shown.
 std::string claim(const runtime::MinimalSets& found, const SetOptions& options) {
@@ -143,6 +154,7 @@ void print(const runtime::MinimalSets& found, const SetOptions& options,
                            {"complete", options.all && found.proven}};
   if (run) document["observed"] = run->lines;
   auto sets = ordered_json::array();
+  auto effort = effort_of(invocation.options().time_limit_s);
   if (!json) {
     invocation.result(
         fmt::format("The model has no trace{}; {} of axioms that contradict {} ({}):\n{}",
@@ -150,7 +162,7 @@ void print(const runtime::MinimalSets& found, const SetOptions& options,
                     run ? "it" : "each other", claim(found, options), observed_text(run)));
   }
   for (std::size_t i = 0; i < found.sets.size(); ++i) {
-    const auto& ground = writer.ground(found.sets[i], limits);
+    const auto& ground = writer.ground(found.sets[i], limits, effort);
     if (ground.proof.verdict == ProofVerdict::kRejected) {
       invocation.sink().error_about(base::DiagnosticCode::kProofRejected, "", ground.proof.reason);
     }
@@ -163,7 +175,7 @@ void print(const runtime::MinimalSets& found, const SetOptions& options,
     } else {
       invocation.result(fmt::format(
           "set {}: {} (proof {}{})\n{}", i + 1, counted(found.sets[i].size(), "axiom"), proof,
-          ground.minimal ? "" : "; stopped before every instance was needed", writer.text()));
+          ground.minimal ? "" : "; instances not minimal: stopped", writer.text()));
     }
   }
   if (!json) return;

@@ -27,8 +27,9 @@ std::string proof_remark(const compiler::CompiledModel& model, compiler::Timepoi
   runtime::ExecutionFormula formula(model, runtime::Observed{steps, {}});
   runtime::ProofLimits limits;
   limits.stop = &stop_flag();
+  runtime::Effort none(0);  // the proof may stand on more than it needs
   const auto ground =
-      runtime::ground_contradiction(formula, axioms, {groups.begin(), groups.end()}, limits);
+      runtime::ground_contradiction(formula, axioms, {groups.begin(), groups.end()}, limits, none);
   if (ground.proof.verdict == runtime::ProofVerdict::kAccepted) {
     return "a proof of the contradiction was checked";
   }

@@ -175,7 +175,13 @@ TEST_CASE("the ground instances of a set contradict each other, and no one can g
     const auto found = runtime::smallest_set(solver, nullptr);
     if (found.sets.empty()) continue;
     ++compared;
-    const auto ground = runtime::ground_contradiction(formula, groups, found.sets.front(), {});
+    runtime::Effort enough(1'000'000), none(0);
+    const auto ground =
+        runtime::ground_contradiction(formula, groups, found.sets.front(), {}, enough);
+    const auto cut = runtime::ground_contradiction(formula, groups, found.sets.front(), {}, none);
+    CHECK_FALSE(cut.minimal);
+    CHECK(cut.clauses.size() >= ground.clauses.size());
+    CHECK(cut.proof.verdict == runtime::ProofVerdict::kAccepted);
     CHECK(ground.minimal);
     CHECK(ground.proof.verdict == runtime::ProofVerdict::kAccepted);
     for (std::size_t left_out = 0; left_out <= ground.clauses.size(); ++left_out) {

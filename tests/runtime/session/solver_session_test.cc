@@ -44,6 +44,8 @@ class CountingSolver final : public runtime::SatSolver {
   bool failed(Literal literal) const override { return inner_->failed(literal); }
   bool is_fixed(Literal literal) const override { return inner_->is_fixed(literal); }
   void set_phase(Literal literal) override { inner_->set_phase(literal); }
+  void limit_conflicts(std::int64_t most) override { inner_->limit_conflicts(most); }
+  std::int64_t conflicts() const override { return inner_->conflicts(); }
   std::int64_t solve_calls() const override { return ledger_.calls; }
 
  private:
