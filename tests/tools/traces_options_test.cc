@@ -62,6 +62,17 @@ TEST_CASE("--distinct all tells traces apart by what is hidden") {
   CHECK(cli.parallax({"traces", "m.e", "--count", "--distinct", "all"}).out == "5\n");
 }
 
+TEST_CASE("models may follow an option that can be given several times") {
+  const CliFixture cli;
+  cli.write("m.e", kSwitches);
+  const auto before = cli.parallax({"traces", "--until", "HoldsAt(On(A),time)", "--until",
+                                    "HoldsAt(On(B),time)", "-I", ".", "m.e"});
+  const auto after = cli.parallax({"traces", "m.e", "-I", ".", "--until", "HoldsAt(On(A),time)",
+                                   "--until", "HoldsAt(On(B),time)"});
+  CHECK(before.code == 0);
+  CHECK(before.out == after.out);
+}
+
 TEST_CASE("options that do not go together, and a strategy that cannot be had, are told") {
   const CliFixture cli;
   cli.write("m.e", kSwitches);

@@ -98,9 +98,9 @@ int diff_models(const DiffOptions& options, RevisionKind old_kind, RevisionKind 
     report_unknown(*found, invocation);
   }
   if (invocation.options().json) {
-    out.fields = facts_fields(report, "declarations", "axioms") +
-                 ",\"traces\":" + traces_json(*found) +
-                 ",\"remarks\":" + Json(found->remarks).dump();
+    out.fields =
+        facts_fields(report, "declarations", "axioms") + ",\"traces\":" + traces_json(*found) +
+        ",\"remarks\":" + Json(found->remarks).dump(-1, ' ', false, Json::error_handler_t::replace);
   } else {
     out.text = facts_text(report, "declarations", "axioms", options.stat);
     for (const auto& remark : found->remarks) out.text += remark + '\n';
@@ -270,8 +270,14 @@ int run(const DiffOptions& given, Invocation& invocation) {
 
 void add_model_diff_options(CLI::App& command, DiffOptions& options) {
   auto& model = options.models.load.model;
-  command.add_option("--with", model.models, "Model file that belongs to both models");
-  command.add_option("-I,--include", model.include_dirs, "Folder in which `load` looks");
+  command.add_option("--with", model.models, "Model file that belongs to both models")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+  command.add_option("-I,--include", model.include_dirs, "Folder in which `load` looks")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
   command.add_flag("--allow-outside", model.allow_outside,
                    "Let `load` leave the folders of the models");
   command.add_option("--compat", model.compat, "Meaning of the 2005 reasoner where it differs")

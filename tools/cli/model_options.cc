@@ -16,15 +16,23 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
       .add_option("models", options.models,
                   "Model files (.e), or one that `compile` wrote (.dec.cnf)")
       ->required();
-  command.add_option("-I,--include", options.include_dirs, "Folder in which `load` looks");
+  // One value each time, so that a model may follow.
+  command.add_option("-I,--include", options.include_dirs, "Folder in which `load` looks")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
   command.add_flag("--allow-outside", options.allow_outside,
                    "Let `load` leave the folders of the models");
   command.add_option("--compat", options.compat, "Meaning of the 2005 reasoner where it differs")
       ->check(CLI::IsMember({"decreasoner"}));
   command.add_option("--horizon", options.horizon, "Last timepoint; replaces the range of `time`")
       ->check(CLI::Range(0, 1'000'000));
-  command.add_option("--until", options.until,
-                     "Formula over `time`: traces end where it holds for the first time");
+  command
+      .add_option("--until", options.until,
+                  "Formula over `time`: traces end where it holds for the first time")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
 }
 
 void add_plan_options(CLI::App& command, ModelOptions& options) {

@@ -170,6 +170,10 @@ TEST_CASE_FIXTURE(DiffFixture, "loaded files and --with belong to the model") {
   write("start.e", "HoldsAt(Alive(),0).\n");
   const auto result = parallax({"diff", "old.e", "new.e", "--with", "start.e", "--json"});
   CHECK(result.code == 0);
+  // One value each time, wherever it stands.
+  CHECK(parallax({"diff", "--with", "start.e", "-I", ".", "old.e", "new.e"}).code == 0);
+  write("more.e", "!Happens(Shoot(),0).\n");
+  CHECK(parallax({"diff", "--with", "start.e", "--with", "more.e", "old.e", "new.e"}).code == 0);
 }
 
 TEST_CASE_FIXTURE(DiffFixture, "plans are compared as data, to the smallest piece") {
