@@ -72,6 +72,7 @@ void measure_counting(Bench& bench);
 void measure_listing(Bench& bench);
 void measure_first_trace(Bench& bench);
 void measure_strategies(Bench& bench);
+void measure_difference(Bench& bench);
 void measure_proofs(Bench& bench);
 void measure_plan(Bench& bench);
 void measure_world(Bench& bench);

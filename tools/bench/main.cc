@@ -23,6 +23,7 @@ const std::vector<Section>& sections() {
       {"strategies", "ways to enumerate, side by side", measure_strategies},
       {"proofs", "a checked proof that a list is complete, beside the list alone", measure_proofs},
       {"examples", "the examples of the reasoner of 2005", measure_examples},
+      {"difference", "two revisions of a model compared", measure_difference},
       {"horizons", "compile time over the horizon", measure_horizons},
       {"plan", "a long plan in the kitchen", measure_plan},
       {"world", "the two-region world", measure_world},
