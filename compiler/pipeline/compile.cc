@@ -71,6 +71,7 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, TypedModel& model,
   options.max_call_depth = input.max_call_depth;
   options.max_loop = input.max_loop;
   options.location_samples = input.location_samples;
+  options.interleave = input.interleave;
   for (const auto& object : model.objects) options.constants.push_back(object.name);
   for (const auto& symbol : model.symbols) {
     if (symbol.kind == SymbolKind::kFluent) options.fluents.push_back(symbol.name);

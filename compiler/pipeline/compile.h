@@ -26,6 +26,7 @@ struct PlanInput {
   std::int32_t max_call_depth = 8;       // as in UnrollOptions
   std::int32_t max_loop = 16;
   std::int32_t location_samples = 0;
+  bool interleave = false;
   /// Where neither input nor model give a horizon: as many timepoints as the longest path of the
   /// plan has performs, at most so many.
   std::int64_t max_horizon = 50;

@@ -1,6 +1,7 @@
 // Performs that are no single event: functions of the plan, objects that are only described.
 #include <fmt/core.h>
 
+#include <iterator>
 #include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
@@ -39,6 +40,43 @@ std::optional<PlanStop> Explorer::run_plan(PlanState& state, const StopPerform& 
 BranchId Explorer::branch(std::string guard, bool free, DatumId form) {
   return graph_.branches.add(
       {std::move(guard), data_.source(form), TerminalId(0), TerminalId(0), free});
+}
+
+/// Any branch of a `par` that waits may go on.
+std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
+  const auto ways = PlanMachine::waiting(state);
+  const auto go_on = [&](std::size_t way, Job::Edge edge, std::uint32_t owner) {
+    Job job{state, {}, {}, edge, owner};
+    job.act = PlanMachine::resume(job.state, ways[way]);
+    return job;
+  };
+  if (ways.size() == 1) {
+    auto job = go_on(0, Job::Edge::kEntry, 0);
+    return perform(job.state, *job.act);
+  }
+  auto key = state_key(state, values_, false);
+  const auto found = turns_.find(key);
+  if (found != turns_.end()) return found->second;
+  const auto form = state.pars.front().form;
+  if (!has_room(key, form)) return std::nullopt;
+  const auto first = branch("the first branch goes on", true, form);
+  turns_.emplace(std::move(key), first);
+  auto here = first;
+  // The last job is taken first: branches in written order.
+  std::vector<Job> jobs;
+  for (std::size_t way = 0; way + 1 < ways.size(); ++way) {
+    jobs.push_back(go_on(way, Job::Edge::kTrue, here.index()));
+    if (way + 2 == ways.size()) {
+      jobs.push_back(go_on(way + 1, Job::Edge::kFalse, here.index()));
+    } else {
+      const auto next = branch("the next branch goes on", true, form);
+      graph_.branches[here].if_false = next;
+      here = next;
+    }
+  }
+  jobs_.insert(jobs_.end(), std::make_move_iterator(jobs.rbegin()),
+               std::make_move_iterator(jobs.rend()));
+  return first;
 }
 
 /// The same perform with the object named.

@@ -62,6 +62,7 @@ const std::map<std::string_view, PlanCompiler::FormFunction>& PlanCompiler::form
       {"all", &C::form_designator},
       {"perform", &C::form_perform},
       {"funcall", &C::form_funcall},
+      {"apply", &C::form_apply},
       {"flet", &C::form_flet},
       {"labels", &C::form_flet},
       {"declare", &C::form_ignored},
@@ -74,10 +75,6 @@ const std::map<std::string_view, PlanCompiler::FormFunction>& PlanCompiler::form
       {"sleep", &C::form_ignored},
       {"on-event", &C::form_ignored},
       {"visualize-marker", &C::form_ignored},
-      {"check-navigating-collisions", &C::form_projection_check},
-      {"check-picking-up-collisions", &C::form_projection_check},
-      {"check-placing-collisions", &C::form_projection_check},
-      {"check-environment-manipulation-collisions", &C::form_projection_check},
   };
   return table;
 }

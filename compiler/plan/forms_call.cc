@@ -173,6 +173,34 @@ void PlanCompiler::form_funcall(DatumId form, Items items) {
   call(form, form_name(form), *callee, items.subspan(2));
 }
 
+/// (apply #'f a b list): the number of arguments is known only when the list is.
+void PlanCompiler::form_apply(DatumId form, Items items) {
+  if (items.size() < 3) {
+    malformed(form, "expected a function and a list of arguments");
+    return emit_constant(values_.nil(), form);
+  }
+  const auto callee = resolve_callee(form, items[1]);
+  for (const auto item : items.subspan(2, items.size() - 3)) {
+    compile(item);
+    emit_builtin("list", 1, item);
+  }
+  compile(items.back());
+  emit_builtin("append", static_cast<std::uint32_t>(items.size() - 2), form);
+  if (!callee) return;
+  emit(PlanOp::kApply, 0, 0, form);
+  if (callee->builtin) {
+    emit(PlanOp::kBuiltin, *callee->builtin, 0, form);
+    return;
+  }
+  const auto& parameters = callee->function->parameters;
+  const auto optional = [](const Parameter& parameter) { return parameter.optional; };
+  if (std::any_of(parameters.begin(), parameters.end(), optional)) {
+    unsupported(form, "a function with optional parameters cannot be applied to a list");
+  }
+  emit(callee->level ? PlanOp::kCallLocal : PlanOp::kCall, callee->function->unit,
+       callee->level.value_or(0), form);
+}
+
 /// flet and labels: local functions, which see the variables around them.
 void PlanCompiler::form_flet(DatumId form, Items items) {
   if (items.size() < 2 || !data_.is_list(items[1])) {

@@ -12,10 +12,26 @@ using base::DiagnosticCode;
 void PlanCompiler::form_progn(DatumId /*form*/, Items items) { compile_body(items.subspan(1)); }
 
 void PlanCompiler::form_par(DatumId form, Items items) {
+  if (items.size() > 2 && interleave_) return par_by_turns(form, items.subspan(1));
   if (items.size() > 2) {
     sink_.warning(DiagnosticCode::kParallelInOrder, data_.source(form), form_name(form));
   }
   compile_body(items.subspan(1));
+}
+
+/// Every branch is a unit of its own, which sees the variables around it.
+void PlanCompiler::par_by_turns(DatumId form, Items branches) {
+  std::vector<std::uint32_t> units;
+  for (const auto branch : branches) {
+    const auto unit = declare_unit("a branch", branch, 0);
+    enter_unit(unit);
+    compile(branch);
+    leave_unit(PlanOp::kEndBranch, branch);
+    units.push_back(unit);
+  }
+  emit(PlanOp::kPar, static_cast<std::uint32_t>(code_.pars.size()), 0, form);
+  code_.pars.push_back(std::move(units));
+  adjust(1);
 }
 
 /// Transparent forms whose first argument says where or how to run.

@@ -32,6 +32,7 @@ enum class PlanOp : std::uint8_t {
   kPerform,       // pop a designator; push the result: the model decides
   kCall,          // pop the arguments of unit a, run it, push its result
   kCallLocal,     // the same for a unit whose parent frame is b static links out
+  kApply,         // pop a list; call with its elements what the next instruction calls
   kReturn,        // leave the unit with the top as its result
   kPushHandlers,  // failures look into table a from here on
   kPushCleanup,   // leaving runs unit a from here on
@@ -43,6 +44,8 @@ enum class PlanOp : std::uint8_t {
   kFail,          // fail with class (string) a
   kFailValue,     // pop a failure or a class name and fail with it
   kExpectList,    // the top must be a list that is known (CPL021, CPL008)
+  kPar,           // start the branches of table a, each by turns (plan_branches.cc)
+  kEndBranch,     // a branch is over, with the top as its value
   kTick,          // count variable a up; cut here beyond the loop limit
   kDone,          // the plan is over
 };
@@ -86,6 +89,7 @@ struct PlanCode {
   std::uint32_t main = 0;
   std::vector<ExitTarget> exits;
   std::vector<std::vector<HandlerClause>> handlers;
+  std::vector<std::vector<std::uint32_t>> pars;  // the units of the branches
   std::vector<PlanGlobal> globals;
   std::vector<std::string> strings;
   FailureClasses classes;

@@ -192,6 +192,9 @@ void PlanCompiler::compile_list(DatumId form) {
     return;
   }
   if (const auto callee = find_callee(*head)) return call(form, *head, *callee, items.subspan(1));
+  if (head->starts_with("check-") && head->ends_with("-collisions")) {
+    return form_projection_check(form, items);
+  }
   unknown_form(form, *head);
   emit_constant(values_.nil(), form);
 }

@@ -22,8 +22,10 @@ namespace parallax::compiler {
 /// Reports everything it meets, also on paths that no execution takes, and goes on.
 class PlanCompiler {
  public:
-  PlanCompiler(const LispText& text, ValueStore& values, base::DiagnosticSink& sink)
-      : text_(text), data_(text.data), values_(values), sink_(sink) {}
+  /// `interleave`: the branches of `par` take turns; otherwise they run in written order (W-PAR).
+  PlanCompiler(const LispText& text, ValueStore& values, base::DiagnosticSink& sink,
+               bool interleave = false)
+      : text_(text), data_(text.data), values_(values), sink_(sink), interleave_(interleave) {}
 
   /// `entry` names the function to run; without it the bare top-level forms run, or else the last
   /// function defined. CPL006 if there is nothing to run.
@@ -115,6 +117,7 @@ class PlanCompiler {
   // --- forms_control.cc
   void form_progn(DatumId form, Items items);
   void form_par(DatumId form, Items items);
+  void par_by_turns(DatumId form, Items branches);
   void form_skip_argument(DatumId form, Items items);
   void form_if(DatumId form, Items items);
   void form_when(DatumId form, Items items);
@@ -199,6 +202,7 @@ class PlanCompiler {
     std::optional<std::uint32_t> builtin;
   };
   void form_funcall(DatumId form, Items items);
+  void form_apply(DatumId form, Items items);
   void form_flet(DatumId form, Items items);
   std::optional<Callee> find_callee(std::string_view name) const;
   std::optional<Callee> resolve_callee(DatumId form, DatumId function);
@@ -227,6 +231,7 @@ class PlanCompiler {
   const LispData& data_;
   ValueStore& values_;
   base::DiagnosticSink& sink_;
+  bool interleave_;
   PlanCode code_;
   std::vector<UnitContext> frames_;
   std::vector<LexicalBinding> scope_;

@@ -49,6 +49,7 @@ class Explorer {
   void set(const Job& job, PlanTarget target);
   std::optional<PlanTarget> advance(Job& job);
   std::optional<PlanTarget> stopped(PlanState& state, const PlanStop& stop);
+  bool has_room(const StateKey& key, DatumId form);
   std::optional<PlanTarget> perform(PlanState& state, const StopPerform& stop);
   std::optional<PlanStop> run_plan(PlanState& state, const StopPerform& stop,
                                    const BindingEntry& entry);
@@ -58,6 +59,7 @@ class Explorer {
               const PerformResolver::Reference& reference, BranchId some);
   StopPerform named(const StopPerform& stop, const PerformResolver::Reference& reference,
                     std::string_view name);
+  std::optional<PlanTarget> take_turns(const PlanState& state);
   BranchId branch(std::string guard, bool free, DatumId form);
   std::optional<PlanTarget> question(PlanState& state, const StopQuestion& stop);
   base::Result<std::string> guard_text(const StopQuestion& stop);
@@ -78,9 +80,11 @@ class Explorer {
   std::map<StateKey, LocationId> locations_;
   std::map<StateKey, BranchId> branches_;
   std::map<StateKey, BranchId> references_;
+  std::map<StateKey, BranchId> turns_;
   std::map<std::string, TerminalId> terminals_;
   std::map<std::pair<std::uint32_t, std::string>, std::vector<ModelValueId>> registers_;
   bool failed_ = false;
+  std::size_t key_words_ = 0;
   bool full_ = false;  // the limit of locations was reached and reported
 };
 

@@ -135,6 +135,8 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
     case PlanOp::kCall:
     case PlanOp::kCallLocal:
       return call(state, instruction);
+    case PlanOp::kApply:
+      return apply(state, instruction);
     case PlanOp::kReturn:
       return leave(state);
     case PlanOp::kExit: {
@@ -142,6 +144,10 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
       const auto frame = linked(state, instruction.a);
       return unwind(state, {PendingKind::kExit, frame, instruction.b, carried});
     }
+    case PlanOp::kPar:
+      return start_par(state, instruction);
+    case PlanOp::kEndBranch:
+      return end_branch(state);
     case PlanOp::kTick:
       return tick(state, instruction);
     case PlanOp::kDone:
@@ -229,51 +235,6 @@ PlanMachine::Step PlanMachine::builtin(PlanState& state, const PlanInstruction& 
       break;
   }
   return StopError{};
-}
-
-/// The end of a unit: its result replaces its variables.
-PlanMachine::Step PlanMachine::leave(PlanState& state) {
-  const auto result = pop(state);
-  const auto base = state.frames.back().base;
-  state.frames.pop_back();
-  state.stack.resize(base);
-  state.stack.push_back(result);
-  return {};
-}
-
-PlanMachine::Step PlanMachine::call(PlanState& state, const PlanInstruction& instruction) {
-  const auto& unit = code_.units[instruction.a];
-  std::uint32_t depth = 0;
-  const PlanFrame* outermost = nullptr;
-  // What lies between a handler and the frame it belongs to has failed and is not active any more.
-  for (auto f = static_cast<std::uint32_t>(state.frames.size()); f-- > 0;) {
-    const auto& active = state.frames[f];
-    if (active.unit == instruction.a) {
-      outermost = &active;
-      ++depth;
-    }
-    if (active.kind == FrameKind::kHandler) f = active.link + 1;
-  }
-  if (depth >= limits_.max_call_depth) {
-    if (outermost->performs != state.performs) return StopBound{unit.name, instruction.source};
-    sink_.error(DiagnosticCode::kPlanRecursion, data_.source(instruction.source), unit.name,
-                limits_.max_call_depth);
-    return StopError{};
-  }
-  PlanFrame frame;
-  frame.unit = instruction.a;
-  frame.link = instruction.op == PlanOp::kCallLocal ? linked(state, instruction.b) : 0;
-  frame.base = static_cast<std::uint32_t>(state.stack.size()) - unit.parameters;
-  frame.guard_base = static_cast<std::uint32_t>(state.guards.size());
-  frame.performs = state.performs;
-  state.frames.push_back(frame);
-  return {};
-}
-
-std::optional<PlanStop> PlanMachine::enter(PlanState& state, std::uint32_t unit,
-                                           const std::vector<ValueId>& arguments, DatumId form) {
-  state.stack.insert(state.stack.end(), arguments.begin(), arguments.end());
-  return call(state, {PlanOp::kCall, unit, 0, form});
 }
 
 /// Counts an iteration of a loop that nothing static ends.

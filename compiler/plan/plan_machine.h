@@ -32,9 +32,10 @@ struct StopBound {
   std::string form;
   DatumId at;
 };
+struct StopTurn {};   // every branch of the outermost `par` is over or waits for its turn
 struct StopError {};  // reported
 using PlanStop =
-    std::variant<StopPerform, StopQuestion, StopDone, StopFailed, StopBound, StopError>;
+    std::variant<StopPerform, StopQuestion, StopDone, StopFailed, StopBound, StopTurn, StopError>;
 
 struct MachineLimits {
   std::uint32_t max_call_depth = 8;
@@ -57,6 +58,14 @@ class PlanMachine {
   PlanStop run(PlanState& state);
   /// Lets the current step fail instead of answering; run goes on from there.
   std::optional<PlanStop> raise(PlanState& state, ValueId failure);
+  /// Inside a `par`: the running branch waits at this perform, others run up to theirs. None: run
+  /// goes on with another branch.
+  std::optional<PlanStop> wait(PlanState& state, const StopPerform& perform);
+  /// Where branches wait: the way to each through nested `par`s, in written order.
+  using BranchPath = std::vector<std::size_t>;
+  static std::vector<BranchPath> waiting(const PlanState& state);
+  /// Puts that branch in place; its perform is next.
+  static StopPerform resume(PlanState& state, const BranchPath& path);
   /// Lets a function of the plan answer; run goes into it.
   std::optional<PlanStop> enter(PlanState& state, std::uint32_t unit,
                                 const std::vector<ValueId>& arguments, DatumId form);
@@ -69,6 +78,7 @@ class PlanMachine {
   Step expect_list(const PlanState& state, const PlanInstruction& instruction);
   Step builtin(PlanState& state, const PlanInstruction& instruction);
   Step call(PlanState& state, const PlanInstruction& instruction);
+  Step apply(PlanState& state, const PlanInstruction& instruction);
   Step tick(PlanState& state, const PlanInstruction& instruction);
   Step fail_value(PlanState& state, const PlanInstruction& instruction);
   void push_guard(PlanState& state, const PlanInstruction& instruction);
@@ -76,6 +86,10 @@ class PlanMachine {
   Step end_handler(PlanState& state);
   Step end_cleanup(PlanState& state);
   Step search(PlanState& state, ValueId failure, std::size_t limit);
+  Step start_par(PlanState& state, const PlanInstruction& instruction);
+  Step end_branch(PlanState& state);
+  Step next_branch(PlanState& state);
+  Step abandon_branches(PlanState& state, std::size_t frames);
   Step unwind(PlanState& state, Pending pending);
   void add_key(PlanState& state, const PlanInstruction& instruction);
   std::size_t place(const PlanState& state, const PlanInstruction& instruction) const;

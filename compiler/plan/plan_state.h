@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "compiler/plan/plan_code.h"
@@ -42,14 +44,49 @@ struct PlanGuard {
   std::uint32_t height = 0;  // of the stack when it began
 };
 
+/// A perform that a branch of a `par` waits at for its turn.
+struct PlanTurn {
+  ValueId designator;
+  DatumId form;
+};
+
+struct PlanPar;
+
+/// A branch of a `par` that is not running: what it has on top of what all branches share. They
+/// begin at the same height, so that the indices in it are right whenever it is put back.
+struct PlanBranchState {
+  bool started = false;
+  bool done = false;
+  ValueId result;  // done
+  std::optional<PlanTurn> turn;
+  std::vector<PlanFrame> frames;
+  std::vector<PlanGuard> guards;
+  std::vector<ValueId> stack;
+  std::vector<PlanPar> pars;  // at most one: of a branch that is itself in branches
+};
+
+/// An active `par` whose branches take turns, perform by perform.
+struct PlanPar {
+  std::uint32_t frames = 0;  // what the branches share
+  std::uint32_t guards = 0;
+  std::uint32_t height = 0;
+  std::size_t active = 0;  // the branch whose state is in place
+  DatumId form;
+  std::vector<PlanBranchState> branches;
+};
+
 /// All that the rest of an execution depends on.
 struct PlanState {
   std::vector<PlanFrame> frames;
   std::vector<PlanGuard> guards;
   std::vector<ValueId> stack;
+  std::vector<PlanPar> pars;   // outermost first
   std::uint32_t performs = 0;  // on the path so far; not part of the state's identity
   std::uint32_t missed = 0;    // references that failed since the last perform; the same
 };
+
+/// Calls visit(value) for every value that the state holds, also in branches that wait.
+void for_each_value(const PlanState& state, const std::function<void(ValueId)>& visit);
 
 /// Equal for equal states. Without `counters`, states that differ only in how often an endless loop
 /// has run are equal: coming back to such a state is a cycle, not news.

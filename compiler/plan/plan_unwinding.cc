@@ -100,6 +100,7 @@ PlanMachine::Step PlanMachine::search(PlanState& state, ValueId failure, std::si
       if (guard.cleanup) continue;
       for (const auto& clause : code_.handlers[guard.index]) {
         if (!code_.classes.is_a(values_[failure].text, clause.failure_class)) continue;
+        if (auto stop = abandon_branches(state, guard.frame)) return stop;
         drop_abandoned(state, g);
         auto handler = frame_on_top(state, clause.unit, guard.frame, FrameKind::kHandler);
         handler.skip_to = static_cast<std::uint32_t>(g);
@@ -118,6 +119,7 @@ PlanMachine::Step PlanMachine::search(PlanState& state, ValueId failure, std::si
 /// Leaves frames and guards up to the target, clean-up by clean-up.
 PlanMachine::Step PlanMachine::unwind(PlanState& state, Pending pending) {
   const bool exits = pending.kind == PendingKind::kExit;
+  if (auto stop = abandon_branches(state, exits ? pending.frame : 0U)) return stop;
   const auto target =
       exits ? state.frames[pending.frame].guard_base + code_.exits[pending.exit].guards : 0U;
   while (state.guards.size() > target) {

@@ -57,19 +57,27 @@ std::vector<base::SourceRange> Explorer::calls(const PlanState& state) const {
   return out;
 }
 
+/// Deep calls make large states: not only their number is limited.
+bool Explorer::has_room(const StateKey& key, DatumId form) {
+  constexpr std::size_t kMaxWords = 8'000'000;
+  key_words_ += key.size();
+  const auto limit = static_cast<std::size_t>(options_.max_locations);
+  const bool many = graph_.locations.size() >= limit;
+  if (!many && key_words_ <= kMaxWords) return true;
+  if (!full_) {
+    sink_.error(DiagnosticCode::kUnrollLimit, data_.source(form), many ? limit : kMaxWords,
+                many ? "locations" : "words for the states of its calls");
+  }
+  full_ = true;
+  return false;
+}
+
 std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform& stop) {
   auto key = state_key(state, values_, false);
   key.push_back(stop.designator.index());
   const auto found = locations_.find(key);
   if (found != locations_.end()) return found->second;
-  const auto limit = static_cast<std::size_t>(options_.max_locations);
-  if (graph_.locations.size() >= limit) {
-    if (!full_) {
-      sink_.error(DiagnosticCode::kUnrollLimit, data_.source(stop.form), limit, "locations");
-    }
-    full_ = true;
-    return std::nullopt;
-  }
+  if (!has_room(key, stop.form)) return std::nullopt;
   const auto source = data_.source(stop.form);
   const auto* entry = resolver_.find_entry(stop.designator, source);
   if (entry == nullptr) return std::nullopt;
@@ -106,8 +114,7 @@ ModelValueId Explorer::free_register(const PlanState& state, DatumId form,
     const auto& registers = values_[value].registers;
     taken.insert(registers.begin(), registers.end());
   };
-  for (const auto value : state.stack) note(value);
-  for (const auto& frame : state.frames) note(frame.pending.value);
+  for_each_value(state, note);
   auto& own = registers_[{form.index(), variable}];
   for (const auto value : own) {
     if (!taken.contains(value)) return value;
@@ -136,6 +143,7 @@ std::optional<PlanTarget> Explorer::question(PlanState& state, const StopQuestio
   for (const char c : *guard) key.push_back(static_cast<unsigned char>(c));
   const auto found = branches_.find(key);
   if (found != branches_.end()) return found->second;
+  if (!has_room(key, stop.form)) return std::nullopt;
   const auto id = branch(*guard, false, stop.form);
   branches_.emplace(std::move(key), id);
   jobs_.push_back({state, {}, {}, Job::Edge::kFalse, id.index()});
@@ -169,6 +177,12 @@ std::optional<PlanTarget> Explorer::advance(Job& job) {
     auto stop = machine_.run(job.state);
     const auto* act = std::get_if<StopPerform>(&stop);
     const auto* entry = act != nullptr ? resolver_.find_plan(act->designator) : nullptr;
+    if (act != nullptr && entry == nullptr && !job.state.pars.empty()) {
+      const auto all_wait = machine_.wait(job.state, *act);
+      if (!all_wait) continue;
+      return take_turns(job.state);
+    }
+    if (std::holds_alternative<StopTurn>(stop)) return take_turns(job.state);
     if (entry == nullptr) return stopped(job.state, stop);
     if (auto ended = run_plan(job.state, *act, *entry)) return stopped(job.state, *ended);
   }
@@ -196,7 +210,7 @@ base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files, base::FileId
   const auto text = read_lisp(files, plan, sink);
   if (!text) return sink.already_reported();
   ValueStore values;
-  const auto code = PlanCompiler(*text, values, sink).compile(options.entry);
+  const auto code = PlanCompiler(*text, values, sink, options.interleave).compile(options.entry);
   if (!code) return sink.already_reported();
   return Explorer(text->data, *code, binding, locator, options, values, sink).explore();
 }

@@ -27,6 +27,7 @@ struct UnrollOptions {
   std::vector<std::string> fluents;
   /// The model's constants that each object entry of the binding table can mean.
   std::vector<std::vector<std::string>> candidates;
+  bool interleave = false;            // explore every order of the performs in branches of `par`
   std::int32_t location_samples = 0;  // further solutions of a location before there is none
 };
 

@@ -86,6 +86,32 @@ TEST_CASE("verify: what is wrong with a property is reported in it") {
   CHECK(result.err.find("Holding") != std::string::npos);
 }
 
+TEST_CASE("traces: branches of a plan run in written order, or in every order") {
+  const CliFixture cli;
+  cli.write("named.bind",
+            "motion going (:object name ?r) -> Go(?r) ok: RobotIn(?r) @t+1\n"
+            "action picking-up () -> PickUp() ok: Holding() @t+1\n");
+  cli.write("par.lisp",
+            "(par (perform (a motion (type going) (object (an object (name r2)))))\n"
+            "     (with-failure-handling ((plan-failure () (return)))\n"
+            "       (perform (an action (type picking-up)))))\n");
+  std::vector<std::string> arguments = {"traces",     "domain.e", "start.e",
+                                        "--plan",     "par.lisp", "--bind",
+                                        "named.bind", "--until",  "HoldsAt(RobotIn(r2),time)",
+                                        "--limit=0",  "--json"};
+  const auto events = [&] {
+    const auto result = cli.parallax(arguments);
+    CAPTURE(result.err);
+    REQUIRE(result.code == 0);
+    return nlohmann::json::parse(result.out);
+  };
+  CHECK(events()["traces"].size() == 1);
+  arguments.push_back("--par=interleave");
+  const auto both = events();
+  REQUIRE(both["traces"].size() == 2);
+  CHECK(both["exploration"] == "all traces explored");
+}
+
 TEST_CASE("check warns of retries that cannot help in the model") {
   const CliFixture cli;
   cli.write("stubborn.lisp",

@@ -57,6 +57,11 @@ void add_plan_options(CLI::App& command, ModelOptions& options) {
       ->check(whole_number(0, 1'000))
       ->capture_default_str();
   command
+      .add_option("--par", options.par,
+                  "The branches of `par`: in-order, or interleave for every order of their performs")
+      ->check(CLI::IsMember({"in-order", "interleave"}))
+      ->capture_default_str();
+  command
       .add_option("--max-horizon", options.max_horizon,
                   "Without --horizon and a range of `time`: the longest path of the plan, but no "
                   "more than this")

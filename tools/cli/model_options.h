@@ -24,6 +24,7 @@ struct ModelOptions {
   std::int32_t max_loop = 16;      // iterations of a loop that nothing static ends
   std::int32_t max_call_depth = 8;
   std::int32_t location_samples = 0;  // further solutions that `next-solution` gives
+  std::string par = "in-order";       // the branches of `par`: in-order or interleave
   std::int64_t max_horizon = 50;      // of plans, where nothing says the horizon
   bool lint = false;                  // `check`: report what is legal but hardly meant
   bool stats = false;                 // count what each axiom costs; commands offer it themselves

@@ -32,6 +32,14 @@ const Case kCases[] = {
     {"(defun f (x) x)(f)", "CPL007", "`f`: no value for `x`"},
     {"(defun f (x) x)(f 1 2)", "CPL007", "`f`: unexpected argument `2`"},
     {"(defun f (&key x) x)(f :y 2)", "CPL007", "`f`: unexpected argument `:y`"},
+    {"(defun f (x) x)(apply #'f '(1 2))", "CPL007",
+     "`apply`: the function takes at most 1 arguments, the list has 2"},
+    {"(apply #'cons '(1))", "CPL007",
+     "`apply`: the function takes at least 2 arguments, the list has 1"},
+    {"(defun f (&optional x) x)(apply #'f '(1))", "CPL013",
+     "`apply` is not in the subset here: a function with optional parameters cannot be applied to "
+     "a "
+     "list"},
     {"(car)", "CPL007", "`car`: takes at least 1 arguments, not 0"},
     {"(+ 1 'a)", "CPL008", "`+`: argument 2 is a, not a number"},
     {"(/ 1 0)", "CPL008", "`/`: division by zero"},
@@ -88,6 +96,8 @@ const Case kCases[] = {
     {"(par (list 1) (list 2))", "W-PAR", "the branches of `par` are taken in written order"},
     {"(check-placing-collisions 1)", "W-PROJ",
      "`check-placing-collisions` looks ahead in a projection; it is taken to find nothing"},
+    {"(check-any-new-collisions 1)", "W-PROJ",
+     "`check-any-new-collisions` looks ahead in a projection; it is taken to find nothing"},
     {"(list (all objects (type cup)))", "W-ALL",
      "`(all ...)` stands for a list of objects that only the model knows"},
 };

@@ -42,6 +42,11 @@ TEST_CASE("forms: arithmetic and lists") {
       {"(assoc :k '((j 1) (k 2)))", "(k 2)"},
       {"`(a ,(+ 1 1) ,@(list 'b 'c) (d ,:e))", "(a 2 b c (d e))"},
       {"(eq :left 'left)", "t"},
+      {"(list (cadr '(1 2)) (caddr '(1 2 3)))", "(2 3)"},
+      {"(apply #'+ 1 2 '(3 4))", "10"},
+      {"(apply #'list nil)", "nil"},
+      {"(apply (lambda (a b) (list b a)) '(1 2))", "(2 1)"},
+      {"(let ((n 1)) (flet ((add (x) (+ n x))) (apply #'add '(2))))", "3"},
   });
 }
 

@@ -53,6 +53,17 @@ TEST_CASE("hostile: recursion without end is an error or a bound") {
   CHECK(unroll("(labels ((f (n) (f (+ n 1)))) (f 0))").codes() == Strings{"CPL050"});
 }
 
+TEST_CASE("hostile: deep calls in many states stop at a limit of memory") {
+  UnrollOptions options;
+  options.max_call_depth = 1000;
+  const auto plan =
+      unroll(prelude() +
+                 "(defun f (n) (sig) (with-failure-handling ((plan-failure () (f (+ n "
+                 "2)))) (f (+ n 1))))(f 0)",
+             options);
+  CHECK(plan.codes() == Strings{"CPL051"});
+}
+
 TEST_CASE("hostile: a plan with too many states stops at the limit") {
   // Every outcome is remembered, so no two paths meet: 2^30 states.
   const auto plan = unroll(prelude() + R"(

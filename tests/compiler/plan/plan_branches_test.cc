@@ -1,0 +1,148 @@
+#include <doctest/doctest.h>
+
+#include <set>
+
+#include "tests/compiler/plan/plan_fixture.h"
+
+namespace parallax::compiler {
+namespace {
+
+/// The event sequences of all ways through the graph on which the performs with the events of
+/// `failing` fail and all others succeed; each ends with its terminal.
+class Ways {
+ public:
+  Ways(const Unrolled& plan, std::set<std::string> failing = {})
+      : plan_(plan), failing_(std::move(failing)) {
+    follow(plan.graph->entry, "");
+  }
+  std::set<std::string> all;
+
+ private:
+  void follow(const PlanTarget& target, const std::string& before) {
+    REQUIRE(before.size() < 1000);
+    if (const auto* id = std::get_if<LocationId>(&target)) {
+      const auto& location = plan_.graph->locations[*id];
+      const bool fails = failing_.contains(location.event);
+      follow(fails ? location.on_failure : location.on_success, before + location.event + " ");
+    } else if (const auto* branch = std::get_if<BranchId>(&target)) {
+      REQUIRE(plan_.graph->branches[*branch].free);
+      follow(plan_.graph->branches[*branch].if_true, before);
+      follow(plan_.graph->branches[*branch].if_false, before);
+    } else {
+      all.insert(before + plan_.target(target));
+    }
+  }
+  const Unrolled& plan_;
+  std::set<std::string> failing_;
+};
+
+Unrolled by_turns(const std::string& text) {
+  UnrollOptions options;
+  options.interleave = true;
+  return unroll(prelude() + text, options);
+}
+
+std::size_t orders(const std::string& text) {
+  const auto plan = by_turns(text);
+  REQUIRE(plan.graph.has_value());
+  CHECK(plan.codes().empty());
+  return Ways(plan).all.size();
+}
+
+std::string opens(const std::string& name, int count) {
+  std::string out;
+  for (int i = 1; i <= count; ++i) {
+    out += "(perform (an action (type opening) (object (an object (name " + name +
+           std::to_string(i) + ")))))";
+  }
+  return "(seq " + out + ")";
+}
+
+TEST_CASE("branches: every order of their performs is explored") {
+  // (a + b)! / (a! b!) orders of a and b performs; (a + b + c)! / (a! b! c!) of three branches.
+  CHECK(orders("(par " + opens("a", 1) + opens("b", 1) + ")") == 2);
+  CHECK(orders("(par " + opens("a", 2) + opens("b", 2) + ")") == 6);
+  CHECK(orders("(par " + opens("a", 3) + opens("b", 4) + ")") == 35);
+  CHECK(orders("(par " + opens("a", 2) + opens("b", 2) + opens("c", 2) + ")") == 90);
+  CHECK(orders("(par " + opens("a", 2) + "(list 1))") == 1);
+  CHECK(orders("(par (list 1) (list 2))") == 1);
+  // A par within a branch: 4 performs, of which one pair is in order and follows two free ones.
+  CHECK(orders("(par " + opens("a", 2) + "(par " + opens("b", 1) + opens("c", 1) + "))") == 12);
+  CHECK(orders("(par " + opens("a", 1) + "(seq (par " + opens("b", 1) + opens("c", 1) + ") " +
+               opens("d", 1) + "))") == 8);
+  // Two in a row.
+  CHECK(orders("(par " + opens("a", 1) + opens("b", 1) + ")(par " + opens("c", 1) + opens("d", 1) +
+               ")") == 4);
+}
+
+TEST_CASE("branches: paths that meet in one state are one location") {
+  const auto plan = by_turns("(par " + opens("a", 6) + opens("b", 6) + ")");
+  REQUIRE(plan.graph.has_value());
+  // 7 x 7 positions less the last; two performs at each that has both branches open.
+  CHECK(plan.graph->locations.size() == 2 * 6 * 6 + 6 + 6);
+}
+
+TEST_CASE("branches: the first failure ends the par, whatever the others were about") {
+  const auto plan = by_turns("(with-failure-handling ((plan-failure () (sig) (return))) (par " +
+                             opens("a", 1) + "(seq " + opens("b", 1) + "(go1))))(go2)");
+  REQUIRE(plan.graph.has_value());
+  CHECK(Ways(plan, {"OpenDrawer(b1)"}).all ==
+        std::set<std::string>{"OpenDrawer(a1) OpenDrawer(b1) Signal() Go(r2) DONE",
+                              "OpenDrawer(b1) Signal() Go(r2) DONE"});
+  CHECK(Ways(plan, {"OpenDrawer(a1)"}).all ==
+        std::set<std::string>{"OpenDrawer(a1) Signal() Go(r2) DONE",
+                              "OpenDrawer(b1) OpenDrawer(a1) Signal() Go(r2) DONE",
+                              "OpenDrawer(b1) Go(r1) OpenDrawer(a1) Signal() Go(r2) DONE"});
+  const auto bare = by_turns("(par " + opens("a", 1) + opens("b", 1) + ")");
+  CHECK(Ways(bare, {"OpenDrawer(a1)", "OpenDrawer(b1)"}).all ==
+        std::set<std::string>{"OpenDrawer(a1) FAILED(manipulation-goal-not-reached)",
+                              "OpenDrawer(b1) FAILED(manipulation-goal-not-reached)"});
+}
+
+TEST_CASE("branches: a failure that a branch handles itself leaves the others alone") {
+  const auto plan = by_turns("(par (with-failure-handling ((plan-failure () (sig) (return))) " +
+                             opens("a", 1) + ")" + opens("b", 1) + ")");
+  REQUIRE(plan.graph.has_value());
+  CHECK(Ways(plan, {"OpenDrawer(a1)"}).all ==
+        std::set<std::string>{"OpenDrawer(a1) Signal() OpenDrawer(b1) DONE",
+                              "OpenDrawer(a1) OpenDrawer(b1) Signal() DONE",
+                              "OpenDrawer(b1) OpenDrawer(a1) Signal() DONE"});
+}
+
+TEST_CASE("branches: they share variables, return values and can be left") {
+  const auto shared = by_turns(
+      "(let ((n 0) (last nil)) (setf last (par (seq (go1) (incf n)) "
+      "(seq (go2) (incf n) :b))) (when (and (= n 2) (eq last :b)) (sig)))");
+  CHECK(Ways(shared).all ==
+        std::set<std::string>{"Go(r1) Go(r2) Signal() DONE", "Go(r2) Go(r1) Signal() DONE"});
+  const auto left =
+      by_turns("(block out (par (seq (go1) (return-from out)) (seq (go2) (pick))))(sig)");
+  CHECK(Ways(left).all == std::set<std::string>{"Go(r1) Signal() DONE",
+                                                "Go(r2) Go(r1) Signal() DONE",
+                                                "Go(r2) PickUp(left,box) Go(r1) Signal() DONE"});
+}
+
+TEST_CASE("branches: clean-up in a branch runs, but not in one that another leaves behind") {
+  const auto own = by_turns(
+      "(par (unwind-protect (go1) (sig))"
+      " (with-failure-handling ((plan-failure () (return))) (pick)))");
+  CHECK(Ways(own).all.size() == 3);
+  // The other one may be inside its unwind-protect when this one fails.
+  const auto other = by_turns("(par (unwind-protect (seq (go1) (go2)) (sig)) (pick))");
+  CHECK(other.codes() == Strings{"CPL013"});
+}
+
+TEST_CASE("branches: without turns they run in written order") {
+  const auto plan = unroll(prelude() + "(par (seq (go1) (go2)) (sig))");
+  CHECK(plan.codes() == Strings{"W-PAR"});
+  CHECK(plan.events("+++") == Strings{"Go(r1)", "Go(r2)", "Signal()", "DONE"});
+}
+
+TEST_CASE("branches: many of them end at the limit of locations") {
+  std::string text = "(par";
+  for (int i = 0; i < 12; ++i) text += " " + opens(std::string(1, static_cast<char>('a' + i)), 3);
+  CHECK(by_turns(text + ")").codes() == Strings{"CPL051"});
+}
+
+}  // namespace
+}  // namespace parallax::compiler
