@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "compiler/artifact/artifact_text.h"
@@ -35,6 +36,7 @@ class ArtifactReader {
     if (!clauses.read(provenance_.clause_count(), provenance_.runs())) {
       return cursor_.sink().already_reported();
     }
+    if (!check_hash()) return cursor_.sink().already_reported();
     symbols_.name_the_rest();
     return std::move(model_);
   }
@@ -54,6 +56,7 @@ class ArtifactReader {
   bool read_producer();
   bool read_option();
   bool read_source();
+  bool read_fnv(std::uint64_t& hash);
   bool read_horizon();
   bool read_base() { return read_size("the number of fixed variables", base_); }
   bool read_stride() { return read_size("the number of slots", stride_); }
@@ -70,6 +73,8 @@ class ArtifactReader {
   bool read_step() { return provenance_.read_step(); }
   bool read_argument() { return provenance_.read_argument(); }
   bool read_cut() { return provenance_.read_cut(); }
+  bool read_hash();
+  bool check_hash();
 
   bool read_size(std::string_view what, std::int64_t& size);
   bool read_flag(bool& flag);
@@ -83,6 +88,8 @@ class ArtifactReader {
   std::int64_t minor_ = 0;
   std::int64_t base_ = 0, stride_ = 0, state_slots_ = 0;
   bool has_frame_ = false;
+  std::optional<std::uint64_t> hash_;  // that the lines should have
+  base::SourceRange hash_place_;
 };
 
 const std::vector<ArtifactReader::Entry>& ArtifactReader::entries() {
@@ -107,6 +114,7 @@ const std::vector<ArtifactReader::Entry>& ArtifactReader::entries() {
       {"step", &Reader::read_step, false, false},
       {"argument", &Reader::read_argument, false, false},
       {"cut", &Reader::read_cut, false, false},
+      {"hash", &Reader::read_hash, false, false},
   };
   return table;
 }
@@ -183,18 +191,38 @@ bool ArtifactReader::read_option() {
 }
 
 bool ArtifactReader::read_source() {
-  constexpr std::size_t kHashDigits = 16;
   SourceText source;
-  if (!cursor_.word("the name of a file", source.name)) return false;
+  if (!cursor_.word("the name of a file", source.name) || !read_fnv(source.hash)) return false;
+  model_.sources.push_back(std::move(source));
+  return cursor_.end_of_line();
+}
+
+bool ArtifactReader::read_fnv(std::uint64_t& hash) {
+  constexpr std::size_t kHashDigits = 16;
   if (cursor_.raw_word() != "fnv1a64") return cursor_.expected("`fnv1a64`");
   const auto digits = cursor_.raw_word();
   const auto* end = digits.data() + digits.size();
-  const auto [stop, error] = std::from_chars(digits.data(), end, source.hash, 16);
-  if (digits.size() != kHashDigits || error != std::errc() || stop != end) {
-    return cursor_.expected("16 hexadecimal digits");
-  }
-  model_.sources.push_back(std::move(source));
+  const auto [stop, error] = std::from_chars(digits.data(), end, hash, 16);
+  const bool fine = digits.size() == kHashDigits && error == std::errc() && stop == end;
+  return fine || cursor_.expected("16 hexadecimal digits");
+}
+
+bool ArtifactReader::read_hash() {
+  if (hash_) return cursor_.fail(DiagnosticCode::kArtifactTwice, "`c dec hash`");
+  std::uint64_t hash = 0;
+  if (!read_fnv(hash)) return false;
+  hash_ = hash;
+  hash_place_ = cursor_.last();
   return cursor_.end_of_line();
+}
+
+/// Are the lines those that were written? Whoever edits a file by hand takes its hash out.
+bool ArtifactReader::check_hash() {
+  if (!hash_ || *hash_ == cursor_.hash()) return true;
+  cursor_.sink().error(DiagnosticCode::kArtifactCounts, hash_place_, "the hash of the lines",
+                       fmt::format("{:016x}", cursor_.hash()), "`c dec hash`",
+                       fmt::format("{:016x}", *hash_));
+  return false;
 }
 
 bool ArtifactReader::read_horizon() {

@@ -47,6 +47,13 @@ std::optional<std::string> unquoted(std::string_view word) {
 
 }  // namespace
 
+void LineHash::add(std::string_view line) {
+  const bool comment = line.empty() || line == "c" || line.starts_with("c ");
+  if ((comment && !line.starts_with("c dec ")) || line.starts_with(kHashEntry)) return;
+  value_ = fnv1a64(line, value_);
+  value_ = fnv1a64("\n", value_);
+}
+
 void append_word(std::string& out, std::string_view word) {
   out += ' ';
   if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) {
@@ -89,6 +96,7 @@ bool ArtifactCursor::next_line() {
   line_ = text_.substr(next_, end - next_);
   if (line_.ends_with('\r')) line_.remove_suffix(1);
   next_ = end + 1;
+  hash_.add(line_);
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "compiler/artifact/describe.h"
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/source_file.h"
 
@@ -16,6 +17,18 @@ inline constexpr std::int64_t kFormatMinor = 0;
 /// Appends a blank and the word. A word of visible ASCII characters other than `"` and `\` stands
 /// as it is; any other is quoted, with `\"`, `\\` and `\xHH` for what is not visible ASCII.
 void append_word(std::string& out, std::string_view word);
+
+/// Hash of an artifact's lines: entries, header and clauses, in order; other comments, the
+/// projection, and the line that holds the hash do not count.
+class LineHash {
+ public:
+  void add(std::string_view line);
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = kFnvStart;
+};
+inline constexpr std::string_view kHashEntry = "c dec hash ";
 
 /// Reads the lines of an artifact and their words, and reports what is wrong at its place. Lines
 /// end with a newline (a carriage return before it is dropped), words are separated by blanks.
@@ -30,6 +43,8 @@ class ArtifactCursor {
   std::string_view line() const { return line_; }
   /// Bytes of the whole file.
   std::size_t file_size() const { return text_.size(); }
+  /// Of the lines up to the current one.
+  std::uint64_t hash() const { return hash_.value(); }
 
   /// The next word as it stands, without unquoting; empty at the end of the line.
   std::string_view raw_word();
@@ -68,6 +83,7 @@ class ArtifactCursor {
   std::size_t next_ = 0;        // where the next line begins
   std::size_t line_begin_ = 0;  // of the current line
   std::string_view line_;
+  LineHash hash_;
   std::size_t position_ = 0;  // in the line
   base::SourceRange last_;
 };

@@ -31,6 +31,7 @@ class ArtifactWriter {
     print("p cnf {} {}\n", model_.variable_count(), model_.clauses.size());
     if (options.projection_line) write_projection();
     write_clauses();
+    write_hash();
     return std::move(out_);
   }
 
@@ -235,6 +236,20 @@ class ArtifactWriter {
       }
       out_ += "0\n";
     }
+  }
+
+  /// Behind the other entries.
+  void write_hash() {
+    LineHash hash;
+    std::size_t header = 0, next = 0;
+    for (std::size_t at = 0; at < out_.size(); at = next) {
+      const auto end = out_.find('\n', at);
+      const auto text = std::string_view(out_).substr(at, end - at);
+      next = end + 1;
+      if (text.starts_with("c dec ")) header = next;
+      hash.add(text);
+    }
+    out_.insert(header, fmt::format("{}fnv1a64 {:016x}\n", kHashEntry, hash.value()));
   }
 
   const CompiledModel& model_;
