@@ -1,6 +1,8 @@
 #include "compiler/compare/plan_facts.h"
 
 #include <algorithm>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "compiler/plan/binding_text.h"
@@ -11,6 +13,7 @@ namespace {
 constexpr std::size_t kMaxShown = 200;        // bytes of a form that are shown
 constexpr std::size_t kWidth = 100;           // columns of the canonical layout
 constexpr std::size_t kMaxAligned = 1000000;  // pairs of children that are compared
+constexpr const char* kOrderKey = "order of the forms";
 
 FactPlace place_of(const base::SourceRange& range, const base::SourceFiles& files) {
   return {files[range.file].name(), files[range.file].position(range.begin).line};
@@ -18,6 +21,19 @@ FactPlace place_of(const base::SourceRange& range, const base::SourceFiles& file
 
 std::string shortened(std::string text) {
   return text.size() <= kMaxShown ? text : text.substr(0, kMaxShown) + "...";
+}
+
+/// With single blanks, as its author wrote it otherwise.
+std::string one_line(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\n";
+  std::string out;
+  for (std::size_t at = 0; (at = text.find_first_not_of(kBlanks, at)) != std::string_view::npos;) {
+    const auto end = std::min(text.find_first_of(kBlanks, at), text.size());
+    if (!out.empty()) out += ' ';
+    out += text.substr(at, end - at);
+    at = end;
+  }
+  return out;
 }
 
 /// "(def-cram-function fetch-box" of a definition, else empty.
@@ -142,12 +158,39 @@ std::vector<Fact> plan_facts(const LispText& plan, const base::SourceFiles& file
   }
   if (plan.forms.size() > 1) {
     facts.push_back({FactKind::kDeclaration,
-                     "order of the forms",
+                     kOrderKey,
                      "order " + order,
                      "the forms in this order: " + shortened(order),
                      {files[plan.file].name(), 0}});
   }
   return facts;
+}
+
+void drop_equal_order(std::vector<Fact>& old_facts, std::vector<Fact>& new_facts) {
+  const auto is_order = [](const Fact& fact) { return fact.key == kOrderKey; };
+  // The names of the forms beside that fact; none if one stands twice.
+  const auto names = [&](const std::vector<Fact>& facts) {
+    std::vector<std::string> out;
+    const auto order = std::find_if(facts.begin(), facts.end(), is_order);
+    if (order == facts.end()) return out;
+    for (const auto& fact : facts) {
+      if (fact.kind != FactKind::kAxiom || fact.place.file != order->place.file) continue;
+      out.push_back(fact.key.empty() ? fact.text : fact.key);
+    }
+    auto sorted = out;
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) out.clear();
+    return out;
+  };
+  auto before = names(old_facts), after = names(new_facts);
+  if (before.empty() || after.empty()) return;
+  const std::set<std::string> first(before.begin(), before.end());
+  const std::set<std::string> second(after.begin(), after.end());
+  std::erase_if(before, [&](const std::string& name) { return !second.contains(name); });
+  std::erase_if(after, [&](const std::string& name) { return !first.contains(name); });
+  if (before != after) return;
+  std::erase_if(old_facts, is_order);
+  std::erase_if(new_facts, is_order);
 }
 
 std::vector<Fact> binding_facts(base::FileId file, const base::SourceFiles& files) {
@@ -156,14 +199,15 @@ std::vector<Fact> binding_facts(base::FileId file, const base::SourceFiles& file
   for (std::size_t i = 0; i < clean.entries.size(); ++i) {
     const auto begin = clean.entries[i];
     const auto end = i + 1 < clean.entries.size() ? clean.entries[i + 1] : clean.text.size();
+    const auto entry = std::string_view(clean.text).substr(begin, end - begin);
     std::string text;
-    for (const auto word : words_of(std::string_view(clean.text).substr(begin, end - begin))) {
+    for (const auto word : words_of(entry)) {
       if (word != "\n" && word != "\t" && word != "\r") (text += text.empty() ? "" : " ") += word;
     }
     const auto arrow = text.find(" - >");
     const auto key = arrow == std::string::npos ? text : text.substr(0, arrow);
     const auto line = files[file].position(static_cast<std::uint32_t>(begin)).line;
-    facts.push_back({FactKind::kAxiom, key, text, text, {files[file].name(), line}});
+    facts.push_back({FactKind::kAxiom, key, text, one_line(entry), {files[file].name(), line}});
   }
   return facts;
 }

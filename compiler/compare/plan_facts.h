@@ -14,6 +14,11 @@ namespace parallax::compiler {
 /// later definition replaces an earlier one.
 std::vector<Fact> plan_facts(const LispText& plan, const base::SourceFiles& files);
 
+/// Takes the fact of the order out of the facts of two revisions where the forms that both plans
+/// have stand in the same order: that others were added or removed is said by them. A name that
+/// stands twice keeps it.
+void drop_equal_order(std::vector<Fact>& old_facts, std::vector<Fact>& new_facts);
+
 /// A fact for every entry of a binding table, without comments and layout.
 std::vector<Fact> binding_facts(base::FileId file, const base::SourceFiles& files);
 

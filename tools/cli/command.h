@@ -43,6 +43,9 @@ class Invocation {
   /// The result under --json: one object. What was reported becomes its field `diagnostics` when it
   /// is printed, by finish.
   void document(std::string json);
+  /// The question was answered to its end, even if a limit was reached meanwhile.
+  void answered() { answered_ = true; }
+  bool is_answered() const { return answered_; }
   /// Prints what was reported. With --json, standard output gets one document: the command's, or
   /// the error document if it made none. Returns the exit code for the errors, `code` without any.
   int finish(int code);
@@ -55,6 +58,7 @@ class Invocation {
   base::SourceFiles files_;
   base::DiagnosticSink sink_;
   std::string document_;
+  bool answered_ = false;
   int output_error_ = 0;  // errno of the first failed write
 };
 

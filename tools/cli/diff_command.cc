@@ -137,9 +137,10 @@ std::string edits_text(const FactReport& report, const PlanRevision& before,
 }
 
 int diff_plans(const DiffOptions& options, RevisionKind kind, Invocation& invocation) {
-  const auto before = load_plan_revision(options.old_path, kind, invocation);
-  const auto after = load_plan_revision(options.new_path, kind, invocation);
+  auto before = load_plan_revision(options.old_path, kind, invocation);
+  auto after = load_plan_revision(options.new_path, kind, invocation);
   if (!before || !after) return 0;
+  compiler::drop_equal_order(before->facts, after->facts);
   const auto report = compare(before->facts, after->facts);
   Outcome out;
   out.kind = "plan";

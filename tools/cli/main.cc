@@ -111,7 +111,7 @@ int run(int argc, char** argv) {
     Invocation invocation(options);
     const int code = invocation.finish(command.run(invocation));
     if (signal_exit_code() != 0) return signal_exit_code();
-    return code == 0 && limits.time_is_over() ? 4 : code;
+    return code == 0 && limits.time_is_over() && !invocation.is_answered() ? 4 : code;
   }
   return 2;
 }

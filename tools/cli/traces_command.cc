@@ -33,7 +33,11 @@ struct TracesOptions {
 void close_list(const TracesOptions& options, const compiler::CompiledModel& model,
                 const TraceWriter& writer, runtime::ListFormat* listing, const Ending& ending,
                 const TraceCertifier& certifier, double wall_s, Invocation& invocation) {
-  if (stop_flag().load()) invocation.remark("stopped before the end: there may be more traces");
+  const bool stopped = ending.exploration == "stopped" || certifier.is_asked();
+  if (stopped && stop_flag().load()) {
+    invocation.remark("stopped before the end: there may be more traces");
+  }
+  if (!stopped) invocation.answered();
   for (const auto& bound : ending.bounds) invocation.remark(bound);
   const auto fields = certifier.fields();
   const bool complete = ending.complete && !certifier.refuted();

@@ -62,6 +62,7 @@ class ModelComparison {
     if (!align_horizons()) return invocation_.sink().already_reported();
     if (!align_facts()) return invocation_.sink().already_reported();
     if (options_.facts) {
+      compiler::drop_equal_order(out_.old_side.facts, out_.new_side.facts);
       out_.facts = compiler::compare_facts(out_.old_side.facts, out_.new_side.facts);
     }
     if (options_.traces) compare_traces();

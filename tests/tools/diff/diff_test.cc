@@ -186,6 +186,13 @@ TEST_CASE_FIXTURE(DiffFixture, "plans are compared as data, to the smallest piec
   CHECK(result.out.find("?here") != std::string::npos);
   CHECK(result.out.find("  - fetch.lisp:13  ?here\n  + other.lisp:14  ?there\n") !=
         std::string::npos);
+  // A form more moves no other; two that changed places are another order.
+  const auto plan = read("fetch.lisp");
+  write("more.lisp", "(defparameter *extra* 1)\n" + plan);
+  const auto more = parallax({"diff", "fetch.lisp", "more.lisp"});
+  CHECK(more.out.starts_with("forms: 1 added\n"));
+  write("moved.lisp", plan + "(defparameter *extra* 1)\n");
+  CHECK(parallax({"diff", "more.lisp", "moved.lisp"}).out.starts_with("order: 1 changed\n"));
   CHECK(parallax({"diff", "robot.bind", "robot.bind"}).code == 0);
   write("other.bind", read("robot.bind") + "; a remark\n");
   CHECK(parallax({"diff", "robot.bind", "other.bind"}).code == 0);
