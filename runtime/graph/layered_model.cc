@@ -239,6 +239,8 @@ class Splitter {
       if (is_fixed(literal) && fixed_value(literal) != 0) continue;
       written.push_back(local(literal, window, target, locals));
     }
+    // Negative literals first: most atoms are false, so most clauses are seen to hold at once.
+    std::sort(written.begin(), written.end());
   }
 
   std::int32_t local(Literal literal, std::int64_t window, WindowClauses& target,

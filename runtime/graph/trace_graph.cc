@@ -1,6 +1,8 @@
 #include "runtime/graph/trace_graph.h"
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <utility>
 
 namespace parallax::runtime {
@@ -20,6 +22,13 @@ std::unique_ptr<TraceGraph> TraceGraph::build(const LayeredModel& model, const G
   if (!graph->expand(reason)) return nullptr;
   graph->count_back();
   return graph;
+}
+
+std::size_t GraphNodeHash::operator()(const GraphNode& node) const {
+  const std::hash<Bits> of_bits;
+  auto hash = of_bits(node.observed);
+  for (const auto& hidden : node.hidden) hash = hash * 0x9E3779B97F4A7C15U + of_bits(hidden);
+  return hash;
 }
 
 std::uint32_t TraceGraph::intern(GraphNode node) {

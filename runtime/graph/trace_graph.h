@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,7 +23,9 @@ struct GraphNode {
   Bits observed;
   std::vector<Bits> hidden;  // ascending
   friend bool operator==(const GraphNode&, const GraphNode&) = default;
-  friend auto operator<=>(const GraphNode&, const GraphNode&) = default;
+};
+struct GraphNodeHash {
+  std::size_t operator()(const GraphNode& node) const;
 };
 
 struct GraphEdge {
@@ -85,9 +86,10 @@ class TraceGraph {
   const std::atomic<bool>* stop_;
   StepSolver start_;
   std::vector<std::unique_ptr<StepSolver>> steps_;
-  std::map<GraphNode, std::uint32_t> node_index_;
+  // For look-up only; the numbers follow the order in which nodes and events were met.
+  std::unordered_map<GraphNode, std::uint32_t, GraphNodeHash> node_index_;
   std::vector<const GraphNode*> nodes_;
-  std::map<Bits, std::uint32_t> event_index_;
+  std::unordered_map<Bits, std::uint32_t> event_index_;
   std::vector<const Bits*> event_sets_;
   std::vector<std::unordered_map<std::uint32_t, std::vector<GraphEdge>>> edges_;  // by step, node
   std::vector<std::vector<std::uint32_t>> layers_;                                // by timepoint
