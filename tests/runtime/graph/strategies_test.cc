@@ -137,7 +137,7 @@ TEST_CASE("a level with many children is halved and the list stays the same") {
   const TextModel model(switches(3));
   REQUIRE(model.ground != nullptr);
   const auto wanted = lines(model.compiled, query(Strategy::kBlocking), false);
-  for (const std::size_t most : {1, 2, 3, 15}) {
+  for (const std::size_t most : {1U, 2U, 3U, 15U}) {
     runtime::SolverSession session(model.compiled, runtime::make_cadical_solver());
     std::vector<compiler::Literal> atoms;
     model.compiled.for_each_atom([&](std::int32_t variable, compiler::AtomKind kind,

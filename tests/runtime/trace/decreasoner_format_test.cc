@@ -73,7 +73,9 @@ TEST_CASE("every model of every recorded answer is printed, byte for byte, and n
       ++difference[joined(format.lines(model))];
       ++compared;
     }
-    for (const auto& [text, count] : difference) {
+    for (const auto& entry : difference) {
+      const auto& text = entry.first;
+      const auto count = entry.second;
       CHECK_MESSAGE(count == 0, (count > 0 ? "only here:\n" : "only recorded:\n") << text);
     }
   }
