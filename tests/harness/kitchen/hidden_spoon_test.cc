@@ -1,6 +1,8 @@
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "tests/harness/kitchen/kitchen_world.h"
 
@@ -81,6 +83,26 @@ TEST_CASE("what is seen from outside the reach is not taken, and is with a longe
   const Attempt attempt = fetch(low, 0.66, 0.0, -0.05, 0.1);
   CHECK_FALSE(attempt.taken);
   CHECK(fetch(kitchen_world(), 0.66, 0.0, -0.05, 0.1).taken);
+}
+
+/// How many of the corners of a spoon's start region in the middle drawer fail, from two corners of
+/// the robot's.
+int failures(const std::array<double, 2>& x_d_m, const std::array<double, 2>& y_d_m) {
+  int failed = 0;
+  for (const double x : x_d_m) {
+    for (const double y : y_d_m) {
+      for (const auto& [robot_x_m, robot_y_m] : {std::pair{0.66, 0.12}, std::pair{0.78, 0.0}}) {
+        if (!fetch(kitchen_world(), robot_x_m, robot_y_m, x, y).taken) ++failed;
+      }
+    }
+  }
+  return failed;
+}
+
+TEST_CASE("a finer region of the spoon has no place where the model is wrong, the coarse one has") {
+  // The start regions of the scenarios: plan 2 keeps to the middle, plan 3 takes the whole drawer.
+  CHECK(failures({-0.10, 0.0}, {-0.05, 0.03}) == 0);
+  CHECK(failures({-0.22, 0.22}, {-0.115, 0.115}) > 0);
 }
 
 }  // namespace
