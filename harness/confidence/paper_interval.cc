@@ -1,4 +1,4 @@
-// The intervals of the paper's rule: quantiles, readings of sigma, mean and prediction intervals.
+// The intervals of the paper's rule: quantiles, readings of sigma, the mean's interval.
 #include <cmath>
 
 #include "compiler/base/contract.h"
@@ -43,12 +43,6 @@ Interval mean_interval(const Eigen::VectorXd& coefficients, double intercept,
   }
   const double half_width = z * sigma / std::sqrt(static_cast<double>(runs));
   return {lower - half_width, upper + half_width, true};
-}
-
-Interval prediction_interval(const LinearFit& fit, const Eigen::VectorXd& x, double q,
-                             double sigma) {
-  const double half_width = q * sigma * std::sqrt(1.0 + fit.leverage(x));
-  return {fit.at(x) - half_width, fit.at(x) + half_width, true};
 }
 
 }  // namespace parallax::harness

@@ -11,9 +11,6 @@
 namespace parallax::harness {
 namespace {
 
-/// Beyond this many parameters the 2^n corners are bounded instead of visited.
-constexpr std::size_t kMaxCornerParameters = 12;
-
 std::string name_of(const std::vector<std::string>& names, std::size_t index, char letter) {
   return index < names.size() ? names[index] : fmt::format("{}{}", letter, index + 1);
 }
@@ -131,7 +128,7 @@ class PaperFit {
     const Interval span =
         spec_.interval == IntervalKind::kMean
             ? mean_interval(fit->coefficients, fit->intercept, range_, z, sigma, runs())
-            : prediction_hull(*fit, z, sigma);
+            : prediction_hull(*fit, range_, z, sigma);
     auto result = describe(name, *fit, shift);
     result.lower = span.lower + shift;
     result.upper = span.upper + shift;
@@ -156,42 +153,6 @@ class PaperFit {
       result.intercept -= b * shift_[j];
     }
     return result;
-  }
-
-  /// The prediction intervals over the whole cuboid. Both ends are extreme at corners: the mean is
-  /// linear and the half-width convex in x.
-  Interval prediction_hull(const LinearFit& fit, double q, double sigma) const {
-    const std::size_t n = range_.size();
-    if (n > kMaxCornerParameters) return prediction_bound(fit, q, sigma);
-    Interval hull;
-    Eigen::VectorXd corner(static_cast<Eigen::Index>(n));
-    for (std::uint32_t mask = 0; mask < (1U << n); ++mask) {
-      for (std::size_t j = 0; j < n; ++j) {
-        corner(static_cast<Eigen::Index>(j)) =
-            (mask >> j & 1U) != 0 ? range_[j].upper : range_[j].lower;
-      }
-      const Interval at = prediction_interval(fit, corner, q, sigma);
-      hull.lower = mask == 0 ? at.lower : std::min(hull.lower, at.lower);
-      hull.upper = mask == 0 ? at.upper : std::max(hull.upper, at.upper);
-    }
-    return hull;
-  }
-
-  /// Never shorter than the hull: the mean's extremes by the signs of its coefficients, and the
-  /// leverage's square root bounded by the triangle inequality from the midpoint outwards.
-  Interval prediction_bound(const LinearFit& fit, double q, double sigma) const {
-    Eigen::VectorXd middle(std::ssize(range_));
-    const Eigen::Index lead = fit.has_intercept ? 1 : 0;
-    double reach = 0.0;
-    for (std::size_t j = 0; j < range_.size(); ++j) {
-      const auto column = static_cast<Eigen::Index>(j);
-      middle(column) = range_[j].midpoint();
-      reach += 0.5 * range_[j].width() * fit.half_inverse.col(lead + column).norm();
-    }
-    reach += std::sqrt(fit.leverage(middle));
-    const Interval mean = mean_interval(fit.coefficients, fit.intercept, range_, 0.0, 0.0, 1);
-    const double half_width = q * sigma * std::sqrt(1.0 + reach * reach);
-    return {mean.lower - half_width, mean.upper + half_width, true};
   }
 
   const RegressionInput& input_;

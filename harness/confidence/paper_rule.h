@@ -79,4 +79,9 @@ Interval mean_interval(const Eigen::VectorXd& coefficients, double intercept,
 Interval prediction_interval(const LinearFit& fit, const Eigen::VectorXd& x, double q,
                              double sigma);
 
+/// The hull of the prediction intervals of all starts in the cuboid `range` (n). Up to 16
+/// parameters exact, O(2^n n); beyond them a bound that is never shorter.
+Interval prediction_hull(const LinearFit& fit, std::span<const Interval> range, double q,
+                         double sigma);
+
 }  // namespace parallax::harness

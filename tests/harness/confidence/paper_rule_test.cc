@@ -190,29 +190,65 @@ TEST_CASE("prediction: the hull over the corners contains the interval of every 
   }
 }
 
-TEST_CASE("prediction: beyond twelve parameters the bound still contains the corners") {
-  constexpr std::size_t kParameters = 13, kRuns = 40;
-  RegressionInput input;
-  for (std::size_t i = 0; i < kParameters; ++i) input.x_range.push_back({0, 1});
-  input.y_cell = {Interval{-100, 100}};
-  for (std::size_t row = 0; row < kRuns; ++row) {
-    const CounterRng rng({.campaign_seed = 6, .sample = row});
-    input.x.emplace_back();
-    for (std::size_t i = 0; i < kParameters; ++i) input.x.back().push_back(rng.uniform(i));
-    input.y.push_back({input.x.back()[0] - input.x.back()[5] + 0.1 * rng.uniform(99)});
+/// A fit of `parameters` starts in ranges of different widths to one noisy outcome.
+LinearFit random_fit(std::size_t parameters, std::span<const Interval> range) {
+  const auto runs = static_cast<Eigen::Index>(3 * parameters);
+  Eigen::MatrixXd x(runs, static_cast<Eigen::Index>(parameters));
+  Eigen::VectorXd y(runs);
+  for (Eigen::Index row = 0; row < runs; ++row) {
+    const CounterRng rng({.campaign_seed = 6, .sample = static_cast<std::uint64_t>(row)});
+    for (std::size_t i = 0; i < parameters; ++i) {
+      x(row, static_cast<Eigen::Index>(i)) = range[i].lower + range[i].width() * rng.uniform(i);
+    }
+    y(row) = x(row, 0) - 2.0 * x(row, x.cols() - 1) + 0.1 * rng.uniform(99);
   }
-  const auto verdict = paper_rule(input, intercept_prediction(), 0.95);
-  CHECK(verdict.stop);
-  const auto fit = fit_line(matrix(input.x), matrix(input.y).col(0), true);
-  const double sigma = sigma_of(SigmaKind::kResidualSd, fit->sse, fit->runs, fit->parameters);
-  for (std::uint32_t mask = 0; mask < (1U << kParameters); ++mask) {
-    Eigen::VectorXd corner(static_cast<Eigen::Index>(kParameters));
-    for (std::size_t i = 0; i < kParameters; ++i)
-      corner(static_cast<Eigen::Index>(i)) = mask >> i & 1U;
-    const auto at = prediction_interval(*fit, corner, verdict.z, sigma);
-    REQUIRE(at.lower >= verdict.intervals[0].lower);
-    REQUIRE(at.upper <= verdict.intervals[0].upper);
+  return *fit_line(x, y, true);
+}
+
+std::vector<Interval> uneven_ranges(std::size_t parameters) {
+  std::vector<Interval> range;
+  for (std::size_t i = 0; i < parameters; ++i) {
+    const auto size = static_cast<double>(i + 1);
+    range.push_back({-0.3 * size, 0.2 * size * size});
   }
+  return range;
+}
+
+/// The hull by visiting the corners in the order of their bits.
+Interval corner_by_corner(const LinearFit& fit, std::span<const Interval> range, double q,
+                          double sigma) {
+  Interval hull{INFINITY, -INFINITY};
+  Eigen::VectorXd corner(std::ssize(range));
+  for (std::uint32_t mask = 0; mask < (1U << range.size()); ++mask) {
+    for (std::size_t i = 0; i < range.size(); ++i) {
+      corner(static_cast<Eigen::Index>(i)) =
+          (mask >> i & 1U) != 0 ? range[i].upper : range[i].lower;
+    }
+    const auto at = prediction_interval(fit, corner, q, sigma);
+    hull = {std::min(hull.lower, at.lower), std::max(hull.upper, at.upper)};
+  }
+  return hull;
+}
+
+TEST_CASE("prediction: up to sixteen parameters the hull is that of all corners") {
+  for (const std::size_t parameters : {1, 2, 5, 16}) {
+    CAPTURE(parameters);
+    const auto range = uneven_ranges(parameters);
+    const auto fit = random_fit(parameters, range);
+    const auto hull = prediction_hull(fit, range, 3.0, 0.2);
+    const auto expected = corner_by_corner(fit, range, 3.0, 0.2);
+    check_close(hull.lower, expected.lower, 1e-9);
+    check_close(hull.upper, expected.upper, 1e-9);
+  }
+}
+
+TEST_CASE("prediction: beyond sixteen parameters the bound still contains the corners") {
+  const auto range = uneven_ranges(17);
+  const auto fit = random_fit(17, range);
+  const auto bound = prediction_hull(fit, range, 3.0, 0.2);
+  const auto hull = corner_by_corner(fit, range, 3.0, 0.2);
+  CHECK(bound.lower <= hull.lower);
+  CHECK(bound.upper >= hull.upper);
 }
 
 TEST_CASE("leverage: equals v'(D'D)^-1 v by inversion, with and without intercept") {
