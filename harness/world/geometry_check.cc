@@ -39,6 +39,13 @@ class GeometryChecker {
     for (const PlaceSpec& place : spec_.places) {
       if (place.frame.empty()) check_place(place);
     }
+    for (const BodySpec& body : spec_.bodies) {
+      // Where a grasp turns with the robot, where it is on the body is only known in a run.
+      if (body.grasp && body.grasp->follows_body) {
+        check_grip(body.name, body.grasp->p_BG, body.grasp->width_m,
+                   "bodies/" + body.name + "/grasp");
+      }
+    }
   }
 
  private:
@@ -67,8 +74,23 @@ class GeometryChecker {
                     hit->way_m));
   }
 
+  /// Pads that close at `p_BG` have to find something of the body there.
+  bool check_grip(const std::string& name, const Eigen::Vector3d& p_BG, double width_m,
+                  std::string path) {
+    const BodyId body = *layout_.find_body(name);
+    const Probe probe{Eigen::Vector3d::Constant(width_m),
+                      world_.position(body) + world_.rotation(body) * p_BG, world_.rotation(body)};
+    if (world_.overlaps(probe, body)) return true;
+    add(std::move(path),
+        fmt::format("there is nothing of `{}` within {:.3f} m of `at_m`", name, 0.5 * width_m));
+    return false;
+  }
+
   /// The base drives anywhere, so only the height decides.
   void check_handle(const JointSpec& joint) {
+    if (!check_grip(joint.child, joint.handle->p_CH, joint.handle->width_m,
+                    "joints/" + joint.name + "/handle"))
+      return;
     const BodyId child = *layout_.find_body(joint.child);
     const double height_m =
         (world_.position(child) + world_.rotation(child) * joint.handle->p_CH).z();

@@ -57,14 +57,7 @@ void visit_ray(OdeWorld::Engine& engine, const Eigen::Vector3d& from_W, const Ei
   dGeomDestroy(ray);
 }
 
-std::string name_of(const OdeWorld::Engine& engine, const GeomInfo& info) {
-  return info.body ? engine.layout.bodies[*info.body].name : "floor";
-}
-
-}  // namespace
-
-std::optional<Overlap> OdeWorld::find_obstacle(const Probe& probe, const BodyMask& ignored,
-                                               double tolerance_m) const {
+void visit_box(OdeWorld::Engine& engine, const Probe& probe, Search& search) {
   const dGeomID box = dCreateBox(nullptr, probe.size_m.x(), probe.size_m.y(), probe.size_m.z());
   dMatrix3 R;
   for (int row = 0; row < 3; ++row) {
@@ -73,11 +66,31 @@ std::optional<Overlap> OdeWorld::find_obstacle(const Probe& probe, const BodyMas
   }
   dGeomSetPosition(box, probe.p_WS.x(), probe.p_WS.y(), probe.p_WS.z());
   dGeomSetRotation(box, R);
-  Search search{ignored};
-  visit_all(*engine_, box, search);
+  visit_all(engine, box, search);
   dGeomDestroy(box);
+}
+
+std::string name_of(const OdeWorld::Engine& engine, const GeomInfo& info) {
+  return info.body ? engine.layout.bodies[*info.body].name : "floor";
+}
+
+}  // namespace
+
+std::optional<Overlap> OdeWorld::find_obstacle(const Probe& probe, const BodyMask& ignored,
+                                               double tolerance_m) const {
+  Search search{ignored};
+  visit_box(*engine_, probe, search);
   if (search.found == nullptr || search.best <= tolerance_m) return std::nullopt;
   return Overlap{name_of(*engine_, *search.found), {}, search.best};
+}
+
+bool OdeWorld::overlaps(const Probe& probe, BodyId id) const {
+  BodyMask others(engine_->layout.bodies.size(), true);
+  others[id.index()] = false;
+  Search search{others};
+  search.floor_counts = false;
+  visit_box(*engine_, probe, search);
+  return search.found != nullptr;
 }
 
 std::optional<RayHit> OdeWorld::cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,

@@ -98,6 +98,8 @@ class OdeWorld {
   /// its contacts counts. Bodies in `ignored` do not.
   std::optional<Overlap> find_obstacle(const Probe& probe, const BodyMask& ignored,
                                        double tolerance_m) const;
+  /// Does the box meet a shape of this body?
+  bool overlaps(const Probe& probe, BodyId id) const;
   /// The nearest thing on the way from `from_W` to `to_W` that is not in `ignored`; the floor is
   /// met from both sides.
   std::optional<RayHit> cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,

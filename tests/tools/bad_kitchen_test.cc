@@ -41,14 +41,23 @@ TEST_CASE("a drawer that is longer than its bay") {
   cli.lay_over(
       "bodies: {wall: {size_m: [0.02, 2, 1], mass_kg: 0, material: wood, "
       "position_m: [1.87, 0.9, 0.5]}, drawer_mid: {shapes: [{size_m: [0.7, 0.4, 0.1], "
-      "at_m: [0.1, 0, 0]}]}}");
+      "at_m: [0.1, 0, 0]}, {size_m: [0.016, 0.6, 0.016], at_m: [-0.325, 0, 0.05]}]}}");
   check_refused(cli, "world.yaml:", "joints/dMid/range_m: `drawer_mid` meets `wall`");
 }
 
 TEST_CASE("a handle that no arm reaches") {
   const Kitchen cli;
-  cli.lay_over("joints: {dLow: {handle: {at_m: [-0.325, -0.2, 3]}}}");
+  cli.lay_over(
+      "bodies: {drawer_low: {shapes: [{size_m: [0.5, 0.4, 0.1], at_m: [0, 0, 0.05]}, "
+      "{size_m: [0.016, 0.6, 0.016], at_m: [-0.325, 0, 3]}]}}\n"
+      "  joints: {dLow: {handle: {at_m: [-0.325, -0.2, 3]}}}");
   check_refused(cli, "common.yaml:", "joints/dLow/handle: is ");
+}
+
+TEST_CASE("a handle far behind its drawer") {
+  const Kitchen cli;
+  cli.lay_over("joints: {dLow: {handle: {at_m: [0.9, -0.2, 0.05]}}}");
+  check_refused(cli, "common.yaml:", "joints/dLow/handle: there is nothing of `drawer_low`");
 }
 
 TEST_CASE("a region of the starts in the air") {

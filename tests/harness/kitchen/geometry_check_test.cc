@@ -31,7 +31,19 @@ TEST_CASE("a drawer longer than its bay is reported with what it meets") {
 TEST_CASE("a handle that no arm reaches from anywhere is reported") {
   WorldSpec spec = kitchen_world();
   joint_of(spec, "dTop").handle->p_CH.z() = 2.0;
+  body_of(spec, "drawer_top").shapes.back().p_BS.z() = 2.0;  // the bar itself
   CHECK(problem_at(spec, "joints/dTop/handle").find("the reach is 0.950 m") != std::string::npos);
+}
+
+TEST_CASE("a handle or a grasp where the body is not is reported") {
+  WorldSpec spec = kitchen_world();
+  joint_of(spec, "dLow").handle->p_CH.x() += 0.5;
+  CHECK(problem_at(spec, "joints/dLow/handle") ==
+        "there is nothing of `drawer_low` within 0.008 m of `at_m`");
+  spec = kitchen_world();
+  body_of(spec, "milk1").grasp->p_BG.z() = 0.2;
+  CHECK(problem_at(spec, "bodies/milk1/grasp") ==
+        "there is nothing of `milk1` within 0.033 m of `at_m`");
 }
 
 TEST_CASE("a place inside furniture is reported") {
