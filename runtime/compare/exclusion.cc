@@ -1,8 +1,8 @@
 #include "runtime/compare/exclusion.h"
 
-#include <algorithm>
+#include <utility>
 
-#include "runtime/session/selected_origins.h"
+#include "runtime/session/needed_origins.h"
 
 namespace parallax::runtime {
 
@@ -21,22 +21,9 @@ std::vector<std::uint32_t> excluding_origins(const compiler::CompiledModel& mode
     }
   }
   if (selected.solve(candidates) != SolveStatus::kUnsatisfiable) return {};
-  std::vector<std::uint32_t> needed;
-  while (!candidates.empty()) {
-    const auto tried = candidates.back();
-    candidates.pop_back();
-    auto rest = needed;
-    rest.insert(rest.end(), candidates.begin(), candidates.end());
-    const auto status = selected.solve(rest);
-    if (status == SolveStatus::kUnknown) return {};
-    if (status == SolveStatus::kSatisfiable) {
-      needed.push_back(tried);
-    } else {
-      std::erase_if(candidates, [&](std::uint32_t origin) { return !selected.failed(origin); });
-    }
-  }
-  std::sort(needed.begin(), needed.end());
-  return needed;
+  auto needed = shrink_to_needed(selected, std::move(candidates));
+  if (needed.stopped) return {};
+  return std::move(needed.origins);
 }
 
 }  // namespace parallax::runtime

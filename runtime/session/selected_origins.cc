@@ -1,7 +1,5 @@
 #include "runtime/session/selected_origins.h"
 
-#include <vector>
-
 namespace parallax::runtime {
 
 SelectedOrigins::SelectedOrigins(const compiler::CompiledModel& model, compiler::Timepoint n,

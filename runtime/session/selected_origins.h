@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "compiler/artifact/compiled_model.h"
 #include "runtime/solver/sat_solver.h"
@@ -23,6 +24,10 @@ class SelectedOrigins {
   SolveStatus solve(std::span<const std::uint32_t> origins);
   /// After an unsatisfiable call: was this origin, selected there, part of the contradiction?
   bool failed(std::uint32_t origin) const { return solver_->failed(selector(origin)); }
+  /// After an unsatisfiable call: takes the origins away that were no part of the contradiction.
+  void keep_failed(std::vector<std::uint32_t>& origins) const {
+    std::erase_if(origins, [&](std::uint32_t origin) { return !failed(origin); });
+  }
 
  private:
   compiler::Literal selector(std::uint32_t origin) const {
