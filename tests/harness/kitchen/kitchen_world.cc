@@ -45,6 +45,18 @@ Outcome Kitchen::pick(const std::string& item) {
   return act("pick-up", {{"arm", std::string("left")}, {"object", item}});
 }
 
+Outcome Kitchen::lift_milk() {
+  REQUIRE(ok(look("pw1")));
+  REQUIRE(ok(detect("milk")));
+  return pick("milk1");
+}
+
+void Kitchen::carry_milk() {
+  REQUIRE(ok(lift_milk()));
+  REQUIRE(ok(park()));
+  REQUIRE(ok(drive("bTable")));
+}
+
 Outcome Kitchen::move(std::string_view controller, const std::string& drawer) {
   return act(controller, {{"arm", std::string("left")}, {"joint", drawer}});
 }

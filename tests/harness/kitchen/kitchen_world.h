@@ -29,6 +29,10 @@ class Kitchen {
   Outcome pick(const std::string& item);
   Outcome park() { return act("park", {{"arm", std::string("left")}}); }
   Outcome drive(const std::string& place) { return act("drive", {{"place", place}}); }
+  /// Finds the milk on the counter, which must succeed, and picks it up.
+  Outcome lift_milk();
+  /// Lifts the milk, parks the arm and drives to the table. All must succeed.
+  void carry_milk();
 
   double number(std::string_view name);
   bool flag(std::string_view name);

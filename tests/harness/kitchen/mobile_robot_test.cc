@@ -25,11 +25,7 @@ TEST_CASE("driving ends at the place with its heading, arms still parked, from a
 TEST_CASE("an item is set down where it was asked for") {
   Kitchen kitchen(kitchen_world());
   kitchen.start({{"milk1.mass", 0.5}});
-  REQUIRE(ok(kitchen.look("pw1")));
-  REQUIRE(ok(kitchen.detect("milk")));
-  REQUIRE(ok(kitchen.pick("milk1")));
-  REQUIRE(ok(kitchen.park()));
-  REQUIRE(ok(kitchen.drive("bTable")));
+  kitchen.carry_milk();
   REQUIRE(ok(kitchen.act("place", {{"arm", std::string("left")}, {"place", std::string("pt1")}})));
   CHECK(std::abs(kitchen.number("milk1.x") + 0.82) < 0.02);
   CHECK(std::abs(kitchen.number("milk1.y") - 0.475) < 0.02);
@@ -40,11 +36,7 @@ TEST_CASE("an item is set down where it was asked for") {
 TEST_CASE("what is let go falls to the floor") {
   Kitchen kitchen(kitchen_world());
   kitchen.start({{"milk1.mass", 0.5}});
-  REQUIRE(ok(kitchen.look("pw1")));
-  REQUIRE(ok(kitchen.detect("milk")));
-  REQUIRE(ok(kitchen.pick("milk1")));
-  REQUIRE(ok(kitchen.park()));
-  REQUIRE(ok(kitchen.drive("bTable")));
+  kitchen.carry_milk();
   REQUIRE(ok(kitchen.act("open-gripper", {{"arm", std::string("left")}})));
   CHECK(kitchen.number("milk1.bottom") < 0.05);
 }

@@ -13,9 +13,7 @@ enum class Fate { kNotLifted, kLostOnTheWay, kDelivered };
 Fate carry(const WorldSpec& spec, double mass_kg, double speed_m_s = 0.6) {
   Kitchen kitchen(spec);
   kitchen.start({{"robot.x", 0.72}, {"robot.y", 0.06}, {"milk1.mass", mass_kg}});
-  REQUIRE(ok(kitchen.look("pw1")));
-  REQUIRE(ok(kitchen.detect("milk")));
-  if (!ok(kitchen.pick("milk1"))) return Fate::kNotLifted;
+  if (!ok(kitchen.lift_milk())) return Fate::kNotLifted;
   REQUIRE(ok(kitchen.park()));
   REQUIRE(
       ok(kitchen.act("drive", {{"place", std::string("bTable")}, {"max_speed_m_s", speed_m_s}})));
@@ -35,9 +33,7 @@ TEST_CASE("a carton is lifted however it is turned against the robot") {
     CAPTURE(yaw_rad);
     Kitchen kitchen(kitchen_world());
     kitchen.start({{"robot.yaw", -0.1}, {"milk1.yaw", yaw_rad}, {"milk1.mass", 1.05}});
-    REQUIRE(ok(kitchen.look("pw1")));
-    REQUIRE(ok(kitchen.detect("milk")));
-    CHECK(ok(kitchen.pick("milk1")));
+    CHECK(ok(kitchen.lift_milk()));
     const double in_grip_m = kitchen.number("left.z") - kitchen.number("milk1.bottom");
     CHECK(std::abs(in_grip_m - 0.157) < 0.003);
   }
@@ -64,9 +60,7 @@ TEST_CASE("more grip, more friction, less speed or an even floor keep the carton
 TEST_CASE("regripping with more force saves a full carton") {
   Kitchen kitchen(kitchen_world());
   kitchen.start({{"robot.x", 0.72}, {"robot.y", 0.06}, {"milk1.mass", kFull_kg}});
-  REQUIRE(ok(kitchen.look("pw1")));
-  REQUIRE(ok(kitchen.detect("milk")));
-  REQUIRE(ok(kitchen.pick("milk1")));
+  REQUIRE(ok(kitchen.lift_milk()));
   REQUIRE(ok(kitchen.act("regrip", {{"arm", std::string("left")}, {"effort_n", 40.0}})));
   REQUIRE(ok(kitchen.park()));
   REQUIRE(ok(kitchen.drive("bTable")));
