@@ -14,6 +14,23 @@
 
 namespace parallax::test {
 
+/// A robot is in one of two rooms and goes to either.
+inline const std::string kTwoRooms = R"(
+sort room
+room a1, b2
+fluent At(room)
+event Go(room)
+[time] {room} HoldsAt(At(room),time).
+[room1,room2,time] HoldsAt(At(room1),time) & HoldsAt(At(room2),time) -> room1=room2.
+[room,time] Initiates(Go(room),At(room),time).
+[room1,room2,time] room1!=room2 -> Terminates(Go(room1),At(room2),time).
+)";
+
+/// Going there, by a pose, in a binding table.
+inline const std::string kGoing =
+    "motion going (:target ?p) -> Go(region(?p))  ok: At(region(?p)) @t+1 else "
+    "navigation-pose-unreachable\n";
+
 /// x below 1 is a1, the rest is b2.
 class TwoRooms final : public compiler::PoseLocator {
  public:

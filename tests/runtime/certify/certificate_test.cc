@@ -146,19 +146,6 @@ TEST_CASE("the log of a search is accepted; where it is not, a fresh solve makes
   CHECK(fresh > 15);
 }
 
-constexpr const char* kDoors = R"(
-sort room
-room a1, b2
-fluent At(room)
-event Go(room)
-[time] {room} HoldsAt(At(room),time).
-[room1,room2,time] HoldsAt(At(room1),time) & HoldsAt(At(room2),time) -> room1=room2.
-[room,time] Initiates(Go(room),At(room),time).
-[room1,room2,time] room1!=room2 -> Terminates(Go(room1),At(room2),time).
-)";
-constexpr const char* kBinding =
-    "motion going (:target ?p) -> Go(region(?p))  ok: At(region(?p)) @t+1 else "
-    "navigation-pose-unreachable\n";
 constexpr const char* kPlan = R"(
 (def-cram-function there ()
   (let ((?b (make-pose-stamped "map" 0.0 (make-3d-vector 1.5 0 0) (make-identity-rotation)))
@@ -172,7 +159,7 @@ TEST_CASE("traces of a plan are all traces, or all up to the horizon") {
   const Folder folder;
   for (const int horizon : {1, 2, 3}) {
     CAPTURE(horizon);
-    PlannedModel model(kDoors, kPlan, kBinding, "HoldsAt(At(b2),time)", horizon);
+    PlannedModel model(kTwoRooms, kPlan, kGoing, "HoldsAt(At(b2),time)", horizon);
     REQUIRE(model.codes() == "");
     runtime::SolverSession session(model.compiled(), runtime::make_cadical_solver());
     runtime::PlanEnumerator enumerator(session);
@@ -194,7 +181,7 @@ TEST_CASE("the log of a search for traces of a plan is a proof, with a bound and
   const Folder folder;
   for (const int horizon : {1, 2, 3}) {
     CAPTURE(horizon);
-    PlannedModel model(kDoors, kPlan, kBinding, "HoldsAt(At(b2),time)", horizon);
+    PlannedModel model(kTwoRooms, kPlan, kGoing, "HoldsAt(At(b2),time)", horizon);
     base::DiagnosticSink sink;
     auto files = runtime::ProofFiles::create(folder.file("p.drat"), sink);
     REQUIRE(files);

@@ -13,23 +13,14 @@ namespace {
 using runtime::Exploration;
 
 /// Two rooms, a lamp in each; switching works only where the robot is.
-constexpr const char* kRooms = R"(
-sort room
-room a1, b2
-fluent At(room)
+const std::string kRooms = kTwoRooms + R"(
 fluent Lit(room)
-event Go(room)
 event Switch(room)
-[time] {room} HoldsAt(At(room),time).
-[room1,room2,time] HoldsAt(At(room1),time) & HoldsAt(At(room2),time) -> room1=room2.
-[room,time] Initiates(Go(room),At(room),time).
-[room1,room2,time] room1!=room2 -> Terminates(Go(room1),At(room2),time).
 [room,time] HoldsAt(At(room),time) & !HoldsAt(Lit(room),time) -> Initiates(Switch(room),Lit(room),time).
 [room,time] HoldsAt(At(room),time) & HoldsAt(Lit(room),time) -> Terminates(Switch(room),Lit(room),time).
 )";
 
-constexpr const char* kBinding = R"(
-motion going (:target ?p) -> Go(region(?p))  ok: At(region(?p)) @t+1 else navigation-pose-unreachable
+const std::string kBinding = kGoing + R"(
 action switching (:object ?o) -> Switch(?o)  ok: Lit(?o) @t+1 else manipulation-low-level-failure
 )";
 
@@ -52,7 +43,7 @@ TEST_CASE("a trace ends where the constraint holds for the first time, shortest 
 }
 
 TEST_CASE("failing performs end the plan, and what was done before can still hit") {
-  PlannedModel model(std::string(kRooms) + "HoldsAt(At(a1),0).\n", kPlan, kBinding,
+  PlannedModel model(kRooms + "HoldsAt(At(a1),0).\n", kPlan, kBinding,
                      "HoldsAt(Lit(b2),time) & {event} Happens(event,time-1)", 6);
   REQUIRE(model.codes() == "");
   // b2 lit from the start: hit after the first step. b2 dark: after all three.
@@ -62,7 +53,7 @@ TEST_CASE("failing performs end the plan, and what was done before can still hit
 
 TEST_CASE("a trace does not need a continuation: the next step may be impossible") {
   const std::string model_text =
-      std::string(kRooms) +
+      kRooms +
       "HoldsAt(At(a1),0).\n!HoldsAt(Lit(a1),0).\n!HoldsAt(Lit(b2),0).\n"
       "[time] Happens(Switch(b2),time) -> HoldsAt(At(a1),time).\n";  // never true in this plan
   for (const int horizon : {2, 3, 4, 6}) {
@@ -89,8 +80,8 @@ TEST_CASE("the traces within a horizon are the short ones of a longer horizon") 
 }
 
 TEST_CASE("a plan that outlasts the horizon is complete up to the bound only") {
-  PlannedModel cut(std::string(kRooms) + "HoldsAt(At(a1),0).\n!HoldsAt(Lit(b2),0).\n", kPlan,
-                   kBinding, "HoldsAt(Lit(b2),time)", 2);
+  PlannedModel cut(kRooms + "HoldsAt(At(a1),0).\n!HoldsAt(Lit(b2),0).\n", kPlan, kBinding,
+                   "HoldsAt(Lit(b2),time)", 2);
   REQUIRE(cut.codes() == "");
   const auto found = cut.keys();
   CHECK(found.keys.empty());
@@ -100,7 +91,7 @@ TEST_CASE("a plan that outlasts the horizon is complete up to the bound only") {
 constexpr const char* kShut = "HoldsAt(At(a1),0).\n!HoldsAt(Lit(a1),0).\n!HoldsAt(Lit(b2),0).\n";
 
 TEST_CASE("what was not followed is named: the step at the horizon, the loop that was cut") {
-  PlannedModel cut(std::string(kRooms) + kShut, kPlan, kBinding, "HoldsAt(Lit(b2),time)", 2);
+  PlannedModel cut(kRooms + kShut, kPlan, kBinding, "HoldsAt(Lit(b2),time)", 2);
   REQUIRE(cut.codes() == "");
   const auto ends = cut.keys().open_ends;
   CHECK(ends.cuts.empty());
@@ -112,7 +103,7 @@ TEST_CASE("what was not followed is named: the step at the horizon, the loop tha
   (make-3d-vector 0.5 0 0) (make-identity-rotation))))))
 (let ((?n 0)) (loop do (incf ?n) (go)))
 )";
-  PlannedModel loop(std::string(kRooms) + kShut, endless, kBinding, "HoldsAt(At(b2),time)", 20);
+  PlannedModel loop(kRooms + kShut, endless, kBinding, "HoldsAt(At(b2),time)", 20);
   REQUIRE(loop.codes() == "");
   const auto found = loop.keys();
   CHECK(found.exploration == Exploration::kCompleteUpToBound);
@@ -122,7 +113,7 @@ TEST_CASE("what was not followed is named: the step at the horizon, the loop tha
   CHECK(loop.compiled().plan_cuts[0].form == "loop");
   CHECK(loop.compiled().plan_cuts[0].place.begin.line == 4);
 
-  PlannedModel shorter(std::string(kRooms) + kShut, endless, kBinding, "HoldsAt(At(b2),time)", 9);
+  PlannedModel shorter(kRooms + kShut, endless, kBinding, "HoldsAt(At(b2),time)", 9);
   CHECK(shorter.keys().open_ends.cuts.empty());
   CHECK(shorter.keys().open_ends.step == 9);
 }
@@ -142,7 +133,7 @@ TEST_CASE("the longest path of a plan is the horizon where nothing says one") {
 
 TEST_CASE("repetitions that cannot succeed are dead, those that a change helps are not") {
   const auto dead = [](const std::string& plan, const std::string& start) {
-    PlannedModel model(std::string(kRooms) + start, plan, kBinding, "HoldsAt(Lit(b2),time)", 8);
+    PlannedModel model(kRooms + start, plan, kBinding, "HoldsAt(Lit(b2),time)", 8);
     REQUIRE(model.compiles());
     std::vector<std::vector<std::size_t>> earlier;
     for (const auto& attempts : compiler::earlier_attempts(model.graph())) {
@@ -171,7 +162,7 @@ TEST_CASE("repetitions that cannot succeed are dead, those that a change helps a
 }
 
 TEST_CASE("alternatives of a trace are noted, and asked about") {
-  const std::string released = std::string(kRooms) +
+  const std::string released = kRooms +
                                "HoldsAt(At(a1),0).\n!HoldsAt(Lit(a1),0).\n"
                                "[time] Releases(Go(b2),Lit(b2),time).\n";
   PlannedModel model(released, kPlan, kBinding, "HoldsAt(At(b2),time)", 4);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -57,17 +58,7 @@ class CountingSolver final : public runtime::SatSolver {
 };
 
 /// A robot that drives to and fro.
-constexpr const char* kModel = R"(
-sort room
-room a1, b2
-fluent At(room)
-event Go(room)
-[time] {room} HoldsAt(At(room),time).
-[room1,room2,time] HoldsAt(At(room1),time) & HoldsAt(At(room2),time) -> room1=room2.
-[room,time] Initiates(Go(room),At(room),time).
-[room1,room2,time] room1!=room2 -> Terminates(Go(room1),At(room2),time).
-HoldsAt(At(a1),0).
-)";
+const std::string kModel = kTwoRooms + "HoldsAt(At(a1),0).\n";
 constexpr const char* kBinding = R"(
 motion going (:target ?p) -> Go(region(?p))  ok: At(region(?p)) @t+1 else plan-failure
 )";
