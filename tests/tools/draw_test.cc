@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "tests/support/xml.h"
-#include "tests/tools/cli_fixture.h"
+#include "tests/tools/cli_json.h"
 
 namespace parallax::test {
 namespace {
@@ -147,8 +147,7 @@ TEST_CASE("a world is drawn with its bodies, regions and a scale") {
 
   REQUIRE(cli.parallax({"draw", "edge.yaml", "--no-regions", "-o", "bare.svg"}).code == 0);
   CHECK(checked_picture(cli.read("bare.svg")).all("rect").size() == 1);
-  const auto document = cli.parallax({"draw", "edge.yaml", "--json"});
-  CHECK(Json::parse(document.out)["pictures"] == Json({"scene.svg"}));
+  CHECK(json_of(cli, {"draw", "edge.yaml"})["pictures"] == Json({"scene.svg"}));
   CHECK(cli.read("scene.svg") == cli.read("sub/world.svg"));
 }
 

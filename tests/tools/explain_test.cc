@@ -2,9 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include <nlohmann/json.hpp>
-
-#include "tests/tools/cli_fixture.h"
+#include "tests/tools/cli_json.h"
 
 namespace parallax::test {
 namespace {
@@ -37,7 +35,7 @@ TEST_CASE("the axioms that contradict each other are named with their instances 
         "      HoldsAt(F(),0)\n"
         "  m.e:8  !HoldsAt(F(),2)\n"
         "      !HoldsAt(F(),2)\n");
-  const auto json = nlohmann::json::parse(cli.parallax({"explain", "m.e", "--json"}).out);
+  const auto json = json_of(cli, {"explain", "m.e"}, 1);
   CHECK(json["satisfiable"] == false);
   CHECK(json["smallest"] == true);
   CHECK(json["sets"][0]["proof"] == "checked");
@@ -53,8 +51,7 @@ TEST_CASE("--all names every minimal set, --limit fewer") {
   CHECK(holds(all.out, "2 minimal sets of axioms that contradict each other (these are all "));
   CHECK(holds(all.out, "set 1: 2 axioms"));
   CHECK(holds(all.out, "set 2: 3 axioms"));
-  const auto one = cli.parallax({"explain", "m.e", "--all", "--limit", "1", "--json"});
-  const auto json = nlohmann::json::parse(one.out);
+  const auto json = json_of(cli, {"explain", "m.e", "--all", "--limit", "1"}, 1);
   CHECK(json["sets"].size() == 1);
   CHECK(json["complete"] == false);
 }
@@ -110,8 +107,7 @@ TEST_CASE("a chain of events, effects and inertia is told in the order of time")
         "Initiates(Pour(thing),Filled(thing),time)\n"
         "   4  Filled(Cup) holds: as it has since 2: Spill(Cup) did not happen\n"
         "          m.e:4  inertia of Filled(thing)\n");
-  const auto json = nlohmann::json::parse(
-      cli.parallax({"explain", "m.e", "--why", "HoldsAt(Filled(Cup),4)", "--json"}).out);
+  const auto json = json_of(cli, {"explain", "m.e", "--why", "HoldsAt(Filled(Cup),4)"});
   CHECK(json["steps"].size() == 5);
   CHECK(json["steps"][4]["why"] == "inertia");
   CHECK(json["steps"][4]["since"] == 2);

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/tools/cli_fixture.h"
+#include "tests/tools/cli_json.h"
 
 namespace parallax::test {
 namespace {
@@ -49,9 +49,7 @@ TEST_CASE("fmt rewrites in place, keeps permissions and links, and is content wi
   CHECK(fs::is_symlink(cli.folder() / "link.e"));
   CHECK((fs::status(cli.folder() / "m.e").permissions() & fs::perms::group_read) ==
         fs::perms::none);
-  const auto again = cli.parallax({"fmt", "--check", "m.e", "--json"});
-  CHECK(again.code == 0);
-  CHECK(json::parse(again.out)["changed"] == json::array());
+  CHECK(json_of(cli, {"fmt", "--check", "m.e"})["changed"] == json::array());
 }
 
 TEST_CASE("fmt leaves a file with a syntax error as it is and goes on with the others") {

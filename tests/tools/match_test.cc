@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/tools/cli_fixture.h"
+#include "tests/tools/cli_json.h"
 
 namespace parallax::test {
 namespace {
@@ -33,21 +33,14 @@ void leave_region_open(const CliFixture& cli) {
 }
 
 Json run(const CliFixture& cli, const std::vector<std::string>& options, int expected_code) {
-  std::vector<std::string> words = {"run", "edge.yaml", "--epsilon", "0.4", "--json"};
+  std::vector<std::string> words = {"run", "edge.yaml", "--epsilon", "0.4"};
   words.insert(words.end(), options.begin(), options.end());
-  const auto result = cli.parallax(words);
-  CAPTURE(result.err);
-  CHECK(result.code == expected_code);
-  REQUIRE(Json::accept(result.out));
-  return Json::parse(result.out);
+  return json_of(cli, words, expected_code);
 }
 
 std::int64_t count(const CliFixture& cli, const std::string& match, const std::string& runs) {
-  const auto result =
-      cli.parallax({"rates", "edge.yaml", "--runs", runs, "--match", match, "--json"});
-  CAPTURE(result.err);
-  REQUIRE(result.code == 0);
-  return Json::parse(result.out)["traces"][0]["any"]["count"];
+  const auto result = json_of(cli, {"rates", "edge.yaml", "--runs", runs, "--match", match});
+  return result["traces"][0]["any"]["count"];
 }
 
 TEST_CASE("an end that the trace does not have and the model admits: trace reports, model not") {

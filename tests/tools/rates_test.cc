@@ -6,23 +6,12 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/cli_fixture.h"
+#include "tests/tools/cli_json.h"
 
 namespace parallax::test {
 namespace {
 
 using Json = nlohmann::json;
-
-Json rates(const CliFixture& cli, std::vector<std::string> arguments, int expected_code = 0) {
-  arguments.insert(arguments.begin(), "rates");
-  arguments.push_back("--json");
-  const auto result = cli.parallax(arguments);
-  CAPTURE(result.err);
-  CAPTURE(result.out);
-  CHECK(result.code == expected_code);
-  REQUIRE(Json::accept(result.out));
-  return Json::parse(result.out);
-}
 
 /// P(X <= k) for n draws with probability p, term by term.
 double binomial_cdf(int k, int n, double p) {
@@ -68,7 +57,7 @@ TEST_CASE("counts by cause add up to all discrepancies, the most frequent first"
   // soft grip loses some of the boxes that it reaches.
   cli.replace("wrong_model.yaml", "include: common.yaml",
               "include: common.yaml\nworld: {friction: {box-pad: 0}}");
-  const auto result = rates(cli, {"wrong_model.yaml", "--runs", "60"});
+  const auto result = json_of(cli, {"rates", "wrong_model.yaml", "--runs", "60"});
   CHECK(result["status"] == "ok");
   CHECK(result["complete"] == true);
   REQUIRE(result["traces"].size() == 1);
@@ -95,8 +84,8 @@ TEST_CASE("counts by cause add up to all discrepancies, the most frequent first"
 
 TEST_CASE("a rate that geometry gives lies within its interval") {
   const CliFixture cli;
-  const auto result =
-      rates(cli, {"wrong_model.yaml", "--runs", "80", "--confidence", "0.999", "--jobs", "2"});
+  const auto result = json_of(
+      cli, {"rates", "wrong_model.yaml", "--runs", "80", "--confidence", "0.999", "--jobs", "2"});
   CHECK(result["confidence"] == 0.999);
   const auto& any = result["traces"][0]["any"];
   check_interval(any, 80, 0.999);
@@ -106,14 +95,14 @@ TEST_CASE("a rate that geometry gives lies within its interval") {
 
 TEST_CASE("intervals of no and of nothing but discrepancies end at zero and at one") {
   const CliFixture cli;
-  const auto clean = rates(cli, {"scenario.yaml", "--runs", "6"})["traces"][0];
+  const auto clean = json_of(cli, {"rates", "scenario.yaml", "--runs", "6"})["traces"][0];
   CHECK(clean["any"]["count"] == 0);
   CHECK(clean["causes"].empty());
   check_interval(clean["any"], 6, 0.95);
   CHECK(clean["any"]["upper"].get<double>() == doctest::Approx(1 - std::pow(0.025, 1.0 / 6)));
   cli.replace("common.yaml", "include: world.yaml",
               "include: world.yaml\n  friction: {box-pad: 0}");
-  const auto failing = rates(cli, {"scenario.yaml", "--runs", "6"})["traces"][0];
+  const auto failing = json_of(cli, {"rates", "scenario.yaml", "--runs", "6"})["traces"][0];
   CHECK(failing["any"]["count"] == 6);
   check_interval(failing["any"], 6, 0.95);
   CHECK(failing["any"]["upper"] == 1.0);
@@ -138,12 +127,11 @@ TEST_CASE("sample N is simulation N of a run with the same seed") {
   const CliFixture cli;
   for (const auto* seed : {"1", "5"}) {
     CAPTURE(seed);
-    const auto run = cli.parallax(
-        {"run", "edge.yaml", "--seed", seed, "--json", "--out", std::string("run") + seed});
-    REQUIRE(run.code == 1);
-    const auto first = Json::parse(run.out)["discrepancies"][0]["sample"];
-    const auto counted =
-        rates(cli, {"edge.yaml", "--seed", seed, "--runs", std::to_string(first.get<int>())});
+    const auto run =
+        json_of(cli, {"run", "edge.yaml", "--seed", seed, "--out", std::string("run") + seed}, 1);
+    const auto first = run["discrepancies"][0]["sample"];
+    const auto counted = json_of(
+        cli, {"rates", "edge.yaml", "--seed", seed, "--runs", std::to_string(first.get<int>())});
     CHECK(counted["traces"][0]["any"]["count"] == 1);
     CHECK(counted["traces"][0]["causes"][0]["example"] == first);
   }
@@ -166,11 +154,11 @@ TEST_CASE("--trace picks one of the traces and changes nothing about it") {
                         (target (a location (pose ?here)))))))
 (fetch)
 )");
-  const auto all = rates(cli, {"wrong_model.yaml", "--runs", "4"});
+  const auto all = json_of(cli, {"rates", "wrong_model.yaml", "--runs", "4"});
   REQUIRE(all["traces"].size() == 2);
   for (int number = 1; number <= 2; ++number) {
-    const auto one =
-        rates(cli, {"wrong_model.yaml", "--runs", "4", "--trace", std::to_string(number)});
+    const auto one = json_of(
+        cli, {"rates", "wrong_model.yaml", "--runs", "4", "--trace", std::to_string(number)});
     REQUIRE(one["traces"].size() == 1);
     CHECK(one["complete"] == true);
     CHECK(one["traces"][0] == all["traces"][static_cast<std::size_t>(number - 1)]);
@@ -187,7 +175,7 @@ TEST_CASE("starts that interpenetrate are drawn again, and counted") {
   cli.replace("common.yaml", "include: world.yaml",
               "include: world.yaml\n  bodies: {post: {size_m: [0.13, 0.07, 0.07], mass_kg: 0, "
               "material: steel, position_m: [1.5, 0, 0.035]}}");
-  const auto trace = rates(cli, {"wrong_model.yaml", "--runs", "40"})["traces"][0];
+  const auto trace = json_of(cli, {"rates", "wrong_model.yaml", "--runs", "40"})["traces"][0];
   CHECK(trace["runs"] == 40);
   // Negative binomial with p = 0.2: 10 expected, with a standard deviation of 3.5.
   CHECK(trace["rejected"].get<int>() >= 1);
@@ -196,7 +184,8 @@ TEST_CASE("starts that interpenetrate are drawn again, and counted") {
 
 TEST_CASE("a limit or a signal leaves a partial result that says so") {
   const CliFixture cli;
-  const auto limited = rates(cli, {"scenario.yaml", "--runs", "1000000", "--time-limit", "1"}, 4);
+  const auto limited =
+      json_of(cli, {"rates", "scenario.yaml", "--runs", "1000000", "--time-limit", "1"}, 4);
   CHECK(limited["complete"] == false);
   CHECK(limited["traces"][0]["runs"].get<int>() < 1'000'000);
   CHECK(limited["traces"][0]["any"]["count"] == 0);
@@ -230,7 +219,7 @@ TEST_CASE("what cannot be estimated is told with its exit code") {
 
   cli.replace("edge.yaml", "horizon: 6", "horizon: 2");
   complains({"edge.yaml"}, 1, "no trace");
-  const auto none = rates(cli, {"edge.yaml"}, 1);
+  const auto none = json_of(cli, {"rates", "edge.yaml"}, 1);
   CHECK(none["traces"].empty());
 
   cli.replace("wrong_model.yaml", "constraints:\n", "limits: {max_runs: 5}\n#");

@@ -6,23 +6,12 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/cli_fixture.h"
+#include "tests/tools/cli_json.h"
 
 namespace parallax::test {
 namespace {
 
 using Json = nlohmann::json;
-
-Json run_json(const CliFixture& cli, std::vector<std::string> arguments, int expected_code) {
-  arguments.insert(arguments.begin(), "run");
-  arguments.push_back("--json");
-  const auto result = cli.parallax(arguments);
-  CAPTURE(result.err);
-  CAPTURE(result.out);
-  CHECK(result.code == expected_code);
-  REQUIRE(Json::accept(result.out));
-  return Json::parse(result.out);
-}
 
 std::size_t lines_of(const std::filesystem::path& file) {
   std::ifstream in(file);
@@ -33,7 +22,7 @@ std::size_t lines_of(const std::filesystem::path& file) {
 
 TEST_CASE("Example 1: the box is fetched, ninety clean runs support p below five percent") {
   const CliFixture cli;
-  const auto result = run_json(cli, {"scenario.yaml", "--jobs", "2", "--out", "run"}, 0);
+  const auto result = json_of(cli, {"run", "scenario.yaml", "--jobs", "2", "--out", "run"});
   CHECK(result["status"] == "ok");
   CHECK(result["verdict"] == "no-discrepancy");
   CHECK(result["iterations"] == 1);
@@ -57,16 +46,17 @@ TEST_CASE("every hit is a trace of its own if asked for, and what was not follow
             "bind: robot.bind\n"
             "horizon: 3\n"
             "constraints: [\"HoldsAt(RobotIn(r2),time)\"]\n");
-  const std::vector<std::string> base = {"short.yaml", "--epsilon", "0.5", "--confidence", "0.5"};
+  const std::vector<std::string> base = {"run", "short.yaml",   "--epsilon",
+                                         "0.5", "--confidence", "0.5"};
   auto arguments = base;
   arguments.insert(arguments.end(), {"--out", "first"});
-  const auto first = run_json(cli, arguments, 0);
+  const auto first = json_of(cli, arguments);
   CHECK(first["iterations"] == 1);
   CHECK(first["exploration"] == "all traces explored");
   CHECK_FALSE(first.contains("bounds"));
   arguments = base;
   arguments.insert(arguments.end(), {"--hits", "all", "--out", "all"});
-  const auto all = run_json(cli, arguments, 0);
+  const auto all = json_of(cli, arguments);
   CHECK(all["iterations"] == 2);
   CHECK(all["traces"][0]["events"] == Json({"Go(r2)"}));
   CHECK(all["traces"][1]["events"] == Json({"Go(r2)", "PickUp()"}));
@@ -78,12 +68,12 @@ TEST_CASE("every hit is a trace of its own if asked for, and what was not follow
   CHECK(cli.read("all/report.txt").find(bound) != std::string::npos);
   arguments = base;
   arguments.insert(arguments.end(), {"--split-initial", "--out", "split"});
-  CHECK(run_json(cli, arguments, 0)["iterations"] == 1);
+  CHECK(json_of(cli, arguments)["iterations"] == 1);
 }
 
 TEST_CASE("placing at the edge: physics carries the box over the border for some starts") {
   const CliFixture cli;
-  const auto result = run_json(cli, {"edge.yaml", "--jobs", "2", "--out", "run"}, 1);
+  const auto result = json_of(cli, {"run", "edge.yaml", "--jobs", "2", "--out", "run"}, 1);
   CHECK(result["verdict"] == "discrepancy");
   const auto& found = result["discrepancies"][0];
   CHECK(found["first_divergence"] == 4);
@@ -96,10 +86,10 @@ TEST_CASE("placing at the edge: physics carries the box over the border for some
   // Not every start: the first of them must not decide alone over many seeds.
   int first_run = 0;
   for (int seed = 1; seed <= 12; ++seed) {
-    const auto other = run_json(cli,
-                                {"edge.yaml", "--jobs", "2", "--seed", std::to_string(seed),
-                                 "--out", "run" + std::to_string(seed)},
-                                1);
+    const auto other = json_of(cli,
+                               {"run", "edge.yaml", "--jobs", "2", "--seed", std::to_string(seed),
+                                "--out", "run" + std::to_string(seed)},
+                               1);
     if (other["simulations"] == 1) ++first_run;
   }
   CHECK(first_run < 12);
@@ -108,8 +98,8 @@ TEST_CASE("placing at the edge: physics carries the box over the border for some
 TEST_CASE("a model whose pick-up forgets the region is found in the first runs") {
   const CliFixture cli;
   for (const auto* seed : {"1", "2", "3", "4", "5"}) {
-    const auto result =
-        run_json(cli, {"wrong_model.yaml", "--seed", seed, "--out", std::string("run") + seed}, 1);
+    const auto result = json_of(
+        cli, {"run", "wrong_model.yaml", "--seed", seed, "--out", std::string("run") + seed}, 1);
     CHECK(result["verdict"] == "discrepancy");
     CHECK(result["simulations"].get<int>() <= 10);
     CHECK(result["discrepancies"][0]["first_divergence"] == 1);
@@ -120,7 +110,7 @@ TEST_CASE("without friction on the pads the box stays behind, and the tool repor
   const CliFixture cli;
   cli.replace("common.yaml", "include: world.yaml",
               "include: world.yaml\n  friction: {box-pad: 0}");
-  const auto result = run_json(cli, {"scenario.yaml", "--out", "run"}, 1);
+  const auto result = json_of(cli, {"run", "scenario.yaml", "--out", "run"}, 1);
   CHECK(result["verdict"] == "discrepancy");
   const auto& found = result["discrepancies"][0];
   // Picking up is where it goes wrong, and in the end the box is where it was.

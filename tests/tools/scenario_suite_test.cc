@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/xml.h"
-#include "tests/tools/cli_fixture.h"
+#include "tests/tools/cli_json.h"
 
 namespace parallax::test {
 namespace {
@@ -21,16 +21,6 @@ bool holds(const std::string& text, const std::string& part) {
 void expect(const CliFixture& cli, const std::string& name, const std::string& what) {
   auto text = cli.read("wrong_model.yaml");
   cli.write(name, text.erase(text.find("expect:")) + "expect: " + what + "\n");
-}
-
-Json suite(const CliFixture& cli, std::vector<std::string> arguments, int expected_code) {
-  arguments.insert(arguments.begin(), "suite");
-  arguments.push_back("--json");
-  const auto result = cli.parallax(arguments);
-  CAPTURE(result.err);
-  CHECK(result.code == expected_code);
-  REQUIRE(Json::accept(result.out));
-  return Json::parse(result.out);
 }
 
 std::string first_problem(const Json& document) {
@@ -74,7 +64,7 @@ TEST_CASE("each kind of expectation passes where it is met and says what was fou
   const CliFixture cli;
   const auto problem = [&](const std::string& what, int code) {
     expect(cli, "case.yaml", what);
-    return first_problem(suite(cli, {"case.yaml"}, code));
+    return first_problem(json_of(cli, {"suite", "case.yaml"}, code));
   };
   CHECK(
       problem("{verdict: discrepancy, iterations: 1, max_simulations: 3, fluents: [BoxIn(r1)]}", 0)
@@ -91,9 +81,9 @@ TEST_CASE("each kind of expectation passes where it is met and says what was fou
 TEST_CASE("a rate is that of parallax rates with the suite's seed") {
   const CliFixture cli;
   expect(cli, "case.yaml", "{rate: {between: [0, 0], runs: 10}}");
-  const auto problem = first_problem(suite(cli, {"case.yaml", "--seed", "7"}, 1));
-  const auto rates = cli.parallax({"rates", "case.yaml", "--seed", "7", "--runs", "10", "--json"});
-  const auto found = Json::parse(rates.out)["traces"][0]["any"]["count"].get<int>();
+  const auto problem = first_problem(json_of(cli, {"suite", "case.yaml", "--seed", "7"}, 1));
+  const auto rates = json_of(cli, {"rates", "case.yaml", "--seed", "7", "--runs", "10"});
+  const auto found = rates["traces"][0]["any"]["count"].get<int>();
   CHECK(holds(problem, "discrepancies in " + std::to_string(found) + " of 10 runs of trace 1"));
 }
 
@@ -102,7 +92,7 @@ TEST_CASE("a case that cannot be run or runs too long is an error, and the other
   cli.write("scenario.yaml", "name: expects nothing\n");
   cli.write("edge.yaml", "horizon: [\nexpect: {verdict: discrepancy}\n");
   expect(cli, "long.yaml", "{rate: {between: [0, 1], runs: 1000000}, time_limit_s: 1}");
-  const auto document = suite(cli, {".", "--jobs", "3"}, 1);
+  const auto document = json_of(cli, {"suite", ".", "--jobs", "3"}, 1);
   CHECK(document["passed"] == 1);
   CHECK(document["errors"] == 2);
   CHECK(document["cases"][0]["case"] == "edge.yaml");
@@ -116,7 +106,7 @@ TEST_CASE("--fast leaves out the scenarios that do not say that they are") {
   cli.write("edge.yaml", "name: expects nothing either\n");
   expect(cli, "slow.yaml", "{verdict: discrepancy}");
   expect(cli, "fast.yaml", "{verdict: discrepancy, fast: true}");
-  const auto document = suite(cli, {".", "--fast"}, 0);
+  const auto document = json_of(cli, {"suite", ".", "--fast"});
   REQUIRE(document["cases"].size() == 2);  // wrong_model.yaml is fast, too
   CHECK(document["cases"][0]["case"] == "fast.yaml");
   CHECK(cli.parallax({"suite", "slow.yaml", "--fast"}).code == 2);

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/cli_fixture.h"
+#include "tests/tools/cli_json.h"
 
 namespace parallax::test {
 namespace {
@@ -192,9 +192,7 @@ TEST_CASE("--only picks cases by their names") {
 TEST_CASE("scenarios and model expectations are cases side by side") {
   const SuiteFixture cli;
   REQUIRE(cli.suite({"--update-goldens"}).code == 0);
-  const auto result = cli.parallax({"suite", "s", "wrong_model.yaml", "--json"});
-  CHECK(result.code == 0);
-  const auto document = nlohmann::json::parse(result.out);
+  const auto document = json_of(cli, {"suite", "s", "wrong_model.yaml"});
   CHECK(document["passed"] == 3);
   CHECK(document["cases"][0]["case"] == "wrong_model.yaml");
 }

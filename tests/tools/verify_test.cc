@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/cli_fixture.h"
+#include "tests/tools/cli_json.h"
 
 namespace parallax::test {
 namespace {
@@ -30,10 +30,8 @@ TEST_CASE("verify: one shortest trace, and its events named by their performs") 
 
 TEST_CASE("verify: a property of the start is violated without a step") {
   const CliFixture cli;
-  const auto result =
-      cli.parallax(with_plan({"verify", "--json", "--property", "HoldsAt(RobotIn(r2),time)"}));
-  CHECK(result.code == 1);
-  const auto answer = nlohmann::json::parse(result.out);
+  const auto answer =
+      json_of(cli, with_plan({"verify", "--property", "HoldsAt(RobotIn(r2),time)"}), 1);
   CHECK(answer["verdict"] == "violated");
   CHECK(answer["timepoint"] == 0);
   CHECK(answer["performed"].empty());
@@ -41,16 +39,14 @@ TEST_CASE("verify: a property of the start is violated without a step") {
 
 TEST_CASE("verify: holds to the end of the plan, or up to the horizon only") {
   const CliFixture cli;
-  auto result = cli.parallax(
+  const auto result = cli.parallax(
       {"verify", "scenario.yaml", "--property", "{region} HoldsAt(RobotIn(region),time)"});
   CHECK(result.code == 0);
   CHECK(result.out ==
         "holds up to horizon 6 (proof checked), and every path of the plan has ended by then\n");
-  result = cli.parallax({"verify", "domain.e", "start.e", "--plan", "fetch.lisp", "--bind",
-                         "robot.bind", "--regions", "scenario.yaml", "--horizon", "3", "--property",
-                         "!(HoldsAt(BoxIn(r1),time))", "--json"});
-  CHECK(result.code == 0);
-  const auto answer = nlohmann::json::parse(result.out);
+  const auto answer = json_of(cli, {"verify", "domain.e", "start.e", "--plan", "fetch.lisp",
+                                    "--bind", "robot.bind", "--regions", "scenario.yaml",
+                                    "--horizon", "3", "--property", "!(HoldsAt(BoxIn(r1),time))"});
   CHECK(answer["verdict"] == "holds");
   CHECK(answer["proof"] == "checked");
   CHECK(!answer.contains("proof_file"));
@@ -62,10 +58,9 @@ TEST_CASE("verify: holds to the end of the plan, or up to the horizon only") {
 
 TEST_CASE("verify: the proof is kept where the user says") {
   const CliFixture cli;
-  const auto result = cli.parallax({"verify", "scenario.yaml", "--certify=safe.drat", "--property",
-                                    "{region} HoldsAt(RobotIn(region),time)", "--json"});
-  CHECK(result.code == 0);
-  CHECK(nlohmann::json::parse(result.out)["proof_file"] == "safe.drat");
+  const auto answer = json_of(cli, {"verify", "scenario.yaml", "--certify=safe.drat", "--property",
+                                    "{region} HoldsAt(RobotIn(region),time)"});
+  CHECK(answer["proof_file"] == "safe.drat");
   CHECK(std::filesystem::exists(cli.folder() / "safe.drat"));
   CHECK(cli.read("safe.drat.cnf").find("p cnf ") != std::string::npos);
 }
@@ -98,18 +93,12 @@ TEST_CASE("traces: branches of a plan run in written order, or in every order") 
   std::vector<std::string> arguments = {"traces",     "domain.e", "start.e",
                                         "--plan",     "par.lisp", "--bind",
                                         "named.bind", "--until",  "HoldsAt(RobotIn(r2),time)",
-                                        "--limit=0",  "--json"};
-  const auto events = [&] {
-    const auto result = cli.parallax(arguments);
-    CAPTURE(result.err);
-    REQUIRE(result.code == 0);
-    return nlohmann::json::parse(result.out);
-  };
-  // The plan says nothing of Place: at every timepoint two instances happen or not, 4 ways. Go comes
-  // first, and the region is reached; or PickUp fails before it, one timepoint more.
-  CHECK(events()["traces"] == 4);
+                                        "--limit=0"};
+  // The plan says nothing of Place: at every timepoint two instances happen or not, 4 ways. Go
+  // comes first, and the region is reached; or PickUp fails before it, one timepoint more.
+  CHECK(json_of(cli, arguments)["traces"] == 4);
   arguments.push_back("--par=interleave");
-  const auto both = events();
+  const auto both = json_of(cli, arguments);
   CHECK(both["traces"] == 4 + 4 * 4);
   CHECK(both["exploration"] == "all traces explored");
 }

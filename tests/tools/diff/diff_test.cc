@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/cli_fixture.h"
+#include "tests/tools/cli_json.h"
 
 namespace parallax::test {
 namespace {
@@ -114,7 +114,7 @@ TEST_CASE_FIXTURE(DiffFixture, "numbers are those of the full lists") {
   CHECK(document["traces"]["new"]["value"] == count("new.e"));
   write("old.jsonl", parallax({"traces", "old.e", "--limit", "0", "--format", "jsonl"}).out);
   write("new.jsonl", parallax({"traces", "new.e", "--limit", "0", "--format", "jsonl"}).out);
-  const auto lists = Json::parse(parallax({"diff", "old.jsonl", "new.jsonl", "--json"}).out);
+  const auto lists = json_of(*this, {"diff", "old.jsonl", "new.jsonl"}, 1);
   for (const auto* side : {"lost", "gained"}) {
     CHECK(document["traces"][side]["count"]["exact"] == true);
     CHECK(document["traces"][side]["count"]["value"] == lists["traces"][side]["count"]);
@@ -260,16 +260,12 @@ TEST_CASE_FIXTURE(DiffFixture, "what cannot be compared is refused with what can
   CHECK(parallax({"diff", "--textconv", "scenario.yaml"}).code == 2);
   CHECK(parallax({"diff", "old.e", "old.e", "--textconv", "old.e"}).code == 2);
   write("bad.e", "fluent F(\n");
-  const auto bad = parallax({"diff", "old.e", "bad.e", "--json"});
-  CHECK(bad.code == 3);
-  CHECK(Json::parse(bad.out)["status"] == "error");
+  CHECK(json_of(*this, {"diff", "old.e", "bad.e"}, 3)["status"] == "error");
 }
 
 TEST_CASE_FIXTURE(DiffFixture, "a scenario is compared with its plan and constraints") {
   CHECK(parallax({"diff", "scenario.yaml", "scenario.yaml"}).code == 0);
-  const auto result = parallax({"diff", "scenario.yaml", "edge.yaml", "--json"});
-  CHECK(result.code == 1);
-  CHECK(Json::parse(result.out)["equal"] == false);
+  CHECK(json_of(*this, {"diff", "scenario.yaml", "edge.yaml"}, 1)["equal"] == false);
 }
 
 TEST_CASE_FIXTURE(DiffFixture, "git shows what models say") {
