@@ -25,6 +25,13 @@ struct DivergingFluent {
   bool observed = false;
 };
 
+/// What led a simulation away from its trace for good: the action that failed there, or else what
+/// changed.
+struct Cause {
+  std::string text;  // "Go(bTable): navigation-pose-unreachable", "Go(bTable): not Holding(left,m)"
+  std::string reason;  // in the simulator's words; empty where no action failed
+};
+
 /// What the one repetition of a discrepancy showed before it was accepted.
 enum class Confirmation : std::uint8_t { kBitEqual, kDiffers, kLost };
 
@@ -35,6 +42,7 @@ struct Discrepancy {
   std::int64_t first_divergence = 0;     // first timepoint at which some mapped fluent differs
   std::vector<DivergingFluent> first;    // what differs there
   std::vector<DivergingFluent> fluents;  // what differs at the last timepoint; never empty
+  Cause cause;
   Confirmation confirmation = Confirmation::kBitEqual;
   SampleRecord record;
   State end;  // the variables that were compared, as last observed

@@ -1,5 +1,7 @@
 #include "harness/campaign/judge.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "compiler/base/contract.h"
@@ -57,6 +59,21 @@ Judgement judge(const StateMapping& mapping, const std::vector<GroundFluent>& fl
     if (t + 1 == observations.size()) out.last = std::move(differing);
   }
   return out;
+}
+
+Cause cause_of(const CampaignTrace& trace, const Judgement& judgement,
+               const std::vector<ActionOutcome>& outcomes) {
+  PARALLAX_REQUIRE(judgement.parted.has_value(), "a simulation that left its trace");
+  const DivergingFluent& fluent = judgement.at_parting.front();
+  const std::string changed = fmt::format("{}{}", fluent.observed ? "" : "not ", fluent.fluent);
+  if (trace.events.empty()) return {fmt::format("start: {}", changed), {}};
+  const auto step = static_cast<std::size_t>(std::max<std::int64_t>(1, *judgement.parted)) - 1;
+  const std::string& event = trace.events[step].text;
+  if (outcomes[step].status == SimStatus::kOk) return {fmt::format("{}: {}", event, changed), {}};
+  const std::string& reason = outcomes[step].reason;
+  const std::string condition = reason.empty() ? std::string(to_string(outcomes[step].status))
+                                               : reason.substr(0, reason.find(':'));
+  return {fmt::format("{}: {}", event, condition), reason};
 }
 
 std::vector<std::string> ignored_fluents(const StateMapping& mapping,

@@ -31,6 +31,10 @@ struct Judgement {
 Judgement judge(const StateMapping& mapping, const std::vector<GroundFluent>& fluents,
                 const CampaignTrace& trace, const std::vector<State>& observations);
 
+/// Why the last state of a judged simulation differs from that of the trace; it has to differ.
+Cause cause_of(const CampaignTrace& trace, const Judgement& judgement,
+               const std::vector<ActionOutcome>& outcomes);
+
 /// The fluents that are ignored on purpose, one entry a symbol: "LookingAt(..)", "Tired()".
 std::vector<std::string> ignored_fluents(const StateMapping& mapping,
                                          const std::vector<GroundFluent>& fluents);

@@ -26,23 +26,6 @@ void set_interval(CauseRate& rate, std::int64_t runs, double confidence) {
   rate.upper = rate.count == runs ? 1.0 : beta_quantile(1.0 - tail, k + 1.0, n - k);
 }
 
-/// What led the simulation away: the action that failed there, or else what changed.
-struct Cause {
-  std::string text, reason;
-};
-
-Cause cause_of(const CampaignTrace& trace, const Judgement& judgement, const SampleRecord& record) {
-  const auto step = static_cast<std::size_t>(std::max<std::int64_t>(1, *judgement.parted));
-  const std::string& event = trace.events[step - 1].text;
-  const ActionOutcome& outcome = record.outcomes[step - 1];
-  if (outcome.status != SimStatus::kOk) {
-    const auto condition = outcome.reason.substr(0, outcome.reason.find(':'));
-    return {fmt::format("{}: {}", event, condition), outcome.reason};
-  }
-  const DivergingFluent& fluent = judgement.at_parting.front();
-  return {fmt::format("{}: {}{}", event, fluent.observed ? "" : "not ", fluent.fluent), {}};
-}
-
 class Estimator {
  public:
   Estimator(const Scenario& scenario, TraceFeed& traces, const SimulatorFactory& make_simulator,
@@ -151,7 +134,7 @@ class Estimator {
                          record.sample, record.trace,
                          fluent.observed ? "a state with" : "a state without", fluent.fluent);
     }
-    const Cause cause = cause_of(plan.trace, judgement, record);
+    const Cause cause = cause_of(plan.trace, judgement, record.outcomes);
     CauseRate& rate = causes[cause.text];
     ++rates.any.count;
     if (rate.count++ == 0) {

@@ -151,9 +151,9 @@ class TraceCampaign {
       if (judgement.first_divergence) ++outcome_.result.strayed;
       add_clean_run(tally_, record.initial, record.observations.back());
     } else {
-      const bool admitted =
-          context_.scenario.match_model && !judgement.in_no_state && plan_->trace.other_outcomes &&
-          context_.feed.admits(plan_->trace, judgement.last_state);
+      const bool admitted = context_.scenario.match_model && !judgement.in_no_state &&
+                            plan_->trace.other_outcomes &&
+                            context_.feed.admits(plan_->trace, judgement.last_state);
       if (stopped()) return Step{TraceEnd::kStopped};  // then the solver was, too
       if (!admitted) return accept_discrepancy(std::move(record), judgement);
       tally_.add_clean_elsewhere();
@@ -180,6 +180,7 @@ class TraceCampaign {
     found.first_divergence = *judgement.first_divergence;
     found.first = judgement.first;
     found.fluents = judgement.last;
+    found.cause = cause_of(plan_->trace, judgement, record.outcomes);
     if (again->status == SampleStatus::kLost) {
       found.confirmation = Confirmation::kLost;
     } else if (first_difference(record, *again)) {

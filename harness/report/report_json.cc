@@ -95,6 +95,7 @@ Json json_of(const Discrepancy& found, const std::string& folder) {
           {"sample", found.sample},
           {"seed", found.seed},
           {"first_divergence", found.first_divergence},
+          {"cause", {{"text", found.cause.text}, {"reason", found.cause.reason}}},
           {"first", json_of(found.first)},
           {"fluents", json_of(found.fluents)},
           {"repeated", word(found.confirmation)},

@@ -155,6 +155,7 @@ class TextReport {
     const auto id = fmt::format("{}.{}", found.trace, found.sample);
     out_ += fmt::format("\n  {} in simulation {}, seed {}, {}\n", painted("discrepancy", "1;31"),
                         id, found.seed, confirmation(found));
+    line("cause", cause(found), 4);
     std::vector<std::vector<std::string>> rows = {{"fluent", "timepoint", "predicted", "observed"}};
     for (const auto& fluent : found.fluents) rows.push_back(row(fluent));
     out_ += table(rows, 4);
@@ -167,6 +168,12 @@ class TextReport {
     // Not wrapped: the command is to be copied.
     out_ += fmt::format("    {:<{}}{}\n", "replay", kLabelEnd - 4,
                         base::printable(replay_command(result_.replay_folder, found)));
+  }
+
+  static std::string cause(const Discrepancy& found) {
+    const auto& [text, reason] = found.cause;
+    const auto colon = reason.find(':');
+    return colon == std::string::npos ? text : text + reason.substr(colon);
   }
 
   static std::string values(const State& state) {

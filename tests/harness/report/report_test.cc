@@ -57,6 +57,7 @@ CampaignResult sample_result() {
   found.first_divergence = 1;
   found.first = {{"RobotIn(r2)", 1, true, false}};
   found.fluents = {{"BoxIn(r1)", 2, true, false}, {"BoxIn(r2)", 2, false, true}};
+  found.cause = {"Place(r1): box-lost", "box-lost: nothing in the gripper"};
   found.record.initial = {{"box.x", 1.25}};
   found.end = {{"box.held", false}, {"box.x", 1.0055}};
   found.record.outcomes = {{SimStatus::kOk, "", 2.0},
@@ -111,6 +112,19 @@ TEST_CASE("the paper's figure stands in a trace's account once") {
   const auto first = text.find("satisfied after 3 runs");
   REQUIRE(first != std::string::npos);
   CHECK(text.find("paper's rule", first) > text.find("trace 2"));
+}
+
+TEST_CASE("a discrepancy begins with its cause") {
+  auto result = sample_result();
+  CHECK(campaign_text(result, {}).find(
+            "    cause      Place(r1): box-lost: nothing in the gripper\n    fluent") !=
+        std::string::npos);
+  const auto json = Json::parse(campaign_json(result, true));
+  CHECK(json.at("discrepancies").at(0).at("cause") ==
+        Json({{"text", "Place(r1): box-lost"}, {"reason", "box-lost: nothing in the gripper"}}));
+  result.discrepancies[0].cause = {"Place(r1): not BoxIn(r1)", {}};
+  CHECK(campaign_text(result, {}).find("    cause      Place(r1): not BoxIn(r1)\n") !=
+        std::string::npos);
 }
 
 TEST_CASE("a divergence at the last timepoint is told once") {
