@@ -116,8 +116,8 @@ TEST_CASE("the paper's figure stands in a trace's account once") {
 
 TEST_CASE("a discrepancy begins with its cause") {
   auto result = sample_result();
-  CHECK(campaign_text(result, {}).find(
-            "    cause      Place(r1): box-lost: nothing in the gripper\n    fluent") !=
+  CHECK(campaign_text(result, {})
+            .find("    cause      Place(r1): box-lost: nothing in the gripper\n    fluent") !=
         std::string::npos);
   const auto json = Json::parse(campaign_json(result, true));
   CHECK(json.at("discrepancies").at(0).at("cause") ==
