@@ -141,6 +141,7 @@ class Estimator {
       rate.cause = cause.text;
       rate.example = record.sample;
       rate.reason = cause.reason;
+      rate.start = record.initial;
     }
     return base::Unit{};
   }

@@ -15,6 +15,7 @@ struct CauseRate {
   double rate = 0.0, lower = 0.0, upper = 0.0;  // Clopper and Pearson 1934
   std::int64_t example = 0;                     // number of the first such sample
   std::string reason;                           // what that one said
+  State start;                                  // how that one began
 };
 
 struct TraceRates {

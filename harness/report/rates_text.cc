@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/campaign/state_json.h"
 #include "harness/report/report.h"
 
 namespace parallax::harness {
@@ -17,6 +18,7 @@ Json rate_object(const CauseRate& rate) {
                  {"upper", rate.upper}};
   if (rate.example > 0) object["example"] = rate.example;
   if (!rate.reason.empty()) object["reason"] = rate.reason;
+  if (!rate.start.empty()) object["start"] = state_json<Json>(rate.start);
   return object;
 }
 

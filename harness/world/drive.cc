@@ -77,6 +77,7 @@ class Drive final : public MobileController {
   }
 
   Outcome judge(std::string_view) override {
+    perception().drop_lost_gaze();
     const PlanarPose now = robot().base().pose();
     const double error_m = (target_ - now.p).norm();
     const double error_rad = std::abs(wrapped(yaw_rad_ - now.yaw_rad));

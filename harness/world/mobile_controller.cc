@@ -18,7 +18,7 @@ constexpr double kCloseSpeed_m_s = 0.05;
 constexpr double kCloseGrace_s = 0.5;
 /// Room round the arm that a way is looked for with, the most first. The last is for ways that
 /// begin in touch, as that of a load that was just lifted.
-constexpr std::array kRoom_m = {0.015, 0.005, -0.002};
+constexpr std::array kRoom_m = {0.04, 0.015, 0.005, -0.002};
 
 }  // namespace
 

@@ -102,6 +102,10 @@ std::string Perception::gaze() const {
   return off_rad <= robot_.spec().camera.half_angle_rad ? gaze_.name : std::string();
 }
 
+void Perception::drop_lost_gaze() {
+  if (gaze().empty()) looking_ = false;
+}
+
 Eigen::Vector3d Perception::middle_of_chord(const Eigen::Vector3d& from, const Eigen::Vector3d& aim,
                                             BodyId id) const {
   const Bounds box = own_bounds(world_.layout().bodies[id]);

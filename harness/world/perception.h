@@ -41,6 +41,8 @@ class Perception {
   /// Name of the place that the camera looks at: empty once the robot has turned or driven so far
   /// that the neck, left as it was, would point elsewhere by more than the cone.
   std::string gaze() const;
+  /// Once the place is out of the cone the robot looks at nothing, also when it drives back.
+  void drop_lost_gaze();
 
   /// Casts rays at `points` points spread along the longest side of the body.
   Sighting sight(BodyId id, int points) const;

@@ -7,7 +7,7 @@
 (defparameter *work-pose*
   (make-pose-stamped "map" 0.0 (make-3d-vector 0.72 0.06 0) (make-identity-rotation)))
 (defparameter *table-pose*
-  (make-pose-stamped "map" 0.0 (make-3d-vector -0.10 0.58 0) (make-quaternion 0 0 1 0)))
+  (make-pose-stamped "map" 0.0 (make-3d-vector -0.10 0.56 0) (make-quaternion 0 0 1 0)))
 
 (defparameter *counter-cells*
   (list (make-pose-stamped "map" 0.0 (make-3d-vector 1.46 0.075 0.85) (make-identity-rotation))

@@ -2,25 +2,12 @@
 
 #include <doctest/doctest.h>
 
-#include "tests/tools/cli_fixture.h"
+#include "tests/tools/kitchen_copy.h"
 
 namespace parallax::test {
 namespace {
 
-/// A copy of the kitchen, to be spoilt.
-class Kitchen : public CliFixture {
- public:
-  Kitchen() {
-    std::filesystem::copy(std::filesystem::path(PARALLAX_SOURCE_DIR) / "scenarios" / "kitchen",
-                          folder() / "kitchen");
-  }
-  /// Lays something over the world of all plans.
-  void lay_over(const std::string& world) const {
-    replace("kitchen/common.yaml", "  include: world.yaml", "  include: world.yaml\n  " + world);
-  }
-};
-
-void check_refused(const Kitchen& cli, const std::string& place, const std::string& text) {
+void check_refused(const KitchenCopy& cli, const std::string& place, const std::string& text) {
   for (const auto* command : {"check", "run", "rates"}) {
     CAPTURE(command);
     const auto result = cli.parallax({command, "kitchen/plan2.yaml"});
@@ -36,7 +23,7 @@ void check_refused(const Kitchen& cli, const std::string& place, const std::stri
 }
 
 TEST_CASE("a drawer that is longer than its bay") {
-  const Kitchen cli;
+  const KitchenCopy cli;
   // A wall behind the drawers, and a box of one of them that goes through it.
   cli.lay_over(
       "bodies: {wall: {size_m: [0.02, 2, 1], mass_kg: 0, material: wood, "
@@ -46,7 +33,7 @@ TEST_CASE("a drawer that is longer than its bay") {
 }
 
 TEST_CASE("a handle that no arm reaches") {
-  const Kitchen cli;
+  const KitchenCopy cli;
   cli.lay_over(
       "bodies: {drawer_low: {shapes: [{size_m: [0.5, 0.4, 0.1], at_m: [0, 0, 0.05]}, "
       "{size_m: [0.016, 0.6, 0.016], at_m: [-0.325, 0, 3]}]}}\n"
@@ -55,32 +42,32 @@ TEST_CASE("a handle that no arm reaches") {
 }
 
 TEST_CASE("a handle far behind its drawer") {
-  const Kitchen cli;
+  const KitchenCopy cli;
   cli.lay_over("joints: {dLow: {handle: {at_m: [0.9, -0.2, 0.05]}}}");
   check_refused(cli, "common.yaml:", "joints/dLow/handle: there is nothing of `drawer_low`");
 }
 
 TEST_CASE("a region of the starts in the air") {
-  const Kitchen cli;
+  const KitchenCopy cli;
   cli.replace("kitchen/common.yaml", "start: {x: [1.41, 1.51], y: [0.06, 0.09], bottom: 0.85}",
               "start: {x: [1.41, 1.51], y: [0.06, 0.09], bottom: 0.865}");
   check_refused(cli, "common.yaml:", "regions/pw1: nothing in the world is below");
 }
 
 TEST_CASE("a region of the goals outside the world") {
-  const Kitchen cli;
+  const KitchenCopy cli;
   cli.replace("kitchen/common.yaml", "pt4: {x: [-0.95, -0.72]", "pt4: {x: [-9.95, -9.72]");
   check_refused(cli, "common.yaml:", "regions/pt4: nothing in the world reaches into it");
 }
 
 TEST_CASE("a region of the robot that the plan's poses are not in") {
-  const Kitchen cli;
+  const KitchenCopy cli;
   cli.replace("kitchen/common.yaml", "bWork: {x: [0.64, 0.80]", "bWork: {x: [40.64, 40.80]");
   check_refused(cli, "plan2.lisp:", "lies outside all regions of `region`");
 }
 
 TEST_CASE("starts that always interpenetrate: a bounded number, and the pair that collides") {
-  const Kitchen cli;
+  const KitchenCopy cli;
   cli.lay_over(
       "bodies: {block: {size_m: [0.2, 0.2, 0.2], mass_kg: 0, material: wood, "
       "position_m: [0.72, 0.06, 0.3]}}");

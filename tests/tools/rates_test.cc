@@ -74,6 +74,7 @@ TEST_CASE("counts by cause add up to all discrepancies, the most frequent first"
     before = count;
     sum += count;
     CHECK(cause["example"].get<int>() >= 1);
+    CHECK(cause["start"].contains("robot.x"));
     CHECK(cause["example"].get<int>() <= 60);
     check_interval(cause, 60, 0.95);
   }

@@ -66,6 +66,11 @@ double Kitchen::number(std::string_view name) {
   return std::get<double>(state.find(name)->second);
 }
 
+std::string Kitchen::text(std::string_view name) {
+  const State state = simulator_.state();
+  return std::get<std::string>(state.find(name)->second);
+}
+
 bool Kitchen::flag(std::string_view name) {
   const State state = simulator_.state();
   return std::get<bool>(state.find(name)->second);

@@ -36,6 +36,7 @@ class Kitchen {
 
   double number(std::string_view name);
   bool flag(std::string_view name);
+  std::string text(std::string_view name);
   OdeSimulator& simulator() { return simulator_; }
 
  private:
