@@ -71,8 +71,10 @@ class Campaign {
     journal_ = std::move(*journal);
     result_.journal_open = true;
     const auto complete = explore();
-    if (!complete) return sink_.already_reported();
-    return finished(*complete);
+    // Traces that are finished are not lost to an error in a later one.
+    result_.failed = !complete;
+    if (result_.failed && result_.traces.empty()) return sink_.already_reported();
+    return finished(complete && *complete);
   }
 
  private:

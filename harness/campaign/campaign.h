@@ -44,7 +44,8 @@ struct CampaignOptions {
 ///
 /// Fails, having reported, for a run folder in use, a journal of another run, a simulator that
 /// does not know a variable or a controller (input), starts that are always invalid (input) and an
-/// initial observation that does not map back to the trace's initial state (internal). A simulator
+/// initial observation that does not map back to the trace's initial state (internal). Where that
+/// happens after finished traces, they are returned, marked as failed. A simulator
 /// that is lost too often is reported too, but gives a result, with the verdict kInconclusive.
 base::Result<CampaignResult> run_campaign(const Scenario& scenario, TraceFeed& traces,
                                           const SimulatorFactory& make_simulator,

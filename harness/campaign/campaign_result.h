@@ -79,7 +79,8 @@ struct CampaignResult {
   CampaignVerdict verdict = CampaignVerdict::kInconclusive;
   std::string exploration;          // "all traces explored" | "complete up to bound" | "stopped"
   std::vector<std::string> bounds;  // what was not followed, if complete up to a bound
-  bool interrupted = false;         // the stop flag was raised
+  bool interrupted = false;         // the stop flag was raised, or an error ended it
+  bool failed = false;              // an error ended it, after the traces that are here
   bool journal_open = false;  // if not, the run folder is not this run's, or holds nothing of it
   CriterionSpec criterion;
   SimulatorInfo simulator;

@@ -106,7 +106,7 @@ Json json_of(const Discrepancy& found, const std::string& folder) {
 }
 
 Json json_of(const CampaignResult& result, bool with_timing) {
-  Json out = {{"status", "ok"},
+  Json out = {{"status", result.failed ? "error" : "ok"},
               {"scenario", result.scenario},
               {"seed", result.seed},
               {"verdict", to_string(result.verdict)},

@@ -242,7 +242,9 @@ class TextReport {
            "each claim holds for its trace alone; that all of them hold together is less "
            "certain");
     }
-    if (result_.interrupted) {
+    if (result_.failed) {
+      line("note", "an error ended the run; what was finished before it is above");
+    } else if (result_.interrupted) {
       line("note", fmt::format("interrupted; `--resume --out {}` continues",
                                shell_word(result_.replay_folder)));
     }

@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/cli_json.h"
 #include "tests/tools/kitchen_copy.h"
 
 namespace parallax::test {
@@ -81,6 +84,24 @@ TEST_CASE("starts that always interpenetrate: a bounded number, and the pair tha
       CHECK(result.err.find(part) != std::string::npos);
     }
   }
+}
+
+TEST_CASE("what was found before an error in a later trace is reported all the same") {
+  const KitchenCopy cli;
+  // Nothing holds the spoon: trace 1 goes wrong. In trace 2 it lies in the floor of its drawer.
+  cli.write("kitchen/late.yaml",
+            "include: plan2.yaml\n"
+            "world: {friction: {spoon-pad: 0}}\n"
+            "regions: {sets: {drawers: {cells: {dMid: {bottom: [-0.05, 0.07], "
+            "start: {bottom: -0.006}}}}}}\n");
+  const auto found = json_of(cli, {"run", "kitchen/late.yaml", "--keep-going", "--out", "out"}, 3);
+  CHECK(found.at("status") == "error");
+  CHECK(found.at("verdict") == "discrepancy");
+  CHECK(found.at("traces").size() == 1);
+  CHECK(found.at("discrepancies").at(0).at("trace") == 1);
+  CHECK(found.at("diagnostics").dump().find("100 starts in a row") != std::string::npos);
+  CHECK(cli.read("out/report.txt").find("an error ended the run") != std::string::npos);
+  CHECK(cli.parallax({"replay", "out"}).code == 0);
 }
 
 }  // namespace
