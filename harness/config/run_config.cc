@@ -139,6 +139,7 @@ RateExpectation read_rate(const YamlNode& node, base::DiagnosticSink& sink) {
 Expectation read_expectation(const YamlNode& node, base::DiagnosticSink& sink) {
   static constexpr std::array<std::string_view, 3> kVerdicts = {"discrepancy", "no-discrepancy",
                                                                 "inconclusive"};
+  const auto errors_before = sink.error_count();
   Expectation expect;
   YamlFields fields(node, "`expect`", sink);
   fields.only(
@@ -150,9 +151,13 @@ Expectation read_expectation(const YamlNode& node, base::DiagnosticSink& sink) {
   fields.integer("max_simulations", 0, std::numeric_limits<std::int64_t>::max(),
                  expect.max_simulations);
   fields.texts("fluents", expect.fluents);
+  if (const auto* fluents = fields.find("fluents")) expect.fluents_source = fluents->range;
   if (const auto* rate = fields.find("rate")) expect.rate = read_rate(*rate, sink);
   fields.number("time_limit_s", kTimeout, expect.time_limit_s);
   fields.boolean("fast", expect.fast);
+  if (!expect.of_run() && !expect.rate && sink.error_count() == errors_before) {
+    sink.error(DiagnosticCode::kCaseExpectsNothing, node.range, "expect");
+  }
   return expect;
 }
 

@@ -70,6 +70,7 @@ struct Expectation {
   std::optional<std::int64_t> iterations;
   std::optional<std::int64_t> max_simulations;
   std::vector<std::string> fluents;  // each of these must be among the diverging ones
+  base::SourceRange fluents_source;
   std::optional<RateExpectation> rate;
   std::optional<double> time_limit_s;  // of each process of the case
   bool fast = false;                   // belongs to the part of a suite that is always run

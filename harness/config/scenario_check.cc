@@ -56,6 +56,24 @@ void check_event(const Scenario& scenario, const GroundFluent& event, base::Diag
   }
 }
 
+/// What a suite waits for must be something that can diverge.
+void check_expected_fluents(const Scenario& scenario, const std::vector<GroundFluent>& fluents,
+                            base::DiagnosticSink& sink) {
+  if (!scenario.expect || scenario.expect->fluents.empty()) return;
+  std::vector<std::string> known;
+  for (const auto& fluent : fluents) {
+    known.push_back(fluent.text);
+    const auto outside = scenario.mapping->outside_text(fluent);
+    if (!outside.empty()) known.push_back(outside);
+  }
+  for (const auto& text : scenario.expect->fluents) {
+    if (std::find(known.begin(), known.end(), text) != known.end()) continue;
+    auto error =
+        sink.error(DiagnosticCode::kExpectedFluentUnknown, scenario.expect->fluents_source, text);
+    add_suggestion(error, text, known, "fluents");
+  }
+}
+
 /// Entries that nothing in the model answers to are most likely misspelt.
 void warn_of_unused(const Scenario& scenario, const std::set<std::string>& fluents,
                     const std::set<std::string>& events, base::DiagnosticSink& sink) {
@@ -123,6 +141,7 @@ base::Status check_against_model(const Scenario& scenario, const std::vector<std
     const auto event = ground_fluent(text);
     if (event_symbols.insert(event.symbol).second) check_event(scenario, event, sink);
   }
+  if (mapped) check_expected_fluents(scenario, ground, sink);
   warn_of_unused(scenario, fluent_symbols, event_symbols, sink);
   if (!mapped || sink.error_count() != errors_before) return sink.already_reported();
   return base::Unit{};

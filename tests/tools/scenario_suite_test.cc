@@ -100,6 +100,23 @@ TEST_CASE("a case that cannot be run or runs too long is an error, and the other
   CHECK(document["cases"][1]["problems"][0] == "inconclusive: a limit ended it first");
 }
 
+TEST_CASE("a simulator that does not start is an error with its reason, no failure") {
+  const CliFixture cli;
+  cli.write("case.yaml", "include: wrong_model.yaml\nsimulator: {command: [/bin/false]}\n");
+  const auto document = json_of(cli, {"suite", "case.yaml", "--junit", "junit.xml"}, 1);
+  CHECK(document["errors"] == 1);
+  CHECK(document["failed"] == 0);
+  CHECK(holds(document["cases"][0]["problems"][1], "E7108: the simulator did not start"));
+  CHECK(parse_xml(cli.read("junit.xml")).all("error").size() == 1);
+}
+
+TEST_CASE("a variant takes back what the included scenario expects") {
+  const CliFixture cli;
+  cli.write("case.yaml", "include: wrong_model.yaml\nexpect:\n");
+  CHECK(cli.parallax({"check", "case.yaml"}).code == 0);
+  CHECK(cli.parallax({"suite", "case.yaml"}).code == 2);  // no case
+}
+
 TEST_CASE("--fast leaves out the scenarios that do not say that they are") {
   const CliFixture cli;
   cli.write("scenario.yaml", "name: expects nothing\n");
@@ -138,6 +155,9 @@ TEST_CASE("a wrong expectation is refused where it stands") {
   CHECK(holds(complaint("{rate: {between: [0.3, 1.2]}}"), "from 0 to 1"));
   CHECK(holds(complaint("{rate: {between: 0.3}}"), "between"));
   CHECK(holds(complaint("{rat: {between: [0, 1]}}"), "`rate`"));
+  CHECK(holds(complaint("{}"), "expects nothing"));
+  CHECK(holds(complaint("{fast: true}"), "expects nothing"));
+  CHECK(holds(complaint("{fluents: [BoxIn(r3)]}"), "`BoxIn(r1)`"));
   CHECK(holds(complaint("{time_limit_s: 0}"), "time_limit_s"));
   CHECK(holds(complaint("{fast: 3}"), "fast"));
 }

@@ -26,9 +26,29 @@ std::string no_answer(int code) {
   return fmt::format("the program ended with exit code {}", code);
 }
 
+/// The first error in a document of `--json`, or empty.
+std::string first_error(const std::string& document) {
+  const auto json = nlohmann::json::parse(document, nullptr, false);
+  if (!json.is_object()) return {};
+  for (const auto& diagnostic : json.value("diagnostics", nlohmann::json::array())) {
+    if (diagnostic.value("severity", "") != "error") continue;
+    return fmt::format("{}: {}", diagnostic.value("code", ""), diagnostic.value("message", ""));
+  }
+  return {};
+}
+
 void report_no_answer(const ChildResult& child, CaseResult& result) {
   result.outcome = Outcome::kError;
   result.problems = {no_answer(child.code)};
+  if (auto error = first_error(child.out); !error.empty()) {
+    result.problems.push_back(std::move(error));
+  }
+}
+
+/// Did an error end the command, whatever its exit code?
+bool has_failed(const std::string& document) {
+  const auto json = nlohmann::json::parse(document, nullptr, false);
+  return !json.is_object() || json.value("status", "") != "ok";
 }
 
 void add_limit(const harness::Expectation& expect, std::vector<std::string>& words) {
@@ -74,7 +94,7 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
   result.messages += child.err;
   // Exit code 1 is a finding and 4 a verdict that may be the expected one; both give a document.
   const bool answered = child.code == 0 || child.code == 1 || child.code == 4;
-  if (!answered) return report_no_answer(child, result);
+  if (!answered || has_failed(child.out)) return report_no_answer(child, result);
   for (auto& problem : unmet(expect, child.out)) result.problems.push_back(std::move(problem));
 }
 
