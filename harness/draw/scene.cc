@@ -50,9 +50,11 @@ Scene scene_of(const OdeWorld& world, const WorldSpec& spec) {
           R_WB * Eigen::AngleAxisd(shape.yaw_rad, Eigen::Vector3d::UnitZ());
       scene.boxes.push_back({layout.bodies[id].name,
                              kind_of(layout, spec, id),
-                             {shape.size_m, world.position(id) + R_WB * shape.p_BS, R_WS}});
+                             {shape.size_m, world.position(id) + R_WB * shape.p_BS, R_WS},
+                             world.position(id)});
     }
   }
+  scene.base = base_body(spec);
   if (spec.mobile) scene.arms = arms_of(world, *spec.mobile);
   return scene;
 }

@@ -15,6 +15,7 @@ struct SceneBox {
   std::string body;
   SceneKind kind = SceneKind::kFurniture;
   Probe box;
+  Eigen::Vector3d origin_W = Eigen::Vector3d::Zero();  // of the body
 };
 
 /// From a shoulder to its palm. The simulator has no body there; without the line a hand would
@@ -28,6 +29,7 @@ struct SceneArm {
 struct Scene {
   std::vector<SceneBox> boxes;  // in order of the bodies' names
   std::vector<SceneArm> arms;
+  std::string base;  // the robot's body that drives; empty: none
 };
 
 Scene scene_of(const OdeWorld& world, const WorldSpec& spec);

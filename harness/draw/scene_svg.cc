@@ -7,16 +7,18 @@
 #include <limits>
 
 #include "compiler/base/xml_text.h"
+#include "harness/draw/scene_marks.h"
+#include "harness/draw/scene_view.h"
 
 namespace parallax::harness {
 namespace {
 
 constexpr double kMargin_m = 0.1;
-constexpr double kGap_px = 30.0;   // between the views
-constexpr double kHead_px = 92.0;  // for the title
-constexpr double kFoot_px = 44.0;  // for the scale
+constexpr double kGap_px = 30.0;    // between the views
+constexpr double kHead_px = 112.0;  // for the title and the notes
+constexpr double kFoot_px = 44.0;   // for the scale
 constexpr double kMaxWidth_px = 6000.0;
-constexpr double kSmallFont_px = 12.0;
+constexpr double kSmallFont_px = 12.0, kNoteFont_px = 11.0;
 
 /// The greatest of 1, 2 and 5 times a power of ten that is not longer.
 double round_length_m(double longest_m) {
@@ -28,9 +30,9 @@ double round_length_m(double longest_m) {
 }
 
 /// A bar of a round length, a tenth to a third of the view.
-std::string scale_bar(const SceneView& view, double right_px, double px_per_m) {
+std::string scale_bar(const Projection& view, double right_px, double px_per_m) {
   const double length_m = round_length_m(0.3 * view.width_px() / px_per_m);
-  const double y = view.bottom_px() + 20.0, left = right_px - length_m * px_per_m;
+  const double y = view.area().high.y() + 20.0, left = right_px - length_m * px_per_m;
   return fmt::format(
       "<path d=\"M{0:.1f} {2:.1f}v8m0 -4H{1:.1f}m0 -4v8\" fill=\"none\" stroke=\"#444\"/>\n"
       "<text x=\"{3:.1f}\" y=\"{4:.1f}\" font-size=\"10\" text-anchor=\"middle\" "
@@ -61,7 +63,8 @@ std::string text_line(const std::string& text, double y_px, double font_px, cons
                      kGap_px, y_px, font_px, colour, base::xml_escaped(text));
 }
 
-std::string head(const SvgOptions& options, double width_px) {
+std::string head(const SvgOptions& options, const std::vector<std::string>& notes,
+                 double width_px) {
   const auto characters = [&](double font_px) {
     return static_cast<std::size_t>(std::max(10.0, (width_px - 2.0 * kGap_px) / (0.58 * font_px)));
   };
@@ -71,8 +74,16 @@ std::string head(const SvgOptions& options, double width_px) {
   }
   double y = 42.0;
   for (const auto& line : wrapped(options.subtitle, characters(kSmallFont_px), 2)) {
-    out += text_line(line, y, kSmallFont_px, "#444");
+    out += text_line(line, y, kSmallFont_px, options.warns ? kWarningColour : "#444");
     y += 16.0;
+  }
+  std::string all;
+  for (const auto& note : notes) all += note + "; ";
+  all += "dotted: behind what is nearer";
+  y += 4.0;
+  for (const auto& line : wrapped(all, characters(kNoteFont_px), 2)) {
+    out += text_line(line, y, kNoteFont_px, "#444");
+    y += 14.0;
   }
   return out;
 }
@@ -84,67 +95,87 @@ std::string caption(const char* text, double left_px) {
       left_px, kHead_px - 6.0, text);
 }
 
-void widen(SceneFrame& frame, const RegionMap& regions) {
+/// Takes in regions and goals, as far as the frame's own size beyond it.
+void widen(SceneFrame& frame, const std::vector<Picture>& pictures, const RegionMap* regions) {
   const Eigen::Vector3d size = frame.high - frame.low;
   const SceneFrame limit{frame.low - size, frame.high + size};
-  for (const Region& region : regions.regions()) {
+  const auto include = [&](Eigen::Index i, double value) {
+    frame.low[i] = std::min(frame.low[i], std::max(value, limit.low[i]));
+    frame.high[i] = std::max(frame.high[i], std::min(value, limit.high[i]));
+  };
+  for (const Picture& picture : pictures) {
+    if (!picture.action.goal) continue;
+    for (const Eigen::Index i : {0, 1}) include(i, picture.action.goal->to_W[i]);
+  }
+  if (regions == nullptr) return;
+  for (const Region& region : regions->regions()) {
     if (!region.frame.empty()) continue;
     for (const Axis axis : {Axis::kX, Axis::kY}) {
-      const auto i = static_cast<Eigen::Index>(axis);
       if (!region.on(axis)) continue;
-      frame.low[i] = std::min(frame.low[i], std::max(region.on(axis)->lower, limit.low[i]));
-      frame.high[i] = std::max(frame.high[i], std::min(region.on(axis)->upper, limit.high[i]));
+      include(static_cast<Eigen::Index>(axis), region.on(axis)->lower);
+      include(static_cast<Eigen::Index>(axis), region.on(axis)->upper);
     }
   }
 }
 
 }  // namespace
 
-SceneFrame frame_around(const std::vector<Scene>& scenes, const RegionMap* regions) {
+SceneFrame frame_around(const std::vector<Picture>& pictures, const RegionMap* regions) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   SceneFrame frame{Eigen::Vector3d::Constant(kInfinity), Eigen::Vector3d::Constant(-kInfinity)};
-  for (const Scene& scene : scenes) {
+  const auto include = [&frame](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+    frame = {frame.low.cwiseMin(low), frame.high.cwiseMax(high)};
+  };
+  const auto include_scene = [&](const Scene& scene) {
     for (const SceneBox& item : scene.boxes) {
       const Eigen::Vector3d half = 0.5 * item.box.R_WS.cwiseAbs() * item.box.size_m;
-      frame.low = frame.low.cwiseMin(item.box.p_WS - half);
-      frame.high = frame.high.cwiseMax(item.box.p_WS + half);
+      include(item.box.p_WS - half, item.box.p_WS + half);
     }
-    for (const SceneArm& arm : scene.arms) {
-      frame.low = frame.low.cwiseMin(arm.from_W);
-      frame.high = frame.high.cwiseMax(arm.from_W);
+    for (const SceneArm& arm : scene.arms) include(arm.from_W, arm.from_W);
+  };
+  for (const Picture& picture : pictures) {
+    include_scene(picture.scene);
+    include_scene(picture.action.ghost);
+    include_scene(picture.action.meeting);
+    for (const SceneTrack& track : picture.action.tracks) {
+      for (const Eigen::Vector3d& p : track.points_W) include(p, p);
     }
   }
   if (frame.low.x() > frame.high.x()) frame = SceneFrame{};  // no bodies
-  frame.low.z() = std::min(frame.low.z(), 0.0);
-  frame.high.z() = std::max(frame.high.z(), 0.0);
-  if (regions != nullptr) widen(frame, *regions);
+  include({frame.low.x(), frame.low.y(), 0.0}, {frame.high.x(), frame.high.y(), 0.0});
+  widen(frame, pictures, regions);
   frame.low -= kMargin_m * Eigen::Vector3d::Ones();
   frame.high += kMargin_m * Eigen::Vector3d::Ones();
   return frame;
 }
 
-std::string scene_svg(const Scene& scene, const SceneFrame& frame, const SvgOptions& options) {
+std::string scene_svg(const Picture& picture, const SceneFrame& frame, const SvgOptions& options) {
   const Eigen::Vector3d size = frame.high - frame.low;
   const double longest_m = std::max({2.0 * size.x(), size.y(), size.z()});
   const double px_per_m = std::min(options.pixels_per_m, kMaxWidth_px / longest_m);
   const double side_px = 2.0 * kGap_px + px_per_m * size.x();
-  SceneView above(frame, ViewKind::kAbove, kGap_px, kHead_px, px_per_m);
-  const SceneView side(frame, ViewKind::kSide, side_px, kHead_px, px_per_m);
-  const double width = 3.0 * kGap_px + 2.0 * above.width_px();
-  const double height = kHead_px + kFoot_px + std::max(above.height_px(), side.height_px());
+  const Projection from_above(frame, ViewKind::kAbove, kGap_px, kHead_px, px_per_m);
+  const Projection from_side(frame, ViewKind::kSide, side_px, kHead_px, px_per_m);
+  SceneView above(from_above, picture.scene), side(from_side, picture.scene);
+  const double width = 3.0 * kGap_px + 2.0 * from_above.width_px();
+  const double height =
+      kHead_px + kFoot_px + std::max(from_above.height_px(), from_side.height_px());
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
       "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\">\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
       std::ceil(width), std::ceil(height));
-  out += head(options, width);
-  out += caption("from above", kGap_px) + caption("from the side", side_px);
-  out += above.scene(scene);
+  out += head(options, picture.action.notes, width);
+  out += caption("from above", kGap_px) + caption("from the side, along y", side_px);
+  out += above.bodies();
   if (options.regions != nullptr) out += above.regions(*options.regions);
-  out += above.item_names(scene);
-  out += side.floor() + side.scene(scene);
+  out += marks(picture.action, picture.scene, from_above);
+  out += above.body_names(picture.action.met);
+  if (options.regions != nullptr) out += above.region_names(*options.regions);
+  out += side.floor() + side.bodies() + marks(picture.action, picture.scene, from_side);
+  out += side.body_names(picture.action.met);
   out += above.axes() + side.axes();
-  out += scale_bar(above, kGap_px + above.width_px(), px_per_m);
+  out += scale_bar(from_above, kGap_px + from_above.width_px(), px_per_m);
   return out + "</svg>\n";
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/draw/scene.h"
+#include "harness/draw/scene_action.h"
 #include "harness/draw/scene_view.h"
 #include "harness/region/region.h"
 
@@ -12,17 +12,24 @@ namespace parallax::harness {
 struct SvgOptions {
   std::string title;                   // above the pictures
   std::string subtitle;                // below the title, two lines at most
+  bool warns = false;                  // the subtitle tells of something that went wrong
   const RegionMap* regions = nullptr;  // drawn in the view from above, unless null
   double pixels_per_m = 220.0;         // less where the picture would be wider than 6000 pixels
 };
 
-/// The box around all the scenes and the floor, with a margin; not empty. Regions (null: none)
-/// widen it at most to three times its size.
-SceneFrame frame_around(const std::vector<Scene>& scenes, const RegionMap* regions);
+/// A world as it stands, with what led to it.
+struct Picture {
+  Scene scene;
+  SceneAction action;
+};
+
+/// The box around all that the pictures show and the floor, with a margin; not empty. Regions
+/// (null: none) and goals widen it at most to three times the size of the bodies.
+SceneFrame frame_around(const std::vector<Picture>& pictures, const RegionMap* regions);
 
 /// An SVG picture with a view from above (x to the right, y up) and one from the side (looking
 /// along +y: x to the right, z up), axes and a scale. Boxes nearer to the viewer cover those behind
-/// them; furniture and robots are translucent. Regions of moving frames are not drawn.
-std::string scene_svg(const Scene& scene, const SceneFrame& frame, const SvgOptions& options);
+/// them, whose outlines are dotted there. Regions of moving frames are not drawn.
+std::string scene_svg(const Picture& picture, const SceneFrame& frame, const SvgOptions& options);
 
 }  // namespace parallax::harness

@@ -81,6 +81,9 @@ OdeSimulator::OdeSimulator(const WorldSpec& spec) : impl_(std::make_unique<Impl>
 OdeSimulator::~OdeSimulator() = default;
 
 const OdeWorld& OdeSimulator::world() const { return impl_->world; }
+std::optional<Gaze> OdeSimulator::gaze() const {
+  return impl_->perception ? impl_->perception->line_of_sight() : std::nullopt;
+}
 const StepStatistics& OdeSimulator::statistics() const { return impl_->world.statistics(); }
 void OdeSimulator::measure_times(bool on) { impl_->world.measure_times(on); }
 

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "harness/world/ode_world.h"
+#include "harness/world/perception.h"
 #include "harness/world/simulator.h"
 #include "harness/world/world_spec.h"
 
@@ -35,6 +37,8 @@ class OdeSimulator final : public Simulator {
   void watch(Watcher watcher, void* context);
 
   const OdeWorld& world() const;
+  /// Of the camera of a mobile robot that has looked at something.
+  std::optional<Gaze> gaze() const;
   const StepStatistics& statistics() const;
   void measure_times(bool on);
 

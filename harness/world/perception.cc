@@ -106,6 +106,11 @@ void Perception::drop_lost_gaze() {
   if (gaze().empty()) looking_ = false;
 }
 
+std::optional<Gaze> Perception::line_of_sight() const {
+  if (!looking_) return std::nullopt;
+  return Gaze{robot_.camera(), place_in_world(gaze_)};
+}
+
 Eigen::Vector3d Perception::middle_of_chord(const Eigen::Vector3d& from, const Eigen::Vector3d& aim,
                                             BodyId id) const {
   const Bounds box = own_bounds(world_.layout().bodies[id]);

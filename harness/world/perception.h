@@ -28,6 +28,11 @@ struct Sighting {
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  // estimate of the origin; only with seen > 0
 };
 
+/// The camera and the point that it was told to look at, in the world.
+struct Gaze {
+  Eigen::Vector3d camera_W = Eigen::Vector3d::Zero(), point_W = Eigen::Vector3d::Zero();
+};
+
 /// A camera that sees points of bodies by casting rays, and what was made of it. An estimate is the
 /// median of the middles of the stretches that the rays have inside the body: how a body of known
 /// shape is found, with an error that depends on the view.
@@ -43,6 +48,8 @@ class Perception {
   std::string gaze() const;
   /// Once the place is out of the cone the robot looks at nothing, also when it drives back.
   void drop_lost_gaze();
+  /// Along which `sight` sees; nothing before the first look or once it was dropped.
+  std::optional<Gaze> line_of_sight() const;
 
   /// Casts rays at `points` points spread along the longest side of the body.
   Sighting sight(BodyId id, int points) const;

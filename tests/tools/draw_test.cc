@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "tests/support/xml.h"
@@ -134,7 +135,7 @@ TEST_CASE("a world is drawn with its bodies, regions and a scale") {
   CHECK(result.out == "sub/world.svg\n");
   const auto svg = checked_picture(cli.read("sub/world.svg"));
   for (const auto* text : {"place the box at the edge of r1", "r1", "r2", "box", "0.5 m", "x", "y",
-                           "z", "from above", "from the side"}) {
+                           "z", "from above", "from the side, along y"}) {
     CAPTURE(text);
     CHECK(has_text(svg, text));
   }
@@ -189,17 +190,42 @@ TEST_CASE("each action of a recorded simulation has its picture, which shows wha
     const double apart = seen["box.x"].get<double>() - seen["robot.x"].get<double>();
     CHECK(body(svg, "box").x() - body(svg, "base").x() ==
           doctest::Approx(apart * pixels_per_m(svg)).scale(100.0).epsilon(0.01));
+    // Drives show their way and goal, grasps the hand's way and a moment in between.
+    std::set<std::string> marks;
+    for (const auto* group : svg.all("g")) marks.insert(group->at("class"));
+    CHECK(marks.contains("track") == (i > 0));
+    CHECK(marks.contains("goal") == (i % 2 == 1));
     // All pictures of a run show the same part of the world.
     if (i == 0) views = svg.at("viewBox");
     CHECK(svg.at("viewBox") == views);
   }
-  CHECK(has_text(parse_xml(cli.read("run/pictures/00.svg")), "simulation 1.2"));
+  CHECK(has_text(parse_xml(cli.read("run/pictures/00.svg")), "simulation 1.2, at 0.00 s"));
 
   const auto before = files_below(cli.folder() / "run/pictures");
   REQUIRE(cli.parallax({"draw", "run", "--sample", "1.2", "-o", "again"}).code == 0);
   CHECK(files_below(cli.folder() / "again") == before);
   REQUIRE(cli.parallax({"draw", "run", "--sample", "1.1", "-o", "other"}).code == 0);
   CHECK(files_below(cli.folder() / "other") != before);
+}
+
+TEST_CASE("an action that failed says so in red, with its time and reason") {
+  const CliFixture cli;
+  const auto scenario = absolute("warehouse/oily_pads.yaml");
+  REQUIRE(cli.parallax({"run", scenario, "--seed", "1", "--out", "run"}).code == 1);
+  REQUIRE(cli.parallax({"draw", "run"}).code == 0);
+  int warnings = 0;
+  for (const auto& [path, text] : files_below(cli.folder() / "run/pictures")) {
+    const auto svg = checked_picture(text);
+    for (const auto* line : svg.all("text")) {
+      const bool failed = line->text.starts_with("failed after ");
+      if (!failed && !line->text.starts_with("ok after ")) continue;
+      CHECK((line->at("fill") == "#c00020") == failed);
+      CHECK(line->text.find(" s, at ") != std::string::npos);
+      if (failed) CHECK(line->text.find(" s: ") != std::string::npos);
+      warnings += failed ? 1 : 0;
+    }
+  }
+  CHECK(warnings > 0);
 }
 
 TEST_CASE("names that XML cannot hold, a far body and a long reason leave the picture whole") {
@@ -219,68 +245,6 @@ TEST_CASE("names that XML cannot hold, a far body and a long reason leave the pi
     far = far || polygon->children.at(0).text == "<far & \"high\">";
   }
   CHECK(far);
-}
-
-TEST_CASE("what cannot be drawn is told with its exit code") {
-  const CliFixture cli;
-  const auto complains = [&](const std::vector<std::string>& words, int code,
-                             const std::string& part) {
-    auto arguments = words;
-    arguments.insert(arguments.begin(), "draw");
-    const auto result = cli.parallax(arguments);
-    CAPTURE(result.err);
-    CHECK(result.code == code);
-    CHECK(result.out.empty());
-    CHECK(result.err.find(part) != std::string::npos);
-  };
-  complains({"missing.yaml"}, 2, "missing.yaml: error");
-  complains({"edge.yaml", "--sample", "1.1"}, 2, "--sample");
-  cli.write("broken.yaml", "name: [");
-  complains({"broken.yaml"}, 3, "broken.yaml:1:");
-  cli.write("taken", "");
-  complains({"edge.yaml", "-o", "taken/world.svg"}, 2, "taken/world.svg");
-  std::filesystem::create_directory(cli.folder() / "empty");
-  complains({"empty"}, 2, "no journal");
-
-  REQUIRE(cli.parallax({"run", "edge.yaml", "--out", "run"}).code == 1);
-  complains({"run", "--sample", "1.9"}, 2, "no simulation 1.9");
-  complains({"run", "--sample", "one"}, 2, "--sample");
-  const auto journal = cli.read("run/journal.ndjson");
-  SUBCASE("a journal of which only the first line was written has no simulation") {
-    cli.write("run/journal.ndjson", journal.substr(0, journal.find('\n') + 1));
-    complains({"run"}, 2, "no simulation");
-  }
-  SUBCASE("a first line that was cut off is no journal") {
-    cli.write("run/journal.ndjson", journal.substr(0, 40));
-    complains({"run"}, 2, "no journal");
-  }
-  SUBCASE("a foreign line is named with its place") {
-    cli.write("run/journal.ndjson", journal.substr(0, journal.find('\n') + 1) + "{}\n");
-    complains({"run"}, 3, "run/journal.ndjson:2:");
-  }
-  SUBCASE("a scenario that has changed since shows other simulations") {
-    cli.replace("world.yaml", "mass_kg: 0.3", "mass_kg: 0.31");
-    complains({"run"}, 3, "has changed");
-  }
-  SUBCASE("a record that was tampered with is not what happens") {
-    auto changed = journal;
-    const auto at = changed.find("\"sim_time_s\":");
-    REQUIRE(at != std::string::npos);
-    changed[at + 13] = changed[at + 13] == '9' ? '8' : '9';
-    cli.write("run/journal.ndjson", changed);
-    complains({"run"}, 3, "ended otherwise than recorded");
-  }
-}
-
-TEST_CASE("a run whose last line was cut off is drawn as far as it goes, with a warning") {
-  const CliFixture cli;
-  REQUIRE(cli.parallax({"run", "edge.yaml", "--seed", "5", "--out", "run"}).code == 1);
-  auto journal = cli.read("run/journal.ndjson");
-  cli.write("run/journal.ndjson", journal.substr(0, journal.size() - 30));
-  const auto result = cli.parallax({"draw", "run", "--sample", "1.1"});
-  CHECK(result.code == 0);
-  CHECK(result.err.find("run/journal.ndjson") != std::string::npos);
-  CHECK(files_below(cli.folder() / "run/pictures").size() == 5);
 }
 
 }  // namespace

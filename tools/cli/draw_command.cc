@@ -6,6 +6,7 @@
 #include "compiler/base/file_io.h"
 #include "harness/campaign/compare.h"
 #include "harness/campaign/recorded_run.h"
+#include "harness/draw/action_recorder.h"
 #include "harness/draw/scene_svg.h"
 #include "harness/world/ode_simulator.h"
 #include "tools/cli/command.h"
@@ -26,28 +27,34 @@ struct Options {
   bool no_regions = false;
 };
 
-/// The world after one action, with what stands above its picture.
-struct Picture {
+/// What stands above a picture.
+struct Caption {
   std::string title, subtitle;
-  harness::Scene scene;
+  bool warns = false;
+};
+
+/// The pictures of one simulation.
+struct Album {
+  std::vector<Caption> captions;
+  std::vector<harness::Picture> pictures;
 };
 
 class Writer {
  public:
   Writer(const Options& options, const harness::Scenario& scenario,
-         const std::vector<harness::Scene>& scenes, Invocation& invocation)
+         const std::vector<harness::Picture>& pictures, Invocation& invocation)
       : invocation_(invocation) {
     if (!options.no_regions) svg_.regions = &scenario.mapping->regions();
-    frame_ = harness::frame_around(scenes, svg_.regions);
+    frame_ = harness::frame_around(pictures, svg_.regions);
   }
 
-  bool write(const fs::path& path, const std::string& title, const std::string& subtitle,
-             const harness::Scene& scene) {
-    svg_.title = title;
-    svg_.subtitle = subtitle;
+  bool write(const fs::path& path, const Caption& caption, const harness::Picture& picture) {
+    svg_.title = caption.title;
+    svg_.subtitle = caption.subtitle;
+    svg_.warns = caption.warns;
     std::error_code error;
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
-    const auto text = harness::scene_svg(scene, frame_, svg_);
+    const auto text = harness::scene_svg(picture, frame_, svg_);
     if (!base::write_file_atomically(path, text, invocation_.sink())) return false;
     written_.push_back(path.string());
     return true;
@@ -82,31 +89,40 @@ int draw_start(const Options& options, Invocation& invocation) {
     return 0;
   }
   const harness::OdeWorld world(scenario->world);
-  const std::vector<harness::Scene> scenes = {harness::scene_of(world, scenario->world)};
-  Writer writer(options, *scenario, scenes, invocation);
+  const std::vector<harness::Picture> pictures = {{harness::scene_of(world, scenario->world), {}}};
+  Writer writer(options, *scenario, pictures, invocation);
   const auto& title = scenario->title.empty() ? scenario->name : scenario->title;
   const fs::path out = options.out.empty() ? fs::path("scene.svg") : fs::path(options.out);
-  if (writer.write(out, title, "before a start is drawn", scenes.front())) writer.report();
+  if (writer.write(out, {title, "before a start is drawn"}, pictures.front())) writer.report();
   return 0;
 }
 
+Caption caption_of(std::size_t number, const std::string& event, const std::string& controller,
+                   const harness::Outcome& outcome, double begin_s) {
+  return {fmt::format("{}: {} ({})", number, event, controller),
+          fmt::format("{} after {:.2f} s, at {:.2f} s{}{}", to_string(outcome.status),
+                      outcome.sim_time_s, begin_s + outcome.sim_time_s,
+                      outcome.reason.empty() ? "" : ": ", outcome.reason),
+          outcome.status != harness::SimStatus::kOk};
+}
+
 /// Simulates a recorded run again; fails, having reported, where it is another one than recorded.
-base::Result<std::vector<Picture>> simulate(const harness::RecordedRun& run,
-                                            const harness::Scenario& scenario,
-                                            harness::OdeSimulator& simulator,
-                                            const std::string& folder, base::DiagnosticSink& sink) {
+base::Result<Album> simulate(const harness::RecordedRun& run, const harness::Scenario& scenario,
+                             harness::OdeSimulator& simulator, const std::string& folder,
+                             base::DiagnosticSink& sink) {
   const auto reset = simulator.reset(run.record.initial, run.record.seed);
   if (reset.status != harness::SimStatus::kOk) {
     return sink.error_about(DiagnosticCode::kReplayImpossible, folder, reset.reason);
   }
-  std::vector<Picture> pictures;
-  const auto take = [&](const std::string& title, const std::string& subtitle) {
-    pictures.push_back({title, subtitle, harness::scene_of(simulator.world(), scenario.world)});
-  };
-  take("start", fmt::format("simulation {}.{}", run.id.trace, run.id.sample));
+  harness::ActionRecorder recorder(simulator, scenario.world);
+  Album album;
+  album.captions.push_back(
+      {"start", fmt::format("simulation {}.{}, at 0.00 s", run.id.trace, run.id.sample)});
+  album.pictures.push_back({recorder.scene(), {}});
+  double time_s = 0.0;
   for (std::size_t i = 0; i < run.calls.size() && !stop_flag().load(); ++i) {
     const auto& call = run.calls[i];
-    const auto outcome = simulator.act(call.controller, call.arguments, call.time_limit_s);
+    const auto outcome = recorder.act(call.controller, call.arguments, call.time_limit_s);
     if (outcome.status == harness::SimStatus::kLost) break;  // there is no state to draw
     const auto& recorded = run.record.outcomes;
     if (i < recorded.size() && (recorded[i].status != outcome.status ||
@@ -115,11 +131,11 @@ base::Result<std::vector<Picture>> simulate(const harness::RecordedRun& run,
           DiagnosticCode::kReplayImpossible, folder,
           fmt::format("action {}, {}, ended otherwise than recorded", i + 1, run.events.at(i)));
     }
-    take(fmt::format("{}: {} ({})", i + 1, run.events.at(i), call.controller),
-         fmt::format("{}, {:.2f} s{}{}", to_string(outcome.status), outcome.sim_time_s,
-                     outcome.reason.empty() ? "" : ": ", outcome.reason));
+    album.captions.push_back(caption_of(i + 1, run.events.at(i), call.controller, outcome, time_s));
+    album.pictures.push_back({recorder.scene(), recorder.action()});
+    time_s += outcome.sim_time_s;
   }
-  return pictures;
+  return album;
 }
 
 /// A picture of the start and one after each action of a recorded simulation.
@@ -153,17 +169,14 @@ int draw_run(const Options& options, Invocation& invocation) {
     sink.error_about(DiagnosticCode::kReplayImpossible, options.what, obstacle);
     return 0;
   }
-  const auto pictures = simulate(*run, scenario, simulator, options.what, sink);
-  if (!pictures) return 0;
-  std::vector<harness::Scene> scenes;
-  for (const auto& picture : *pictures) scenes.push_back(picture.scene);
-  Writer writer(options, scenario, scenes, invocation);
+  const auto album = simulate(*run, scenario, simulator, options.what, sink);
+  if (!album) return 0;
+  Writer writer(options, scenario, album->pictures, invocation);
   const fs::path folder =
       options.out.empty() ? fs::path(options.what) / "pictures" : fs::path(options.out);
-  for (std::size_t i = 0; i < pictures->size(); ++i) {
-    const auto& picture = (*pictures)[i];
+  for (std::size_t i = 0; i < album->pictures.size(); ++i) {
     const auto path = folder / fmt::format("{:02}.svg", i);
-    if (!writer.write(path, picture.title, picture.subtitle, picture.scene)) return 0;
+    if (!writer.write(path, album->captions[i], album->pictures[i])) return 0;
   }
   writer.report();
   return 0;
@@ -187,7 +200,9 @@ Command add_draw_command(CLI::App& app) {
       "  parallax draw out/plan2                      the run's first discrepancy, action by "
       "action\n"
       "  parallax draw out/plan2 --sample 1.3 -o pictures\n"
-      "Each picture shows the world from above and from the side.\n"
+      "Each picture shows the world from above and from the side, dotted where something nearer\n"
+      "covers it; after an action also its way, a moment of it (dashed), the camera's cone, the\n"
+      "goal of a drive (cross) and, in red, what went wrong.\n"
       "Exit codes: 0 drawn, 3 the scenario has changed since the run.");
   command->add_option("what", options->what, "Scenario file, or folder of a run")->required();
   command->add_option("-o,--out", options->out,
