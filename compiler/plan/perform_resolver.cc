@@ -155,7 +155,8 @@ Result<std::string> PerformResolver::mapped(std::string_view function, ValueId v
     auto error = sink_.error(DiagnosticCode::kPoseOutsideRegions, source, pose.x_m, pose.y_m,
                              pose.z_m, function);
     if (const auto near = locator_.nearest(function, pose)) {
-      error.note(fmt::format("the nearest is `{}`, {:.4g} m away", near->region, near->distance_m));
+      error.note(fmt::format("the nearest is `{}`, {:.4g} m away{}", near->region, near->distance_m,
+                             near->outside.empty() ? "" : " (" + near->outside + ")"));
     }
     return error;
   }

@@ -10,6 +10,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/judge.h"
 #include "harness/campaign/sample_runner.h"
+#include "harness/campaign/start_blame.h"
 #include "harness/campaign/worker_pool.h"
 #include "harness/confidence/quantiles.h"
 
@@ -110,8 +111,8 @@ class Estimator {
     rates.rejected += record.rejected;
     switch (record.status) {
       case SampleStatus::kRejected:
-        return sink_.error(DiagnosticCode::kStartsRejected, scenario_.sampling_source,
-                           record.rejected, record.sample, record.trace, record.reason);
+        return report_rejected(scenario_, plan.trace, record.rejected, record.sample, record.reason,
+                               sink_);
       case SampleStatus::kRefused:
         return sink_.error(DiagnosticCode::kSimulatorRefused, scenario_.actions_source, "a request",
                            record.reason);

@@ -37,8 +37,8 @@ std::optional<SampleRecord> repeat_sample(const std::vector<ActionCall>& calls,
                                           const std::function<bool()>& abandoned);
 
 /// The calls for the events of a trace: each action's own arguments, with "{0}" replaced by the
-/// event's argument 0, and what the plan says laid over them. Reports kMissingArgument for the
-/// built-in simulator's controllers.
+/// event's argument 0, and what the plan says laid over them. Reports kMissingArgument and
+/// kBadWorld for the built-in simulator's controllers.
 base::Result<std::vector<ActionCall>> action_calls(const Scenario& scenario,
                                                    const CampaignTrace& trace,
                                                    base::DiagnosticSink& sink);

@@ -9,6 +9,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/compare.h"
 #include "harness/campaign/judge.h"
+#include "harness/campaign/start_blame.h"
 #include "harness/confidence/claim.h"
 #include "harness/confidence/regression_frame.h"
 
@@ -99,9 +100,8 @@ class TraceCampaign {
     outcome_.result.rejected += record.rejected;
     switch (record.status) {
       case SampleStatus::kRejected:
-        return context_.sink.error(DiagnosticCode::kStartsRejected,
-                                   context_.scenario.sampling_source, record.rejected,
-                                   record.sample, record.trace, record.reason);
+        return report_rejected(context_.scenario, plan_->trace, record.rejected, record.sample,
+                               record.reason, context_.sink);
       case SampleStatus::kRefused:
         return context_.sink.error(DiagnosticCode::kSimulatorRefused,
                                    context_.scenario.actions_source, "a request", record.reason);

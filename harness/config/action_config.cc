@@ -5,6 +5,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
+#include "harness/world/arguments.h"
 #include "harness/world/controller_table.h"
 
 namespace parallax::harness {
@@ -13,12 +14,6 @@ namespace {
 using base::DiagnosticCode;
 
 constexpr double kMaxTimeLimitS = 86400.0;
-
-const ArgumentSpec* find_argument(const ControllerSpec& controller, std::string_view name) {
-  const auto found = std::find_if(controller.arguments.begin(), controller.arguments.end(),
-                                  [&](const ArgumentSpec& a) { return a.name == name; });
-  return found == controller.arguments.end() ? nullptr : &*found;
-}
 
 void unknown_argument(const ControllerSpec& controller, const std::string& name,
                       base::SourceRange range, base::DiagnosticSink& sink) {
@@ -36,6 +31,7 @@ class ArgumentReader {
       : pattern_(pattern), controller_(controller), sink_(sink) {}
 
   State take() { return std::move(arguments_); }
+  std::map<std::string, base::SourceRange> take_sources() { return std::move(sources_); }
 
   void read(const std::string& name, const YamlEntry& entry) {
     if (entry.value.is_map()) {
@@ -48,7 +44,8 @@ class ArgumentReader {
       *text = with_positions(*text, pattern_, entry.value.range, sink_);
     }
     if (controller_ != nullptr && !fits(name, entry, *value)) return;
-    arguments_.emplace(name, std::move(*value));
+    arguments_.insert_or_assign(name, std::move(*value));
+    sources_.insert_or_assign(name, entry.value.range);
   }
 
  private:
@@ -69,14 +66,21 @@ class ArgumentReader {
                   describe(entry.value),
                   wants_name ? fmt::format("the name of a `{}`", argument->unit)
                              : fmt::format("a number [{}]", argument->unit));
+      return false;
     }
-    return right;
+    if (wants_name) return true;  // which names there are is known once the world is
+    const auto fault = wrong_number(*argument, std::get<double>(value));
+    if (fault.empty()) return true;
+    sink_.error(DiagnosticCode::kBadWorld, entry.value.range,
+                fmt::format("actions/{}/{}", pattern_.symbol, name), fault);
+    return false;
   }
 
   const SymbolPattern& pattern_;
   const ControllerSpec* controller_;  // null: another simulator's, unknown here
   base::DiagnosticSink& sink_;
   State arguments_;
+  std::map<std::string, base::SourceRange> sources_;
 };
 
 const ControllerSpec* known_controller(const std::string& name, base::SourceRange range,
@@ -144,6 +148,12 @@ std::optional<ActionBinding> read_action(const YamlEntry& entry, bool built_in,
     reader.read(argument.key, argument);
   }
   action.arguments = reader.take();
+  action.argument_sources = reader.take_sources();
+  const auto fault = table == nullptr ? std::nullopt : wrong_together(*table, action.arguments);
+  if (fault) {
+    sink.error(DiagnosticCode::kBadWorld, action.argument_sources.at(fault->name),
+               fmt::format("actions/{}/{}", action.event, fault->name), fault->text);
+  }
   return action;
 }
 

@@ -6,6 +6,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
+#include "harness/world/world_check.h"
 
 namespace parallax::harness {
 namespace {
@@ -167,6 +168,13 @@ void read_sampling(const YamlNode& node, Scenario& scenario, base::DiagnosticSin
     if (interval->lower > interval->upper) {
       sink.error(DiagnosticCode::kReversedSampling, entry.key_range, name, interval->lower,
                  interval->upper);
+    }
+    const bool built_in = scenario.simulator.command.empty();
+    if (built_in && entry.key.ends_with(".mass") &&
+        !(interval->lower > 0.0 && interval->upper <= kMaxMass_kg)) {
+      sink.error(DiagnosticCode::kYamlOutOfBounds, entry.value.range, name,
+                 fmt::format("from {} to {} kg", interval->lower, interval->upper),
+                 fmt::format("above 0 and at most {:g} kg", kMaxMass_kg));
     }
     scenario.sampling.push_back({entry.key, *interval});
   }

@@ -38,7 +38,13 @@ void read_start(const YamlNode& node, Region& region, base::DiagnosticSink& sink
     const auto name = fmt::format("`{}` of the start in `{}`", to_string(axis), region.name);
     const auto interval = read_interval(*range, name, sink);
     if (!interval) continue;
+    if (interval->lower > interval->upper) {
+      sink.error(DiagnosticCode::kReversedSampling, range->range, name, interval->lower,
+                 interval->upper);
+      continue;
+    }
     const auto& bound = region.on(axis);
+    if (bound && bound->lower > bound->upper) continue;  // reported with the regions
     if (bound && (interval->lower < bound->lower || interval->upper > bound->upper)) {
       sink.error(DiagnosticCode::kYamlOutOfBounds, range->range, name,
                  fmt::format("from {} to {}", interval->lower, interval->upper),

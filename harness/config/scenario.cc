@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <system_error>
 
 #include "compiler/base/diagnostic_codes.h"
@@ -56,6 +57,42 @@ void check_supported_regions(const Scenario& scenario, base::DiagnosticSink& sin
     const Region* region = scenario.mapping->regions().find(name);
     sink.error(DiagnosticCode::kBadWorld, region->source, "regions/" + name,
                "nothing in the world reaches into it, so no body can come to lie there");
+  }
+}
+
+/// What a region bounds, or where its starts are drawn, as a box; none if a side is open.
+std::optional<NamedBox> box_of(const Region& region, bool start) {
+  const auto on = [&](Axis axis) {
+    const auto& narrow = region.start[static_cast<std::size_t>(axis)];
+    return start && narrow ? narrow : region.on(axis);
+  };
+  const auto x = on(Axis::kX), y = on(Axis::kY), z = on(Axis::kBottom);
+  if (!x || !y || !z || !region.frame.empty()) return std::nullopt;
+  return NamedBox{region.name, {x->lower, y->lower, z->lower}, {x->upper, y->upper, z->upper}};
+}
+
+/// Regions where no body's lowest point can be: below the floor, or inside furniture.
+void check_free_regions(const Scenario& scenario, base::DiagnosticSink& sink) {
+  std::vector<NamedBox> wholes, starts;
+  const auto& regions = scenario.mapping->regions();
+  for (const Region& region : regions.regions()) {
+    const auto& bottom = region.on(Axis::kBottom);
+    if (bottom && region.frame.empty() && bottom->upper < 0.0) {
+      sink.error(DiagnosticCode::kBadWorld, region.source, "regions/" + region.name,
+                 fmt::format("lies below the floor: `bottom` ends at {:g}", bottom->upper));
+      continue;
+    }
+    if (auto box = box_of(region, false)) wholes.push_back(*std::move(box));
+    if (auto box = box_of(region, true)) starts.push_back(*std::move(box));
+  }
+  std::set<std::string> reported;
+  for (const auto& [boxes, what] :
+       {std::pair{&wholes, "lies"}, std::pair{&starts, "its start lies"}}) {
+    for (const auto& buried : buried_boxes(scenario.world, *boxes)) {
+      if (!reported.insert(buried.name).second) continue;
+      sink.error(DiagnosticCode::kBadWorld, regions.find(buried.name)->source,
+                 "regions/" + buried.name, fmt::format("{} inside `{}`", what, buried.body));
+    }
   }
 }
 
@@ -123,7 +160,14 @@ class ScenarioReader {
     // Another simulator has a world of its own; the built-in one needs ours.
     const bool built_in = scenario.simulator.command.empty();
     const auto* world = built_in ? fields_.require("world") : fields_.find("world");
-    if (world != nullptr) scenario.world = read_world(*world, sink_);
+    if (world != nullptr) {
+      scenario.world = read_world(*world, sink_);
+      if (const auto* bodies = world->find("bodies")) {
+        for (const auto& body : bodies->value.entries) {
+          scenario.body_sources.emplace(body.key, body.key_range);
+        }
+      }
+    }
     if (const auto* node = fields_.require("actions")) {
       scenario.actions = read_actions(*node, built_in, sink_);
       scenario.actions_source = key_range("actions");
@@ -230,7 +274,9 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
   if (built_in && scenario.mapping && sink.error_count() == errors_before) {
     const auto parameters = observables(scenario.world);
     if (!check_variables(scenario, parameters, sink)) return sink.already_reported();
-    check_supported_starts(scenario, sink);
+    check_action_names(scenario, {}, sink);
+    if (sink.error_count() == errors_before) check_free_regions(scenario, sink);
+    if (sink.error_count() == errors_before) check_supported_starts(scenario, sink);
     if (sink.error_count() == errors_before) check_supported_regions(scenario, sink);
   }
   if (sink.error_count() != errors_before) return sink.already_reported();

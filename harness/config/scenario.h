@@ -33,6 +33,7 @@ struct ActionBinding {
   std::optional<std::map<std::string, std::string>> from_plan;
   double time_limit_s = 60.0;
   base::SourceRange source;
+  std::map<std::string, base::SourceRange> argument_sources;  // of the values in `arguments`
 };
 
 /// The simulator's command and how long it may take on the clock of the wall. An act may take
@@ -96,6 +97,7 @@ struct Scenario {
   std::vector<SampledDimension> sampling;
   double sampling_inset_m = 1e-6;  // [m, rad] how far draws stay inside their cuboid
   base::SourceRange regions_source, mapping_source, actions_source, sampling_source;
+  std::map<std::string, base::SourceRange> body_sources;  // of the names of the world's bodies
   CriterionSpec criterion;
   /// An end state that the model admits for the start and events of a trace is no discrepancy, even
   /// if it is not the trace's; false: only the trace's own counts.
@@ -111,10 +113,11 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
                                      base::DiagnosticSink& sink);
 
 /// Holds the scenario against the compiled model, before anything is simulated: every ground fluent
-/// needs a mapping of its arity whose region exists, every ground event an action. Reports each
-/// offending symbol once, at the `mapping:` or `actions:` key, with the near name as a fix; warns
-/// of a mapping or an action that the model has no use for. A mapping that ignores every fluent is
-/// an error, as each simulation would then pass.
+/// needs a mapping of its arity whose region exists and whose range its joint reaches, every ground
+/// event an action whose arguments the world knows. Reports each offending symbol or argument once,
+/// at its value or the `mapping:` or `actions:` key, with the near name as a fix; warns of a
+/// mapping or an action that the model has no use for. A mapping that ignores every fluent is an
+/// error, as each simulation would then pass.
 base::Status check_against_model(const Scenario& scenario, const std::vector<std::string>& fluents,
                                  const std::vector<std::string>& events,
                                  base::DiagnosticSink& sink);

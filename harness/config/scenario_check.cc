@@ -137,11 +137,17 @@ base::Status check_against_model(const Scenario& scenario, const std::vector<std
     return binding != nullptr && !std::holds_alternative<IgnoredBinding>(binding->condition);
   });
   if (mapped && !compares) sink.error(DiagnosticCode::kNothingCompared, scenario.mapping_source);
+  std::vector<GroundFluent> ground_events;
   for (const auto& text : events) {
-    const auto event = ground_fluent(text);
+    ground_events.push_back(ground_fluent(text));
+    const auto& event = ground_events.back();
     if (event_symbols.insert(event.symbol).second) check_event(scenario, event, sink);
   }
   if (mapped) check_expected_fluents(scenario, ground, sink);
+  if (scenario.simulator.command.empty() && sink.error_count() == errors_before) {
+    check_action_names(scenario, ground_events, sink);
+    check_ranges(scenario, ground, sink);
+  }
   warn_of_unused(scenario, fluent_symbols, event_symbols, sink);
   if (!mapped || sink.error_count() != errors_before) return sink.already_reported();
   return base::Unit{};

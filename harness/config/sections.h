@@ -44,6 +44,16 @@ SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink);
 Limits read_limits(const YamlNode& node, base::DiagnosticSink& sink);
 Expectation read_expectation(const YamlNode& node, base::DiagnosticSink& sink);
 
+/// The names that the actions give their controllers must be names of the world: those that are
+/// the same whatever the event, or, with `events`, those that depend on its arguments. Reports each
+/// value once, with the near name.
+void check_action_names(const Scenario& scenario, const std::vector<GroundFluent>& events,
+                        base::DiagnosticSink& sink);
+
+/// The intervals of `range` mappings must lie within the stops of the joints that they are about.
+void check_ranges(const Scenario& scenario, const std::vector<GroundFluent>& fluents,
+                  base::DiagnosticSink& sink);
+
 /// Every mapped variable must be one of `parameters`, every sampled one settable besides.
 base::Status check_variables(const Scenario& scenario, const std::vector<Parameter>& parameters,
                              base::DiagnosticSink& sink);

@@ -1,5 +1,7 @@
 #include "harness/world/arguments.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,12 +10,6 @@
 
 namespace parallax::harness {
 namespace {
-
-const ArgumentSpec* find_argument(const ControllerSpec& spec, std::string_view name) {
-  const auto found = std::find_if(spec.arguments.begin(), spec.arguments.end(),
-                                  [&](const ArgumentSpec& one) { return one.name == name; });
-  return found == spec.arguments.end() ? nullptr : &*found;
-}
 
 std::string quoted(std::string_view name) { return "`" + std::string(name) + "`"; }
 
@@ -39,11 +35,15 @@ std::optional<double> as_number(const Value& value) {
   return std::nullopt;
 }
 
+const ArgumentSpec* find_argument(const ControllerSpec& spec, std::string_view name) {
+  const auto found = std::find_if(spec.arguments.begin(), spec.arguments.end(),
+                                  [&](const ArgumentSpec& one) { return one.name == name; });
+  return found == spec.arguments.end() ? nullptr : &*found;
+}
+
 std::string wrong_name(const ArgumentSpec& argument, std::string_view name, const WorldSpec& world,
                        const WorldLayout& layout) {
-  const auto fault = [&](const char* what) {
-    return "argument " + quoted(argument.name) + ": " + quoted(name) + " " + what;
-  };
+  const auto fault = [&](const char* what) { return "is " + quoted(name) + ", which " + what; };
   if (argument.unit == "body" || argument.unit == "graspable") {
     const auto body = layout.find_body(name);
     if (!body || !layout.is_free[body->index()]) return fault("does not name a free body");
@@ -68,6 +68,56 @@ std::string wrong_name(const ArgumentSpec& argument, std::string_view name, cons
   return {};
 }
 
+std::string wrong_number(const ArgumentSpec& argument, double value) {
+  const ArgumentBounds bounds = bounds_of(argument);
+  const bool inside = (bounds.low_open ? value > bounds.low : value >= bounds.low) &&
+                      value <= bounds.high && (!argument.whole || std::floor(value) == value);
+  if (inside) return {};
+  return fmt::format("is {:g}, but must be {}{} {:g} {} {:g}", value,
+                     argument.whole ? "a whole number " : "", bounds.low_open ? "above" : "from",
+                     bounds.low, bounds.low_open ? "and at most" : "to", bounds.high);
+}
+
+std::optional<ArgumentFault> wrong_together(const ControllerSpec& spec, const State& given) {
+  const auto value_of = [&](const ArgumentSpec& argument) {
+    const auto found = given.find(argument.name);
+    return found == given.end() ? argument.fallback
+                                : as_number(found->second).value_or(argument.fallback);
+  };
+  for (const ArgumentSpec& one : spec.arguments) {
+    if (one.at_most.empty()) continue;
+    const ArgumentSpec& other = *find_argument(spec, one.at_most);
+    const double value = value_of(one), most = value_of(other);
+    if (!(value > most)) continue;
+    if (given.contains(one.name)) {
+      return ArgumentFault{std::string(one.name),
+                           fmt::format("is {:g}, above the {:g} of `{}`", value, most, other.name)};
+    }
+    return ArgumentFault{std::string(other.name),
+                         fmt::format("is {:g}, below the {:g} of `{}`", most, value, one.name)};
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> names_for(const ArgumentSpec& argument, const WorldSpec& world,
+                                   const WorldLayout& layout) {
+  std::vector<std::string> names;
+  for (const BodySpec& body : layout.bodies) {
+    names.push_back(argument.unit == "kind" && !body.kind.empty() ? body.kind : body.name);
+  }
+  for (const JointSpec& joint : layout.sliders) names.push_back(joint.name);
+  for (const PlaceSpec& place : world.places) names.push_back(place.name);
+  if (world.mobile) {
+    for (const ArmSpec& arm : world.mobile->arms) names.push_back(arm.name);
+  }
+  std::erase_if(names, [&](const std::string& name) {
+    return !wrong_name(argument, name, world, layout).empty();
+  });
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
 std::variant<Arguments, std::string> Arguments::check(const ControllerSpec& spec,
                                                       const State& given, const WorldSpec& world,
                                                       const WorldLayout& layout) {
@@ -79,7 +129,7 @@ std::variant<Arguments, std::string> Arguments::check(const ControllerSpec& spec
       const auto* text = std::get_if<std::string>(&value);
       if (text == nullptr) return "argument " + quoted(name) + " is not a name";
       const std::string fault = wrong_name(*known, *text, world, layout);
-      if (!fault.empty()) return fault;
+      if (!fault.empty()) return "argument " + quoted(name) + " " + fault;
       arguments.names_.emplace(name, *text);
       continue;
     }
@@ -87,8 +137,12 @@ std::variant<Arguments, std::string> Arguments::check(const ControllerSpec& spec
     if (!number || !std::isfinite(*number)) {
       return "argument " + quoted(name) + " is not a finite number";
     }
-    if (known->positive && *number <= 0.0) return "argument " + quoted(name) + " is not positive";
+    const std::string fault = wrong_number(*known, *number);
+    if (!fault.empty()) return "argument " + quoted(name) + " " + fault;
     arguments.numbers_.emplace(name, *number);
+  }
+  if (const auto fault = wrong_together(spec, given)) {
+    return "argument " + quoted(fault->name) + " " + fault->text;
   }
   for (const ArgumentSpec& one : spec.arguments) {
     if (!one.required || given.find(one.name) != given.end()) continue;

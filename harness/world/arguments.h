@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "harness/world/controller_table.h"
 #include "harness/world/simulator.h"
@@ -42,8 +43,24 @@ class Arguments {
 /// A number whether it was written as 1 or as 1.0.
 std::optional<double> as_number(const Value& value);
 
-/// What is wrong with `name` as an argument of this kind in this world; empty if nothing is.
+/// What is wrong with `name` as an argument of this kind in this world, to be read after "the
+/// argument `x` ..."; empty if nothing is.
 std::string wrong_name(const ArgumentSpec& argument, std::string_view name, const WorldSpec& world,
                        const WorldLayout& layout);
+/// The same of a number.
+std::string wrong_number(const ArgumentSpec& argument, double value);
+/// The same of all that is given together: numbers that must not exceed others.
+struct ArgumentFault {
+  std::string name;  // of the argument
+  std::string text;
+};
+std::optional<ArgumentFault> wrong_together(const ControllerSpec& spec, const State& given);
+
+/// The names that would do, sorted.
+std::vector<std::string> names_for(const ArgumentSpec& argument, const WorldSpec& world,
+                                   const WorldLayout& layout);
+
+/// None if the controller has no such argument.
+const ArgumentSpec* find_argument(const ControllerSpec& spec, std::string_view name);
 
 }  // namespace parallax::harness

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "harness/world/mobile_base.h"
 
@@ -99,6 +100,14 @@ Eigen::Vector3d Arm::tool() const {
 
 double Arm::opening_m() const {
   return full_gap_m_ - closed_sign_ * world_.slider_position_m(finger_joint_);
+}
+
+std::pair<double, double> Arm::opening_limits_m() const {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const JointSpec& joint = world_.layout().sliders[finger_joint_];
+  const double one = full_gap_m_ - closed_sign_ * joint.low_m.value_or(-kNone);
+  const double other = full_gap_m_ - closed_sign_ * joint.high_m.value_or(kNone);
+  return std::minmax({one, other});
 }
 
 double Arm::wrist_rad() const { return world_.gantry_yaw_rad(gantry_); }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/world/axis_servo.h"
@@ -30,7 +31,9 @@ class Arm {
   bool finger_at_rest() const { return finger_.at_rest(); }
 
   Eigen::Vector3d tool() const;  // in the world [m]
-  double opening_m() const;      // between the pads' inner faces
+  double opening_m() const;
+  /// The narrowest and the widest opening that the stops of the finger allow [m].
+  std::pair<double, double> opening_limits_m() const;  // between the pads' inner faces
   double wrist_rad() const;
   Eigen::Vector3d pad_line() const;  // from the far pad to the near one, world, unit
   /// The middle of the palm, seen from the tool [m]; the same whatever way the wrist is turned.

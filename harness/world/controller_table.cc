@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "harness/world/line_controller.h"
@@ -14,10 +15,20 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 constexpr std::string_view kUnusedPose = "accepted and unused: this robot works along one line";
 constexpr std::string_view kSettle = "rest at the end";
+constexpr double kMaxCount = 1000.0;
 
 constexpr ArgumentSpec number(std::string_view name, std::string_view unit, double fallback,
                               std::string_view help) {
   return {name, unit, false, fallback, true, help};
+}
+constexpr ArgumentSpec within(std::string_view name, double fallback, double low, double high,
+                              std::string_view unit, std::string_view help) {
+  return {name, unit, false, fallback, true, help, low, high};
+}
+/// How many of something; at most as many as `at_most` says.
+constexpr ArgumentSpec count(std::string_view name, double fallback, std::string_view help,
+                             std::string_view at_most = {}) {
+  return {name, "1", false, fallback, true, help, 1.0, kMaxCount, true, at_most};
 }
 constexpr ArgumentSpec any_number(std::string_view name, std::string_view unit,
                                   std::string_view help) {
@@ -28,7 +39,7 @@ constexpr ArgumentSpec named(std::string_view name, std::string_view what, std::
   return {name, what, required, 0.0, false, help};
 }
 constexpr ArgumentSpec settle(double fallback_s) {
-  return {"settle_s", "s", false, fallback_s, false, kSettle};
+  return {"settle_s", "s", false, fallback_s, false, kSettle, 0.0};
 }
 
 constexpr std::array kGoing = {
@@ -83,7 +94,7 @@ constexpr std::array kDrive = {
     number("stop_within_m", "m", 0.002, "[rad] the base brakes when so near to the goal"),
     number("goal_tolerance_m", "m", 0.05, "farther away it has failed"),
     number("yaw_tolerance_rad", "rad", 0.05, "turned farther away it has failed"),
-    number("sweep_step_m", "m", 0.01, "between the places that are tried before driving"),
+    within("sweep_step_m", 0.01, 0.001, 1.0, "m", "between the places that are tried on the way"),
     settle(0.5),
 };
 
@@ -98,8 +109,8 @@ constexpr std::array kLook = {
 
 constexpr std::array kDetect = {
     named("kind", "kind", "what to look for: `kind` of a body, or its name"),
-    number("points", "1", 9, "points along the body that rays are cast at"),
-    number("points_needed", "1", 5, "of them, to be in the cone and not hidden"),
+    count("points", 9, "points along the body that rays are cast at"),
+    count("points_needed", 5, "of them, to be in the cone and not hidden", "points"),
     settle(0.1),
 };
 
@@ -221,6 +232,29 @@ bool is_name(const ArgumentSpec& argument) {
   static constexpr std::array<std::string_view, 6> kNames = {"arm",  "body",      "drawer",
                                                              "kind", "graspable", "place"};
   return std::find(kNames.begin(), kNames.end(), argument.unit) != kNames.end();
+}
+
+ArgumentBounds bounds_of(const ArgumentSpec& argument) {
+  // Generous: what is beyond them is a slip of the pen, and would overflow or never end.
+  struct Limit {
+    std::string_view unit;
+    double largest;
+  };
+  static constexpr std::array<Limit, 8> kLimits = {{{"1", 1e6},
+                                                    {"m", 1000.0},
+                                                    {"m/s", 100.0},
+                                                    {"m/s^2", 1000.0},
+                                                    {"n", 1e6},
+                                                    {"rad", 1000.0},
+                                                    {"rad/s", 100.0},
+                                                    {"s", 86400.0}}};
+  const auto found = std::find_if(kLimits.begin(), kLimits.end(),
+                                  [&](const Limit& limit) { return limit.unit == argument.unit; });
+  const double largest = found == kLimits.end() ? 1000.0 : found->largest;
+  const double low = argument.positive ? 0.0 : -largest;
+  return {std::isnan(argument.low) ? low : argument.low,
+          std::isnan(argument.high) ? largest : argument.high,
+          argument.positive && std::isnan(argument.low)};
 }
 
 std::span<const ControllerSpec> controllers() { return kSpecs; }

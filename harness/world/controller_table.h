@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 
@@ -17,7 +18,19 @@ struct ArgumentSpec {
   double fallback = 0.0;  // unless required; NaN: see `help`
   bool positive = false;  // 0 and less are refused
   std::string_view help;
+  /// Narrower bounds than those of the unit; NaN: none.
+  double low = std::numeric_limits<double>::quiet_NaN();
+  double high = std::numeric_limits<double>::quiet_NaN();
+  bool whole = false;             // 2.5 is refused
+  std::string_view at_most = {};  // another argument that this one must not exceed
 };
+
+/// What a number given as this argument must lie within.
+struct ArgumentBounds {
+  double low = 0.0, high = 0.0;
+  bool low_open = false;
+};
+ArgumentBounds bounds_of(const ArgumentSpec& argument);
 
 /// Is the argument a name, not a number?
 bool is_name(const ArgumentSpec& argument);

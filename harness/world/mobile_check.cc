@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <numbers>
 
 #include "compiler/base/suggest.h"
 #include "harness/world/world_layout.h"
@@ -51,6 +51,10 @@ class MobileChecker {
 
   void check_places() {
     for (const PlaceSpec& place : spec_.places) {
+      if (place.p_FP.cwiseAbs().maxCoeff() > kMaxExtent_m) {
+        add("places/" + place.name + "/at_m",
+            fmt::format("is more than {:g} m away", kMaxExtent_m));
+      }
       if (!place.frame.empty()) {
         require_name("places/" + place.name + "/frame", spec_.bodies, "body", place.frame);
       }
@@ -90,9 +94,7 @@ class MobileChecker {
     }
     require(robot.relief_wavelength_m > 0.0, "robot/base/relief_wavelength_m", "is not positive");
     require(robot.relief_amplitude_m >= 0.0, "robot/base/relief_amplitude_m", "is negative");
-    const CameraSpec& camera = robot.camera;
-    require(camera.half_angle_rad > 0.0, "robot/camera/half_angle_rad", "is not positive");
-    require(camera.max_range_m > camera.min_range_m, "robot/camera/range_m", "is empty");
+    check_camera(robot);
     require(!robot.arms.empty(), "robot/arms", "is empty");
     for (const ArmSpec& arm : robot.arms) check_arm(arm);
     if (!problems_.empty()) return;
@@ -101,6 +103,21 @@ class MobileChecker {
       require(base->child == robot.base_body, "robot/base/joint", "does not carry the base's body");
     }
     check_one_machine(robot);
+  }
+
+  void check_camera(const MobileRobotSpec& robot) {
+    const CameraSpec& camera = robot.camera;
+    const std::string path = "robot/camera/";
+    require(camera.half_angle_rad > 0.0, path + "half_angle_rad", "is not positive");
+    require(camera.half_angle_rad < 0.5 * std::numbers::pi, path + "half_angle_rad",
+            "is a right angle or more: that is no cone");
+    require(camera.min_range_m >= 0.0, path + "range_m", "is negative");
+    require(camera.max_range_m > camera.min_range_m, path + "range_m", "is empty or reversed");
+    require(camera.min_tilt_rad <= camera.max_tilt_rad, path + "tilt_rad", "is reversed");
+    if (const auto base = layout_.find_body(robot.base_body)) {
+      require(layout_.bodies[*base].p_WB.z() + camera.p_BC.z() > 0.0, path + "at_m",
+              "is below the floor");
+    }
   }
 
   void check_arm(const ArmSpec& arm) {

@@ -3,9 +3,12 @@
 #include <algorithm>
 
 #include "harness/world/ode_world.h"
+#include "harness/world/solid_boxes.h"
 
 namespace parallax::harness {
 namespace {
+
+constexpr double kPlay_m = 0.005;
 
 /// Of all free bodies, each standing on its longest edge.
 double stack_height_m(const OdeWorld& world) {
@@ -41,6 +44,28 @@ std::vector<std::string> boxes_without_support(const WorldSpec& spec,
     const Eigen::Vector3d low = box.low_W - travel_m, high = box.high_W + travel_m;
     const Probe probe{high - low, 0.5 * (low + high), Eigen::Matrix3d::Identity()};
     if (!world.find_obstacle(probe, layout.is_free, 0.0)) found.push_back(box.name);
+  }
+  return found;
+}
+
+std::vector<BuriedBox> buried_boxes(const WorldSpec& spec, const std::vector<NamedBox>& boxes) {
+  const WorldLayout layout = lay_out(spec);
+  std::vector<BuriedBox> found;
+  for (const NamedBox& box : boxes) {
+    // What lies on a body is just above its top.
+    const Eigen::Vector3d high = box.high_W + Eigen::Vector3d(0.0, 0.0, kPlay_m);
+    const SolidBox region{high - box.low_W, 0.5 * (box.low_W + high), 0.0};
+    for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
+      if (layout.link_of[i]) continue;
+      const BodySpec& body = layout.bodies[layout.bodies.id_at(i)];
+      const auto solids = solid_boxes(body);
+      const bool inside = std::any_of(solids.begin(), solids.end(), [&](const SolidBox& solid) {
+        return solid.contains(region);
+      });
+      if (!inside) continue;
+      found.push_back({box.name, body.name});
+      break;
+    }
   }
   return found;
 }

@@ -20,4 +20,11 @@ struct NamedBox {
 std::vector<std::string> boxes_without_support(const WorldSpec& spec,
                                                const std::vector<NamedBox>& boxes);
 
+/// A box that lies so deep in something fixed that the lowest point of no body can be in it.
+struct BuriedBox {
+  std::string name, body;
+};
+/// Only those that one box of a body swallows are found.
+std::vector<BuriedBox> buried_boxes(const WorldSpec& spec, const std::vector<NamedBox>& boxes);
+
 }  // namespace parallax::harness

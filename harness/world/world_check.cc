@@ -27,7 +27,7 @@ class WorldChecker {
   }
 
   std::vector<WorldProblem> run() {
-    check_solver();
+    check_solver(spec_.solver, problems_);
     check_friction();
     for (const BodySpec& body : spec_.bodies) check_body(body);
     for (const JointSpec& joint : spec_.joints) check_joint(joint);
@@ -37,6 +37,8 @@ class WorldChecker {
     if (problems_.empty() && has_robot()) check_robot();
     if (problems_.empty()) check_mobile(spec_, problems_);
     if (problems_.empty()) check_geometry(spec_, problems_);
+    if (problems_.empty()) check_grippers(spec_, problems_);
+    if (problems_.empty()) check_overlaps(spec_, problems_);
     return std::move(problems_);
   }
 
@@ -67,26 +69,6 @@ class WorldChecker {
     }
   }
 
-  void check_solver() {
-    const SolverSpec& s = spec_.solver;
-    // Longer steps are no physics, shorter ones no simulation anybody waits for.
-    if (!(s.timestep_s >= 1e-5 && s.timestep_s <= 0.1)) {
-      add("solver/timestep_s", "is not within 1e-5 to 0.1 s");
-    }
-    require_not_negative("solver/cfm", s.cfm);
-    require_not_negative("solver/surface_layer_m", s.surface_layer_m);
-    require_positive("solver/max_correcting_velocity_m_s", s.max_correcting_velocity_m_s);
-    require_not_negative("solver/start_penetration_m", s.start_penetration_m);
-    require_not_negative("solver/sleep_linear_m_s", s.sleep_linear_m_s);
-    require_not_negative("solver/sleep_angular_rad_s", s.sleep_angular_rad_s);
-    require_not_negative("solver/sleep_after_s", s.sleep_after_s);
-    if (!std::isfinite(s.gravity_m_s2)) add("solver/gravity_m_s2", "is not a number");
-    if (!(s.erp > 0.0 && s.erp <= 1.0)) add("solver/erp", "is not within (0, 1]");
-    if (s.max_contacts_per_pair < 1 || s.max_contacts_per_pair > 16) {
-      add("solver/max_contacts_per_pair", "is not within 1 to 16");
-    }
-  }
-
   void check_friction() {
     std::vector<std::string> materials = {spec_.floor_material};
     for (const BodySpec& body : spec_.bodies) materials.push_back(body.material);
@@ -109,6 +91,9 @@ class WorldChecker {
       }
     }
     require_not_negative(path + "/mass_kg", body.mass_kg);
+    if (body.mass_kg > kMaxMass_kg) {
+      add(path + "/mass_kg", fmt::format("is more than {:g} kg", kMaxMass_kg));
+    }
     if (body.shapes.empty()) add(path + "/shapes", "is empty");
     for (const BoxShape& shape : body.shapes) {
       if (!(shape.size_m.array() > 0.0).all() || !shape.size_m.allFinite()) {
@@ -119,7 +104,23 @@ class WorldChecker {
     if (!body.p_WB.allFinite() || !std::isfinite(body.yaw_rad)) {
       add(path, "the placement is not a number");
     }
+    check_extent(body);
     check_settable(body);
+  }
+
+  void check_extent(const BodySpec& body) {
+    const auto is_far = [](const Eigen::Vector3d& v) {
+      return v.cwiseAbs().maxCoeff() > kMaxExtent_m;
+    };
+    const std::string path = "bodies/" + body.name;
+    if (is_far(body.p_WB)) {
+      add(path + "/position_m", fmt::format("is more than {:g} m away", kMaxExtent_m));
+    }
+    const bool huge = std::any_of(
+        body.shapes.begin(), body.shapes.end(),
+        [&](const BoxShape& shape) { return is_far(shape.size_m) || is_far(shape.p_BS); });
+    if (huge)
+      add(path + "/shapes", fmt::format("a box is larger or farther than {:g} m", kMaxExtent_m));
   }
 
   bool is_base(const BodySpec& body) const {
@@ -166,8 +167,20 @@ class WorldChecker {
     if (!joint.axis_W.allFinite() || joint.axis_W.norm() < 1e-9) {
       add(path + "/axis_W", "has no direction");
     }
-    if (joint.low_m.value_or(0.0) > 0.0) add(path + "/low_m", "excludes the default placement");
-    if (joint.high_m.value_or(0.0) < 0.0) add(path + "/high_m", "excludes the default placement");
+    check_stops(path + "/range_m", joint);
+  }
+
+  void check_stops(const std::string& path, const JointSpec& joint) {
+    const double low_m = joint.low_m.value_or(0.0), high_m = joint.high_m.value_or(0.0);
+    if (joint.low_m && joint.high_m && low_m > high_m) {
+      add(path, fmt::format("is reversed: {:g} is above {:g}", low_m, high_m));
+    } else if (joint.low_m && joint.high_m && low_m == high_m) {
+      add(path, "leaves the slider no way to move");
+    } else if (low_m > 0.0 || high_m < 0.0) {
+      add(path, "excludes 0, the default placement");
+    } else if (high_m - low_m > kMaxExtent_m) {
+      add(path, fmt::format("is longer than {:g} m", kMaxExtent_m));
+    }
   }
 
   /// Each body hangs on at most one joint; a loop of sliders would lock.

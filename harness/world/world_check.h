@@ -8,6 +8,9 @@
 
 namespace parallax::harness {
 
+inline constexpr double kMaxMass_kg = 1e6;      // what is heavier is a slip of the pen
+inline constexpr double kMaxExtent_m = 1000.0;  // likewise of sizes and places
+
 /// One thing wrong with a WorldSpec. `path` leads to it, names instead of indices:
 /// "bodies/box/mass_kg", "joints/lift/parent", "robot/base_joint", "solver/timestep_s".
 struct WorldProblem {

@@ -10,6 +10,25 @@
 namespace parallax::test {
 namespace {
 
+/// `plan2.yaml` with something laid over it.
+void check_overlay_refused(const std::string& overlay, const std::string& place,
+                           const std::string& text) {
+  const KitchenCopy cli;
+  cli.write("kitchen/overlay.yaml", "include: plan2.yaml\n" + overlay + "\n");
+  CAPTURE(overlay);
+  for (const auto* command : {"check", "run"}) {
+    CAPTURE(command);
+    const auto result = cli.parallax({command, "kitchen/overlay.yaml"});
+    CAPTURE(result.err);
+    CHECK(result.code == 3);
+    CHECK(result.out.empty());
+    CHECK(result.err.find("kitchen/" + place) != std::string::npos);
+    CHECK(result.err.find(text) != std::string::npos);
+    const auto first = result.err.find("error[");
+    CHECK(result.err.find("error[", first + 1) == std::string::npos);
+  }
+}
+
 void check_refused(const KitchenCopy& cli, const std::string& place, const std::string& text) {
   for (const auto* command : {"check", "run", "rates"}) {
     CAPTURE(command);
@@ -68,6 +87,131 @@ TEST_CASE("a region of the robot that the plan's poses are not in") {
   check_refused(cli, "plan2.lisp:", "lies outside all regions of `region`");
 }
 
+TEST_CASE("arguments of actions that the world or the controller does not know") {
+  check_overlay_refused("actions: {\"OpenDrawer(arm, drawer)\": {arm: middle}}",
+                        "overlay.yaml:2:", "`middle`, which does not name an arm");
+  check_overlay_refused("actions: {\"CloseDrawer(arm, drawer)\": {joint: dLov}}",
+                        "overlay.yaml:2:", "`dLow`");
+  check_overlay_refused("actions: {Go(base): {place: \"{base}s\"}}",
+                        "overlay.yaml:2:", "does not name a place");
+  check_overlay_refused("actions: {Detect(itype): {kind: spoooon}}",
+                        "overlay.yaml:2:", "is no kind of a free body");
+}
+
+TEST_CASE("numbers of actions beyond their bounds") {
+  check_overlay_refused("actions: {Go(base): {sweep_step_m: 0}}",
+                        "overlay.yaml:2:", "is 0, but must be from 0.001 to 1");
+  check_overlay_refused("actions: {Go(base): {max_speed_m_s: 0}}",
+                        "overlay.yaml:2:", "is 0, but must be above 0");
+  check_overlay_refused("actions: {Detect(itype): {points: 1000000000}}",
+                        "overlay.yaml:2:", "is 1e+09, but must be a whole number from 1 to 1000");
+  check_overlay_refused("actions: {Detect(itype): {points: 3, points_needed: 9}}",
+                        "overlay.yaml:2:", "is 9, above the 3 of `points`");
+}
+
+TEST_CASE("numbers of the plan beyond their bounds are known before the first simulation") {
+  const KitchenCopy cli;
+  cli.replace("kitchen/common.yaml", "from_plan: {target: target, speed: max_speed_m_s}",
+              "from_plan: {target.x: max_speed_m_s}");
+  const auto result = cli.parallax({"run", "kitchen/plan2.yaml"});
+  CAPTURE(result.err);
+  CHECK(result.code == 3);
+  CHECK(result.err.find("error[E5126]: actions/Go/max_speed_m_s: is -0.1") != std::string::npos);
+  CHECK(result.err.find("plan2.lisp") != std::string::npos);
+}
+
+TEST_CASE("grippers that cannot hold what there is to hold") {
+  check_overlay_refused("world: {bodies: {spoon1: {grasp: {width_m: 0.5}}}}",
+                        "overlay.yaml:2:", "is 0.5 m, but no gripper opens wider than 0.09 m");
+  check_overlay_refused("world: {joints: {dMid: {handle: {width_m: 0.5}}}}",
+                        "overlay.yaml:2:", "joints/dMid/handle/width_m");
+  check_overlay_refused("world: {robot: {arms: {left: {opening_m: 5}}}}",
+                        "overlay.yaml:2:", "`left_finger` takes the pads from 0.001 to 0.1 m");
+  check_overlay_refused("world: {joints: {left_finger: {range_m: [-0.001, 0.001]}}}",
+                        "overlay.yaml:2:", "lets the pads hold nothing");
+}
+
+TEST_CASE("a camera that sees nothing") {
+  for (const auto* camera : {"half_angle_rad: 1.6", "range_m: [-3, -1]", "range_m: [2.5, 0.3]",
+                             "tilt_rad: [1.29, -0.37]", "at_m: [0.07, 0, -9]"}) {
+    check_overlay_refused("world: {robot: {camera: {" + std::string(camera) + "}}}",
+                          "overlay.yaml:2:", "robot/camera/");
+  }
+}
+
+TEST_CASE("numbers that are no physics") {
+  for (const auto* solver : {"contact_erp: 7", "contact_cfm: 3", "gravity_m_s2: 9.81",
+                             "gravity_m_s2: -1000000000000.0"}) {
+    check_overlay_refused("world: {solver: {" + std::string(solver) + "}}",
+                          "overlay.yaml:2:", "solver/");
+  }
+  check_overlay_refused("world: {bodies: {bowl1: {mass_kg: 1e30}}}",
+                        "overlay.yaml:2:", "is more than 1e+06 kg");
+  check_overlay_refused("sampling: {variables: {milk1.mass: [0, 1]}}",
+                        "overlay.yaml:2:", "must be above 0");
+}
+
+TEST_CASE("joints that do not move as the mapping says") {
+  check_overlay_refused("world: {joints: {dMid: {range_m: [0, 0]}}}",
+                        "overlay.yaml:2:", "leaves the slider no way to move");
+  check_overlay_refused("world: {joints: {lift: {range_m: [0.3, -0.02]}}}",
+                        "overlay.yaml:2:", "is reversed");
+  check_overlay_refused(
+      "mapping: {DrawerOpen(drawer): {range: \"{drawer}.q\", holds: [0.80, 0.96], "
+      "fails: [-0.01, 0.03]}}",
+      "overlay.yaml:2:", "mapping/DrawerOpen/holds: is from 0.8 to 0.96");
+}
+
+TEST_CASE("regions where no body can be") {
+  const auto surface = [](const std::string& text) {
+    return "regions: {sets: {surfaces: {cells: {" + text + "}}}}";
+  };
+  check_overlay_refused(surface("pt4: {bottom: [-5, -4]}"),
+                        "overlay.yaml:2:", "lies below the floor");
+  check_overlay_refused(surface("pt4: {bottom: [0.3, 0.5]}"),
+                        "overlay.yaml:2:", "lies inside `table`");
+  check_overlay_refused(surface("pw1: {start: {bottom: 0.835}}"),
+                        "overlay.yaml:2:", "its start lies inside `cabinet`");
+  check_overlay_refused(surface("pw1: {start: {x: [1.51, 1.41]}}"),
+                        "overlay.yaml:2:", "is reversed: 1.51 is above 1.41");
+}
+
+TEST_CASE("bodies that overlap whatever start is drawn") {
+  check_overlay_refused(
+      "world: {bodies: {table2: {material: wood, size_m: [0.81, 2.58, 0.86], "
+      "position_m: [-1.065, 1.69, 0.43]}}}",
+      "overlay.yaml:2:", "occupies the same place as `table`");
+  check_overlay_refused("world: {bodies: {drawer_mid: {position_m: [1.54, 0.90, 0.36]}}}",
+                        "world.yaml:", "overlaps `drawer_");
+  check_overlay_refused(
+      "world: {bodies: {ball: {size_m: [0.1, 0.1, 0.1], mass_kg: 1, "
+      "position_m: [-1.0, 1.5, 0.43]}}}",
+      "overlay.yaml:2:", "overlaps `table` at every start");
+  check_overlay_refused(
+      "world: {bodies: {base: {shapes: [{size_m: [0.66, 0.66, 0.57], "
+      "at_m: [0, 0, 0.1]}]}}}",
+      "overlay.yaml:2:", "overlaps `floor` at every start");
+}
+
+TEST_CASE("a heavy free body before a drawer is none of these: it can be moved") {
+  const KitchenCopy cli;
+  cli.lay_over(
+      "bodies: {crate: {size_m: [0.2, 0.5, 0.6], mass_kg: 500, material: wood, "
+      "position_m: [1.05, 0.9, 0.301]}}");
+  CHECK(cli.parallax({"check", "kitchen/plan2.yaml"}).code == 0);
+}
+
+TEST_CASE("a pose beside its region in height is told apart from one in it") {
+  const KitchenCopy cli;
+  cli.write("kitchen/overlay.yaml",
+            "include: plan2.yaml\n"
+            "regions: {sets: {surfaces: {cells: {pt1: {bottom: [0.9, 1.0]}}}}}\n");
+  const auto result = cli.parallax({"check", "kitchen/overlay.yaml"});
+  CAPTURE(result.err);
+  CHECK(result.code == 3);
+  CHECK(result.err.find("0.04 m away (bottom: 0.86 is not from 0.9 to 1)") != std::string::npos);
+}
+
 TEST_CASE("starts that always interpenetrate: a bounded number, and the pair that collides") {
   const KitchenCopy cli;
   cli.lay_over(
@@ -78,6 +222,9 @@ TEST_CASE("starts that always interpenetrate: a bounded number, and the pair tha
     const auto result = cli.parallax({command, "kitchen/plan2.yaml"});
     CAPTURE(result.err);
     CHECK(result.code == 3);
+    // At the region that the robot is put into, with a note at the block.
+    CHECK(result.err.find("`base` is put into `bWork`") != std::string::npos);
+    CHECK(result.err.find("`block` stands here") != std::string::npos);
     for (const auto* part : {"common.yaml:", "100 starts in a row", "`base`", "`block`"}) {
       CAPTURE(part);
       CHECK(result.err.find(part) != std::string::npos);

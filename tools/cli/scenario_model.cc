@@ -30,21 +30,42 @@ class RegionLocator final : public compiler::PoseLocator {
     const auto at = point(pose);
     for (const auto& region : regions_->regions()) {
       if (!region.frame.empty() || !regions_->answers(function, region)) continue;
-      double squared_m2 = 0.0;
-      for (const auto axis : {harness::Axis::kX, harness::Axis::kY, harness::Axis::kZ}) {
-        const auto& bound = region.on(axis);
-        if (!bound) continue;
-        const double value = at[static_cast<std::size_t>(axis)];
-        const double outside_m = std::max({bound->lower - value, value - bound->upper, 0.0});
-        squared_m2 += outside_m * outside_m;
-      }
-      const double distance_m = std::sqrt(squared_m2);
-      if (!best || distance_m < best->distance_m) best = Nearest{region.name, distance_m};
+      const auto here = distance(region, at);
+      if (!best || here.distance_m < best->distance_m) best = here;
     }
     return best;
   }
 
  private:
+  /// An angle counts as outside, not as a distance.
+  Nearest distance(const harness::Region& region, const harness::Point& at) const {
+    double squared_m2 = 0.0;
+    std::string outside;
+    for (const auto axis : harness::kAxes) {
+      const auto& bound = region.on(axis);
+      if (!bound) continue;
+      const double value = at[static_cast<std::size_t>(axis)];
+      const double outside_m = std::max({bound->lower - value, value - bound->upper, 0.0});
+      if (axis == harness::Axis::kYaw ? contains_yaw(region, at) : outside_m == 0.0) continue;
+      if (axis != harness::Axis::kYaw) squared_m2 += outside_m * outside_m;
+      outside +=
+          fmt::format("{}{}: {:.4g} is not from {:.4g} to {:.4g}", outside.empty() ? "" : "; ",
+                      to_string(axis), value, bound->lower, bound->upper);
+    }
+    return {region.name, std::sqrt(squared_m2), outside};
+  }
+
+  bool contains_yaw(const harness::Region& region, const harness::Point& at) const {
+    auto moved = at;
+    for (const auto axis : harness::kAxes) {
+      const auto& bound = region.on(axis);
+      if (bound && axis != harness::Axis::kYaw) {
+        moved[static_cast<std::size_t>(axis)] = bound->midpoint();
+      }
+    }
+    return regions_->contains(region, moved);
+  }
+
   /// A place is a point that something lies at: its height is that of the lowest point.
   static harness::Point point(const compiler::Pose& pose) {
     return {pose.x_m, pose.y_m, pose.z_m, compiler::yaw_rad(pose), pose.z_m};

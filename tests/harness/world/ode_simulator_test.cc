@@ -234,7 +234,16 @@ TEST_CASE("an action that outlasts its limit is truncated, and the next one goes
 
 TEST_CASE("a world that explodes is a loss, until the next reset") {
   WorldSpec spec = fetch_world();
-  spec.solver.gravity_m_s2 = -1e10;
+  // A box deep in a block, and a solver that undoes that at once.
+  spec.bodies.push_back(spec.bodies.front());
+  spec.bodies.back().name = "block";
+  spec.bodies.back().shapes = {{{0.5, 0.5, 0.5}, {0.0, 0.0, 0.0}, 0.0}};
+  spec.bodies.back().mass_kg = 0.0;
+  spec.bodies.back().settable.clear();
+  spec.bodies.back().p_WB = {1.6, 0.0, 0.25};
+  spec.solver.start_penetration_m = 1.0;
+  spec.solver.max_correcting_velocity_m_s = 1e12;
+  spec.solver.erp = 1.0;
   OdeSimulator simulator(spec);
   REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
   CHECK(go(simulator, 1.5).status == SimStatus::kLost);

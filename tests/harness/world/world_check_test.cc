@@ -86,7 +86,29 @@ TEST_CASE("every problem of a world is found and located") {
   }
   SUBCASE("stops that exclude the default placement") {
     joint(spec, "reach").low_m = 0.1;
-    CHECK(paths(spec) == "joints/reach/low_m");
+    CHECK(paths(spec) == "joints/reach/range_m");
+  }
+  SUBCASE("stops that are reversed, or one") {
+    joint(spec, "reach").low_m = 0.1;
+    joint(spec, "reach").high_m = 0.0;
+    joint(spec, "lift").low_m = 0.0;
+    joint(spec, "lift").high_m = 0.0;
+    CHECK(paths(spec) == "joints/reach/range_m joints/lift/range_m");
+  }
+  SUBCASE("settings of the engine that are no physics") {
+    spec.solver.contact_erp = 7.0;
+    spec.solver.contact_cfm = 2.0;
+    spec.solver.gravity_m_s2 = 9.81;
+    CHECK(paths(spec) == "solver/contact_erp solver/contact_cfm solver/gravity_m_s2");
+    spec = fetch_world();
+    spec.solver.gravity_m_s2 = -1e12;
+    CHECK(paths(spec) == "solver/gravity_m_s2");
+  }
+  SUBCASE("what is too heavy, too large or too far") {
+    body(spec, "box").mass_kg = 1e30;
+    body(spec, "box").shapes.front().size_m.x() = 1e9;
+    body(spec, "box").p_WB.x() = 1e30;
+    CHECK(paths(spec) == "bodies/box/mass_kg bodies/box/position_m bodies/box/shapes");
   }
   SUBCASE("a role without a motor, or along the wrong axis") {
     joint(spec, "reach").max_force_n = 0.0;
