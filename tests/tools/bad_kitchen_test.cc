@@ -204,7 +204,7 @@ TEST_CASE("a heavy free body before a drawer is none of these: it can be moved")
 TEST_CASE("a pose beside its region in height is told apart from one in it") {
   const KitchenCopy cli;
   cli.write("kitchen/overlay.yaml",
-            "include: plan2.yaml\n"
+            "include: plan1.yaml\n"
             "regions: {sets: {surfaces: {cells: {pt1: {bottom: [0.9, 1.0]}}}}}\n");
   const auto result = cli.parallax({"check", "kitchen/overlay.yaml"});
   CAPTURE(result.err);
