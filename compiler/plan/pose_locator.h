@@ -29,8 +29,8 @@ class PoseLocator {
   struct Nearest {
     std::string region;
     double distance_m = 0.0;
-    std::string
-        outside;  // "bottom: 0.85 is above 0.5"; each dimension on which the pose is outside
+    /// "bottom: 0.85 is above 0.5": each dimension on which the pose is outside.
+    std::string outside = {};
   };
   /// For messages: the region nearest to a pose outside; none if the function has no regions.
   virtual std::optional<Nearest> nearest(std::string_view function, const Pose& pose) const = 0;

@@ -95,16 +95,17 @@ std::optional<std::string> Perception::look_at(const PlaceSpec& place) {
   return std::nullopt;
 }
 
-std::string Perception::gaze() const {
-  if (!looking_) return {};
+bool Perception::is_on_target() const {
   const Eigen::Vector3d neck_W = world_.rotation(robot_.base().body()) * neck_B_;
   const double off_rad = angle_between(neck_W, looked_W_ - robot_.camera());
-  return off_rad <= robot_.spec().camera.half_angle_rad ? gaze_.name : std::string();
+  return off_rad <= robot_.spec().camera.half_angle_rad;
 }
 
-void Perception::drop_lost_gaze() {
-  if (gaze().empty()) looking_ = false;
+std::string Perception::gaze() const {
+  return looking_ && is_on_target() ? gaze_.name : std::string();
 }
+
+void Perception::drop_lost_gaze() { looking_ = looking_ && is_on_target(); }
 
 std::optional<Gaze> Perception::line_of_sight() const {
   if (!looking_) return std::nullopt;

@@ -69,6 +69,8 @@ class Perception {
   std::vector<BodyId> bodies_of_kind(const std::string& kind) const;
 
  private:
+  /// Is the place that was looked at in the cone of the neck as it was left?
+  bool is_on_target() const;
   /// Half way between where a ray at `aim` enters a body and where it leaves it.
   Eigen::Vector3d middle_of_chord(const Eigen::Vector3d& from, const Eigen::Vector3d& aim,
                                   BodyId id) const;

@@ -258,10 +258,23 @@ TEST_CASE("starts that are always invalid end the campaign with the colliding pa
   CHECK(bench.sink.exit_code() == 3);
 }
 
+/// The built-in simulator has bodies, to which arguments are held.
+void pretend_built_in(Scenario& scenario) {
+  scenario.simulator.command.clear();
+  BodySpec box;
+  box.name = "box";
+  box.shapes = {{{0.1, 0.1, 0.1}, {0.0, 0.0, 0.0}, 0.0}};
+  box.mass_kg = 0.3;
+  scenario.world.bodies.push_back(box);
+}
+
 TEST_CASE("an initial observation that does not map back is an internal error") {
   Bench bench;
-  bench.scenario.simulator.command.clear();  // as if it were the built-in one, with its arguments
-  for (auto& action : bench.scenario.actions) action.arguments["target.x"] = 0.5;
+  // As if it were the built-in one, with its arguments.
+  pretend_built_in(bench.scenario);
+  for (auto& action : bench.scenario.actions) {
+    if (action.controller != "picking-up") action.arguments["target.x"] = 0.5;
+  }
   bench.script.start_shift_m = 1.0;
   CHECK_FALSE(bench.run().has_value());
   CHECK(codes(bench.sink) == std::vector<std::string>{"E7106"});
@@ -391,7 +404,7 @@ TEST_CASE("progress counts the samples that were consumed") {
 
 TEST_CASE("a controller of the built-in robot must be given what it needs") {
   Bench bench;
-  bench.scenario.simulator.command.clear();
+  pretend_built_in(bench.scenario);
   CHECK_FALSE(bench.run().has_value());
   REQUIRE(codes(bench.sink) == std::vector<std::string>{"E5122"});
   CHECK(bench.sink.sorted()[0].message == "`Place()` gives the controller `placing` no `target.x`");

@@ -124,9 +124,9 @@ TEST_CASE("a number of traces is a whole number that is not negative") {
 TEST_CASE("a case expects something, and a manifest has cases") {
   ManifestWorkspace workspace;
   CHECK(workspace.report(replaced(kOneCase, "    expect: {traces: 3}\n", "")) ==
-        "E5132 at 2:9: the case `one` expects nothing");
+        "E5132 at 2:9: `one` expects nothing");
   CHECK(workspace.report(replaced(kOneCase, "traces: 3", "complete: true")) ==
-        "E5132 at 2:9: the case `one` expects nothing");
+        "E5132 at 2:9: `one` expects nothing");
   CHECK(workspace.report("cases: []\n").starts_with("E5107 at 1:1: `cases` is empty"));
   CHECK(workspace.report("cases: {id: one}\n").starts_with("E5107 at 1:1: `cases` is a map"));
   CHECK(workspace.report("cases:\n  - one\n").starts_with("E5107 at 2:5: the case is"));
