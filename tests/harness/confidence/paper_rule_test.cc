@@ -231,7 +231,7 @@ Interval corner_by_corner(const LinearFit& fit, std::span<const Interval> range,
 }
 
 TEST_CASE("prediction: up to sixteen parameters the hull is that of all corners") {
-  for (const std::size_t parameters : {1, 2, 5, 16}) {
+  for (const std::size_t parameters : {1U, 2U, 5U, 16U}) {
     CAPTURE(parameters);
     const auto range = uneven_ranges(parameters);
     const auto fit = random_fit(parameters, range);
