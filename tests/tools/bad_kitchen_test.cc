@@ -10,29 +10,13 @@
 namespace parallax::test {
 namespace {
 
-/// `plan2.yaml` with something laid over it.
-void check_overlay_refused(const std::string& overlay, const std::string& place,
-                           const std::string& text) {
-  const KitchenCopy cli;
-  cli.write("kitchen/overlay.yaml", "include: plan2.yaml\n" + overlay + "\n");
-  CAPTURE(overlay);
-  for (const auto* command : {"check", "run"}) {
+/// One error, at `place` in the kitchen's files, whichever command reads them; nothing is begun.
+void check_refused_by(const KitchenCopy& cli, std::initializer_list<const char*> commands,
+                      const std::string& scenario, const std::string& place,
+                      const std::string& text) {
+  for (const auto* command : commands) {
     CAPTURE(command);
-    const auto result = cli.parallax({command, "kitchen/overlay.yaml"});
-    CAPTURE(result.err);
-    CHECK(result.code == 3);
-    CHECK(result.out.empty());
-    CHECK(result.err.find("kitchen/" + place) != std::string::npos);
-    CHECK(result.err.find(text) != std::string::npos);
-    const auto first = result.err.find("error[");
-    CHECK(result.err.find("error[", first + 1) == std::string::npos);
-  }
-}
-
-void check_refused(const KitchenCopy& cli, const std::string& place, const std::string& text) {
-  for (const auto* command : {"check", "run", "rates"}) {
-    CAPTURE(command);
-    const auto result = cli.parallax({command, "kitchen/plan2.yaml"});
+    const auto result = cli.parallax({command, scenario});
     CAPTURE(result.err);
     CHECK(result.code == 3);
     CHECK(result.out.empty());
@@ -42,6 +26,19 @@ void check_refused(const KitchenCopy& cli, const std::string& place, const std::
     CHECK(result.err.find("error[", first + 1) == std::string::npos);
     CHECK_FALSE(std::filesystem::exists(cli.folder() / "out"));
   }
+}
+
+void check_refused(const KitchenCopy& cli, const std::string& place, const std::string& text) {
+  check_refused_by(cli, {"check", "run", "rates"}, "kitchen/plan2.yaml", place, text);
+}
+
+/// `plan2.yaml` with something laid over it.
+void check_overlay_refused(const std::string& overlay, const std::string& place,
+                           const std::string& text) {
+  const KitchenCopy cli;
+  cli.write("kitchen/overlay.yaml", "include: plan2.yaml\n" + overlay + "\n");
+  CAPTURE(overlay);
+  check_refused_by(cli, {"check", "run"}, "kitchen/overlay.yaml", place, text);
 }
 
 TEST_CASE("a drawer that is longer than its bay") {
