@@ -10,6 +10,8 @@ target_compile_options(parallax_warnings INTERFACE -ffp-contract=off)
 
 # parallax_library(NAME SOURCES a.cc ... DEPENDS lib ... [PRIVATE_DEPENDS lib ...])
 # A static library parallax_NAME, alias parallax::NAME, with includes rooted at the repository.
+# DEPENDS and PRIVATE_DEPENDS are the house's layers: what the folder may include, and no more
+# (tests/tools/layering_test.cc reads them from the file that parallax_write_layers writes).
 function(parallax_library name)
   cmake_parse_arguments(arg "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   add_library(parallax_${name} STATIC ${arg_SOURCES})
@@ -17,6 +19,38 @@ function(parallax_library name)
   target_include_directories(parallax_${name} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(parallax_${name} PUBLIC ${arg_DEPENDS}
                         PRIVATE parallax_warnings ${arg_PRIVATE_DEPENDS})
+  parallax_record_layer(parallax::${name} "${arg_SOURCES}" "${arg_DEPENDS};${arg_PRIVATE_DEPENDS}")
+endfunction()
+
+# parallax_program(NAME SOURCES a.cc ... DEPENDS lib ...): an executable, which is a layer as well.
+function(parallax_program name)
+  cmake_parse_arguments(arg "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE ${arg_DEPENDS} parallax_warnings)
+  parallax_record_layer(${name} "${arg_SOURCES}" "${arg_DEPENDS}")
+endfunction()
+
+function(parallax_record_layer name sources depends)
+  set(folders "")
+  foreach(source ${sources})
+    cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR}
+               OUTPUT_VARIABLE folder)
+    cmake_path(APPEND folder ${source})
+    cmake_path(GET folder PARENT_PATH folder)
+    list(APPEND folders ${folder})
+  endforeach()
+  list(REMOVE_DUPLICATES folders)
+  list(JOIN depends " " depends)
+  foreach(folder ${folders})
+    set_property(GLOBAL APPEND_STRING PROPERTY parallax_layers "${folder} ${name} ${depends}\n")
+  endforeach()
+endfunction()
+
+# One line each folder and library or program in it: the folder, the name, what it depends on.
+function(parallax_write_layers)
+  get_property(layers GLOBAL PROPERTY parallax_layers)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/layers.txt CONTENT "${layers}" @ONLY)
 endfunction()
 
 # parallax_test(NAME SOURCES a_test.cc ... DEPENDS lib ... [LABELS fast])
