@@ -99,7 +99,8 @@ class Estimator {
     for (std::int64_t sample = 1; sample <= options_.runs && complete; ++sample) {
       const auto record = pool_.wait(sample, Phase::kCertify);
       complete = record.has_value();
-      if (record && !count(*plan, *record, rates, causes)) return sink_.already_reported();
+      if (record && !count(*plan, *record, rates, causes, complete))
+        return sink_.already_reported();
     }
     pool_.abandon();
     finish(rates, causes);
@@ -107,7 +108,7 @@ class Estimator {
   }
 
   base::Status count(const TracePlan& plan, const SampleRecord& record, TraceRates& rates,
-                     std::map<std::string, CauseRate>& causes) {
+                     std::map<std::string, CauseRate>& causes, bool& complete) {
     rates.rejected += record.rejected;
     switch (record.status) {
       case SampleStatus::kRejected:
@@ -122,13 +123,14 @@ class Estimator {
       case SampleStatus::kOk:
         break;
     }
-    ++rates.runs;
     const auto judgement = judge(*scenario_.mapping, fluents_, plan.trace, record.observations);
-    if (judgement.matches()) return base::Unit{};
-    const bool admitted = scenario_.match_model && !judgement.in_no_state &&
-                          plan.trace.other_outcomes &&
-                          traces_.admits(plan.trace, judgement.last_state);
-    if (admitted) return base::Unit{};
+    auto admitted = judgement.matches() ? base::Known::kYes : base::Known::kNo;
+    const bool open = scenario_.match_model && !judgement.in_no_state && plan.trace.other_outcomes;
+    if (!judgement.matches() && open) admitted = traces_.admits(plan.trace, judgement.last_state);
+    complete = admitted != base::Known::kUndecided;
+    if (!complete) return base::Unit{};
+    ++rates.runs;
+    if (admitted == base::Known::kYes) return base::Unit{};
     if (judgement.first_divergence == 0) {
       const auto& fluent = judgement.first.front();
       return sink_.error(DiagnosticCode::kMappingNotInverse, scenario_.mapping_source,

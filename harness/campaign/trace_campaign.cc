@@ -151,11 +151,12 @@ class TraceCampaign {
       if (judgement.first_divergence) ++outcome_.result.strayed;
       add_clean_run(tally_, record.initial, record.observations.back());
     } else {
-      const bool admitted = context_.scenario.match_model && !judgement.in_no_state &&
-                            plan_->trace.other_outcomes &&
-                            context_.feed.admits(plan_->trace, judgement.last_state);
-      if (stopped()) return Step{TraceEnd::kStopped};  // then the solver was, too
-      if (!admitted) return accept_discrepancy(std::move(record), judgement);
+      const bool open =
+          context_.scenario.match_model && !judgement.in_no_state && plan_->trace.other_outcomes;
+      const auto admitted =
+          open ? context_.feed.admits(plan_->trace, judgement.last_state) : base::Known::kNo;
+      if (admitted == base::Known::kUndecided || stopped()) return Step{TraceEnd::kStopped};
+      if (admitted == base::Known::kNo) return accept_discrepancy(std::move(record), judgement);
       tally_.add_clean_elsewhere();
       ++outcome_.result.admitted;
     }

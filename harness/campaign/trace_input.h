@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/base/known.h"
 #include "compiler/base/result.h"
 #include "harness/world/simulator.h"
 
@@ -45,10 +46,11 @@ class TraceFeed {
   virtual const std::vector<std::string>& fluents() const = 0;
   /// Does the model let the events of `trace`, from its initial state, end in a state in which each
   /// of these fluents has this value? Asked about the trace that was given last, and only if it has
-  /// `other_outcomes`; where the stop flag is raised meanwhile the answer does not count.
-  virtual bool admits(const CampaignTrace& trace, const std::map<std::string, bool>& last_state) {
+  /// `other_outcomes`. Undecided where the stop flag is raised meanwhile.
+  virtual base::Known admits(const CampaignTrace& trace,
+                             const std::map<std::string, bool>& last_state) {
     (void)trace, (void)last_state;
-    return false;
+    return base::Known::kNo;
   }
 };
 

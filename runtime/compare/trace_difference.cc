@@ -160,17 +160,19 @@ std::unique_ptr<Graph> graph_of(const CompiledModel& model, const DifferenceOpti
   return out->graph == nullptr ? nullptr : std::move(out);
 }
 
-bool is_unsatisfiable(const CompiledModel& model, const DifferenceOptions& options) {
+base::Known has_traces(const CompiledModel& model, const DifferenceOptions& options) {
   SolverSession session(model, make_cadical_solver(options.stop));
-  return session.solve(model.horizon, {}) == SolveStatus::kUnsatisfiable;
+  return possible(session.solve(model.horizon, {}));
 }
 
 /// Exact numbers where the graphs of both models are small. The graph of a model without traces is
 /// not to be built, and not needed.
 void count_with_graphs(const CompiledModel& first, const CompiledModel& second,
                        const DifferenceOptions& options, TraceDifference& out) {
-  const bool no_first = is_unsatisfiable(first, options);
-  const bool no_second = is_unsatisfiable(second, options);
+  const auto has_first = has_traces(first, options), has_second = has_traces(second, options);
+  if (has_first == base::Known::kUndecided || has_second == base::Known::kUndecided) return;
+  const bool no_first = has_first == base::Known::kNo;
+  const bool no_second = has_second == base::Known::kNo;
   const auto a = no_first ? nullptr : graph_of(first, options);
   if (a == nullptr && !no_first) return;
   const auto b = no_second ? nullptr : graph_of(second, options);

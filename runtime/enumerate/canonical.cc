@@ -78,11 +78,11 @@ class CanonicalSearch {
 
 }  // namespace
 
-std::vector<Literal> make_canonical(SolverSession& session, Timepoint n,
-                                    std::span<const Literal> assumptions,
-                                    std::span<const Literal> order) {
+std::optional<std::vector<Literal>> make_canonical(SolverSession& session, Timepoint n,
+                                                   std::span<const Literal> assumptions,
+                                                   std::span<const Literal> order) {
   CanonicalSearch search(session, n, assumptions, order);
-  if (!search.run()) return {};
+  if (!search.run()) return std::nullopt;
   auto fixed = search.take();
   fixed.erase(fixed.begin(), fixed.begin() + static_cast<std::ptrdiff_t>(assumptions.size()));
   return fixed;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,10 +13,10 @@ namespace parallax::runtime {
 /// `n` under `assumptions`. Afterwards value() gives the first valuation, whatever the solver
 /// found before. A few calls where nothing can be improved; about log2 of the length of `order` for
 /// each literal that can.
-/// Returns the literals as they are in it, in the order given; kUnknown from the solver ends the
-/// walk early and gives an empty list.
-std::vector<Literal> make_canonical(SolverSession& session, Timepoint n,
-                                    std::span<const Literal> assumptions,
-                                    std::span<const Literal> order);
+/// Returns the literals as they are in it, in the order given; none if the solver was stopped on
+/// the way.
+[[nodiscard]] std::optional<std::vector<Literal>> make_canonical(
+    SolverSession& session, Timepoint n, std::span<const Literal> assumptions,
+    std::span<const Literal> order);
 
 }  // namespace parallax::runtime

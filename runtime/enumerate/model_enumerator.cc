@@ -18,13 +18,13 @@ std::optional<Trace> ModelEnumerator::next() {
   exhausted_ = status == SolveStatus::kUnsatisfiable;
   if (status != SolveStatus::kSatisfiable) return std::nullopt;
   auto blocking = make_canonical(*session_, n, {}, order_);
-  if (blocking.empty() && !order_.empty()) return std::nullopt;
+  if (!blocking) return std::nullopt;
   session_->require_model(n);
   auto trace =
       decode_trace(session_->model(), n, [&](Literal literal) { return session_->value(literal); });
   trace.number = ++found_;
-  for (auto& literal : blocking) literal = ~literal;
-  session_->add_clause(blocking);
+  for (auto& literal : *blocking) literal = ~literal;
+  session_->add_clause(*blocking);
   return trace;
 }
 

@@ -87,46 +87,39 @@ std::optional<Trace> PlanEnumerator::next() {
     }
     auto fixed = std::move(assumptions);
     const auto head = fixed.size();
-    const auto extend = [&](const std::vector<Literal>& order) {
-      auto literals = make_canonical(*session_, n_, fixed, order);
-      fixed.insert(fixed.end(), literals.begin(), literals.end());
-      return literals;
-    };
-    auto key = extend(key_order_);
-    const auto start = extend(start_order_);
-    if (options_.split_initial) key.insert(key.end(), start.begin(), start.end());
-    extend(state_order_);
-    extend(choice_order_);
-    if (fixed.size() != head + key_order_.size() + start_order_.size() + state_order_.size() +
-                            choice_order_.size()) {
-      done_ = true;  // the solver was stopped on the way
-      return std::nullopt;
+    for (const auto* order : {&key_order_, &start_order_, &state_order_, &choice_order_}) {
+      const auto literals = make_canonical(*session_, n_, fixed, *order);
+      done_ = !literals;
+      if (done_) return std::nullopt;
+      fixed.insert(fixed.end(), literals->begin(), literals->end());
     }
     auto trace = decode_trace(session_->model(), n_,
                               [&](Literal literal) { return session_->value(literal); });
     trace.number = ++found_;
     note_alternatives(fixed, head, trace);
-    for (auto& literal : key) literal = ~literal;
-    key.push_back(~*guard_);
-    session_->add_clause(key);
+    const auto named = key_order_.size() + (options_.split_initial ? start_order_.size() : 0);
+    std::vector<Literal> blocking;
+    for (const auto literal : std::span(fixed).subspan(head, named)) blocking.push_back(~literal);
+    blocking.push_back(~*guard_);
+    session_->add_clause(blocking);
     return trace;
   }
   return std::nullopt;
 }
 
 /// Is there a valuation with the fixed literals in which some literal of `different` is false?
-bool PlanEnumerator::has_alternative(std::span<const Literal> fixed,
-                                     std::span<const Literal> different) {
+base::Known PlanEnumerator::has_alternative(std::span<const Literal> fixed,
+                                            std::span<const Literal> different) {
   const auto wanted = session_->new_variable();
   std::vector<Literal> clause = {~wanted};
   for (const auto literal : different) clause.push_back(~literal);
   session_->add_clause(clause);
   std::vector<Literal> assumptions(fixed.begin(), fixed.end());
   assumptions.push_back(wanted);
-  const bool found = session_->solve(n_, assumptions) == SolveStatus::kSatisfiable;
+  const auto status = session_->solve(n_, assumptions);
   const auto retired = ~wanted;
   session_->add_clause(std::span(&retired, 1));
-  return found;
+  return possible(status);
 }
 
 /// `fixed`: `length` literals that define the length, then the key, the initial state and the
@@ -136,17 +129,22 @@ void PlanEnumerator::note_alternatives(std::span<const Literal> fixed, std::size
   const auto head = length + key_order_.size();
   const auto start = fixed.subspan(head, start_order_.size());
   const auto states = fixed.subspan(head + start.size(), state_order_.size());
-  trace.other_initial_states = !options_.split_initial && has_alternative(fixed.first(head), start);
+  if (!options_.split_initial) {
+    trace.other_initial_states = has_alternative(fixed.first(head), start);
+  }
   trace.other_outcomes = has_alternative(fixed.first(head + start.size()), states);
 }
 
-bool PlanEnumerator::admits(const Trace& trace, const std::map<std::string, bool>& last_state) {
+base::Known PlanEnumerator::admits(const Trace& trace,
+                                   const std::map<std::string, bool>& last_state) {
   const auto n = trace.length();
   auto assumptions = hit_at(n);
   // What has no variable is false in every trace.
   for (const auto& fluent : session_->model().fluents) {
     const auto wanted = last_state.find(fluent.name);
-    if (!fluent.slot && wanted != last_state.end() && wanted->second) return false;
+    if (!fluent.slot && wanted != last_state.end() && wanted->second) {
+      return base::Known::kNo;
+    }
   }
   session_->model().for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
                                       std::optional<Timepoint> when) {
@@ -169,7 +167,7 @@ bool PlanEnumerator::admits(const Trace& trace, const std::map<std::string, bool
       assumptions.push_back(wanted->second ? literal : ~literal);
     }
   });
-  return session_->solve(n, assumptions) == SolveStatus::kSatisfiable;
+  return possible(session_->solve(n, assumptions));
 }
 
 /// Is there an execution that never meets the constraints and goes on beyond the horizon?
@@ -182,14 +180,26 @@ void PlanEnumerator::finish() {
   const auto running = index_.find(AtomKind::kRunning, "running", n_);
   auto going_on = unmet;
   if (running) going_on.push_back(*running);
-  const auto open = session_->solve(n_, going_on);
-  if (open == SolveStatus::kUnknown) return;
-  if (open == SolveStatus::kSatisfiable) {
-    if (find_cuts(unmet) == SolveStatus::kUnknown) return;
-    if (running && find_step(unmet) == SolveStatus::kUnknown) return;
+  switch (session_->solve(n_, going_on)) {
+    case SolveStatus::kUnsatisfiable:
+      exploration_ = Exploration::kAllTracesExplored;
+      break;
+    case SolveStatus::kSatisfiable:
+      if (find_open_ends(unmet, running.has_value())) {
+        exploration_ = Exploration::kCompleteUpToBound;
+      } else {
+        open_ends_ = {};  // half of them would say that there are no others
+      }
+      break;
+    case SolveStatus::kUnknown:
+      break;
   }
-  exploration_ = open == SolveStatus::kSatisfiable ? Exploration::kCompleteUpToBound
-                                                   : Exploration::kAllTracesExplored;
+}
+
+/// False if the solver was stopped on the way.
+bool PlanEnumerator::find_open_ends(std::span<const Literal> unmet, bool running) {
+  return find_cuts(unmet) != SolveStatus::kUnknown &&
+         (!running || find_step(unmet) != SolveStatus::kUnknown);
 }
 
 /// Asks for every cut by itself whether some execution comes to it.

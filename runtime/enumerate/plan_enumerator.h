@@ -43,6 +43,8 @@ class PlanEnumerator {
  public:
   /// `session` outlives the enumerator; its model has state constraints.
   explicit PlanEnumerator(SolverSession& session, const PlanEnumeratorOptions& options = {});
+  /// None if there is no further one, or the solver was stopped on the way to it: `exploration`
+  /// tells. Whether there are others like it may be undecided in a trace that was found before.
   std::optional<Trace> next();
   /// Final once `next` has answered none.
   Exploration exploration() const { return exploration_; }
@@ -51,14 +53,15 @@ class PlanEnumerator {
 
   /// Does the model admit, for the trace's events and initial state, a last state in which each of
   /// these fluents has the value given? One solver call.
-  bool admits(const Trace& trace, const std::map<std::string, bool>& last_state);
+  base::Known admits(const Trace& trace, const std::map<std::string, bool>& last_state);
 
  private:
-  bool has_alternative(std::span<const Literal> fixed, std::span<const Literal> different);
+  base::Known has_alternative(std::span<const Literal> fixed, std::span<const Literal> different);
   void note_alternatives(std::span<const Literal> fixed, std::size_t length, Trace& trace);
   std::vector<Literal> hit_at(Timepoint n) const;
   void prepare_orders(Timepoint n);
   void finish();
+  bool find_open_ends(std::span<const Literal> unmet, bool running);
   SolveStatus find_cuts(std::span<const Literal> unmet);
   SolveStatus find_step(std::span<const Literal> unmet);
 

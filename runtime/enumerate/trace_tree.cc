@@ -26,8 +26,9 @@ TraceTree::TraceTree(SolverSession& session, std::vector<std::vector<Literal>> l
 }
 
 std::optional<Trace> TraceTree::next() {
-  if (exhausted_) return std::nullopt;
-  if (!std::exchange(started_, true) && !expand()) return std::nullopt;
+  if (exhausted_ || stopped_) return std::nullopt;
+  if (!std::exchange(started_, true)) stopped_ = !expand();
+  if (stopped_) return std::nullopt;
   while (!path_.empty()) {
     auto& node = path_.back();
     assumptions_.erase(assumptions_.begin() + static_cast<std::ptrdiff_t>(node.assumed),
@@ -45,10 +46,8 @@ std::optional<Trace> TraceTree::next() {
     for (std::size_t i = 0; i < level.size(); ++i) {
       assumptions_.push_back(child.values[i] ? level[i] : ~level[i]);
     }
-    if (!expand()) {
-      path_.clear();
-      return std::nullopt;
-    }
+    stopped_ = !expand();
+    if (stopped_) return std::nullopt;
   }
   exhausted_ = true;
   return std::nullopt;

@@ -45,6 +45,7 @@ class TraceTree final : public TraceSource {
   std::vector<Literal> assumptions_;
   std::int64_t found_ = 0;
   bool started_ = false;
+  bool stopped_ = false;  // there may be further traces, but no way to them is left
   bool exhausted_ = false;
 };
 

@@ -90,7 +90,7 @@ GroundContradiction ground_contradiction(ExecutionFormula& formula, const AxiomG
                                          Effort& effort) {
   GroundContradiction result;
   const auto all = candidates(formula.model(), axioms, groups);
-  GroupSolver solver(formula.variables(), all.size(), limits.stop);
+  GroupSolver solver(formula.variables(), all.size(), make_cadical_solver(limits.stop));
   formula.for_each_always([&](std::span<const Literal> clause) { solver.add_definition(clause); });
   for (std::uint32_t k = 0; k < all.size(); ++k) solver.add(formula.clause(all[k]), k);
   IndexSet kept(all.size());

@@ -1,9 +1,12 @@
 #include "runtime/explain/group_solver.h"
 
+#include <utility>
+
 namespace parallax::runtime {
 
-GroupSolver::GroupSolver(std::int32_t variables, std::size_t groups, const std::atomic<bool>* stop)
-    : solver_(make_cadical_solver(stop)), variables_(variables), groups_(groups) {
+GroupSolver::GroupSolver(std::int32_t variables, std::size_t groups,
+                         std::unique_ptr<SatSolver> solver)
+    : solver_(std::move(solver)), variables_(variables), groups_(groups) {
   // Groups that are not asked for are switched on where that costs nothing.
   for (std::uint32_t g = 0; g < groups; ++g) solver_->set_phase(selector(g));
 }
@@ -42,9 +45,9 @@ IndexSet GroupSolver::satisfied() const {
 }
 
 GroupSolver load_axioms(ExecutionFormula& formula, const AxiomGroups& groups,
-                        const std::atomic<bool>* stop) {
+                        std::unique_ptr<SatSolver> fresh) {
   const auto& model = formula.model();
-  GroupSolver solver(formula.variables(), groups.size(), stop);
+  GroupSolver solver(formula.variables(), groups.size(), std::move(fresh));
   formula.for_each_always([&](std::span<const Literal> clause) { solver.add_definition(clause); });
   for (std::size_t i = 0; i < model.clauses.size(); ++i) {
     const auto group = groups.group_of[model.clause_origins[i]];

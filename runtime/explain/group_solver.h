@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -18,8 +17,8 @@ using IndexSet = std::vector<std::uint32_t>;
 /// Clauses in groups, which hold while they are selected. Definitions of auxiliaries always hold.
 class GroupSolver {
  public:
-  /// `stop` may be null.
-  GroupSolver(std::int32_t variables, std::size_t groups, const std::atomic<bool>* stop);
+  /// `solver` is fresh.
+  GroupSolver(std::int32_t variables, std::size_t groups, std::unique_ptr<SatSolver> solver);
 
   void add(std::span<const Literal> clause, std::uint32_t group);
   void add_definition(std::span<const Literal> clause) { solver_->add_clause(clause); }
@@ -45,8 +44,8 @@ class GroupSolver {
   std::vector<Literal> clause_;
 };
 
-/// The axioms of a model, by group.
+/// The axioms of a model, by group. `solver` is fresh.
 GroupSolver load_axioms(ExecutionFormula& formula, const AxiomGroups& groups,
-                        const std::atomic<bool>* stop);
+                        std::unique_ptr<SatSolver> solver);
 
 }  // namespace parallax::runtime

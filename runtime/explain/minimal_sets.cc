@@ -200,11 +200,11 @@ MinimalSets all_minimal_sets(GroupSolver& solver, std::size_t limit,
         map.drop_above(seed);
         break;
       case SolveStatus::kUnknown:
-        result.unknown = result.sets.empty();
         going = false;
         break;
     }
   }
+  result.unknown = result.sets.empty() && !result.proven;
   std::sort(result.sets.begin(), result.sets.end(), [](const IndexSet& a, const IndexSet& b) {
     return a.size() != b.size() ? a.size() < b.size() : a < b;
   });

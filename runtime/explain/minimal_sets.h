@@ -15,7 +15,7 @@ struct MinimalSets {
   bool proven = false;
   /// Every contradiction has at least so many groups.
   std::size_t lower_bound = 0;
-  /// The solver was stopped before it could tell whether there is a contradiction at all.
+  /// The solver was stopped before there was a set, or a proof that there is none.
   bool unknown = false;
 };
 

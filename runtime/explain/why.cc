@@ -92,7 +92,7 @@ class Explainer {
     WhyStep step{fact, WhyKind::kChosen, std::nullopt, {}, 0, {}, {}};
     const auto reason = derivation_.reason(fact.var());
     if (reason == Derivation::kChosen) {
-      if (is_forced(fact)) step.kind = WhyKind::kForced;
+      step.kind = kind_of_choice(fact);
       if (const auto released = release_of(fact)) step.premises.push_back(*released);
     } else if (is_inertia(fact)) {
       follow_inertia(fact, step);
@@ -160,7 +160,7 @@ class Explainer {
   }
 
   /// Does the model, with the choices made before, admit no other value? One solver call.
-  bool is_forced(Literal fact) {
+  WhyKind kind_of_choice(Literal fact) {
     if (solver_ == nullptr) {
       solver_ = make_cadical_solver(options_.stop);
       for (std::size_t i = 0; i < model_.clauses.size(); ++i) {
@@ -169,7 +169,15 @@ class Explainer {
     }
     for (const auto choice : derivation_.choices_before(fact)) solver_->assume(choice);
     solver_->assume(~fact);
-    return solver_->solve() == SolveStatus::kUnsatisfiable;
+    switch (solver_->solve()) {
+      case SolveStatus::kUnsatisfiable:
+        return WhyKind::kForced;
+      case SolveStatus::kSatisfiable:
+        return WhyKind::kChosen;
+      case SolveStatus::kUnknown:
+        break;
+    }
+    return WhyKind::kUndecided;
   }
 
   const CompiledModel& model_;

@@ -18,7 +18,8 @@ enum class WhyKind : std::uint8_t {
   kAxiom,       // it follows from an axiom and other facts
   kCompletion,  // a completed predicate: nothing else could be a reason for it
   kForced,      // open at its time, but what comes later admits no other value
-  kChosen       // the model leaves it open; this trace has it so
+  kChosen,      // the model leaves it open; this trace has it so
+  kUndecided    // forced or chosen: the solver was stopped
 };
 
 /// One fact of a chain, and what it follows from.

@@ -1,7 +1,5 @@
 #include "runtime/replay/trace_replay.h"
 
-#include "runtime/session/unsat_core.h"
-
 namespace parallax::runtime {
 
 using compiler::AtomKind;
@@ -162,8 +160,7 @@ ReplayVerdict TraceReplay::find_end(const Units& units, Timepoint length) {
   return verdict;
 }
 
-std::optional<std::vector<std::uint32_t>> TraceReplay::blame(const ClaimedTrace& trace,
-                                                             Timepoint timepoint) const {
+UnsatCore TraceReplay::blame(const ClaimedTrace& trace, Timepoint timepoint) const {
   // The claims join as definitions: those are never left out of a core.
   auto model = *model_;
   const auto origin = static_cast<std::uint32_t>(model.origins.size());

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/session/solver_session.h"
+#include "runtime/session/unsat_core.h"
 #include "runtime/trace/trace.h"
 #include "runtime/trace/trace_claims.h"
 
@@ -45,10 +46,9 @@ class TraceReplay {
   /// `trace` has one of these lengths and names atoms of the model only. One solver call if the
   /// trace agrees, else one for each timepoint.
   ReplayVerdict replay(const ClaimedTrace& trace);
-  /// For a trace that fails at `timepoint`: a minimal set of origins of the model that cannot hold
-  /// together with what it says. None if the solver was stopped. Copies the model.
-  std::optional<std::vector<std::uint32_t>> blame(const ClaimedTrace& trace,
-                                                  Timepoint timepoint) const;
+  /// For a trace that fails at `timepoint`: origins of the model that cannot hold together with
+  /// what it says. Copies the model.
+  UnsatCore blame(const ClaimedTrace& trace, Timepoint timepoint) const;
 
  private:
   struct Unit {

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "compiler/artifact/compiled_model.h"
@@ -10,12 +9,18 @@
 
 namespace parallax::runtime {
 
-/// A minimal set of origins (indices into `model.origins`, ascending) whose clauses cannot hold
-/// together up to timepoint `n`: dropping any one of them makes the rest satisfiable. None if the
-/// model is satisfiable. `solver` is fresh. Cost: one call, then one for each member of the first
-/// core.
-std::optional<std::vector<std::uint32_t>> find_unsat_core(const compiler::CompiledModel& model,
-                                                          compiler::Timepoint n,
-                                                          std::unique_ptr<SatSolver> solver);
+struct UnsatCore {
+  /// Has the model a valuation? With kUnsatisfiable the core stands below.
+  SolveStatus status = SolveStatus::kUnknown;
+  /// Origins (indices into `model.origins`, ascending) whose clauses cannot hold together.
+  std::vector<std::uint32_t> origins;
+  /// Dropping any one of them makes the rest satisfiable. Else the solver was stopped.
+  bool is_minimal = false;
+};
+
+/// A minimal set of origins whose clauses up to timepoint `n` contradict each other. `solver` is
+/// fresh. Cost: one call, then one for each member of the first core.
+UnsatCore find_unsat_core(const compiler::CompiledModel& model, compiler::Timepoint n,
+                          std::unique_ptr<SatSolver> solver);
 
 }  // namespace parallax::runtime

@@ -7,16 +7,31 @@
 #include <span>
 
 #include "compiler/artifact/literal.h"
+#include "compiler/base/known.h"
 
 namespace parallax::runtime {
 
 using compiler::Literal;
 
-enum class SolveStatus : std::uint8_t {
-  kSatisfiable,
-  kUnsatisfiable,
-  kUnknown,  // interrupted or out of its budget
+/// Three answers, and no way to take the third for one of the others: what asks whether something
+/// is possible answers with `possible`.
+enum class [[nodiscard]] SolveStatus : std::uint8_t{
+    kSatisfiable, kUnsatisfiable,
+    kUnknown,  // interrupted or out of its budget
 };
+
+/// Is there what the solver was asked for?
+inline base::Known possible(SolveStatus status) {
+  switch (status) {
+    case SolveStatus::kSatisfiable:
+      return base::Known::kYes;
+    case SolveStatus::kUnsatisfiable:
+      return base::Known::kNo;
+    case SolveStatus::kUnknown:
+      break;
+  }
+  return base::Known::kUndecided;
+}
 
 /// An incremental SAT solver.
 ///

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/artifact/compiled_model.h"
+#include "compiler/base/known.h"
 
 namespace parallax::runtime {
 
@@ -33,10 +34,10 @@ struct Trace {
   std::int64_t number = 0;  // from 1, in the order of enumeration
   std::vector<TracePoint> points;
   std::vector<std::string> predicates;  // true atoms of user predicates, sorted
-  /// Other initial states lead to the same events; this one is the first in canonical order.
-  bool other_initial_states = false;
-  /// The same events from the same initial state can also end in other states.
-  bool other_outcomes = false;
+  /// Do other initial states lead to the same events? This one is the first in canonical order.
+  base::Known other_initial_states = base::Known::kNo;
+  /// Can the same events from the same initial state also end in other states?
+  base::Known other_outcomes = base::Known::kNo;
   Timepoint length() const { return static_cast<Timepoint>(points.size()) - 1; }
 };
 

@@ -200,6 +200,20 @@ TEST_CASE("a limit or a signal leaves a partial result that says so") {
   }
 }
 
+TEST_CASE("a search that is stopped does not say that there is no trace") {
+  const CliFixture cli;
+  const auto plan = std::string(PARALLAX_SOURCE_DIR) + "/scenarios/kitchen/plan1.yaml";
+  for (const auto* limit : {"0.001", "0.01", "0.03", "0.1", "0.2"}) {
+    for (const auto* command : {"rates", "run"}) {
+      CAPTURE(command);
+      CAPTURE(limit);
+      const auto result = cli.parallax({command, plan, "--time-limit", limit});
+      CHECK(result.code == 4);
+      CHECK(result.err.find("meets the state constraints") == std::string::npos);
+    }
+  }
+}
+
 TEST_CASE("what cannot be estimated is told with its exit code") {
   const CliFixture cli;
   const auto complains = [&](const std::vector<std::string>& words, int code,

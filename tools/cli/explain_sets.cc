@@ -190,12 +190,12 @@ int explain_sets(const compiler::CompiledModel& model, const SetOptions& options
                  const std::optional<ObservedRun>& run, Invocation& invocation) {
   runtime::ExecutionFormula formula(model, run ? std::optional(run->observed) : std::nullopt);
   const auto axioms = runtime::group_axioms(model);
-  auto solver = runtime::load_axioms(formula, axioms, &stop_flag());
+  auto solver = runtime::load_axioms(formula, axioms, runtime::make_cadical_solver(&stop_flag()));
   const auto found =
       options.all
           ? runtime::all_minimal_sets(solver, static_cast<std::size_t>(options.limit), &stop_flag())
           : runtime::smallest_set(solver, &stop_flag());
-  if (found.unknown || (found.sets.empty() && !found.proven)) {
+  if (found.unknown) {
     invocation.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
                                   "whether there is a contradiction is not known");
     return 0;

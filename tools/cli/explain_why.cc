@@ -141,6 +141,13 @@ int explain_why(const compiler::CompiledModel& model, const WhyCommand& command,
   } else {
     invocation.result(text.text(*fact, asked, steps));
   }
+  const bool undecided = std::any_of(steps.begin(), steps.end(), [](const WhyStep& step) {
+    return step.kind == runtime::WhyKind::kUndecided;
+  });
+  if (undecided) {
+    invocation.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
+                                  "whether every choice is one is not known");
+  }
   return 0;
 }
 

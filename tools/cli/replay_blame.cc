@@ -56,9 +56,9 @@ std::optional<Blame> core_blame(const compiler::Compilation& compilation,
                                 const runtime::ClaimedTrace& trace,
                                 const runtime::ReplayVerdict& verdict) {
   const auto core = replay.blame(trace, verdict.timepoint);
-  if (!core) return std::nullopt;
+  if (core.status != runtime::SolveStatus::kUnsatisfiable) return std::nullopt;
   Blame blame{verdict.timepoint, {}, {}};
-  for (const auto index : *core) {
+  for (const auto index : core.origins) {
     const auto& origin = compilation.model.origins[index];
     auto note = note_at(origin.source, origin.what);
     // In a compiled model the source is a line of that file.
@@ -67,7 +67,8 @@ std::optional<Blame> core_blame(const compiler::Compilation& compilation,
     }
     if (blame.first.text.empty()) {
       note.text += ": it cannot hold with what the trace says";
-      if (core->size() > 1) note.text += fmt::format(" and {} others", core->size() - 1);
+      const auto others = core.origins.size() - 1;
+      if (others > 0) note.text += fmt::format(" and {} others", others);
       if (verdict.hidden > 0) note.text += ", whatever it does not mention";
       blame.first = std::move(note);
     } else if (blame.others.size() < kMaxNotes) {

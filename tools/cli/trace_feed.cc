@@ -38,21 +38,22 @@ std::string proof_remark(const compiler::CompiledModel& model, compiler::Timepoi
 
 }  // namespace
 
-bool report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Timepoint steps,
-                             base::DiagnosticSink& sink) {
+base::Known report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Timepoint steps,
+                                    base::DiagnosticSink& sink) {
   const auto core =
       runtime::find_unsat_core(model, steps, runtime::make_cadical_solver(&stop_flag()));
-  if (!core) return false;
+  if (core.status != runtime::SolveStatus::kUnsatisfiable) return runtime::possible(core.status);
   // Several origins can share a place (the frame axiom and the declaration of a fluent).
   std::vector<const compiler::Origin*> blamed;
-  for (const auto index : *core) blamed.push_back(&model.origins[index]);
+  for (const auto index : core.origins) blamed.push_back(&model.origins[index]);
   const auto first = blamed.empty() ? base::SourceRange{} : blamed.front()->source;
   auto diagnostic = sink.error(base::DiagnosticCode::kModelUnsatisfiable, first, steps);
   for (const auto* origin : blamed) {
     diagnostic.note(origin->source, fmt::format("this {} takes part", origin->what));
   }
-  diagnostic.note(proof_remark(model, steps, *core));
-  return true;
+  diagnostic.note(proof_remark(model, steps, core.origins));
+  if (!core.is_minimal) diagnostic.note("stopped: not every one of them may be needed");
+  return base::Known::kNo;
 }
 
 EnumeratedTraces::EnumeratedTraces(const compiler::CompiledModel& model, Invocation& invocation,
@@ -69,8 +70,15 @@ EnumeratedTraces::EnumeratedTraces(const compiler::CompiledModel& model, Invocat
 
 base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next() {
   const auto trace = enumerator_->next();
+  const bool is_stopped = enumerator_->exploration() == runtime::Exploration::kStopped;
+  if (trace && (trace->other_initial_states == base::Known::kUndecided ||
+                trace->other_outcomes == base::Known::kUndecided)) {
+    // The solver was stopped: nothing would be simulated, and the caveats are not known.
+    return std::optional<harness::CampaignTrace>();
+  }
   if (!trace) {
-    if (given_ == 0 && !explain_absence()) return invocation_->sink().already_reported();
+    if (given_ == 0 && !is_stopped && !explain_absence())
+      return invocation_->sink().already_reported();
     return std::optional<harness::CampaignTrace>();
   }
   ++given_;
@@ -88,15 +96,18 @@ std::vector<std::string> EnumeratedTraces::bounds() const {
   return open_end_texts(*model_, enumerator_->open_ends());
 }
 
-bool EnumeratedTraces::admits(const harness::CampaignTrace& trace,
-                              const std::map<std::string, bool>& last_state) {
+base::Known EnumeratedTraces::admits(const harness::CampaignTrace& trace,
+                                     const std::map<std::string, bool>& last_state) {
   PARALLAX_REQUIRE(trace.number == current_.number, "only the trace given last is asked about");
   return enumerator_->admits(current_, last_state);
 }
 
+/// Of a search that came to its end: that nothing meets the constraints is proved.
 base::Status EnumeratedTraces::explain_absence() const {
   auto& sink = invocation_->sink();
-  if (report_if_unsatisfiable(*model_, model_->horizon, sink)) return sink.already_reported();
+  if (report_if_unsatisfiable(*model_, model_->horizon, sink) == base::Known::kNo) {
+    return sink.already_reported();
+  }
   for (const auto& origin : model_->origins) {
     if (origin.what != "state constraint") continue;
     sink.warning(base::DiagnosticCode::kNoTraceReachesConstraint, origin.source, model_->horizon);
@@ -111,8 +122,8 @@ base::Result<harness::CampaignTrace> EnumeratedTraces::convert(const runtime::Tr
   // Traces of the same events are told apart by where they start.
   if (split_initial_)
     out.key += fmt::format(" from {}", fmt::join(trace.points.front().holds, ";"));
-  out.other_initial_states = trace.other_initial_states;
-  out.other_outcomes = trace.other_outcomes;
+  out.other_initial_states = trace.other_initial_states == base::Known::kYes;
+  out.other_outcomes = trace.other_outcomes == base::Known::kYes;
   for (const auto& point : trace.points) out.holds.push_back(point.holds);
   for (std::size_t t = 0; t + 1 < trace.points.size(); ++t) {
     const auto& point = trace.points[t];

@@ -23,8 +23,8 @@ class EnumeratedTraces final : public harness::TraceFeed {
   std::string exploration() const override;
   std::vector<std::string> bounds() const override;
   const std::vector<std::string>& fluents() const override { return fluents_; }
-  bool admits(const harness::CampaignTrace& trace,
-              const std::map<std::string, bool>& last_state) override;
+  base::Known admits(const harness::CampaignTrace& trace,
+                     const std::map<std::string, bool>& last_state) override;
   std::int64_t solve_calls() const { return session_->solve_calls(); }
 
  private:
@@ -41,9 +41,9 @@ class EnumeratedTraces final : public harness::TraceFeed {
   std::int64_t given_ = 0;
 };
 
-/// Reports why the model has no execution of `steps` steps: the axioms of a minimal core, each
-/// with its place. Does nothing and returns false if it has one.
-bool report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Timepoint steps,
-                             base::DiagnosticSink& sink);
+/// Has the model an execution of `steps` steps? If it has none, reports why: the axioms of a
+/// minimal core, each with its place.
+base::Known report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Timepoint steps,
+                                    base::DiagnosticSink& sink);
 
 }  // namespace parallax::tools

@@ -188,7 +188,7 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   auto answer = ask(model, certifier);
   // Nothing can go wrong in a model without executions.
   if (!answer.violation && answer.exploration != runtime::Exploration::kStopped &&
-      report_if_unsatisfiable(model, 0, invocation.sink())) {
+      report_if_unsatisfiable(model, 0, invocation.sink()) == base::Known::kNo) {
     return 0;
   }
   const bool holds = !answer.violation && answer.exploration != runtime::Exploration::kStopped;

@@ -34,6 +34,8 @@ const char* kind_word(WhyKind kind) {
       return "forced";
     case WhyKind::kChosen:
       return "chosen";
+    case WhyKind::kUndecided:
+      return "undecided";
   }
   return "";
 }
@@ -130,6 +132,9 @@ std::string WhyText::reason(const WhyStep& step) const {
     case WhyKind::kChosen:
       return (step.premises.empty() ? "" : "as " + premises(step) + ", ") +
              std::string("the model leaves it open; this trace has it so");
+    case WhyKind::kUndecided:
+      return "open so far; stopped before it was known whether what comes later admits anything "
+             "else";
   }
   return {};
 }

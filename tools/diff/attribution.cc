@@ -39,8 +39,8 @@ std::optional<CompiledModel> compile_text(const std::string& text, Timepoint hor
 }
 
 /// Has the model a trace with these observables?
-bool admits(const CompiledModel& model, const runtime::Trace& trace,
-            const runtime::SharedVocabulary& vocabulary) {
+base::Known admits(const CompiledModel& model, const runtime::Trace& trace,
+                   const runtime::SharedVocabulary& vocabulary) {
   const compiler::AtomIndex index(model);
   std::vector<Literal> observation;
   for (const auto& atom : vocabulary.shared) {
@@ -49,11 +49,11 @@ bool admits(const CompiledModel& model, const runtime::Trace& trace,
     const auto& names = atom.kind == AtomKind::kHoldsAt ? point.holds : point.happens;
     const bool is_true = std::binary_search(names.begin(), names.end(), name);
     const auto literal = index.find(atom.kind, name, atom.time);
-    if (!literal && is_true) return false;
+    if (!literal && is_true) return base::Known::kNo;
     if (literal) observation.push_back(is_true ? *literal : ~*literal);
   }
   runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
-  return session.solve(model.horizon, observation) == runtime::SolveStatus::kSatisfiable;
+  return runtime::possible(session.solve(model.horizon, observation));
 }
 
 /// The refusing revision with some edits undone, as a text.
@@ -83,11 +83,12 @@ std::optional<std::vector<Edit>> responsible_edits(const std::vector<Fact>& kept
   auto undone = edits;
   // One edit alone is responsible for what it brings.
   for (std::size_t i = 0; i < undone.size() && undone.size() > 1;) {
-    if (stop_flag().load()) return std::nullopt;
     auto fewer = undone;
     fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
     const auto model = compile_text(variant(kept, refused, fewer), trace.length(), options);
-    if (model && admits(*model, trace, vocabulary)) {
+    const auto admitted = model ? admits(*model, trace, vocabulary) : base::Known::kNo;
+    if (admitted == base::Known::kUndecided || stop_flag().load()) return std::nullopt;
+    if (admitted == base::Known::kYes) {
       undone = std::move(fewer);
     } else {
       ++i;

@@ -200,9 +200,10 @@ class ListFeed final : public TraceFeed {
     out.other_outcomes = openness_.outcomes;
     return std::optional<CampaignTrace>(std::move(out));
   }
-  bool admits(const CampaignTrace& trace, const std::map<std::string, bool>& last_state) override {
+  base::Known admits(const CampaignTrace& trace,
+                     const std::map<std::string, bool>& last_state) override {
     CHECK(trace.number == given_);
-    return openness_.admits(last_state);
+    return openness_.admits(last_state) ? base::Known::kYes : base::Known::kNo;
   }
   std::string exploration() const override { return "all traces explored"; }
   const std::vector<std::string>& fluents() const override { return fluents_; }

@@ -78,7 +78,7 @@ struct RandomGroups {
     return true;
   }
   runtime::GroupSolver solver() const {
-    runtime::GroupSolver solver(kVariables, groups.size(), nullptr);
+    runtime::GroupSolver solver(kVariables, groups.size(), runtime::make_cadical_solver());
     for (std::uint32_t g = 0; g < groups.size(); ++g) {
       for (const auto& clause : groups[g]) {
         std::vector<Literal> literals;
@@ -123,10 +123,12 @@ TEST_CASE("a search that is stopped says that it does not know") {
   std::mt19937 random(5);
   const RandomGroups groups(random);
   const std::atomic<bool> stop{true};
-  runtime::GroupSolver solver(kVariables, groups.groups.size(), &stop);
+  runtime::GroupSolver solver(kVariables, groups.groups.size(),
+                              runtime::make_cadical_solver(&stop));
   CHECK(runtime::smallest_set(solver, &stop).unknown);
   CHECK_FALSE(runtime::smallest_set(solver, &stop).proven);
   CHECK_FALSE(runtime::all_minimal_sets(solver, 0, &stop).proven);
+  CHECK(runtime::all_minimal_sets(solver, 0, &stop).unknown);
 }
 
 bool has_model(const compiler::CompiledModel& model, const runtime::AxiomGroups& groups,
@@ -154,9 +156,9 @@ TEST_CASE("the minimal sets of random models are those of all subsets of their a
       return !has_model(model.compiled, groups, mask);
     });
     runtime::ExecutionFormula formula(model.compiled);
-    auto solver = runtime::load_axioms(formula, groups, nullptr);
+    auto solver = runtime::load_axioms(formula, groups, runtime::make_cadical_solver());
     CHECK(runtime::all_minimal_sets(solver, 0, nullptr).sets == expected);
-    auto fresh = runtime::load_axioms(formula, groups, nullptr);
+    auto fresh = runtime::load_axioms(formula, groups, runtime::make_cadical_solver());
     const auto smallest = runtime::smallest_set(fresh, nullptr);
     REQUIRE(smallest.sets.size() == 1);
     CHECK(smallest.sets.front().size() == expected.front().size());
@@ -171,7 +173,7 @@ TEST_CASE("the ground instances of a set contradict each other, and no one can g
     if (model.sink.has_errors()) continue;
     const auto groups = runtime::group_axioms(model.compiled);
     runtime::ExecutionFormula formula(model.compiled);
-    auto solver = runtime::load_axioms(formula, groups, nullptr);
+    auto solver = runtime::load_axioms(formula, groups, runtime::make_cadical_solver());
     const auto found = runtime::smallest_set(solver, nullptr);
     if (found.sets.empty()) continue;
     ++compared;
@@ -239,7 +241,7 @@ TEST_CASE(
     contradictory += expected.empty() ? 0 : 1;
     const auto groups = runtime::group_axioms(whole.compiled);
     runtime::ExecutionFormula formula(whole.compiled);
-    auto solver = runtime::load_axioms(formula, groups, nullptr);
+    auto solver = runtime::load_axioms(formula, groups, runtime::make_cadical_solver());
     std::vector<IndexSet> named;
     for (const auto& set : runtime::all_minimal_sets(solver, 0, nullptr).sets) {
       auto& found = named.emplace_back();

@@ -42,7 +42,7 @@ Literal fact(const compiler::CompiledModel& model, const std::vector<bool>& valu
 
 const char* word(WhyKind kind) {
   static constexpr const char* kWords[] = {"stated",     "effect", "inertia", "axiom",
-                                           "completion", "forced", "chosen"};
+                                           "completion", "forced", "chosen",  "undecided"};
   return kWords[static_cast<int>(kind)];
 }
 

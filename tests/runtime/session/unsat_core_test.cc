@@ -14,8 +14,9 @@ std::set<std::uint32_t> core_lines(const TextModel& model) {
   const auto core = runtime::find_unsat_core(model.compiled, model.compiled.horizon,
                                              runtime::make_cadical_solver());
   std::set<std::uint32_t> lines;
-  if (!core) return lines;
-  for (const auto index : *core) {
+  if (core.status != runtime::SolveStatus::kUnsatisfiable) return lines;
+  CHECK(core.is_minimal);
+  for (const auto index : core.origins) {
     const auto& source = model.compiled.origins[index].source;
     lines.insert(model.files[source.file].position(source.begin).line);
   }
