@@ -8,6 +8,30 @@ target_compile_options(parallax_warnings INTERFACE
 # Bitwise replay: no contraction into fused multiply-add, whatever the compiler's default.
 target_compile_options(parallax_warnings INTERFACE -ffp-contract=off)
 
+# Sources that follow one another are compiled together, up to so many bytes of text: most of a
+# compiler's time goes to the standard headers, which are then read once a batch. The size is a
+# compromise: larger batches build everything faster, smaller ones a single changed file.
+set(PARALLAX_BATCH_BYTES 0 CACHE STRING "Sources compiled together, in bytes; 0: each alone")
+
+# parallax_batches(TARGET a.cc ...): file-local names must differ within a folder.
+function(parallax_batches target)
+  if(PARALLAX_BATCH_BYTES EQUAL 0)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  set(batch 0)
+  set(bytes 0)
+  foreach(source ${ARGN})
+    file(SIZE ${CMAKE_CURRENT_SOURCE_DIR}/${source} size)
+    math(EXPR bytes "${bytes} + ${size}")
+    if(bytes GREATER PARALLAX_BATCH_BYTES)
+      math(EXPR batch "${batch} + 1")
+      set(bytes ${size})
+    endif()
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${target}_${batch})
+  endforeach()
+endfunction()
+
 # parallax_library(NAME SOURCES a.cc ... DEPENDS lib ... [PRIVATE_DEPENDS lib ...])
 # A static library parallax_NAME, alias parallax::NAME, with includes rooted at the repository.
 # DEPENDS and PRIVATE_DEPENDS are the house's layers: what the folder may include, and no more
@@ -19,6 +43,7 @@ function(parallax_library name)
   target_include_directories(parallax_${name} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(parallax_${name} PUBLIC ${arg_DEPENDS}
                         PRIVATE parallax_warnings ${arg_PRIVATE_DEPENDS})
+  parallax_batches(parallax_${name} ${arg_SOURCES})
   parallax_record_layer(parallax::${name} "${arg_SOURCES}" "${arg_DEPENDS};${arg_PRIVATE_DEPENDS}")
 endfunction()
 
@@ -28,6 +53,7 @@ function(parallax_program name)
   add_executable(${name} ${arg_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE ${arg_DEPENDS} parallax_warnings)
+  parallax_batches(${name} ${arg_SOURCES})
   parallax_record_layer(${name} "${arg_SOURCES}" "${arg_DEPENDS}")
 endfunction()
 
@@ -57,11 +83,15 @@ endfunction()
 # A doctest binary, registered with CTest as one test per suite file.
 function(parallax_test name)
   cmake_parse_arguments(arg "" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
-  add_executable(${name} ${arg_SOURCES} ${PROJECT_SOURCE_DIR}/tests/doctest_main.cc)
-  target_link_libraries(${name} PRIVATE ${arg_DEPENDS} doctest::doctest parallax_warnings)
+  add_executable(${name} ${arg_SOURCES} $<TARGET_OBJECTS:parallax_doctest_main>)
+  target_link_libraries(${name} PRIVATE
+    ${arg_DEPENDS} parallax_test_support doctest::doctest parallax_warnings)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
-  target_compile_definitions(${name} PRIVATE
+  # Tests are compiled more often than they run.
+  target_compile_options(${name} PRIVATE -O1)
+  target_compile_definitions(${name} PRIVATE DOCTEST_CONFIG_SUPER_FAST_ASSERTS
     PARALLAX_SOURCE_DIR="${PROJECT_SOURCE_DIR}" PARALLAX_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  parallax_batches(${name} ${arg_SOURCES})
   add_test(NAME ${name} COMMAND ${name})
   if(NOT arg_LABELS)
     set(arg_LABELS fast)
