@@ -34,14 +34,14 @@ base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir
   return RecordedRun{*journal->header, *id, found->second, trace.calls, trace.events};
 }
 
-std::string obstacle_to_repeat(const JournalHeader& header, const std::string& scenario_hash,
-                               const SimulatorInfo& simulator) {
-  if (header.scenario_hash != scenario_hash) {
-    return fmt::format(
-        "the scenario, or a file that it reads, has changed: its hash was {}, now "
-        "it is {}",
-        header.scenario_hash, scenario_hash);
-  }
+std::string scenario_change(const JournalHeader& header, const std::string& scenario_hash) {
+  if (header.scenario_hash == scenario_hash) return {};
+  return fmt::format(
+      "the scenario, or a file that it reads, has changed: its hash was {}, now it is {}",
+      header.scenario_hash, scenario_hash);
+}
+
+std::string simulator_change(const JournalHeader& header, const SimulatorInfo& simulator) {
   if (simulator.name.empty()) {
     return fmt::format("the simulator did not start: {}", simulator.version);
   }

@@ -27,9 +27,11 @@ base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir
                                             std::optional<SampleId> id, base::SourceFiles& files,
                                             base::DiagnosticSink& sink);
 
-/// What keeps a repetition of the run by `simulator`, with scenario files of this hash, from
-/// meaning anything; empty: nothing.
-std::string obstacle_to_repeat(const JournalHeader& header, const std::string& scenario_hash,
-                               const SimulatorInfo& simulator);
+/// Why scenario files of this hash are not those of the run; empty: they are. To be asked before a
+/// simulator is made: what a changed scenario names as its simulator must not be started.
+std::string scenario_change(const JournalHeader& header, const std::string& scenario_hash);
+
+/// Why `simulator` is not the one of the run, or did not start; empty: it is.
+std::string simulator_change(const JournalHeader& header, const SimulatorInfo& simulator);
 
 }  // namespace parallax::harness

@@ -45,7 +45,8 @@ base::Result<RunHeader> read_run_header(const std::filesystem::path& run_dir,
 
 base::Result<ReplayResult> replay_sample(const std::filesystem::path& run_dir,
                                          std::optional<SampleId> id,
-                                         const std::string& scenario_hash, Simulator& simulator,
+                                         const std::string& scenario_hash,
+                                         const SimulatorFactory& make_simulator,
                                          base::SourceFiles& files, base::DiagnosticSink& sink) {
   const auto run = read_recorded_run(run_dir, id, files, sink);
   if (!run) return sink.already_reported();
@@ -55,13 +56,16 @@ base::Result<ReplayResult> replay_sample(const std::filesystem::path& run_dir,
   result.seed = record.seed;
   result.digest = record.digest;
   result.timepoints = record.observations.size();
-  result.reason = obstacle_to_repeat(run->header, scenario_hash, simulator.info());
+  result.outcome = ReplayOutcome::kCannot;
+  result.reason = scenario_change(run->header, scenario_hash);
   if (result.reason.empty() && record.status == SampleStatus::kLost) {
     result.reason = "the simulator was lost in this simulation, so there is nothing to compare";
   }
-  result.outcome = ReplayOutcome::kCannot;
   if (!result.reason.empty()) return result;
-  const auto again = repeat_sample(run->calls, record, simulator, [] { return false; });
+  const auto simulator = make_simulator();
+  result.reason = simulator_change(run->header, simulator->info());
+  if (!result.reason.empty()) return result;
+  const auto again = repeat_sample(run->calls, record, *simulator, [] { return false; });
   if (again->status != SampleStatus::kOk) {
     result.reason =
         fmt::format("the simulator was {}: {}", to_string(again->status), again->reason);

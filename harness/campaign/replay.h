@@ -53,12 +53,14 @@ struct RunHeader {
 base::Result<RunHeader> read_run_header(const std::filesystem::path& run_dir,
                                         base::SourceFiles& files, base::DiagnosticSink& sink);
 
-/// Repeats one recorded simulation in `simulator` and compares every observation, every outcome
-/// and the digest bit for bit. Without `id`: the first discrepancy of the run, else its first
-/// sample. Fails, having reported, when the journal cannot be read or has no such sample.
+/// Repeats one recorded simulation and compares every observation, every outcome and the digest
+/// bit for bit. Without `id`: the first discrepancy of the run, else its first sample. A simulator
+/// is made only if nothing that is on disk forbids the repetition, above all a changed scenario.
+/// Fails, having reported, when the journal cannot be read or has no such sample.
 base::Result<ReplayResult> replay_sample(const std::filesystem::path& run_dir,
                                          std::optional<SampleId> id,
-                                         const std::string& scenario_hash, Simulator& simulator,
+                                         const std::string& scenario_hash,
+                                         const SimulatorFactory& make_simulator,
                                          base::SourceFiles& files, base::DiagnosticSink& sink);
 
 }  // namespace parallax::harness

@@ -215,6 +215,16 @@ TEST_CASE("replay repeats a recorded simulation bit for bit") {
     const auto result = cli.parallax({"replay", "run"});
     CHECK(result.code == 3);
   }
+  SUBCASE("a command that the scenario names by now is not started") {
+    cli.write("edge.yaml", cli.read("edge.yaml") + "simulator: {command: [touch, started]}\n");
+    for (const auto* command : {"replay", "draw", "explain"}) {
+      CAPTURE(command);
+      const auto result = cli.parallax({command, "run"});
+      CHECK(result.code != 0);
+      CHECK(result.err.find("hash") != std::string::npos);
+      CHECK_FALSE(std::filesystem::exists(cli.folder() / "started"));
+    }
+  }
 }
 
 }  // namespace

@@ -156,6 +156,11 @@ int draw_run(const Options& options, Invocation& invocation) {
   if (journal_sink.warning_count() > 0) {  // now they can be located
     (void)harness::read_recorded_run(options.what, *id, invocation.files(), sink);
   }
+  auto obstacle = harness::scenario_change(run->header, loaded->sources_hash);
+  if (!obstacle.empty()) {
+    sink.error_about(DiagnosticCode::kReplayImpossible, options.what, obstacle);
+    return 0;
+  }
   const auto& scenario = loaded->scenario;
   if (!scenario.simulator.command.empty()) {
     sink.error_about(DiagnosticCode::kUsage, options.what,
@@ -163,8 +168,7 @@ int draw_run(const Options& options, Invocation& invocation) {
     return 0;
   }
   harness::OdeSimulator simulator(scenario.world);
-  const auto obstacle =
-      harness::obstacle_to_repeat(run->header, loaded->sources_hash, simulator.info());
+  obstacle = harness::simulator_change(run->header, simulator.info());
   if (!obstacle.empty()) {
     sink.error_about(DiagnosticCode::kReplayImpossible, options.what, obstacle);
     return 0;

@@ -38,9 +38,8 @@ int replay(const ReplayOptions& options, Invocation& invocation) {
     (void)harness::read_run_header(options.run_dir, invocation.files(), sink);
     return 0;
   }
-  const auto simulator = simulator_factory(*loaded)();
-  const auto result = harness::replay_sample(options.run_dir, *id, loaded->sources_hash, *simulator,
-                                             invocation.files(), sink);
+  const auto result = harness::replay_sample(options.run_dir, *id, loaded->sources_hash,
+                                             simulator_factory(*loaded), invocation.files(), sink);
   if (!result) return 0;
   if (result->outcome == harness::ReplayOutcome::kCannot) {
     sink.error_about(base::DiagnosticCode::kReplayImpossible, options.run_dir, result->reason);

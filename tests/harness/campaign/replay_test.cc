@@ -17,8 +17,12 @@ struct Recorded : Bench {
     found = {1, result->discrepancies[0].sample};
   }
   base::Result<ReplayResult> replay(std::optional<SampleId> id, const std::string& hash = "5ce0") {
-    ScriptedSimulator simulator(script);
-    return replay_sample(options.run_dir, id, hash, simulator, files, sink);
+    simulators = 0;
+    const auto factory = [this] {
+      ++simulators;
+      return std::make_unique<ScriptedSimulator>(script);
+    };
+    return replay_sample(options.run_dir, id, hash, factory, files, sink);
   }
   SampleId found;
 };
@@ -65,6 +69,7 @@ TEST_CASE("another scenario or a simulator that is lost cannot repeat") {
   REQUIRE(other.has_value());
   CHECK(other->outcome == ReplayOutcome::kCannot);
   CHECK(other->reason.find("has changed") != std::string::npos);
+  CHECK(bench.simulators == 0);
   bench.script.loses = [](const State&) { return true; };
   const auto lost = bench.replay(bench.found);
   REQUIRE(lost.has_value());
@@ -77,6 +82,7 @@ TEST_CASE("a simulation or a run that is not there is a usage error") {
   CHECK_FALSE(bench.replay(SampleId{1, 4000}).has_value());
   CHECK(codes(bench.sink) == std::vector<std::string>{"E7110"});
   CHECK(bench.sink.exit_code() == 2);
+  CHECK(bench.simulators == 0);
   base::DiagnosticSink sink;
   CHECK_FALSE(read_run_header(bench.folder.path(), bench.files, sink).has_value());
   CHECK(codes(sink) == std::vector<std::string>{"E7111"});
