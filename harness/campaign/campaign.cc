@@ -107,9 +107,12 @@ class Campaign {
       if (!end) return sink_.already_reported();
       if (*end == TraceEnd::kStopped) return false;
       if (*end == TraceEnd::kLostTooOften) {
-        // Left in the journal they would end every continuation where this run ended.
-        while (!consumed_.empty() && consumed_.back().status == SampleStatus::kLost) {
-          consumed_.pop_back();
+        // Left in the journal they would end every continuation where this run ended. Where losses
+        // must not be repeated they stay, and a continuation goes on behind them.
+        if (may_repeat_losses(result_.simulator)) {
+          while (!consumed_.empty() && consumed_.back().status == SampleStatus::kLost) {
+            consumed_.pop_back();
+          }
         }
         return true;
       }
@@ -148,9 +151,9 @@ class Campaign {
         Sampler::make(cuboid, scenario_.sampling_inset_m, scenario_.sampling_source, sink_);
     if (!calls || !sampler) return sink_.already_reported();
     const auto key = hash64(trace.key);
-    return std::make_shared<const TracePlan>(TracePlan{std::move(trace), std::move(*calls),
-                                                       std::move(*sampler), options_.seed, key,
-                                                       scenario_.limits.max_rejected_starts});
+    return std::make_shared<const TracePlan>(
+        TracePlan{std::move(trace), std::move(*calls), std::move(*sampler), options_.seed, key,
+                  scenario_.limits.max_rejected_starts, may_repeat_losses(result_.simulator)});
   }
 
   /// Every drawn variable must be one that the simulator can start with.

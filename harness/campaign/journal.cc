@@ -10,6 +10,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
+#include "harness/campaign/sample_runner.h"
 
 namespace parallax::harness {
 namespace {
@@ -186,7 +187,8 @@ base::Result<std::unique_ptr<Journal>> Journal::open(RunFolder folder, const Jou
                         differs->field, differs->recorded, differs->now);
     }
   }
-  const auto lost = losses_to_repeat(recorded, max_lost_in_a_row);
+  std::vector<SampleKey> lost;
+  if (may_repeat_losses(header.simulator)) lost = losses_to_repeat(recorded, max_lost_in_a_row);
   if (!lost.empty()) {
     // They will be simulated again, and no simulation may stand there twice.
     const auto kept = without(lost, recorded, files);

@@ -42,7 +42,8 @@ base::Result<JournalText> read_journal(const std::filesystem::path& run_dir,
 class Journal {
  public:
   /// Starts a journal in `folder`, or continues the one there. The losses at which it would end at
-  /// once again (the last ones, and `max_lost_in_a_row` of them in a row) are dropped from it.
+  /// once again (the last ones, and `max_lost_in_a_row` of them in a row) are dropped from it if
+  /// the simulator of the header may repeat them.
   /// Reports kJournalMismatch, kFileNotWritable and what read_journal reports.
   static base::Result<std::unique_ptr<Journal>> open(RunFolder folder, const JournalHeader& header,
                                                      std::int64_t max_lost_in_a_row,

@@ -48,6 +48,7 @@ class Estimator {
       return sink_.error(DiagnosticCode::kSimulatorNotStarted, scenario_.simulator.source,
                          info->version);
     }
+    repeats_losses_ = info && may_repeat_losses(*info);
     if (info && !check_against_simulator(scenario_, *info, sink_)) return sink_.already_reported();
     std::int64_t last = 0;
     bool seen_all = false;
@@ -88,7 +89,7 @@ class Estimator {
     const auto key = hash64(trace.key);
     const auto plan = std::make_shared<const TracePlan>(
         TracePlan{std::move(trace), std::move(*calls), std::move(*sampler), options_.seed, key,
-                  scenario_.limits.max_rejected_starts});
+                  scenario_.limits.max_rejected_starts, repeats_losses_});
     TraceRates rates;
     rates.number = plan->trace.number;
     for (const auto& event : plan->trace.events) {
@@ -163,6 +164,7 @@ class Estimator {
   const RatesOptions& options_;
   base::DiagnosticSink& sink_;
   std::vector<GroundFluent> fluents_;
+  bool repeats_losses_ = false;
   WorkerPool pool_;
 };
 

@@ -63,9 +63,11 @@ base::Result<ReplayResult> replay_sample(const std::filesystem::path& run_dir,
   }
   if (!result.reason.empty()) return result;
   const auto simulator = make_simulator();
-  result.reason = simulator_change(run->header, simulator->info());
+  const auto info = simulator->info();
+  result.reason = simulator_change(run->header, info);
   if (!result.reason.empty()) return result;
-  const auto again = repeat_sample(run->calls, record, *simulator, [] { return false; });
+  const auto again =
+      repeat_sample(run->calls, may_repeat_losses(info), record, *simulator, [] { return false; });
   if (again->status != SampleStatus::kOk) {
     result.reason =
         fmt::format("the simulator was {}: {}", to_string(again->status), again->reason);

@@ -80,13 +80,14 @@ class Attempt {
   SampleRecord& record_;
 };
 
-/// A loss may be an accident of the machine: the same start and seed get a second chance.
-std::optional<SimStatus> attempt_twice(const std::vector<ActionCall>& calls, Simulator& simulator,
-                                       SampleRecord& record,
+/// A loss may be an accident of the machine: where the same start and seed give the same run, they
+/// get a second chance.
+std::optional<SimStatus> attempt_start(const std::vector<ActionCall>& calls, bool repeats_losses,
+                                       Simulator& simulator, SampleRecord& record,
                                        const std::function<bool()>& abandoned) {
   Attempt attempt(calls, simulator, record);
   auto status = attempt.run(abandoned);
-  if (status == SimStatus::kLost && !abandoned()) {
+  if (status == SimStatus::kLost && repeats_losses && !abandoned()) {
     ++record.retries;
     status = attempt.run(abandoned);
   }
@@ -126,6 +127,10 @@ std::string_view to_string(SampleStatus status) {
   return "refused";
 }
 
+bool may_repeat_losses(const SimulatorInfo& simulator) {
+  return simulator.seeds && simulator.determinism == "bitwise";
+}
+
 std::optional<SampleRecord> run_sample(const TracePlan& plan, std::int64_t sample,
                                        Simulator& simulator,
                                        const std::function<bool()>& abandoned) {
@@ -137,7 +142,8 @@ std::optional<SampleRecord> run_sample(const TracePlan& plan, std::int64_t sampl
   for (;; ++record.attempt, ++key.attempt) {
     record.initial = plan.sampler.draw(key);
     record.seed = simulator_seed(key);
-    const auto status = attempt_twice(plan.calls, simulator, record, abandoned);
+    const auto status =
+        attempt_start(plan.calls, plan.repeats_losses, simulator, record, abandoned);
     if (!status) return std::nullopt;
     record.status = sample_status(*status);
     if (record.status != SampleStatus::kRejected) return record;
@@ -146,13 +152,13 @@ std::optional<SampleRecord> run_sample(const TracePlan& plan, std::int64_t sampl
   }
 }
 
-std::optional<SampleRecord> repeat_sample(const std::vector<ActionCall>& calls,
+std::optional<SampleRecord> repeat_sample(const std::vector<ActionCall>& calls, bool repeats_losses,
                                           const SampleRecord& record, Simulator& simulator,
                                           const std::function<bool()>& abandoned) {
   SampleRecord again = record;
   again.phase = Phase::kConfirm;
   again.retries = 0;
-  const auto status = attempt_twice(calls, simulator, again, abandoned);
+  const auto status = attempt_start(calls, repeats_losses, simulator, again, abandoned);
   if (!status) return std::nullopt;
   again.status = sample_status(*status);
   return again;

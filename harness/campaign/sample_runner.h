@@ -21,18 +21,26 @@ struct TracePlan {
   std::uint64_t campaign_seed = 0;
   std::uint64_t trace_key = 0;  // hash of trace.key
   std::int64_t max_rejected_starts = 100;
+  bool repeats_losses = false;  // see may_repeat_losses
 };
+
+/// May a lost simulation be made again with the same start and seed? Only if that gives the same
+/// run to the last bit, which the simulator has to promise. Otherwise the second attempt is another
+/// draw: where a simulator tends to crash when the model is wrong, taking the attempt that survives
+/// would hide the very runs that are looked for. The first loss counts then.
+bool may_repeat_losses(const SimulatorInfo& simulator);
 
 /// Draws sample `sample` and simulates it: reset, observe, then act and observe per event. A failed
 /// action does not end the sequence: the plan does not know. Invalid starts are drawn again; a
-/// simulator that is lost gets the same start and seed once more. None when `abandoned` says so
-/// before the end.
+/// simulator that is lost gets the same start and seed once more if the plan says so. None when
+/// `abandoned` says so before the end.
 std::optional<SampleRecord> run_sample(const TracePlan& plan, std::int64_t sample,
                                        Simulator& simulator,
                                        const std::function<bool()>& abandoned);
 
-/// Simulates the start and seed of `record` again, with nothing drawn.
-std::optional<SampleRecord> repeat_sample(const std::vector<ActionCall>& calls,
+/// Simulates the start and seed of `record` again, with nothing drawn; once more when it is lost
+/// and `repeats_losses` says so.
+std::optional<SampleRecord> repeat_sample(const std::vector<ActionCall>& calls, bool repeats_losses,
                                           const SampleRecord& record, Simulator& simulator,
                                           const std::function<bool()>& abandoned);
 

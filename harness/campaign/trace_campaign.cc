@@ -118,8 +118,14 @@ class TraceCampaign {
     ++outcome_.result.lost;
     ++context_.lost_in_a_row;
     const auto reason = record.reason;
+    // Such a row on record has ended a run, which somebody continues knowing of it.
+    const bool known = recorded(record.sample, record.phase) != nullptr;
     outcome_.consumed.push_back(std::move(record));
     if (context_.lost_in_a_row < context_.scenario.limits.max_lost_in_a_row) return Step{};
+    if (known) {
+      context_.lost_in_a_row = 0;
+      return Step{};
+    }
     context_.sink.error(DiagnosticCode::kSimulatorLost, context_.scenario.simulator.source,
                         context_.lost_in_a_row, reason);
     return Step{TraceEnd::kLostTooOften};

@@ -135,7 +135,8 @@ void WorkerPool::serve_jobs(Simulator* simulator) {
 
 void WorkerPool::simulate(const Job& job, Simulator& simulator) {
   const auto abandoned = [&] { return closing_ || generation_ != job.generation || stopped(); };
-  auto record = job.repeat ? repeat_sample(job.plan->calls, *job.repeat, simulator, abandoned)
+  auto record = job.repeat ? repeat_sample(job.plan->calls, job.plan->repeats_losses, *job.repeat,
+                                           simulator, abandoned)
                            : run_sample(*job.plan, job.sample, simulator, abandoned);
   if (!record) return;
   finished_(*record);

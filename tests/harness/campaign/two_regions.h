@@ -98,6 +98,8 @@ struct Script {
   OfStart wobbles = never;                  // the robot passes through r1 before it picks up
   std::chrono::milliseconds drop_delay{0};  // runs that drop the box take so much longer
   bool deterministic = true;
+  std::string determinism = "bitwise";  // what it says of itself, and of seeds
+  bool seeds = true;
   double start_shift_m = 0.0;  // the robot starts so much off
   bool hides_box = false;      // observations lack box.x
   std::string refuses;         // an action that it does not know
@@ -120,8 +122,8 @@ class ScriptedSimulator final : public Simulator {
     if (!script_.start_failure.empty()) return {"", script_.start_failure, "", false, {}, {}, 0.0};
     return {"scripted",
             "1",
-            "bitwise",
-            true,
+            script_.determinism,
+            script_.seeds,
             {{"box.held", "1", false}, {"box.x", "m", true}, {"robot.x", "m", true}},
             {"going", "picking-up", "placing"},
             0.002};
