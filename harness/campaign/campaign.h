@@ -11,7 +11,7 @@
 #include "harness/campaign/campaign_result.h"
 #include "harness/campaign/trace_input.h"
 #include "harness/config/scenario.h"
-#include "harness/world/simulator.h"
+#include "harness/simulator/simulator.h"
 
 namespace parallax::harness {
 

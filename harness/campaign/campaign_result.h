@@ -9,7 +9,7 @@
 #include "harness/campaign/trace_input.h"
 #include "harness/confidence/criterion_spec.h"
 #include "harness/region/state_mapping.h"
-#include "harness/world/simulator.h"
+#include "harness/simulator/simulator.h"
 
 namespace parallax::harness {
 

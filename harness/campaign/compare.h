@@ -4,7 +4,7 @@
 #include <string>
 
 #include "harness/campaign/sample_record.h"
-#include "harness/world/simulator.h"
+#include "harness/simulator/simulator.h"
 
 namespace parallax::harness {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "harness/sampling/rng.h"
-#include "harness/world/simulator.h"
+#include "harness/simulator/simulator.h"
 
 namespace parallax::harness {
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/world/protocol.h"
+#include "harness/simulator/protocol.h"
 
 namespace parallax::harness {
 namespace {

@@ -9,7 +9,7 @@
 #include "harness/campaign/trace_input.h"
 #include "harness/config/scenario.h"
 #include "harness/sampling/sampler.h"
-#include "harness/world/simulator.h"
+#include "harness/simulator/simulator.h"
 
 namespace parallax::harness {
 

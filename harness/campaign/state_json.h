@@ -2,7 +2,7 @@
 
 #include <variant>
 
-#include "harness/world/simulator.h"
+#include "harness/simulator/simulator.h"
 
 namespace parallax::harness {
 

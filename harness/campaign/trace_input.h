@@ -8,7 +8,7 @@
 
 #include "compiler/base/known.h"
 #include "compiler/base/result.h"
-#include "harness/world/simulator.h"
+#include "harness/simulator/simulator.h"
 
 namespace parallax::harness {
 

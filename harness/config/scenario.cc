@@ -10,9 +10,8 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
-#include "harness/world/mobile_check.h"
-#include "harness/world/region_support.h"
-#include "harness/world/world_check.h"
+#include "harness/engine/region_support.h"
+#include "harness/world/observables.h"
 
 namespace parallax::harness {
 namespace {

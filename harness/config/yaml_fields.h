@@ -13,7 +13,7 @@
 
 #include "harness/config/yaml_reader.h"
 #include "harness/region/region.h"
-#include "harness/world/simulator.h"
+#include "harness/simulator/simulator.h"
 
 namespace parallax::harness {
 

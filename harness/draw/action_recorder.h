@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "harness/draw/scene_action.h"
-#include "harness/world/ode_simulator.h"
+#include "harness/robot/ode_simulator.h"
 
 namespace parallax::harness {
 

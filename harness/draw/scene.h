@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/world/ode_world.h"
+#include "harness/engine/ode_world.h"
 
 namespace parallax::harness {
 

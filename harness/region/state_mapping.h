@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "harness/region/region.h"
-#include "harness/world/simulator.h"
+#include "harness/simulator/simulator.h"
 
 namespace parallax::harness {
 

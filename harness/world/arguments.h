@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "harness/simulator/simulator.h"
 #include "harness/world/controller_table.h"
-#include "harness/world/simulator.h"
 #include "harness/world/world_layout.h"
 
 namespace parallax::harness {

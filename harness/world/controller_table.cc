@@ -5,9 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/world/line_controller.h"
-#include "harness/world/mobile_controller.h"
-
 namespace parallax::harness {
 namespace {
 
@@ -192,39 +189,25 @@ constexpr std::array kRegrip = {
     number("hold_s", "s", 0.3, "squeezing before the end"),
 };
 
-struct Entry {
-  ControllerSpec spec;
-  ControllerFactory factory;
-};
-
 constexpr RobotKind kMobile = RobotKind::kMobile;
 
-constexpr std::array kTable = {
-    Entry{{"close-drawer", kCloseDrawer, "pushes a drawer shut by its handle", kMobile},
-          &make_close_drawer},
-    Entry{{"detect", kDetect, "looks for bodies of a kind where the camera points", kMobile},
-          &make_detect},
-    Entry{{"drive", kDrive, "drives straight to a pose and turns there", kMobile}, &make_drive},
-    Entry{{"going", kGoing, "drives the base along x"}, &make_going},
-    Entry{{"look", kLook, "points the camera at a place", kMobile}, &make_look},
-    Entry{{"move-torso", kMoveTorso, "lifts or lowers the torso", kMobile}, &make_move_torso},
-    Entry{{"open-drawer", kOpenDrawer, "pulls a drawer open by its handle", kMobile},
-          &make_open_drawer},
-    Entry{{"open-gripper", kOpenGripper, "opens a gripper wide", kMobile}, &make_open_gripper},
-    Entry{{"park", kPark, "brings the tool to where it is carried", kMobile}, &make_park},
-    Entry{{"pick-up", kPickUp, "grasps a body by friction and lifts it", kMobile}, &make_pick_up},
-    Entry{{"picking-up", kPickingUp, "grasps a body between the pads and lifts it"},
-          &make_picking_up},
-    Entry{{"place", kPlace, "sets down what is held", kMobile}, &make_place},
-    Entry{{"placing", kPlacing, "sets down what is held"}, &make_placing},
-    Entry{{"regrip", kRegrip, "squeezes what is held with another force", kMobile}, &make_regrip},
+constexpr std::array kControllers = {
+    ControllerSpec{"close-drawer", kCloseDrawer, "pushes a drawer shut by its handle", kMobile},
+    ControllerSpec{"detect", kDetect, "looks for bodies of a kind where the camera points",
+                   kMobile},
+    ControllerSpec{"drive", kDrive, "drives straight to a pose and turns there", kMobile},
+    ControllerSpec{"going", kGoing, "drives the base along x"},
+    ControllerSpec{"look", kLook, "points the camera at a place", kMobile},
+    ControllerSpec{"move-torso", kMoveTorso, "lifts or lowers the torso", kMobile},
+    ControllerSpec{"open-drawer", kOpenDrawer, "pulls a drawer open by its handle", kMobile},
+    ControllerSpec{"open-gripper", kOpenGripper, "opens a gripper wide", kMobile},
+    ControllerSpec{"park", kPark, "brings the tool to where it is carried", kMobile},
+    ControllerSpec{"pick-up", kPickUp, "grasps a body by friction and lifts it", kMobile},
+    ControllerSpec{"picking-up", kPickingUp, "grasps a body between the pads and lifts it"},
+    ControllerSpec{"place", kPlace, "sets down what is held", kMobile},
+    ControllerSpec{"placing", kPlacing, "sets down what is held"},
+    ControllerSpec{"regrip", kRegrip, "squeezes what is held with another force", kMobile},
 };
-
-constexpr auto kSpecs = [] {
-  std::array<ControllerSpec, kTable.size()> specs{};
-  for (std::size_t i = 0; i < specs.size(); ++i) specs[i] = kTable[i].spec;
-  return specs;
-}();
 
 }  // namespace
 
@@ -257,18 +240,12 @@ ArgumentBounds bounds_of(const ArgumentSpec& argument) {
           argument.positive && std::isnan(argument.low)};
 }
 
-std::span<const ControllerSpec> controllers() { return kSpecs; }
+std::span<const ControllerSpec> controllers() { return kControllers; }
 
 const ControllerSpec* find_controller(std::string_view name) {
-  const auto found = std::find_if(kSpecs.begin(), kSpecs.end(),
+  const auto found = std::find_if(kControllers.begin(), kControllers.end(),
                                   [&](const ControllerSpec& spec) { return spec.name == name; });
-  return found == kSpecs.end() ? nullptr : &*found;
-}
-
-ControllerFactory find_factory(std::string_view name) {
-  const auto found = std::find_if(kTable.begin(), kTable.end(),
-                                  [&](const Entry& entry) { return entry.spec.name == name; });
-  return found == kTable.end() ? nullptr : found->factory;
+  return found == kControllers.end() ? nullptr : &*found;
 }
 
 }  // namespace parallax::harness

@@ -14,10 +14,6 @@ namespace {
 
 StartState refusal(SimStatus status, std::string reason) { return {status, std::move(reason), {}}; }
 
-bool can_set(const BodySpec& body, std::string_view item) {
-  return std::find(body.settable.begin(), body.settable.end(), item) != body.settable.end();
-}
-
 void set_item(Placement& placement, const BodySpec& body, std::string_view item, double value) {
   if (item == "x") placement.p_WB.x() = value;
   if (item == "y") placement.p_WB.y() = value;
@@ -88,7 +84,7 @@ StartState read_start_state(const WorldSpec& spec, const WorldLayout& layout, co
     const std::string_view whole = name;
     const std::string_view item = dot == std::string::npos ? "" : whole.substr(dot + 1);
     const std::string_view owner = whole.substr(0, dot == std::string::npos ? 0 : dot);
-    if (owner == "robot" && base && can_set(layout.bodies[*base], item)) {
+    if (owner == "robot" && base && layout.bodies[*base].can_set(item)) {
       set_item(robot, layout.bodies[*base], item, *number);
       if (spec.mobile || shift_line_robot(spec, layout, *base, *number, start.placements)) {
         continue;
@@ -97,7 +93,7 @@ StartState read_start_state(const WorldSpec& spec, const WorldLayout& layout, co
                      fmt::format("robot.x = {} lies beyond the end of the drive", *number));
     }
     const std::optional<BodyId> body = layout.find_body(owner);
-    if (!body || !layout.is_free[body->index()] || !can_set(layout.bodies[*body], item)) {
+    if (!body || !layout.is_free[body->index()] || !layout.bodies[*body].can_set(item)) {
       return refusal(SimStatus::kUnsupported, fmt::format("`{}` cannot be set", name));
     }
     if (item == "mass" && *number <= 0.0) {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/world/ode_world.h"
-#include "harness/world/simulator.h"
+#include "harness/simulator/simulator.h"
+#include "harness/world/world_layout.h"
 
 namespace parallax::harness {
 

@@ -108,22 +108,6 @@ std::optional<GantryId> WorldLayout::find_gantry(std::string_view name) const {
   return find_by_name(gantries, name);
 }
 
-std::vector<GripperSpec> grippers(const WorldSpec& spec) {
-  std::vector<GripperSpec> all;
-  if (spec.mobile) {
-    for (const ArmSpec& arm : spec.mobile->arms) {
-      all.push_back({arm.near_pad_body, arm.far_pad_body});
-    }
-  } else if (!spec.robot.near_pad_body.empty()) {
-    all.push_back({spec.robot.near_pad_body, spec.robot.far_pad_body});
-  }
-  return all;
-}
-
-std::string base_body(const WorldSpec& spec) {
-  return spec.mobile ? spec.mobile->base_body : spec.robot.base_body;
-}
-
 WorldLayout lay_out(const WorldSpec& spec) {
   WorldLayout layout;
   std::vector<BodySpec> bodies = spec.bodies;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -39,6 +40,13 @@ struct WorldLayout {
   std::optional<BodyId> find_body(std::string_view name) const;
   std::optional<SliderId> find_slider(std::string_view name) const;
   std::optional<GantryId> find_gantry(std::string_view name) const;
+};
+
+/// Position of a body's origin [m] and its turn about z [rad], in the world.
+struct Placement {
+  Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();
+  double yaw_rad = 0.0;
+  double mass_kg = 0.0;  // of a free body; 0: as specified
 };
 
 /// By BodyId.

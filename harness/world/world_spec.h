@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -47,6 +48,8 @@ struct BodySpec {
   std::vector<std::string> settable;
   std::string kind;  // what a camera recognises it as; empty: its name
   std::optional<GraspSpec> grasp;
+
+  bool can_set(std::string_view item) const;
 };
 
 /// kFixed welds two bodies into one rigid body, so it neither bends nor costs time. kGantry

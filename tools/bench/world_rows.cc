@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "harness/campaign/sample_runner.h"
-#include "harness/world/ode_simulator.h"
-#include "harness/world/process_simulator.h"
+#include "harness/robot/ode_simulator.h"
+#include "harness/simulator/process_simulator.h"
 #include "tools/bench/bench.h"
 #include "tools/cli/scenario_model.h"
 #include "tools/cli/trace_feed.h"

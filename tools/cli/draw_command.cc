@@ -8,7 +8,7 @@
 #include "harness/campaign/recorded_run.h"
 #include "harness/draw/action_recorder.h"
 #include "harness/draw/scene_svg.h"
-#include "harness/world/ode_simulator.h"
+#include "harness/robot/ode_simulator.h"
 #include "tools/cli/command.h"
 #include "tools/cli/sample_option.h"
 #include "tools/cli/scenario_model.h"

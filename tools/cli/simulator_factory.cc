@@ -1,6 +1,6 @@
 #include "tools/cli/simulator_factory.h"
 
-#include "harness/world/process_simulator.h"
+#include "harness/simulator/process_simulator.h"
 #include "tools/cli/signals.h"
 
 namespace parallax::tools {

@@ -5,8 +5,8 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/campaign.h"
 #include "harness/config/scenario.h"
-#include "harness/world/ode_simulator.h"
-#include "harness/world/worker.h"
+#include "harness/robot/ode_simulator.h"
+#include "harness/simulator/worker.h"
 #include "tools/cli/command.h"
 
 namespace parallax::tools {

@@ -1,4 +1,4 @@
-#include "harness/world/process_simulator.h"
+#include "harness/simulator/process_simulator.h"
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -15,7 +15,7 @@
 #include <set>
 #include <thread>
 
-#include "harness/world/child_process.h"
+#include "harness/simulator/child_process.h"
 
 namespace parallax::harness {
 namespace {

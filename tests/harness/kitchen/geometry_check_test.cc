@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "harness/world/mobile_check.h"
+#include "harness/engine/region_support.h"
+#include "harness/engine/world_check.h"
 #include "tests/harness/kitchen/kitchen_world.h"
 
 namespace parallax::harness {

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "harness/config/scenario.h"
-#include "harness/world/ode_simulator.h"
+#include "harness/robot/ode_simulator.h"
 
 namespace parallax::harness {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "harness/world/simulator.h"
+#include "harness/simulator/simulator.h"
 #include "harness/world/world_spec.h"
 
 namespace parallax::harness {

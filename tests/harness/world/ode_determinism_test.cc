@@ -5,7 +5,7 @@
 #include <thread>
 #include <vector>
 
-#include "harness/world/ode_simulator.h"
+#include "harness/robot/ode_simulator.h"
 #include "tests/harness/world/fetch_world.h"
 
 namespace parallax::harness {

@@ -1,4 +1,4 @@
-#include "harness/world/ode_simulator.h"
+#include "harness/robot/ode_simulator.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "harness/world/protocol.h"
+#include "harness/simulator/protocol.h"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "harness/world/worker.h"
+#include "harness/simulator/worker.h"
 
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "harness/world/protocol.h"
+#include "harness/simulator/protocol.h"
 
 namespace parallax::harness {
 namespace {

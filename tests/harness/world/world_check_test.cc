@@ -1,4 +1,4 @@
-#include "harness/world/world_check.h"
+#include "harness/engine/world_check.h"
 
 #include <doctest/doctest.h>
 
@@ -6,8 +6,9 @@
 #include <cmath>
 #include <string>
 
-#include "harness/world/axis_servo.h"
+#include "harness/robot/axis_servo.h"
 #include "harness/world/controller_table.h"
+#include "harness/world/observables.h"
 #include "harness/world/world_layout.h"
 #include "tests/harness/world/fetch_world.h"
 

@@ -1,0 +1,292 @@
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/engine/ode_engine.h"
+
+namespace parallax::harness {
+namespace {
+
+Eigen::Matrix3d rotation_z(double angle_rad) {
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  Eigen::Matrix3d R;
+  R << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
+  return R;
+}
+
+void to_ode(const Eigen::Matrix3d& R, dMatrix3& out) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) out[4 * row + column] = R(row, column);
+    out[4 * row + 3] = 0.0;
+  }
+}
+
+double volume_m3(const BodySpec& body) {
+  double sum = 0.0;
+  for (const BoxShape& shape : body.shapes) sum += shape.size_m.prod();
+  return sum;
+}
+
+Eigen::Vector3d centre_of_mass_B(const BodySpec& body) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const BoxShape& shape : body.shapes) sum += shape.size_m.prod() * shape.p_BS;
+  return sum / volume_m3(body);
+}
+
+/// Mass of a body whose frame is placed in the link as `place` says.
+dMass mass_in_link(const BodySpec& body, const BodyInLink& place) {
+  dMass total;
+  dMassSetZero(&total);
+  for (const BoxShape& shape : body.shapes) {
+    dMass part;
+    dMassSetBoxTotal(&part, body.mass_kg * shape.size_m.prod() / volume_m3(body), shape.size_m.x(),
+                     shape.size_m.y(), shape.size_m.z());
+    dMatrix3 R;
+    to_ode(place.R_LB * rotation_z(shape.yaw_rad), R);
+    dMassRotate(&part, R);
+    const Eigen::Vector3d p_LS = place.p_LB + place.R_LB * shape.p_BS;
+    dMassTranslate(&part, p_LS.x(), p_LS.y(), p_LS.z());
+    dMassAdd(&total, &part);
+  }
+  return total;
+}
+
+}  // namespace
+
+OdeBuilder::OdeBuilder(const WorldSpec& spec, OdeWorld::Engine& engine)
+    : spec_(spec), engine_(engine) {}
+
+void OdeBuilder::build() {
+  engine_.layout = lay_out(spec_);
+  engine_.solver = spec_.solver;
+  engine_.touches.resize(engine_.layout.bodies.size());
+  grippers_ = grippers(spec_);
+  if (!grippers_.empty()) {
+    const BodyId pad = *engine_.layout.find_body(grippers_.front().near_pad_body);
+    robot_assembly_ = engine_.layout.assembly_of[pad.index()];
+  }
+  collect_friction();
+  create_world();
+  create_links();
+  create_geoms();
+  create_sliders();
+  create_gantries();
+}
+
+void OdeBuilder::collect_friction() {
+  materials_.push_back(spec_.floor_material);
+  for (const BodySpec& body : spec_.bodies) materials_.push_back(body.material);
+  std::sort(materials_.begin(), materials_.end());
+  materials_.erase(std::unique(materials_.begin(), materials_.end()), materials_.end());
+  engine_.material_count = static_cast<std::uint32_t>(materials_.size());
+  for (const std::string& a : materials_) {
+    for (const std::string& b : materials_) {
+      const auto found = spec_.friction.pairs.find(std::minmax(a, b));
+      engine_.friction.push_back(found == spec_.friction.pairs.end() ? spec_.friction.fallback
+                                                                     : found->second);
+    }
+  }
+}
+
+std::uint32_t OdeBuilder::material_index(const std::string& name) const {
+  return static_cast<std::uint32_t>(std::lower_bound(materials_.begin(), materials_.end(), name) -
+                                    materials_.begin());
+}
+
+void OdeBuilder::create_world() {
+  engine_.world = dWorldCreate();
+  // The engine's default stepping object is shared by all worlds of the process and not locked.
+  engine_.threading = dThreadingAllocateSelfThreadedImplementation();
+  dWorldSetStepThreadingImplementation(
+      engine_.world, dThreadingImplementationGetFunctions(engine_.threading), engine_.threading);
+  engine_.static_space = dSimpleSpaceCreate(nullptr);
+  engine_.movable_space = dSimpleSpaceCreate(nullptr);
+  engine_.contact_group = dJointGroupCreate(0);
+
+  const SolverSpec& solver = spec_.solver;
+  dWorldSetGravity(engine_.world, 0.0, 0.0, solver.gravity_m_s2);
+  dWorldSetERP(engine_.world, solver.erp);
+  dWorldSetCFM(engine_.world, solver.cfm);
+  dWorldSetContactSurfaceLayer(engine_.world, solver.surface_layer_m);
+  dWorldSetContactMaxCorrectingVel(engine_.world, solver.max_correcting_velocity_m_s);
+  dWorldSetAutoDisableFlag(engine_.world, 1);
+  dWorldSetAutoDisableLinearThreshold(engine_.world, solver.sleep_linear_m_s);
+  dWorldSetAutoDisableAngularThreshold(engine_.world, solver.sleep_angular_rad_s);
+  dWorldSetAutoDisableSteps(engine_.world, 0);
+  dWorldSetAutoDisableTime(engine_.world, solver.sleep_after_s);
+}
+
+void OdeBuilder::create_links() {
+  const WorldLayout& layout = engine_.layout;
+  engine_.in_link.resize(layout.bodies.size());
+  for (const Link& link : layout.links) {
+    const BodySpec& first = layout.bodies[link.members.front()];
+    // The engine wants the centre of mass at the origin of its body.
+    Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
+    double mass_kg = 0.0;
+    for (const BodyId id : link.members) {
+      const BodySpec& body = layout.bodies[id];
+      weighted += body.mass_kg * (body.p_WB + rotation_z(body.yaw_rad) * centre_of_mass_B(body));
+      mass_kg += body.mass_kg;
+    }
+    const Eigen::Vector3d p_WL = weighted / mass_kg;
+    const Eigen::Matrix3d R_LW = rotation_z(-first.yaw_rad);
+    dMass mass;
+    dMassSetZero(&mass);
+    bool gravity = false;
+    for (const BodyId id : link.members) {
+      const BodySpec& body = layout.bodies[id];
+      BodyInLink& place = engine_.in_link[id.index()];
+      place.p_LB = R_LW * (body.p_WB - p_WL);
+      place.R_LB = rotation_z(body.yaw_rad - first.yaw_rad);
+      const dMass part = mass_in_link(body, place);
+      dMassAdd(&mass, &part);
+      gravity = gravity || body.gravity;
+    }
+    std::fill_n(mass.c, 3, 0.0);  // zero but for rounding
+
+    dxBody* body = dBodyCreate(engine_.world);
+    dBodySetMass(body, &mass);
+    dBodySetGravityMode(body, gravity ? 1 : 0);
+    dBodySetPosition(body, p_WL.x(), p_WL.y(), p_WL.z());
+    dMatrix3 R;
+    to_ode(R_LW.transpose(), R);
+    dBodySetRotation(body, R);
+    engine_.links.push_back(body);
+    engine_.masses_kg.push_back(mass_kg);
+    engine_.never_sleeps.push_back(robot_assembly_ != 0 &&
+                                   layout.assembly_of[link.members.front().index()] ==
+                                       robot_assembly_);
+  }
+}
+
+GeomInfo OdeBuilder::info_for(BodyId id) const {
+  const WorldLayout& layout = engine_.layout;
+  const BodySpec& body = layout.bodies[id];
+  GeomInfo info{id, layout.assembly_of[id.index()], material_index(body.material),
+                ContactRole::kWorld, 0};
+  if (layout.is_free[id.index()]) {
+    info.role = ContactRole::kFree;
+  } else if (robot_assembly_ != 0 && info.assembly == robot_assembly_) {
+    info.role = ContactRole::kPart;
+  }
+  for (std::uint32_t gripper = 0; gripper < grippers_.size(); ++gripper) {
+    const bool near = body.name == grippers_[gripper].near_pad_body;
+    if (!near && body.name != grippers_[gripper].far_pad_body) continue;
+    info.role = near ? ContactRole::kNearPad : ContactRole::kFarPad;
+    info.gripper = gripper;
+  }
+  return info;
+}
+
+void OdeBuilder::create_geoms() {
+  std::size_t count = 1;
+  for (const BodySpec& body : engine_.layout.bodies) count += body.shapes.size();
+  engine_.geoms.reserve(count);
+
+  GeomInfo& floor = engine_.geoms.emplace_back();
+  floor.material = material_index(spec_.floor_material);
+  dGeomSetData(dCreatePlane(engine_.static_space, 0.0, 0.0, 1.0, 0.0), &floor);
+  for (std::size_t i = 0; i < engine_.layout.bodies.size(); ++i) {
+    const BodyId id = engine_.layout.bodies.id_at(i);
+    const BodySpec& body = engine_.layout.bodies[id];
+    if (!engine_.layout.link_of[i]) {
+      engine_.in_link[i] = BodyInLink{body.p_WB, rotation_z(body.yaw_rad)};
+    }
+    if (!body.collides) continue;
+    for (const BoxShape& shape : body.shapes) {
+      create_box(shape, id, engine_.geoms.emplace_back(info_for(id)));
+    }
+  }
+  dSpaceClean(engine_.static_space);
+}
+
+void OdeBuilder::create_box(const BoxShape& shape, BodyId id, GeomInfo& info) {
+  const std::optional<LinkId> link = engine_.layout.link_of[id.index()];
+  const BodyInLink& place = engine_.in_link[id.index()];
+  const Eigen::Vector3d p = place.p_LB + place.R_LB * shape.p_BS;
+  dxGeom* geom = dCreateBox(link ? engine_.movable_space : engine_.static_space, shape.size_m.x(),
+                            shape.size_m.y(), shape.size_m.z());
+  dGeomSetData(geom, &info);
+  dMatrix3 R;
+  const Eigen::Matrix3d R_LS = place.R_LB * rotation_z(shape.yaw_rad);
+  to_ode(R_LS, R);
+  if (!link) {
+    dGeomSetPosition(geom, p.x(), p.y(), p.z());
+    dGeomSetRotation(geom, R);
+    return;
+  }
+  dGeomSetBody(geom, engine_.links[link->index()]);
+  // A geom with an offset costs a little more in each step.
+  if (p.isZero(0.0) && R_LS.isIdentity(0.0)) return;
+  dGeomSetOffsetPosition(geom, p.x(), p.y(), p.z());
+  dGeomSetOffsetRotation(geom, R);
+}
+
+dxBody* OdeBuilder::body_of(const std::string& name) const {
+  if (name.empty()) return nullptr;
+  const auto link = engine_.layout.link_of[engine_.layout.find_body(name)->index()];
+  return link ? engine_.links[link->index()] : nullptr;
+}
+
+void OdeBuilder::create_sliders() {
+  for (const JointSpec& spec : engine_.layout.sliders) {
+    dxJoint* joint = dJointCreateSlider(engine_.world, nullptr);
+    dJointAttach(joint, body_of(spec.child), body_of(spec.parent));
+    const Eigen::Vector3d axis = spec.axis_W.normalized();
+    dJointSetSliderAxis(joint, axis.x(), axis.y(), axis.z());
+    if (spec.low_m) dJointSetSliderParam(joint, dParamLoStop, *spec.low_m);
+    if (spec.high_m) dJointSetSliderParam(joint, dParamHiStop, *spec.high_m);
+    engine_.sliders.push_back(joint);
+  }
+}
+
+void OdeBuilder::create_gantries() {
+  for (const JointSpec& spec : engine_.layout.gantries) {
+    Gantry gantry;
+    gantry.child = body_of(spec.child);
+    gantry.parent = body_of(spec.parent);
+    gantry.child_id = *engine_.layout.find_body(spec.child);
+    const BodySpec& child = engine_.layout.bodies[gantry.child_id];
+    Eigen::Matrix3d R_PW = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d p_WP = Eigen::Vector3d::Zero();
+    gantry.start_yaw_rad = child.yaw_rad;
+    if (!spec.parent.empty()) {
+      gantry.parent_id = *engine_.layout.find_body(spec.parent);
+      const BodySpec& parent = engine_.layout.bodies[gantry.parent_id];
+      R_PW = rotation_z(-parent.yaw_rad);
+      p_WP = parent.p_WB;
+      gantry.start_yaw_rad -= parent.yaw_rad;
+    }
+    gantry.start_P = R_PW * (child.p_WB - p_WP);
+    gantry.linear = dJointCreateLMotor(engine_.world, nullptr);
+    dJointAttach(gantry.linear, gantry.child, gantry.parent);
+    dJointSetLMotorNumAxes(gantry.linear, 3);
+    gantry.angular = dJointCreateAMotor(engine_.world, nullptr);
+    dJointAttach(gantry.angular, gantry.child, gantry.parent);
+    dJointSetAMotorMode(gantry.angular, dAMotorUser);
+    dJointSetAMotorNumAxes(gantry.angular, 3);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d linear = R_PW.transpose().col(axis);
+      const Eigen::Vector3d angular = Eigen::Vector3d::Unit(axis);
+      dJointSetLMotorAxis(gantry.linear, axis, gantry.parent == nullptr ? 0 : 2, linear.x(),
+                          linear.y(), linear.z());
+      dJointSetAMotorAxis(gantry.angular, axis, 0, angular.x(), angular.y(), angular.z());
+    }
+    engine_.gantries.push_back(gantry);
+  }
+}
+
+void set_free_mass(OdeWorld::Engine& engine, BodyId id, double mass_kg) {
+  const std::optional<LinkId> link = engine.layout.link_of[id.index()];
+  BodySpec body = engine.layout.bodies[id];
+  body.mass_kg = mass_kg;
+  // From scratch each time, so that no rounding of earlier resets is left.
+  dMass mass = mass_in_link(body, engine.in_link[id.index()]);
+  std::fill_n(mass.c, 3, 0.0);
+  dBodySetMass(engine.links[link->index()], &mass);
+  engine.masses_kg[link->index()] = mass_kg;
+}
+
+}  // namespace parallax::harness

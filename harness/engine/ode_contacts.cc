@@ -1,0 +1,143 @@
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "harness/engine/ode_engine.h"
+
+namespace parallax::harness {
+namespace {
+
+constexpr int kMostContacts = 16;
+
+const GeomInfo& info_of(dGeomID geom) { return *static_cast<const GeomInfo*>(dGeomGetData(geom)); }
+
+bool moves(dBodyID body) { return body != nullptr && dBodyIsEnabled(body) != 0; }
+
+/// A body at rest on something that begins to move gains less speed in a step than the threshold
+/// of sleep, and its time is up: it would fall asleep again in every step. So what moves keeps
+/// awake what it touches.
+void keep_awake(const SolverSpec& solver, dBodyID mover, dBodyID other) {
+  if (mover == nullptr || other == nullptr || dBodyIsEnabled(mover) == 0) return;
+  constexpr double kShareOfThreshold = 0.1;
+  const dReal* v = dBodyGetLinearVel(mover);
+  const double speed_m_s = std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]);
+  if (speed_m_s > kShareOfThreshold * solver.sleep_linear_m_s) dBodyEnable(other);
+}
+
+void note_touch(const GeomInfo& self, const GeomInfo& other, std::vector<Touch>& touches) {
+  if (self.role != ContactRole::kFree) return;
+  Touch& touch = touches[self.body->index()];
+  switch (other.role) {
+    case ContactRole::kWorld:
+    case ContactRole::kFree:
+      touch.support = true;
+      break;
+    case ContactRole::kNearPad:
+      touch.near_pads |= 1U << other.gripper;
+      break;
+    case ContactRole::kFarPad:
+      touch.far_pads |= 1U << other.gripper;
+      break;
+    case ContactRole::kPart:
+      break;
+  }
+}
+
+/// Contact points of a pair, none when both hang together.
+int contact_points(dGeomID a, dGeomID b, std::int64_t limit,
+                   std::array<dContact, kMostContacts>& out) {
+  const std::uint32_t assembly = info_of(a).assembly;
+  if (assembly != 0 && assembly == info_of(b).assembly) return 0;
+  return dCollide(a, b, static_cast<int>(std::min<std::int64_t>(limit, kMostContacts)),
+                  &out[0].geom, sizeof(dContact));
+}
+
+void set_stiffness(const SolverSpec& solver, dSurfaceParameters& surface) {
+  if (solver.contact_erp) {
+    surface.mode |= dContactSoftERP;
+    surface.soft_erp = *solver.contact_erp;
+  }
+  if (solver.contact_cfm) {
+    surface.mode |= dContactSoftCFM;
+    surface.soft_cfm = *solver.contact_cfm;
+  }
+}
+
+void add_contacts(void* data, dGeomID a, dGeomID b) {
+  auto& engine = *static_cast<OdeWorld::Engine*>(data);
+  const dBodyID body_a = dGeomGetBody(a), body_b = dGeomGetBody(b);
+  if (!moves(body_a) && !moves(body_b)) return;
+  std::array<dContact, kMostContacts> contacts;
+  const int count = contact_points(a, b, engine.solver.max_contacts_per_pair, contacts);
+  if (count == 0) return;
+
+  keep_awake(engine.solver, body_a, body_b);
+  keep_awake(engine.solver, body_b, body_a);
+  const GeomInfo& info_a = info_of(a);
+  const GeomInfo& info_b = info_of(b);
+  const double mu = engine.friction[info_a.material * engine.material_count + info_b.material];
+  for (int i = 0; i < count; ++i) {
+    dSurfaceParameters& surface = contacts[static_cast<std::size_t>(i)].surface;
+    surface = dSurfaceParameters{};
+    surface.mode = dContactApprox1;
+    surface.mu = mu;
+    set_stiffness(engine.solver, surface);
+    dJointAttach(dJointCreateContact(engine.world, engine.contact_group,
+                                     &contacts[static_cast<std::size_t>(i)]),
+                 body_a, body_b);
+  }
+  engine.statistics.contacts += count;
+  note_touch(info_a, info_b, engine.touches);
+  note_touch(info_b, info_a, engine.touches);
+}
+
+struct OverlapSearch {
+  OdeWorld::Engine& engine;
+  double depth_m = 0.0;
+  const GeomInfo* first = nullptr;
+  const GeomInfo* second = nullptr;
+};
+
+void search_overlap(void* data, dGeomID a, dGeomID b) {
+  auto& search = *static_cast<OverlapSearch*>(data);
+  std::array<dContact, kMostContacts> contacts;
+  const int count = contact_points(a, b, search.engine.solver.max_contacts_per_pair, contacts);
+  for (int i = 0; i < count; ++i) {
+    const double depth_m = contacts[static_cast<std::size_t>(i)].geom.depth;
+    if (search.first != nullptr && depth_m <= search.depth_m) continue;
+    search.depth_m = depth_m;
+    search.first = &info_of(a);
+    search.second = &info_of(b);
+  }
+}
+
+void visit_pairs(OdeWorld::Engine& engine, void* data, dNearCallback* callback) {
+  dSpaceCollide(engine.movable_space, data, callback);
+  dSpaceCollide2(reinterpret_cast<dGeomID>(engine.movable_space),  // spaces are geoms
+                 reinterpret_cast<dGeomID>(engine.static_space), data, callback);
+}
+
+}  // namespace
+
+void make_contacts(OdeWorld::Engine& engine) {
+  std::fill(engine.touches.begin(), engine.touches.end(), Touch{});
+  visit_pairs(engine, &engine, &add_contacts);
+}
+
+std::optional<Overlap> find_deepest_overlap(OdeWorld::Engine& engine) {
+  OverlapSearch search{engine};
+  visit_pairs(engine, &search, &search_overlap);
+  if (search.first == nullptr) return std::nullopt;
+  const auto name_of = [&](const GeomInfo& info) -> std::string {
+    return info.body ? engine.layout.bodies[*info.body].name : "floor";
+  };
+  Overlap overlap{name_of(*search.first), name_of(*search.second), search.depth_m};
+  if (overlap.second < overlap.first) std::swap(overlap.first, overlap.second);
+  return overlap;
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "harness/engine/ode_world.h"
+
+// The engine's own types, as its headers name them; only ode_*.cc sees more of them.
+struct dxWorld;
+struct dxSpace;
+struct dxBody;
+struct dxJoint;
+struct dxJointGroup;
+struct dxThreadingImplementation;
+
+namespace parallax::harness {
+
+/// kPart: of the robot.
+enum class ContactRole : std::uint8_t { kWorld, kFree, kNearPad, kFarPad, kPart };
+
+/// What the collision callback knows of a geom.
+struct GeomInfo {
+  std::optional<BodyId> body;  // none: the floor
+  std::uint32_t assembly = 0;
+  std::uint32_t material = 0;
+  ContactRole role = ContactRole::kWorld;
+  std::uint32_t gripper = 0;  // of a pad
+};
+
+/// A gantry: linear motors along the parent's axes, angular ones about the world's.
+struct Gantry {
+  dxJoint* linear = nullptr;
+  dxJoint* angular = nullptr;
+  dxBody* parent = nullptr;  // null: the world
+  dxBody* child = nullptr;
+  BodyId parent_id, child_id;                         // the first is meaningless without a parent
+  Eigen::Vector3d start_P = Eigen::Vector3d::Zero();  // of the child in the parent by default [m]
+  double start_yaw_rad = 0.0;
+};
+
+/// Pose of body B in its link L (in the world for a static body).
+struct BodyInLink {
+  Eigen::Vector3d p_LB = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d R_LB = Eigen::Matrix3d::Identity();
+};
+
+/// Everything behind OdeWorld.
+struct OdeWorld::Engine {
+  WorldLayout layout;
+  SolverSpec solver;
+  dxWorld* world = nullptr;
+  dxThreadingImplementation* threading = nullptr;
+  dxSpace* static_space = nullptr;
+  dxSpace* movable_space = nullptr;
+  dxJointGroup* contact_group = nullptr;
+  std::vector<dxBody*> links;       // by LinkId
+  std::vector<bool> never_sleeps;   // by LinkId: parts of the robot
+  std::vector<dxJoint*> sliders;    // by SliderId
+  std::vector<Gantry> gantries;     // by GantryId
+  std::vector<BodyInLink> in_link;  // by BodyId
+  std::vector<GeomInfo> geoms;      // never grows after building: geoms point into it
+  std::uint32_t material_count = 0;
+  std::vector<double> friction;   // (material_count x material_count)
+  std::vector<Touch> touches;     // by BodyId
+  std::vector<double> masses_kg;  // by LinkId
+  std::uint64_t digest = 0;
+  bool measure_times = false;
+  StepStatistics statistics;
+};
+
+/// Creates everything from the layout, in its order. One use per engine.
+class OdeBuilder {
+ public:
+  OdeBuilder(const WorldSpec& spec, OdeWorld::Engine& engine);
+  void build();
+
+ private:
+  void create_world();
+  void create_links();
+  void create_geoms();
+  void create_box(const BoxShape& shape, BodyId id, GeomInfo& info);
+  void create_sliders();
+  void create_gantries();
+  dxBody* body_of(const std::string& name) const;
+  void collect_friction();
+  std::uint32_t material_index(const std::string& name) const;
+  GeomInfo info_for(BodyId id) const;
+
+  const WorldSpec& spec_;
+  OdeWorld::Engine& engine_;
+  std::vector<GripperSpec> grippers_;
+  std::uint32_t robot_assembly_ = 0;    // 0: no robot
+  std::vector<std::string> materials_;  // sorted
+};
+
+/// Gives a free body another mass, spread as before.
+void set_free_mass(OdeWorld::Engine& engine, BodyId id, double mass_kg);
+
+/// Collision pass: makes contact joints for the next step and records what touches free bodies.
+void make_contacts(OdeWorld::Engine& engine);
+
+/// Collision pass that makes nothing: the deepest pair, if any touches.
+std::optional<Overlap> find_deepest_overlap(OdeWorld::Engine& engine);
+
+}  // namespace parallax::harness

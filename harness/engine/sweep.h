@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/engine/ode_world.h"
+
+namespace parallax::harness {
+
+/// What stands in the way of a motion.
+struct Obstacle {
+  std::string part;      // of what moves
+  std::string obstacle;  // body, or "floor"
+  double way_m = 0.0;    // how far the motion gets
+};
+
+/// Shapes that move as one, tried in other places without moving anything: the boxes of `bodies`
+/// as they stand at construction, against everything else that is not in `ignored`.
+class Sweep {
+ public:
+  /// Overlaps of at most `tolerance_m` count as touching; a negative one asks for so much room all
+  /// round.
+  Sweep(const OdeWorld& world, const BodyMask& bodies, const BodyMask& ignored, double tolerance_m);
+
+  /// The first obstacle on the straight way by `way`, looked at every `step_m`, ends included.
+  std::optional<Obstacle> along(const Eigen::Vector3d& offset, const Eigen::Vector3d& way,
+                                double step_m) const;
+  /// The same for a turn about the vertical through `axis_W`, after a shift by `offset`.
+  std::optional<Obstacle> turning(const Eigen::Vector3d& offset, const Eigen::Vector3d& axis_W,
+                                  double angle_rad, double step_rad) const;
+
+ private:
+  struct Part {
+    std::string name;
+    Probe probe;
+  };
+  std::optional<Obstacle> at(const Eigen::Vector3d& offset, const Eigen::Vector3d& axis_W,
+                             double angle_rad) const;
+
+  const OdeWorld& world_;
+  BodyMask ignored_;
+  double tolerance_m_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace parallax::harness

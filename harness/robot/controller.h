@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/robot/grasp_monitor.h"
+#include "harness/robot/mobile_robot.h"
+#include "harness/robot/perception.h"
+#include "harness/robot/robot.h"
+#include "harness/world/arguments.h"
+
+namespace parallax::harness {
+
+/// What a controller acts on. All outlive the controller. One of the robots is there.
+struct ControlContext {
+  const WorldSpec& spec;
+  const OdeWorld& world;
+  const GraspMonitor& grasp;
+  Robot* line = nullptr;
+  MobileRobot* mobile = nullptr;
+  Perception* perception = nullptr;  // of the mobile robot
+};
+
+/// One action while it runs.
+class Controller {
+ public:
+  virtual ~Controller() = default;
+  /// Asked before each timestep with the time since the action began; commands the robot, and
+  /// returns the outcome once the action is over. `Outcome::sim_time_s` is the caller's to fill.
+  virtual std::optional<Outcome> tick(double time_s) = 0;
+};
+
+using ControllerFactory = std::unique_ptr<Controller> (*)(const ControlContext&, const Arguments&);
+
+/// The factory of a name in controllers(), or null.
+ControllerFactory find_factory(std::string_view name);
+
+/// A stretch of an action: begins, and lasts until `done` or for the limit that `begin` gave.
+struct Phase {
+  std::string_view name;          // "lowering"
+  std::function<double()> begin;  // commands the robot; returns the time limit [s]
+  std::function<bool()> done;
+};
+
+/// A controller made of phases in a row. One whose limit passes is remembered, not the end: the
+/// physical result decides.
+class PhasedController : public Controller {
+ public:
+  std::optional<Outcome> tick(double time_s) final;
+
+ protected:
+  explicit PhasedController(const ControlContext& context) : context_(context) {}
+
+  const ControlContext& context() const { return context_; }
+  const OdeWorld& world() const { return context_.world; }
+  const std::string& name_of(BodyId id) const { return world().layout().bodies[id].name; }
+  /// At the end, or, while a phase begins, right behind it.
+  void add(std::string_view name, std::function<double()> begin, std::function<bool()> done);
+  /// Waits.
+  void add_pause(std::string_view name, double duration_s);
+  /// Does something that takes no time.
+  void add_step(std::function<void()> what);
+  /// Skips all phases: the next tick returns `outcome`.
+  void refuse(std::string reason, State margins = {});
+  bool refused() const { return refusal_.has_value(); }
+  std::string_view overdue() const { return overdue_; }
+
+  /// The judgement after the last phase. `overdue` names the first phase that met its limit.
+  virtual Outcome judge(std::string_view overdue) = 0;
+
+ private:
+  ControlContext context_;
+  std::vector<Phase> phases_;
+  std::size_t current_ = 0;
+  std::optional<std::size_t> insert_at_;  // while a phase begins
+  bool begun_ = false;
+  double phase_end_s_ = 0.0;
+  std::string_view overdue_;
+  std::optional<Outcome> refusal_;
+};
+
+/// How long a motion of `distance_m` may take before it counts as overdue [s].
+double patience_s(double distance_m, const Motion& motion);
+
+/// "0.713 m", for reasons.
+std::string metres(double value_m);
+
+}  // namespace parallax::harness

@@ -1,0 +1,157 @@
+#include "harness/robot/mobile_controller.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace parallax::harness {
+namespace {
+
+constexpr double kToolAcceleration_m_s2 = 0.5;
+constexpr double kToolTolerance_m = 0.001;
+constexpr double kToolApproachRate_hz = 10.0;
+constexpr Motion kWrist{1.5, 4.0, 0.005, 10.0};  // radians
+constexpr Motion kFinger{0.10, 0.5, 0.001, 10.0};
+constexpr double kCloseSpeed_m_s = 0.05;
+constexpr double kCloseGrace_s = 0.5;
+/// Room round the arm that a way is looked for with, the most first. The last is for ways that
+/// begin in touch, as that of a load that was just lifted.
+constexpr std::array kRoom_m = {0.04, 0.015, 0.005, -0.002};
+
+}  // namespace
+
+MobileController::MobileController(const ControlContext& context, const Arguments& arguments)
+    : PhasedController(context), arguments_(arguments) {
+  if (const auto name = arguments.text("arm")) arm_ = context.mobile->find_arm(*name);
+}
+
+Motion MobileController::tool_motion() const {
+  return {number("max_speed_m_s"), kToolAcceleration_m_s2, kToolTolerance_m, kToolApproachRate_hz};
+}
+
+Eigen::Vector3d MobileController::target_point() const {
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
+  if (const PlaceSpec* place = arguments_.place("place")) p = perception().place_in_world(*place);
+  const double x = number("target.x"), y = number("target.y"), z = number("target.z");
+  return {std::isnan(x) ? p.x() : x, std::isnan(y) ? p.y() : y, std::isnan(z) ? p.z() : z};
+}
+
+bool MobileController::require_reach(const Eigen::Vector3d& tool_W, const std::string& what) {
+  const double distance_m = (tool_W - robot().shoulder(arm())).norm();
+  const ArmSpec& spec = arm().spec();
+  const double margin_m = std::min(spec.max_reach_m - distance_m, distance_m - spec.min_reach_m);
+  if (margin_m >= 0.0) return true;
+  refuse_with(kManipulationUnreachable,
+              fmt::format("{} is {} from the shoulder, the reach is {} to {}", what,
+                          metres(distance_m), metres(spec.min_reach_m), metres(spec.max_reach_m)),
+              {{"reach", margin_m}});
+  return false;
+}
+
+BodyMask MobileController::arm_and_load() const {
+  BodyMask mask(world().layout().bodies.size(), false);
+  for (const BodyId id : arm().bodies()) mask[id.index()] = true;
+  if (const auto load = context().grasp.held_body(arm().gripper())) mask[load->index()] = true;
+  return mask;
+}
+
+void MobileController::add_tool_move(std::string_view name, std::function<Eigen::Vector3d()> target,
+                                     Motion motion) {
+  add_tool_move_until(name, std::move(target), motion, [] { return false; });
+}
+
+void MobileController::add_tool_move_until(std::string_view name,
+                                           std::function<Eigen::Vector3d()> target, Motion motion,
+                                           std::function<bool()> done) {
+  add(
+      name,
+      [this, target = std::move(target), motion] {
+        const Eigen::Vector3d goal = target();
+        const double way_m = (goal - arm().tool()).norm();
+        arm().move_tool_to(goal, motion);
+        return patience_s(way_m, motion);
+      },
+      [this, done = std::move(done)] { return done() || arm().tool_at_rest(); });
+}
+
+void MobileController::add_tool_path(std::string_view name, std::function<Eigen::Vector3d()> target,
+                                     std::optional<BodyId> touched) {
+  add(
+      name,
+      [this, name, target = std::move(target), touched] {
+        BodyMask ignored = robot().parts();
+        if (touched) ignored[touched->index()] = true;
+        const Eigen::Vector3d goal = target();
+        const double ceiling_m = std::max(robot().carry_point(arm()).z(), arm().tool().z()) + 0.1;
+        ToolPath path;
+        for (std::size_t i = 0; i < kRoom_m.size() && path.corners.empty(); ++i) {
+          const Sweep sweep(world(), arm_and_load(), ignored, -kRoom_m[i]);
+          path = find_tool_path(sweep, arm().tool(), goal, -robot().base().heading(), ceiling_m);
+        }
+        if (path.corners.empty()) {
+          refuse_with(kManipulationUnreachable,
+                      path.blocked ? fmt::format("no free way for the {} arm: `{}` meets `{}`",
+                                                 arm().spec().name, path.blocked->part,
+                                                 path.blocked->obstacle)
+                                   : "no free way");
+          return 0.0;
+        }
+        for (const Eigen::Vector3d& corner : path.corners) {
+          add_tool_move(
+              name, [corner] { return corner; }, tool_motion());
+        }
+        return 0.0;
+      },
+      [] { return true; });
+}
+
+void MobileController::add_wrist(double yaw_rad) {
+  add(
+      "turning",
+      [this, yaw_rad] {
+        const double way = std::abs(wrapped(yaw_rad - arm().wrist_rad()));
+        arm().turn_wrist_to(yaw_rad, kWrist);
+        return patience_s(way, kWrist);
+      },
+      [this] { return arm().tool_at_rest(); });
+}
+
+void MobileController::add_opening(std::function<double()> opening_m) {
+  add(
+      "opening",
+      [this, opening_m = std::move(opening_m)] {
+        const double goal_m = opening_m();
+        const double way_m = std::abs(goal_m - arm().opening_m());
+        arm().open_to(goal_m, kFinger);
+        return patience_s(way_m, kFinger);
+      },
+      [this] { return arm().finger_at_rest(); });
+}
+
+void MobileController::add_squeeze(double force_n, double hold_s, std::function<bool()> gripped) {
+  add(
+      "closing",
+      [this, force_n, hold_s] {
+        arm().squeeze(force_n, kCloseSpeed_m_s);
+        return arm().opening_m() / kCloseSpeed_m_s + hold_s + kCloseGrace_s;
+      },
+      [this, hold_s, gripped = std::move(gripped), steps = 0]() mutable {
+        steps = gripped() ? steps + 1 : 0;
+        return steps * world().timestep_s() >= hold_s;
+      });
+}
+
+Outcome MobileController::failed(std::string_view condition, const std::string& text,
+                                 State margins) {
+  return {SimStatus::kFailed, fmt::format("{}: {}", condition, text), 0.0, std::move(margins)};
+}
+
+void MobileController::refuse_with(std::string_view condition, const std::string& text,
+                                   State margins) {
+  robot().brake_all();
+  refuse(fmt::format("{}: {}", condition, text), std::move(margins));
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "harness/robot/controller.h"
+#include "harness/robot/tool_path.h"
+
+namespace parallax::harness {
+
+/// Words that the reasons of failed actions begin with: what CRAM calls the condition.
+inline constexpr std::string_view kNavigationUnreachable = "navigation-pose-unreachable";
+inline constexpr std::string_view kManipulationUnreachable = "manipulation-pose-unreachable";
+inline constexpr std::string_view kObjectNotFound = "object-not-found";
+inline constexpr std::string_view kGraspFailed = "object-not-held";
+inline constexpr std::string_view kGoalNotReached = "manipulation-goal-not-reached";
+inline constexpr std::string_view kLookingFailed = "looking-failed";
+
+/// A controller of the mobile robot.
+class MobileController : public PhasedController {
+ protected:
+  /// Reads `arm`, if the controller takes it.
+  MobileController(const ControlContext& context, const Arguments& arguments);
+
+  MobileRobot& robot() const { return *context().mobile; }
+  Perception& perception() const { return *context().perception; }
+  Arm& arm() const { return *arm_; }
+  const Arguments& arguments() const { return arguments_; }
+  double number(std::string_view name) const { return arguments_.number(name); }
+
+  /// How the empty or loaded tool moves; `max_speed_m_s` of the arguments.
+  Motion tool_motion() const;
+  /// The argument `target.x` (`.y`, `.z`), or the place that the argument `place` names.
+  Eigen::Vector3d target_point() const;
+
+  /// Refuses unless the tool at `tool_W` lies within reach; true if it does.
+  bool require_reach(const Eigen::Vector3d& tool_W, const std::string& what);
+  /// Parts of the arm and what it holds.
+  BodyMask arm_and_load() const;
+  void add_tool_move(std::string_view name, std::function<Eigen::Vector3d()> target, Motion motion);
+  /// The same, but over as soon as `done`.
+  void add_tool_move_until(std::string_view name, std::function<Eigen::Vector3d()> target,
+                           Motion motion, std::function<bool()> done);
+  /// Finds a free way when it begins, or refuses. `touched` may be met: it is what the arm is for.
+  void add_tool_path(std::string_view name, std::function<Eigen::Vector3d()> target,
+                     std::optional<BodyId> touched);
+  void add_wrist(double yaw_rad);  // against the robot's heading
+  void add_opening(std::function<double()> opening_m);
+  /// Closes with `force_n` until `gripped` has been true for `hold_s`.
+  void add_squeeze(double force_n, double hold_s, std::function<bool()> gripped);
+
+  static Outcome failed(std::string_view condition, const std::string& text, State margins = {});
+  void refuse_with(std::string_view condition, const std::string& text, State margins = {});
+
+ private:
+  Arguments arguments_;
+  Arm* arm_ = nullptr;
+};
+
+std::unique_ptr<Controller> make_drive(const ControlContext&, const Arguments&);
+std::unique_ptr<Controller> make_look(const ControlContext&, const Arguments&);
+std::unique_ptr<Controller> make_detect(const ControlContext&, const Arguments&);
+std::unique_ptr<Controller> make_move_torso(const ControlContext&, const Arguments&);
+std::unique_ptr<Controller> make_park(const ControlContext&, const Arguments&);
+std::unique_ptr<Controller> make_open_gripper(const ControlContext&, const Arguments&);
+std::unique_ptr<Controller> make_regrip(const ControlContext&, const Arguments&);
+std::unique_ptr<Controller> make_pick_up(const ControlContext&, const Arguments&);
+std::unique_ptr<Controller> make_place(const ControlContext&, const Arguments&);
+std::unique_ptr<Controller> make_open_drawer(const ControlContext&, const Arguments&);
+std::unique_ptr<Controller> make_close_drawer(const ControlContext&, const Arguments&);
+
+}  // namespace parallax::harness

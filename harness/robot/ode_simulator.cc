@@ -1,0 +1,208 @@
+#include "harness/robot/ode_simulator.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "compiler/base/contract.h"
+#include "harness/engine/ode_process.h"
+#include "harness/engine/world_check.h"
+#include "harness/robot/controller.h"
+#include "harness/robot/mobile_observation.h"
+#include "harness/world/arguments.h"
+#include "harness/world/observables.h"
+#include "harness/world/start_state.h"
+
+namespace parallax::harness {
+namespace {
+
+double millimetres(double value_m) { return value_m * 1e3; }
+
+const WorldSpec& checked(const WorldSpec& spec) {
+  PARALLAX_REQUIRE(check_world(spec).empty(), "a world that passed check_world");
+  return spec;
+}
+
+/// Turn about x, then y, then z [rad] that makes up R_WB: the usual roll, pitch, yaw.
+struct RollPitchYaw {
+  double roll_rad, pitch_rad, yaw_rad;
+};
+
+RollPitchYaw roll_pitch_yaw(const Eigen::Matrix3d& R) {
+  return {std::atan2(R(2, 1), R(2, 2)), std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0))),
+          std::atan2(R(1, 0), R(0, 0))};
+}
+
+}  // namespace
+
+struct OdeSimulator::Impl {
+  enum class Phase : std::uint8_t { kFresh, kReady, kLost };
+
+  explicit Impl(const WorldSpec& world_spec)
+      : spec(checked(world_spec)), world(spec), grasp(spec, world) {
+    if (spec.mobile) {
+      mobile.emplace(spec, world);
+      perception.emplace(world, *mobile);
+    } else if (!spec.robot.base_body.empty()) {
+      line.emplace(spec, world);
+    }
+  }
+
+  bool can(const ControllerSpec& controller) const {
+    return controller.robot == RobotKind::kLine ? line.has_value() : mobile.has_value();
+  }
+  void reset_robot() {
+    grasp.reset();
+    if (line) line->reset();
+    if (mobile) mobile->reset();
+    if (perception) perception->reset();
+  }
+  void drive_motors() {
+    if (line) line->drive_motors();
+    if (mobile) mobile->drive_motors();
+  }
+  void brake_all() {
+    if (line) line->brake_all();
+    if (mobile) mobile->brake_all();
+  }
+
+  WorldSpec spec;
+  OdeWorld world;
+  GraspMonitor grasp;
+  std::optional<Robot> line;
+  std::optional<MobileRobot> mobile;
+  std::optional<Perception> perception;
+  Phase phase = Phase::kFresh;
+  Watcher watcher = nullptr;
+  void* watcher_context = nullptr;
+};
+
+OdeSimulator::OdeSimulator(const WorldSpec& spec) : impl_(std::make_unique<Impl>(spec)) {}
+OdeSimulator::~OdeSimulator() = default;
+
+const OdeWorld& OdeSimulator::world() const { return impl_->world; }
+std::optional<Gaze> OdeSimulator::gaze() const {
+  return impl_->perception ? impl_->perception->line_of_sight() : std::nullopt;
+}
+const StepStatistics& OdeSimulator::statistics() const { return impl_->world.statistics(); }
+void OdeSimulator::measure_times(bool on) { impl_->world.measure_times(on); }
+
+void OdeSimulator::watch(Watcher watcher, void* context) {
+  impl_->watcher = watcher;
+  impl_->watcher_context = context;
+}
+
+SimulatorInfo OdeSimulator::info() {
+  SimulatorInfo info;
+  info.name = "ode";
+  info.version = ode_version();
+  info.determinism = "bitwise";
+  info.seeds = true;
+  info.parameters = observables(impl_->spec);
+  for (const ControllerSpec& spec : controllers()) {
+    if (impl_->can(spec)) info.actions.emplace_back(spec.name);
+  }
+  info.timestep_s = impl_->spec.solver.timestep_s;
+  return info;
+}
+
+Outcome OdeSimulator::reset(const State& initial, std::uint64_t seed) {
+  impl_->phase = Impl::Phase::kFresh;
+  const StartState start = read_start_state(impl_->spec, impl_->world.layout(), initial);
+  if (start.status != SimStatus::kOk) return {start.status, start.reason, 0.0, {}};
+
+  const std::optional<Overlap> overlap = impl_->world.reset(start.placements, seed);
+  impl_->reset_robot();
+  if (overlap) {
+    return {SimStatus::kInvalidStart,
+            fmt::format("`{}` overlaps `{}` by {:.1f} mm", overlap->first, overlap->second,
+                        millimetres(overlap->depth_m)),
+            0.0,
+            {{"depth", overlap->depth_m}}};
+  }
+  impl_->phase = Impl::Phase::kReady;
+  return {};
+}
+
+Outcome OdeSimulator::act(std::string_view action, const State& arguments,
+                          double sim_time_limit_s) {
+  PARALLAX_REQUIRE(impl_->phase != Impl::Phase::kFresh, "a successful reset before act");
+  if (impl_->phase == Impl::Phase::kLost) {
+    return {SimStatus::kLost, "the state of the world has exploded", 0.0, {}};
+  }
+  const ControllerSpec* spec = find_controller(action);
+  if (spec == nullptr || !impl_->can(*spec)) {
+    return {SimStatus::kUnsupported, fmt::format("no action `{}`", action), 0.0, {}};
+  }
+  const auto checked_arguments =
+      Arguments::check(*spec, arguments, impl_->spec, impl_->world.layout());
+  if (const auto* message = std::get_if<std::string>(&checked_arguments)) {
+    return {SimStatus::kUnsupported, *message, 0.0, {}};
+  }
+  enter_ode();
+  const ControlContext context{impl_->spec,
+                               impl_->world,
+                               impl_->grasp,
+                               impl_->line ? &*impl_->line : nullptr,
+                               impl_->mobile ? &*impl_->mobile : nullptr,
+                               impl_->perception ? &*impl_->perception : nullptr};
+  const std::unique_ptr<Controller> controller =
+      find_factory(action)(context, std::get<Arguments>(checked_arguments));
+
+  const double timestep_s = impl_->world.timestep_s();
+  double time_s = 0.0;
+  for (std::int64_t steps = 1;; ++steps) {
+    if (std::optional<Outcome> outcome = controller->tick(time_s)) {
+      outcome->sim_time_s = time_s;
+      return *std::move(outcome);
+    }
+    if (!(static_cast<double>(steps) * timestep_s <= sim_time_limit_s)) break;
+    impl_->drive_motors();
+    if (!impl_->world.step()) {
+      impl_->phase = Impl::Phase::kLost;
+      return {SimStatus::kLost, "the state of the world has exploded", time_s, {}};
+    }
+    impl_->grasp.update();
+    time_s = static_cast<double>(steps) * timestep_s;
+    if (impl_->watcher != nullptr) impl_->watcher(impl_->watcher_context, time_s, *this);
+  }
+  impl_->brake_all();  // takes effect in the next action
+  return {SimStatus::kTruncated,
+          fmt::format("`{}` took longer than {} s", action, sim_time_limit_s),
+          time_s,
+          {}};
+}
+
+State OdeSimulator::state() const {
+  PARALLAX_REQUIRE(impl_->phase != Impl::Phase::kFresh, "a successful reset before observe");
+  const WorldLayout& layout = impl_->world.layout();
+  State state;
+  for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
+    if (!layout.is_free[i]) continue;
+    const BodyId id = layout.bodies.id_at(i);
+    const std::string prefix = layout.bodies[id].name + ".";
+    const Eigen::Vector3d p_WB = impl_->world.position(id);
+    const RollPitchYaw turn = roll_pitch_yaw(impl_->world.rotation(id));
+    state[prefix + "x"] = p_WB.x();
+    state[prefix + "y"] = p_WB.y();
+    state[prefix + "z"] = p_WB.z();
+    state[prefix + "roll"] = turn.roll_rad;
+    state[prefix + "pitch"] = turn.pitch_rad;
+    state[prefix + "yaw"] = turn.yaw_rad;
+    state[prefix + "held"] = impl_->grasp.held(id);
+  }
+  if (impl_->line) {
+    state["robot.x"] = impl_->line->base_x_m();
+    state["tool.x"] = impl_->line->tool().x();
+    state["tool.z"] = impl_->line->tool().z();
+    state["opening"] = impl_->line->opening_m();
+  }
+  if (impl_->mobile) {
+    observe_mobile(impl_->world, *impl_->mobile, *impl_->perception, impl_->grasp, state);
+  }
+  state["digest"] = fmt::format("{:016x}", impl_->world.digest());
+  return state;
+}
+
+}  // namespace parallax::harness

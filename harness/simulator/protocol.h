@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "harness/simulator/simulator.h"
+
+namespace parallax::harness {
+
+/// The simulator protocol, version 1: one JSON object per line, requests from the harness, one
+/// reply each. Numbers are written as the shortest decimals that read back to the same bits.
+inline constexpr std::int64_t kProtocolVersion = 1;
+inline constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20U;  // without the newline
+
+struct HelloRequest {
+  std::vector<std::int64_t> protocols = {kProtocolVersion};
+};
+struct ResetRequest {
+  State state;
+  std::uint64_t seed = 0;
+};
+struct ActRequest {
+  std::string action;
+  State arguments;
+  double sim_time_limit_s = 0.0;
+};
+struct ObserveRequest {};
+struct CloseRequest {};
+/// A well-formed request of a method that this version does not know.
+struct UnknownRequest {
+  std::string method;
+};
+
+using RequestBody = std::variant<HelloRequest, ResetRequest, ActRequest, ObserveRequest,
+                                 CloseRequest, UnknownRequest>;
+
+/// `id` is the client's, counted up; a reply carries the id of its request.
+struct Request {
+  std::int64_t id = 0;
+  RequestBody body;
+};
+
+/// The other side said no: `code` is parse_error, invalid_request, invalid_params, unsupported,
+/// incorrect_state, line_too_long, not_finite or internal.
+struct ErrorReply {
+  std::string code;
+  std::string message;
+};
+struct HelloReply {
+  std::int64_t protocol = kProtocolVersion;
+  SimulatorInfo info;
+};
+/// To reset and act.
+struct OutcomeReply {
+  Outcome outcome;
+};
+struct ObserveReply {
+  State state;
+};
+struct CloseReply {};
+
+using ReplyBody = std::variant<ErrorReply, HelloReply, OutcomeReply, ObserveReply, CloseReply>;
+
+/// A line that is not the protocol: the harness counts the simulator as lost.
+struct Malformed {
+  std::string code;     // as ErrorReply::code
+  std::string message;  // "byte 17: ..." or "`result.status` is missing"
+  std::int64_t id = 0;  // of the request, where it could be read
+  bool has_id = false;
+};
+
+/// One line each, without the newline. Values must be finite: see `first_not_finite`.
+std::string encode_request(const Request& request);
+std::string encode_reply(std::int64_t id, const ReplyBody& reply);
+/// The answer to a line from which no id could be read.
+std::string encode_error_without_id(const ErrorReply& error);
+
+/// The worker's side. Unknown fields are ignored, missing or ill-typed ones are not.
+std::variant<Request, Malformed> decode_request(std::string_view line);
+
+/// The client's side: the reply to `asked`. Malformed when the line is no JSON object, carries
+/// another id, lacks a field, has a field of the wrong type, an unknown status, or a value that is
+/// neither boolean, finite number nor string. An error reply is well-formed.
+std::variant<ReplyBody, Malformed> decode_reply(std::string_view line, const Request& asked);
+
+/// Name of the first value that is NaN or infinite, which JSON cannot say; empty if none is.
+std::string first_not_finite(const State& state);
+
+/// A state as one JSON object, and back; for journals and record files.
+std::string encode_state(const State& state);
+std::variant<State, Malformed> decode_state(std::string_view text);
+
+}  // namespace parallax::harness

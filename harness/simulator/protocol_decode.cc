@@ -1,0 +1,293 @@
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "harness/simulator/protocol.h"
+
+namespace parallax::harness {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Reads typed fields and keeps the first thing that was wrong, so that callers read straight on.
+class FieldReader {
+ public:
+  explicit FieldReader(std::string code) : code_(std::move(code)) {}
+
+  bool failed() const { return failed_; }
+  Malformed error() const { return error_; }
+
+  void fail(const std::string& message) {
+    if (failed_) return;
+    failed_ = true;
+    error_.code = code_;
+    error_.message = message;
+  }
+
+  /// The member `name` of `object`, or null; a required one that is missing is an error.
+  const Json* member(const Json& object, const char* name, bool required) {
+    const auto found = object.find(name);
+    if (found != object.end()) return &*found;
+    if (required) fail("`" + std::string(name) + "` is missing");
+    return nullptr;
+  }
+
+  const Json* object(const Json& parent, const char* name, bool required) {
+    const Json* json = member(parent, name, required);
+    if (json == nullptr || json->is_object()) return json;
+    fail("`" + std::string(name) + "` is not an object");
+    return nullptr;
+  }
+
+  std::string string(const Json& parent, const char* name, bool required = true) {
+    const Json* json = member(parent, name, required);
+    if (json == nullptr) return {};
+    if (json->is_string()) return json->get<std::string>();
+    fail("`" + std::string(name) + "` is not a string");
+    return {};
+  }
+
+  double number(const Json& parent, const char* name, bool required = true) {
+    const Json* json = member(parent, name, required);
+    if (json == nullptr) return 0.0;
+    if (json->is_number()) return json->get<double>();
+    fail("`" + std::string(name) + "` is not a number");
+    return 0.0;
+  }
+
+  std::int64_t integer(const Json& parent, const char* name) {
+    const Json* json = member(parent, name, true);
+    if (json == nullptr) return 0;
+    if (json->is_number_integer()) return json->get<std::int64_t>();
+    fail("`" + std::string(name) + "` is not an integer");
+    return 0;
+  }
+
+  bool boolean(const Json& parent, const char* name, bool required = true) {
+    const Json* json = member(parent, name, required);
+    if (json == nullptr) return false;
+    if (json->is_boolean()) return json->get<bool>();
+    fail("`" + std::string(name) + "` is not a boolean");
+    return false;
+  }
+
+  State state(const Json& object) {
+    State state;
+    for (const auto& [name, value] : object.items()) {
+      if (auto plain = value_of(value)) {
+        state.emplace(name, *std::move(plain));
+      } else {
+        fail("`" + name + "` is neither boolean, number nor string");
+      }
+    }
+    return state;
+  }
+
+ private:
+  static std::optional<Value> value_of(const Json& json) {
+    if (json.is_boolean()) return Value(json.get<bool>());
+    if (json.is_string()) return Value(json.get<std::string>());
+    // An integer beyond 64 bits signed is a large number all the same.
+    constexpr auto kMax = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+    if (json.is_number_unsigned() && json.get<std::uint64_t>() > kMax) {
+      return Value(json.get<double>());
+    }
+    if (json.is_number_integer()) return Value(json.get<std::int64_t>());
+    if (json.is_number_float()) return Value(json.get<double>());
+    return std::nullopt;
+  }
+
+  std::string code_;
+  bool failed_ = false;
+  Malformed error_;
+};
+
+Json parse(std::string_view line) { return Json::parse(line.begin(), line.end(), nullptr, false); }
+
+std::optional<std::int64_t> id_of(const Json& json) {
+  const auto found = json.find("id");
+  if (found == json.end() || !found->is_number_integer()) return std::nullopt;
+  return found->get<std::int64_t>();
+}
+
+Malformed malformed(std::string code, std::string message, std::optional<std::int64_t> id = {}) {
+  return Malformed{std::move(code), std::move(message), id.value_or(0), id.has_value()};
+}
+
+HelloRequest read_hello(FieldReader& reader, const Json& params) {
+  HelloRequest hello;
+  const Json* versions = reader.member(params, "protocol", true);
+  if (versions == nullptr) return hello;
+  hello.protocols.clear();
+  if (!versions->is_array()) {
+    reader.fail("`protocol` is not a list of versions");
+    return hello;
+  }
+  for (const Json& version : *versions) {
+    if (version.is_number_integer()) {
+      hello.protocols.push_back(version.get<std::int64_t>());
+    } else {
+      reader.fail("`protocol` is not a list of versions");
+    }
+  }
+  return hello;
+}
+
+ResetRequest read_reset(FieldReader& reader, const Json& params) {
+  ResetRequest reset;
+  if (const Json* state = reader.object(params, "state", true)) reset.state = reader.state(*state);
+  const Json* seed = reader.member(params, "seed", true);
+  if (seed == nullptr) return reset;
+  if (seed->is_number_unsigned()) {
+    reset.seed = seed->get<std::uint64_t>();
+  } else {
+    reader.fail("`seed` is not an integer from 0 to 2^64 - 1");
+  }
+  return reset;
+}
+
+ActRequest read_act(FieldReader& reader, const Json& params) {
+  ActRequest act;
+  act.action = reader.string(params, "action");
+  if (const Json* args = reader.object(params, "args", false)) act.arguments = reader.state(*args);
+  act.sim_time_limit_s = reader.number(params, "sim_time_limit");
+  if (act.sim_time_limit_s < 0.0) reader.fail("`sim_time_limit` is negative");
+  return act;
+}
+
+RequestBody read_request_body(FieldReader& reader, const Json& json) {
+  const std::string method = reader.string(json, "method");
+  if (method == "observe") return ObserveRequest{};
+  if (method == "close") return CloseRequest{};
+  if (method != "hello" && method != "reset" && method != "act") return UnknownRequest{method};
+  const Json* params = reader.object(json, "params", true);
+  if (params == nullptr) return UnknownRequest{method};
+  if (method == "hello") return read_hello(reader, *params);
+  if (method == "reset") return read_reset(reader, *params);
+  return read_act(reader, *params);
+}
+
+HelloReply read_info(FieldReader& reader, const Json& result) {
+  HelloReply hello;
+  hello.protocol = reader.integer(result, "protocol");
+  if (hello.protocol != kProtocolVersion) reader.fail("`protocol` is no version that was offered");
+  hello.info.name = reader.string(result, "name");
+  hello.info.version = reader.string(result, "version", false);
+  hello.info.determinism = reader.string(result, "determinism", false);
+  if (hello.info.determinism.empty()) hello.info.determinism = "none";
+  hello.info.seeds = reader.boolean(result, "seeds", false);
+  hello.info.timestep_s = reader.number(result, "time_step", false);
+  const Json* params = reader.member(result, "params", true);
+  const Json* actions = reader.member(result, "actions", true);
+  if (params == nullptr || actions == nullptr) return hello;
+  if (!params->is_array() || !actions->is_array()) {
+    reader.fail("`params` and `actions` are not lists");
+    return hello;
+  }
+  for (const Json& item : *params) {
+    if (!item.is_object()) {
+      reader.fail("an element of `params` is not an object");
+      return hello;
+    }
+    hello.info.parameters.push_back(Parameter{reader.string(item, "name"),
+                                              reader.string(item, "unit", false),
+                                              reader.boolean(item, "settable", false)});
+  }
+  for (const Json& item : *actions) {  // a name, or an object that has one
+    hello.info.actions.push_back(item.is_string()   ? item.get<std::string>()
+                                 : item.is_object() ? reader.string(item, "name")
+                                                    : std::string());
+    if (hello.info.actions.back().empty()) reader.fail("an element of `actions` has no name");
+  }
+  return hello;
+}
+
+OutcomeReply read_outcome(FieldReader& reader, const Json& result) {
+  OutcomeReply reply;
+  const std::string word = reader.string(result, "status");
+  reply.outcome.status = sim_status_from(word);
+  if (!reader.failed() && to_string(reply.outcome.status) != word) {
+    reader.fail("no status `" + word + "`");
+  }
+  reply.outcome.reason = reader.string(result, "reason", false);
+  reply.outcome.sim_time_s = reader.number(result, "sim_time", false);
+  // Sums of it are printed, so a time beyond all simulations is nonsense too.
+  const bool sane = reply.outcome.sim_time_s >= 0.0 && reply.outcome.sim_time_s <= 1e9;
+  if (!sane) reader.fail("`sim_time` is not within 0 to 1e9 s");
+  if (const Json* margins = reader.object(result, "margins", false)) {
+    reply.outcome.margins = reader.state(*margins);
+  }
+  return reply;
+}
+
+ReplyBody read_result(FieldReader& reader, const Json& result, const Request& asked) {
+  if (std::holds_alternative<HelloRequest>(asked.body)) return read_info(reader, result);
+  if (std::holds_alternative<CloseRequest>(asked.body)) return CloseReply{};
+  if (std::holds_alternative<ObserveRequest>(asked.body)) {
+    ObserveReply reply;
+    if (const Json* state = reader.object(result, "state", true)) {
+      reply.state = reader.state(*state);
+    }
+    return reply;
+  }
+  return read_outcome(reader, result);
+}
+
+}  // namespace
+
+std::variant<Request, Malformed> decode_request(std::string_view line) {
+  if (line.size() > kMaxLineBytes) return malformed("line_too_long", "line longer than 1 MiB");
+  const Json json = parse(line);
+  if (json.is_discarded()) return malformed("parse_error", "the line is not JSON");
+  if (!json.is_object()) return malformed("invalid_request", "the line is not an object");
+  const std::optional<std::int64_t> id = id_of(json);
+  if (!id) return malformed("invalid_request", "`id` is missing or not an integer");
+
+  FieldReader reader("invalid_params");
+  Request request{*id, read_request_body(reader, json)};
+  if (!reader.failed()) return request;
+  return malformed(reader.error().code, reader.error().message, id);
+}
+
+std::variant<ReplyBody, Malformed> decode_reply(std::string_view line, const Request& asked) {
+  if (line.size() > kMaxLineBytes) return malformed("line_too_long", "line longer than 1 MiB");
+  const Json json = parse(line);
+  if (json.is_discarded()) return malformed("parse_error", "the line is not JSON");
+  if (!json.is_object()) return malformed("invalid_reply", "the line is not an object");
+
+  FieldReader reader("invalid_reply");
+  const std::optional<std::int64_t> id = id_of(json);
+  const Json* error = reader.object(json, "error", false);
+  if (id != asked.id) {
+    const std::string what =
+        error != nullptr ? " (" + reader.string(*error, "message", false) + ")" : std::string();
+    return malformed("invalid_reply",
+                     "the reply to request " + std::to_string(asked.id) + " carries " +
+                         (id ? "id " + std::to_string(*id) : std::string("no id")) + what,
+                     id);
+  }
+  if (error != nullptr) {
+    ErrorReply reply{reader.string(*error, "code"), reader.string(*error, "message", false)};
+    if (!reader.failed()) return ReplyBody(std::move(reply));
+  }
+  const Json* result = reader.object(json, "result", true);
+  if (result != nullptr) {
+    ReplyBody reply = read_result(reader, *result, asked);
+    if (!reader.failed()) return reply;
+  }
+  return malformed(reader.error().code, reader.error().message, id);
+}
+
+std::variant<State, Malformed> decode_state(std::string_view text) {
+  const Json json = parse(text);
+  if (json.is_discarded()) return malformed("parse_error", "the text is not JSON");
+  if (!json.is_object()) return malformed("parse_error", "the text is not an object");
+  FieldReader reader("parse_error");
+  State state = reader.state(json);
+  if (reader.failed()) return reader.error();
+  return state;
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,119 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "harness/simulator/protocol.h"
+
+namespace parallax::harness {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json value_to_json(const Value& value) {
+  return std::visit([](const auto& plain) { return Json(plain); }, value);
+}
+
+Json state_to_json(const State& state) {
+  Json object = Json::object();
+  for (const auto& [name, value] : state) object[name] = value_to_json(value);
+  return object;
+}
+
+/// One line. A name that is not UTF-8 becomes one that is, rather than an exception.
+std::string line_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Json error_to_json(const ErrorReply& error) {
+  return Json{{"code", error.code}, {"message", error.message}};
+}
+
+Json info_to_json(std::int64_t protocol, const SimulatorInfo& info) {
+  Json parameters = Json::array();
+  for (const Parameter& p : info.parameters) {
+    parameters.push_back(Json{{"name", p.name}, {"unit", p.unit}, {"settable", p.settable}});
+  }
+  Json actions = Json::array();
+  for (const std::string& name : info.actions) actions.push_back(Json{{"name", name}});
+  return Json{{"protocol", protocol},
+              {"name", info.name},
+              {"version", info.version},
+              {"determinism", info.determinism},
+              {"seeds", info.seeds},
+              {"time_step", info.timestep_s},
+              {"params", std::move(parameters)},
+              {"actions", std::move(actions)}};
+}
+
+Json outcome_to_json(const Outcome& outcome) {
+  Json json{{"status", to_string(outcome.status)}};
+  if (!outcome.reason.empty()) json["reason"] = outcome.reason;
+  json["sim_time"] = outcome.sim_time_s;
+  if (!outcome.margins.empty()) json["margins"] = state_to_json(outcome.margins);
+  return json;
+}
+
+struct RequestEncoder {
+  Json& json;
+  void operator()(const HelloRequest& hello) const {
+    json["method"] = "hello";
+    json["params"] = Json{{"protocol", Json(hello.protocols)}};
+  }
+  void operator()(const ResetRequest& reset) const {
+    json["method"] = "reset";
+    json["params"] = Json{{"state", state_to_json(reset.state)}, {"seed", reset.seed}};
+  }
+  void operator()(const ActRequest& act) const {
+    json["method"] = "act";
+    json["params"] = Json{{"action", act.action},
+                          {"args", state_to_json(act.arguments)},
+                          {"sim_time_limit", act.sim_time_limit_s}};
+  }
+  void operator()(const ObserveRequest&) const { json["method"] = "observe"; }
+  void operator()(const CloseRequest&) const { json["method"] = "close"; }
+  void operator()(const UnknownRequest& unknown) const { json["method"] = unknown.method; }
+};
+
+struct ReplyEncoder {
+  Json& json;
+  void operator()(const ErrorReply& error) const { json["error"] = error_to_json(error); }
+  void operator()(const HelloReply& hello) const {
+    json["result"] = info_to_json(hello.protocol, hello.info);
+  }
+  void operator()(const OutcomeReply& reply) const {
+    json["result"] = outcome_to_json(reply.outcome);
+  }
+  void operator()(const ObserveReply& reply) const {
+    json["result"] = Json{{"state", state_to_json(reply.state)}};
+  }
+  void operator()(const CloseReply&) const { json["result"] = Json{{"status", "ok"}}; }
+};
+
+}  // namespace
+
+std::string encode_request(const Request& request) {
+  Json json{{"id", request.id}};
+  std::visit(RequestEncoder{json}, request.body);
+  return line_of(json);
+}
+
+std::string encode_reply(std::int64_t id, const ReplyBody& reply) {
+  Json json{{"id", id}};
+  std::visit(ReplyEncoder{json}, reply);
+  return line_of(json);
+}
+
+std::string encode_error_without_id(const ErrorReply& error) {
+  return line_of(Json{{"id", nullptr}, {"error", error_to_json(error)}});
+}
+
+std::string first_not_finite(const State& state) {
+  for (const auto& [name, value] : state) {
+    const double* number = std::get_if<double>(&value);
+    if (number != nullptr && !std::isfinite(*number)) return name;
+  }
+  return {};
+}
+
+std::string encode_state(const State& state) { return line_of(state_to_json(state)); }
+
+}  // namespace parallax::harness
