@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/artifact/compiled_model.h"
 #include "compiler/base/source_file.h"
 #include "compiler/compare/fact.h"
 #include "compiler/syntax/ast.h"
@@ -20,5 +21,9 @@ std::vector<Fact> model_facts(const ModelAst& model, const base::SourceFiles& fi
 
 /// The facts one a line, declarations first, each group sorted by bytes, no line twice.
 std::string canonical_text(const std::vector<Fact>& facts);
+
+/// What a compiled model says, without its numbering: options, horizon, ground fluents and events,
+/// and the axioms with the number of clauses that came of each. Places are those of the texts.
+std::vector<Fact> artifact_facts(const CompiledModel& model);
 
 }  // namespace parallax::compiler

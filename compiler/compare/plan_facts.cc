@@ -10,7 +10,7 @@
 namespace parallax::compiler {
 namespace {
 
-constexpr std::size_t kMaxShown = 200;        // bytes of a form that are shown
+constexpr std::size_t kMaxFormShown = 200;    // bytes of a form that are shown
 constexpr std::size_t kWidth = 100;           // columns of the canonical layout
 constexpr std::size_t kMaxAligned = 1000000;  // pairs of children that are compared
 constexpr const char* kOrderKey = "order of the forms";
@@ -20,7 +20,7 @@ FactPlace place_of(const base::SourceRange& range, const base::SourceFiles& file
 }
 
 std::string shortened(std::string text) {
-  return text.size() <= kMaxShown ? text : text.substr(0, kMaxShown) + "...";
+  return text.size() <= kMaxFormShown ? text : text.substr(0, kMaxFormShown) + "...";
 }
 
 /// With single blanks, as its author wrote it otherwise.
