@@ -8,8 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/lint/rules.h"
+
 namespace parallax::compiler {
 namespace {
+
+using base::DiagnosticCode;
 
 /// One conjunct without its negation signs.
 struct Literal {
@@ -31,23 +36,6 @@ CompareOp opposite(CompareOp op) {
       return CompareOp::kLessEqual;
     case CompareOp::kGreaterEqual:
       return CompareOp::kLess;
-  }
-  return op;
-}
-
-CompareOp mirrored(CompareOp op) {
-  switch (op) {
-    case CompareOp::kEqual:
-    case CompareOp::kNotEqual:
-      return op;
-    case CompareOp::kLess:
-      return CompareOp::kGreater;
-    case CompareOp::kLessEqual:
-      return CompareOp::kGreaterEqual;
-    case CompareOp::kGreater:
-      return CompareOp::kLess;
-    case CompareOp::kGreaterEqual:
-      return CompareOp::kLessEqual;
   }
   return op;
 }
@@ -260,10 +248,34 @@ class Search {
   std::map<std::string, bool> atoms_;
 };
 
+/// True if it was reported.
+bool report_contradiction(const LintContext& context, TypedFormulaId condition) {
+  const auto reason = contradiction(context, condition);
+  if (!reason) return false;
+  context.sink().warning(DiagnosticCode::kConditionNeverHolds,
+                         context.model().formulas[condition].source, *reason);
+  return true;
+}
+
 }  // namespace
 
 std::optional<std::string> contradiction(const LintContext& context, TypedFormulaId condition) {
   return Search(context).run(condition);
+}
+
+void find_impossible_conditions(const LintContext& context) {
+  const auto& model = context.model();
+  for (const auto& effect : model.effects) report_contradiction(context, effect.condition);
+  for (const auto& path : model.trajectories) report_contradiction(context, path.condition);
+  for (const auto& axiom : model.axioms) {
+    if (context.built_in(axiom.source)) continue;
+    bool reported = false;
+    for_each_formula(model, axiom.formula, [&](TypedFormulaId id) {
+      const auto& formula = model.formulas[id];
+      if (reported || formula.kind != FormulaKind::kImplies) return;
+      reported = report_contradiction(context, formula.children[0]);
+    });
+  }
 }
 
 }  // namespace parallax::compiler

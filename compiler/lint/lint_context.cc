@@ -42,6 +42,23 @@ std::vector<TypedFormulaId> positive_atoms(const TypedModel& model, TypedFormula
   return atoms;
 }
 
+CompareOp mirrored(CompareOp op) {
+  switch (op) {
+    case CompareOp::kEqual:
+    case CompareOp::kNotEqual:
+      return op;
+    case CompareOp::kLess:
+      return CompareOp::kGreater;
+    case CompareOp::kLessEqual:
+      return CompareOp::kGreaterEqual;
+    case CompareOp::kGreater:
+      return CompareOp::kLess;
+    case CompareOp::kGreaterEqual:
+      return CompareOp::kLessEqual;
+  }
+  return op;
+}
+
 LintContext::LintContext(const ModelAst& ast, const TypedModel& model, base::DiagnosticSink& sink)
     : ast_(ast),
       model_(model),

@@ -69,23 +69,6 @@ std::optional<std::string> never(const Hull& hull, CompareOp op, std::int64_t nu
   return std::nullopt;
 }
 
-CompareOp mirrored(CompareOp op) {
-  switch (op) {
-    case CompareOp::kEqual:
-    case CompareOp::kNotEqual:
-      return op;
-    case CompareOp::kLess:
-      return CompareOp::kGreater;
-    case CompareOp::kLessEqual:
-      return CompareOp::kGreaterEqual;
-    case CompareOp::kGreater:
-      return CompareOp::kLess;
-    case CompareOp::kGreaterEqual:
-      return CompareOp::kLessEqual;
-  }
-  return op;
-}
-
 /// Reports a comparison of a variable with a number. True if it did.
 bool check_comparison(const LintContext& context, SortDomains& domains,
                       const TypedFormula& formula) {

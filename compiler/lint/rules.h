@@ -18,7 +18,7 @@ void find_unused_labels(const LintContext& context);
 void find_completions_without_axiom(const LintContext& context);
 void find_predicates_not_completed(const LintContext& context);
 
-// condition_rules.cc
+// contradiction.cc
 void find_impossible_conditions(const LintContext& context);
 
 // range_rules.cc
@@ -26,10 +26,8 @@ void find_single_value_ranges(const LintContext& context);
 void find_short_offset_ranges(const LintContext& context);
 void find_comparisons_outside_ranges(const LintContext& context);
 
-// variable_rule.cc
+// statement_rules.cc
 void find_unused_variables(const LintContext& context);
-
-// exclusion_rule.cc
 void find_shared_exclusions(const LintContext& context);
 
 // effect_rules.cc
