@@ -1,15 +1,258 @@
 #include "compiler/syntax/parser.h"
 
+#include <charconv>
+#include <string>
+
+#include "compiler/base/diagnostic.h"
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/syntax/ast.h"
 #include "compiler/syntax/formula_parser.h"
 #include "compiler/syntax/lexer.h"
-#include "compiler/syntax/statement_parser.h"
 
 namespace parallax::compiler {
+namespace {
 
 using base::DiagnosticCode;
 
-namespace {
+/// Parses the statement on `line` (one line without its comment) into `ast`. `text` is the text of
+/// the file. What is malformed is reported (E1010, E1011) and left out.
+class StatementParser {
+ public:
+  StatementParser(Ast& ast, std::string_view text, Word line, base::DiagnosticSink& sink)
+      : ast_(ast), text_(text.substr(0, line.end)), sink_(sink), position_(line.begin) {
+    trim(line.begin);
+    statement_.source = {line.begin, end()};
+  }
+
+  void parse() {
+    keyword_ = name();
+    const auto word = ast_text(keyword_);
+    if (word == "reified") {
+      statement_.kind = StatementKind::kReifiedSort;
+      const auto second = name();
+      if (ast_text(second) != "sort") return malformed("`sort`", second);
+      return sorts();
+    }
+    if (word == "sort") return sorts();
+    if (word == "option") return option();
+    if (word == "range") return range();
+    if (word == "completion") return completion();
+    if (word == "load") return load();
+    if (word == "xor") return names(StatementKind::kXor);
+    if (word == "mutex") return names(StatementKind::kMutex);
+    if (word == "noninertial") return names(StatementKind::kNoninertial);
+    if (word == "manualrelease") return names(StatementKind::kManualRelease);
+    if (word == "ignore") return names(StatementKind::kIgnore);
+    declaration();
+  }
+
+ private:
+  // --- characters ---
+
+  std::uint32_t end() const { return static_cast<std::uint32_t>(text_.size()); }
+  bool at_end() const { return position_ >= text_.size(); }
+  std::string_view ast_text(Word word) const {
+    return text_.substr(word.begin, word.end - word.begin);
+  }
+
+  void trim(std::uint32_t begin) {
+    while (text_.size() > begin && is_blank(text_.back())) text_.remove_suffix(1);
+  }
+  void skip_blanks() {
+    while (!at_end() && is_blank(text_[position_])) ++position_;
+  }
+  /// The next run of letters, digits and underscores; empty if there is none.
+  Word name() {
+    skip_blanks();
+    const auto begin = position_;
+    while (!at_end() && is_name_part(text_[position_])) ++position_;
+    return {begin, position_};
+  }
+  /// The next run of anything but blanks.
+  Word chunk() {
+    skip_blanks();
+    const auto begin = position_;
+    while (!at_end() && !is_blank(text_[position_])) ++position_;
+    return {begin, position_};
+  }
+  bool accept(char c) {
+    skip_blanks();
+    if (at_end() || text_[position_] != c) return false;
+    ++position_;
+    return true;
+  }
+
+  // --- errors ---
+
+  void malformed(std::string_view expected) {
+    skip_blanks();
+    auto found = chunk();
+    if (found.empty()) found = {position_, position_};
+    malformed(expected, found);
+  }
+  void malformed(std::string_view expected, Word found) {
+    const auto what =
+        found.empty() ? std::string("the end of the line") : "`" + shortened(ast_text(found)) + "`";
+    const auto place = found.empty() ? keyword_ : found;
+    sink_.error(DiagnosticCode::kMalformedStatement, ast_.source(place),
+                shortened(ast_text(keyword_)), expected, what);
+  }
+
+  /// Nothing but a period, which is reported, may follow. True if that is so.
+  bool at_line_end() {
+    skip_blanks();
+    if (at_end()) return true;
+    if (text_[position_] == '.' && position_ + 1 == end()) {
+      sink_.error(DiagnosticCode::kStatementPeriod, ast_.source(Word{position_, position_ + 1}))
+          .fix("remove the period");
+      return true;
+    }
+    return false;
+  }
+  void finish(std::string_view expected) {
+    if (!at_line_end()) return malformed(expected);
+    ast_.add(statement_);
+  }
+
+  // --- statements ---
+
+  void option() {
+    statement_.kind = StatementKind::kOption;
+    statement_.name = chunk();
+    if (statement_.name.empty()) return malformed("the name of an option");
+    skip_blanks();
+    statement_.value = {position_, end()};
+    position_ = end();
+    if (statement_.value.empty()) return malformed("a value");
+    ast_.add(statement_);
+  }
+
+  void load() {
+    statement_.kind = StatementKind::kLoad;
+    skip_blanks();
+    statement_.value = {position_, end()};
+    position_ = end();
+    if (statement_.value.empty()) return malformed("a path");
+    ast_.add(statement_);
+  }
+
+  bool bound(std::int64_t& value) {
+    skip_blanks();
+    const auto begin = position_;
+    if (!at_end() && text_[position_] == '-') ++position_;
+    const auto digits = name();
+    const Word all{begin, digits.end};
+    const auto text = ast_text(all);
+    const auto [last, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error == std::errc::result_out_of_range) {
+      sink_.error(DiagnosticCode::kNumberTooLarge, ast_.source(all), shortened(text));
+      return false;
+    }
+    if (error != std::errc() || last != text.data() + text.size() || digits.empty()) {
+      if (all.empty()) {
+        malformed("an integer");
+      } else {
+        malformed("an integer", all);
+      }
+      return false;
+    }
+    return true;
+  }
+
+  void range() {
+    statement_.kind = StatementKind::kRange;
+    statement_.sort = name();
+    if (statement_.sort.empty()) return malformed("a sort");
+    Bounds bounds;
+    if (!bound(bounds.lower) || !bound(bounds.upper)) return;
+    statement_.first_item = ast_.add_bounds(bounds);
+    finish("the end of the line");
+  }
+
+  void add_item(const Item& item) {
+    const auto index = ast_.add_item(item);
+    if (statement_.item_count == 0) statement_.first_item = index;
+    ++statement_.item_count;
+  }
+
+  void sorts() {
+    if (statement_.kind != StatementKind::kReifiedSort) statement_.kind = StatementKind::kSort;
+    do {
+      Item item;
+      item.name = name();
+      if (item.name.empty()) return malformed("the name of a sort");
+      if (accept(':')) {
+        item.parent = name();
+        if (item.parent.empty()) return malformed("the sort above");
+      }
+      add_item(item);
+    } while (accept(','));
+    finish("`,`, `:` or the end of the line");
+  }
+
+  void names(StatementKind kind) {
+    statement_.kind = kind;
+    do {
+      const auto word = name();
+      if (word.empty()) return malformed("a name");
+      add_item({word, {}});
+    } while (accept(','));
+    finish("`,` or the end of the line");
+  }
+
+  void completion() {
+    statement_.kind = StatementKind::kCompletion;
+    statement_.name = name();
+    if (statement_.name.empty()) return malformed("a label or a predicate");
+    const auto second = name();
+    if (!second.empty()) {
+      statement_.label = statement_.name;
+      statement_.name = second;
+    }
+    finish("the end of the line");
+  }
+
+  void declaration() {
+    statement_.sort = keyword_;
+    statement_.additional = accept('!');
+    const auto first = name();
+    if (first.empty()) return malformed("a name");
+    if (accept('(')) return constructor(first);
+    statement_.kind = StatementKind::kConstants;
+    add_item({first, {}});
+    while (accept(',')) {
+      const auto word = name();
+      if (word.empty()) return malformed("a name");
+      add_item({word, {}});
+    }
+    finish("`,`, `(` or the end of the line");
+  }
+
+  void constructor(Word first) {
+    statement_.kind = StatementKind::kConstructor;
+    statement_.name = first;
+    if (!accept(')')) {
+      do {
+        const auto sort = name();
+        if (sort.empty()) return malformed("a sort");
+        add_item({sort, {}});
+      } while (accept(','));
+      if (!accept(')')) return malformed("`,` or `)`");
+    }
+    if (accept(':')) {
+      statement_.value = name();
+      if (statement_.value.empty()) return malformed("the sort of the result");
+    }
+    finish("the end of the line");
+  }
+
+  Ast& ast_;
+  std::string_view text_;  // of the file, cut at the end of the line
+  base::DiagnosticSink& sink_;
+  std::uint32_t position_;
+  Word keyword_;
+  Statement statement_;
+};
 
 base::SourceRange whole(base::FileId file, const base::SourceFiles& files) {
   return {file, 0, static_cast<std::uint32_t>(files[file].text().size())};
@@ -45,7 +288,7 @@ Ast parse_file(base::FileId file, const base::SourceFiles& files, base::Diagnost
   FormulaParser parser(ast, lexer, sink);
   while (lexer.peek().kind != TokenKind::kEnd) {
     if (lexer.peek().kind == TokenKind::kStatementLine) {
-      parse_statement(ast, text, {lexer.peek().begin, lexer.statement_end()}, sink);
+      StatementParser(ast, text, {lexer.peek().begin, lexer.statement_end()}, sink).parse();
       lexer.skip_statement();
     } else {
       parse_labelled(ast, lexer, parser);
