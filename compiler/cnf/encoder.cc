@@ -5,7 +5,7 @@
 
 #include "compiler/cnf/clause_builder.h"
 #include "compiler/cnf/slot_table.h"
-#include "compiler/formula/substitute.h"
+#include "compiler/formula/formula.h"
 
 namespace parallax::compiler {
 namespace {

@@ -1,6 +1,8 @@
 #include "compiler/formula/formula.h"
 
 #include <algorithm>
+#include <unordered_map>
+#include <vector>
 
 namespace parallax::compiler {
 namespace {
@@ -15,6 +17,11 @@ std::size_t hash_children(std::span<const FormulaId> children) {
     h ^= h >> 29U;
   }
   return static_cast<std::size_t>(h);
+}
+
+Truth signed_value(Truth value, bool negated) {
+  if (!negated || value == Truth::kUnknown) return value;
+  return value == Truth::kTrue ? Truth::kFalse : Truth::kTrue;
 }
 
 }  // namespace
@@ -106,6 +113,119 @@ FormulaId FormulaStore::intern_and(const std::vector<FormulaId>& wanted) {
     ++and_count_;
   }
   return FormulaId(table_[slot] << 1U);
+}
+
+std::vector<std::int32_t> atoms_of(const FormulaStore& store, std::span<const FormulaId> formulas) {
+  std::vector<std::int32_t> found;
+  std::vector<bool> seen(store.node_count(), false);
+  std::vector<FormulaId> todo(formulas.begin(), formulas.end());
+  while (!todo.empty()) {
+    const auto id = todo.back();
+    todo.pop_back();
+    if (seen[id.node()]) continue;
+    seen[id.node()] = true;
+    if (store.kind(id) == FormulaNodeKind::kAtom) {
+      found.push_back(store.variable(id));
+    } else if (store.kind(id) == FormulaNodeKind::kAnd) {
+      const auto children = store.children(id);
+      todo.insert(todo.end(), children.begin(), children.end());
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<std::int32_t> positive_atoms(const FormulaStore& store, FormulaId root) {
+  std::vector<std::int32_t> found;
+  std::unordered_map<std::uint32_t, bool> seen;  // by bits
+  std::vector<FormulaId> todo = {root};
+  while (!todo.empty()) {
+    const auto id = todo.back();
+    todo.pop_back();
+    if (!seen.emplace(id.bits(), true).second) continue;
+    if (store.kind(id) == FormulaNodeKind::kAtom) {
+      if (!id.negated()) found.push_back(store.variable(id));
+    } else if (store.kind(id) == FormulaNodeKind::kAnd) {
+      for (const auto child : store.children(id)) {
+        todo.push_back(id.negated() ? ~child : child);
+      }
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+Truth evaluate(const FormulaStore& store, FormulaId root,
+               const std::function<Truth(std::int32_t)>& atom) {
+  std::unordered_map<std::uint32_t, Truth> done;  // by node
+  std::vector<std::uint32_t> todo = {root.node()};
+  while (!todo.empty()) {
+    const auto id = store.at(todo.back());
+    if (done.contains(id.node())) {
+      todo.pop_back();
+      continue;
+    }
+    if (store.kind(id) == FormulaNodeKind::kTrue) done.emplace(id.node(), Truth::kTrue);
+    if (store.kind(id) == FormulaNodeKind::kAtom) done.emplace(id.node(), atom(store.variable(id)));
+    if (store.kind(id) != FormulaNodeKind::kAnd) continue;
+    bool ready = true;
+    auto value = Truth::kTrue;
+    for (const auto child : store.children(id)) {
+      const auto found = done.find(child.node());
+      if (found == done.end()) {
+        ready = false;
+        todo.push_back(child.node());
+        continue;
+      }
+      const auto part = signed_value(found->second, child.negated());
+      if (part == Truth::kFalse) value = Truth::kFalse;
+      if (part == Truth::kUnknown && value == Truth::kTrue) value = Truth::kUnknown;
+    }
+    if (ready) done.emplace(id.node(), value);
+  }
+  return signed_value(done.at(root.node()), root.negated());
+}
+
+FormulaId rewrite_atoms(FormulaStore& store, FormulaId root,
+                        const std::function<FormulaId(std::int32_t)>& atom, RewriteMemo& memo) {
+  std::vector<std::uint32_t> todo = {root.node()};
+  while (!todo.empty()) {
+    const auto node = todo.back();
+    const auto id = store.at(node);
+    if (memo.contains(node)) {
+      todo.pop_back();
+      continue;
+    }
+    if (store.kind(id) != FormulaNodeKind::kAnd) {
+      const bool is_atom = store.kind(id) == FormulaNodeKind::kAtom;
+      memo.emplace(node, is_atom ? atom(store.variable(id)) : id);
+      todo.pop_back();
+      continue;
+    }
+    bool ready = true;
+    for (const auto child : store.children(id)) {
+      if (memo.contains(child.node())) continue;
+      todo.push_back(child.node());
+      ready = false;
+    }
+    if (!ready) continue;
+    std::vector<FormulaId> parts;
+    for (const auto child : store.children(id)) {
+      const auto part = memo.at(child.node());
+      parts.push_back(child.negated() ? ~part : part);
+    }
+    memo.emplace(node, store.conjunction(std::move(parts)));
+    todo.pop_back();
+  }
+  const auto result = memo.at(root.node());
+  return root.negated() ? ~result : result;
+}
+
+FormulaId substitute(FormulaStore& store, FormulaId root, std::int32_t variable, bool value) {
+  RewriteMemo memo;
+  return rewrite_atoms(
+      store, root,
+      [&](std::int32_t v) { return v == variable ? store.constant(value) : store.atom(v); }, memo);
 }
 
 }  // namespace parallax::compiler

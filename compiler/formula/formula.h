@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "compiler/artifact/literal.h"
@@ -70,5 +71,29 @@ class FormulaStore {
   std::vector<std::uint32_t> table_;       // open addressing over And nodes; 0 means empty
   std::size_t and_count_ = 0;
 };
+
+/// The variables that occur in any of the formulas, ascending. Linear in their common graph.
+std::vector<std::int32_t> atoms_of(const FormulaStore& store, std::span<const FormulaId> formulas);
+
+/// The variables that occur under an even number of negations, ascending.
+std::vector<std::int32_t> positive_atoms(const FormulaStore& store, FormulaId formula);
+
+enum class Truth : std::uint8_t { kFalse, kTrue, kUnknown };
+
+/// The formula's value where some atoms are known (Kleene's strong three-valued logic). Linear in
+/// the formula's graph.
+Truth evaluate(const FormulaStore& store, FormulaId formula,
+               const std::function<Truth(std::int32_t)>& atom);
+
+/// What became of the nodes already rewritten, by node, sign left out.
+using RewriteMemo = std::unordered_map<std::uint32_t, FormulaId>;
+
+/// `formula` with every atom replaced by what `atom` says of its variable. Linear in the formula's
+/// graph; calls with the same memo share the work.
+FormulaId rewrite_atoms(FormulaStore& store, FormulaId formula,
+                        const std::function<FormulaId(std::int32_t)>& atom, RewriteMemo& memo);
+
+/// `formula` with the atom `variable` replaced by a constant. Linear in the formula's graph.
+FormulaId substitute(FormulaStore& store, FormulaId formula, std::int32_t variable, bool value);
 
 }  // namespace parallax::compiler

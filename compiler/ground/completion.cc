@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "compiler/formula/atoms.h"
-#include "compiler/formula/substitute.h"
+#include "compiler/formula/formula.h"
 
 namespace parallax::compiler {
 namespace {

@@ -1,8 +1,196 @@
 #include "compiler/ground/effects.h"
 
+#include <map>
+#include <tuple>
+#include <vector>
+
 #include "compiler/ground/time_profile.h"
 
 namespace parallax::compiler {
+namespace {
+
+/// Writes the axioms of each fluent once for all timepoints, or timepoint by timepoint if some
+/// event changes it at single timepoints only.
+class InertiaWriter {
+ public:
+  InertiaWriter(GroundModel& model, const EffectRows& rows, bool templates)
+      : model_(model), rows_(rows), templates_(templates) {
+    const auto& symbols = model.typed().symbols;
+    for (std::size_t i = 0; i < symbols.size(); ++i) {
+      const auto& symbol = symbols[symbols.id_at(i)];
+      origins_.push_back(symbol.kind == SymbolKind::kFluent
+                             ? model.add_origin(symbol.declared, "frame axiom")
+                             : 0);
+    }
+  }
+
+  void write() {
+    if (model_.horizon() > 0) {
+      for (const auto& row : rows_.always()) assert_effect(row, 0, true);
+    }
+    for (const auto& [t, rows] : rows_.single()) {
+      for (const auto& row : rows) assert_effect(row, t, false);
+    }
+    for (std::uint32_t f = 0; f < model_.fluents().size(); ++f) {
+      if (!model_.may_hold(f) && !model_.can_be_released(f)) continue;
+      assert_start(f);
+      if (model_.fluent_symbol(f).noninertial || model_.horizon() == 0) continue;
+      if (templates_ && rows_.is_uniform(f)) {
+        assert_frame(f, 0, true);
+        continue;
+      }
+      for (Timepoint t = 0; t < model_.horizon(); ++t) assert_frame(f, t, false);
+    }
+  }
+
+ private:
+  std::uint32_t origin_of(std::uint32_t fluent) const {
+    return origins_[model_.terms()[model_.fluents()[fluent]].symbol.index()];
+  }
+  void require(FormulaId formula, std::uint32_t origin, bool always) {
+    if (!always) return model_.require(formula, origin);
+    if (templates_) return model_.require_always(formula, origin, 1);
+    for (Timepoint t = 0; t < model_.horizon(); ++t) {
+      model_.require(model_.shifted(formula, t), origin);
+    }
+  }
+
+  /// Inertia holds from the start unless the model says otherwise; a noninertial fluent is released
+  /// at every timepoint.
+  void assert_start(std::uint32_t fluent) {
+    const auto& symbol = model_.fluent_symbol(fluent);
+    const auto origin = origin_of(fluent);
+    const auto released = model_.released(fluent, 0);
+    if (symbol.noninertial && templates_) {
+      model_.require_always(released, origin, 0);
+    } else if (symbol.noninertial) {
+      for (Timepoint t = 0; t <= model_.horizon(); ++t) {
+        model_.require(model_.released(fluent, t), origin);
+      }
+    } else if (!symbol.manual_release) {
+      model_.require(~released, origin);
+    }
+  }
+
+  /// DEC9 to DEC12.
+  void assert_effect(const EffectRow& row, Timepoint t, bool always) {
+    auto& formulas = model_.formulas();
+    const auto trigger = formulas.conjunction(model_.happens(row.event, t), row.condition);
+    const auto released = model_.released(row.fluent, t + 1);
+    if (row.kind == EffectKind::kReleases) {
+      require(formulas.implication(trigger, released), row.origin, always);
+      return;
+    }
+    const auto after = model_.holds(row.fluent, t + 1);
+    const bool up = row.kind == EffectKind::kInitiates;
+    require(formulas.implication(trigger, up ? after : ~after), row.origin, always);
+    require(formulas.implication(trigger, ~released), row.origin, always);
+  }
+
+  /// DEC5 to DEC8: nothing changes unless a row says so.
+  void assert_frame(std::uint32_t f, Timepoint t, bool always) {
+    auto& formulas = model_.formulas();
+    const auto origin = origin_of(f);
+    const auto initiated = rows_.changed(EffectKind::kInitiates, f, t, model_);
+    const auto terminated = rows_.changed(EffectKind::kTerminates, f, t, model_);
+    const auto releases = rows_.changed(EffectKind::kReleases, f, t, model_);
+    const auto before = model_.holds(f, t);
+    const auto after = model_.holds(f, t + 1);
+    const auto released_before = model_.released(f, t);
+    const auto released_after = model_.released(f, t + 1);
+    require(formulas.disjunction({~before, after, released_after, terminated}), origin, always);
+    require(formulas.disjunction({before, ~after, released_after, initiated}), origin, always);
+    require(formulas.disjunction({~released_before, released_after, initiated, terminated}), origin,
+            always);
+    require(formulas.disjunction({released_before, ~released_after, releases}), origin, always);
+  }
+
+  GroundModel& model_;
+  const EffectRows& rows_;
+  bool templates_;
+  std::vector<std::uint32_t> origins_;  // by symbol
+};
+
+class TrajectoryWriter {
+ public:
+  TrajectoryWriter(GroundModel& model, const EffectRows& rows, FormulaGrounder& grounder)
+      : model_(model), rows_(rows), grounder_(grounder) {}
+
+  void write(const TrajectoryAxiom& axiom) {
+    origin_ = model_.add_origin(axiom.source, "trajectory axiom");
+    grounder_.start(axiom.source);
+    chains_.clear();
+    const auto found =
+        grounder_.instances(axiom.variables, conjuncts_of(model_.typed(), axiom.condition, false));
+    const auto width = axiom.variables.size();
+    const auto count = width == 0 ? 1 : found.size() / width;
+    for (std::size_t i = 0; i < count && grounder_.spend(1); ++i) {
+      for (std::size_t k = 0; k < width; ++k) {
+        grounder_.bind(axiom.variables[k], found[i * width + k]);
+      }
+      instance(axiom);
+    }
+    for (const auto variable : axiom.variables) grounder_.unbind(variable);
+  }
+
+ private:
+  void instance(const TrajectoryAxiom& axiom) {
+    const auto& terms = model_.terms();
+    const auto fluent = grounder_.term(axiom.fluent);
+    const auto target = grounder_.term(axiom.target);
+    const auto time = grounder_.term(axiom.time);
+    const auto offset = grounder_.term(axiom.offset);
+    if (!fluent || !target || !time || !offset) return;
+    const auto f1 = model_.fluent_number(*fluent);
+    const auto f2 = model_.fluent_number(*target);
+    if (!f1 || !f2) return;
+    const auto t = terms[*time].integer;
+    const auto d = terms[*offset].integer;
+    if (t < 0 || d <= 0 || d > model_.horizon() || t + d > model_.horizon()) return;
+    const auto condition = grounder_.ground(axiom.condition);
+    if (!condition) return;
+    const auto end = static_cast<Timepoint>(t + d);
+    auto& formulas = model_.formulas();
+    const auto premise =
+        formulas.conjunction(*condition, running(axiom.kind, *f1, static_cast<Timepoint>(t), end));
+    model_.require(formulas.implication(premise, model_.holds(*f2, end)), origin_);
+  }
+
+  /// Some event at `begin` starts the fluent and none strictly between `begin` and `end` stops it
+  /// (DEC1 to DEC4): an atom for every pair of timepoints, so that no clause grows with their
+  /// distance. It is implied by its meaning, which is all that a premise needs.
+  FormulaId running(TrajectoryKind kind, std::uint32_t fluent, Timepoint begin, Timepoint end) {
+    const bool forward = kind == TrajectoryKind::kTrajectory;
+    const auto starts = forward ? EffectKind::kInitiates : EffectKind::kTerminates;
+    const auto stops = forward ? EffectKind::kTerminates : EffectKind::kInitiates;
+    auto& chain = chains_[{kind, fluent, begin}];
+    auto& formulas = model_.formulas();
+    if (chain.empty()) chain.push_back(rows_.changed(starts, fluent, begin, model_));
+    // chain[k]: running until begin + 1 + k.
+    while (static_cast<Timepoint>(chain.size()) < end - begin) {
+      const auto last = begin + static_cast<Timepoint>(chain.size());
+      if (chain.back() == formulas.falsity()) return formulas.falsity();
+      const auto goes_on =
+          formulas.conjunction(chain.back(), ~rows_.changed(stops, fluent, last, model_));
+      if (formulas.kind(goes_on) == FormulaNodeKind::kAnd && !goes_on.negated()) {
+        const auto next = model_.auxiliary_atom(last + 1);
+        model_.require(formulas.implication(goes_on, next), origin_);
+        chain.push_back(next);
+      } else {
+        chain.push_back(goes_on);
+      }
+    }
+    return chain[static_cast<std::size_t>(end - begin) - 1];
+  }
+
+  GroundModel& model_;
+  const EffectRows& rows_;
+  FormulaGrounder& grounder_;
+  std::uint32_t origin_ = 0;
+  std::map<std::tuple<TrajectoryKind, std::uint32_t, Timepoint>, std::vector<FormulaId>> chains_;
+};
+
+}  // namespace
 
 EffectGrounder::EffectGrounder(GroundModel& model, FormulaGrounder& grounder, EffectRows& rows)
     : model_(model), grounder_(grounder), rows_(rows) {
@@ -95,6 +283,18 @@ void EffectGrounder::instance(const EffectAxiom& effect, bool always) {
     rows_.add_always(row);
   } else {
     rows_.add(static_cast<Timepoint>(t), row);
+  }
+}
+
+void assert_inertia(GroundModel& model, const EffectRows& rows, bool templates) {
+  InertiaWriter(model, rows, templates).write();
+}
+
+void assert_trajectories(GroundModel& model, const EffectRows& rows, FormulaGrounder& grounder) {
+  TrajectoryWriter writer(model, rows, grounder);
+  for (const auto& axiom : model.typed().trajectories) {
+    writer.write(axiom);
+    if (grounder.failed()) return;
   }
 }
 

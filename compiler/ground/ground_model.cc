@@ -4,8 +4,7 @@
 #include <span>
 #include <utility>
 
-#include "compiler/formula/atoms.h"
-#include "compiler/formula/substitute.h"
+#include "compiler/formula/formula.h"
 
 namespace parallax::compiler {
 

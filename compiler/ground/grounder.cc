@@ -5,14 +5,14 @@
 
 #include "compiler/artifact/origin_kinds.h"
 #include "compiler/base/diagnostic_codes.h"
-#include "compiler/formula/atoms.h"
+#include "compiler/formula/formula.h"
 #include "compiler/ground/completion.h"
 #include "compiler/ground/effects.h"
 #include "compiler/ground/expansion_size.h"
 #include "compiler/ground/formula_grounder.h"
 #include "compiler/ground/invariants.h"
 #include "compiler/ground/narrative.h"
-#include "compiler/ground/reachability.h"
+#include "compiler/ground/possible_atoms.h"
 #include "compiler/ground/rigid.h"
 #include "compiler/ground/time_profile.h"
 

@@ -1,15 +1,123 @@
 #include "compiler/ground/invariants.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
+#include <optional>
+#include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
-#include "compiler/ground/reachability.h"
-#include "compiler/ground/step_facts.h"
+#include "compiler/formula/formula.h"
+#include "compiler/ground/effect_rows.h"
+#include "compiler/ground/ground_model.h"
+#include "compiler/ground/possible_atoms.h"
 
 namespace parallax::compiler {
 namespace {
+
+/// Some fluents at timepoint 0 with their values, by fluent.
+using StateFacts = std::map<std::uint32_t, bool>;
+
+/// What the constraints that hold at every timepoint say of a step: preconditions of events, and
+/// events that exclude one another. Only what stands there as a literal is found.
+class StepFacts {
+ public:
+  /// `model` outlives the object. Linear in the constraints' formulas.
+  explicit StepFacts(const GroundModel& model);
+
+  /// Fluents whose values are known when the row's event happens and its condition holds.
+  StateFacts of(const EffectRow& row) const;
+  bool exclusive(std::uint32_t event, std::uint32_t other) const;
+  /// Does the formula hold in every state with these facts?
+  bool implied(FormulaId formula, const StateFacts& facts) const;
+
+ private:
+  void read(FormulaId formula);
+  void read_clause(std::span<const FormulaId> negated_parts);
+  void add_literals(FormulaId formula, StateFacts& facts) const;
+
+  const GroundModel& model_;
+  std::map<std::uint32_t, std::vector<FormulaId>> preconditions_;  // by event
+  std::set<std::pair<std::uint32_t, std::uint32_t>> exclusive_;    // smaller event first
+};
+
+/// The event, if the formula is Happens(event, 0).
+std::optional<std::uint32_t> event_of(FormulaId formula, const GroundModel& model) {
+  const auto& formulas = model.formulas();
+  if (formula.negated() || formulas.kind(formula) != FormulaNodeKind::kAtom) return std::nullopt;
+  const auto& atom = model.atom(formulas.variable(formula));
+  if (atom.kind != AtomKind::kHappens || atom.time != 0) return std::nullopt;
+  return atom.index;
+}
+
+StepFacts::StepFacts(const GroundModel& model) : model_(model) {
+  for (const auto& constraint : model.constraints()) {
+    if (constraint.width == 0 || constraint.width == 1) read(constraint.formula);
+  }
+}
+
+void StepFacts::read(FormulaId formula) {
+  const auto& formulas = model_.formulas();
+  if (formulas.kind(formula) != FormulaNodeKind::kAnd) return;
+  if (formula.negated()) return read_clause(formulas.children(formula));
+  for (const auto part : formulas.children(formula)) {
+    if (part.negated() && formulas.kind(part) == FormulaNodeKind::kAnd) {
+      read_clause(formulas.children(part));
+    }
+  }
+}
+
+void StepFacts::read_clause(std::span<const FormulaId> negated_parts) {
+  if (negated_parts.size() != 2) return;  // Happens(e) -> a | b says nothing of a single fluent
+  const auto first = event_of(negated_parts[0], model_);
+  const auto second = event_of(negated_parts[1], model_);
+  if (first && second) {
+    exclusive_.emplace(std::min(*first, *second), std::max(*first, *second));
+  } else if (first) {
+    preconditions_[*first].push_back(~negated_parts[1]);
+  } else if (second) {
+    preconditions_[*second].push_back(~negated_parts[0]);
+  }
+}
+
+void StepFacts::add_literals(FormulaId formula, StateFacts& facts) const {
+  const auto& formulas = model_.formulas();
+  const auto note = [&](FormulaId part) {
+    if (formulas.kind(part) != FormulaNodeKind::kAtom) return;
+    const auto& atom = model_.atom(formulas.variable(part));
+    if (atom.kind == AtomKind::kHoldsAt && atom.time == 0) facts[atom.index] = !part.negated();
+  };
+  note(formula);
+  if (formulas.kind(formula) != FormulaNodeKind::kAnd || formula.negated()) return;
+  for (const auto part : formulas.children(formula)) note(part);
+}
+
+StateFacts StepFacts::of(const EffectRow& row) const {
+  StateFacts facts;
+  const auto found = preconditions_.find(row.event);
+  if (found != preconditions_.end()) {
+    for (const auto formula : found->second) add_literals(formula, facts);
+  }
+  add_literals(row.condition, facts);
+  return facts;
+}
+
+bool StepFacts::exclusive(std::uint32_t event, std::uint32_t other) const {
+  return exclusive_.contains({std::min(event, other), std::max(event, other)});
+}
+
+bool StepFacts::implied(FormulaId formula, const StateFacts& facts) const {
+  const auto value = evaluate(model_.formulas(), formula, [&](std::int32_t variable) {
+    const auto& atom = model_.atom(variable);
+    if (atom.kind != AtomKind::kHoldsAt || atom.time != 0) return Truth::kUnknown;
+    const auto found = facts.find(atom.index);
+    if (found == facts.end()) return Truth::kUnknown;
+    return found->second ? Truth::kTrue : Truth::kFalse;
+  });
+  return value == Truth::kTrue;
+}
 
 using Group = std::vector<std::uint32_t>;  // fluents, ascending
 

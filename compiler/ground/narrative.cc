@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "compiler/ground/reachability.h"
+#include "compiler/ground/possible_atoms.h"
 #include "compiler/ground/time_profile.h"
 
 namespace parallax::compiler {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/formula/evaluate.h"
+#include "compiler/formula/formula.h"
 #include "compiler/ground/completion.h"
 #include "compiler/ground/effects.h"
 

@@ -1,16 +1,46 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 #include <vector>
 
+#include "compiler/formula/formula.h"
+#include "compiler/ground/effect_rows.h"
 #include "compiler/ground/ground_model.h"
-#include "compiler/ground/ground_table.h"
+#include "compiler/ground/ground_term.h"
 
 namespace parallax::compiler {
+
+/// The atoms of one symbol that may be true, as rows of values: the arguments and, in tables of
+/// event occurrences, the timepoint last. Grows at the end; rows keep their numbers.
+class GroundTable {
+ public:
+  explicit GroundTable(std::size_t columns) : columns_(columns) {}
+  void add(std::span<const GroundTermId> row);
+  std::size_t size() const { return rows_; }
+  std::size_t columns() const { return columns_; }
+  std::span<const GroundTermId> row(std::uint32_t number) const {
+    return std::span(values_).subspan(number * columns_, columns_);
+  }
+  /// The rows whose columns in `mask` (bit i: column i) hold `key`, in order. An index on the mask
+  /// is built when first asked for. Valid until the next `add`.
+  std::span<const std::uint32_t> find(std::uint64_t mask, std::span<const GroundTermId> key);
+
+ private:
+  using Index = std::unordered_map<std::uint64_t, std::vector<std::uint32_t>>;  // by hash of key
+  static std::uint64_t hash(std::span<const GroundTermId> key);
+  void note(Index& index, std::uint64_t mask, std::uint32_t number) const;
+
+  std::size_t columns_;
+  std::size_t rows_ = 0;
+  std::vector<GroundTermId> values_;
+  std::map<std::uint64_t, Index> indexes_;  // by mask
+};
 
 /// An upper bound of what can be true, known before grounding: joins run over these tables instead
 /// of whole sorts. An atom outside the bound is false in every trace.
@@ -66,5 +96,18 @@ class PossibleAtoms {
   /// By fluent: what holds from a timepoint on, ascending.
   std::unordered_map<std::uint32_t, std::vector<std::pair<Timepoint, bool>>> tracked_;
 };
+
+/// What the constraints so far state outright of HoldsAt(fluent, 0), by fluent.
+std::vector<Truth> initial_values(const GroundModel& model);
+
+/// Fluents that are always false are left out of large models only, with more HoldsAt atoms than
+/// `keep`: in a small one they cost nothing, and an unsatisfiable core can then name every axiom
+/// that takes part.
+bool is_worth_leaving_out(const GroundModel& model, std::size_t keep);
+
+/// Leaves out fluents that are false at first and that no row can ever make true, and the rows that
+/// need them: a fixpoint over the rows, linear in their number for every round.
+void drop_unreachable(GroundModel& model, PossibleAtoms& possible, EffectRows& rows,
+                      std::size_t keep);
 
 }  // namespace parallax::compiler

@@ -3,7 +3,7 @@
 #include <optional>
 #include <set>
 
-#include "compiler/formula/evaluate.h"
+#include "compiler/formula/formula.h"
 #include "compiler/ground/time_profile.h"
 
 namespace parallax::compiler {

@@ -5,7 +5,6 @@
 #include "compiler/artifact/artifact_writer.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
-#include "compiler/compare/artifact_facts.h"
 #include "compiler/compare/model_facts.h"
 #include "tools/cli/scenario_model.h"
 

@@ -4,7 +4,6 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
-#include "compiler/compare/artifact_facts.h"
 #include "compiler/compare/model_facts.h"
 #include "compiler/syntax/parser.h"
 #include "tools/diff/revision.h"
