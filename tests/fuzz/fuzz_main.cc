@@ -2,12 +2,12 @@
 
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <map>
 
 #include "tests/fuzz/differential.h"
 #include "tests/fuzz/oracles.h"
+#include "tools/cli/command_line.h"
 
 namespace parallax::test {
 namespace {
@@ -143,18 +143,20 @@ int fuzz(const FuzzOptions& options) {
 
 int run(int argc, char** argv) {
   FuzzOptions options;
-  CLI::App app("Compares parallax with brute force and clingo on random models");
-  app.add_option("--seed", options.seed, "Seed of the first model")->capture_default_str();
-  app.add_option("--count", options.count, "Number of models")->capture_default_str();
-  app.add_option("--large-every", options.large_every,
-                 "Every n-th seed gives a larger model, for clingo alone; 0: none")
-      ->capture_default_str();
-  app.add_option("--max-differences", options.max_differences, "Stop after so many")
-      ->capture_default_str();
-  app.add_flag("--clingo", options.clingo, "Compare with clingo as well, where it is installed");
-  app.add_flag("--print", options.print, "Print the models instead of comparing");
-  app.add_flag("--no-shrink", options.no_shrink, "Print differing models as they are");
-  CLI11_PARSE(app, argc, argv);
+  tools::OptionTable table("parallax_fuzz",
+                           "Compares parallax with brute force and clingo on random models");
+  table.option("--seed", options.seed, "Seed of the first model").show_default();
+  table.option("--count", options.count, "Number of models").show_default();
+  table
+      .option("--large-every", options.large_every,
+              "Every n-th seed gives a larger model, for clingo alone; 0: none")
+      .show_default();
+  table.option("--max-differences", options.max_differences, "Stop after so many").show_default();
+  table.flag("--clingo", options.clingo, "Compare with clingo as well, where it is installed");
+  table.flag("--print", options.print, "Print the models instead of comparing");
+  table.flag("--no-shrink", options.no_shrink, "Print differing models as they are");
+  const auto line = tools::parse_and_print({table, "", false, {}}, argc, argv);
+  if (line.exit_code) return *line.exit_code;
   if (options.clingo && !clingo_is_installed()) {
     fmt::print("clingo 5 is not installed: SKIPPED, brute force alone\n");
     options.clingo = false;

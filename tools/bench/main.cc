@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fstream>
 
@@ -10,6 +9,7 @@
 #include "tools/bench/families/families.h"
 #include "tools/bench/plain_cadical.h"
 #include "tools/bench/stages.h"
+#include "tools/cli/command_line.h"
 
 namespace parallax::tools {
 
@@ -64,10 +64,10 @@ int print_model(const std::string& name, bool tuned) {
   return 0;
 }
 
-CLI::Validator section_names() {
-  std::vector<std::string> names;
-  for (const auto& section : sections()) names.emplace_back(section.name);
-  return CLI::IsMember(names);
+OneOf section_names() {
+  OneOf names;
+  for (const auto& section : sections()) names.values.emplace_back(section.name);
+  return names;
 }
 
 std::string list_of_sections() {
@@ -81,33 +81,35 @@ std::string list_of_sections() {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Measures the program beside its peers", "parallax_bench");
-  app.footer(list_of_sections());
+  OptionTable table("parallax_bench", "Measures the program beside its peers");
+  table.footer(list_of_sections());
   BenchOptions options;
-  app.add_option("--only", options.only, "Sections to measure; default: all")
-      ->check(section_names());
-  app.add_option("--json", options.json, "File for all figures as one JSON document");
-  app.add_option("--repetitions", options.measure.repetitions, "Runs of which the median counts")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app.add_option("--time-limit", options.measure.time_limit_s,
-                 "Seconds of processor time that a single run may take")
-      ->check(CLI::Range(0.1, 1e5))
-      ->capture_default_str();
+  table.option("--only", options.only, "Sections to measure; default: all").check(section_names());
+  table.option("--json", options.json, "File for all figures as one JSON document");
+  table.option("--repetitions", options.measure.repetitions, "Runs of which the median counts")
+      .check(IntRange{1, 1000})
+      .show_default();
+  table
+      .option("--time-limit", options.measure.time_limit_s,
+              "Seconds of processor time that a single run may take")
+      .check(FiniteNumber{0.1, 1e5})
+      .show_default();
   std::string argument;
-  auto* model = app.add_subcommand("model", "Print the model of a family, such as lamps_4_6");
   bool tuned = false;
-  model->add_flag("--tuned", tuned, "The logic program that a clingo user would write instead");
-  auto* solve = app.add_subcommand("solve", "CaDiCaL alone on a DIMACS file");
-  auto* stages = app.add_subcommand("stages", "Time the stages of compiling a model file");
-  for (auto* command : {model, solve, stages}) {
-    command->add_option("name", argument, "Name or file")->required();
+  OptionTable model("model", "Print the model of a family, such as lamps_4_6");
+  model.flag("--tuned", tuned, "The logic program that a clingo user would write instead");
+  OptionTable solve("solve", "CaDiCaL alone on a DIMACS file");
+  OptionTable stages("stages", "Time the stages of compiling a model file");
+  const Program program{table, "", false, {&model, &solve, &stages}};
+  for (auto* command : {&model, &solve, &stages}) {
+    command->option("name", argument, "Name or file").required();
   }
-  CLI11_PARSE(app, argc, argv);
-  if (model->parsed()) return print_model(argument, tuned);
-  if (solve->parsed()) return solve_plainly(argument);
-  if (stages->parsed()) return print_stages(argument);
-  return measure_all(options);
+  const auto line = parse_and_print(program, argc, argv);
+  if (line.exit_code) return *line.exit_code;
+  if (!line.command) return measure_all(options);
+  const auto* command = program.commands[*line.command];
+  if (command == &model) return print_model(argument, tuned);
+  return command == &solve ? solve_plainly(argument) : print_stages(argument);
 }
 
 }  // namespace

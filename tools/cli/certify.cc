@@ -25,12 +25,12 @@ bool is_whole(const std::string& exploration) { return exploration != "stopped";
 
 }  // namespace
 
-void add_certify_option(CLI::App& command, CertifyOption& option) {
+void add_certify_option(OptionTable& command, CertifyOption& option) {
   command
-      .add_flag("--certify", option.file,
-                "Write a DRAT proof that there are no other traces, and the formula it refutes "
-                "(FILE.cnf), and check it; the usual FILE is the model's name with .drat")
-      ->type_name("[=FILE]");
+      .flag("--certify", option.file,
+            "Write a DRAT proof that there are no other traces, and the formula it refutes "
+            "(FILE.cnf), and check it; the usual FILE is the model's name with .drat")
+      .named_value("[=FILE]");
 }
 
 TraceCertifier::TraceCertifier(const CertifyOption& option, const std::vector<std::string>& models,

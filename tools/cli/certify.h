@@ -17,7 +17,7 @@ struct CertifyOption {
   bool keep = true;  // false: the files are gone when the command ends, so nobody is told of them
 };
 /// `--certify` takes its file after `=` only, so that a model may follow it.
-void add_certify_option(CLI::App& command, CertifyOption& option);
+void add_certify_option(OptionTable& command, CertifyOption& option);
 
 /// Collects the traces of a list and proves at its end that there are no others. Without the option
 /// it does nothing and says so.

@@ -69,23 +69,22 @@ int check(const CheckOptions& check_options, Invocation& invocation) {
 
 }  // namespace
 
-Command add_check_command(CLI::App& app) {
+Command check_command() {
   auto options = std::make_shared<CheckOptions>();
-  auto* command =
-      app.add_subcommand("check", "Parse, check and lint models and scenarios; report every error");
-  command->footer(
+  OptionTable command("check", "Parse, check and lint models and scenarios; report every error");
+  command.footer(
       "Examples:\n"
       "  parallax check domain.e problem.e --horizon 6\n"
       "  parallax check scenarios/two_regions/edge.yaml\n"
       "  parallax check domain.e --allow W2102 --diagnostics=sarif 2> report.sarif\n"
       "Several .e files are one model; every .yaml file is a scenario of its own.");
-  add_model_options(*command, options->model);
-  add_plan_options(*command, options->model);
-  command->add_option("--allow", options->allow, "Do not report warnings of this code")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_flag("--no-lint", options->no_lint, "Report no W21xx: what is legal but odd");
-  return {command, [options](Invocation& invocation) { return check(*options, invocation); }};
+  add_model_options(command, options->model);
+  add_plan_options(command, options->model);
+  command.option("--allow", options->allow, "Do not report warnings of this code")
+      .list(ListForm::kAsManyAsFollowFromOne);
+  command.flag("--no-lint", options->no_lint, "Report no W21xx: what is legal but odd");
+  return {std::move(command),
+          [options](Invocation& invocation) { return check(*options, invocation); }};
 }
 
 }  // namespace parallax::tools

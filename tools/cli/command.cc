@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -104,42 +103,20 @@ int Invocation::finish(int code) {
   return code != 0 ? code : sink_.exit_code();
 }
 
-CLI::Validator finite_range(double lower, double upper) {
-  const auto check = [lower, upper](std::string& text) -> std::string {
-    double value = 0.0;
-    // Not a number compares false with everything, so ask for what is wanted.
-    const bool fine = CLI::detail::lexical_cast(text, value) && value >= lower && value <= upper;
-    return fine ? std::string() : fmt::format("{} is no number from {} to {}", text, lower, upper);
-  };
-  return CLI::Validator(check, fmt::format("[{} - {}]", lower, upper));
-}
-
-CLI::Validator whole_number(std::int64_t lower, std::int64_t upper) {
-  const auto check = [lower, upper](std::string& text) -> std::string {
-    std::int64_t value = 0;
-    const auto* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    const bool fine = error == std::errc() && stop == end && value >= lower && value <= upper;
-    return fine ? std::string()
-                : fmt::format("{} is no whole number from {} to {}", text, lower, upper);
-  };
-  return CLI::Validator(check, "N");
-}
-
-void add_common_options(CLI::App& app, CommonOptions& options) {
-  app.add_flag("--json", options.json, "Print exactly one JSON document on standard output");
-  app.add_flag("-q,--quiet", options.quiet, "Print no progress, remarks or warnings");
-  app.add_flag("-v,--verbose", options.verbosity, "Say more on standard error");
-  app.add_option("--color", options.color, "When to use colour")
-      ->check(CLI::IsMember({"auto", "always", "never"}))
-      ->capture_default_str();
-  app.add_option("--diagnostics", options.diagnostics, "Form of errors and warnings")
-      ->check(CLI::IsMember({"text", "json", "sarif"}))
-      ->capture_default_str();
-  app.add_option("--time-limit", options.time_limit_s, "End the run after this many seconds")
-      ->check(finite_range(1e-3, 1e7));
-  app.add_option("--memory-limit", options.memory_limit_mb, "End the run above this many MB")
-      ->check(whole_number(16, 10'000'000));
+void add_common_options(OptionTable& table, CommonOptions& options) {
+  table.flag("--json", options.json, "Print exactly one JSON document on standard output");
+  table.flag("-q,--quiet", options.quiet, "Print no progress, remarks or warnings");
+  table.flag("-v,--verbose", options.verbosity, "Say more on standard error");
+  table.option("--color", options.color, "When to use colour")
+      .check(OneOf{{"auto", "always", "never"}})
+      .show_default();
+  table.option("--diagnostics", options.diagnostics, "Form of errors and warnings")
+      .check(OneOf{{"text", "json", "sarif"}})
+      .show_default();
+  table.option("--time-limit", options.time_limit_s, "End the run after this many seconds")
+      .check(FiniteNumber{1e-3, 1e7});
+  table.option("--memory-limit", options.memory_limit_mb, "End the run above this many MB")
+      .check(WholeNumber{16, 10'000'000});
 }
 
 }  // namespace parallax::tools

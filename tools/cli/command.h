@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -9,6 +8,7 @@
 
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/source_file.h"
+#include "tools/cli/option_table.h"
 
 namespace parallax::tools {
 
@@ -64,33 +64,28 @@ class Invocation {
 
 /// A subcommand: how it is spelled, and what runs it.
 struct Command {
-  CLI::App* app = nullptr;
+  OptionTable options;
   std::function<int(Invocation&)> run;
 };
 
 /// Seeds stay below 2^53, so that every JSON reader keeps them.
 inline constexpr std::int64_t kMaxSeed = (std::int64_t{1} << 53U) - 1;
 
-/// A finite number within the bounds; refuses what is no number, which compares with nothing.
-CLI::Validator finite_range(double lower, double upper);
-/// A whole number within the bounds, every character of it.
-CLI::Validator whole_number(std::int64_t lower, std::int64_t upper);
-
 /// Adds the options that every command has.
-void add_common_options(CLI::App& app, CommonOptions& options);
+void add_common_options(OptionTable& table, CommonOptions& options);
 
-Command add_run_command(CLI::App& app);
-Command add_replay_command(CLI::App& app);
-Command add_check_command(CLI::App& app);
-Command add_compile_command(CLI::App& app);
-Command add_suite_command(CLI::App& app);
-Command add_traces_command(CLI::App& app);
-Command add_verify_command(CLI::App& app);
-Command add_diagnostics_command(CLI::App& app);
-Command add_fmt_command(CLI::App& app);
-Command add_rates_command(CLI::App& app);
-Command add_draw_command(CLI::App& app);
-Command add_worker_command(CLI::App& app);
+Command run_command();
+Command replay_command();
+Command check_command();
+Command compile_command();
+Command suite_command();
+Command traces_command();
+Command verify_command();
+Command diagnostics_command();
+Command fmt_command();
+Command rates_command();
+Command draw_command();
+Command worker_command();
 
 /// {"status": "error", "diagnostics": [...]} and a newline.
 std::string error_document(const std::vector<base::Diagnostic>& diagnostics,

@@ -88,31 +88,31 @@ int compile_and_write(const CompileOptions& options, Invocation& invocation) {
 
 }  // namespace
 
-Command add_compile_command(CLI::App& app) {
+Command compile_command() {
   auto options = std::make_shared<CompileOptions>();
-  auto* command = app.add_subcommand(
-      "compile", "Compile a model (or a scenario's model and plan) to DIMACS with symbols");
-  command->footer(
+  OptionTable command("compile",
+                      "Compile a model (or a scenario's model and plan) to DIMACS with symbols");
+  command.footer(
       "Examples:\n"
       "  parallax compile domain.e start.e --horizon 6 -o start.dec.cnf\n"
       "  parallax compile domain.e --stats -o domain.dec.cnf\n"
       "  parallax compile scenarios/two_regions/edge.yaml --emit=cfg\n"
       "  parallax compile domain.e start.e --plan fetch.lisp --bind robot.bind \\\n"
       "      --regions scenario.yaml --emit=cfg-dot -o plan.dot");
-  add_model_options(*command, options->model);
-  add_plan_options(*command, options->model);
-  command->add_flag("--no-projection-line", options->no_projection,
-                    "Leave out `c t pmc` and `c p show`, for readers that take no comment there");
-  command->add_flag("--stats", options->model.stats,
-                    "Show on standard error what each axiom costs, dearest first");
-  command->add_option("-o,--output", options->out, "File to write; default: standard output");
+  add_model_options(command, options->model);
+  add_plan_options(command, options->model);
+  command.flag("--no-projection-line", options->no_projection,
+               "Leave out `c t pmc` and `c p show`, for readers that take no comment there");
+  command.flag("--stats", options->model.stats,
+               "Show on standard error what each axiom costs, dearest first");
+  command.option("-o,--output", options->out, "File to write; default: standard output");
   command
-      ->add_option("--emit", options->emit,
-                   "What to print: tokens, ast, typed (the model read), lp (for clingo), cnf, cfg "
-                   "(plan), cfg-dot (picture)")
-      ->check(CLI::IsMember({"tokens", "ast", "typed", "lp", "cnf", "cfg", "cfg-dot"}))
-      ->capture_default_str();
-  return {command,
+      .option("--emit", options->emit,
+              "What to print: tokens, ast, typed (the model read), lp (for clingo), cnf, cfg "
+              "(plan), cfg-dot (picture)")
+      .check(OneOf{{"tokens", "ast", "typed", "lp", "cnf", "cfg", "cfg-dot"}})
+      .show_default();
+  return {std::move(command),
           [options](Invocation& invocation) { return compile_and_write(*options, invocation); }};
 }
 

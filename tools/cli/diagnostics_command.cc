@@ -25,9 +25,9 @@ std::string registry_page() {
 
 }  // namespace
 
-Command add_diagnostics_command(CLI::App& app) {
-  auto* command = app.add_subcommand("diagnostics", "Print the table of error and warning codes");
-  return {command, [](Invocation& invocation) {
+Command diagnostics_command() {
+  OptionTable command("diagnostics", "Print the table of error and warning codes");
+  return {std::move(command), [](Invocation& invocation) {
             invocation.result(registry_page());
             return 0;
           }};

@@ -269,41 +269,36 @@ int run(const DiffOptions& given, Invocation& invocation) {
   return diff_plans(options, *old_kind, invocation);
 }
 
-void add_model_diff_options(CLI::App& command, DiffOptions& options) {
+void add_model_diff_options(OptionTable& command, DiffOptions& options) {
   auto& model = options.models.load.model;
-  command.add_option("--with", model.models, "Model file that belongs to both models")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->allow_extra_args(false);
-  command.add_option("-I,--include", model.include_dirs, "Folder in which `load` looks")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->allow_extra_args(false);
-  command.add_flag("--allow-outside", model.allow_outside,
-                   "Let `load` leave the folders of the models");
-  command.add_option("--compat", model.compat, "Meaning of the 2005 reasoner where it differs")
-      ->check(CLI::IsMember({"decreasoner"}));
-  command.add_option("--horizon", model.horizon, "Compare traces up to this timepoint")
-      ->check(CLI::Range(0, 1'000'000));
-  command.add_flag("--no-traces", options.no_traces,
-                   "Compare declarations and axioms only; nothing is solved");
-  command.add_flag("--traces-only", options.traces_only, "Compare traces only");
+  command.option("--with", model.models, "Model file that belongs to both models")
+      .list(ListForm::kOneEachTime);
+  command.option("-I,--include", model.include_dirs, "Folder in which `load` looks")
+      .list(ListForm::kOneEachTime);
+  command.flag("--allow-outside", model.allow_outside,
+               "Let `load` leave the folders of the models");
+  command.option("--compat", model.compat, "Meaning of the 2005 reasoner where it differs")
+      .check(OneOf{{"decreasoner"}});
+  command.option("--horizon", model.horizon, "Compare traces up to this timepoint")
+      .check(IntRange{0, 1'000'000});
+  command.flag("--no-traces", options.no_traces,
+               "Compare declarations and axioms only; nothing is solved");
+  command.flag("--traces-only", options.traces_only, "Compare traces only");
   command
-      .add_option(
+      .option(
           "--count-limit", options.models.list_limit,
           "Lost and gained traces that are counted one by one; a graph counts more of them if it "
           "has at most 20 times as many transitions")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
+      .check(IntRange{1, 1'000'000})
+      .show_default();
 }
 
 }  // namespace
 
-Command add_diff_command(CLI::App& app) {
+Command diff_command() {
   auto options = std::make_shared<DiffOptions>();
-  auto* command =
-      app.add_subcommand("diff", "Compare two revisions of a model, a plan, a trace file or a run");
-  command->footer(
+  OptionTable command("diff", "Compare two revisions of a model, a plan, a trace file or a run");
+  command.footer(
       "Examples:\n"
       "  parallax diff old.e new.e --horizon 6\n"
       "  parallax diff old.dec.cnf new.dec.cnf --json\n"
@@ -311,18 +306,18 @@ Command add_diff_command(CLI::App& app) {
       "  parallax diff --textconv domain.e\n"
       "Exit code 1 if there is a difference, 0 if there is none. docs/git.md shows how git uses "
       "it.");
-  command->add_option("old", options->old_path,
-                      "Model (.e, .dec.cnf, .yaml), plan (.lisp, .bind), traces (.jsonl) or run");
-  command->add_option("new", options->new_path, "The other revision");
-  command->add_option("--textconv", options->textconv,
-                      "Print the canonical text of one file instead");
-  command->add_flag("--fallback", options->fallback,
-                    "With --textconv: print a file that has errors as it is");
-  command->add_flag("--stat", options->stat, "Print numbers only");
-  command->add_flag("--exit-code", options->exit_code,
-                    "Accepted for those who know it from git; the exit code always tells");
-  add_model_diff_options(*command, *options);
-  return {command, [options](Invocation& invocation) { return run(*options, invocation); }};
+  command.option("old", options->old_path,
+                 "Model (.e, .dec.cnf, .yaml), plan (.lisp, .bind), traces (.jsonl) or run");
+  command.option("new", options->new_path, "The other revision");
+  command.option("--textconv", options->textconv, "Print the canonical text of one file instead");
+  command.flag("--fallback", options->fallback,
+               "With --textconv: print a file that has errors as it is");
+  command.flag("--stat", options->stat, "Print numbers only");
+  command.flag("--exit-code", options->exit_code,
+               "Accepted for those who know it from git; the exit code always tells");
+  add_model_diff_options(command, *options);
+  return {std::move(command),
+          [options](Invocation& invocation) { return run(*options, invocation); }};
 }
 
 }  // namespace parallax::tools

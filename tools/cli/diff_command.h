@@ -4,6 +4,6 @@
 
 namespace parallax::tools {
 
-Command add_diff_command(CLI::App& app);
+Command diff_command();
 
 }  // namespace parallax::tools

@@ -194,11 +194,11 @@ int draw(const Options& options, Invocation& invocation) {
 
 }  // namespace
 
-Command add_draw_command(CLI::App& app) {
+Command draw_command() {
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand(
+  OptionTable command(
       "draw", "Pictures of a scenario's world, or of each action of a recorded simulation (SVG)");
-  command->footer(
+  command.footer(
       "Examples:\n"
       "  parallax draw scenarios/kitchen/plan2.yaml -o kitchen.svg\n"
       "  parallax draw out/plan2                      the run's first discrepancy, action by "
@@ -208,14 +208,15 @@ Command add_draw_command(CLI::App& app) {
       "covers it; after an action also its way, a moment of it (dashed), the camera's cone, the\n"
       "goal of a drive (cross) and, in red, what went wrong.\n"
       "Exit codes: 0 drawn, 3 the scenario has changed since the run.");
-  command->add_option("what", options->what, "Scenario file, or folder of a run")->required();
-  command->add_option("-o,--out", options->out,
-                      "File (of a scenario; default scene.svg) or folder (of a run; default "
-                      "pictures in its folder)");
-  command->add_option("--sample", options->sample,
-                      "TRACE.SAMPLE of a run; default: the first discrepancy");
-  command->add_flag("--no-regions", options->no_regions, "Leave the regions out");
-  return {command, [options](Invocation& invocation) { return draw(*options, invocation); }};
+  command.option("what", options->what, "Scenario file, or folder of a run").required();
+  command.option("-o,--out", options->out,
+                 "File (of a scenario; default scene.svg) or folder (of a run; default "
+                 "pictures in its folder)");
+  command.option("--sample", options->sample,
+                 "TRACE.SAMPLE of a run; default: the first discrepancy");
+  command.flag("--no-regions", options->no_regions, "Leave the regions out");
+  return {std::move(command),
+          [options](Invocation& invocation) { return draw(*options, invocation); }};
 }
 
 }  // namespace parallax::tools

@@ -49,12 +49,12 @@ int explain(const ExplainOptions& options, Invocation& invocation) {
 
 }  // namespace
 
-Command add_explain_command(CLI::App& app) {
+Command explain_command() {
   auto options = std::make_shared<ExplainOptions>();
-  auto* command = app.add_subcommand("explain",
-                                     "Say which axioms contradict each other or a run's "
-                                     "discrepancy, or why a fact holds in a trace");
-  command->footer(
+  OptionTable command("explain",
+                      "Say which axioms contradict each other or a run's "
+                      "discrepancy, or why a fact holds in a trace");
+  command.footer(
       "Examples:\n"
       "  parallax explain domain.e start.e\n"
       "  parallax explain domain.e start.e --all --time-limit 60\n"
@@ -62,20 +62,20 @@ Command add_explain_command(CLI::App& app) {
       "  parallax explain out/plan2                the first discrepancy of a run\n"
       "  parallax explain domain.e --until \"HoldsAt(At(kitchen),time)\"\n"
       "Exit code 1 if there is a contradiction, 0 if there is none or a fact was explained.");
-  add_model_options(*command, options->model);
-  command->add_flag("--all", options->sets.all,
-                    "All minimal sets of axioms; with --why: further causes as well");
-  command
-      ->add_option("--limit", options->sets.limit, "With --all: stop after this many sets; 0: all")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--why", options->why.fact,
-                      "Tell what is behind this fact: HoldsAt(F(a),3), Happens(E(),2), or !...");
-  command->add_option("--trace", options->why.trace, "The trace that --why is about")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--sample", options->sample,
-                      "Of a run folder: TRACE.SAMPLE; default: the first discrepancy");
-  return {command, [options](Invocation& invocation) { return explain(*options, invocation); }};
+  add_model_options(command, options->model);
+  command.flag("--all", options->sets.all,
+               "All minimal sets of axioms; with --why: further causes as well");
+  command.option("--limit", options->sets.limit, "With --all: stop after this many sets; 0: all")
+      .check(NonNegative{});
+  command.option("--why", options->why.fact,
+                 "Tell what is behind this fact: HoldsAt(F(a),3), Happens(E(),2), or !...");
+  command.option("--trace", options->why.trace, "The trace that --why is about")
+      .check(Positive{})
+      .show_default();
+  command.option("--sample", options->sample,
+                 "Of a run folder: TRACE.SAMPLE; default: the first discrepancy");
+  return {std::move(command),
+          [options](Invocation& invocation) { return explain(*options, invocation); }};
 }
 
 }  // namespace parallax::tools

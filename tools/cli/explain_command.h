@@ -4,6 +4,6 @@
 
 namespace parallax::tools {
 
-Command add_explain_command(CLI::App& app);
+Command explain_command();
 
 }  // namespace parallax::tools

@@ -101,21 +101,21 @@ int format(const FmtOptions& options, Invocation& invocation) {
 
 }  // namespace
 
-Command add_fmt_command(CLI::App& app) {
+Command fmt_command() {
   auto options = std::make_shared<FmtOptions>();
-  auto* command = app.add_subcommand("fmt", "Bring model files into the standard layout");
-  command->footer(
+  OptionTable command("fmt", "Bring model files into the standard layout");
+  command.footer(
       "Examples:\n"
       "  parallax fmt domain.e problem.e\n"
       "  parallax fmt --check scenarios/two_regions/domain.e\n"
       "  parallax fmt - < domain.e\n"
       "Files are rewritten in place; one with a syntax error is left as it is.");
-  command->add_option("files", options->files, "Model files (.e); - for standard input")
-      ->required();
-  command->add_flag("--check", options->check,
-                    "Write nothing; name the files that would change and exit with 1 if any would");
-  command->add_flag("--stdout", options->to_stdout, "Print instead of rewriting");
-  return {command, [options](Invocation& invocation) { return format(*options, invocation); }};
+  command.option("files", options->files, "Model files (.e); - for standard input").required();
+  command.flag("--check", options->check,
+               "Write nothing; name the files that would change and exit with 1 if any would");
+  command.flag("--stdout", options->to_stdout, "Print instead of rewriting");
+  return {std::move(command),
+          [options](Invocation& invocation) { return format(*options, invocation); }};
 }
 
 }  // namespace parallax::tools

@@ -9,6 +9,7 @@
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/suggest.h"
 #include "tools/cli/command.h"
+#include "tools/cli/command_line.h"
 #include "tools/cli/diff_command.h"
 #include "tools/cli/explain_command.h"
 #include "tools/cli/limits.h"
@@ -38,42 +39,22 @@ bool wants_json(int argc, char** argv) {
   return false;
 }
 
-/// The long options of the application and of the subcommand that was parsed.
-std::vector<std::string> known_options(const CLI::App& app) {
-  std::vector<std::string> names;
-  const auto collect = [&](const CLI::App& from) {
-    for (const auto* option : from.get_options()) {
-      for (const auto& name : option->get_lnames()) names.push_back("--" + name);
-    }
-  };
-  collect(app);
-  for (const auto* sub : app.get_subcommands()) collect(*sub);
-  if (app.get_subcommands().empty()) {
-    for (const auto* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
-      names.push_back(sub->get_name());
-    }
-  }
-  return names;
-}
-
-int usage_error(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+int usage_error(const ParsedLine& line, std::string_view command, int argc, char** argv) {
   base::DiagnosticSink sink;
   const base::SourceFiles files;
-  auto built = sink.error_about(base::DiagnosticCode::kUsage, "", error.what());
-  const auto names = known_options(app);
+  auto built = sink.error_about(base::DiagnosticCode::kUsage, "", line.error);
   for (int i = 1; i < argc; ++i) {
     const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
     bool known = false;
-    for (const auto& name : names) known = known || name == word;
-    const bool could_be_command = i == 1 && app.get_subcommands().empty();
+    for (const auto& name : line.known) known = known || name == word;
+    const bool could_be_command = i == 1 && command.empty();
     if (known || (!word.starts_with("--") && !could_be_command)) continue;
-    if (const auto near = base::nearest_name(word, names)) {
+    if (const auto near = base::nearest_name(word, line.known)) {
       built.fix(fmt::format("replace `{}` with `{}`", word, *near));
       break;
     }
   }
-  const auto* sub = app.get_subcommands().empty() ? nullptr : app.get_subcommands().front();
-  built.note(fmt::format("see `parallax {}--help`", sub ? sub->get_name() + " " : ""));
+  built.note(fmt::format("see `parallax {}{}--help`", command, command.empty() ? "" : " "));
   const auto diagnostics = sink.sorted();
   if (wants_json(argc, argv)) {
     const auto document = error_document(diagnostics, files);
@@ -84,36 +65,35 @@ int usage_error(const CLI::App& app, const CLI::ParseError& error, int argc, cha
 }
 
 int run(int argc, char** argv) {
-  CLI::App app(kDescription, "parallax");
-  app.footer(kFooter);
-  app.require_subcommand(1);
-  app.set_version_flag("--version",
-                       fmt::format("parallax {} (CaDiCaL {})", kVersion, kCadicalVersion));
+  OptionTable table("parallax", kDescription);
+  table.footer(kFooter);
   CommonOptions options;
-  std::vector<Command> commands = {
-      add_run_command(app),    add_replay_command(app),      add_suite_command(app),
-      add_check_command(app),  add_traces_command(app),      add_compile_command(app),
-      add_verify_command(app), add_diagnostics_command(app), add_explain_command(app),
-      add_fmt_command(app),    add_diff_command(app),        add_worker_command(app),
-      add_rates_command(app),  add_draw_command(app)};
-  for (auto& command : commands) add_common_options(*command.app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& success) {  // --help, --version
-    return app.exit(success);
-  } catch (const CLI::ParseError& error) {
-    return usage_error(app, error, argc, argv);
+  std::vector<Command> commands = {run_command(),    replay_command(),      suite_command(),
+                                   check_command(),  traces_command(),      compile_command(),
+                                   verify_command(), diagnostics_command(), explain_command(),
+                                   fmt_command(),    diff_command(),        worker_command(),
+                                   rates_command(),  draw_command()};
+  Program program{
+      table, fmt::format("parallax {} (CaDiCaL {})", kVersion, kCadicalVersion), true, {}};
+  for (auto& command : commands) {
+    add_common_options(command.options, options);
+    program.commands.push_back(&command.options);
+  }
+  const auto line = parse_command_line(program, argc, argv);
+  const auto* command = line.command ? &commands[*line.command] : nullptr;
+  if (!line.error.empty()) {
+    return usage_error(line, command != nullptr ? command->options.name() : "", argc, argv);
+  }
+  if (line.exit_code) {  // --help, --version
+    std::fwrite(line.output.data(), 1, line.output.size(), stdout);
+    return *line.exit_code;
   }
   install_signal_handlers();
-  for (auto& command : commands) {
-    if (!command.app->parsed()) continue;
-    const LimitGuard limits(options);
-    Invocation invocation(options);
-    const int code = invocation.finish(command.run(invocation));
-    if (signal_exit_code() != 0) return signal_exit_code();
-    return code == 0 && limits.time_is_over() && !invocation.is_answered() ? 4 : code;
-  }
-  return 2;
+  const LimitGuard limits(options);
+  Invocation invocation(options);
+  const int code = invocation.finish(command->run(invocation));
+  if (signal_exit_code() != 0) return signal_exit_code();
+  return code == 0 && limits.time_is_over() && !invocation.is_answered() ? 4 : code;
 }
 
 }  // namespace

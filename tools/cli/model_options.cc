@@ -11,62 +11,53 @@
 
 namespace parallax::tools {
 
-void add_model_options(CLI::App& command, ModelOptions& options) {
+void add_model_options(OptionTable& command, ModelOptions& options) {
   command
-      .add_option("models", options.models,
-                  "Model files (.e), or one that `compile` wrote (.dec.cnf)")
-      ->required();
+      .option("models", options.models, "Model files (.e), or one that `compile` wrote (.dec.cnf)")
+      .required();
   // One value each time, so that a model may follow.
-  command.add_option("-I,--include", options.include_dirs, "Folder in which `load` looks")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->allow_extra_args(false);
-  command.add_flag("--allow-outside", options.allow_outside,
-                   "Let `load` leave the folders of the models");
-  command.add_option("--compat", options.compat, "Meaning of the 2005 reasoner where it differs")
-      ->check(CLI::IsMember({"decreasoner"}));
-  command.add_option("--horizon", options.horizon, "Last timepoint; replaces the range of `time`")
-      ->check(CLI::Range(0, 1'000'000));
+  command.option("-I,--include", options.include_dirs, "Folder in which `load` looks")
+      .list(ListForm::kOneEachTime);
+  command.flag("--allow-outside", options.allow_outside,
+               "Let `load` leave the folders of the models");
+  command.option("--compat", options.compat, "Meaning of the 2005 reasoner where it differs")
+      .check(OneOf{{"decreasoner"}});
+  command.option("--horizon", options.horizon, "Last timepoint; replaces the range of `time`")
+      .check(IntRange{0, 1'000'000});
   command
-      .add_option("--until", options.until,
-                  "Formula over `time`: traces end where it holds for the first time")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->allow_extra_args(false);
+      .option("--until", options.until,
+              "Formula over `time`: traces end where it holds for the first time")
+      .list(ListForm::kOneEachTime);
 }
 
-void add_plan_options(CLI::App& command, ModelOptions& options) {
-  auto* plan = command.add_option("--plan", options.plan, "Plan to unroll with the models (.lisp)");
-  auto* bind = command.add_option("--bind", options.bind, "What the plan's designators mean");
-  plan->needs(bind);
-  bind->needs(plan);
-  command.add_option("--plan-entry", options.plan_entry, "The plan's function to run")->needs(plan);
+void add_plan_options(OptionTable& command, ModelOptions& options) {
+  command.option("--plan", options.plan, "Plan to unroll with the models (.lisp)").needs("--bind");
+  command.option("--bind", options.bind, "What the plan's designators mean").needs("--plan");
+  command.option("--plan-entry", options.plan_entry, "The plan's function to run").needs("--plan");
+  command.option("--regions", options.regions, "Scenario whose regions the plan's poses lie in")
+      .needs("--plan");
+  command.option("--max-loop", options.max_loop, "Iterations of a loop that nothing static ends")
+      .check(WholeNumber{1, 10'000})
+      .show_default();
+  command.option("--max-call-depth", options.max_call_depth, "Active calls of one function")
+      .check(WholeNumber{1, 1'000})
+      .show_default();
   command
-      .add_option("--regions", options.regions, "Scenario whose regions the plan's poses lie in")
-      ->needs(plan);
+      .option("--location-samples", options.location_samples,
+              "Further solutions that `next-solution` has of a location")
+      .check(WholeNumber{0, 1'000})
+      .show_default();
   command
-      .add_option("--max-loop", options.max_loop, "Iterations of a loop that nothing static ends")
-      ->check(whole_number(1, 10'000))
-      ->capture_default_str();
-  command.add_option("--max-call-depth", options.max_call_depth, "Active calls of one function")
-      ->check(whole_number(1, 1'000))
-      ->capture_default_str();
+      .option("--par", options.par,
+              "The branches of `par`: in-order, or interleave for every order of their performs")
+      .check(OneOf{{"in-order", "interleave"}})
+      .show_default();
   command
-      .add_option("--location-samples", options.location_samples,
-                  "Further solutions that `next-solution` has of a location")
-      ->check(whole_number(0, 1'000))
-      ->capture_default_str();
-  command
-      .add_option("--par", options.par,
-                  "The branches of `par`: in-order, or interleave for every order of their performs")
-      ->check(CLI::IsMember({"in-order", "interleave"}))
-      ->capture_default_str();
-  command
-      .add_option("--max-horizon", options.max_horizon,
-                  "Without --horizon and a range of `time`: the longest path of the plan, but no "
-                  "more than this")
-      ->check(whole_number(1, 10'000))
-      ->capture_default_str();
+      .option("--max-horizon", options.max_horizon,
+              "Without --horizon and a range of `time`: the longest path of the plan, but no "
+              "more than this")
+      .check(WholeNumber{1, 10'000})
+      .show_default();
 }
 
 compiler::CompileInput compile_input(const ModelOptions& options) {

@@ -29,10 +29,10 @@ struct ModelOptions {
   bool lint = false;                  // `check`: report what is legal but hardly meant
   bool stats = false;                 // count what each axiom costs; commands offer it themselves
 };
-void add_model_options(CLI::App& command, ModelOptions& options);
+void add_model_options(OptionTable& command, ModelOptions& options);
 
 /// --plan and what belongs to it.
-void add_plan_options(CLI::App& command, ModelOptions& options);
+void add_plan_options(OptionTable& command, ModelOptions& options);
 
 compiler::CompileInput compile_input(const ModelOptions& options);
 

@@ -45,36 +45,37 @@ int run_rates(const Options& options, Invocation& invocation) {
 
 }  // namespace
 
-Command add_rates_command(CLI::App& app) {
+Command rates_command() {
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand(
+  OptionTable command(
       "rates", "How often does each trace go wrong, and why: uniform runs, counted by cause");
-  command->footer(
+  command.footer(
       "Examples:\n"
       "  parallax rates scenarios/kitchen/plan2.yaml --trace 2 --runs 400 --jobs 2\n"
       "  parallax rates scenarios/two_regions/edge.yaml --runs 100 --json\n"
       "Sample N starts as simulation N of `parallax run` with the same seed does.\n"
       "Exit codes: 0 estimated, 1 no trace, 4 stopped before all runs were made.");
-  command->add_option("scenario", options->scenario, "Scenario file (YAML)")->required();
-  command->add_option("--trace", options->rates.trace, "Only this trace; default: all")
-      ->check(whole_number(1, 1'000'000));
-  command->add_option("--runs", options->rates.runs, "Simulations of each trace")
-      ->check(whole_number(1, 1'000'000))
-      ->capture_default_str();
+  command.option("scenario", options->scenario, "Scenario file (YAML)").required();
+  command.option("--trace", options->rates.trace, "Only this trace; default: all")
+      .check(WholeNumber{1, 1'000'000});
+  command.option("--runs", options->rates.runs, "Simulations of each trace")
+      .check(WholeNumber{1, 1'000'000})
+      .show_default();
   command
-      ->add_option("--match", options->match,
-                   "What an end state is held against: the trace, or all ends the model admits")
-      ->check(CLI::IsMember({"trace", "model"}));
-  command->add_option("--confidence", options->rates.confidence, "Confidence of each interval")
-      ->check(finite_range(0.5, 0.999999))
-      ->capture_default_str();
-  command->add_option("--seed", options->rates.seed, "Seed of every random choice")
-      ->check(whole_number(0, kMaxSeed))
-      ->capture_default_str();
-  command->add_option("-j,--jobs", options->rates.jobs, "Simulations at the same time")
-      ->check(whole_number(1, 256))
-      ->capture_default_str();
-  return {command, [options](Invocation& invocation) { return run_rates(*options, invocation); }};
+      .option("--match", options->match,
+              "What an end state is held against: the trace, or all ends the model admits")
+      .check(OneOf{{"trace", "model"}});
+  command.option("--confidence", options->rates.confidence, "Confidence of each interval")
+      .check(FiniteNumber{0.5, 0.999999})
+      .show_default();
+  command.option("--seed", options->rates.seed, "Seed of every random choice")
+      .check(WholeNumber{0, kMaxSeed})
+      .show_default();
+  command.option("-j,--jobs", options->rates.jobs, "Simulations at the same time")
+      .check(WholeNumber{1, 256})
+      .show_default();
+  return {std::move(command),
+          [options](Invocation& invocation) { return run_rates(*options, invocation); }};
 }
 
 }  // namespace parallax::tools

@@ -55,18 +55,18 @@ int replay(const ReplayOptions& options, Invocation& invocation) {
 
 }  // namespace
 
-Command add_replay_command(CLI::App& app) {
+Command replay_command() {
   auto options = std::make_shared<ReplayOptions>();
-  auto* command =
-      app.add_subcommand("replay", "Repeat one recorded simulation and compare it bit by bit");
-  command->footer(
+  OptionTable command("replay", "Repeat one recorded simulation and compare it bit by bit");
+  command.footer(
       "Examples:\n"
       "  parallax replay out/edge                the run's first discrepancy\n"
       "  parallax replay out/edge --sample 1.4   simulation 4 of trace 1\n"
       "Exit codes: 0 identical, 1 differs, 3 the scenario has changed since.");
-  command->add_option("run_dir", options->run_dir, "Folder of a run")->required();
-  command->add_option("--sample", options->sample, "TRACE.SAMPLE; default: the first discrepancy");
-  return {command, [options](Invocation& invocation) { return replay(*options, invocation); }};
+  command.option("run_dir", options->run_dir, "Folder of a run").required();
+  command.option("--sample", options->sample, "TRACE.SAMPLE; default: the first discrepancy");
+  return {std::move(command),
+          [options](Invocation& invocation) { return replay(*options, invocation); }};
 }
 
 }  // namespace parallax::tools

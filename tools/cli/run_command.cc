@@ -115,47 +115,47 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
 
 }  // namespace
 
-Command add_run_command(CLI::App& app) {
+Command run_command() {
   auto options = std::make_shared<RunOptions>();
-  auto* command = app.add_subcommand(
-      "run", "The whole loop: trace, sample, simulate, compare, confidence, next trace");
-  command->footer(
+  OptionTable command("run",
+                      "The whole loop: trace, sample, simulate, compare, confidence, next trace");
+  command.footer(
       "Examples:\n"
       "  parallax run scenarios/two_regions/scenario.yaml\n"
       "  parallax run edge.yaml --jobs 2 --seed 7 --out out/edge7\n"
       "  parallax run edge.yaml --seed 7 --out out/edge7 --resume\n"
       "Exit codes: 0 no discrepancy, 1 discrepancy or no trace, 4 inconclusive.");
-  command->add_option("scenario", options->scenario, "Scenario file (YAML)")->required();
-  command->add_option("--out", options->out, "Run folder; default out/NAME, numbered if taken");
-  command->add_option("--seed", options->seed, "Seed of every random choice")
-      ->check(whole_number(0, kMaxSeed))
-      ->capture_default_str();
-  command->add_option("-j,--jobs", options->jobs, "Simulations at the same time")
-      ->check(whole_number(1, 256))
-      ->capture_default_str();
-  command->add_flag("--resume", options->resume, "Continue the run in the run folder");
-  command->add_flag("--keep-going", options->keep_going,
-                    "Go on with the next trace after a discrepancy");
-  command->add_option("--criterion", options->criterion, "When a trace has been tried enough")
-      ->check(CLI::IsMember({"clean-runs", "paper"}));
+  command.option("scenario", options->scenario, "Scenario file (YAML)").required();
+  command.option("--out", options->out, "Run folder; default out/NAME, numbered if taken");
+  command.option("--seed", options->seed, "Seed of every random choice")
+      .check(WholeNumber{0, kMaxSeed})
+      .show_default();
+  command.option("-j,--jobs", options->jobs, "Simulations at the same time")
+      .check(WholeNumber{1, 256})
+      .show_default();
+  command.flag("--resume", options->resume, "Continue the run in the run folder");
+  command.flag("--keep-going", options->keep_going,
+               "Go on with the next trace after a discrepancy");
+  command.option("--criterion", options->criterion, "When a trace has been tried enough")
+      .check(OneOf{{"clean-runs", "paper"}});
   command
-      ->add_option("--match", options->match,
-                   "What an end state is held against: the trace, or all ends the model admits")
-      ->check(CLI::IsMember({"trace", "model"}));
-  command->add_option("--confidence", options->confidence, "Confidence level C of the claim")
-      ->check(finite_range(0.5, 0.999999));
-  command->add_option("--epsilon", options->epsilon, "Discrepancy probability to exclude")
-      ->check(finite_range(1e-6, 0.5));
-  command->add_option("--max-runs", options->max_runs, "Simulations per trace before giving up")
-      ->check(whole_number(1, 1'000'000));
+      .option("--match", options->match,
+              "What an end state is held against: the trace, or all ends the model admits")
+      .check(OneOf{{"trace", "model"}});
+  command.option("--confidence", options->confidence, "Confidence level C of the claim")
+      .check(FiniteNumber{0.5, 0.999999});
+  command.option("--epsilon", options->epsilon, "Discrepancy probability to exclude")
+      .check(FiniteNumber{1e-6, 0.5});
+  command.option("--max-runs", options->max_runs, "Simulations per trace before giving up")
+      .check(WholeNumber{1, 1'000'000});
   command
-      ->add_option("--hits", options->hits,
-                   "Where traces end: first (at the first hit of the constraints) or all (at each)")
-      ->check(CLI::IsMember({"first", "all"}))
-      ->capture_default_str();
-  command->add_flag("--split-initial", options->split_initial,
-                    "Try every initial state, not only every sequence of events");
-  return {command,
+      .option("--hits", options->hits,
+              "Where traces end: first (at the first hit of the constraints) or all (at each)")
+      .check(OneOf{{"first", "all"}})
+      .show_default();
+  command.flag("--split-initial", options->split_initial,
+               "Try every initial state, not only every sequence of events");
+  return {std::move(command),
           [options](Invocation& invocation) { return run_scenario(*options, invocation); }};
 }
 

@@ -179,38 +179,39 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
 
 }  // namespace
 
-Command add_suite_command(CLI::App& app) {
+Command suite_command() {
   auto options = std::make_shared<SuiteOptions>();
-  auto* command = app.add_subcommand(
+  OptionTable command(
       "suite", "Run every scenario and model expectation below a path (docs/suite_format.md)");
-  command->footer(
+  command.footer(
       "Examples:\n"
       "  parallax suite scenarios --jobs 2\n"
       "  parallax suite scenarios --fast              without the long simulations\n"
       "  parallax suite scenarios/classics --only zoo\n"
       "  parallax suite scenarios --shard 2/5 --junit suite.xml");
-  command->add_option("paths", options->paths, "Scenarios, manifests, or folders that hold some")
-      ->required();
-  command->add_option("--only", options->only, "Only cases whose name (file:id) contains this");
-  command->add_flag("--fast", options->fast,
-                    "Only expectations of models, and scenarios that say `fast: true`");
-  command->add_option("--out", options->out, "Folder of the runs, made anew, and the results")
-      ->capture_default_str();
-  command->add_option("--junit", options->junit, "Write a JUnit report to this file");
-  command->add_option("--shard", options->shard, "Part I of N, as I/N; `slurm`: from a job array")
-      ->capture_default_str();
-  command->add_flag("--rerun-failed", options->rerun_failed,
-                    "Only cases that did not pass in the last suite with this --out");
-  command->add_flag("--update-goldens", options->update_goldens,
-                    "Write the golden files of cases that are otherwise as expected");
-  command->add_flag("--force", options->force, "Write golden files even where `CI` is set");
-  command->add_option("--seed", options->seed, "Seed of every run")
-      ->check(whole_number(0, kMaxSeed))
-      ->capture_default_str();
-  command->add_option("-j,--jobs", options->jobs, "Cases at the same time")
-      ->check(whole_number(1, 256))
-      ->capture_default_str();
-  return {command, [options](Invocation& invocation) { return run_suite(*options, invocation); }};
+  command.option("paths", options->paths, "Scenarios, manifests, or folders that hold some")
+      .required();
+  command.option("--only", options->only, "Only cases whose name (file:id) contains this");
+  command.flag("--fast", options->fast,
+               "Only expectations of models, and scenarios that say `fast: true`");
+  command.option("--out", options->out, "Folder of the runs, made anew, and the results")
+      .show_default();
+  command.option("--junit", options->junit, "Write a JUnit report to this file");
+  command.option("--shard", options->shard, "Part I of N, as I/N; `slurm`: from a job array")
+      .show_default();
+  command.flag("--rerun-failed", options->rerun_failed,
+               "Only cases that did not pass in the last suite with this --out");
+  command.flag("--update-goldens", options->update_goldens,
+               "Write the golden files of cases that are otherwise as expected");
+  command.flag("--force", options->force, "Write golden files even where `CI` is set");
+  command.option("--seed", options->seed, "Seed of every run")
+      .check(WholeNumber{0, kMaxSeed})
+      .show_default();
+  command.option("-j,--jobs", options->jobs, "Cases at the same time")
+      .check(WholeNumber{1, 256})
+      .show_default();
+  return {std::move(command),
+          [options](Invocation& invocation) { return run_suite(*options, invocation); }};
 }
 
 }  // namespace parallax::tools

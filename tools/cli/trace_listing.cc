@@ -108,16 +108,15 @@ runtime::ItfFormat itf_format(const ModelOptions& model, const compiler::Compila
 
 }  // namespace
 
-void add_listing_options(CLI::App& command, ListingOptions& options) {
+void add_listing_options(OptionTable& command, ListingOptions& options) {
   command
-      .add_option(
-          "--format", options.format,
-          "text (changes only), jsonl, itf (Informal Trace Format), csv, or decreasoner (as "
-          "the 2005 reasoner prints models)")
-      ->check(CLI::IsMember({"text", "jsonl", "itf", "csv", "decreasoner"}))
-      ->capture_default_str();
-  command.add_option("--output", options.output,
-                     "With --format itf: a new folder, one file for each trace");
+      .option("--format", options.format,
+              "text (changes only), jsonl, itf (Informal Trace Format), csv, or decreasoner (as "
+              "the 2005 reasoner prints models)")
+      .check(OneOf{{"text", "jsonl", "itf", "csv", "decreasoner"}})
+      .show_default();
+  command.option("--output", options.output,
+                 "With --format itf: a new folder, one file for each trace");
 }
 
 bool check_listing(const ModelOptions& model, const ListingOptions& options,

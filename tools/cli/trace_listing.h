@@ -14,7 +14,7 @@ struct ListingOptions {
   std::string format = "text";  // text, jsonl, itf, csv, decreasoner
   std::string output;           // itf: a folder of one file for each trace; else empty
 };
-void add_listing_options(CLI::App& command, ListingOptions& options);
+void add_listing_options(OptionTable& command, ListingOptions& options);
 
 /// Reports options that do not go together.
 bool check_listing(const ModelOptions& model, const ListingOptions& options,

@@ -163,31 +163,31 @@ std::optional<CountedTraces> count_model_traces(const SearchOptions& options,
   return result;
 }
 
-void add_search_options(CLI::App& command, SearchOptions& options) {
-  command.add_option("--limit", options.limit, "Stop after this many traces; 0: all")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command.add_option("--from", options.from, "Begin with the trace of this number")
-      ->check(whole_number(1, kMaxSeed))
-      ->capture_default_str();
-  command.add_option("--sample", options.sample, "So many traces, each any one equally likely")
-      ->check(whole_number(1, 1'000'000));
-  command.add_option("--seed", options.seed, "Of --sample")
-      ->check(whole_number(0, kMaxSeed))
-      ->capture_default_str();
+void add_search_options(OptionTable& command, SearchOptions& options) {
+  command.option("--limit", options.limit, "Stop after this many traces; 0: all")
+      .check(NonNegative{})
+      .show_default();
+  command.option("--from", options.from, "Begin with the trace of this number")
+      .check(WholeNumber{1, kMaxSeed})
+      .show_default();
+  command.option("--sample", options.sample, "So many traces, each any one equally likely")
+      .check(WholeNumber{1, 1'000'000});
+  command.option("--seed", options.seed, "Of --sample")
+      .check(WholeNumber{0, kMaxSeed})
+      .show_default();
   command
-      .add_option("--strategy", options.strategy,
-                  "auto, search, graph, tree, guarded or blocking: the traces and their order are "
-                  "the same, the time is not")
-      ->check(CLI::IsMember(strategy_names()))
-      ->capture_default_str();
+      .option("--strategy", options.strategy,
+              "auto, search, graph, tree, guarded or blocking: the traces and their order are "
+              "the same, the time is not")
+      .check(OneOf{strategy_names()})
+      .show_default();
   command
-      .add_option("--hits", options.hits,
-                  "Where traces end: first (at the first hit of the constraints) or all (at each)")
-      ->check(CLI::IsMember({"first", "all"}))
-      ->capture_default_str();
-  command.add_flag("--split-initial", options.split_initial,
-                   "List every initial state, not only every sequence of events");
+      .option("--hits", options.hits,
+              "Where traces end: first (at the first hit of the constraints) or all (at each)")
+      .check(OneOf{{"first", "all"}})
+      .show_default();
+  command.flag("--split-initial", options.split_initial,
+               "List every initial state, not only every sequence of events");
 }
 
 }  // namespace parallax::tools

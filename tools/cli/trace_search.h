@@ -24,7 +24,7 @@ struct SearchOptions {
   bool split_initial = false;
   bool stats = false;  // say how they were found
 };
-void add_search_options(CLI::App& command, SearchOptions& options);
+void add_search_options(OptionTable& command, SearchOptions& options);
 
 /// What is known of the traces that were not listed, and how.
 struct Ending {

@@ -190,11 +190,11 @@ int list_traces(const TracesOptions& options, Invocation& invocation) {
 
 }  // namespace
 
-Command add_traces_command(CLI::App& app) {
+Command traces_command() {
   auto options = std::make_shared<TracesOptions>();
-  auto* command = app.add_subcommand(
+  OptionTable command(
       "traces", "Enumerate the traces of a model, or of a scenario's model, plan and constraints");
-  command->footer(
+  command.footer(
       "Examples:\n"
       "  parallax traces domain.e start.e --horizon 2 --limit 0\n"
       "  parallax traces domain.e --count\n"
@@ -206,26 +206,26 @@ Command add_traces_command(CLI::App& app) {
       "  parallax traces domain.e --limit 0 --format itf --output traces/\n"
       "  parallax traces old.e --compat decreasoner --format decreasoner\n"
       "  parallax traces domain.e --replay traces/trace_000001.itf.json");
-  add_model_options(*command, options->model);
-  add_plan_options(*command, options->model);
-  add_search_options(*command, options->search);
-  command->add_flag("--count", options->count, "Print only the number of traces");
-  auto* distinct = command->add_option(
-      "--distinct", options->search.distinct,
-      "What tells traces apart: `observable` (HoldsAt and Happens) or `all` atoms, which is the "
-      "default of --format decreasoner");
-  distinct->check(CLI::IsMember({"observable", "all"}))->capture_default_str();
-  command->add_flag("--stats", options->model.stats,
-                    "Show on standard error how traces were found and what each axiom costs");
-  command->add_flag("--expect-traces", options->expect_traces, "Exit with 1 if there is no trace");
-  command->add_flag(
-      "--check", options->check,
-      "Evaluate the model on every trace by independent means; exit 5 if one differs");
-  add_certify_option(*command, options->certify);
-  add_listing_options(*command, options->listing);
-  add_replay_options(*command, options->replay);
-  return {command, [options, distinct](Invocation& invocation) {
-            options->distinct_given = distinct->count() > 0;
+  add_model_options(command, options->model);
+  add_plan_options(command, options->model);
+  add_search_options(command, options->search);
+  command.flag("--count", options->count, "Print only the number of traces");
+  command
+      .option("--distinct", options->search.distinct,
+              "What tells traces apart: `observable` (HoldsAt and Happens) or `all` atoms, which "
+              "is the "
+              "default of --format decreasoner")
+      .check(OneOf{{"observable", "all"}})
+      .show_default();
+  command.flag("--stats", options->model.stats,
+               "Show on standard error how traces were found and what each axiom costs");
+  command.flag("--expect-traces", options->expect_traces, "Exit with 1 if there is no trace");
+  command.flag("--check", options->check,
+               "Evaluate the model on every trace by independent means; exit 5 if one differs");
+  add_certify_option(command, options->certify);
+  add_listing_options(command, options->listing);
+  add_replay_options(command, options->replay);
+  return {std::move(command), [options](Invocation& invocation) {
             if (options->listing.format == "decreasoner" && !options->distinct_given) {
               options->search.distinct = "all";
             }

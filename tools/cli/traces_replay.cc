@@ -227,12 +227,12 @@ class TraceFileReplay {
 
 }  // namespace
 
-void add_replay_options(CLI::App& command, ReplayTracesOptions& options) {
-  command.add_option("--replay", options.file,
-                     "Hold the traces of this file (jsonl or itf) against the model; exit 1 if one "
-                     "is no trace of it");
-  command.add_flag("--other-model", options.other_model,
-                   "Replay traces of another model that has the same names");
+void add_replay_options(OptionTable& command, ReplayTracesOptions& options) {
+  command.option("--replay", options.file,
+                 "Hold the traces of this file (jsonl or itf) against the model; exit 1 if one "
+                 "is no trace of it");
+  command.flag("--other-model", options.other_model,
+               "Replay traces of another model that has the same names");
 }
 
 int replay_traces(const ModelOptions& model, const ReplayTracesOptions& options,

@@ -11,7 +11,7 @@ struct ReplayTracesOptions {
   bool other_model = false;  // --other-model
 };
 
-void add_replay_options(CLI::App& command, ReplayTracesOptions& options);
+void add_replay_options(OptionTable& command, ReplayTracesOptions& options);
 
 /// `traces --replay`: holds the traces of a file against the model. Prints a line for each trace
 /// and reports those that fail (E7204, E7205) at the first axiom and timepoint. Every trace that

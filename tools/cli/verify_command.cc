@@ -210,11 +210,11 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
 
 }  // namespace
 
-Command add_verify_command(CLI::App& app) {
+Command verify_command() {
   auto options = std::make_shared<VerifyOptions>();
-  auto* command = app.add_subcommand(
-      "verify", "Is there an initial state and a path of the plan that violates a property?");
-  command->footer(
+  OptionTable command("verify",
+                      "Is there an initial state and a path of the plan that violates a property?");
+  command.footer(
       "Examples:\n"
       "  parallax verify domain.e start.e --plan fetch.lisp --bind robot.bind \\\n"
       "      --regions scenario.yaml --horizon 6 --property \"!HoldsAt(Holding(),time)\"\n"
@@ -227,15 +227,15 @@ Command add_verify_command(CLI::App& app) {
       "is checked by independent means and kept under --certify. A scenario's own constraints play "
       "no\n"
       "part.");
-  add_model_options(*command, options->model);
-  add_plan_options(*command, options->model);
-  command
-      ->add_option("--property", options->model.property, "Formula that should hold at all times")
-      ->required();
-  add_certify_option(*command, options->certify);
-  command->add_flag("--check", options->check,
-                    "Evaluate the model on the trace by independent means; exit 5 if it differs");
-  return {command, [options](Invocation& invocation) { return verify(*options, invocation); }};
+  add_model_options(command, options->model);
+  add_plan_options(command, options->model);
+  command.option("--property", options->model.property, "Formula that should hold at all times")
+      .required();
+  add_certify_option(command, options->certify);
+  command.flag("--check", options->check,
+               "Evaluate the model on the trace by independent means; exit 5 if it differs");
+  return {std::move(command),
+          [options](Invocation& invocation) { return verify(*options, invocation); }};
 }
 
 }  // namespace parallax::tools

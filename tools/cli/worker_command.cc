@@ -11,18 +11,18 @@
 
 namespace parallax::tools {
 
-Command add_worker_command(CLI::App& app) {
+Command worker_command() {
   struct Options {
     std::string scenario;
     std::string hash;
   };
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand(
-      "worker", "Serve the built-in simulator of a scenario on standard input and output");
-  command->group("");  // started by `run`; not meant to be typed
-  command->add_option("scenario", options->scenario)->required();
-  command->add_option("--scenario-hash", options->hash);
-  return {command, [options](Invocation& invocation) {
+  OptionTable command("worker",
+                      "Serve the built-in simulator of a scenario on standard input and output");
+  command.hide();  // started by `run`; not meant to be typed
+  command.option("scenario", options->scenario).required();
+  command.option("--scenario-hash", options->hash);
+  return {std::move(command), [options](Invocation& invocation) {
             const auto scenario =
                 harness::load_scenario(options->scenario, invocation.files(), invocation.sink());
             if (!scenario) return 0;

@@ -1,0 +1,167 @@
+#include "tools/cli/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <map>
+#include <sstream>
+
+namespace parallax::tools {
+namespace {
+
+CLI::Validator finite_range(double lower, double upper) {
+  const auto check = [lower, upper](std::string& text) -> std::string {
+    double value = 0.0;
+    // Not a number compares false with everything, so ask for what is wanted.
+    const bool fine = CLI::detail::lexical_cast(text, value) && value >= lower && value <= upper;
+    return fine ? std::string() : fmt::format("{} is no number from {} to {}", text, lower, upper);
+  };
+  return CLI::Validator(check, fmt::format("[{} - {}]", lower, upper));
+}
+
+CLI::Validator whole_number(std::int64_t lower, std::int64_t upper) {
+  const auto check = [lower, upper](std::string& text) -> std::string {
+    std::int64_t value = 0;
+    const auto* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    const bool fine = error == std::errc() && stop == end && value >= lower && value <= upper;
+    return fine ? std::string()
+                : fmt::format("{} is no whole number from {} to {}", text, lower, upper);
+  };
+  return CLI::Validator(check, "N");
+}
+
+struct AddCheck {
+  CLI::Option& option;
+
+  void operator()(std::monostate) const {}
+  void operator()(const OneOf& one) const { option.check(CLI::IsMember(one.values)); }
+  void operator()(const WholeNumber& range) const {
+    option.check(whole_number(range.lower, range.upper));
+  }
+  void operator()(const FiniteNumber& range) const {
+    option.check(finite_range(range.lower, range.upper));
+  }
+  void operator()(const IntRange& range) const {
+    option.check(CLI::Range(range.lower, range.upper));
+  }
+  void operator()(NonNegative) const { option.check(CLI::NonNegativeNumber); }
+  void operator()(Positive) const { option.check(CLI::PositiveNumber); }
+};
+
+CLI::Option* add_flag(CLI::App& app, const Option& from) {
+  if (auto* const* counter = std::get_if<int*>(&from.target)) {
+    return app.add_flag(from.names, **counter, from.help);
+  }
+  if (auto* const* text = std::get_if<std::string*>(&from.target)) {
+    return app.add_flag(from.names, **text, from.help);
+  }
+  return app.add_flag(from.names, *std::get<bool*>(from.target), from.help);
+}
+
+CLI::Option* add_option(CLI::App& app, const Option& from) {
+  auto* added =
+      from.is_flag
+          ? add_flag(app, from)
+          : std::visit([&](auto* target) { return app.add_option(from.names, *target, from.help); },
+                       from.target);
+  if (from.is_required) added->required();
+  if (from.form != ListForm::kAsManyAsFollow) {
+    added->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  }
+  if (from.form == ListForm::kOneEachTime) added->allow_extra_args(false);
+  std::visit(AddCheck{*added}, from.value_check);
+  if (!from.value_name.empty()) added->type_name(from.value_name);
+  if (from.shows_default) added->capture_default_str();
+  return added;
+}
+
+/// The declarations of a table, and who asks which of them was given.
+class Declared {
+ public:
+  void add(CLI::App& app, const OptionTable& table) {
+    if (!table.footer().empty()) app.footer(table.footer());
+    std::map<std::string, CLI::Option*> by_name;
+    for (const auto& option : table.options()) {
+      auto* added = add_option(app, option);
+      by_name[option.names] = added;
+      if (option.was_given != nullptr) asked_.emplace_back(added, option.was_given);
+    }
+    for (const auto& option : table.options()) {
+      for (const auto& other : option.partners) by_name.at(option.names)->needs(by_name.at(other));
+    }
+  }
+  void tell() const {
+    for (const auto& [option, flag] : asked_) *flag = option->count() > 0;
+  }
+
+ private:
+  std::vector<std::pair<const CLI::Option*, bool*>> asked_;
+};
+
+/// The long options of the application and of the subcommand that was parsed; without one, the
+/// names of all commands.
+std::vector<std::string> known_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  const auto collect = [&](const CLI::App& from) {
+    for (const auto* option : from.get_options()) {
+      for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+    }
+  };
+  collect(app);
+  for (const auto* sub : app.get_subcommands()) collect(*sub);
+  if (app.get_subcommands().empty()) {
+    for (const auto* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
+      names.push_back(sub->get_name());
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+ParsedLine parse_command_line(const Program& program, int argc, char** argv) {
+  CLI::App app(program.table.description(), program.table.name());
+  Declared declared;
+  if (!program.version.empty()) app.set_version_flag("--version", program.version);
+  if (program.needs_command) app.require_subcommand(1);
+  declared.add(app, program.table);
+  std::vector<const CLI::App*> commands;
+  for (const auto* table : program.commands) {
+    auto* command = app.add_subcommand(table->name(), table->description());
+    if (table->is_hidden()) command->group("");
+    declared.add(*command, *table);
+    commands.push_back(command);
+  }
+  ParsedLine line;
+  std::ostringstream output, messages;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {  // also --help and --version
+    line.exit_code = app.exit(error, output, messages);
+    line.output = output.str();
+    line.messages = messages.str();
+    if (dynamic_cast<const CLI::Success*>(&error) == nullptr) {
+      line.error = error.what();
+      line.known = known_names(app);
+    }
+  }
+  if (!app.get_subcommands().empty()) {
+    const auto at = std::find(commands.begin(), commands.end(), app.get_subcommands().front());
+    line.command = static_cast<std::size_t>(at - commands.begin());
+  }
+  declared.tell();
+  return line;
+}
+
+ParsedLine parse_and_print(const Program& program, int argc, char** argv) {
+  auto line = parse_command_line(program, argc, argv);
+  std::fwrite(line.output.data(), 1, line.output.size(), stdout);
+  std::fwrite(line.messages.data(), 1, line.messages.size(), stderr);
+  return line;
+}
+
+}  // namespace parallax::tools

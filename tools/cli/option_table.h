@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace parallax::tools {
+
+/// What the text of an option's value has to be.
+struct OneOf {
+  std::vector<std::string> values;
+};
+struct WholeNumber {  // every character of it
+  std::int64_t lower, upper;
+};
+struct FiniteNumber {  // refuses what is no number, which compares with nothing
+  double lower, upper;
+};
+struct IntRange {
+  int lower, upper;
+};
+struct NonNegative {};
+struct Positive {};
+using ValueCheck =
+    std::variant<std::monostate, OneOf, WholeNumber, FiniteNumber, IntRange, NonNegative, Positive>;
+
+/// Where a value goes. A flag sets a bool, counts in an int, or takes a text after `=`.
+using OptionTarget = std::variant<bool*, int*, std::int64_t*, std::uint64_t*, double*, std::string*,
+                                  std::vector<std::string>*>;
+
+/// How many values a list takes where it is named.
+enum class ListForm {
+  kAsManyAsFollow,
+  kAsManyAsFollowFromOne,  // repeated, and words that follow are values as well
+  kOneEachTime,            // repeated; a word that follows is a positional argument
+};
+
+/// One option, flag or positional argument, as data. Declared by chaining:
+///     table.option("--horizon", horizon, "Last timepoint").check(IntRange{0, 100});
+struct Option {
+  std::string names;  // "-j,--jobs"; without dashes: positional
+  OptionTarget target;
+  std::string help;
+  bool is_flag = false;
+  bool is_required = false;
+  bool shows_default = false;
+  ListForm form = ListForm::kAsManyAsFollow;
+  ValueCheck value_check = {};
+  std::string value_name = {};             // in the help, instead of the type
+  std::vector<std::string> partners = {};  // options of the table without which this one is refused
+  bool* was_given = nullptr;               // set after parsing
+
+  Option& required() { return is_required = true, *this; }
+  /// The help shows what the target holds now.
+  Option& show_default() { return shows_default = true, *this; }
+  Option& list(ListForm how) { return form = how, *this; }
+  Option& check(ValueCheck what) { return value_check = std::move(what), *this; }
+  Option& named_value(std::string name) { return value_name = std::move(name), *this; }
+  Option& needs(std::string other) { return partners.push_back(std::move(other)), *this; }
+  Option& given(bool& flag) { return was_given = &flag, *this; }
+};
+
+/// The options of a program or of one of its commands. Targets outlive the parsing.
+class OptionTable {
+ public:
+  OptionTable(std::string name, std::string description)
+      : name_(std::move(name)), description_(std::move(description)) {}
+
+  const std::string& name() const { return name_; }
+  const std::string& description() const { return description_; }
+  const std::string& footer() const { return footer_; }
+  bool is_hidden() const { return hidden_; }
+  const std::deque<Option>& options() const { return options_; }
+
+  /// Printed below the help.
+  void footer(std::string text) { footer_ = std::move(text); }
+  /// Leaves the command out of the help.
+  void hide() { hidden_ = true; }
+  /// The reference stays valid while the table lives.
+  template <typename T>
+  Option& option(std::string names, T& target, std::string help = "") {
+    return options_.emplace_back(Option{std::move(names), &target, std::move(help)});
+  }
+  template <typename T>
+  Option& flag(std::string names, T& target, std::string help = "") {
+    auto& made = option(std::move(names), target, std::move(help));
+    made.is_flag = true;
+    return made;
+  }
+
+ private:
+  std::string name_, description_, footer_;
+  bool hidden_ = false;
+  std::deque<Option> options_;
+};
+
+}  // namespace parallax::tools
