@@ -59,6 +59,7 @@ struct Section {
   const char* name;
   const char* what;
   void (*measure)(Bench&);
+  bool only_by_name = false;  // too long to be measured with the others
 };
 
 /// In the order in which they are measured and printed.
@@ -77,5 +78,6 @@ void measure_proofs(Bench& bench);
 void measure_plan(Bench& bench);
 void measure_world(Bench& bench);
 void measure_demo(Bench& bench);
+void measure_build(Bench& bench);
 
 }  // namespace parallax::tools

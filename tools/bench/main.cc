@@ -28,6 +28,7 @@ const std::vector<Section>& sections() {
       {"plan", "a long plan in the kitchen", measure_plan},
       {"world", "the two-region world", measure_world},
       {"demo", "the demo", measure_demo},
+      {"build", "building the program; measured only if it is named", measure_build, true},
   };
   return all;
 }
@@ -44,8 +45,8 @@ struct BenchOptions {
 int measure_all(const BenchOptions& options) {
   Bench bench(options.measure);
   for (const auto& section : sections()) {
-    const bool wanted = options.only.empty() ||
-                        std::count(options.only.begin(), options.only.end(), section.name) != 0;
+    const bool named = std::count(options.only.begin(), options.only.end(), section.name) != 0;
+    const bool wanted = named || (options.only.empty() && !section.only_by_name);
     if (wanted) section.measure(bench);
   }
   if (!options.json.empty()) std::ofstream(options.json) << to_json(bench.rows());
@@ -84,7 +85,8 @@ int run(int argc, char** argv) {
   OptionTable table("parallax_bench", "Measures the program beside its peers");
   table.footer(list_of_sections());
   BenchOptions options;
-  table.option("--only", options.only, "Sections to measure; default: all").check(section_names());
+  table.option("--only", options.only, "Sections to measure; default: all but build")
+      .check(section_names());
   table.option("--json", options.json, "File for all figures as one JSON document");
   table.option("--repetitions", options.measure.repetitions, "Runs of which the median counts")
       .check(IntRange{1, 1000})

@@ -44,7 +44,24 @@ function(parallax_library name)
   target_link_libraries(parallax_${name} PUBLIC ${arg_DEPENDS}
                         PRIVATE parallax_warnings ${arg_PRIVATE_DEPENDS})
   parallax_batches(parallax_${name} ${arg_SOURCES})
+  parallax_headers(parallax_${name} ${arg_SOURCES})
   parallax_record_layer(parallax::${name} "${arg_SOURCES}" "${arg_DEPENDS};${arg_PRIVATE_DEPENDS}")
+endfunction()
+
+# The headers that lie beside the sources, as a file set: what is installed, and what the preset
+# `headers` compiles one by one. A header belongs to the first library of its folder.
+function(parallax_headers target)
+  set(headers "")
+  foreach(source ${ARGN})
+    cmake_path(GET source PARENT_PATH folder)
+    file(GLOB beside CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.h)
+    list(APPEND headers ${beside})
+  endforeach()
+  list(REMOVE_DUPLICATES headers)
+  get_property(taken GLOBAL PROPERTY parallax_headers)
+  list(REMOVE_ITEM headers "" ${taken})
+  set_property(GLOBAL APPEND PROPERTY parallax_headers ${headers})
+  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
 endfunction()
 
 # parallax_program(NAME SOURCES a.cc ... DEPENDS lib ...): an executable, which is a layer as well.
@@ -97,4 +114,7 @@ function(parallax_test name)
     set(arg_LABELS fast)
   endif()
   set_tests_properties(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT 600)
+  if("fast" IN_LIST arg_LABELS)
+    add_dependencies(fast_tests ${name})
+  endif()
 endfunction()
