@@ -97,7 +97,7 @@ class Campaign {
       if (!*trace) {
         result_.exploration = traces_.exploration();
         result_.bounds = traces_.bounds();
-        return true;
+        return result_.exploration != "stopped";
       }
       if (max_traces > 0 && static_cast<std::int64_t>(result_.traces.size()) >= max_traces) {
         limited_ = true;

@@ -200,6 +200,31 @@ TEST_CASE("the paper's criterion tells that its level is no probability, and wai
   }
 }
 
+TEST_CASE("a search for traces that was stopped leaves the campaign open") {
+  for (const int traces : {0, 1}) {
+    CAPTURE(traces);
+    Bench bench;
+    bench.traces = traces;
+    bench.openness.is_stopped = true;
+    const auto result = bench.run();
+    REQUIRE(result.has_value());
+    CHECK(result->verdict == CampaignVerdict::kInconclusive);
+    CHECK(result->exploration == "stopped");
+    CHECK(result->interrupted);
+    CHECK(exit_code(*result) == 4);
+  }
+}
+
+TEST_CASE("an end state of which nothing is known is no discrepancy") {
+  Bench bench;
+  bench.script.drops = box_far;
+  bench.openness = {.outcomes = true, .is_stopped = true};
+  const auto result = bench.run();
+  REQUIRE(result.has_value());
+  CHECK(result->verdict == CampaignVerdict::kInconclusive);
+  CHECK(result->discrepancies.empty());
+}
+
 TEST_CASE("the trace limit leaves the campaign inconclusive only if there was a further trace") {
   Bench bench;
   bench.traces = 2;

@@ -186,6 +186,7 @@ class ScriptedSimulator final : public Simulator {
 /// What the model leaves open, and what it says when it is asked.
 struct Openness {
   bool initial_states = false, outcomes = false;
+  bool is_stopped = false;  // the search ends before it is at its end, and decides nothing more
   std::function<bool(const std::map<std::string, bool>&)> admits =
       [](const std::map<std::string, bool>&) { return false; };
 };
@@ -205,9 +206,12 @@ class ListFeed final : public TraceFeed {
   base::Known admits(const CampaignTrace& trace,
                      const std::map<std::string, bool>& last_state) override {
     CHECK(trace.number == given_);
+    if (openness_.is_stopped) return base::Known::kUndecided;
     return openness_.admits(last_state) ? base::Known::kYes : base::Known::kNo;
   }
-  std::string exploration() const override { return "all traces explored"; }
+  std::string exploration() const override {
+    return openness_.is_stopped ? "stopped" : "all traces explored";
+  }
   const std::vector<std::string>& fluents() const override { return fluents_; }
 
   static CampaignTrace trace(std::int64_t number) {
