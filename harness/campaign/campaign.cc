@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <set>
 
 #include "compiler/base/contract.h"
 #include "compiler/base/diagnostic_codes.h"
@@ -31,20 +30,20 @@ TraceLine trace_line(const TracePlan& plan) {
 
 class Campaign {
  public:
-  Campaign(const Scenario& scenario, RunFolder folder, TraceFeed& traces,
+  Campaign(const Scenario& scenario, RunFolder folder, JournalText recorded, TraceFeed& traces,
            const SimulatorFactory& make_simulator, const CampaignOptions& options,
            base::SourceFiles& files, base::DiagnosticSink& sink)
       : scenario_(scenario),
         folder_(std::move(folder)),
+        recorded_(std::move(recorded)),
         traces_(traces),
         options_(options),
         files_(files),
         sink_(sink),
         criterion_(make_criterion(scenario.criterion)),
-        pool_(
-            options.jobs, make_simulator, [this](const SampleRecord& record) { keep(record); },
-            options.stop) {
-    for (const auto& fluent : traces.fluents()) fluents_.push_back(ground_fluent(fluent));
+        bench_(
+            scenario, traces, make_simulator, {options.seed, options.jobs, options.stop},
+            [this](const SampleRecord& record) { keep(record); }, sink) {
     result_.scenario = scenario.name;
     result_.title = scenario.title;
     result_.seed = options.seed;
@@ -54,19 +53,14 @@ class Campaign {
     result_.exploration = "stopped";
   }
 
-  ~Campaign() { pool_.close(); }  // its workers write to the journal, which goes before it
-
   base::Result<CampaignResult> run() {
-    const auto info = pool_.info();
-    if (!info) return finished(false);
-    if (info->name.empty()) {
-      return sink_.error(DiagnosticCode::kSimulatorNotStarted, scenario_.simulator.source,
-                         info->version);
-    }
-    result_.simulator = *info;
-    if (!check_against_simulator(scenario_, *info, sink_)) return sink_.already_reported();
-    auto journal = Journal::open(std::move(folder_), journal_header(scenario_, options_, *info),
-                                 scenario_.limits.max_lost_in_a_row, files_, sink_);
+    const auto started = bench_.start();
+    if (!started) return sink_.already_reported();
+    if (!*started) return finished(false);
+    result_.simulator = bench_.simulator();
+    auto journal =
+        Journal::open(std::move(folder_), journal_header(scenario_, options_, result_.simulator),
+                      std::move(recorded_), scenario_.limits.max_lost_in_a_row, files_, sink_);
     if (!journal) return sink_.already_reported();
     journal_ = std::move(*journal);
     result_.journal_open = true;
@@ -85,13 +79,11 @@ class Campaign {
     if (is_result) journal_->append(record);
   }
 
-  bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
-
   /// Trace after trace. False when something other than the lack of traces ended it early.
   base::Result<bool> explore() {
     const auto max_traces = scenario_.limits.max_traces;
     for (;;) {
-      if (stopped()) return false;
+      if (bench_.stopped()) return false;
       auto trace = traces_.next();
       if (!trace) return sink_.already_reported();
       if (!*trace) {
@@ -121,56 +113,18 @@ class Campaign {
   }
 
   base::Result<TraceEnd> one_trace(CampaignTrace trace) {
-    PARALLAX_REQUIRE(trace.holds.size() == trace.events.size() + 1,
-                     "a trace has one state more than it has events");
-    const auto& true_at_start = trace.holds.front();
-    const auto cuboid = scenario_.mapping->start_cuboid(
-        fluents_, std::set<std::string>(true_at_start.begin(), true_at_start.end()),
-        scenario_.sampling, scenario_.sampling_source, sink_);
-    if (!cuboid || !check_settable(*cuboid)) return sink_.already_reported();
-    const auto plan = make_plan(std::move(trace), *cuboid);
-    if (!plan) return sink_.already_reported();
-    if (!announce(**plan)) return sink_.already_reported();
-    const TraceContext context{scenario_,      options_,    result_.simulator,
-                               fluents_,       *criterion_, run_limit(scenario_).max_runs,
-                               traces_,        pool_,       *journal_,
-                               lost_in_a_row_, sink_};
-    auto outcome = run_trace(context, *plan, *cuboid);
+    auto trial = Trial::prepare(bench_, std::move(trace));
+    if (!trial || !announce(trial->plan())) return sink_.already_reported();
+    trial->continue_from(*journal_);
+    const TraceContext context{scenario_, options_,  *criterion_, run_limit(scenario_).max_runs,
+                               bench_,    *journal_, sink_};
+    auto outcome = run_trace(context, *std::move(trial));
     if (!outcome) return sink_.already_reported();
     result_.simulations += outcome->result.simulations;
     result_.traces.push_back(std::move(outcome->result));
     if (outcome->discrepancy) result_.discrepancies.push_back(std::move(*outcome->discrepancy));
     std::move(outcome->consumed.begin(), outcome->consumed.end(), std::back_inserter(consumed_));
     return outcome->end;
-  }
-
-  base::Result<std::shared_ptr<const TracePlan>> make_plan(CampaignTrace trace,
-                                                           const StartCuboid& cuboid) {
-    auto calls = action_calls(scenario_, trace, sink_);
-    auto sampler =
-        Sampler::make(cuboid, scenario_.sampling_inset_m, scenario_.sampling_source, sink_);
-    if (!calls || !sampler) return sink_.already_reported();
-    const auto key = hash64(trace.key);
-    return std::make_shared<const TracePlan>(
-        TracePlan{std::move(trace), std::move(*calls), std::move(*sampler), options_.seed, key,
-                  scenario_.limits.max_rejected_starts, may_repeat_losses(result_.simulator)});
-  }
-
-  /// Every drawn variable must be one that the simulator can start with.
-  base::Status check_settable(const StartCuboid& cuboid) {
-    const auto& known = result_.simulator.parameters;
-    bool fine = true;
-    for (const auto& dimension : cuboid.dimensions) {
-      const auto found = std::find_if(known.begin(), known.end(), [&](const Parameter& p) {
-        return p.name == dimension.variable;
-      });
-      if (known.empty() || (found != known.end() && found->settable)) continue;
-      sink_.error(DiagnosticCode::kVariableNotSettable, scenario_.sampling_source,
-                  dimension.variable);
-      fine = false;
-    }
-    if (!fine) return sink_.already_reported();
-    return base::Unit{};
   }
 
   /// Writes the trace down before its first sample, or finds it as it was written down.
@@ -213,7 +167,7 @@ class Campaign {
   }
 
   base::Result<CampaignResult> finished(bool complete) {
-    pool_.close();
+    bench_.close();
     if (complete && !journal_->rewrite(lines_, std::move(consumed_), sink_)) {
       return sink_.already_reported();
     }
@@ -229,27 +183,26 @@ class Campaign {
       result_.verdict = CampaignVerdict::kNoDiscrepancy;
     }
     result_.timing.wall_s = std::chrono::duration<double>(Clock::now() - started_).count();
-    result_.timing.runs_made = pool_.runs_made();
-    result_.timing.simulated_s = pool_.simulated_s();
+    result_.timing.runs_made = bench_.runs_made();
+    result_.timing.simulated_s = bench_.simulated_s();
     return std::move(result_);
   }
 
   const Scenario& scenario_;
-  RunFolder folder_;  // until the journal takes it over
+  RunFolder folder_;      // until the journal takes it over
+  JournalText recorded_;  // likewise
   TraceFeed& traces_;
   const CampaignOptions& options_;
   base::SourceFiles& files_;
   base::DiagnosticSink& sink_;
   Clock::time_point started_ = Clock::now();
-  std::vector<GroundFluent> fluents_;
   std::unique_ptr<ConfidenceCriterion> criterion_;
   std::unique_ptr<Journal> journal_;
   CampaignResult result_;
   std::vector<TraceLine> lines_;
   std::vector<SampleRecord> consumed_;
-  std::int64_t lost_in_a_row_ = 0;
   bool limited_ = false;  // by max_traces
-  WorkerPool pool_;       // last: its threads use what stands above
+  TrialBench bench_;      // last, so that its threads end before what they use
 };
 
 }  // namespace
@@ -274,8 +227,14 @@ base::Result<CampaignResult> run_campaign(const Scenario& scenario, TraceFeed& t
   // Before any worker starts: a folder that is in use must cost nothing, and nobody its report.
   auto folder = RunFolder::claim(options.run_dir, options.resume, sink);
   if (!folder) return sink.already_reported();
+  // A continuation of another run must not start anything either; the simulator is compared later.
+  auto recorded =
+      read_for_continuation(*folder, journal_header(scenario, options, {}), files, sink);
+  if (!recorded) return sink.already_reported();
   warn_of_low_limit(scenario, files, sink);
-  return Campaign(scenario, std::move(*folder), traces, make_simulator, options, files, sink).run();
+  return Campaign(scenario, std::move(*folder), std::move(*recorded), traces, make_simulator,
+                  options, files, sink)
+      .run();
 }
 
 std::string hash_of_sources(const base::SourceFiles& files) {

@@ -4,19 +4,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <string>
 
 #include "compiler/base/diagnostic.h"
 #include "harness/campaign/campaign_result.h"
+#include "harness/campaign/sample_runner.h"
 #include "harness/campaign/trace_input.h"
 #include "harness/config/scenario.h"
-#include "harness/simulator/simulator.h"
 
 namespace parallax::harness {
-
-/// Makes the simulator of one worker. Called in the worker's thread, at most once a worker.
-using SimulatorFactory = std::function<std::unique_ptr<Simulator>()>;
 
 struct CampaignProgress {
   std::int64_t trace = 0;
@@ -37,10 +33,25 @@ struct CampaignOptions {
   std::function<void(const CampaignProgress&)> progress;  // called in the caller's thread
 };
 
-/// The loop: trace, sample, simulate, compare, decide, next trace. Results are consumed in order
-/// of the sample index, so nothing that is returned or left on disk depends on `jobs`, except what
-/// was under way when `stop` was raised. A discrepancy is repeated once with the same draw before
-/// it is accepted.
+/// The loop:
+///
+///     for each trace of the model and the plan, shortest first:
+///       trial = its start region, a sampler over it, and the calls for its events
+///       until the criterion is satisfied or `max_runs` simulations were made:
+///         draw a start, simulate the events from it, observe at every timepoint
+///         start not valid:      draw again; end with an error after `max_rejected_starts`
+///         other initial state:  end with an error
+///         simulator lost:       count a failure; end after `max_lost_in_a_row`
+///         last state predicted, or one that the model admits:  count a clean run
+///         else:                 repeat it once, report a discrepancy, leave the trace
+///       verdict of the trace
+///       after a discrepancy: end, unless `keep_going`
+///     rewrite the journal in order, give the verdict over all traces
+///
+/// Trial (trial.h) is what stands between a trace and its judged samples; TraceCampaign adds the
+/// stop rule. Results are consumed in order of the sample index, so nothing that is returned or
+/// left on disk depends on `jobs`, except what was under way when `stop` was raised. Each finished
+/// simulation is in the journal before it counts, and one that is on record is not made again.
 ///
 /// Fails, having reported, for a run folder in use, a journal of another run, a simulator that
 /// does not know a variable or a controller (input), starts that are always invalid (input) and an

@@ -97,6 +97,15 @@ SourceRange header_line(const JournalText& journal, const base::SourceFiles& fil
   return {journal.file, 0, static_cast<std::uint32_t>(end)};
 }
 
+base::Status check_header(const JournalText& recorded, const JournalHeader& header,
+                          const base::SourceFiles& files, base::DiagnosticSink& sink) {
+  if (!recorded.header) return base::Unit{};
+  const auto differs = header_difference(*recorded.header, header);
+  if (!differs) return base::Unit{};
+  return sink.error(DiagnosticCode::kJournalMismatch, header_line(recorded, files), differs->field,
+                    differs->recorded, differs->now);
+}
+
 /// The lost simulations at which a continued run would end again at once: those that stand last,
 /// and as many in a row as end a run, where others that ran ahead stand behind them.
 std::vector<SampleKey> losses_to_repeat(const JournalText& journal, std::int64_t max_in_a_row) {
@@ -169,24 +178,27 @@ bool Journal::open_file(std::size_t keep_bytes) {
          ::lseek(fd_, 0, SEEK_END) >= 0;
 }
 
+base::Result<JournalText> read_for_continuation(const RunFolder& folder,
+                                                const JournalHeader& header,
+                                                base::SourceFiles& files,
+                                                base::DiagnosticSink& sink) {
+  std::error_code error;
+  if (!std::filesystem::exists(folder.path() / kJournalName, error)) return JournalText();
+  auto recorded = read_journal(folder.path(), files, sink);
+  if (!recorded) return sink.already_reported();
+  auto expected = header;
+  if (recorded->header) expected.simulator = recorded->header->simulator;
+  if (!check_header(*recorded, expected, files, sink)) return sink.already_reported();
+  return recorded;
+}
+
 base::Result<std::unique_ptr<Journal>> Journal::open(RunFolder folder, const JournalHeader& header,
+                                                     JournalText recorded,
                                                      std::int64_t max_lost_in_a_row,
-                                                     base::SourceFiles& files,
+                                                     const base::SourceFiles& files,
                                                      base::DiagnosticSink& sink) {
   const auto path = folder.path() / kJournalName;
-  JournalText recorded;
-  std::error_code error;
-  if (std::filesystem::exists(path, error)) {
-    auto text = read_journal(folder.path(), files, sink);
-    if (!text) return sink.already_reported();
-    recorded = std::move(*text);
-  }
-  if (recorded.header) {
-    if (const auto differs = header_difference(*recorded.header, header)) {
-      return sink.error(DiagnosticCode::kJournalMismatch, header_line(recorded, files),
-                        differs->field, differs->recorded, differs->now);
-    }
-  }
+  if (!check_header(recorded, header, files, sink)) return sink.already_reported();
   std::vector<SampleKey> lost;
   if (may_repeat_losses(header.simulator)) lost = losses_to_repeat(recorded, max_lost_in_a_row);
   if (!lost.empty()) {

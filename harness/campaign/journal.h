@@ -37,17 +37,26 @@ struct JournalText {
 base::Result<JournalText> read_journal(const std::filesystem::path& run_dir,
                                        base::SourceFiles& files, base::DiagnosticSink& sink);
 
+/// What the run in `folder` has recorded; empty where there is none. Reports what read_journal
+/// reports, and kJournalMismatch where `header` differs from the recorded one in anything but the
+/// simulator, which need not be known yet.
+base::Result<JournalText> read_for_continuation(const RunFolder& folder,
+                                                const JournalHeader& header,
+                                                base::SourceFiles& files,
+                                                base::DiagnosticSink& sink);
+
 /// The record of a run on disk: one line per finished simulation, synced before `append` returns.
 /// `append` may be called from several threads.
 class Journal {
  public:
-  /// Starts a journal in `folder`, or continues the one there. The losses at which it would end at
-  /// once again (the last ones, and `max_lost_in_a_row` of them in a row) are dropped from it if
-  /// the simulator of the header may repeat them.
-  /// Reports kJournalMismatch, kFileNotWritable and what read_journal reports.
+  /// Starts a journal in `folder`, or continues the one that was `recorded` there. The losses at
+  /// which it would end at once again (the last ones, and `max_lost_in_a_row` of them in a row) are
+  /// dropped from it if the simulator of the header may repeat them. Reports kJournalMismatch and
+  /// kFileNotWritable.
   static base::Result<std::unique_ptr<Journal>> open(RunFolder folder, const JournalHeader& header,
+                                                     JournalText recorded,
                                                      std::int64_t max_lost_in_a_row,
-                                                     base::SourceFiles& files,
+                                                     const base::SourceFiles& files,
                                                      base::DiagnosticSink& sink);
   ~Journal();
   Journal(const Journal&) = delete;

@@ -41,12 +41,13 @@ struct RatesResult {
   std::string scenario;
   std::uint64_t seed = 0;
   double confidence = 0.0;
-  bool complete = true;  // false: stopped
+  bool complete = true;  // false: stopped, or the simulator was lost too often
   std::vector<TraceRates> traces;
 };
 
 /// Simulates each trace `runs` times from uniform starts, whatever comes out, and counts what a
-/// campaign would call a discrepancy by its cause. Reports as run_campaign does.
+/// campaign would call a discrepancy by its cause. Reports as run_campaign does; a simulator that
+/// is lost too often ends it, with the counts so far and `complete` false.
 base::Result<RatesResult> estimate_rates(const Scenario& scenario, TraceFeed& traces,
                                          const SimulatorFactory& make_simulator,
                                          const RatesOptions& options, base::DiagnosticSink& sink);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,6 +13,9 @@
 #include "harness/simulator/simulator.h"
 
 namespace parallax::harness {
+
+/// Makes the simulator of one worker. Called in the worker's thread, at most once a worker.
+using SimulatorFactory = std::function<std::unique_ptr<Simulator>()>;
 
 /// What a worker needs of a trace to simulate any sample of it; shared and never changed.
 struct TracePlan {

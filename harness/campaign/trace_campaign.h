@@ -1,13 +1,11 @@
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/journal.h"
-#include "harness/campaign/sample_runner.h"
-#include "harness/campaign/worker_pool.h"
+#include "harness/campaign/trial.h"
 #include "harness/confidence/criterion.h"
 
 namespace parallax::harness {
@@ -31,20 +29,14 @@ struct TraceOutcome {
 struct TraceContext {
   const Scenario& scenario;
   const CampaignOptions& options;
-  const SimulatorInfo& simulator;
-  const std::vector<GroundFluent>& fluents;
   const ConfidenceCriterion& criterion;
   std::int64_t max_runs;
-  TraceFeed& feed;
-  WorkerPool& pool;
-  Journal& journal;
-  std::int64_t& lost_in_a_row;  // goes on from trace to trace
+  TrialBench& bench;
+  const Journal& journal;
   base::DiagnosticSink& sink;
 };
 
-/// Samples, simulates and judges one trace until the criterion, a discrepancy or a limit ends it.
-base::Result<TraceOutcome> run_trace(const TraceContext& context,
-                                     std::shared_ptr<const TracePlan> plan,
-                                     const StartCuboid& start);
+/// Takes samples of one trace until the criterion, a discrepancy or a limit ends it.
+base::Result<TraceOutcome> run_trace(const TraceContext& context, Trial trial);
 
 }  // namespace parallax::harness

@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "harness/campaign/campaign.h"
 #include "harness/campaign/sample_runner.h"
 
 namespace parallax::harness {

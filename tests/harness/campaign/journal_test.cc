@@ -107,6 +107,7 @@ TEST_CASE("a journal of another run is refused with the field that differs") {
   const auto before = slurp(bench.journal());
   bench.options.resume = true;
   std::string field;
+  int simulators = 0;  // made before the difference was found
   SUBCASE("seed") { bench.options.seed = 9, field = "its seed is 1, now it is 9"; }
   SUBCASE("inputs") { bench.options.scenario_hash = "1", field = "its scenario_hash is"; }
   SUBCASE("version") { bench.options.tool_version = "0.2", field = "its tool_version is"; }
@@ -114,7 +115,13 @@ TEST_CASE("a journal of another run is refused with the field that differs") {
     bench.scenario.criterion.epsilon = 0.1, field = "its options.criterion.epsilon is 0.05";
   }
   SUBCASE("keep going") { bench.options.keep_going = true, field = "its options.keep_going is"; }
+  SUBCASE("simulator") {
+    bench.script.determinism = "tolerance", field = "its simulator.determinism is";
+    simulators = 1;
+  }
+  bench.simulators = 0;
   CHECK_FALSE(bench.run().has_value());
+  CHECK(bench.simulators == simulators);
   REQUIRE(codes(bench.sink, kLowLimit) == std::vector<std::string>{"E7102"});
   const auto diagnostic = first_error(bench.sink);
   CHECK(diagnostic.message.find(field) != std::string::npos);

@@ -1,0 +1,191 @@
+#include "harness/campaign/trial.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "compiler/base/contract.h"
+#include "compiler/base/diagnostic_codes.h"
+#include "harness/campaign/journal.h"
+#include "harness/campaign/start_blame.h"
+
+namespace parallax::harness {
+namespace {
+
+using base::DiagnosticCode;
+
+/// Every drawn variable must be one that the simulator can start with.
+base::Status check_settable(const Scenario& scenario, const StartCuboid& start,
+                            const SimulatorInfo& simulator, base::DiagnosticSink& sink) {
+  const auto& known = simulator.parameters;
+  bool fine = true;
+  for (const auto& dimension : start.dimensions) {
+    const auto found = std::find_if(known.begin(), known.end(), [&](const Parameter& parameter) {
+      return parameter.name == dimension.variable;
+    });
+    if (known.empty() || (found != known.end() && found->settable)) continue;
+    sink.error(DiagnosticCode::kVariableNotSettable, scenario.sampling_source, dimension.variable);
+    fine = false;
+  }
+  if (!fine) return sink.already_reported();
+  return base::Unit{};
+}
+
+}  // namespace
+
+TrialBench::TrialBench(const Scenario& scenario, TraceFeed& feed,
+                       const SimulatorFactory& make_simulator, const TrialOptions& options,
+                       std::function<void(const SampleRecord&)> finished,
+                       base::DiagnosticSink& sink)
+    : scenario_(scenario),
+      feed_(feed),
+      options_(options),
+      sink_(sink),
+      pool_(options.jobs, make_simulator, std::move(finished), options.stop) {
+  PARALLAX_REQUIRE(scenario.mapping.has_value(), "a scenario that was loaded without errors");
+  for (const auto& fluent : feed.fluents()) fluents_.push_back(ground_fluent(fluent));
+}
+
+base::Result<bool> TrialBench::start() {
+  auto info = pool_.info();
+  if (!info) return false;
+  if (info->name.empty()) {
+    return sink_.error(DiagnosticCode::kSimulatorNotStarted, scenario_.simulator.source,
+                       info->version);
+  }
+  simulator_ = *std::move(info);
+  if (!check_against_simulator(scenario_, simulator_, sink_)) return sink_.already_reported();
+  return true;
+}
+
+base::Result<Trial> Trial::prepare(TrialBench& bench, CampaignTrace trace) {
+  PARALLAX_REQUIRE(trace.holds.size() == trace.events.size() + 1,
+                   "a trace has one state more than it has events");
+  const auto& scenario = bench.scenario_;
+  auto& sink = bench.sink_;
+  const auto& true_at_start = trace.holds.front();
+  auto start = scenario.mapping->start_cuboid(
+      bench.fluents_, std::set<std::string>(true_at_start.begin(), true_at_start.end()),
+      scenario.sampling, scenario.sampling_source, sink);
+  if (!start || !check_settable(scenario, *start, bench.simulator_, sink)) {
+    return sink.already_reported();
+  }
+  auto calls = action_calls(scenario, trace, sink);
+  auto sampler = Sampler::make(*start, scenario.sampling_inset_m, scenario.sampling_source, sink);
+  if (!calls || !sampler) return sink.already_reported();
+  const auto key = hash64(trace.key);
+  auto plan = std::make_shared<const TracePlan>(
+      TracePlan{std::move(trace), std::move(*calls), std::move(*sampler), bench.options_.seed, key,
+                scenario.limits.max_rejected_starts, may_repeat_losses(bench.simulator_)});
+  return Trial(bench, std::move(plan), std::move(*start));
+}
+
+void Trial::submit_to(std::int64_t last) {
+  while (submitted_ < last) {
+    if (recorded(++submitted_, Phase::kCertify) == nullptr) {
+      bench_->pool_.submit(plan_, submitted_);
+    }
+  }
+}
+
+const SampleRecord* Trial::recorded(std::int64_t sample, Phase phase) const {
+  return journal_ == nullptr ? nullptr : journal_->find(plan_->trace.number, sample, phase);
+}
+
+std::optional<SampleRecord> Trial::result_of(std::int64_t sample, Phase phase) {
+  if (const auto* known = recorded(sample, phase)) {
+    if (bench_->stopped()) return std::nullopt;
+    return *known;
+  }
+  return bench_->pool_.wait(sample, phase);
+}
+
+base::Result<std::optional<TrialSample>> Trial::next() {
+  submit_to(next_);
+  auto record = result_of(next_, Phase::kCertify);
+  if (!record) return std::optional<TrialSample>();
+  ++next_;
+  const auto& scenario = bench_->scenario_;
+  switch (record->status) {
+    case SampleStatus::kRejected:
+      return report_rejected(scenario, plan_->trace, record->rejected, record->sample,
+                             record->reason, bench_->sink_);
+    case SampleStatus::kRefused:
+      return bench_->sink_.error(DiagnosticCode::kSimulatorRefused, scenario.actions_source,
+                                 "a request", record->reason);
+    case SampleStatus::kLost:
+      return std::optional(lost(*std::move(record)));
+    case SampleStatus::kOk:
+      break;
+  }
+  return observed(*std::move(record));
+}
+
+TrialSample Trial::lost(SampleRecord record) {
+  const auto& scenario = bench_->scenario_;
+  auto& in_a_row = ++bench_->lost_in_a_row_;
+  TrialSample sample{std::move(record), SampleVerdict::kLost, {}};
+  if (in_a_row < scenario.limits.max_lost_in_a_row) return sample;
+  if (recorded(sample.record.sample, sample.record.phase) != nullptr) {
+    in_a_row = 0;  // such a row on record has ended a run, which somebody continues knowing of it
+    return sample;
+  }
+  bench_->sink_.error(DiagnosticCode::kSimulatorLost, scenario.simulator.source, in_a_row,
+                      sample.record.reason);
+  sample.verdict = SampleVerdict::kLostTooOften;
+  return sample;
+}
+
+base::Result<std::optional<TrialSample>> Trial::observed(SampleRecord record) {
+  const auto& scenario = bench_->scenario_;
+  TrialSample sample;
+  sample.judgement = judge(*scenario.mapping, bench_->fluents_, plan_->trace, record.observations);
+  const auto& judgement = sample.judgement;
+  if (!judgement.missing.empty()) {
+    return bench_->sink_.error(DiagnosticCode::kSimulatorRefused, scenario.mapping_source,
+                               "an observation",
+                               fmt::format("it lacks `{}`", *judgement.missing.begin()));
+  }
+  if (judgement.first_divergence == 0) return report_other_start(record, judgement.first.front());
+  bench_->lost_in_a_row_ = 0;
+  sample.record = std::move(record);
+  sample.verdict = SampleVerdict::kAsPredicted;
+  if (!judgement.matches()) {
+    const bool open = scenario.match_model && !judgement.in_no_state && plan_->trace.other_outcomes;
+    const auto admitted =
+        open ? bench_->feed_.admits(plan_->trace, judgement.last_state) : base::Known::kNo;
+    if (admitted == base::Known::kUndecided || bench_->stopped()) {
+      return std::optional<TrialSample>();
+    }
+    sample.verdict =
+        admitted == base::Known::kYes ? SampleVerdict::kAdmitted : SampleVerdict::kDiscrepancy;
+  }
+  return std::optional(std::move(sample));
+}
+
+base::DiagnosticBuilder Trial::report_other_start(const SampleRecord& record,
+                                                  const DivergingFluent& fluent) const {
+  const auto& scenario = bench_->scenario_;
+  if (!scenario.simulator.command.empty()) {
+    return bench_->sink_.error(
+        DiagnosticCode::kStartNotTaken, scenario.simulator.source, record.sample, record.trace,
+        fmt::format("`{}` {}", fluent.fluent, fluent.observed ? "holds" : "does not hold"));
+  }
+  return bench_->sink_.error(DiagnosticCode::kMappingNotInverse, scenario.mapping_source,
+                             record.sample, record.trace,
+                             fluent.observed ? "a state with" : "a state without", fluent.fluent);
+}
+
+std::optional<SampleRecord> Trial::repeat(const SampleRecord& record) {
+  if (recorded(record.sample, Phase::kConfirm) == nullptr) {
+    bench_->pool_.abandon();  // nothing that ran ahead is needed any more
+    submitted_ = record.sample;
+    bench_->pool_.submit_repeat(plan_, record);
+  }
+  return result_of(record.sample, Phase::kConfirm);
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,137 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "harness/campaign/judge.h"
+#include "harness/campaign/sample_runner.h"
+#include "harness/campaign/trace_input.h"
+#include "harness/campaign/worker_pool.h"
+#include "harness/config/scenario.h"
+
+namespace parallax::harness {
+
+class Journal;
+
+struct TrialOptions {
+  std::uint64_t seed = 1;
+  std::int64_t jobs = 1;
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// What the trials of one command share: workers with a simulator each, what that says of itself,
+/// the model's fluents, and the count of losses in a row, which goes on from trace to trace.
+class TrialBench {
+ public:
+  /// Begins to make the first simulator. `finished` is called in a worker's thread for each
+  /// simulation, before `Trial::next` gives it. Everything that is referred to must outlive this.
+  TrialBench(const Scenario& scenario, TraceFeed& feed, const SimulatorFactory& make_simulator,
+             const TrialOptions& options, std::function<void(const SampleRecord&)> finished,
+             base::DiagnosticSink& sink);
+
+  /// Waits for what the first simulator says of itself; no trial may be prepared before. False when
+  /// stopped. Reports kSimulatorNotStarted and what check_against_simulator reports.
+  base::Result<bool> start();
+
+  const SimulatorInfo& simulator() const { return simulator_; }
+  const std::vector<GroundFluent>& fluents() const { return fluents_; }
+  bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+
+  /// Ends the workers. Nothing may be simulated afterwards.
+  void close() { pool_.close(); }
+  std::int64_t runs_made() const { return pool_.runs_made(); }
+  double simulated_s() const { return pool_.simulated_s(); }
+
+ private:
+  friend class Trial;
+
+  const Scenario& scenario_;
+  TraceFeed& feed_;
+  TrialOptions options_;
+  base::DiagnosticSink& sink_;
+  std::vector<GroundFluent> fluents_;
+  SimulatorInfo simulator_;
+  std::int64_t lost_in_a_row_ = 0;
+  WorkerPool pool_;
+};
+
+enum class SampleVerdict : std::uint8_t {
+  kAsPredicted,  // it ended in the last state of the trace
+  kAdmitted,     // it ended elsewhere, where the model lets these events end, too
+  kDiscrepancy,
+  kLost,
+  kLostTooOften,  // one loss too many in a row, which was reported
+};
+
+/// One simulation and what it says about the trace.
+struct TrialSample {
+  SampleRecord record;
+  SampleVerdict verdict = SampleVerdict::kLost;
+  Judgement judgement;  // of what was observed; of a lost one nothing is said
+};
+
+/// The one loop that samples, taken apart: a trace is prepared, its samples are simulated by
+/// workers that may run ahead, and each is judged in the order of its number. How many there are
+/// to be and what is made of them is for the mode to say:
+///
+///     trial = Trial::prepare(bench, trace)
+///     while the mode wants another sample:
+///       trial.submit_to(the last one that it is sure to want)
+///       sample = trial.next()            // failed: reported; none: stopped
+///       take sample.record and sample.verdict into account
+///     trial.end()
+///
+/// Every mode gets the same treatment of losses, refusals and of starts that are not what was
+/// asked for.
+class Trial {
+ public:
+  /// Derives start region, sampler and calls from the trace. Reports what these report, and
+  /// kVariableNotSettable for a start that the simulator cannot be put into.
+  static base::Result<Trial> prepare(TrialBench& bench, CampaignTrace trace);
+
+  /// Samples on record in `journal`, which must outlive the trial, are taken from there instead of
+  /// being simulated.
+  void continue_from(const Journal& journal) { journal_ = &journal; }
+
+  const TracePlan& plan() const { return *plan_; }
+  /// The continuous states that the trace's initial state stands for.
+  const StartCuboid& start() const { return start_; }
+  std::int64_t next_sample() const { return next_; }  // from 1
+
+  /// Lets the workers simulate all samples up to this one.
+  void submit_to(std::int64_t last);
+  /// Waits for the next sample. None when stopped. Reports and fails for a simulator that refuses a
+  /// request (kSimulatorRefused), does not show what is compared (the same), or shows another
+  /// initial state than it was put into (kStartNotTaken of an external one, else
+  /// kMappingNotInverse), and for starts that are always invalid (kStartsRejected).
+  base::Result<std::optional<TrialSample>> next();
+  /// Simulates the start and seed of `record` once more. None when stopped.
+  std::optional<SampleRecord> repeat(const SampleRecord& record);
+  /// Forgets what ran ahead.
+  void end() { bench_->pool_.abandon(); }
+
+ private:
+  Trial(TrialBench& bench, std::shared_ptr<const TracePlan> plan, StartCuboid start)
+      : bench_(&bench), plan_(std::move(plan)), start_(std::move(start)) {}
+
+  const SampleRecord* recorded(std::int64_t sample, Phase phase) const;
+  std::optional<SampleRecord> result_of(std::int64_t sample, Phase phase);
+  TrialSample lost(SampleRecord record);
+  base::Result<std::optional<TrialSample>> observed(SampleRecord record);
+  base::DiagnosticBuilder report_other_start(const SampleRecord& record,
+                                             const DivergingFluent& fluent) const;
+
+  TrialBench* bench_;
+  const Journal* journal_ = nullptr;
+  std::shared_ptr<const TracePlan> plan_;
+  StartCuboid start_;
+  std::int64_t next_ = 1;       // the sample that `next` waits for
+  std::int64_t submitted_ = 0;  // the last one that the workers were given or the journal has
+};
+
+}  // namespace parallax::harness

@@ -1,0 +1,133 @@
+#include "harness/campaign/rates.h"
+
+#include "tests/harness/campaign/two_regions.h"
+
+namespace parallax::harness::test {
+namespace {
+
+bool box_far(const State& start) { return number(start, "box.x") > 1.9; }
+
+struct RatesBench : Bench {
+  using Bench::Bench;
+  RatesOptions rates;
+  base::Result<RatesResult> estimate() {
+    ListFeed feed(traces, openness);
+    const auto factory = [this] { return std::make_unique<ScriptedSimulator>(script); };
+    return estimate_rates(scenario, feed, factory, rates, sink);
+  }
+};
+
+TEST_CASE("what is counted is what the drawn starts lead to, cause by cause") {
+  RatesBench bench;
+  bench.rates.runs = 100;
+  bench.rates.jobs = 3;
+  bench.script.drops = box_far;
+  std::int64_t expected = 0, first = 0;
+  for (std::int64_t sample = 1; sample <= 100; ++sample) {
+    if (!box_far(drawn_start(bench, 1, sample))) continue;
+    if (expected++ == 0) first = sample;
+  }
+  REQUIRE(expected > 0);
+  const auto result = bench.estimate();
+  REQUIRE(result.has_value());
+  CHECK(result->complete);
+  REQUIRE(result->traces.size() == 1);
+  const auto& trace = result->traces[0];
+  CHECK(trace.number == 1);
+  CHECK(trace.trace == "Go(r2) PickUp() Go(r1) Place()");
+  CHECK(trace.runs == 100);
+  CHECK(trace.lost == 0);
+  CHECK(trace.any.count == expected);
+  REQUIRE(trace.causes.size() == 1);
+  CHECK(trace.causes[0].cause == "PickUp(): slipped");
+  CHECK(trace.causes[0].count == expected);
+  CHECK(trace.causes[0].example == first);
+  CHECK(trace.causes[0].reason == "slipped");
+  CHECK(trace.causes[0].start == drawn_start(bench, 1, first));
+  CHECK(trace.causes[0].lower < trace.causes[0].rate);
+  CHECK(trace.causes[0].upper > trace.causes[0].rate);
+}
+
+TEST_CASE("a simulator that does not start where it was put gives no rate") {
+  RatesBench bench;
+  bench.rates.runs = 3;
+  // The robot begins in r2 and still ends as predicted.
+  bench.script.start_shift_m = 1.0;
+  CHECK_FALSE(bench.estimate().has_value());
+  CHECK(codes(bench.sink) == std::vector<std::string>{"E7112"});
+}
+
+TEST_CASE("neither does one that does not show what is compared, or refuses a request") {
+  RatesBench bench;
+  bench.rates.runs = 3;
+  SUBCASE("an action") { bench.script.refuses = "placing"; }
+  SUBCASE("a variable") { bench.script.hides_box = true; }
+  CHECK_FALSE(bench.estimate().has_value());
+  CHECK(codes(bench.sink) == std::vector<std::string>{"E7109"});
+}
+
+TEST_CASE("nor one that cannot be put into the start") {
+  RatesBench bench(std::string(kScenarioText) + "sampling: {variables: {box.held: 0}}\n");
+  CHECK_FALSE(bench.estimate().has_value());
+  CHECK(codes(bench.sink) == std::vector<std::string>{"E5116"});
+}
+
+TEST_CASE("starts that are always invalid end it") {
+  RatesBench bench;
+  bench.script.invalid = [](const State&) { return true; };
+  CHECK_FALSE(bench.estimate().has_value());
+  CHECK(codes(bench.sink) == std::vector<std::string>{"E7105"});
+}
+
+TEST_CASE("losses in a row end it with what was counted, also from one trace to the next") {
+  RatesBench bench;
+  bench.traces = 3;
+  bench.rates.runs = 2;
+  bench.scenario.limits.max_lost_in_a_row = 3;
+  std::atomic<int> resets = 0;
+  bench.script.resets = &resets;
+  bench.script.loses = [](const State&) { return true; };
+  bench.script.seeds = false;
+  const auto result = bench.estimate();
+  REQUIRE(result.has_value());
+  CHECK_FALSE(result->complete);
+  CHECK(codes(bench.sink) == std::vector<std::string>{"E7107"});
+  CHECK(bench.sink.exit_code() == 4);
+  REQUIRE(result->traces.size() == 2);
+  CHECK(result->traces[0].lost == 2);
+  CHECK(result->traces[1].lost == 1);
+  CHECK(result->traces[1].runs == 0);
+}
+
+TEST_CASE("an end that the model admits is no discrepancy, unless only the trace counts") {
+  RatesBench bench;
+  bench.rates.runs = 5;
+  bench.script.drops = [](const State&) { return true; };
+  bench.openness.outcomes = true;
+  bench.openness.admits = [](const auto&) { return true; };
+  std::int64_t expected = 0;
+  SUBCASE("the model counts") {}
+  SUBCASE("only the trace counts") { bench.scenario.match_model = false, expected = 5; }
+  const auto result = bench.estimate();
+  REQUIRE(result.has_value());
+  CHECK(result->traces[0].any.count == expected);
+  CHECK(result->traces[0].runs == 5);
+}
+
+TEST_CASE("the stop flag leaves what was counted") {
+  RatesBench bench;
+  std::atomic<bool> stop = false;
+  bench.rates.stop = &stop;
+  int acts = 0;
+  bench.script.on_act = [&] {
+    if (++acts == 10) stop = true;
+  };
+  const auto result = bench.estimate();
+  REQUIRE(result.has_value());
+  CHECK_FALSE(result->complete);
+  REQUIRE(result->traces.size() == 1);
+  CHECK(result->traces[0].runs <= 2);
+}
+
+}  // namespace
+}  // namespace parallax::harness::test
