@@ -150,11 +150,11 @@ class Campaign {
   /// A record counts as a sample only if its number is what its start and seed were drawn from.
   base::Status check_recorded(const TracePlan& plan) {
     const auto& recorded = journal_->recorded();
-    const SampleKey first(plan.trace.number, 0, Phase::kCertify);
+    const SampleKey first(plan.trace.number, 0, DrawPhase::kCertify);
     for (auto at = recorded.samples.lower_bound(first); at != recorded.samples.end(); ++at) {
       const auto& record = at->second;
       if (record.trace != plan.trace.number) break;
-      const DrawKey key{plan.campaign_seed, plan.trace_key, Phase::kCertify,
+      const DrawKey key{plan.campaign_seed, plan.trace_key, DrawPhase::kCertify,
                         static_cast<std::uint64_t>(record.sample),
                         static_cast<std::uint64_t>(record.attempt)};
       std::string why;

@@ -115,7 +115,7 @@ std::vector<SampleKey> losses_to_repeat(const JournalText& journal, std::int64_t
     row.clear();
   };
   for (const auto& [key, record] : journal.samples) {
-    if (record.phase == Phase::kConfirm) continue;
+    if (record.phase == DrawPhase::kConfirm) continue;
     if (record.status == SampleStatus::kLost) {
       row.push_back(key);
     } else {
@@ -222,7 +222,7 @@ const TraceLine* Journal::find(std::int64_t trace) const {
   return found == recorded_.traces.end() ? nullptr : &found->second;
 }
 
-const SampleRecord* Journal::find(std::int64_t trace, std::int64_t sample, Phase phase) const {
+const SampleRecord* Journal::find(std::int64_t trace, std::int64_t sample, DrawPhase phase) const {
   const auto found = recorded_.samples.find({trace, sample, phase});
   return found == recorded_.samples.end() ? nullptr : &found->second;
 }

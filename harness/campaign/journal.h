@@ -19,7 +19,7 @@ namespace parallax::harness {
 
 inline constexpr std::string_view kJournalName = "journal.ndjson";
 
-using SampleKey = std::tuple<std::int64_t, std::int64_t, Phase>;  // trace, sample
+using SampleKey = std::tuple<std::int64_t, std::int64_t, DrawPhase>;  // trace, sample
 
 /// A journal as it was read.
 struct JournalText {
@@ -66,7 +66,7 @@ class Journal {
   const JournalText& recorded() const { return recorded_; }
   /// Null if it was not there.
   const TraceLine* find(std::int64_t trace) const;
-  const SampleRecord* find(std::int64_t trace, std::int64_t sample, Phase phase) const;
+  const SampleRecord* find(std::int64_t trace, std::int64_t sample, DrawPhase phase) const;
 
   void append(const TraceLine& trace);
   void append(const SampleRecord& record);

@@ -118,7 +118,7 @@ SampleRecord record_of(const Json& object) {
   record.attempt = get<std::int64_t>(object, "attempt");
   const auto phase = get<std::string>(object, "phase");
   if (phase != "certify" && phase != "confirm") throw Foreign{"`phase` is `" + phase + "`"};
-  record.phase = phase == "confirm" ? Phase::kConfirm : Phase::kCertify;
+  record.phase = phase == "confirm" ? DrawPhase::kConfirm : DrawPhase::kCertify;
   record.seed = get<std::uint64_t>(object, "seed");
   record.status = word_of(object, "status", {SampleStatus::kOk, SampleStatus::kLost});
   record.rejected = get<std::int64_t>(object, "rejected");
@@ -218,7 +218,7 @@ std::string encode(const SampleRecord& record) {
   Json out = {{"trace", record.trace},
               {"sample", record.sample},
               {"attempt", record.attempt},
-              {"phase", record.phase == Phase::kConfirm ? "confirm" : "certify"},
+              {"phase", record.phase == DrawPhase::kConfirm ? "confirm" : "certify"},
               {"seed", record.seed},
               {"status", to_string(record.status)},
               {"rejected", record.rejected},

@@ -105,7 +105,7 @@ State mapped_part(const StateMapping& mapping, const std::vector<GroundFluent>& 
       take(with_arguments(equal->variable, fluent));
     } else if (const auto* inside = std::get_if<InsideBinding>(&binding->condition)) {
       const auto* region = mapping.regions().find(fluent.arguments.at(inside->region_argument));
-      for (const auto axis : kAxes) {
+      for (const auto axis : kRegionAxes) {
         if (region == nullptr || !region->on(axis)) continue;
         take(with_arguments(inside->body, fluent) + '.' + std::string(to_string(axis)));
       }

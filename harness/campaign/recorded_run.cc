@@ -10,7 +10,7 @@ std::optional<SampleId> default_sample(const JournalText& journal) {
   std::optional<SampleId> first;
   for (const auto& [key, record] : journal.samples) {
     if (record.status != SampleStatus::kOk) continue;
-    if (record.phase == Phase::kConfirm) return SampleId{record.trace, record.sample};
+    if (record.phase == DrawPhase::kConfirm) return SampleId{record.trace, record.sample};
     if (!first) first = SampleId{record.trace, record.sample};
   }
   return first;
@@ -24,8 +24,8 @@ base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir
   if (!journal) return sink.already_reported();
   if (!journal->header) return sink.error_about(DiagnosticCode::kNoJournal, run_dir.string());
   if (!id) id = default_sample(*journal);
-  const auto found =
-      id ? journal->samples.find({id->trace, id->sample, Phase::kCertify}) : journal->samples.end();
+  const auto found = id ? journal->samples.find({id->trace, id->sample, DrawPhase::kCertify})
+                        : journal->samples.end();
   if (found == journal->samples.end()) {
     const auto name = id ? fmt::format("{}.{}", id->trace, id->sample) : std::string("at all");
     return sink.error_about(DiagnosticCode::kNoSuchSample, run_dir.string(), name);

@@ -33,10 +33,10 @@ struct ActionOutcome {
 
 /// One finished simulation: the line of the journal, and all that a replay needs besides the calls.
 struct SampleRecord {
-  std::int64_t trace = 0;         // from 1
-  std::int64_t sample = 0;        // from 1, in order of consumption
-  std::int64_t attempt = 0;       // draws of this sample that were rejected before the one used
-  Phase phase = Phase::kCertify;  // kConfirm: the repetition of a discrepancy
+  std::int64_t trace = 0;    // from 1
+  std::int64_t sample = 0;   // from 1, in order of consumption
+  std::int64_t attempt = 0;  // draws of this sample that were rejected before the one used
+  DrawPhase phase = DrawPhase::kCertify;  // kConfirm: the repetition of a discrepancy
   std::uint64_t seed = 0;
   SampleStatus status = SampleStatus::kOk;
   std::int64_t rejected = 0;

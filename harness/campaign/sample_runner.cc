@@ -137,7 +137,7 @@ std::optional<SampleRecord> run_sample(const TracePlan& plan, std::int64_t sampl
   SampleRecord record;
   record.trace = plan.trace.number;
   record.sample = sample;
-  DrawKey key{plan.campaign_seed, plan.trace_key, Phase::kCertify,
+  DrawKey key{plan.campaign_seed, plan.trace_key, DrawPhase::kCertify,
               static_cast<std::uint64_t>(sample), 0};
   for (;; ++record.attempt, ++key.attempt) {
     record.initial = plan.sampler.draw(key);
@@ -156,7 +156,7 @@ std::optional<SampleRecord> repeat_sample(const std::vector<ActionCall>& calls, 
                                           const SampleRecord& record, Simulator& simulator,
                                           const std::function<bool()>& abandoned) {
   SampleRecord again = record;
-  again.phase = Phase::kConfirm;
+  again.phase = DrawPhase::kConfirm;
   again.retries = 0;
   const auto status = attempt_start(calls, repeats_losses, simulator, again, abandoned);
   if (!status) return std::nullopt;

@@ -85,17 +85,17 @@ base::Result<Trial> Trial::prepare(TrialBench& bench, CampaignTrace trace) {
 
 void Trial::submit_to(std::int64_t last) {
   while (submitted_ < last) {
-    if (recorded(++submitted_, Phase::kCertify) == nullptr) {
+    if (recorded(++submitted_, DrawPhase::kCertify) == nullptr) {
       bench_->pool_.submit(plan_, submitted_);
     }
   }
 }
 
-const SampleRecord* Trial::recorded(std::int64_t sample, Phase phase) const {
+const SampleRecord* Trial::recorded(std::int64_t sample, DrawPhase phase) const {
   return journal_ == nullptr ? nullptr : journal_->find(plan_->trace.number, sample, phase);
 }
 
-std::optional<SampleRecord> Trial::result_of(std::int64_t sample, Phase phase) {
+std::optional<SampleRecord> Trial::result_of(std::int64_t sample, DrawPhase phase) {
   if (const auto* known = recorded(sample, phase)) {
     if (bench_->stopped()) return std::nullopt;
     return *known;
@@ -105,7 +105,7 @@ std::optional<SampleRecord> Trial::result_of(std::int64_t sample, Phase phase) {
 
 base::Result<std::optional<TrialSample>> Trial::next() {
   submit_to(next_);
-  auto record = result_of(next_, Phase::kCertify);
+  auto record = result_of(next_, DrawPhase::kCertify);
   if (!record) return std::optional<TrialSample>();
   ++next_;
   const auto& scenario = bench_->scenario_;
@@ -180,12 +180,12 @@ base::DiagnosticBuilder Trial::report_other_start(const SampleRecord& record,
 }
 
 std::optional<SampleRecord> Trial::repeat(const SampleRecord& record) {
-  if (recorded(record.sample, Phase::kConfirm) == nullptr) {
+  if (recorded(record.sample, DrawPhase::kConfirm) == nullptr) {
     bench_->pool_.abandon();  // nothing that ran ahead is needed any more
     submitted_ = record.sample;
     bench_->pool_.submit_repeat(plan_, record);
   }
-  return result_of(record.sample, Phase::kConfirm);
+  return result_of(record.sample, DrawPhase::kConfirm);
 }
 
 }  // namespace parallax::harness

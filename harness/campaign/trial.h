@@ -119,8 +119,8 @@ class Trial {
   Trial(TrialBench& bench, std::shared_ptr<const TracePlan> plan, StartCuboid start)
       : bench_(&bench), plan_(std::move(plan)), start_(std::move(start)) {}
 
-  const SampleRecord* recorded(std::int64_t sample, Phase phase) const;
-  std::optional<SampleRecord> result_of(std::int64_t sample, Phase phase);
+  const SampleRecord* recorded(std::int64_t sample, DrawPhase phase) const;
+  std::optional<SampleRecord> result_of(std::int64_t sample, DrawPhase phase);
   TrialSample lost(SampleRecord record);
   base::Result<std::optional<TrialSample>> observed(SampleRecord record);
   base::DiagnosticBuilder report_other_start(const SampleRecord& record,

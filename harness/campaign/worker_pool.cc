@@ -83,7 +83,7 @@ std::optional<SimulatorInfo> WorkerPool::info() {
   return info_;
 }
 
-std::optional<SampleRecord> WorkerPool::wait(std::int64_t sample, Phase phase) {
+std::optional<SampleRecord> WorkerPool::wait(std::int64_t sample, DrawPhase phase) {
   std::unique_lock lock(mutex_);
   const Key key(sample, phase);
   if (stopped() || !wait_until(lock, [&] { return results_.contains(key); })) return std::nullopt;

@@ -33,11 +33,11 @@ class WorkerPool {
   std::optional<SimulatorInfo> info();
 
   void submit(std::shared_ptr<const TracePlan> plan, std::int64_t sample);
-  /// Simulates the start of `record` again; wait for it with Phase::kConfirm.
+  /// Simulates the start of `record` again; wait for it with DrawPhase::kConfirm.
   void submit_repeat(std::shared_ptr<const TracePlan> plan, SampleRecord record);
   /// The result of a submitted sample. None when the stop flag was raised. What a worker threw is
   /// thrown again here.
-  std::optional<SampleRecord> wait(std::int64_t sample, Phase phase);
+  std::optional<SampleRecord> wait(std::int64_t sample, DrawPhase phase);
   /// Forgets everything submitted; what is under way ends after its current action.
   void abandon();
   /// abandon, and wait for the workers to end. Nothing may be submitted afterwards.
@@ -47,7 +47,7 @@ class WorkerPool {
   double simulated_s() const;
 
  private:
-  using Key = std::pair<std::int64_t, Phase>;
+  using Key = std::pair<std::int64_t, DrawPhase>;
   struct Job {
     std::shared_ptr<const TracePlan> plan;
     std::int64_t sample = 0;

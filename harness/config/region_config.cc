@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, 5> kAxisKeys = {"x", "y", "z", "yaw", "bo
 
 /// Bounds of a region, each a list of two numbers.
 void read_bounds(const YamlFields& fields, Region& region) {
-  for (const auto axis : kAxes) {
+  for (const auto axis : kRegionAxes) {
     const auto* bounds = fields.find(to_string(axis));
     if (bounds == nullptr) continue;
     const auto name = fmt::format("`{}` of the region `{}`", to_string(axis), region.name);
@@ -32,7 +32,7 @@ void read_bounds(const YamlFields& fields, Region& region) {
 void read_start(const YamlNode& node, Region& region, base::DiagnosticSink& sink) {
   YamlFields fields(node, fmt::format("`start` of the region `{}`", region.name), sink);
   fields.only(kAxisKeys);
-  for (const auto axis : kAxes) {
+  for (const auto axis : kRegionAxes) {
     const auto* range = fields.find(to_string(axis));
     if (range == nullptr) continue;
     const auto name = fmt::format("`{}` of the start in `{}`", to_string(axis), region.name);

@@ -22,15 +22,15 @@ constexpr std::int64_t kMaxHorizon = 1'000'000;
 
 /// Regions where things are laid down at the start must have something below them.
 void check_supported_starts(const Scenario& scenario, base::DiagnosticSink& sink) {
-  const auto at = [](const Region& region, Axis axis) -> std::optional<double> {
+  const auto at = [](const Region& region, RegionAxis axis) -> std::optional<double> {
     const auto& start = region.start[static_cast<std::size_t>(axis)];
     if (!start && !region.on(axis)) return std::nullopt;
     return start ? start->midpoint() : region.on(axis)->midpoint();
   };
   std::vector<NamedPoint> points;
   for (const Region& region : scenario.mapping->regions().regions()) {
-    const auto& bottom = region.start[static_cast<std::size_t>(Axis::kBottom)];
-    const auto x = at(region, Axis::kX), y = at(region, Axis::kY);
+    const auto& bottom = region.start[static_cast<std::size_t>(RegionAxis::kBottom)];
+    const auto x = at(region, RegionAxis::kX), y = at(region, RegionAxis::kY);
     if (!bottom || bottom->lower != bottom->upper || !x || !y) continue;
     const auto& o = region.frame_start;
     points.push_back({region.name, {*x + o[0], *y + o[1], bottom->lower + o[2]}});
@@ -47,7 +47,8 @@ void check_supported_starts(const Scenario& scenario, base::DiagnosticSink& sink
 void check_supported_regions(const Scenario& scenario, base::DiagnosticSink& sink) {
   std::vector<NamedBox> boxes;
   for (const Region& region : scenario.mapping->regions().regions()) {
-    const auto &x = region.on(Axis::kX), &y = region.on(Axis::kY), &z = region.on(Axis::kBottom);
+    const auto &x = region.on(RegionAxis::kX), &y = region.on(RegionAxis::kY),
+               &z = region.on(RegionAxis::kBottom);
     if (!x || !y || !z || !region.frame.empty()) continue;
     boxes.push_back({region.name, {x->lower, y->lower, z->lower}, {x->upper, y->upper, z->upper}});
   }
@@ -61,11 +62,11 @@ void check_supported_regions(const Scenario& scenario, base::DiagnosticSink& sin
 
 /// What a region bounds, or where its starts are drawn, as a box; none if a side is open.
 std::optional<NamedBox> box_of(const Region& region, bool start) {
-  const auto on = [&](Axis axis) {
+  const auto on = [&](RegionAxis axis) {
     const auto& narrow = region.start[static_cast<std::size_t>(axis)];
     return start && narrow ? narrow : region.on(axis);
   };
-  const auto x = on(Axis::kX), y = on(Axis::kY), z = on(Axis::kBottom);
+  const auto x = on(RegionAxis::kX), y = on(RegionAxis::kY), z = on(RegionAxis::kBottom);
   if (!x || !y || !z || !region.frame.empty()) return std::nullopt;
   return NamedBox{region.name, {x->lower, y->lower, z->lower}, {x->upper, y->upper, z->upper}};
 }
@@ -75,7 +76,7 @@ void check_free_regions(const Scenario& scenario, base::DiagnosticSink& sink) {
   std::vector<NamedBox> wholes, starts;
   const auto& regions = scenario.mapping->regions();
   for (const Region& region : regions.regions()) {
-    const auto& bottom = region.on(Axis::kBottom);
+    const auto& bottom = region.on(RegionAxis::kBottom);
     if (bottom && region.frame.empty() && bottom->upper < 0.0) {
       sink.error(DiagnosticCode::kBadWorld, region.source, "regions/" + region.name,
                  fmt::format("lies below the floor: `bottom` ends at {:g}", bottom->upper));

@@ -27,7 +27,7 @@ std::vector<std::string> variables_of(const FluentBinding& binding, const Region
   } else if (const auto* equal = std::get_if<EqualsBinding>(&binding.condition)) {
     out.push_back(equal->variable);
   } else if (const auto* inside = std::get_if<InsideBinding>(&binding.condition)) {
-    for (const auto axis : kAxes) {
+    for (const auto axis : kRegionAxes) {
       const auto& all = regions.regions();
       const bool bounded =
           !all.empty() && std::all_of(all.begin(), all.end(),

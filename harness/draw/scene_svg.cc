@@ -110,7 +110,7 @@ void widen(SceneFrame& frame, const std::vector<Picture>& pictures, const Region
   if (regions == nullptr) return;
   for (const Region& region : regions->regions()) {
     if (!region.frame.empty()) continue;
-    for (const Axis axis : {Axis::kX, Axis::kY}) {
+    for (const RegionAxis axis : {RegionAxis::kX, RegionAxis::kY}) {
       if (!region.on(axis)) continue;
       include(static_cast<Eigen::Index>(axis), region.on(axis)->lower);
       include(static_cast<Eigen::Index>(axis), region.on(axis)->upper);

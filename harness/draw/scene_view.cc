@@ -30,12 +30,12 @@ const char* fill_colour(SceneKind kind) {
 }
 
 bool is_drawn(const Region& region) {
-  return region.frame.empty() && (region.on(Axis::kX) || region.on(Axis::kY));
+  return region.frame.empty() && (region.on(RegionAxis::kX) || region.on(RegionAxis::kY));
 }
 
 Rectangle rectangle_of(const Region& region, const Projection& projection) {
   const SceneFrame& frame = projection.frame();
-  const auto &x = region.on(Axis::kX), &y = region.on(Axis::kY);
+  const auto &x = region.on(RegionAxis::kX), &y = region.on(RegionAxis::kY);
   return {projection.pixel({x ? x->lower : frame.low.x(), y ? y->upper : frame.high.y(), 0.0}),
           projection.pixel({x ? x->upper : frame.high.x(), y ? y->lower : frame.low.y(), 0.0})};
 }

@@ -16,7 +16,7 @@ double unwrapped(double angle, const Interval& interval) {
 
 /// On which axes a region's closure has the point below its upper bound.
 struct Membership {
-  std::array<bool, kAxes.size()> below_upper{};
+  std::array<bool, kRegionAxes.size()> below_upper{};
   bool half_open = true;  // on all axes that the region bounds
   bool turned = false;    // an angle had to be moved by full turns
   auto rank() const {
@@ -33,14 +33,14 @@ std::optional<bool> below_upper(const Interval& interval, double value) {
 /// None if the point lies outside the region's closure.
 std::optional<Membership> membership(const Region& region, const Point& point) {
   Membership result;
-  for (const Axis axis : kAxes) {
+  for (const RegionAxis axis : kRegionAxes) {
     const auto& bound = region.on(axis);
     if (!bound) continue;
     const double value = point[static_cast<std::size_t>(axis)];
     auto below = below_upper(*bound, value);
     // An angle may be reported a turn away from the bounds; unwrapping comes second, so that no
     // rounding touches a value that needs none.
-    if (axis == Axis::kYaw && !below.value_or(false)) {
+    if (axis == RegionAxis::kYaw && !below.value_or(false)) {
       const auto again = below_upper(*bound, unwrapped(value, *bound));
       result.turned = again.has_value() && (!below || *again);
       if (again) below = below.value_or(false) || *again;
@@ -54,24 +54,24 @@ std::optional<Membership> membership(const Region& region, const Point& point) {
 
 }  // namespace
 
-std::string_view to_string(Axis axis) {
+std::string_view to_string(RegionAxis axis) {
   switch (axis) {
-    case Axis::kX:
+    case RegionAxis::kX:
       return "x";
-    case Axis::kY:
+    case RegionAxis::kY:
       return "y";
-    case Axis::kZ:
+    case RegionAxis::kZ:
       return "z";
-    case Axis::kYaw:
+    case RegionAxis::kYaw:
       return "yaw";
-    case Axis::kBottom:
+    case RegionAxis::kBottom:
       return "bottom";
   }
   return "";
 }
 
-std::optional<Axis> axis_from(std::string_view name) {
-  for (const Axis axis : kAxes) {
+std::optional<RegionAxis> axis_from(std::string_view name) {
+  for (const RegionAxis axis : kRegionAxes) {
     if (to_string(axis) == name) return axis;
   }
   return std::nullopt;

@@ -12,12 +12,12 @@
 namespace parallax::harness {
 
 /// kBottom is the height of a body's lowest point.
-enum class Axis : std::uint8_t { kX, kY, kZ, kYaw, kBottom };
-inline constexpr std::array<Axis, 5> kAxes = {Axis::kX, Axis::kY, Axis::kZ, Axis::kYaw,
-                                              Axis::kBottom};
-using Point = std::array<double, kAxes.size()>;   // by Axis
-std::string_view to_string(Axis axis);            // "x", "y", "z", "yaw", "bottom"
-std::optional<Axis> axis_from(std::string_view);  // none for another word
+enum class RegionAxis : std::uint8_t { kX, kY, kZ, kYaw, kBottom };
+inline constexpr std::array<RegionAxis, 5> kRegionAxes = {
+    RegionAxis::kX, RegionAxis::kY, RegionAxis::kZ, RegionAxis::kYaw, RegionAxis::kBottom};
+using Point = std::array<double, kRegionAxes.size()>;   // by RegionAxis
+std::string_view to_string(RegionAxis axis);            // "x", "y", "z", "yaw", "bottom"
+std::optional<RegionAxis> axis_from(std::string_view);  // none for another word
 
 /// [lower, upper) or, where `closed`, [lower, upper]; metres or radians.
 struct Interval {
@@ -34,18 +34,18 @@ struct Interval {
 /// A cuboid over some of the axes; an axis that is not bounded does not matter.
 struct Region {
   std::string name;
-  std::array<std::optional<Interval>, kAxes.size()> bounds;  // by Axis
+  std::array<std::optional<Interval>, kRegionAxes.size()> bounds;  // by RegionAxis
   base::SourceRange source;
   /// Where starts are drawn, on axes where that is narrower than the bounds.
-  std::array<std::optional<Interval>, kAxes.size()> start;
+  std::array<std::optional<Interval>, kRegionAxes.size()> start;
   /// Body in whose frame the bounds are; empty: the world. `frame_start` is where it is at a reset
   /// (no turn).
   std::string frame;
   std::array<double, 3> frame_start{};
-  const std::optional<Interval>& on(Axis axis) const {
+  const std::optional<Interval>& on(RegionAxis axis) const {
     return bounds[static_cast<std::size_t>(axis)];
   }
-  std::optional<Interval>& on(Axis axis) { return bounds[static_cast<std::size_t>(axis)]; }
+  std::optional<Interval>& on(RegionAxis axis) { return bounds[static_cast<std::size_t>(axis)]; }
 };
 
 /// Disjoint regions. A value on a shared border belongs to the region above it; an upper bound

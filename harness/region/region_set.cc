@@ -17,13 +17,13 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 /// Half a turn written with four digits (3.142) still closes the circle [rad].
 constexpr double kSeamRad = 1e-3;
 
-std::string stretch(Axis axis, double lower, double upper) {
+std::string stretch(RegionAxis axis, double lower, double upper) {
   return fmt::format("{} from {} to {}", to_string(axis), lower, upper);
 }
 
 std::string axes_of(const Region& region) {
   std::vector<std::string_view> names;
-  for (const Axis axis : kAxes) {
+  for (const RegionAxis axis : kRegionAxes) {
     if (region.on(axis)) names.push_back(to_string(axis));
   }
   return fmt::format("{}", fmt::join(names, ", "));
@@ -32,7 +32,7 @@ std::string axes_of(const Region& region) {
 /// Reports what is wrong with one region alone; true if nothing is.
 bool check_bounds(const Region& region, DiagnosticSink& sink) {
   bool good = true, bounded = false;
-  for (const Axis axis : kAxes) {
+  for (const RegionAxis axis : kRegionAxes) {
     const auto& bound = region.on(axis);
     if (!bound) continue;
     bounded = true;
@@ -55,9 +55,9 @@ bool check_bounds(const Region& region, DiagnosticSink& sink) {
 }
 
 /// The stretch that two intervals share, if it has a length. Angles also meet across the seam.
-std::optional<Interval> shared(Axis axis, const Interval& a, const Interval& b) {
+std::optional<Interval> shared(RegionAxis axis, const Interval& a, const Interval& b) {
   for (const double turn : {0.0, kTurn, -kTurn}) {
-    if (turn != 0.0 && axis != Axis::kYaw) break;
+    if (turn != 0.0 && axis != RegionAxis::kYaw) break;
     const double slack = turn == 0.0 ? 0.0 : kSeamRad;
     const Interval both{std::max(a.lower, b.lower + turn), std::min(a.upper, b.upper + turn)};
     if (both.lower + slack < both.upper) return both;
@@ -69,7 +69,7 @@ std::optional<Interval> shared(Axis axis, const Interval& a, const Interval& b) 
 std::string overlap(const Region& a, const Region& b) {
   if (a.frame != b.frame) return {};
   std::vector<std::string> parts;
-  for (const Axis axis : kAxes) {
+  for (const RegionAxis axis : kRegionAxes) {
     if (!a.on(axis)) continue;
     const auto both = shared(axis, *a.on(axis), *b.on(axis));
     if (!both) return {};
@@ -79,16 +79,16 @@ std::string overlap(const Region& a, const Region& b) {
 }
 
 /// Does `other` go on where `region` ends on `axis`?
-bool takes_over(const Region& other, const Region& region, Axis axis) {
+bool takes_over(const Region& other, const Region& region, RegionAxis axis) {
   if (other.frame != region.frame) return false;
-  for (const Axis each : kAxes) {
+  for (const RegionAxis each : kRegionAxes) {
     if (!region.on(each)) continue;
     if (each != axis) {
       if (!shared(each, *region.on(each), *other.on(each))) return false;
       continue;
     }
     const double gap = other.on(axis)->lower - region.on(axis)->upper;
-    const bool seam = axis == Axis::kYaw && std::abs(gap + kTurn) <= kSeamRad;
+    const bool seam = axis == RegionAxis::kYaw && std::abs(gap + kTurn) <= kSeamRad;
     if (gap != 0.0 && !seam) return false;
   }
   return true;
@@ -98,7 +98,7 @@ bool takes_over(const Region& other, const Region& region, Axis axis) {
 class GapSearch {
  public:
   explicit GapSearch(const std::vector<Region>& regions) : regions_(regions) {
-    for (const Axis axis : kAxes) {
+    for (const RegionAxis axis : kRegionAxes) {
       if (regions.front().on(axis)) axes_.push_back(axis);
     }
   }
@@ -112,10 +112,10 @@ class GapSearch {
   }
   /// Where the gap begins on the first axis.
   double begin() const { return begin_; }
-  Axis first_axis() const { return axes_.front(); }
+  RegionAxis first_axis() const { return axes_.front(); }
 
  private:
-  std::vector<double> cuts(Axis axis, const std::vector<const Region*>& slab) const {
+  std::vector<double> cuts(RegionAxis axis, const std::vector<const Region*>& slab) const {
     std::vector<double> result;
     const auto by_lower = [&](const Region& a, const Region& b) {
       return a.on(axis)->lower < b.on(axis)->lower;
@@ -138,7 +138,7 @@ class GapSearch {
   /// either spans everything or nothing.
   bool descend(std::size_t depth, const std::vector<const Region*>& candidates) {
     if (depth == axes_.size()) return candidates.empty();
-    const Axis axis = axes_[depth];
+    const RegionAxis axis = axes_[depth];
     const auto ends = cuts(axis, candidates);
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
       std::vector<const Region*> inside;
@@ -157,7 +157,7 @@ class GapSearch {
   }
 
   const std::vector<Region>& regions_;
-  std::vector<Axis> axes_;
+  std::vector<RegionAxis> axes_;
   std::vector<std::string> path_;
   double begin_ = 0.0;
 };
@@ -182,8 +182,9 @@ void report_gap(const std::vector<Region>& regions, DiagnosticSink& sink) {
 }
 
 bool same_axes(const Region& a, const Region& b) {
-  return std::all_of(kAxes.begin(), kAxes.end(),
-                     [&](Axis axis) { return a.on(axis).has_value() == b.on(axis).has_value(); });
+  return std::all_of(kRegionAxes.begin(), kRegionAxes.end(), [&](RegionAxis axis) {
+    return a.on(axis).has_value() == b.on(axis).has_value();
+  });
 }
 
 /// Names and axes against the regions before; returns those that can be compared as cuboids.
@@ -232,7 +233,7 @@ base::Result<RegionSet> RegionSet::make(std::vector<Region> regions, bool gaps_a
   RegionSet result;
   result.regions_ = std::move(regions);
   for (auto& region : result.regions_) {
-    for (const Axis axis : kAxes) {
+    for (const RegionAxis axis : kRegionAxes) {
       if (!region.on(axis)) continue;
       region.on(axis)->closed =
           std::none_of(result.regions_.begin(), result.regions_.end(),

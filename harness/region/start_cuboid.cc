@@ -24,7 +24,7 @@ struct Problem {
   std::string fluent;  // whose binding it is
 };
 
-std::string variable(const std::string& body, Axis axis) {
+std::string variable(const std::string& body, RegionAxis axis) {
   return fmt::format("{}.{}", body, to_string(axis));
 }
 
@@ -145,7 +145,7 @@ class StartBuilder {
           fmt::format("`{}` holds and `{}` does not, but both mean that `{}` is in `{}`",
                       first.fluent, entry.fluent, body, first.region->name));
     }
-    for (const Axis axis : kAxes) {
+    for (const RegionAxis axis : kRegionAxes) {
       if (const auto range = start_range(*first.region, axis)) {
         narrow(variable(body, axis), *range, fmt::format("region `{}`", first.region->name));
       }
@@ -161,14 +161,14 @@ class StartBuilder {
 
  private:
   /// In the world at a reset.
-  static std::optional<Interval> start_range(const Region& region, Axis axis) {
+  static std::optional<Interval> start_range(const Region& region, RegionAxis axis) {
     const auto& narrower = region.start[static_cast<std::size_t>(axis)];
     if (!narrower && !region.on(axis)) return std::nullopt;
     Interval range = narrower ? *narrower : *region.on(axis);
     double shift = 0.0;
-    if (axis == Axis::kX) shift = region.frame_start[0];
-    if (axis == Axis::kY) shift = region.frame_start[1];
-    if (axis == Axis::kZ || axis == Axis::kBottom) shift = region.frame_start[2];
+    if (axis == RegionAxis::kX) shift = region.frame_start[0];
+    if (axis == RegionAxis::kY) shift = region.frame_start[1];
+    if (axis == RegionAxis::kZ || axis == RegionAxis::kBottom) shift = region.frame_start[2];
     range.lower += shift;
     range.upper += shift;
     return range;
@@ -201,7 +201,7 @@ class StartBuilder {
   void check_outside(const std::string& body, const BodyDemand& demand) {
     for (const auto& entry : demand.outside) {
       bool overlaps = true;
-      for (const Axis axis : kAxes) {
+      for (const RegionAxis axis : kRegionAxes) {
         if (!entry.region->on(axis)) continue;
         if (!entry.region->frame.empty()) {
           overlaps = false;  // where the frame is, only the first observation shows
@@ -262,7 +262,7 @@ std::map<std::string, Interval> StateMapping::cells(
     if (demand.inside.empty()) continue;
     const Region* region = demand.inside.front().region;
     if (!region->frame.empty()) continue;  // its bounds move
-    for (const Axis axis : kAxes) {
+    for (const RegionAxis axis : kRegionAxes) {
       if (region->on(axis)) result.emplace(variable(body, axis), *region->on(axis));
     }
   }

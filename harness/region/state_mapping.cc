@@ -44,13 +44,13 @@ void into_frame(const std::string& frame, const State& state, std::set<std::stri
     return number(state, fmt::format("{}.{}", frame, item), missing).value_or(0.0);
   };
   const double yaw = at("yaw");
-  double& x = point[static_cast<std::size_t>(Axis::kX)];
-  double& y = point[static_cast<std::size_t>(Axis::kY)];
+  double& x = point[static_cast<std::size_t>(RegionAxis::kX)];
+  double& y = point[static_cast<std::size_t>(RegionAxis::kY)];
   const double dx = x - at("x"), dy = y - at("y");
   x = std::cos(yaw) * dx + std::sin(yaw) * dy;
   y = std::cos(yaw) * dy - std::sin(yaw) * dx;
-  point[static_cast<std::size_t>(Axis::kYaw)] -= yaw;
-  for (const Axis axis : {Axis::kZ, Axis::kBottom}) {
+  point[static_cast<std::size_t>(RegionAxis::kYaw)] -= yaw;
+  for (const RegionAxis axis : {RegionAxis::kZ, RegionAxis::kBottom}) {
     point[static_cast<std::size_t>(axis)] -= at("z");
   }
 }
@@ -74,10 +74,11 @@ bool holds_inside(const InsideBinding& binding, const GroundFluent& fluent, cons
   PARALLAX_REQUIRE(region != nullptr, "the mapping was checked against the regions");
   Point point{};
   bool complete = true;
-  for (const Axis axis : kAxes) {
+  for (const RegionAxis axis : kRegionAxes) {
     // A point in a turned frame takes both x and y.
-    const bool needed = region->on(axis).has_value() ||
-                        (!region->frame.empty() && (axis == Axis::kX || axis == Axis::kY));
+    const bool needed =
+        region->on(axis).has_value() ||
+        (!region->frame.empty() && (axis == RegionAxis::kX || axis == RegionAxis::kY));
     if (!needed) continue;
     const auto value = number(state, fmt::format("{}.{}", body, to_string(axis)), missing);
     complete = complete && value.has_value();

@@ -12,14 +12,14 @@ std::uint64_t mix64(std::uint64_t x);
 std::uint64_t hash64(std::string_view bytes, std::uint64_t seed = 0xcbf29ce484222325ULL);
 
 /// The phase of a campaign that a draw belongs to; each has its own stream.
-enum class Phase : std::uint8_t { kSearch = 1, kCertify = 2, kConfirm = 3 };
+enum class DrawPhase : std::uint8_t { kSearch = 1, kCertify = 2, kConfirm = 3 };
 
 /// Names one draw, so that a sample can be replayed alone: (campaign seed, trace key, phase,
 /// sample index, attempt after rejected starts).
 struct DrawKey {
   std::uint64_t campaign_seed = 0;
   std::uint64_t trace_key = 0;
-  Phase phase = Phase::kCertify;
+  DrawPhase phase = DrawPhase::kCertify;
   std::uint64_t sample = 0;
   std::uint64_t attempt = 0;
 };

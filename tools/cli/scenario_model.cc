@@ -41,13 +41,13 @@ class RegionLocator final : public compiler::PoseLocator {
   Nearest distance(const harness::Region& region, const harness::Point& at) const {
     double squared_m2 = 0.0;
     std::string outside;
-    for (const auto axis : harness::kAxes) {
+    for (const auto axis : harness::kRegionAxes) {
       const auto& bound = region.on(axis);
       if (!bound) continue;
       const double value = at[static_cast<std::size_t>(axis)];
       const double outside_m = std::max({bound->lower - value, value - bound->upper, 0.0});
-      if (axis == harness::Axis::kYaw ? contains_yaw(region, at) : outside_m == 0.0) continue;
-      if (axis != harness::Axis::kYaw) squared_m2 += outside_m * outside_m;
+      if (axis == harness::RegionAxis::kYaw ? contains_yaw(region, at) : outside_m == 0.0) continue;
+      if (axis != harness::RegionAxis::kYaw) squared_m2 += outside_m * outside_m;
       outside +=
           fmt::format("{}{}: {:.4g} is not from {:.4g} to {:.4g}", outside.empty() ? "" : "; ",
                       to_string(axis), value, bound->lower, bound->upper);
@@ -57,9 +57,9 @@ class RegionLocator final : public compiler::PoseLocator {
 
   bool contains_yaw(const harness::Region& region, const harness::Point& at) const {
     auto moved = at;
-    for (const auto axis : harness::kAxes) {
+    for (const auto axis : harness::kRegionAxes) {
       const auto& bound = region.on(axis);
-      if (bound && axis != harness::Axis::kYaw) {
+      if (bound && axis != harness::RegionAxis::kYaw) {
         moved[static_cast<std::size_t>(axis)] = bound->midpoint();
       }
     }

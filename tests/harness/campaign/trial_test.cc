@@ -170,9 +170,9 @@ TEST_CASE("a sample is repeated with its own start and seed, and the trial can g
   const auto sample = next_of(trial);
   const auto again = trial.repeat(sample.record);
   REQUIRE(again.has_value());
-  CHECK(again->phase == Phase::kConfirm);
+  CHECK(again->phase == DrawPhase::kConfirm);
   auto expected = sample.record;
-  expected.phase = Phase::kConfirm;
+  expected.phase = DrawPhase::kConfirm;
   CHECK(*again == expected);
   CHECK(next_of(trial).record.sample == 2);
 }

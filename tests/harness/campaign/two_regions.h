@@ -282,7 +282,7 @@ inline State drawn_start(const Bench& bench, std::int64_t trace, std::int64_t sa
   const auto sampler = Sampler::make(cuboid, bench.scenario.sampling_inset_m, {}, sink);
   REQUIRE(sampler.has_value());
   const auto key = hash64(ListFeed::trace(trace).key);
-  return sampler->draw({bench.options.seed, key, Phase::kCertify,
+  return sampler->draw({bench.options.seed, key, DrawPhase::kCertify,
                         static_cast<std::uint64_t>(sample), static_cast<std::uint64_t>(attempt)});
 }
 

@@ -11,8 +11,8 @@ namespace {
 Region region(std::string name, Interval x, Interval yaw) {
   Region result;
   result.name = std::move(name);
-  result.on(Axis::kX) = x;
-  result.on(Axis::kYaw) = yaw;
+  result.on(RegionAxis::kX) = x;
+  result.on(RegionAxis::kYaw) = yaw;
   return result;
 }
 

@@ -5,7 +5,7 @@
 namespace parallax::harness {
 namespace {
 
-Region region(std::string name, std::initializer_list<std::pair<Axis, Interval>> bounds) {
+Region region(std::string name, std::initializer_list<std::pair<RegionAxis, Interval>> bounds) {
   Region out;
   out.name = std::move(name);
   for (const auto& [axis, interval] : bounds) out.on(axis) = interval;
@@ -23,23 +23,26 @@ RegionSet set_of(std::vector<Region> regions) {
 StateMapping mapping() {
   const Interval inside{-0.2, 0.2};
   Region upper =
-      region("upper", {{Axis::kX, inside}, {Axis::kY, inside}, {Axis::kBottom, {0, 0.1}}});
+      region("upper",
+             {{RegionAxis::kX, inside}, {RegionAxis::kY, inside}, {RegionAxis::kBottom, {0, 0.1}}});
   upper.frame = "drawer_u";
   upper.frame_start = {1.5, 1.0, 0.7};
-  upper.start[static_cast<std::size_t>(Axis::kBottom)] = Interval{0.0, 0.0};
+  upper.start[static_cast<std::size_t>(RegionAxis::kBottom)] = Interval{0.0, 0.0};
   Region lower = upper;
   lower.name = "lower";
   lower.frame = "drawer_l";
   lower.frame_start = {1.5, 1.0, 0.5};
   std::vector<RegionFamily> families;
-  families.push_back({"rooms",
-                      set_of({region("hall", {{Axis::kX, {0, 1}}, {Axis::kYaw, {-0.1, 0.1}}}),
-                              region("den", {{Axis::kX, {2, 3}}, {Axis::kYaw, {-0.1, 0.1}}})}),
-                      {"region"}});
+  families.push_back(
+      {"rooms",
+       set_of({region("hall", {{RegionAxis::kX, {0, 1}}, {RegionAxis::kYaw, {-0.1, 0.1}}}),
+               region("den", {{RegionAxis::kX, {2, 3}}, {RegionAxis::kYaw, {-0.1, 0.1}}})}),
+       {"region"}});
   families.push_back({"drawers", set_of({upper, lower}), {"place"}});
-  families.push_back({"shelf",
-                      set_of({region("shelf", {{Axis::kX, {0, 1}}, {Axis::kBottom, {0.9, 1.1}}})}),
-                      {"place"}});
+  families.push_back(
+      {"shelf",
+       set_of({region("shelf", {{RegionAxis::kX, {0, 1}}, {RegionAxis::kBottom, {0.9, 1.1}}})}),
+       {"place"}});
   RangeBinding open{"{0}.q", {0.40, 0.46}, {-0.01, 0.03}, 0.0};
   return StateMapping(RegionMap(std::move(families)),
                       {{"RobotAt", 1, InsideBinding{"robot", 0, {}, {}, true}, {}},

@@ -17,7 +17,7 @@ using base::DiagnosticCode;
 Region region_x(std::string name, double lower, double upper, std::uint32_t begin = 0) {
   Region region;
   region.name = std::move(name);
-  region.on(Axis::kX) = Interval{lower, upper};
+  region.on(RegionAxis::kX) = Interval{lower, upper};
   region.source = {base::FileId(0), begin, begin + 1};
   return region;
 }
@@ -25,15 +25,15 @@ Region region_x(std::string name, double lower, double upper, std::uint32_t begi
 Region region_xy(std::string name, Interval x, Interval y) {
   Region region;
   region.name = std::move(name);
-  region.on(Axis::kX) = x;
-  region.on(Axis::kY) = y;
+  region.on(RegionAxis::kX) = x;
+  region.on(RegionAxis::kY) = y;
   return region;
 }
 
 Region region_yaw(std::string name, double lower, double upper) {
   Region region;
   region.name = std::move(name);
-  region.on(Axis::kYaw) = Interval{lower, upper};
+  region.on(RegionAxis::kYaw) = Interval{lower, upper};
   return region;
 }
 
@@ -87,8 +87,7 @@ std::vector<Region> random_tiling(const CounterRng& rng, std::size_t axes, std::
 
 /// Independent oracle: the only region with the point in its interior once it was moved upwards on
 /// every axis (downwards at the top of the whole cuboid) by less than any region's width.
-std::string owner_by_nudging(const std::vector<Region>& regions, Point point,
-                             std::size_t axes) {
+std::string owner_by_nudging(const std::vector<Region>& regions, Point point, std::size_t axes) {
   for (std::size_t a = 0; a < axes; ++a) point[a] += point[a] == 2.25 ? -1e-9 : 1e-9;
   std::string owner = "-";
   int owners = 0;
@@ -114,8 +113,8 @@ TEST_CASE("regions: a shared border belongs to the region above, the last one is
   CHECK(located(set, {std::nextafter(2.0, 3.0)}) == "-");
   CHECK(located(set, {-1e-300}) == "-");
   CHECK(located(set, {std::numeric_limits<double>::quiet_NaN()}) == "-");
-  CHECK_FALSE(set.find("r1")->on(Axis::kX)->closed);
-  CHECK(set.find("r2")->on(Axis::kX)->closed);
+  CHECK_FALSE(set.find("r1")->on(RegionAxis::kX)->closed);
+  CHECK(set.find("r2")->on(RegionAxis::kX)->closed);
   CHECK(set.find("r3") == nullptr);
 }
 
@@ -158,8 +157,8 @@ TEST_CASE("regions: the closed flag of an interval agrees with the owner of the 
     const CounterRng rng({.campaign_seed = 12, .sample = round});
     const auto set = set_of(random_tiling(rng, 1, 2 + round % 6));
     for (const auto& region : set.regions()) {
-      const double end = region.on(Axis::kX)->upper;
-      CHECK(region.on(Axis::kX)->contains(end) == (set.locate({end}) == &region));
+      const double end = region.on(RegionAxis::kX)->upper;
+      CHECK(region.on(RegionAxis::kX)->contains(end) == (set.locate({end}) == &region));
     }
   }
 }
@@ -249,8 +248,8 @@ TEST_CASE("regions: a random tiling passes, and without one of its inner regions
     const CounterRng rng({.campaign_seed = 13, .sample = round});
     auto regions = random_tiling(rng, 2, 9);
     for (std::size_t i = 0; i < regions.size(); ++i) {
-      const auto& x = *regions[i].on(Axis::kX);
-      const auto& y = *regions[i].on(Axis::kY);
+      const auto& x = *regions[i].on(RegionAxis::kX);
+      const auto& y = *regions[i].on(RegionAxis::kY);
       // A region that is a whole side of the cuboid may leave a smaller tiling behind.
       if (x.lower == -1.5 || x.upper == 2.25 || y.lower == -1.5 || y.upper == 2.25) continue;
       auto without = regions;
@@ -264,7 +263,7 @@ TEST_CASE("regions: a random tiling passes, and without one of its inner regions
 }
 
 TEST_CASE("axes: names and axes are inverse") {
-  for (const Axis axis : kAxes) CHECK(axis_from(to_string(axis)) == axis);
+  for (const RegionAxis axis : kRegionAxes) CHECK(axis_from(to_string(axis)) == axis);
   CHECK_FALSE(axis_from("roll").has_value());
 }
 

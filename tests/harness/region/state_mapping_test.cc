@@ -12,7 +12,7 @@ using base::DiagnosticCode;
 Region region_x(std::string name, double lower, double upper) {
   Region region;
   region.name = std::move(name);
-  region.on(Axis::kX) = Interval{lower, upper};
+  region.on(RegionAxis::kX) = Interval{lower, upper};
   return region;
 }
 

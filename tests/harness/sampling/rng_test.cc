@@ -46,14 +46,14 @@ TEST_CASE("hash: FNV-1a with 64 bits, published values") {
 }
 
 TEST_CASE("rng: a draw can be repeated alone, and every part of its key matters") {
-  const DrawKey key{1, 2, Phase::kCertify, 3, 4};
+  const DrawKey key{1, 2, DrawPhase::kCertify, 3, 4};
   CHECK(CounterRng(key).bits(7) == CounterRng(key).bits(7));
   std::set<std::uint64_t> seen = {CounterRng(key).bits(7), CounterRng(key).bits(8)};
   for (const DrawKey& other :
-       {DrawKey{2, 2, Phase::kCertify, 3, 4}, DrawKey{1, 3, Phase::kCertify, 3, 4},
-        DrawKey{1, 2, Phase::kSearch, 3, 4}, DrawKey{1, 2, Phase::kCertify, 4, 4},
-        DrawKey{1, 2, Phase::kCertify, 3, 5}, DrawKey{2, 1, Phase::kCertify, 3, 4},
-        DrawKey{1, 2, Phase::kCertify, 4, 3}}) {
+       {DrawKey{2, 2, DrawPhase::kCertify, 3, 4}, DrawKey{1, 3, DrawPhase::kCertify, 3, 4},
+        DrawKey{1, 2, DrawPhase::kSearch, 3, 4}, DrawKey{1, 2, DrawPhase::kCertify, 4, 4},
+        DrawKey{1, 2, DrawPhase::kCertify, 3, 5}, DrawKey{2, 1, DrawPhase::kCertify, 3, 4},
+        DrawKey{1, 2, DrawPhase::kCertify, 4, 3}}) {
     CHECK(seen.insert(CounterRng(other).bits(7)).second);
     CHECK(simulator_seed(other) != simulator_seed(key));
   }
@@ -120,7 +120,7 @@ TEST_CASE("rng: neighbouring keys are uncorrelated in every part of the key") {
           return at({.campaign_seed = 7, .sample = k}, 1);
         })) < kRareDeviate);
   CHECK(std::abs(correlation(by_sample, [&](std::uint64_t k) {
-          return at({.campaign_seed = 7, .phase = Phase::kSearch, .sample = k});
+          return at({.campaign_seed = 7, .phase = DrawPhase::kSearch, .sample = k});
         })) < kRareDeviate);
 }
 

@@ -37,9 +37,9 @@ StateMapping random_grid(const CounterRng& rng) {
       for (std::size_t k = 0; k + 1 < yaw.size(); ++k) {
         Region region;
         region.name = "r" + std::to_string(regions.size());
-        region.on(Axis::kX) = Interval{x[i], x[i + 1]};
-        region.on(Axis::kY) = Interval{y[j], y[j + 1]};
-        region.on(Axis::kYaw) = Interval{yaw[k], yaw[k + 1]};
+        region.on(RegionAxis::kX) = Interval{x[i], x[i + 1]};
+        region.on(RegionAxis::kY) = Interval{y[j], y[j + 1]};
+        region.on(RegionAxis::kYaw) = Interval{yaw[k], yaw[k + 1]};
         regions.push_back(region);
       }
     }
