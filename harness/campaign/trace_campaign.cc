@@ -160,7 +160,7 @@ class TraceCampaign {
     result.paper_variant = paper_variant(tally_, criterion.paper);
     result.not_covered = tally_.frame().not_covered;
     result.claim = claim(tally_, criterion);
-    result.caveats = caveats(tally_, criterion);
+    result.caveats = caveats(tally_, criterion, result.paper_stopped_at);
     add_own_caveats(result);
     return std::move(outcome_);
   }

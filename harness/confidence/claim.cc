@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/confidence/paper_rule.h"
-
 namespace parallax::harness {
 namespace {
 
@@ -64,7 +62,8 @@ std::string claim(const Tally& tally, const CriterionSpec& spec) {
       tally.rejected() > 0 ? "valid " : "", runs_text(tally));
 }
 
-std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec) {
+std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec,
+                                 std::optional<std::int64_t> paper_stopped_at) {
   std::vector<std::string> result;
   if (tally.rejected() > 0) result.push_back(rejected_text(tally));
   if (tally.lost() > 0) {
@@ -75,8 +74,7 @@ std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec) 
         counted(tally.lost(), "run was lost", "runs were lost"), level_text(bound.confidence_level),
         level_text(spec.confidence_level)));
   }
-  const auto stopped_at = paper_stopped_at(tally, spec.paper, spec.confidence_level);
-  if (stopped_at && !tally.frame().not_covered.empty()) {
+  if (paper_stopped_at && !tally.frame().not_covered.empty()) {
     result.push_back(
         fmt::format("no regression evidence for: {}", fmt::join(tally.frame().not_covered, ", ")));
   }

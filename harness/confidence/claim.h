@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +17,10 @@ namespace parallax::harness {
 std::string claim(const Tally& tally, const CriterionSpec& spec);
 
 /// What weakens the claim, one sentence each: rejected starts, lost runs, fluents without
-/// regression evidence where the paper's rule is satisfied.
-std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec);
+/// regression evidence where the paper's rule is satisfied, which it is after `paper_stopped_at`
+/// runs, if at all.
+std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec,
+                                 std::optional<std::int64_t> paper_stopped_at);
 
 /// "paper-literal, n = 2": the reading of the paper's rule and its number of varying initial
 /// parameters.
