@@ -283,16 +283,6 @@ TEST_CASE("starts that are always invalid end the campaign with the colliding pa
   CHECK(bench.sink.exit_code() == 3);
 }
 
-/// The built-in simulator has bodies, to which arguments are held.
-void pretend_built_in(Scenario& scenario) {
-  scenario.simulator.command.clear();
-  BodySpec box;
-  box.name = "box";
-  box.shapes = {{{0.1, 0.1, 0.1}, {0.0, 0.0, 0.0}, 0.0}};
-  box.mass_kg = 0.3;
-  scenario.world.bodies.push_back(box);
-}
-
 TEST_CASE("an initial observation that does not map back is an internal error") {
   Bench bench;
   // As if it were the built-in one, with its arguments.

@@ -8,7 +8,6 @@ namespace {
 bool box_far(const State& start) { return number(start, "box.x") > 1.9; }
 
 struct RatesBench : Bench {
-  using Bench::Bench;
   RatesOptions rates;
   base::Result<RatesResult> estimate() {
     ListFeed feed(traces, openness);
@@ -67,7 +66,8 @@ TEST_CASE("neither does one that does not show what is compared, or refuses a re
 }
 
 TEST_CASE("nor one that cannot be put into the start") {
-  RatesBench bench(std::string(kScenarioText) + "sampling: {variables: {box.held: 0}}\n");
+  RatesBench bench;
+  bench.script.box_settable = false;
   CHECK_FALSE(bench.estimate().has_value());
   CHECK(codes(bench.sink) == std::vector<std::string>{"E5116"});
 }

@@ -12,8 +12,7 @@ bool box_far(const State& start) { return number(start, "box.x") > 1.9; }
 
 /// A bench that was started, and trials of its traces.
 struct Trials : Bench {
-  explicit Trials(std::int64_t jobs = 1, const std::string& text = kScenarioText)
-      : Bench(text), trial_options{1, jobs, &stop} {}
+  explicit Trials(std::int64_t jobs = 1) : trial_options{1, jobs, &stop} {}
 
   TrialBench& start() {
     feed.emplace(3, openness);
@@ -135,7 +134,8 @@ TEST_CASE("losses in a row are counted across traces, and an observed run ends t
 }
 
 TEST_CASE("a start is refused where the simulator cannot be put into it") {
-  Trials bench(1, std::string(kScenarioText) + "sampling: {variables: {box.held: 0}}\n");
+  Trials bench;
+  bench.script.box_settable = false;
   bench.start();
   auto trace = bench.feed->next();
   REQUIRE(trace.has_value());
@@ -150,7 +150,10 @@ TEST_CASE("what cannot be judged fails once and is reported") {
   SUBCASE("a missing variable") { bench.script.hides_box = true, code = "E7109"; }
   SUBCASE("another start") { bench.script.start_shift_m = 1.0, code = "E7112"; }
   SUBCASE("another start of the built-in simulator") {
-    bench.scenario.simulator.command.clear();
+    pretend_built_in(bench.scenario);
+    for (auto& action : bench.scenario.actions) {
+      if (action.controller != "picking-up") action.arguments["target.x"] = 0.5;
+    }
     bench.script.start_shift_m = 1.0, code = "E7106";
   }
   SUBCASE("no valid start") {

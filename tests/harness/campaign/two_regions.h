@@ -103,6 +103,7 @@ struct Script {
   bool seeds = true;
   double start_shift_m = 0.0;  // the robot starts so much off
   bool hides_box = false;      // observations lack box.x
+  bool box_settable = true;    // reset takes box.x
   std::string refuses;         // an action that it does not know
   std::string start_failure;   // says this instead of hello
   std::atomic<int>* resets = nullptr;
@@ -121,13 +122,14 @@ class ScriptedSimulator final : public Simulator {
   SimulatorInfo info() override {
     script_.on_info();
     if (!script_.start_failure.empty()) return {"", script_.start_failure, "", false, {}, {}, 0.0};
-    return {"scripted",
-            "1",
-            script_.determinism,
-            script_.seeds,
-            {{"box.held", "1", false}, {"box.x", "m", true}, {"robot.x", "m", true}},
-            {"going", "picking-up", "placing"},
-            0.002};
+    return {
+        "scripted",
+        "1",
+        script_.determinism,
+        script_.seeds,
+        {{"box.held", "1", false}, {"box.x", "m", script_.box_settable}, {"robot.x", "m", true}},
+        {"going", "picking-up", "placing"},
+        0.002};
   }
 
   Outcome reset(const State& initial, std::uint64_t seed) override {
@@ -273,6 +275,16 @@ struct Bench {
 
   std::filesystem::path journal() const { return options.run_dir / "journal.ndjson"; }
 };
+
+/// The built-in simulator has bodies, to which arguments are held.
+inline void pretend_built_in(Scenario& scenario) {
+  scenario.simulator.command.clear();
+  BodySpec box;
+  box.name = "box";
+  box.shapes = {{{0.1, 0.1, 0.1}, {0.0, 0.0, 0.0}, 0.0}};
+  box.mass_kg = 0.3;
+  scenario.world.bodies.push_back(box);
+}
 
 /// The start of a sample, drawn without the campaign.
 inline State drawn_start(const Bench& bench, std::int64_t trace, std::int64_t sample,

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "harness/confidence/paper_rule.h"
 #include "harness/sampling/rng.h"
 
 namespace parallax::harness {
@@ -64,7 +65,11 @@ TEST_CASE("claim: figures are rounded away from more than was shown") {
 }
 
 TEST_CASE("caveats: rejected starts with their rate, lost runs, what the paper's figure omits") {
-  const auto found = caveats(tally_of(95, 2, 3), {}, std::nullopt);
+  const CriterionSpec spec;
+  const auto caveats_of = [&](const Tally& tally) {
+    return caveats(tally, spec, paper_stopped_at(tally, spec.paper, spec.confidence_level));
+  };
+  const auto found = caveats_of(tally_of(95, 2, 3));
   REQUIRE(found.size() == 3);
   CHECK(found[0] ==
         "the claim is about start states that are valid: 3 of 100 drawn were rejected (3.0 %)");
@@ -72,7 +77,7 @@ TEST_CASE("caveats: rejected starts with their rate, lost runs, what the paper's
         "2 runs were lost (crash, hang or invalid numbers), counted as discrepancies; the stated "
         "confidence is 98 % instead of 99 %, as the runs may end with either of two bounds");
   CHECK(found[2] == "no regression evidence for: Holding(box), Open(door)");
-  CHECK(caveats(tally_of(1), {}, std::nullopt).empty());
+  CHECK(caveats_of(tally_of(1)).empty());
 }
 
 }  // namespace
