@@ -11,11 +11,15 @@ target_compile_options(parallax_warnings INTERFACE -ffp-contract=off)
 # Sources that follow one another are compiled together, up to so many bytes of text: most of a
 # compiler's time goes to the standard headers, which are then read once a batch. The size is a
 # compromise: larger batches build everything faster, smaller ones a single changed file.
-set(PARALLAX_BATCH_BYTES 0 CACHE STRING "Sources compiled together, in bytes; 0: each alone")
+set(PARALLAX_BATCH 40000 CACHE STRING "Sources compiled together, in bytes; 0: each alone")
 
 # parallax_batches(TARGET a.cc ...): file-local names must differ within a folder.
 function(parallax_batches target)
-  if(PARALLAX_BATCH_BYTES EQUAL 0)
+  # Folders in which names still collide.
+  set(apart artifact plan graph config engine robot simulator process_simulator cli bench measure
+            families app)
+  list(TRANSFORM apart PREPEND parallax_)
+  if(PARALLAX_BATCH EQUAL 0 OR target IN_LIST apart)
     return()
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
@@ -24,7 +28,7 @@ function(parallax_batches target)
   foreach(source ${ARGN})
     file(SIZE ${CMAKE_CURRENT_SOURCE_DIR}/${source} size)
     math(EXPR bytes "${bytes} + ${size}")
-    if(bytes GREATER PARALLAX_BATCH_BYTES)
+    if(bytes GREATER PARALLAX_BATCH)
       math(EXPR batch "${batch} + 1")
       set(bytes ${size})
     endif()
@@ -108,7 +112,6 @@ function(parallax_test name)
   target_compile_options(${name} PRIVATE -O1)
   target_compile_definitions(${name} PRIVATE DOCTEST_CONFIG_SUPER_FAST_ASSERTS
     PARALLAX_SOURCE_DIR="${PROJECT_SOURCE_DIR}" PARALLAX_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  parallax_batches(${name} ${arg_SOURCES})
   add_test(NAME ${name} COMMAND ${name})
   if(NOT arg_LABELS)
     set(arg_LABELS fast)
