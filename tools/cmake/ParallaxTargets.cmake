@@ -7,6 +7,8 @@ target_compile_options(parallax_warnings INTERFACE
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>)
 # Bitwise replay: no contraction into fused multiply-add, whatever the compiler's default.
 target_compile_options(parallax_warnings INTERFACE -ffp-contract=off)
+# Broken contracts name files as the repository does, wherever it lay when it was compiled.
+target_compile_options(parallax_warnings INTERFACE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 
 # Sources that follow one another are compiled together, up to so many bytes of text: most of a
 # compiler's time goes to the standard headers, which are then read once a batch. The size is a
