@@ -92,12 +92,23 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, TypedModel& model,
   return CheckedPlan{*std::move(graph), *std::move(formulas), std::move(events)};
 }
 
+/// Made on the tree: in a text the formula could end the negation early.
+NodeId negation(Ast& ast, NodeId formula) {
+  Node node;
+  node.kind = NodeKind::kUnary;
+  node.op = Operator::kNot;
+  node.begin = ast[formula].begin;
+  node.end = ast[formula].end;
+  return ast.add(node, &formula, 1);
+}
+
 base::Result<CheckedFormula> check_constraint(const ConstraintText& constraint, TypedModel& model,
                                               const base::SourceFiles& files,
                                               base::DiagnosticSink& sink) {
-  const auto parsed = parse_formula(constraint.text, files, sink);
+  auto parsed = parse_formula(constraint.text, files, sink);
   if (!parsed) return sink.already_reported();
-  return check_formula(model, parsed->ast, parsed->root, {}, sink);
+  const auto root = constraint.negated ? negation(parsed->ast, parsed->root) : parsed->root;
+  return check_formula(model, parsed->ast, root, {}, sink);
 }
 
 base::Result<std::vector<StateConstraint>> check_constraints(

@@ -32,11 +32,12 @@ struct PlanInput {
   std::int64_t max_horizon = 50;
 };
 
-/// A state constraint: a text in the source files, and the place that messages name, which is
-/// another one when the text was unfolded or unquoted from it.
+/// A state constraint: a text in the source files, which is one formula to its end, and the place
+/// that messages name, which is another one when the text was unfolded or unquoted from it.
 struct ConstraintText {
   base::SourceRange text;
   base::SourceRange place;
+  bool negated = false;  // what counts is that the formula does not hold
 };
 
 struct CompileInput {

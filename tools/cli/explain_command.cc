@@ -15,6 +15,7 @@ struct ExplainOptions {
   ModelOptions model;
   SetOptions sets;
   WhyCommand why;
+  bool asks_why = false;
   std::string sample;  // of a run folder
 };
 
@@ -41,7 +42,7 @@ int explain(const ExplainOptions& options, Invocation& invocation) {
   }
   const auto model = compile(options, invocation);
   if (!model) return 0;
-  if (options.why.fact.empty()) return explain_sets(*model, options.sets, std::nullopt, invocation);
+  if (!options.asks_why) return explain_sets(*model, options.sets, std::nullopt, invocation);
   auto why = options.why;
   why.all = options.sets.all;
   return explain_why(*model, why, invocation);
@@ -67,8 +68,10 @@ Command explain_command() {
                "All minimal sets of axioms; with --why: further causes as well");
   command.option("--limit", options->sets.limit, "With --all: stop after this many sets; 0: all")
       .check(NonNegative{});
-  command.option("--why", options->why.fact,
-                 "Tell what is behind this fact: HoldsAt(F(a),3), Happens(E(),2), or !...");
+  command
+      .option("--why", options->why.fact,
+              "Tell what is behind this fact: HoldsAt(F(a),3), Happens(E(),2), or !...")
+      .given(options->asks_why);
   command.option("--trace", options->why.trace, "The trace that --why is about")
       .check(Positive{})
       .show_default();

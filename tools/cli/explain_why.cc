@@ -114,7 +114,7 @@ bool is_within(const TraceFact& fact, compiler::Timepoint length) {
 
 int explain_why(const compiler::CompiledModel& model, const WhyCommand& command,
                 Invocation& invocation) {
-  const auto fact = parse_fact(command.fact, model, invocation.sink());
+  const auto fact = parse_fact(command.fact, model, invocation);
   if (!fact) return 0;
   const auto trace = load_trace(model, command.trace, invocation);
   if (!trace) return 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ struct ModelOptions {
   std::string compat;              // "decreasoner", or empty for the standard meaning
   std::int64_t horizon = -1;       // -1: as the model says
   std::vector<std::string> until;  // state constraints
-  std::string property;            // `verify`: traces end where this formula does not hold
+  /// `verify`: traces end where this formula does not hold.
+  std::optional<std::string> property = std::nullopt;
   std::string plan, bind;          // Lisp file and binding table; both or none
   std::string plan_entry;          // the function to run; empty: as the plan says
   std::string regions;             // the scenario whose regions the plan's poses lie in

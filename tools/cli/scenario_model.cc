@@ -5,6 +5,7 @@
 
 #include "compiler/base/file_io.h"
 #include "harness/campaign/campaign.h"
+#include "tools/cli/formula_argument.h"
 #include "tools/cli/plain_models.h"
 #include "tools/cli/signals.h"
 #include "tools/cli/version.h"
@@ -82,22 +83,20 @@ compiler::ConstraintText constraint_text(const harness::LocatedText& text,
   if (offset != std::string_view::npos) {
     const auto begin = text.source.begin + static_cast<std::uint32_t>(offset);
     const base::SourceRange range{text.source.file, begin, begin + size};
-    return {range, range};
+    return {range, range, false};
   }
   const auto file = files.add(files[text.source.file].name(), text.text);
-  return {{file, 0, size}, text.source};
+  return {{file, 0, size}, text.source, false};
 }
 
 /// Traces are to end where the property does not hold, also right at the start.
-void look_for_violations(const std::string& property, compiler::CompileInput& input,
-                         Invocation& invocation) {
-  constexpr std::string_view kHead = "!(";
-  const auto text = std::string(kHead) + property + ")";
-  const auto shown = invocation.files().add("--property", property);
-  const auto file = invocation.files().add("--property", text);
-  input.constraints = {{{file, 0, static_cast<std::uint32_t>(text.size())},
-                        {shown, 0, static_cast<std::uint32_t>(property.size())}}};
+base::Status look_for_violations(const std::string& property, compiler::CompileInput& input,
+                                 Invocation& invocation) {
+  const auto range = formula_argument("--property", property, invocation);
+  if (!range) return invocation.sink().already_reported();
+  input.constraints = {{*range, *range, true}};
   input.hits_at_start = true;
+  return base::Unit{};
 }
 
 base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scenario,
@@ -135,7 +134,8 @@ struct Switches {
 };
 
 base::Result<ScenarioModel> load(const std::filesystem::path& path, Invocation& invocation,
-                                 const Switches& switches, const std::string& property = {}) {
+                                 const Switches& switches,
+                                 const std::optional<std::string>& property = std::nullopt) {
   auto& sink = invocation.sink();
   auto scenario = harness::load_scenario(path, invocation.files(), sink);
   if (!scenario) return sink.already_reported();
@@ -144,7 +144,9 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Invocation& 
   auto input = compile_input(*scenario, locator, invocation);
   if (!input) return sink.already_reported();
   switches.apply(*input);
-  if (!property.empty()) look_for_violations(property, *input, invocation);
+  if (property && !look_for_violations(*property, *input, invocation)) {
+    return sink.already_reported();
+  }
   auto compilation = compiler::compile_model(*input, invocation.files(), sink);
   if (!compilation) return sink.already_reported();
   const auto& model = compilation->model;
@@ -203,16 +205,18 @@ base::Result<compiler::Compilation> compile(const ModelOptions& options, Invocat
   auto input = compile_input(options);
   switches.apply(input);
   for (const auto& formula : options.until) {
-    const auto file = invocation.files().add("--until", formula);
-    const base::SourceRange range{file, 0, static_cast<std::uint32_t>(formula.size())};
-    input.constraints.push_back({range, range});
+    const auto range = formula_argument("--until", formula, invocation);
+    if (!range) return invocation.sink().already_reported();
+    input.constraints.push_back({*range, *range, false});
   }
   std::optional<harness::Scenario> regions;
   std::optional<RegionLocator> locator;
   if (!options.plan.empty() && !add_plan(options, regions, locator, input, invocation)) {
     return invocation.sink().already_reported();
   }
-  if (!options.property.empty()) look_for_violations(options.property, input, invocation);
+  if (options.property && !look_for_violations(*options.property, input, invocation)) {
+    return invocation.sink().already_reported();
+  }
   return compiler::compile_model(input, invocation.files(), invocation.sink());
 }
 

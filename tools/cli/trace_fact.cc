@@ -4,43 +4,51 @@
 
 #include <algorithm>
 #include <charconv>
+#include <string_view>
+#include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
+#include "compiler/syntax/lexer.h"
+#include "compiler/syntax/parser.h"
+#include "compiler/syntax/printer.h"
+#include "tools/cli/formula_argument.h"
 
 namespace parallax::tools {
 namespace {
 
+using compiler::Ast;
 using compiler::AtomKind;
+using compiler::NodeId;
+using compiler::NodeKind;
 
-std::string without_blanks(const std::string& text) {
-  std::string out;
-  std::copy_if(text.begin(), text.end(), std::back_inserter(out),
-               [](char c) { return c != ' ' && c != '\t'; });
-  return out;
-}
-
+/// An atom as texts: `HoldsAt(F(a),3)` as HoldsAt, F(a), 3; other names are those of predicates.
 struct Parts {
   AtomKind kind = AtomKind::kPredicate;
   std::string name;
   std::string time;
 };
 
-/// `HoldsAt(F(a),3)` as HoldsAt, F(a), 3; anything else is the atom of a predicate.
-Parts split(const std::string& text) {
-  static constexpr std::pair<const char*, AtomKind> kKinds[] = {
-      {"HoldsAt(", AtomKind::kHoldsAt},
-      {"Happens(", AtomKind::kHappens},
-      {"ReleasedAt(", AtomKind::kReleasedAt}};
-  for (const auto& [head, kind] : kKinds) {
-    if (!text.starts_with(head) || !text.ends_with(')')) continue;
-    const auto begin = std::string(head).size();
-    const auto comma = text.rfind(',');
-    if (comma == std::string::npos || comma < begin) return {kind, text.substr(begin), ""};
-    return {kind, text.substr(begin, comma - begin),
-            text.substr(comma + 1, text.size() - comma - 2)};
+/// A term as traces print it.
+std::string compact(const Ast& ast, NodeId term) {
+  auto text = compiler::print_formula(ast, term);
+  std::erase(text, ' ');
+  return text;
+}
+
+Parts split(const Ast& ast, NodeId atom) {
+  static constexpr std::pair<std::string_view, AtomKind> kKinds[] = {
+      {"HoldsAt", AtomKind::kHoldsAt},
+      {"Happens", AtomKind::kHappens},
+      {"ReleasedAt", AtomKind::kReleasedAt}};
+  const auto& node = ast[atom];
+  for (const auto& [predicate, kind] : kKinds) {
+    if (node.kind != NodeKind::kApply || ast.name(node) != predicate) continue;
+    if (node.child_count == 0) return {kind, "", ""};
+    return {kind, compact(ast, ast.child(node, 0)),
+            node.child_count == 2 ? compact(ast, ast.child(node, 1)) : ""};
   }
-  return {AtomKind::kPredicate, text, ""};
+  return {AtomKind::kPredicate, compact(ast, atom), ""};
 }
 
 std::vector<std::string> known_names(AtomKind kind, const compiler::CompiledModel& model) {
@@ -56,17 +64,28 @@ std::vector<std::string> known_names(AtomKind kind, const compiler::CompiledMode
 }  // namespace
 
 base::Result<TraceFact> parse_fact(const std::string& text, const compiler::CompiledModel& model,
-                                   base::DiagnosticSink& sink) {
-  auto plain = without_blanks(text);
+                                   Invocation& invocation) {
+  const auto range = formula_argument("--why", text, invocation);
+  if (!range) return invocation.sink().already_reported();
+  const auto fail = [&](base::SourceRange at, const std::string& problem) {
+    return invocation.sink().error(base::DiagnosticCode::kNoSuchFact, at, compiler::shortened(text),
+                                   problem);
+  };
+  base::DiagnosticSink own;
+  const auto parsed = compiler::parse_formula(*range, invocation.files(), own);
+  if (!parsed) {
+    const auto first = own.sorted().front();
+    return fail(first.range.value_or(*range), first.message);
+  }
+  const auto& ast = parsed->ast;
   TraceFact fact;
-  while (plain.starts_with('!')) {
-    plain.erase(0, 1);
+  auto atom = parsed->root;
+  while (ast[atom].kind == NodeKind::kUnary && ast[atom].op == compiler::Operator::kNot) {
+    atom = ast.child(ast[atom], 0);
     fact.negated = !fact.negated;
   }
-  const auto fail = [&](const std::string& problem) {
-    return sink.error_about(base::DiagnosticCode::kNoSuchFact, "--why", text, problem);
-  };
-  const auto parts = split(plain);
+  const auto place = ast.source(ast[atom]);
+  const auto parts = split(ast, atom);
   fact.kind = parts.kind;
   fact.name = parts.name;
   const auto names = known_names(fact.kind, model);
@@ -79,15 +98,15 @@ base::Result<TraceFact> parse_fact(const std::string& text, const compiler::Comp
                        : fact.kind == AtomKind::kPredicate ? "atom of a predicate"
                                                            : "fluent";
     const auto near = base::nearest_name(fact.name, names);
-    return fail(fmt::format("the model has no {} `{}`{}", what, fact.name,
-                            near ? fmt::format(", but `{}`", *near) : ""));
+    return fail(place, fmt::format("the model has no {} `{}`{}", what, fact.name,
+                                   near ? fmt::format(", but `{}`", *near) : ""));
   }
   if (fact.kind != AtomKind::kPredicate) {
     compiler::Timepoint time = 0;
     const auto* end = parts.time.data() + parts.time.size();
     const auto [stop, error] = std::from_chars(parts.time.data(), end, time);
     if (error != std::errc() || stop != end || time < 0) {
-      return fail(fmt::format("`{}` is no timepoint", parts.time));
+      return fail(place, fmt::format("`{}` is no timepoint", parts.time));
     }
     fact.time = time;
   }

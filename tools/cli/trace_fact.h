@@ -4,7 +4,7 @@
 #include <string>
 
 #include "compiler/artifact/compiled_model.h"
-#include "compiler/base/diagnostic.h"
+#include "tools/cli/command.h"
 
 namespace parallax::tools {
 
@@ -19,9 +19,9 @@ struct TraceFact {
 };
 
 /// Reads `HoldsAt(F(a),3)`, `Happens(..)`, `ReleasedAt(..)` or the atom of a predicate, with `!`
-/// before it or not; blanks do not count, `F` stands for `F()`. kNoSuchFact says what is wrong, and
-/// which name is the nearest.
+/// before it or not; blanks do not count, `F` stands for `F()`. kNoSuchFact says where the text is
+/// wrong and why, and which name is the nearest.
 base::Result<TraceFact> parse_fact(const std::string& text, const compiler::CompiledModel& model,
-                                   base::DiagnosticSink& sink);
+                                   Invocation& invocation);
 
 }  // namespace parallax::tools

@@ -20,6 +20,7 @@ namespace {
 
 struct VerifyOptions {
   ModelOptions model;
+  std::string property;
   CertifyOption certify;
   bool check = false;
 };
@@ -178,7 +179,9 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
         "verify needs the texts of the model and --property instead of --until");
     return 0;
   }
-  const auto compilation = compile_models(options.model, invocation);
+  auto model_options = options.model;
+  model_options.property = options.property;
+  const auto compilation = compile_models(model_options, invocation);
   if (!compilation) return 0;
   const auto& model = compilation->model;
   const TemporaryFolder folder;
@@ -229,7 +232,7 @@ Command verify_command() {
       "part.");
   add_model_options(command, options->model);
   add_plan_options(command, options->model);
-  command.option("--property", options->model.property, "Formula that should hold at all times")
+  command.option("--property", options->property, "Formula that should hold at all times")
       .required();
   add_certify_option(command, options->certify);
   command.flag("--check", options->check,

@@ -102,7 +102,7 @@ std::vector<std::string> traces_command(const harness::ManifestCase& one) {
   std::vector<std::string> words = {"traces"};
   for (const auto& model : one.models) words.push_back(model.text);
   for (const auto& constraint : one.constraints) {
-    words.insert(words.end(), {"--until", constraint.text});
+    words.push_back("--until=" + constraint.text);  // also one that begins with `-`
   }
   if (one.horizon) words.insert(words.end(), {"--horizon", std::to_string(*one.horizon)});
   const auto limit = one.expect.complete ? 0 : one.expect.traces.value_or(0);
