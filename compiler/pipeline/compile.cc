@@ -13,7 +13,6 @@
 #include "compiler/lint/lint.h"
 #include "compiler/pipeline/constraint_encoder.h"
 #include "compiler/pipeline/plan_encoder.h"
-#include "compiler/pipeline/plan_formula_text.h"
 #include "compiler/pipeline/plan_formulas.h"
 #include "compiler/plan/plan_binding.h"
 #include "compiler/plan/unroller.h"
@@ -34,11 +33,11 @@ struct CheckedPlan {
 base::Result<std::vector<std::string>> candidates(const ObjectBinding& binding,
                                                   const TypedModel& model,
                                                   base::DiagnosticSink& sink) {
-  std::string text;
-  for (const auto& piece : binding.formula) {
-    text += piece.kind == TemplatePiece::Kind::kText ? piece.text : piece.variable;
-  }
-  const auto sort = sort_by_use(model, text, binding.variable);
+  const auto& formula = binding.formula;
+  const auto sort = sort_by_use(model, formula, [&](const FormulaNode& node) {
+    return node.leaf == LeafKind::kParameter &&
+           formula.parameters[node.number].variable == binding.variable;
+  });
   if (!sort) {
     return sink.error(base::DiagnosticCode::kBindingSyntax, binding.formula_source,
                       fmt::format("a formula that says something of {}", binding.variable),

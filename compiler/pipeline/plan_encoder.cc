@@ -28,6 +28,14 @@ std::size_t cut_number(const PlanGraph& graph, std::size_t terminal) {
   return number;
 }
 
+/// A register by its name, which stands for what it holds.
+PlanValue artifact_value(const PlanGraph& graph, const PlanArgument& argument) {
+  if (const auto* id = std::get_if<ModelValueId>(&argument)) return graph.values[*id].name;
+  if (const auto* text = std::get_if<std::string>(&argument)) return *text;
+  if (const auto* integer = std::get_if<std::int64_t>(&argument)) return *integer;
+  return std::get<double>(argument);
+}
+
 class PlanEncoder {
  public:
   PlanEncoder(const PlanGraph& graph, const PlanFormulas& formulas, GroundModel& model,
@@ -40,7 +48,7 @@ class PlanEncoder {
         grounder_(grounder),
         sink_(sink) {
     for (std::uint32_t i = 0; i < model.events().size(); ++i) {
-      event_numbers_.emplace(model.terms().text(model.events()[i], model.typed()), i);
+      event_numbers_.emplace(model.events()[i], i);
     }
     for (const auto& location : graph.locations) {
       origins_.push_back(model.add_origin(location.source, "plan step"));
@@ -79,9 +87,11 @@ class PlanEncoder {
     for (const auto& location : graph_.locations) {
       events_.emplace_back();
       for (auto& reading : registers_.readings(location.event)) {
-        const auto found = event_numbers_.find(reading.text);
+        const auto term = registers_.event(location.event, reading);
+        const auto found = term ? event_numbers_.find(*term) : event_numbers_.end();
         if (found == event_numbers_.end()) {
-          sink_.error(DiagnosticCode::kPlanEventUnknown, location.source, reading.text);
+          sink_.error(DiagnosticCode::kPlanEventUnknown, location.source,
+                      registers_.event_text(location.event, reading));
           break;
         }
         events_.back().push_back({std::move(reading), found->second});
@@ -241,7 +251,7 @@ class PlanEncoder {
   FormulaGrounder& grounder_;
   base::DiagnosticSink& sink_;
   std::size_t errors_at_start_ = sink_.error_count();
-  std::map<std::string, std::uint32_t> event_numbers_;
+  std::map<GroundTermId, std::uint32_t> event_numbers_;
   std::vector<std::vector<Performed>> events_;  // by location
   std::vector<std::uint32_t> origins_;          // by location
 };
@@ -266,8 +276,10 @@ std::vector<PlanCut> plan_cuts(const PlanGraph& graph) {
 std::vector<PlanStep> plan_steps(const PlanGraph& graph) {
   std::vector<PlanStep> steps;
   for (const auto& location : graph.locations) {
-    PlanStep step{location.event, location.source, location.failure_class, {}};
-    for (const auto& [name, value] : location.arguments) step.arguments.emplace(name, value);
+    PlanStep step{location.event.text, location.source, location.failure_class, {}};
+    for (const auto& [name, value] : location.arguments) {
+      step.arguments.emplace(name, artifact_value(graph, value));
+    }
     steps.push_back(std::move(step));
   }
   return steps;

@@ -2,24 +2,92 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
-#include "compiler/pipeline/plan_formula_text.h"
-#include "compiler/plan/plan_liveness.h"
-#include "compiler/syntax/parser.h"
 
 namespace parallax::compiler {
 namespace {
 
 using base::DiagnosticCode;
 
+std::optional<SortId> sort_of_variable(const TypedModel& model, std::string_view variable) {
+  while (!variable.empty() && variable.back() >= '0' && variable.back() <= '9') {
+    variable.remove_suffix(1);
+  }
+  return model.find_sort(variable);
+}
+
+/// The number of a variable that the outermost quantifiers `exists` bind.
+std::optional<std::uint32_t> outermost(const FormulaTree& formula, std::string_view name) {
+  auto at = formula.nodes.size() - 1;
+  while (formula.nodes[at].kind == NodeKind::kExists) {
+    const auto& children = formula.nodes[at].children;
+    for (std::size_t i = 0; i + 1 < children.size(); ++i) {
+      const auto number = formula.nodes[children[i]].number;
+      if (formula.variables[number] == name) return number;
+    }
+    at = children.back();
+  }
+  return std::nullopt;
+}
+
+/// The sort of a quantified variable: by its name, else by its use.
+std::optional<SortId> sort_of(const TypedModel& model, const FormulaTree& formula,
+                              std::uint32_t variable) {
+  if (const auto sort = sort_of_variable(model, formula.variables[variable])) return sort;
+  return sort_by_use(model, formula, [&](const FormulaNode& node) {
+    return node.leaf == LeafKind::kVariable && node.number == variable;
+  });
+}
+
+/// Gives the variables of a formula names that the checker understands: each begins with its sort
+/// and is the name of nothing else in the formula.
+class VariableNames {
+ public:
+  VariableNames(const TypedModel& model, const FormulaTree& formula)
+      : model_(model), text_(formula.text) {
+    for (std::uint32_t i = 0; i < formula.variables.size(); ++i) {
+      const auto& name = formula.variables[i];
+      const bool taken =
+          std::any_of(formula.nodes.begin(), formula.nodes.end(), [&](const FormulaNode& node) {
+            return node.kind == NodeKind::kName && node.leaf == LeafKind::kName &&
+                   formula.name(node) == name;
+          });
+      const auto sort = sort_of(model, formula, i);
+      const bool usable = !taken && sort_of_variable(model, name).has_value();
+      names_.push_back(usable || !sort ? name : fresh(*sort));
+    }
+  }
+
+  const std::string& of(std::uint32_t variable) const { return names_[variable]; }
+
+  std::string fresh(SortId sort) {
+    for (int number = 9000;; ++number) {
+      auto name = fmt::format("{}{}", model_.sorts[sort].name, number);
+      const bool used = text_.find(name) != std::string::npos ||
+                        std::find(given_.begin(), given_.end(), name) != given_.end();
+      if (used) continue;
+      given_.push_back(name);
+      return name;
+    }
+  }
+
+ private:
+  const TypedModel& model_;
+  const std::string& text_;
+  std::vector<std::string> names_;  // by variable
+  std::vector<std::string> given_;
+};
+
 class PlanFormulaChecker {
  public:
   PlanFormulaChecker(const PlanGraph& graph, TypedModel& model, base::SourceFiles& files,
                      base::DiagnosticSink& sink)
-      : graph_(graph), model_(model), files_(files), sink_(sink), names_(graph) {}
+      : graph_(graph), model_(model), files_(files), sink_(sink) {}
 
   base::Result<PlanFormulas> check() {
     if (!find_register_sorts()) return sink_.already_reported();
@@ -45,12 +113,11 @@ class PlanFormulaChecker {
     std::vector<std::optional<SortId>> sorts(graph_.values.size());
     for (const auto& location : graph_.locations) {
       if (!location.result || sorts[location.result->index()]) continue;
-      const auto& variable = graph_.values[*location.result].variable;
-      const auto text = to_model_syntax(model_, location.success.formula);
-      const auto renamed = text.renamed.find(variable);
-      const auto sort =
-          sort_of_variable(model_, renamed == text.renamed.end() ? variable : renamed->second);
-      if (!sort) return refuse_result(variable, location.success.source);
+      const auto& name = graph_.values[*location.result].variable;
+      const auto& formula = location.success.formula;
+      const auto variable = outermost(formula, name);
+      const auto sort = variable ? sort_of(model_, formula, *variable) : std::nullopt;
+      if (!sort) return refuse_result(name, location.success.source);
       sorts[location.result->index()] = sort;
     }
     for (const auto& sort : sorts) {
@@ -70,8 +137,8 @@ class PlanFormulaChecker {
     return false;
   }
 
-  /// Many locations share a formula: each text is checked once.
-  void add(const std::string& formula, const std::optional<std::string>& returned,
+  /// Many locations share a formula: each is checked once.
+  void add(const FormulaTree& formula, const std::optional<std::string>& returned,
            base::SourceRange source, std::vector<PlanFormula>& out) {
     const auto key = std::pair(formula, returned.value_or(""));
     auto found = known_.find(key);
@@ -85,34 +152,34 @@ class PlanFormulaChecker {
     }
   }
 
-  std::optional<PlanFormula> check_one(const std::string& formula,
+  std::optional<PlanFormula> check_one(const FormulaTree& formula,
                                        const std::optional<std::string>& returned,
                                        base::SourceRange source) {
-    auto text = to_model_syntax(model_, formula);
-    std::map<ModelValueId, std::string> variables;
-    std::string list;
-    for (const auto id : names_.in(formula)) {
-      auto variable = fresh_variable(model_, out_.register_sorts[id.index()], text.text);
-      text.text = replace_word(text.text, graph_.values[id].name, variable);
-      list += (list.empty() ? "" : ",") + variable;
-      variables.emplace(id, std::move(variable));
+    const auto result = returned ? outermost(formula, *returned) : std::nullopt;
+    if (returned && !result) {
+      refuse_result(*returned, source);
+      return std::nullopt;
     }
-    if (!list.empty()) text.text = fmt::format("{{{}}} ({})", list, text.text);
-    const auto checked = check_text(text.text, source);
+    VariableNames names(model_, formula);
+    std::map<ModelValueId, std::string> registers;
+    std::vector<std::string> list;
+    for (const auto id : registers_in(formula)) {
+      list.push_back(names.fresh(out_.register_sorts[id.index()]));
+      registers.emplace(id, list.back());
+    }
+    auto named = with_leaves(formula, [&](const FormulaNode& node) -> std::optional<FormulaTree> {
+      if (node.leaf == LeafKind::kVariable) return constant_term(names.of(node.number));
+      if (node.leaf != LeafKind::kRegister) return std::nullopt;
+      return constant_term(registers.at(ModelValueId(node.number)));
+    });
+    if (!list.empty()) named = exists(list, named);
+    const auto checked = check_tree(named, source);
     if (!checked) return std::nullopt;
     PlanFormula out{*checked, {}, {}};
-    for (const auto& [id, variable] : variables) {
+    for (const auto& [id, variable] : registers) {
       out.registers.emplace(id, *quantified(checked->formula, variable));
     }
-    if (returned) {
-      const auto renamed = text.renamed.find(*returned);
-      out.returned =
-          quantified(checked->formula, renamed == text.renamed.end() ? *returned : renamed->second);
-      if (!out.returned) {
-        refuse_result(*returned, source);
-        return std::nullopt;
-      }
-    }
+    if (result) out.returned = quantified(checked->formula, names.of(*result));
     return out;
   }
 
@@ -128,19 +195,17 @@ class PlanFormulaChecker {
     }
   }
 
-  /// The substituted text is nowhere in the user's files, so what is wrong with it is reported at
-  /// the formula it was made from.
-  base::Result<CheckedFormula> check_text(const std::string& text, base::SourceRange origin) {
-    const auto file = files_.add(files_[origin.file].name(), text);
+  /// The formula with its values is nowhere in the user's files, so what is wrong with it is
+  /// reported at the formula it was made from.
+  base::Result<CheckedFormula> check_tree(const FormulaTree& formula, base::SourceRange origin) {
+    const auto file = files_.add(files_[origin.file].name(), formula.text);
     base::DiagnosticSink own;
-    const auto parsed = parse_formula(file, files_, own);
+    const auto parsed = to_ast(formula, file, files_);
     FormulaOptions options;
     options.fluents_as_atoms = true;
-    if (parsed) {
-      const auto checked = check_formula(model_, parsed->ast, parsed->root, options, own);
-      if (checked) return *checked;
-    }
-    sink_.adopt(own, origin, text);
+    const auto checked = check_formula(model_, parsed.ast, parsed.root, options, own);
+    if (checked) return *checked;
+    sink_.adopt(own, origin, formula.text);
     return sink_.already_reported();
   }
 
@@ -148,13 +213,36 @@ class PlanFormulaChecker {
   TypedModel& model_;
   base::SourceFiles& files_;
   base::DiagnosticSink& sink_;
-  RegisterNames names_;
   PlanFormulas out_;
-  std::map<std::pair<std::string, std::string>, std::optional<PlanFormula>> known_;
+  std::map<std::pair<FormulaTree, std::string>, std::optional<PlanFormula>> known_;
   bool failed_ = false;
 };
 
 }  // namespace
+
+std::optional<SortId> sort_by_use(const TypedModel& model, const FormulaTree& formula,
+                                  const std::function<bool(const FormulaNode&)>& is_meant) {
+  // The innermost call around a node, and which of its arguments the node is in.
+  struct Use {
+    const FormulaNode* call = nullptr;
+    std::size_t argument = 0;
+  };
+  std::vector<Use> uses(formula.nodes.size());
+  for (auto i = formula.nodes.size(); i-- > 0;) {
+    const auto& node = formula.nodes[i];
+    for (std::size_t k = 0; k < node.children.size(); ++k) {
+      uses[node.children[k]] = node.kind == NodeKind::kApply ? Use{&node, k} : uses[i];
+    }
+  }
+  for (std::size_t i = 0; i < formula.nodes.size(); ++i) {
+    const auto& node = formula.nodes[i];
+    if (node.kind != NodeKind::kName || uses[i].call == nullptr || !is_meant(node)) continue;
+    const auto symbol = model.find_symbol(formula.name(*uses[i].call));
+    if (!symbol || uses[i].argument >= model.symbols[*symbol].arguments.size()) continue;
+    return model.symbols[*symbol].arguments[uses[i].argument];
+  }
+  return std::nullopt;
+}
 
 base::Result<PlanFormulas> check_plan_formulas(const PlanGraph& graph, TypedModel& model,
                                                base::SourceFiles& files,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <vector>
@@ -26,9 +27,14 @@ struct PlanFormulas {
   std::vector<SortId> register_sorts;  // by register: what it can hold
 };
 
-/// Parses and checks success conditions and guards; they become part of the model's stores, so
-/// this comes before grounding. Reports at the binding's formula what is wrong with it, E4001 if it
-/// returns a variable that its outermost `{...}` does not bind.
+/// The sort of the first argument place at which one of the leaves stands.
+std::optional<SortId> sort_by_use(const TypedModel& model, const FormulaTree& formula,
+                                  const std::function<bool(const FormulaNode&)>& is_meant);
+
+/// Checks success conditions and guards; they become part of the model's stores, so this comes
+/// before grounding. A quantified variable whose name begins with no sort (`exists i.`) has the
+/// sort of the first argument place that it stands at.  Reports at the binding's formula what is
+/// wrong with it, E4001 if it returns a variable that its outermost `{...}` does not bind.
 base::Result<PlanFormulas> check_plan_formulas(const PlanGraph& graph, TypedModel& model,
                                                base::SourceFiles& files,
                                                base::DiagnosticSink& sink);

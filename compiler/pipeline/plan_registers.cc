@@ -3,10 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <charconv>
 #include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
-#include "compiler/pipeline/plan_formula_text.h"
 
 namespace parallax::compiler {
 namespace {
@@ -25,7 +25,7 @@ bool advance(std::vector<std::size_t>& choice, const std::vector<std::size_t>& s
 PlanRegisters::PlanRegisters(const PlanGraph& graph, const PlanFormulas& formulas,
                              GroundModel& model, FormulaGrounder& grounder,
                              base::DiagnosticSink& sink)
-    : graph_(graph), names_(graph), model_(model), grounder_(grounder), sink_(sink) {
+    : graph_(graph), model_(model), grounder_(grounder), sink_(sink) {
   for (const auto sort : formulas.register_sorts) {
     values_.emplace_back();
     for (const auto term : model.universe().domain(sort)) {
@@ -43,8 +43,8 @@ FormulaId PlanRegisters::returned(const Value& value, Timepoint t) {
   return model_.named_atom(AtomKind::kResult, value.name, t);
 }
 
-std::vector<PlanRegisters::Reading> PlanRegisters::readings(const std::string& text) const {
-  const auto read = names_.in(text);
+std::vector<PlanRegisters::Reading> PlanRegisters::readings(const FormulaTree& event) const {
+  const auto read = registers_in(event);
   const std::vector<ModelValueId> ids(read.begin(), read.end());
   std::vector<std::size_t> choice(ids.size(), 0);
   std::vector<std::size_t> sizes;
@@ -52,20 +52,57 @@ std::vector<PlanRegisters::Reading> PlanRegisters::readings(const std::string& t
   std::vector<Reading> out;
   if (std::count(sizes.begin(), sizes.end(), 0U) > 0) return out;
   do {
-    Reading reading{{}, text};
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      reading.choice.emplace_back(ids[i], choice[i]);
-      reading.text =
-          replace_word(reading.text, graph_.values[ids[i]].name, values(ids[i])[choice[i]].name);
-    }
+    Reading reading;
+    for (std::size_t i = 0; i < ids.size(); ++i) reading.emplace(ids[i], choice[i]);
     out.push_back(std::move(reading));
   } while (advance(choice, sizes));
   return out;
 }
 
+std::optional<GroundTermId> PlanRegisters::event(const FormulaTree& event, const Reading& reading) {
+  const auto& typed = model_.typed();
+  auto& terms = model_.terms();
+  std::vector<std::optional<GroundTermId>> made;
+  for (const auto& node : event.nodes) {
+    std::vector<GroundTermId> arguments;
+    for (const auto child : node.children) {
+      if (made[child]) arguments.push_back(*made[child]);
+    }
+    auto& term = made.emplace_back();
+    if (arguments.size() != node.children.size()) continue;
+    const auto name = event.name(node);
+    if (node.leaf == LeafKind::kRegister) {
+      const ModelValueId id(node.number);
+      term = values(id)[reading.at(id)].term;
+    } else if (node.kind == NodeKind::kName) {
+      if (const auto object = typed.find_object(name)) term = terms.object(*object);
+    } else if (node.kind == NodeKind::kNumber) {
+      std::int64_t value = 0;
+      const auto* end = name.data() + name.size();
+      const auto [stop, error] = std::from_chars(name.data(), end, value);
+      if (error == std::errc() && stop == end) term = terms.integer(value);
+    } else if (node.kind == NodeKind::kUnary && node.op == Operator::kNegate) {
+      const auto& operand = terms[arguments[0]];
+      if (operand.kind == TermKind::kInteger) term = terms.integer(-operand.integer);
+    } else if (node.kind == NodeKind::kApply) {
+      if (const auto symbol = typed.find_symbol(name)) term = terms.apply(*symbol, arguments);
+    }
+  }
+  return made.back();
+}
+
+std::string PlanRegisters::event_text(const FormulaTree& event, const Reading& reading) const {
+  const auto value = [&](const FormulaNode& node) -> std::optional<FormulaTree> {
+    if (node.leaf != LeafKind::kRegister) return std::nullopt;
+    const ModelValueId id(node.number);
+    return constant_term(values(id)[reading.at(id)].name);
+  };
+  return with_leaves(event, value).text;
+}
+
 FormulaId PlanRegisters::condition(const Reading& reading, Timepoint t) {
   std::vector<FormulaId> parts;
-  for (const auto& [id, place] : reading.choice) parts.push_back(holds(id, values(id)[place], t));
+  for (const auto& [id, place] : reading) parts.push_back(holds(id, values(id)[place], t));
   return model_.formulas().conjunction(std::move(parts));
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "compiler/ground/formula_grounder.h"
@@ -29,13 +29,13 @@ class PlanRegisters {
   /// What the perform of the timepoint before returned.
   FormulaId returned(const Value& value, Timepoint t);
 
-  /// One way to give the registers in a text their values, and the text with these values.
-  struct Reading {
-    std::vector<std::pair<ModelValueId, std::size_t>> choice;  // place in values()
-    std::string text;
-  };
-  /// The product of the values; the text itself if it reads no register.
-  std::vector<Reading> readings(const std::string& text) const;
+  /// One way to give registers their values: the place of each in values().
+  using Reading = std::map<ModelValueId, std::size_t>;
+  /// The product of the values of what an event reads; one empty reading if it reads no register.
+  std::vector<Reading> readings(const FormulaTree& event) const;
+  /// An event with these values; none if the model has no such constant, constructor or event.
+  std::optional<GroundTermId> event(const FormulaTree& event, const Reading& reading);
+  std::string event_text(const FormulaTree& event, const Reading& reading) const;
   /// The registers have these values at t.
   FormulaId condition(const Reading& reading, Timepoint t);
 
@@ -47,7 +47,6 @@ class PlanRegisters {
 
  private:
   const PlanGraph& graph_;
-  RegisterNames names_;
   GroundModel& model_;
   FormulaGrounder& grounder_;
   base::DiagnosticSink& sink_;

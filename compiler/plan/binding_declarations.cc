@@ -3,7 +3,6 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/plan/binding_parser.h"
-#include "compiler/plan/binding_template.h"
 
 namespace parallax::compiler {
 

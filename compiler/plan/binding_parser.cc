@@ -2,10 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
-#include "compiler/plan/binding_template.h"
 
 namespace parallax::compiler {
 
@@ -18,7 +18,22 @@ bool is_name(char c) {
   return !is_binding_blank(c) && std::string_view("()|=,;:@/").find(c) == std::string_view::npos;
 }
 
+bool is_word(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
 }  // namespace
+
+std::size_t variable_length(std::string_view text) {
+  if (text.empty() || text.front() != '?') return 0;
+  std::size_t i = 1;
+  while (i < text.size()) {
+    const bool hyphen = text[i] == '-' && i + 1 < text.size() && is_word(text[i + 1]);
+    if (!is_word(text[i]) && !hyphen) break;
+    ++i;
+  }
+  return i == 1 ? 0 : i;
+}
 
 std::string_view BindingParser::peek_name() const {
   auto stop = i_;
@@ -113,19 +128,17 @@ bool BindingParser::parse_arguments(BindingEntry& entry) {
     const char c = text_[i_];
     const bool ends = depth == 0 && (c == ',' || c == ')');
     if (ends) {
-      std::string argument = text_.substr(begin, i_ - begin);
-      auto pieces = parse_template(argument, range(begin, i_), sink_);
-      if (!pieces) return failed_ = true, false;
-      for (auto& piece : *pieces) std::erase_if(piece.text, is_binding_blank);
-      std::erase_if(*pieces, [](const TemplatePiece& piece) {
-        return piece.kind == TemplatePiece::Kind::kText && piece.text.empty();
-      });
-      if (pieces->empty() && c == ')' && entry.event_arguments.empty()) return ++i_, true;  // E()
-      if (pieces->empty()) return expected("an argument of the event");
+      const bool empty =
+          std::all_of(text_.begin() + static_cast<std::ptrdiff_t>(begin),
+                      text_.begin() + static_cast<std::ptrdiff_t>(i_), is_binding_blank);
+      if (empty && c == ')' && entry.event_arguments.empty()) return ++i_, true;  // E()
+      if (empty) return expected("an argument of the event");
       if (entry.event_arguments.size() == kMaxArguments) {
         return expected(fmt::format("at most {} arguments", kMaxArguments));
       }
-      entry.event_arguments.push_back(std::move(*pieces));
+      const auto argument = read_formula_tree(range(begin, i_), text_, sink_);
+      if (!argument) return failed_ = true, false;
+      entry.event_arguments.push_back(without_blanks(*argument));
       begin = i_ + 1;
       if (c == ')') return ++i_, true;
     }
@@ -151,7 +164,7 @@ bool BindingParser::parse_formula(BindingEntry& entry) {
   if (i_ == end_) return expected("`@t` or `@t+1` behind the formula");
   if (stop == begin) return expected("a formula before `@`");
   entry.formula_source = range(begin, stop);
-  auto formula = parse_template(text_.substr(begin, stop - begin), entry.formula_source, sink_);
+  auto formula = read_formula_tree(entry.formula_source, text_, sink_);
   if (!formula) return failed_ = true, false;
   entry.formula = std::move(*formula);
   if (take("@t+1")) {

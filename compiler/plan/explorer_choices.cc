@@ -37,9 +37,14 @@ std::optional<PlanStop> Explorer::run_plan(PlanState& state, const StopPerform& 
   return machine_.enter(state, function->second, arguments, stop.form);
 }
 
-BranchId Explorer::branch(std::string guard, bool free, DatumId form) {
+BranchId Explorer::branch(FormulaTree guard, DatumId form) {
   return graph_.branches.add(
-      {std::move(guard), data_.source(form), TerminalId(0), TerminalId(0), free});
+      {std::move(guard), {}, data_.source(form), TerminalId(0), TerminalId(0), false});
+}
+
+BranchId Explorer::free_branch(std::string choice, DatumId form) {
+  return graph_.branches.add(
+      {{}, std::move(choice), data_.source(form), TerminalId(0), TerminalId(0), true});
 }
 
 /// Any branch of a `par` that waits may go on.
@@ -59,7 +64,7 @@ std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
   if (found != turns_.end()) return found->second;
   const auto form = state.pars.front().form;
   if (!has_room(key, form)) return std::nullopt;
-  const auto first = branch("the first branch goes on", true, form);
+  const auto first = free_branch("the first branch goes on", form);
   turns_.emplace(std::move(key), first);
   auto here = first;
   // The last job is taken first: branches in written order.
@@ -69,7 +74,7 @@ std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
     if (way + 2 == ways.size()) {
       jobs.push_back(go_on(way + 1, Job::Edge::kFalse, here.index()));
     } else {
-      const auto next = branch("the next branch goes on", true, form);
+      const auto next = free_branch("the next branch goes on", form);
       graph_.branches[here].if_false = next;
       here = next;
     }
@@ -100,26 +105,26 @@ bool Explorer::choose(const PlanState& state, const StopPerform& stop,
   const auto& names =
       options_.candidates[static_cast<std::size_t>(reference.binding - binding_.objects.data())];
   const auto never = terminal(TerminalKind::kNever, {}, std::nullopt);
-  std::string any;
+  std::vector<FormulaTree> guards;
   std::optional<BranchId> before;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto guard = resolver_.candidate(reference, names[i], data_.source(stop.form));
+    auto guard = resolver_.candidate(reference, names[i], data_.source(stop.form));
     if (!guard) return false;
-    any += (any.empty() ? "(" : " | (") + *guard + ")";
-    const auto test = branch(*guard, false, stop.form);
+    guards.push_back(*guard);
+    const auto test = branch(*std::move(guard), stop.form);
     graph_.branches[test].if_false = never;
     jobs_.push_back({state, {}, named(stop, reference, names[i]), Job::Edge::kTrue, test.index()});
     PlanTarget here = test;
     std::optional<BranchId> choice;
     if (i + 1 < names.size()) {
-      choice = branch(fmt::format("{} is meant", names[i]), true, stop.form);
+      choice = free_branch(fmt::format("{} is meant", names[i]), stop.form);
       graph_.branches[*choice].if_true = test;
       here = *choice;
     }
     (before ? graph_.branches[*before].if_false : graph_.branches[some].if_true) = here;
     before = choice;
   }
-  graph_.branches[some].guard = any;
+  graph_.branches[some].guard = disjunction(guards);
   return true;
 }
 
@@ -149,7 +154,7 @@ std::optional<PlanTarget> Explorer::refer(PlanState& state, const StopPerform& s
   key.push_back(state.missed);
   const auto found = references_.find(key);
   if (found != references_.end()) return found->second;
-  const auto some = branch({}, false, stop.form);
+  const auto some = branch({}, stop.form);
   references_.emplace(std::move(key), some);
   jobs_.push_back({state, values_.failure(*failure), {}, Job::Edge::kFalse, some.index()});
   if (!choose(state, stop, reference, some)) return std::nullopt;

@@ -32,7 +32,7 @@ void PerformResolver::flatten(const std::string& name, ValueId id, PlanArguments
       }
       return;
     case ValueKind::kModel:
-      out.emplace(name, graph_.values[value.model].name);
+      out.emplace(name, value.model);
       return;
     case ValueKind::kDesignator:
       for (const auto& [key, item] : value.keys) {

@@ -94,21 +94,25 @@ Result<std::string> PerformResolver::model_name(const ModelNames& names, std::st
   return error;
 }
 
-Result<std::string> PerformResolver::constant(ValueId id, std::string_view what,
+Result<FormulaTree> PerformResolver::constant(ValueId id, std::string_view what,
                                               SourceRange source) {
   const auto& value = values_[id];
-  const auto wrong = [&](std::string_view text) -> Result<std::string> {
+  const auto wrong = [&](std::string_view text) -> Result<FormulaTree> {
     return sink_.error(DiagnosticCode::kDesignatorValue, source, "performed", what, text);
   };
   switch (value.kind) {
     case ValueKind::kSymbol:
-    case ValueKind::kString:
-      return model_name(constants_, value.text, source);
+    case ValueKind::kString: {
+      if (value.text.empty()) return wrong("an empty name");
+      const auto name = model_name(constants_, value.text, source);
+      if (!name) return sink_.already_reported();
+      return constant_term(*name);
+    }
     case ValueKind::kNumber:
-      if (value.number.is_integer()) return value.number.to_string();
+      if (value.number.is_integer()) return constant_term(value.number.to_string());
       return wrong("a number that is no integer; the model has no such constants");
     case ValueKind::kModel:
-      return graph_.values[value.model].name;
+      return register_term(graph_.values[value.model].name, value.model);
     case ValueKind::kDesignator:
       if (const auto name = values_.key(id, "name")) return constant(*name, what, source);
       if (value.designator == DesignatorKind::kLocation) {
@@ -146,11 +150,13 @@ PerformResolver::Target PerformResolver::target(ValueId id) const {
   }
 }
 
-Result<std::string> PerformResolver::mapped(std::string_view function, ValueId value,
+Result<FormulaTree> PerformResolver::mapped(std::string_view function, ValueId value,
                                             std::string_view key, SourceRange source) {
   const auto where = target(value);
   if (where.pose) {
-    if (auto region = locator_.region_of(function, *where.pose)) return *std::move(region);
+    if (auto region = locator_.region_of(function, *where.pose)) {
+      return constant_term(*region);
+    }
     const auto& pose = *where.pose;
     auto error = sink_.error(DiagnosticCode::kPoseOutsideRegions, source, pose.x_m, pose.y_m,
                              pose.z_m, function);
@@ -166,8 +172,8 @@ Result<std::string> PerformResolver::mapped(std::string_view function, ValueId v
   }
   const auto object = constant(*where.object, key, source);
   if (!object) return sink_.already_reported();
-  auto region = locator_.region_of_object(function, where.relation, *object);
-  if (region) return *std::move(region);
+  auto region = locator_.region_of_object(function, where.relation, object->text);
+  if (region) return constant_term(*region);
   return sink_.error(DiagnosticCode::kDesignatorValue, source, "performed", key,
                      fmt::format("an object that `{}` does not map", function));
 }
@@ -187,23 +193,17 @@ Result<ValueId> PerformResolver::variable(const BindingEntry& entry, ValueId des
   return designator;
 }
 
-Result<std::string> PerformResolver::substitute(const BindingEntry& entry, const Template& pieces,
-                                                ValueId designator, SourceRange source) {
-  std::string out;
-  for (const auto& piece : pieces) {
-    if (piece.kind == TemplatePiece::Kind::kText) {
-      out += piece.text;
-      continue;
-    }
-    const auto value = variable(entry, designator, piece.variable, source);
+/// The formula of an entry with what the designator has under its keys.
+Result<FormulaTree> PerformResolver::fill(const BindingEntry& entry, const FormulaTree& formula,
+                                          ValueId designator, SourceRange source) {
+  Variables variables;
+  for (const auto& parameter : formula.parameters) {
+    if (parameter.variable.empty() || variables.contains(parameter.variable)) continue;
+    const auto value = variable(entry, designator, parameter.variable, source);
     if (!value) return sink_.already_reported();
-    const auto text = piece.kind == TemplatePiece::Kind::kMapped
-                          ? mapped(piece.function, *value, piece.variable, source)
-                          : constant(*value, piece.variable, source);
-    if (!text) return sink_.already_reported();
-    out += *text;
+    variables.emplace(parameter.variable, *value);
   }
-  return out;
+  return fill(formula, variables, source);
 }
 
 Result<PlanLocation> PerformResolver::resolve(const BindingEntry& entry, ValueId designator,
@@ -211,15 +211,14 @@ Result<PlanLocation> PerformResolver::resolve(const BindingEntry& entry, ValueId
   PlanLocation location;
   location.source = source;
   location.event_symbol = entry.event_symbol;
-  std::string joined;
-  for (const auto& pieces : entry.event_arguments) {
-    auto text = substitute(entry, pieces, designator, source);
-    if (!text) return sink_.already_reported();
-    joined += joined.empty() ? *text : "," + *text;
-    location.event_arguments.push_back(*std::move(text));
+  std::vector<FormulaTree> event_arguments;
+  for (const auto& argument : entry.event_arguments) {
+    auto filled = fill(entry, argument, designator, source);
+    if (!filled) return sink_.already_reported();
+    event_arguments.push_back(*std::move(filled));
   }
-  location.event = fmt::format("{}({})", entry.event_symbol, joined);
-  auto formula = substitute(entry, entry.formula, designator, source);
+  location.event = application(entry.event_symbol, event_arguments);
+  auto formula = fill(entry, entry.formula, designator, source);
   if (!formula) return sink_.already_reported();
   location.success = {*std::move(formula), entry.time_offset, entry.formula_source};
   const auto failure = classes_.canonical(entry.failure_class);
@@ -232,26 +231,27 @@ Result<PlanLocation> PerformResolver::resolve(const BindingEntry& entry, ValueId
   return location;
 }
 
-/// The text of a formula whose variables stand for values of the plan.
-Result<std::string> PerformResolver::fill(const Template& pieces, const Variables& variables,
+/// The formula with values of the plan in the place of its parameters.
+Result<FormulaTree> PerformResolver::fill(const FormulaTree& formula, const Variables& variables,
                                           SourceRange source) {
-  std::string out;
-  for (const auto& piece : pieces) {
-    const auto bound = variables.find(piece.variable);
-    if (piece.kind == TemplatePiece::Kind::kText || bound == variables.end()) {
-      out += piece.text;
-      continue;
-    }
-    const auto text = piece.kind == TemplatePiece::Kind::kMapped
-                          ? mapped(piece.function, bound->second, piece.variable, source)
-                          : constant(bound->second, piece.variable, source);
-    if (!text) return sink_.already_reported();
-    out += *text;
-  }
+  bool failed = false;
+  auto out = with_leaves(formula, [&](const FormulaNode& node) -> std::optional<FormulaTree> {
+    if (node.leaf != LeafKind::kParameter || failed) return std::nullopt;
+    const auto& [variable, function] = formula.parameters[node.number];
+    const auto bound = variables.find(variable);
+    PARALLAX_REQUIRE(bound != variables.end(), "the keys of a binding bind its variables");
+    auto term = function.empty() ? constant(bound->second, variable, source)
+                                 : mapped(function, bound->second, variable, source);
+    if (term) return *std::move(term);
+    failed = true;
+    return std::nullopt;
+  });
+  if (failed) return sink_.already_reported();
+  out.parameters.clear();
   return out;
 }
 
-Result<std::string> PerformResolver::question(ValueId list, bool query_only, SourceRange source) {
+Result<FormulaTree> PerformResolver::question(ValueId list, bool query_only, SourceRange source) {
   const auto items = values_.elements(list);
   if (!items || items->empty() || values_.kind(items->front()) != ValueKind::kSymbol) {
     return sink_.error(DiagnosticCode::kPlanValue, source, query_only ? "prolog" : "holds",
@@ -269,13 +269,13 @@ Result<std::string> PerformResolver::question(ValueId list, bool query_only, Sou
   if (query_only) return unbound_query(head, items->size() - 1, source);
   const auto name = model_name(fluents_, head, source);
   if (!name) return sink_.already_reported();
-  std::string out = *name + "(";
+  std::vector<FormulaTree> arguments;
   for (std::size_t i = 1; i < items->size(); ++i) {
-    const auto argument = constant((*items)[i], "holds", source);
+    auto argument = constant((*items)[i], "holds", source);
     if (!argument) return sink_.already_reported();
-    out += (i == 1 ? "" : ",") + *argument;
+    arguments.push_back(*std::move(argument));
   }
-  return out + ")";
+  return application(*name, arguments);
 }
 
 base::DiagnosticBuilder PerformResolver::unbound_query(std::string_view name, std::size_t arguments,

@@ -49,9 +49,9 @@ class PerformResolver {
   base::Result<ValueId> variable(const BindingEntry& entry, ValueId designator,
                                  std::string_view name, base::SourceRange source);
 
-  /// The text of `(holds '(fluent argument...))`, or of a query; `query_only`: CPL030 if it is
+  /// The formula of `(holds '(fluent argument...))`, or of a query; `query_only`: CPL030 if it is
   /// none.
-  base::Result<std::string> question(ValueId list, bool query_only, base::SourceRange source);
+  base::Result<FormulaTree> question(ValueId list, bool query_only, base::SourceRange source);
 
   /// An object that the event needs the name of and the plan has neither named nor detected; the
   /// way there: designators from the value of a key inwards, each with the key that leads on.
@@ -62,11 +62,11 @@ class PerformResolver {
   };
   std::optional<Reference> reference(const BindingEntry& entry, ValueId designator) const;
   /// What must hold for the object of the reference to be the one with this name.
-  base::Result<std::string> candidate(const Reference& reference, std::string_view name,
+  base::Result<FormulaTree> candidate(const Reference& reference, std::string_view name,
                                       base::SourceRange source);
 
-  /// A value as an argument of the model: a constant, an integer, the name of a model value.
-  base::Result<std::string> constant(ValueId value, std::string_view what,
+  /// A value as an argument of the model: a constant, an integer, a register.
+  base::Result<FormulaTree> constant(ValueId value, std::string_view what,
                                      base::SourceRange source);
 
  private:
@@ -76,7 +76,7 @@ class PerformResolver {
     std::optional<ValueId> object;
   };
   using Variables = std::map<std::string, ValueId, std::less<>>;
-  base::Result<std::string> fill(const Template& pieces, const Variables& variables,
+  base::Result<FormulaTree> fill(const FormulaTree& formula, const Variables& variables,
                                  base::SourceRange source);
   base::DiagnosticBuilder unbound_query(std::string_view name, std::size_t arguments,
                                         base::SourceRange source);
@@ -84,10 +84,10 @@ class PerformResolver {
   const BindingEntry* matching_entry(ValueId designator) const;
   std::optional<ValueId> key_value(ValueId designator, std::string_view key) const;
   Target target(ValueId value) const;
-  base::Result<std::string> mapped(std::string_view function, ValueId value, std::string_view key,
+  base::Result<FormulaTree> mapped(std::string_view function, ValueId value, std::string_view key,
                                    base::SourceRange source);
-  base::Result<std::string> substitute(const BindingEntry& entry, const Template& pieces,
-                                       ValueId designator, base::SourceRange source);
+  base::Result<FormulaTree> fill(const BindingEntry& entry, const FormulaTree& formula,
+                                 ValueId designator, base::SourceRange source);
   base::Result<std::string> model_name(const ModelNames& names, std::string_view name,
                                        base::SourceRange source);
   void flatten(const std::string& name, ValueId value, PlanArguments& out) const;

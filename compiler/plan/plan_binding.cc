@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -28,30 +29,26 @@ bool same_keys(const BindingEntry& a, const BindingEntry& b) {
 
 /// Gives a bare `place` in the formula the variable of the event's only `place(...)`.
 bool BindingParser::repeat_mapping(BindingEntry& entry) {
-  const auto bare = [](const TemplatePiece& piece) {
-    return piece.kind == TemplatePiece::Kind::kMapped && piece.variable.empty();
-  };
+  std::map<std::string, std::set<std::string>> mapped;  // variables, by function
   for (const auto& argument : entry.event_arguments) {
-    for (const auto& piece : argument) {
-      if (!bare(piece)) continue;
+    for (const auto& parameter : argument.parameters) {
+      mapped[parameter.function].insert(parameter.variable);
+      if (!parameter.variable.empty()) continue;
       failed_ = true;
       sink_.error(DiagnosticCode::kBindingSyntax, entry.source,
-                  fmt::format("`{}(?variable)` in the event", piece.function), "the bare name");
+                  fmt::format("`{}(?variable)` in the event", parameter.function), "the bare name");
       return false;
     }
   }
-  for (auto& piece : entry.formula) {
-    if (!bare(piece)) continue;
-    std::set<std::string> variables;
-    for (const auto& argument : entry.event_arguments) {
-      for (const auto& other : argument) {
-        if (other.function == piece.function) variables.insert(other.variable);
-      }
-    }
+  for (auto& node : entry.formula.nodes) {
+    if (node.leaf != LeafKind::kParameter) continue;
+    auto& parameter = entry.formula.parameters[node.number];
+    if (!parameter.variable.empty()) continue;
+    const auto& variables = mapped[parameter.function];
     if (variables.size() == 1) {
-      piece.variable = *variables.begin();
+      parameter.variable = *variables.begin();
     } else {  // a constant of the model that happens to have this name
-      piece = {TemplatePiece::Kind::kText, piece.function, {}, {}};
+      node.leaf = LeafKind::kName;
     }
   }
   return true;
@@ -59,25 +56,20 @@ bool BindingParser::repeat_mapping(BindingEntry& entry) {
 
 bool BindingParser::check_variables(const BindingEntry& entry) {
   bool good = true;
-  const auto check = [&](const Template& pieces, SourceRange where) {
-    for (const auto& piece : pieces) {
-      const auto known = [&](const BindingKey& key) { return key.variable == piece.variable; };
-      if (piece.kind == TemplatePiece::Kind::kText ||
-          std::any_of(entry.keys.begin(), entry.keys.end(), known)) {
-        continue;
-      }
-      good = false;
-      failed_ = true;
-      sink_.error(DiagnosticCode::kBindingVariable, where, piece.variable);
-    }
+  const auto check = [&](const std::string& variable, SourceRange where) {
+    const auto known = [&](const BindingKey& key) { return key.variable == variable; };
+    if (std::any_of(entry.keys.begin(), entry.keys.end(), known)) return;
+    good = false;
+    failed_ = true;
+    sink_.error(DiagnosticCode::kBindingVariable, where, variable);
   };
-  for (const auto& argument : entry.event_arguments) check(argument, entry.source);
-  check(entry.formula, entry.formula_source);
-  Template passed;
-  for (const auto& variable : entry.plan_arguments) {
-    passed.push_back({TemplatePiece::Kind::kVariable, {}, variable, {}});
+  for (const auto& argument : entry.event_arguments) {
+    for (const auto& parameter : argument.parameters) check(parameter.variable, entry.source);
   }
-  check(passed, entry.source);
+  for (const auto& parameter : entry.formula.parameters) {
+    if (!parameter.variable.empty()) check(parameter.variable, entry.formula_source);
+  }
+  for (const auto& variable : entry.plan_arguments) check(variable, entry.source);
   return good;
 }
 

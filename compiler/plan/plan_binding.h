@@ -10,6 +10,7 @@
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/result.h"
 #include "compiler/base/source_file.h"
+#include "compiler/plan/formula_tree.h"
 
 namespace parallax::compiler {
 
@@ -28,24 +29,14 @@ struct BindingKey {
   std::string variable;                 // "?p"
 };
 
-/// A piece of an event or a formula: literal text, a variable or a mapped variable (region(?p)).
-struct TemplatePiece {
-  enum class Kind : std::uint8_t { kText, kVariable, kMapped };
-  Kind kind = Kind::kText;
-  std::string text;      // kText
-  std::string variable;  // otherwise, with its question mark
-  std::string function;  // kMapped: region, place or gaze
-};
-using Template = std::vector<TemplatePiece>;
-
 /// What one kind of perform means in the model.
 struct BindingEntry {
   PerformKind kind = PerformKind::kMotion;
   std::string type;
   std::vector<BindingKey> keys;
   std::string event_symbol;
-  std::vector<Template> event_arguments;
-  Template formula;
+  std::vector<FormulaTree> event_arguments;
+  FormulaTree formula;
   std::int32_t time_offset = 0;        // @t: 0, @t+1: 1
   std::optional<std::string> returns;  // the quantified variable of the formula that is the result
   std::string failure_class = "simple-plan-failure";
@@ -60,7 +51,7 @@ struct BindingEntry {
 struct QueryBinding {
   std::string name;
   std::vector<std::string> variables;
-  Template formula;  // at the time of the question
+  FormulaTree formula;  // at the time of the question
   base::SourceRange source;
   base::SourceRange formula_source;
 };
@@ -69,7 +60,7 @@ struct QueryBinding {
 struct ObjectBinding {
   std::vector<BindingKey> keys;
   std::string variable;  // the object: "?o"
-  Template formula;      // at the time of the perform
+  FormulaTree formula;   // at the time of the perform
   std::string failure_class = "designator-reference-failure";
   base::SourceRange source;
   base::SourceRange formula_source;

@@ -60,9 +60,10 @@ class Explorer {
   StopPerform named(const StopPerform& stop, const PerformResolver::Reference& reference,
                     std::string_view name);
   std::optional<PlanTarget> take_turns(const PlanState& state);
-  BranchId branch(std::string guard, bool free, DatumId form);
+  BranchId branch(FormulaTree guard, DatumId form);
+  BranchId free_branch(std::string choice, DatumId form);
   std::optional<PlanTarget> question(PlanState& state, const StopQuestion& stop);
-  base::Result<std::string> guard_text(const StopQuestion& stop);
+  base::Result<FormulaTree> guard_of(const StopQuestion& stop);
   ModelValueId free_register(const PlanState& state, DatumId form, const std::string& variable);
   PlanTarget terminal(TerminalKind kind, std::string detail, std::optional<DatumId> at);
   std::vector<base::SourceRange> calls(const PlanState& state) const;
@@ -78,7 +79,7 @@ class Explorer {
   PerformResolver resolver_;
   std::vector<Job> jobs_;
   std::map<StateKey, LocationId> locations_;
-  std::map<StateKey, BranchId> branches_;
+  std::map<std::pair<StateKey, FormulaTree>, BranchId> branches_;
   std::map<StateKey, BranchId> references_;
   std::map<StateKey, BranchId> turns_;
   std::map<std::string, TerminalId> terminals_;

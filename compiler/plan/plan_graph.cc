@@ -9,7 +9,8 @@
 namespace parallax::compiler {
 namespace {
 
-std::string argument_text(const PlanArgument& argument) {
+std::string argument_text(const PlanGraph& graph, const PlanArgument& argument) {
+  if (const auto* id = std::get_if<ModelValueId>(&argument)) return graph.values[*id].name;
   if (const auto* text = std::get_if<std::string>(&argument)) return *text;
   if (const auto* integer = std::get_if<std::int64_t>(&argument))
     return fmt::format("{}", *integer);
@@ -81,14 +82,14 @@ std::string dump_text(const PlanGraph& graph, const base::SourceFiles& files) {
   std::string out = fmt::format("entry {}\n", to_string(graph, graph.entry, files));
   for (std::size_t i = 0; i < graph.locations.size(); ++i) {
     const auto& location = graph.locations[graph.locations.id_at(i)];
-    out += fmt::format("L{} {} at {}\n", i, location.event, files.place(location.source));
+    out += fmt::format("L{} {} at {}\n", i, location.event.text, files.place(location.source));
     for (const auto& call : location.calls) {
       out += fmt::format("  called at {}\n", files.place(call));
     }
-    out += fmt::format("  ok: {} @t{}\n", location.success.formula,
+    out += fmt::format("  ok: {} @t{}\n", location.success.formula.text,
                        location.success.time_offset == 0 ? "" : "+1");
     for (const auto& [name, value] : location.arguments) {
-      out += fmt::format("  {} = {}\n", name, argument_text(value));
+      out += fmt::format("  {} = {}\n", name, argument_text(graph, value));
     }
     if (location.result) {
       out += fmt::format("  returns {}\n", graph.values[*location.result].name);
@@ -100,7 +101,7 @@ std::string dump_text(const PlanGraph& graph, const base::SourceFiles& files) {
   for (std::size_t i = 0; i < graph.branches.size(); ++i) {
     const auto& branch = graph.branches[graph.branches.id_at(i)];
     out += fmt::format("B{} {}{} at {}\n  true -> {}\n  false -> {}\n", i,
-                       branch.free ? "free: " : "", branch.guard, files.place(branch.source),
+                       branch.free ? "free: " : "", branch.text(), files.place(branch.source),
                        to_string(graph, branch.if_true, files),
                        to_string(graph, branch.if_false, files));
   }
@@ -117,11 +118,11 @@ std::string dump_dot(const PlanGraph& graph, const base::SourceFiles& files) {
   for (std::size_t i = 0; i < graph.locations.size(); ++i) {
     const auto& location = graph.locations[graph.locations.id_at(i)];
     out += fmt::format("  L{} [label={}];\n", i,
-                       quoted(location.event + " at " + files.place(location.source)));
+                       quoted(location.event.text + " at " + files.place(location.source)));
   }
   for (std::size_t i = 0; i < graph.branches.size(); ++i) {
     const auto& branch = graph.branches[graph.branches.id_at(i)];
-    out += fmt::format("  B{} [shape=diamond, label={}];\n", i, quoted(branch.guard));
+    out += fmt::format("  B{} [shape=diamond, label={}];\n", i, quoted(branch.text()));
   }
   for (std::size_t i = 0; i < graph.terminals.size(); ++i) {
     const auto& terminal = graph.terminals[graph.terminals.id_at(i)];

@@ -9,6 +9,7 @@
 
 #include "compiler/base/id.h"
 #include "compiler/base/source_file.h"
+#include "compiler/plan/formula_tree.h"
 
 namespace parallax::compiler {
 
@@ -25,13 +26,9 @@ struct TerminalTag {
 struct BranchTag {
   static constexpr bool kOrdered = true;  // order of discovery
 };
-struct ModelValueTag {
-  static constexpr bool kOrdered = true;  // order of the locations that bind them first
-};
 using LocationId = base::Id<LocationTag>;
 using TerminalId = base::Id<TerminalTag>;
 using BranchId = base::Id<BranchTag>;
-using ModelValueId = base::Id<ModelValueTag>;
 
 /// Where control goes next.
 using PlanTarget = std::variant<LocationId, TerminalId, BranchId>;
@@ -53,26 +50,26 @@ struct PlanTerminal {
 /// What tells success from failure of a perform at timepoint t. The outcome is never free:
 /// control goes on at t+1 along `on_success` where the formula holds, along `on_failure` elsewhere.
 struct SuccessCondition {
-  /// Text in the binding file's formula syntax, all variables and mapping functions substituted:
-  /// atoms are fluents or predicates over constants (`RobotAt(r2)`), connectives as in a model.
-  std::string formula;
+  /// All parameters and mapping functions have their values: atoms are fluents or predicates over
+  /// constants and registers (`RobotAt(r2)`), connectives as in a model.
+  FormulaTree formula;
   std::int32_t time_offset = 0;  // evaluated at t (0) or at t+1 (1)
   base::SourceRange source;      // the formula in the binding file
 };
 
-/// A designator's argument for a controller: metres, radians, counts or names.
-using PlanArgument = std::variant<double, std::int64_t, std::string>;
+/// A designator's argument for a controller: metres, radians, counts or names; a register stands
+/// for the name of what it holds.
+using PlanArgument = std::variant<double, std::int64_t, std::string, ModelValueId>;
 /// Sorted by name. A pose under key `target` gives target.x, target.y, target.z [m] and target.yaw
 /// [rad]; a named object under `object` gives `object`.
 using PlanArguments = std::map<std::string, PlanArgument>;
 
 /// One `perform`, reached in one particular state of the plan's variables.
 struct PlanLocation {
-  base::SourceRange source;                  // the perform form
-  std::vector<base::SourceRange> calls;      // the calls that lead to it, outermost first
-  std::string event;                         // "Go(r2)": no blanks
-  std::string event_symbol;                  // "Go"
-  std::vector<std::string> event_arguments;  // {"r2"}; a model value is written as its name, "?i1"
+  base::SourceRange source;              // the perform form
+  std::vector<base::SourceRange> calls;  // the calls that lead to it, outermost first
+  FormulaTree event;                     // "Go(r2)": no blanks
+  std::string event_symbol;              // "Go"
   SuccessCondition success;
   std::string failure_class;  // the class of the failure edge
   PlanArguments arguments;
@@ -92,11 +89,14 @@ struct ModelValue {
 /// A silent decision by the model's state at the timepoint at which control passes through, or a
 /// free one: both ways are explored.
 struct PlanBranch {
-  std::string guard;  // formula text as in SuccessCondition, evaluated at the current timepoint
+  FormulaTree guard;   // as in SuccessCondition, evaluated at the current timepoint
+  std::string choice;  // free: what is chosen
   base::SourceRange source;
   PlanTarget if_true;
   PlanTarget if_false;
-  bool free = false;  // nothing decides; the guard only says what is chosen
+  bool free = false;  // nothing decides
+  /// For people.
+  const std::string& text() const { return free ? choice : guard.text; }
 };
 
 struct PlanGraph {

@@ -1,9 +1,6 @@
 #include "compiler/plan/plan_liveness.h"
 
-#include <string>
 #include <variant>
-
-#include "compiler/plan/binding_template.h"
 
 namespace parallax::compiler {
 namespace {
@@ -15,37 +12,16 @@ bool include(RegisterSet& set, const RegisterSet& more) {
   return set.size() != before;
 }
 
-RegisterSet read_by(const RegisterNames& names, const PlanLocation& location) {
-  auto out = names.in(location.event);
-  include(out, names.in(location.success.formula));
+RegisterSet read_by(const PlanLocation& location) {
+  auto out = registers_in(location.event);
+  include(out, registers_in(location.success.formula));
   for (const auto& [name, value] : location.arguments) {
-    if (const auto* text = std::get_if<std::string>(&value)) include(out, names.in(*text));
+    if (const auto* id = std::get_if<ModelValueId>(&value)) out.insert(*id);
   }
   return out;
 }
 
 }  // namespace
-
-RegisterNames::RegisterNames(const PlanGraph& graph) {
-  for (std::size_t i = 0; i < graph.values.size(); ++i) {
-    const auto id = graph.values.id_at(i);
-    ids_.emplace(graph.values[id].name, id);
-  }
-}
-
-std::optional<ModelValueId> RegisterNames::find(std::string_view name) const {
-  const auto found = ids_.find(name);
-  if (found == ids_.end()) return std::nullopt;
-  return found->second;
-}
-
-RegisterSet RegisterNames::in(std::string_view text) const {
-  RegisterSet out;
-  for (std::size_t i = text.find('?'); i != std::string_view::npos; i = text.find('?', i + 1)) {
-    if (const auto id = find(text.substr(i, variable_length(text.substr(i))))) out.insert(*id);
-  }
-  return out;
-}
 
 const RegisterSet& PlanLiveness::at(const PlanTarget& target) const {
   static const RegisterSet kNone;
@@ -55,11 +31,10 @@ const RegisterSet& PlanLiveness::at(const PlanTarget& target) const {
 }
 
 PlanLiveness plan_liveness(const PlanGraph& graph) {
-  const RegisterNames names(graph);
   PlanLiveness out;
-  for (const auto& location : graph.locations) out.locations.push_back(read_by(names, location));
+  for (const auto& location : graph.locations) out.locations.push_back(read_by(location));
   for (const auto& branch : graph.branches) {
-    out.branches.push_back(branch.free ? RegisterSet() : names.in(branch.guard));
+    out.branches.push_back(branch.free ? RegisterSet() : registers_in(branch.guard));
   }
   for (bool changed = !graph.values.empty(); changed;) {
     changed = false;

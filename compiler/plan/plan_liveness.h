@@ -1,10 +1,6 @@
 #pragma once
 
-#include <map>
-#include <optional>
 #include <set>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "compiler/plan/plan_graph.h"
@@ -12,18 +8,6 @@
 namespace parallax::compiler {
 
 using RegisterSet = std::set<ModelValueId>;
-
-/// Finds the registers of a graph by name.
-class RegisterNames {
- public:
-  explicit RegisterNames(const PlanGraph& graph);
-  std::optional<ModelValueId> find(std::string_view name) const;
-  /// Those that the text of an event or a formula mentions.
-  RegisterSet in(std::string_view text) const;
-
- private:
-  std::map<std::string, ModelValueId, std::less<>> ids_;
-};
 
 /// Which registers the rest of the plan still reads: by location and by branch. Terminals read
 /// none.

@@ -57,7 +57,7 @@ std::optional<PerformResolver::Reference> PerformResolver::reference(const Bindi
   return std::nullopt;
 }
 
-base::Result<std::string> PerformResolver::candidate(const Reference& reference,
+base::Result<FormulaTree> PerformResolver::candidate(const Reference& reference,
                                                      std::string_view name,
                                                      base::SourceRange source) {
   Variables variables;

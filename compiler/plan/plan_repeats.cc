@@ -43,7 +43,7 @@ class Reach {
 
 std::vector<std::vector<LocationId>> earlier_attempts(const PlanGraph& graph,
                                                       std::size_t max_visits) {
-  using Attempt = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::string>;
+  using Attempt = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, FormulaTree>;
   std::map<Attempt, std::vector<LocationId>> attempts;
   for (std::size_t i = 0; i < graph.locations.size(); ++i) {
     const auto id = graph.locations.id_at(i);

@@ -124,7 +124,7 @@ ModelValueId Explorer::free_register(const PlanState& state, DatumId form,
   return own.back();
 }
 
-base::Result<std::string> Explorer::guard_text(const StopQuestion& stop) {
+base::Result<FormulaTree> Explorer::guard_of(const StopQuestion& stop) {
   const auto source = data_.source(stop.form);
   if (const auto* fluent = std::get_if<ValueId>(&stop.fluent)) {
     return resolver_.question(*fluent, stop.query_only, source);
@@ -133,18 +133,17 @@ base::Result<std::string> Explorer::guard_text(const StopQuestion& stop) {
   const auto left = resolver_.constant(equality.left, "eq", source);
   const auto right = resolver_.constant(equality.right, "eq", source);
   if (!left || !right) return sink_.already_reported();
-  return fmt::format("{}={}", *left, *right);
+  return equal_terms(*left, *right);
 }
 
 std::optional<PlanTarget> Explorer::question(PlanState& state, const StopQuestion& stop) {
-  const auto guard = guard_text(stop);
+  auto guard = guard_of(stop);
   if (!guard) return std::nullopt;
-  auto key = state_key(state, values_, true);
-  for (const char c : *guard) key.push_back(static_cast<unsigned char>(c));
+  std::pair key(state_key(state, values_, true), *std::move(guard));
   const auto found = branches_.find(key);
   if (found != branches_.end()) return found->second;
-  if (!has_room(key, stop.form)) return std::nullopt;
-  const auto id = branch(*guard, false, stop.form);
+  if (!has_room(key.first, stop.form)) return std::nullopt;
+  const auto id = branch(key.second, stop.form);
   branches_.emplace(std::move(key), id);
   jobs_.push_back({state, {}, {}, Job::Edge::kFalse, id.index()});
   jobs_.back().state.stack.push_back(values_.nil());

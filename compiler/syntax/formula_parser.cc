@@ -34,6 +34,7 @@ FormulaParser::Step FormulaParser::operand() {
     case TokenKind::kName:
       last_ = lexer_.next();
       if (lexer_.peek().kind == TokenKind::kOpenParen) return open_call(token);
+      if (is_word_quantifier(token)) return word_quantifier(token);
       leaf(NodeKind::kName, token);
       return Step::kMore;
     case TokenKind::kNumber:
@@ -115,6 +116,33 @@ FormulaParser::Step FormulaParser::quantifier(const Token& open) {
     }
     last_ = lexer_.next();
     if (after.kind == closing) break;
+  }
+  wants_operand_ = true;
+  return push(entry) ? Step::kMore : Step::kFailed;
+}
+
+bool FormulaParser::is_word_quantifier(const Token& name) const {
+  const auto word = lexer_.text(name);
+  return lexer_.mode() == Lexer::Mode::kBinding && (word == "exists" || word == "forall");
+}
+
+/// `exists i, j.`; commas may be missing.
+FormulaParser::Step FormulaParser::word_quantifier(const Token& word) {
+  Entry entry{.kind = Pending::kQuantifier,
+              .quantifier = lexer_.text(word) == "forall" ? NodeKind::kForall : NodeKind::kExists,
+              .token = word};
+  for (;;) {
+    const Token token = lexer_.peek();
+    const bool ends = token.kind == TokenKind::kPeriod && entry.count != 0;
+    const bool separates = token.kind == TokenKind::kComma && entry.count != 0;
+    if (!ends && !separates && token.kind != TokenKind::kName) {
+      return fail_here(DiagnosticCode::kExpectedVariable, token);
+    }
+    last_ = lexer_.next();
+    if (ends) break;
+    if (separates) continue;
+    leaf(NodeKind::kName, token);
+    ++entry.count;
   }
   wants_operand_ = true;
   return push(entry) ? Step::kMore : Step::kFailed;

@@ -47,6 +47,8 @@ class FormulaParser {
   Step operand();
   Step open_call(const Token& name);
   Step quantifier(const Token& open);
+  bool is_word_quantifier(const Token& name) const;
+  Step word_quantifier(const Token& word);
   Step after_operand(Period period);
   Step binary(const Token& token);
   Step comma(const Token& token);

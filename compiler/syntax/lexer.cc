@@ -147,8 +147,11 @@ void Lexer::skip_blanks() {
 }
 
 void Lexer::skip_illegal() {
-  const auto begin = position_;
-  while (position_ < text_.size() && !starts_token(text_[position_])) ++position_;
+  const auto begin = position_++;
+  const auto starts = [this](char c) {
+    return starts_token(c) || (mode_ == Mode::kBinding && c == '?');
+  };
+  while (position_ < text_.size() && !starts(text_[position_])) ++position_;
   // Quote one whole code point, not its first byte.
   std::size_t length = 1;
   while (begin + length < position_ &&
@@ -159,10 +162,23 @@ void Lexer::skip_illegal() {
               text_.substr(begin, length));
 }
 
+/// Where the parameter `?left-arm` at the position ends; the position itself if there is none.
+std::uint32_t Lexer::parameter_end() const {
+  if (mode_ != Mode::kBinding || text_[position_] != '?') return position_;
+  const auto is_part = [this](std::uint32_t at) {
+    return at < text_.size() && is_name_part(text_[at]);
+  };
+  auto end = position_ + 1;
+  while (is_part(end) || (end < text_.size() && text_[end] == '-' && is_part(end + 1))) ++end;
+  return end == position_ + 1 ? position_ : end;
+}
+
 bool Lexer::scan_word() {
   const char first = text_[position_];
-  std::uint32_t end = position_;
-  if (is_name_start(first)) {
+  std::uint32_t end = parameter_end();
+  if (end != position_) {
+    token_.kind = TokenKind::kName;
+  } else if (is_name_start(first)) {
     while (end < text_.size() && is_name_part(text_[end])) ++end;
     token_.kind = TokenKind::kName;
   } else if (is_digit(first)) {

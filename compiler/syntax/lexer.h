@@ -56,10 +56,15 @@ std::string shortened(std::string_view text);
 /// of them at once.
 class Lexer {
  public:
-  enum class Mode : std::uint8_t { kFile, kFormulaOnly };  // are lines classified?
+  enum class Mode : std::uint8_t {
+    kFile,         // lines are classified
+    kFormulaOnly,  // every line is formula text
+    kBinding,      // the same, and `?arm` or `?left-arm` is a name
+  };
 
   Lexer(base::SourceRange range, std::string_view file_text, Mode mode, base::DiagnosticSink& sink);
 
+  Mode mode() const { return mode_; }
   const Token& peek() const { return token_; }
   Token next();
   /// Is the token after peek(), on the same line, a colon? (peek() is then a label.)
@@ -80,6 +85,7 @@ class Lexer {
   void scan();
   void skip_blanks();
   void skip_illegal();
+  std::uint32_t parameter_end() const;
   bool scan_word();
   bool scan_operator();
 

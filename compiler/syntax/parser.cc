@@ -279,6 +279,24 @@ void parse_labelled(Ast& ast, Lexer& lexer, FormulaParser& parser) {
   ast.add(statement);
 }
 
+base::Result<ParsedFormula> parse_one(const base::SourceRange& range, std::string_view text,
+                                      Lexer::Mode mode, base::DiagnosticSink& sink) {
+  PARALLAX_REQUIRE(range.begin <= range.end && range.end <= text.size(),
+                   "the formula lies inside its file");
+  ParsedFormula parsed{Ast(range.file, text), NodeId()};
+  const auto errors_before = sink.error_count();
+  Lexer lexer(range, text, mode, sink);
+  FormulaParser parser(parsed.ast, lexer, sink);
+  const auto root = parser.parse(FormulaParser::Period::kOptional);
+  if (root && lexer.peek().kind != TokenKind::kEnd) {
+    return sink.error(DiagnosticCode::kTextAfterFormula, lexer.range(lexer.peek()),
+                      lexer.describe(lexer.peek()));
+  }
+  if (sink.error_count() != errors_before) return sink.already_reported();
+  parsed.root = *root;
+  return parsed;
+}
+
 }  // namespace
 
 Ast parse_file(base::FileId file, const base::SourceFiles& files, base::DiagnosticSink& sink) {
@@ -300,26 +318,18 @@ Ast parse_file(base::FileId file, const base::SourceFiles& files, base::Diagnost
 base::Result<ParsedFormula> parse_formula(const base::SourceRange& range,
                                           const base::SourceFiles& files,
                                           base::DiagnosticSink& sink) {
-  PARALLAX_REQUIRE(range.begin <= range.end && range.end <= files[range.file].text().size(),
-                   "the formula lies inside its file");
-  const auto text = files[range.file].text();
-  ParsedFormula parsed{Ast(range.file, text), NodeId()};
-  const auto errors_before = sink.error_count();
-  Lexer lexer(range, text, Lexer::Mode::kFormulaOnly, sink);
-  FormulaParser parser(parsed.ast, lexer, sink);
-  const auto root = parser.parse(FormulaParser::Period::kOptional);
-  if (root && lexer.peek().kind != TokenKind::kEnd) {
-    return sink.error(DiagnosticCode::kTextAfterFormula, lexer.range(lexer.peek()),
-                      lexer.describe(lexer.peek()));
-  }
-  if (sink.error_count() != errors_before) return sink.already_reported();
-  parsed.root = *root;
-  return parsed;
+  return parse_one(range, files[range.file].text(), Lexer::Mode::kFormulaOnly, sink);
 }
 
 base::Result<ParsedFormula> parse_formula(base::FileId file, const base::SourceFiles& files,
                                           base::DiagnosticSink& sink) {
   return parse_formula(whole(file, files), files, sink);
+}
+
+base::Result<ParsedFormula> parse_binding_formula(const base::SourceRange& range,
+                                                  std::string_view text,
+                                                  base::DiagnosticSink& sink) {
+  return parse_one(range, text, Lexer::Mode::kBinding, sink);
 }
 
 }  // namespace parallax::compiler

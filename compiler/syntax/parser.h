@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/result.h"
 #include "compiler/base/source_file.h"
@@ -33,5 +35,12 @@ base::Result<ParsedFormula> parse_formula(const base::SourceRange& range,
 /// The same for the whole text of a file.
 base::Result<ParsedFormula> parse_formula(base::FileId file, const base::SourceFiles& files,
                                           base::DiagnosticSink& sink);
+
+/// A formula of a plan's binding table: `?arm` is a name, and `exists i, j.` and `forall i.` are
+/// quantifiers beside `{i,j}` and `[i]`. `text` is the text of the range's file, or as long with
+/// blanks for what is no part of the table. The Ast views it.
+base::Result<ParsedFormula> parse_binding_formula(const base::SourceRange& range,
+                                                  std::string_view text,
+                                                  base::DiagnosticSink& sink);
 
 }  // namespace parallax::compiler

@@ -22,8 +22,8 @@ class Ways {
     REQUIRE(before.size() < 1000);
     if (const auto* id = std::get_if<LocationId>(&target)) {
       const auto& location = plan_.graph->locations[*id];
-      const bool fails = failing_.contains(location.event);
-      follow(fails ? location.on_failure : location.on_success, before + location.event + " ");
+      const bool fails = failing_.contains(location.event.text);
+      follow(fails ? location.on_failure : location.on_success, before + location.event.text + " ");
     } else if (const auto* branch = std::get_if<BranchId>(&target)) {
       REQUIRE(plan_.graph->branches[*branch].free);
       follow(plan_.graph->branches[*branch].if_true, before);

@@ -32,8 +32,8 @@ TEST_CASE("unroller: drive, look, detect has three locations and four leaves") {
 
   const auto& go = plan.graph->locations[LocationId(0)];
   CHECK(go.event_symbol == "Go");
-  CHECK(go.event_arguments == Strings{"r1"});
-  CHECK(go.success.formula == "RobotAt(r1)");
+  CHECK(go.event.text == "Go(r1)");
+  CHECK(go.success.formula.text == "RobotAt(r1)");
   CHECK(go.success.time_offset == 1);
   CHECK(plan.files.text(go.success.source) == "RobotAt(region(?p))");
   CHECK(go.failure_class == "navigation-pose-unreachable");
@@ -42,7 +42,7 @@ TEST_CASE("unroller: drive, look, detect has three locations and four leaves") {
   CHECK(std::get<double>(go.arguments.at("target.yaw")) == 0.0);
 
   const auto& detect = plan.graph->locations[LocationId(2)];
-  CHECK(detect.success.formula == "exists i. TypeOf(i,bowl) & Visible(i)");
+  CHECK(detect.success.formula.text == "exists i. TypeOf(i,bowl) & Visible(i)");
   CHECK(detect.success.time_offset == 0);
   REQUIRE(detect.result.has_value());
   CHECK(plan.graph->values[*detect.result].name == "?i1");
@@ -155,7 +155,7 @@ TEST_CASE("unroller: the two-region plan with prefixes, tags and logging") {
   CHECK(plan.events("+++") ==
         Strings{"Go(r2)", "PickUp(left,box)", "PlaceAt(left,box,r1)", "DONE"});
   const auto& place = plan.graph->locations[LocationId(2)];
-  CHECK(place.success.formula == "ItemAt(box,r1)");
+  CHECK(place.success.formula.text == "ItemAt(box,r1)");
   CHECK(std::get<std::string>(place.arguments.at("object")) == "box");
   CHECK(std::get<std::string>(place.arguments.at("arm")) == "left");
   CHECK(std::get<double>(place.arguments.at("target.x")) == 0.5);

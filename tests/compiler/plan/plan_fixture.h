@@ -95,7 +95,7 @@ inline std::vector<std::string> Unrolled::events(std::string_view outcomes) cons
     const bool first = outcome == '+';
     if (const auto* location = std::get_if<LocationId>(&where)) {
       const auto& at = graph->locations[*location];
-      out.push_back(at.event);
+      out.push_back(at.event.text);
       where = first ? at.on_success : at.on_failure;
     } else if (const auto* branch = std::get_if<BranchId>(&where)) {
       where = first ? graph->branches[*branch].if_true : graph->branches[*branch].if_false;

@@ -198,8 +198,8 @@ TEST_CASE("forms: holds and comparisons with a detected object are decided by th
   CHECK(plan.codes().empty());
   REQUIRE(plan.graph.has_value());
   REQUIRE(plan.graph->branches.size() == 2);
-  CHECK(plan.graph->branches[BranchId(0)].guard == "RobotAt(r1)");
-  CHECK(plan.graph->branches[BranchId(1)].guard == "?i1=bowl1");
+  CHECK(plan.graph->branches[BranchId(0)].guard.text == "RobotAt(r1)");
+  CHECK(plan.graph->branches[BranchId(1)].guard.text == "?i1=bowl1");
   CHECK(plan.walk("-") == "B0 DONE");
   CHECK(plan.events("++++") == Strings{"Detect(bowl)", "PickUp(left,box)", "DONE"});
   CHECK(plan.events("++-+") == Strings{"Detect(bowl)", "Signal()", "DONE"});

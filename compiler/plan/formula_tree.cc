@@ -1,0 +1,208 @@
+#include "compiler/plan/formula_tree.h"
+
+#include <algorithm>
+
+#include "compiler/syntax/lexer.h"
+
+namespace parallax::compiler {
+namespace {
+
+std::uint32_t length(std::string_view text) { return static_cast<std::uint32_t>(text.size()); }
+
+FormulaTree leaf(std::string_view name, NodeKind kind, LeafKind stands_for, std::uint32_t number) {
+  FormulaTree tree;
+  tree.text = name;
+  FormulaNode node;
+  node.kind = kind;
+  node.leaf = stands_for;
+  node.number = number;
+  node.end = length(name);
+  node.name_length = length(name);
+  tree.nodes.push_back(std::move(node));
+  return tree;
+}
+
+/// Adds text and nodes of `part` to `out`; its root's place.
+std::uint32_t append(FormulaTree& out, const FormulaTree& part) {
+  const auto offset = length(out.text);
+  const auto before = static_cast<std::uint32_t>(out.nodes.size());
+  const auto variables = static_cast<std::uint32_t>(out.variables.size());
+  const auto parameters = static_cast<std::uint32_t>(out.parameters.size());
+  out.text += part.text;
+  for (auto node : part.nodes) {
+    node.begin += offset;
+    node.end += offset;
+    for (auto& child : node.children) child += before;
+    if (node.leaf == LeafKind::kVariable) node.number += variables;
+    if (node.leaf == LeafKind::kParameter) node.number += parameters;
+    out.nodes.push_back(std::move(node));
+  }
+  out.variables.insert(out.variables.end(), part.variables.begin(), part.variables.end());
+  out.parameters.insert(out.parameters.end(), part.parameters.begin(), part.parameters.end());
+  return static_cast<std::uint32_t>(out.nodes.size()) - 1;
+}
+
+/// A node over the whole text so far.
+void add_root(FormulaTree& tree, NodeKind kind, Operator op, std::vector<std::uint32_t> children) {
+  FormulaNode node;
+  node.kind = kind;
+  node.op = op;
+  node.end = length(tree.text);
+  node.children = std::move(children);
+  tree.nodes.push_back(std::move(node));
+}
+
+}  // namespace
+
+FormulaTree constant_term(std::string_view name) {
+  const bool negative = name.starts_with('-');
+  const auto plain = name.substr(negative ? 1 : 0);
+  const bool number = !plain.empty() && plain.front() >= '0' && plain.front() <= '9';
+  if (!negative || !number) {
+    return leaf(name, number ? NodeKind::kNumber : NodeKind::kName, LeafKind::kName, 0);
+  }
+  FormulaTree tree;
+  tree.text = "-";
+  const auto digits = append(tree, leaf(plain, NodeKind::kNumber, LeafKind::kName, 0));
+  add_root(tree, NodeKind::kUnary, Operator::kNegate, {digits});
+  return tree;
+}
+
+FormulaTree register_term(std::string_view name, ModelValueId id) {
+  return leaf(name, NodeKind::kName, LeafKind::kRegister, id.index());
+}
+
+FormulaTree application(std::string_view name, std::span<const FormulaTree> arguments) {
+  FormulaTree tree;
+  tree.text = std::string(name) + "(";
+  std::vector<std::uint32_t> children;
+  for (const auto& argument : arguments) {
+    if (!children.empty()) tree.text += ',';
+    children.push_back(append(tree, argument));
+  }
+  tree.text += ')';
+  add_root(tree, NodeKind::kApply, Operator::kAnd, std::move(children));
+  tree.nodes.back().name_length = length(name);
+  return tree;
+}
+
+FormulaTree equal_terms(const FormulaTree& left, const FormulaTree& right) {
+  FormulaTree tree;
+  const auto first = append(tree, left);
+  tree.text += '=';
+  const auto second = append(tree, right);
+  add_root(tree, NodeKind::kBinary, Operator::kEqual, {first, second});
+  return tree;
+}
+
+FormulaTree disjunction(std::span<const FormulaTree> formulas) {
+  FormulaTree tree;
+  std::vector<std::uint32_t> children;
+  for (const auto& formula : formulas) {
+    tree.text += children.empty() ? "(" : " | (";
+    children.push_back(append(tree, formula));
+    tree.text += ')';
+  }
+  if (children.size() > 1) {
+    add_root(tree, NodeKind::kBinary, Operator::kOr, std::move(children));
+  }
+  return tree;
+}
+
+FormulaTree exists(std::span<const std::string> names, const FormulaTree& body) {
+  FormulaTree tree;
+  std::vector<std::uint32_t> children;
+  for (const auto& name : names) {
+    tree.text += children.empty() ? "{" : ",";
+    children.push_back(append(tree, leaf(name, NodeKind::kName, LeafKind::kName, 0)));
+  }
+  tree.text += "} (";
+  children.push_back(append(tree, body));
+  tree.text += ')';
+  add_root(tree, NodeKind::kExists, Operator::kAnd, std::move(children));
+  return tree;
+}
+
+FormulaTree with_leaves(const FormulaTree& tree, const LeafValue& value) {
+  FormulaTree out;
+  out.variables = tree.variables;
+  out.parameters = tree.parameters;
+  // Leaves come in the order of the text, so it is copied up to each of them; what stands between
+  // two of them moves together. A node comes behind its leaves: both its ends are known by then.
+  struct Move {
+    std::uint32_t from = 0;
+    std::uint32_t to = 0;
+  };
+  std::vector<Move> moves = {{0, 0}};
+  const auto moved = [&](std::uint32_t at) {
+    const auto behind =
+        std::upper_bound(moves.begin(), moves.end(), at,
+                         [](std::uint32_t place, const Move& move) { return place < move.from; });
+    const auto& last = *(behind - 1);
+    return at - last.from + last.to;
+  };
+  std::vector<std::uint32_t> renumbered;
+  std::uint32_t copied = 0;
+  for (const auto& node : tree.nodes) {
+    const auto part = node.kind == NodeKind::kName ? value(node) : std::nullopt;
+    if (part) {
+      out.text.append(tree.text, copied, node.begin - copied);
+      moves.push_back({node.begin, length(out.text)});
+      renumbered.push_back(append(out, *part));
+      moves.push_back({node.end, length(out.text)});
+      copied = node.end;
+      continue;
+    }
+    auto copy = node;
+    for (auto& child : copy.children) child = renumbered[child];
+    copy.begin = moved(node.begin);
+    copy.end = moved(node.end);
+    renumbered.push_back(static_cast<std::uint32_t>(out.nodes.size()));
+    out.nodes.push_back(std::move(copy));
+  }
+  out.text.append(tree.text, copied);
+  return out;
+}
+
+FormulaTree without_blanks(const FormulaTree& tree) {
+  auto out = tree;
+  out.text.clear();
+  std::vector<std::uint32_t> moved;
+  for (const char c : tree.text) {
+    moved.push_back(length(out.text));
+    if (!is_blank(c) && c != '\n') out.text += c;
+  }
+  moved.push_back(length(out.text));
+  for (auto& node : out.nodes) {
+    node.begin = moved[node.begin];
+    node.end = moved[node.end];
+  }
+  return out;
+}
+
+std::set<ModelValueId> registers_in(const FormulaTree& tree) {
+  std::set<ModelValueId> out;
+  for (const auto& node : tree.nodes) {
+    if (node.leaf == LeafKind::kRegister) out.insert(ModelValueId(node.number));
+  }
+  return out;
+}
+
+ParsedFormula to_ast(const FormulaTree& tree, base::FileId file, const base::SourceFiles& files) {
+  ParsedFormula out{Ast(file, files[file].text()), NodeId()};
+  std::vector<NodeId> ids;
+  for (const auto& from : tree.nodes) {
+    Node node;
+    node.kind = from.kind;
+    node.op = from.op;
+    node.begin = from.begin;
+    node.end = from.end;
+    node.name_length = from.name_length;
+    ids.push_back(out.ast.add_with(node, from.children.size(),
+                                   [&](std::size_t i) { return ids[from.children[i]]; }));
+  }
+  out.root = ids.back();
+  return out;
+}
+
+}  // namespace parallax::compiler
