@@ -14,8 +14,6 @@ namespace parallax::compiler {
 /// A parameter `?x` at the start of `text`: its length, 0 if there is none.
 std::size_t variable_length(std::string_view text);
 
-inline bool is_binding_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
 /// Reads the entries one by one and recovers at the next one.
 class BindingParser {
  public:

@@ -5,10 +5,9 @@
 namespace parallax::compiler {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
 bool starts_with_word(std::string_view text, std::string_view word) {
-  return text.starts_with(word) && (text.size() == word.size() || is_blank(text[word.size()]));
+  return text.starts_with(word) &&
+         (text.size() == word.size() || is_binding_blank(text[word.size()]));
 }
 
 bool starts_entry(std::string_view text) {
@@ -45,7 +44,7 @@ BindingText clean_binding(std::string_view file) {
         }
         out.text[i] = ' ';
         part_start = true;
-      } else if (!is_blank(rest.front())) {
+      } else if (!is_binding_blank(rest.front())) {
         if (part_start && starts_entry(rest)) out.entries.push_back(i);
         part_start = false;
       }

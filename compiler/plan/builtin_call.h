@@ -39,6 +39,9 @@ inline BuiltinFailure not_a_number(const BuiltinCall& c, std::size_t index) {
   return failure;
 }
 
+/// Of built-ins that say something about a value but leave it as it is.
+inline BuiltinResult first_argument(const BuiltinCall& c) { return c.args[0]; }
+
 using BuiltinFunction = BuiltinResult (*)(const BuiltinCall&);
 struct BuiltinEntry {
   PlanBuiltin builtin;

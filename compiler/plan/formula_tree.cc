@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "compiler/syntax/lexer.h"
+#include "compiler/plan/binding_text.h"
 
 namespace parallax::compiler {
 namespace {
@@ -170,7 +170,7 @@ FormulaTree without_blanks(const FormulaTree& tree) {
   std::vector<std::uint32_t> moved;
   for (const char c : tree.text) {
     moved.push_back(length(out.text));
-    if (!is_blank(c) && c != '\n') out.text += c;
+    if (!is_binding_blank(c)) out.text += c;
   }
   moved.push_back(length(out.text));
   for (auto& node : out.nodes) {

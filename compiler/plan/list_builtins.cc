@@ -25,7 +25,6 @@ BuiltinResult same(const BuiltinCall& c) {
 }
 
 BuiltinResult is_null(const BuiltinCall& c) { return c.values.boolean(c.values.is_nil(c.args[0])); }
-BuiltinResult identity(const BuiltinCall& c) { return c.args[0]; }
 BuiltinResult list(const BuiltinCall& c) { return c.values.list({c.args.begin(), c.args.end()}); }
 BuiltinResult cons(const BuiltinCall& c) { return c.values.cons(c.args[0], c.args[1]); }
 
@@ -160,13 +159,13 @@ BuiltinResult typep(const BuiltinCall& c) {
   return c.values.boolean(holds);
 }
 
-constexpr BuiltinEntry kTable[] = {
+constexpr BuiltinEntry kListTable[] = {
     {{"eq", 2, 2}, same},
     {{"eql", 2, 2}, same},
     {{"equal", 2, 2}, same},
     {{"null", 1, 1}, is_null},
     {{"not", 1, 1}, is_null},
-    {{"identity", 1, 1}, identity},
+    {{"identity", 1, 1}, first_argument},
     {{"list", 0, kAnyNumber}, list},
     {{"cons", 2, 2}, cons},
     {{"car", 1, 1}, car},
@@ -196,6 +195,6 @@ constexpr BuiltinEntry kTable[] = {
 
 }  // namespace
 
-std::span<const BuiltinEntry> list_builtins() { return kTable; }
+std::span<const BuiltinEntry> list_builtins() { return kListTable; }
 
 }  // namespace parallax::compiler

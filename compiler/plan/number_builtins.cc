@@ -100,7 +100,7 @@ BuiltinResult different_numbers(const BuiltinCall& c) {
   return c.values.boolean(holds);
 }
 
-constexpr BuiltinEntry kTable[] = {
+constexpr BuiltinEntry kNumberTable[] = {
     {{"+", 0, kAnyNumber}, add},
     {{"*", 0, kAnyNumber}, multiply},
     {{"-", 1, kAnyNumber}, subtract},
@@ -120,6 +120,6 @@ constexpr BuiltinEntry kTable[] = {
 
 }  // namespace
 
-std::span<const BuiltinEntry> number_builtins() { return kTable; }
+std::span<const BuiltinEntry> number_builtins() { return kNumberTable; }
 
 }  // namespace parallax::compiler

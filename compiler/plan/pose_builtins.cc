@@ -90,7 +90,6 @@ BuiltinResult stamp_pose(const BuiltinCall& c) {
 }
 
 /// `reference` and `current-desig`: a designator is its own solution.
-BuiltinResult identity(const BuiltinCall& c) { return c.args[0]; }
 
 BuiltinResult next_solution(const BuiltinCall& c) {
   // A new sample of a location is the same region in the model: as many as were asked for, which
@@ -117,7 +116,7 @@ BuiltinResult property(const BuiltinCall& c) {
   return c.values.key(c.args[0], key.text).value_or(c.values.nil());
 }
 
-constexpr BuiltinEntry kTable[] = {
+constexpr BuiltinEntry kPoseTable[] = {
     {{"make-3d-vector", 3, 3}, make_vector},
     {{"make-quaternion", 4, 4}, make_quaternion},
     {{"make-identity-rotation", 0, 0}, make_identity<ValueKind::kQuaternion>},
@@ -127,13 +126,13 @@ constexpr BuiltinEntry kTable[] = {
     {{"make-pose-stamped", 4, 4}, make_pose_stamped},
     {{"pose->pose-stamped", 3, 3}, stamp_pose},
     {{"next-solution", 1, 1}, next_solution},
-    {{"current-desig", 1, 1}, identity},
-    {{"reference", 1, 1}, identity},
+    {{"current-desig", 1, 1}, first_argument},
+    {{"reference", 1, 1}, first_argument},
     {{"desig-prop-value", 2, 2}, property},
 };
 
 }  // namespace
 
-std::span<const BuiltinEntry> pose_builtins() { return kTable; }
+std::span<const BuiltinEntry> pose_builtins() { return kPoseTable; }
 
 }  // namespace parallax::compiler
