@@ -3,44 +3,14 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "compiler/base/utf8.h"
+
 namespace parallax::base {
 namespace {
 
 constexpr std::size_t kExcerptColumns = 160;
 
-struct CodePoint {
-  std::uint32_t value = 0;
-  std::size_t length = 1;
-  bool valid = false;
-};
-
-CodePoint decode_utf8(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char lead = byte(0);
-  if (lead < 0x80) return {lead, 1, true};
-  std::size_t length = 0;
-  std::uint32_t value = 0;
-  if (lead >= 0xC2 && lead < 0xE0) {
-    length = 2, value = lead & 0x1FU;
-  } else if (lead >= 0xE0 && lead < 0xF0) {
-    length = 3, value = lead & 0x0FU;
-  } else if (lead >= 0xF0 && lead < 0xF5) {
-    length = 4, value = lead & 0x07U;
-  } else {
-    return {};
-  }
-  if (text.size() < length) return {};
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0U) != 0x80U) return {};
-    value = (value << 6U) | (byte(i) & 0x3FU);
-  }
-  const bool surrogate = value >= 0xD800 && value < 0xE000;
-  const bool overlong = (length == 3 && value < 0x800) || (length == 4 && value < 0x10000);
-  if (surrogate || overlong || value > 0x10FFFF) return {};
-  return {value, length, true};
-}
-
-bool is_bidirectional_control(std::uint32_t c) {
+bool is_bidirectional_control(char32_t c) {
   return (c >= 0x202A && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069) || c == 0x200E ||
          c == 0x200F || c == 0x061C || c == 0xFEFF;
 }
@@ -50,14 +20,14 @@ std::string excerpt(std::string_view line) {
   std::string out;
   std::size_t columns = 0;
   while (!line.empty() && columns < kExcerptColumns) {
-    const auto point = decode_utf8(line);
+    const auto point = front_code_point(line);
     if (!point.valid || point.value < 0x20 || point.value == 0x7F ||
         is_bidirectional_control(point.value)) {
       out += point.valid && point.value == '\t' ? ' ' : '?';
     } else {
       out.append(line.substr(0, point.length));
     }
-    line.remove_prefix(point.length);
+    line.remove_prefix(point.valid ? point.length : 1);
     ++columns;
   }
   if (!line.empty()) out += " ...";
@@ -119,15 +89,15 @@ nlohmann::ordered_json place_json(const std::optional<SourceRange>& range,
 std::string printable(std::string_view text) {
   std::string out;
   while (!text.empty()) {
-    const auto point = decode_utf8(text);
+    const auto point = front_code_point(text);
     if (!point.valid) {
       out += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
     } else if (point.value < 0x20 || point.value == 0x7F || is_bidirectional_control(point.value)) {
-      out += fmt::format("\\u{:04x}", point.value);
+      out += fmt::format("\\u{:04x}", static_cast<std::uint32_t>(point.value));
     } else {
       out.append(text.substr(0, point.length));
     }
-    text.remove_prefix(point.length);
+    text.remove_prefix(point.valid ? point.length : 1);
   }
   return out;
 }

@@ -4,10 +4,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/utf8.h"
 
 namespace parallax::base {
 namespace {
@@ -26,34 +28,6 @@ class Descriptor {
  private:
   int fd_;
 };
-
-/// The offset of the first byte that is not text, or the size if all is well.
-std::size_t first_invalid_byte(std::string_view text) {
-  std::size_t i = 0;
-  while (i < text.size()) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    std::size_t more = 0;
-    if (byte == 0) return i;
-    if (byte < 0x80) {
-      more = 0;
-    } else if (byte >= 0xC2 && byte < 0xE0) {
-      more = 1;
-    } else if (byte >= 0xE0 && byte < 0xF0) {
-      more = 2;
-    } else if (byte >= 0xF0 && byte < 0xF5) {
-      more = 3;
-    } else {
-      return i;
-    }
-    for (std::size_t k = 1; k <= more; ++k) {
-      if (i + k >= text.size() || (static_cast<unsigned char>(text[i + k]) & 0xC0U) != 0x80U) {
-        return i;
-      }
-    }
-    i += more + 1;
-  }
-  return text.size();
-}
 
 }  // namespace
 
@@ -111,7 +85,7 @@ Result<FileId> load_text(const std::filesystem::path& path, SourceFiles& files,
 Result<FileId> register_text(std::string name, std::string text, SourceFiles& files,
                              DiagnosticSink& sink) {
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-  const auto bad = first_invalid_byte(text);
+  const auto bad = std::min(text.find('\0'), first_invalid_utf8(text));
   const bool invalid = bad != text.size();
   const auto id = files.add(std::move(name), std::move(text));
   if (invalid) {

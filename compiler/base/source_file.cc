@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "compiler/base/contract.h"
+#include "compiler/base/utf8.h"
 
 namespace parallax::base {
 
@@ -26,12 +27,9 @@ LineColumn SourceFile::position(std::uint32_t byte_offset) const {
   const auto offset = std::min(byte_offset, static_cast<std::uint32_t>(text_.size()));
   const auto after = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
   const auto line = static_cast<std::uint32_t>(after - line_starts_.begin());
-  std::uint32_t column = 1;
-  for (std::uint32_t i = line_starts_[line - 1]; i < offset; ++i) {
-    // Continuation bytes of UTF-8 do not start a code point.
-    if ((static_cast<unsigned char>(text_[i]) & 0xC0U) != 0x80U) ++column;
-  }
-  return {line, column};
+  const auto begin = line_starts_[line - 1];
+  const auto before = std::string_view(text_).substr(begin, offset - begin);
+  return {line, static_cast<std::uint32_t>(1 + count_code_points(before))};
 }
 
 std::uint32_t SourceFile::line_begin(std::uint32_t number) const {

@@ -3,27 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
+
+#include "compiler/base/utf8.h"
 
 namespace parallax::base {
 namespace {
 
-/// The length of the UTF-8 sequence at the front that XML 1.0 can hold, or 0.
+/// The length of the code point at the front, or 0 if XML 1.0 cannot hold it.
 std::size_t character_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const auto first = byte(0);
-  if (first < 0x80U) return first >= 0x20U || first == '\t' || first == '\n' ? 1 : 0;
-  const std::size_t length = first >= 0xF0U ? 4 : first >= 0xE0U ? 3 : 2;
-  if (first < 0xC2U || first > 0xF4U || text.size() < length) return 0;
-  std::uint32_t code = first & (0xFFU >> (length + 1));
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0U) != 0x80U) return 0;
-    code = code << 6U | (byte(i) & 0x3FU);
-  }
-  const bool overlong = (length == 3 && code < 0x800U) || (length == 4 && code < 0x10000U);
-  const bool surrogate = code >= 0xD800U && code <= 0xDFFFU;
-  const bool outside = code > 0x10FFFFU || code == 0xFFFEU || code == 0xFFFFU;
-  return overlong || surrogate || outside ? 0 : length;
+  const auto point = front_code_point(text);
+  const auto c = point.value;
+  const bool control = c < 0x20 && c != '\t' && c != '\n';
+  return !point.valid || control || c == 0xFFFE || c == 0xFFFF ? 0 : point.length;
 }
 
 std::string_view entity(char c) {

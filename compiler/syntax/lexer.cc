@@ -4,6 +4,7 @@
 #include <array>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/utf8.h"
 
 namespace parallax::compiler {
 namespace {
@@ -87,7 +88,7 @@ std::string shortened(std::string_view text) {
   constexpr std::size_t kLongest = 60;
   if (text.size() <= kLongest) return std::string(text);
   std::size_t end = kLongest - 3;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  while (end > 0 && base::continues_code_point(text[end])) --end;
   return std::string(text.substr(0, end)) + "...";
 }
 
@@ -154,10 +155,7 @@ void Lexer::skip_illegal() {
   while (position_ < text_.size() && !starts(text_[position_])) ++position_;
   // Quote one whole code point, not its first byte.
   std::size_t length = 1;
-  while (begin + length < position_ &&
-         (static_cast<unsigned char>(text_[begin + length]) & 0xC0U) == 0x80U) {
-    ++length;
-  }
+  while (begin + length < position_ && base::continues_code_point(text_[begin + length])) ++length;
   sink_.error(base::DiagnosticCode::kIllegalCharacter, base::SourceRange{file_, begin, position_},
               text_.substr(begin, length));
 }

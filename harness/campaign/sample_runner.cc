@@ -2,18 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include "compiler/base/utf8.h"
 #include "harness/simulator/protocol.h"
 
 namespace parallax::harness {
 namespace {
-
-/// Text as the journal can hold it: a process may write any bytes to its standard error.
-std::string as_utf8(const std::string& text) {
-  const auto replace = nlohmann::json::error_handler_t::replace;
-  return nlohmann::json::parse(nlohmann::json(text).dump(-1, ' ', false, replace));
-}
 
 /// One attempt at a start that is given. Fills what was seen as far as it came.
 class Attempt {
@@ -42,7 +35,8 @@ class Attempt {
       if (outcome.status == SimStatus::kLost || outcome.status == SimStatus::kUnsupported) {
         return ended(outcome.status, outcome.reason);
       }
-      record_.outcomes.push_back({outcome.status, as_utf8(outcome.reason), outcome.sim_time_s});
+      record_.outcomes.push_back(
+          {outcome.status, base::with_invalid_utf8_replaced(outcome.reason), outcome.sim_time_s});
       if (const auto lost = observe()) return lost;
     }
     record_.digest = digest_of(record_.observations.back());
@@ -50,8 +44,9 @@ class Attempt {
   }
 
  private:
+  /// A process may write any bytes to its standard error; the journal holds text.
   SimStatus ended(SimStatus status, const std::string& reason) {
-    record_.reason = as_utf8(reason);
+    record_.reason = base::with_invalid_utf8_replaced(reason);
     return status;
   }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "compiler/base/utf8.h"
 #include "compiler/base/xml_text.h"
 
 namespace parallax::harness {
@@ -15,12 +16,8 @@ constexpr double kCharacter_px = 0.6 * kFont_px;  // of a sans-serif font, on av
 constexpr double kNear_px = 3.0, kStep_px = 10.0;
 constexpr int kRings = 10;
 
-/// Bytes that continue a character of UTF-8 take no room.
 double text_width_px(const std::string& text) {
-  const auto characters = std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-  });
-  return kCharacter_px * static_cast<double>(characters);
+  return kCharacter_px * static_cast<double>(base::count_code_points(text));
 }
 
 /// Lower left corners of a text of this size inside of what it names, the best first.

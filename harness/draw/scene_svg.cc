@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "compiler/base/utf8.h"
 #include "compiler/base/xml_text.h"
 #include "harness/draw/scene_marks.h"
 #include "harness/draw/scene_view.h"
@@ -50,7 +51,7 @@ std::vector<std::string> wrapped(std::string text, std::size_t width, std::size_
       if (cut == std::string::npos || cut == 0) cut = width;
     }
     // Never inside a character.
-    while (cut < text.size() && (static_cast<unsigned char>(text[cut]) & 0xC0U) == 0x80U) ++cut;
+    while (cut < text.size() && base::continues_code_point(text[cut])) ++cut;
     out.push_back(text.substr(0, cut));
     text.erase(0, text.find_first_not_of(' ', cut));
   }

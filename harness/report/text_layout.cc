@@ -3,28 +3,23 @@
 #include <algorithm>
 
 #include "compiler/base/diagnostic_printer.h"
+#include "compiler/base/utf8.h"
 
 namespace parallax::harness {
-
-std::size_t columns_of(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-  }));
-}
 
 std::string wrapped(std::string_view first, std::string_view text, std::size_t indent) {
   std::string plain(text);
   std::replace(plain.begin(), plain.end(), '\n', ' ');
   plain = base::printable(plain);
   std::string out(first);
-  std::size_t column = columns_of(first);
+  std::size_t column = base::count_code_points(first);
   bool at_start = true;
   for (std::size_t at = 0; at < plain.size();) {
     const auto end = std::min(plain.find(' ', at), plain.size());
     const auto word = std::string_view(plain).substr(at, end - at);
     at = end + 1;
     if (word.empty()) continue;
-    const auto width = columns_of(word);
+    const auto width = base::count_code_points(word);
     if (!at_start && column + 1 + width > kReportColumns) {
       out += '\n' + std::string(indent, ' ');
       column = indent;
@@ -43,7 +38,7 @@ std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
     for (std::size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], columns_of(base::printable(row[i])));
+      widths[i] = std::max(widths[i], base::count_code_points(base::printable(row[i])));
     }
   }
   std::string out;
@@ -51,7 +46,7 @@ std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t
     std::string line(indent, ' ');
     for (std::size_t i = 0; i < row.size(); ++i) {
       const auto cell = base::printable(row[i]);
-      line += cell + std::string(widths[i] - columns_of(cell) + 2, ' ');
+      line += cell + std::string(widths[i] - base::count_code_points(cell) + 2, ' ');
     }
     line.erase(line.find_last_not_of(' ') + 1);
     out += line + '\n';

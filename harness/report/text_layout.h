@@ -19,7 +19,4 @@ std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t
 /// `text` as one word of a POSIX shell.
 std::string shell_word(const std::string& text);
 
-/// Display columns of UTF-8 text: one per code point.
-std::size_t columns_of(std::string_view text);
-
 }  // namespace parallax::harness

@@ -88,6 +88,12 @@ TEST_CASE("bytes that are no text") {
     cli.write("bad.e", kWorld + "; \xC0\xAF\n");
     check_located(only_diagnostic(cli, "bad.e"), "E0006", "bad.e", 3);
   }
+  SUBCASE("an overlong form of three bytes, a surrogate, a code point that is too large") {
+    for (const auto* bytes : {"\xE0\x80\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80"}) {
+      cli.write("bad.e", kWorld + "; " + bytes + "\n");
+      check_located(only_diagnostic(cli, "bad.e"), "E0006", "bad.e", 3);
+    }
+  }
   SUBCASE("bidirectional controls are shown, not obeyed") {
     cli.write("bad.e", kWorld + "P\xE2\x80\xAE().\n");
     const auto diagnostic = only_diagnostic(cli, "bad.e");

@@ -70,8 +70,10 @@ TEST_CASE_FIXTURE(FileIo, "load_text drops a byte order mark and refuses what is
   const auto id = load_text(write("a", "\xEF\xBB\xBFsort a"), files_, sink_);
   REQUIRE(id);
   CHECK(files_[*id].text() == "sort a");
-  for (const std::string& bad : {std::string("a\0b", 3), std::string("a\xFF"), std::string("a\xC3"),
-                                 std::string("a\xE2\x82 b")}) {
+  for (const std::string& bad :
+       {std::string("a\0b", 3), std::string("a\xFF"), std::string("a\xC3"),
+        std::string("a\xE2\x82 b"), std::string("a\xE0\x80\x80"), std::string("a\xED\xA0\x80"),
+        std::string("a\xF0\x8F\xBF\xBF"), std::string("a\xF4\x90\x80\x80")}) {
     sink_ = DiagnosticSink();
     CHECK_FALSE(load_text(write("bad", bad), files_, sink_));
     REQUIRE(only_code() == "E0006");

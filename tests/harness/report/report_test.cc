@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "compiler/base/utf8.h"
 #include "harness/report/text_layout.h"
 
 namespace parallax::harness {
@@ -79,7 +80,7 @@ TEST_CASE("the text fits 100 columns and carries no colour unless asked for") {
   const auto text = campaign_text(result, {});
   for (const auto& line : lines_of(text)) {
     CAPTURE(line);
-    CHECK(columns_of(line) <= 100);
+    CHECK(base::count_code_points(line) <= 100);
     CHECK(line.find_last_not_of(' ') + 1 == line.size());
   }
   CHECK(text.find('\x1b') == std::string::npos);
@@ -214,7 +215,8 @@ TEST_CASE("wrapping breaks at blanks, keeps long words whole and counts code poi
   CHECK(wrapped("", "one  two\nthree", 0) == "one two three\n");
   std::string words;
   for (int i = 0; i < 30; ++i) words += "w\xc3\xb6rter ";
-  for (const auto& line : lines_of(wrapped("label ", words, 6))) CHECK(columns_of(line) <= 100);
+  for (const auto& line : lines_of(wrapped("label ", words, 6)))
+    CHECK(base::count_code_points(line) <= 100);
   const std::string word(150, 'x');
   CHECK(wrapped("  ", word, 2) == "  " + word + "\n");
   CHECK(wrapped("  ", "a " + word, 2) == "  a\n  " + word + "\n");
