@@ -50,8 +50,8 @@ std::optional<std::string> unquoted(std::string_view word) {
 void LineHash::add(std::string_view line) {
   const bool comment = line.empty() || line == "c" || line.starts_with("c ");
   if ((comment && !line.starts_with("c dec ")) || line.starts_with(kHashEntry)) return;
-  value_ = fnv1a64(line, value_);
-  value_ = fnv1a64("\n", value_);
+  value_ = base::fnv1a64(line, value_);
+  value_ = base::fnv1a64("\n", value_);
 }
 
 void append_word(std::string& out, std::string_view word) {

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "compiler/artifact/describe.h"
 #include "compiler/base/diagnostic.h"
+#include "compiler/base/hash.h"
 #include "compiler/base/source_file.h"
 
 namespace parallax::compiler {
@@ -26,7 +26,7 @@ class LineHash {
   std::uint64_t value() const { return value_; }
 
  private:
-  std::uint64_t value_ = kFnvStart;
+  std::uint64_t value_ = base::kFnvStart;
 };
 inline constexpr std::string_view kHashEntry = "c dec hash ";
 

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "compiler/artifact/derived.h"
+#include "compiler/base/hash.h"
 
 namespace parallax::compiler {
 namespace {
@@ -56,15 +57,6 @@ void sort_origins(CompiledModel& model) {
 
 }  // namespace
 
-std::uint64_t fnv1a64(std::string_view bytes, std::uint64_t start) {
-  auto hash = start;
-  for (const char c : bytes) {
-    hash ^= static_cast<unsigned char>(c);
-    hash *= 0x100000001b3ULL;
-  }
-  return hash;
-}
-
 std::string one_line(std::string_view text) {
   std::string out;
   for (const char c : without_comments(text)) {
@@ -85,7 +77,7 @@ void assign_ids(std::vector<Origin>& origins) {
     std::string key = origin.what + '\n';
     std::copy_if(origin.text.begin(), origin.text.end(), std::back_inserter(key),
                  [](char c) { return !is_blank(c); });
-    const auto hash = fnv1a64(key);
+    const auto hash = base::fnv1a64(key);
     origin.id = fmt::format("{:08x}", static_cast<std::uint32_t>(hash ^ (hash >> 32U)));
     const auto count = ++used[origin.id];
     if (count > 1) origin.id += fmt::format(".{}", count);
@@ -99,7 +91,7 @@ void describe_sources(CompiledModel& model, const base::SourceFiles& files) {
     // Texts that were made from a file (a binding's formula with its arguments) bear its name.
     const auto is_same = [&](const SourceText& text) { return text.name == file.name(); };
     if (std::any_of(model.sources.begin(), model.sources.end(), is_same)) continue;
-    model.sources.push_back({file.name(), fnv1a64(file.text())});
+    model.sources.push_back({file.name(), base::fnv1a64(file.text())});
   }
   sort_origins(model);
   for (auto& origin : model.origins) {

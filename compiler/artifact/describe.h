@@ -10,10 +10,6 @@
 
 namespace parallax::compiler {
 
-/// 64-bit FNV-1a (Fowler, Noll, Vo). It finds accidents; it is no protection against forgery.
-inline constexpr std::uint64_t kFnvStart = 14695981039346656037U;
-std::uint64_t fnv1a64(std::string_view bytes, std::uint64_t start = kFnvStart);
-
 /// Copies from the source files what a model needs to speak of them without them: the hashes of all
 /// texts, and for every origin and plan step its place, text and id. Origins are put in the order
 /// of their places, so that they do not move when another stage is told to look at them earlier.

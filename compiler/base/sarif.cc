@@ -8,21 +8,12 @@
 #include <system_error>
 
 #include "compiler/base/diagnostic_printer.h"
+#include "compiler/base/hash.h"
 
 namespace parallax::base {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// FNV-1a, 64 bits (Fowler, Noll, Vo).
-std::uint64_t fnv1a(std::string_view text) {
-  std::uint64_t hash = 0xCBF29CE484222325ULL;
-  for (const char c : text) {
-    hash ^= static_cast<unsigned char>(c);
-    hash *= 0x100000001B3ULL;
-  }
-  return hash;
-}
 
 /// RFC 3986: what is neither unreserved nor a slash is percent-encoded.
 std::string encoded(std::string_view path) {
@@ -138,7 +129,7 @@ std::string to_sarif(const std::vector<Diagnostic>& diagnostics, const SourceFil
   std::map<std::uint64_t, int> seen;
   for (const auto& d : diagnostics) {
     auto entry = result(d, files, index.at(d.code));
-    const auto hash = fnv1a(identity(d, files));
+    const auto hash = fnv1a64(identity(d, files));
     entry["partialFingerprints"] = {
         {"parallaxLine/v1", fmt::format("{:016x}:{}", hash, ++seen[hash])}};
     results.push_back(std::move(entry));

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <optional>
 
+#include "compiler/base/hash.h"
+
 namespace parallax::compiler {
 namespace {
 
@@ -63,12 +65,7 @@ SlotLayout lay_out(std::span<const std::uint64_t> hashes) {
 }
 
 std::uint64_t stable_hash(std::span<const char> text, std::uint64_t seed) {
-  std::uint64_t h = 0xcbf29ce484222325ULL ^ seed;
-  for (const char c : text) {
-    h ^= static_cast<unsigned char>(c);
-    h *= 0x100000001b3ULL;
-  }
-  return mixed(h);
+  return mixed(base::fnv1a64({text.data(), text.size()}, base::kFnvStart ^ seed));
 }
 
 std::uint64_t combine_hashes(std::uint64_t a, std::uint64_t b) {

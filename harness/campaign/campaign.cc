@@ -7,6 +7,7 @@
 
 #include "compiler/base/contract.h"
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/hash.h"
 #include "harness/campaign/journal.h"
 #include "harness/campaign/run_folder.h"
 #include "harness/campaign/run_limit.h"
@@ -238,13 +239,13 @@ base::Result<CampaignResult> run_campaign(const Scenario& scenario, TraceFeed& t
 }
 
 std::string hash_of_sources(const base::SourceFiles& files) {
-  std::uint64_t low = hash64({}), high = hash64("high");
+  std::uint64_t low = base::kFnvStart, high = base::fnv1a64("high");
   for (std::size_t i = 0; i < files.size(); ++i) {
     const auto text = files[base::FileId(static_cast<std::uint32_t>(i))].text();
     // The size separates the texts: moving a line from one file to the next must show.
     const auto size = std::to_string(text.size());
-    low = hash64(text, hash64(size, low));
-    high = mix64(hash64(text, high ^ low));
+    low = base::fnv1a64(text, base::fnv1a64(size, low));
+    high = mix64(base::fnv1a64(text, high ^ low));
   }
   return fmt::format("{:016x}{:016x}", high, low);
 }

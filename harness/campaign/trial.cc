@@ -9,6 +9,7 @@
 
 #include "compiler/base/contract.h"
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/hash.h"
 #include "harness/campaign/journal.h"
 #include "harness/campaign/start_blame.h"
 
@@ -76,7 +77,7 @@ base::Result<Trial> Trial::prepare(TrialBench& bench, CampaignTrace trace) {
   auto calls = action_calls(scenario, trace, sink);
   auto sampler = Sampler::make(*start, scenario.sampling_inset_m, scenario.sampling_source, sink);
   if (!calls || !sampler) return sink.already_reported();
-  const auto key = hash64(trace.key);
+  const auto key = base::fnv1a64(trace.key);
   auto plan = std::make_shared<const TracePlan>(
       TracePlan{std::move(trace), std::move(*calls), std::move(*sampler), bench.options_.seed, key,
                 scenario.limits.max_rejected_starts, may_repeat_losses(bench.simulator_)});

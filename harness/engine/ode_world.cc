@@ -8,19 +8,15 @@
 #include <cmath>
 
 #include "compiler/base/contract.h"
+#include "compiler/base/hash.h"
 #include "harness/engine/ode_engine.h"
 #include "harness/engine/ode_process.h"
 
 namespace parallax::harness {
 namespace {
 
-constexpr std::uint64_t kDigestStart = 0xcbf29ce484222325U;
-
-/// FNV-1a by 64-bit words, with a shift that carries the high bits down (Fowler, Noll, Vo; the
-/// shift as in xorshift generators, Marsaglia 2003).
 void mix(std::uint64_t& hash, double value) {
-  hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001b3U;
-  hash ^= hash >> 29U;
+  hash = base::fnv1a64_word(hash, std::bit_cast<std::uint64_t>(value));
 }
 
 Eigen::Vector3d to_vector(const dReal* v) { return {v[0], v[1], v[2]}; }
@@ -141,7 +137,7 @@ std::optional<Overlap> OdeWorld::reset(std::span<const Placement> placements, st
   }
   std::fill(engine_->touches.begin(), engine_->touches.end(), Touch{});
   seed_ode(seed);
-  engine_->digest = kDigestStart;
+  engine_->digest = base::kFnvStart;
   fold_state(*engine_);
 
   const std::optional<Overlap> overlap = find_deepest_overlap(*engine_);

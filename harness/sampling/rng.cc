@@ -5,7 +5,6 @@ namespace {
 
 /// 2^64 divided by the golden ratio, the increment of splitmix64 (Steele, Lea, Flood 2014).
 constexpr std::uint64_t kGoldenGamma = 0x9e3779b97f4a7c15ULL;
-constexpr std::uint64_t kFnvPrime = 0x100000001b3ULL;
 /// Keeps the engine's seeds apart from the coordinates of the same draw.
 constexpr std::uint64_t kSimulatorStream = 0x73696d756c61746fULL;  // "simulato"
 
@@ -29,12 +28,6 @@ std::uint64_t mix64(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
   return x ^ (x >> 31);
-}
-
-std::uint64_t hash64(std::string_view bytes, std::uint64_t seed) {
-  std::uint64_t hash = seed;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * kFnvPrime;
-  return hash;
 }
 
 CounterRng::CounterRng(const DrawKey& key) : state_(key_state(key)) {}

@@ -8,9 +8,6 @@ namespace parallax::harness {
 /// splitmix64's output function; the base of every random choice here.
 std::uint64_t mix64(std::uint64_t x);
 
-/// A stable hash of bytes (FNV-1a, 64 bits), for trace keys and digests.
-std::uint64_t hash64(std::string_view bytes, std::uint64_t seed = 0xcbf29ce484222325ULL);
-
 /// The phase of a campaign that a draw belongs to; each has its own stream.
 enum class DrawPhase : std::uint8_t { kSearch = 1, kCertify = 2, kConfirm = 3 };
 

@@ -2,16 +2,16 @@
 
 #include <map>
 
+#include "compiler/base/hash.h"
+
 namespace parallax::runtime {
 
 using compiler::Timepoint;
 
 std::size_t ClauseSet::Hash::operator()(const Key& key) const {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  auto hash = base::kFnvStart;
   for (const auto literal : key) {
-    hash ^= static_cast<std::uint32_t>(literal);
-    hash *= 0x100000001b3ULL;
-    hash ^= hash >> 29U;
+    hash = base::fnv1a64_word(hash, static_cast<std::uint32_t>(literal));
   }
   return static_cast<std::size_t>(hash);
 }

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "compiler/artifact/describe.h"
+#include "compiler/base/hash.h"
 
 namespace parallax::runtime {
 namespace {
@@ -46,7 +46,7 @@ std::string model_hash(const compiler::CompiledModel& model) {
   std::string bytes;
   for (const auto& source : model.sources) bytes += fmt::format("{:016x}\n", source.hash);
   for (const auto& [name, value] : model.options) bytes += fmt::format("{}={}\n", name, value);
-  return fmt::format("{:016x}", compiler::fnv1a64(bytes));
+  return fmt::format("{:016x}", base::fnv1a64(bytes));
 }
 
 }  // namespace parallax::runtime

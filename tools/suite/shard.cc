@@ -2,6 +2,8 @@
 
 #include <charconv>
 
+#include "compiler/base/hash.h"
+
 namespace parallax::tools {
 namespace {
 
@@ -26,11 +28,7 @@ std::optional<Shard> parse_shard(std::string_view text) {
 }
 
 bool in_shard(std::string_view id, const Shard& shard) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char c : id) {
-    hash ^= static_cast<unsigned char>(c);
-    hash *= 0x100000001b3U;
-  }
+  auto hash = base::fnv1a64(id);
   // The low bits of FNV mix badly; the high half is folded in.
   hash ^= hash >> 32U;
   return hash % shard.count == shard.index - 1;

@@ -1,5 +1,6 @@
 // The loop that all modes share, driven by hand.
 
+#include "compiler/base/hash.h"
 #include "harness/campaign/trial.h"
 
 #include "harness/campaign/journal.h"
@@ -62,7 +63,7 @@ TEST_CASE("a trial is prepared with the region, the calls and the draws of its t
   CHECK(plan.calls[0].time_limit_s == 30.0);
   CHECK(plan.calls[1].arguments == State{{"object", std::string("box")}});
   CHECK(plan.campaign_seed == 1);
-  CHECK(plan.trace_key == hash64("fetch 1"));
+  CHECK(plan.trace_key == base::fnv1a64("fetch 1"));
   CHECK(plan.repeats_losses);
   CHECK(trial.next_sample() == 1);
 }

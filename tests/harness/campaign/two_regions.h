@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "compiler/base/hash.h"
 #include "harness/campaign/campaign.h"
 #include "harness/sampling/sampler.h"
 
@@ -293,7 +294,7 @@ inline State drawn_start(const Bench& bench, std::int64_t trace, std::int64_t sa
   base::DiagnosticSink sink;
   const auto sampler = Sampler::make(cuboid, bench.scenario.sampling_inset_m, {}, sink);
   REQUIRE(sampler.has_value());
-  const auto key = hash64(ListFeed::trace(trace).key);
+  const auto key = base::fnv1a64(ListFeed::trace(trace).key);
   return sampler->draw({bench.options.seed, key, DrawPhase::kCertify,
                         static_cast<std::uint64_t>(sample), static_cast<std::uint64_t>(attempt)});
 }

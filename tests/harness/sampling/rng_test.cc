@@ -38,13 +38,6 @@ TEST_CASE("rng: mix64 over a counter is splitmix64, published values") {
   }
 }
 
-TEST_CASE("hash: FNV-1a with 64 bits, published values") {
-  CHECK(hash64("") == 0xcbf29ce484222325ULL);
-  CHECK(hash64("a") == 0xaf63dc4c8601ec8cULL);
-  CHECK(hash64("foobar") == 0x85944171f73967e8ULL);
-  CHECK(hash64("bar", hash64("foo")) == hash64("foobar"));
-}
-
 TEST_CASE("rng: a draw can be repeated alone, and every part of its key matters") {
   const DrawKey key{1, 2, DrawPhase::kCertify, 3, 4};
   CHECK(CounterRng(key).bits(7) == CounterRng(key).bits(7));
