@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "compiler/artifact/origin_kinds.h"
+#include "compiler/base/line_diff.h"
 
 namespace parallax::runtime {
 
@@ -217,7 +218,7 @@ std::string DecreasonerFormat::trace(const Trace& trace) {
   if (whole) {
     for (const auto& line : now) out += line + '\n';
   } else {
-    out += normal_diff(last_, now) + '\n';
+    out += base::normal_diff(last_, now) + '\n';
   }
   if (options_.model_diff) last_ = std::move(now);
   return out;

@@ -3,10 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "runtime/trace/line_diff.h"
 #include "runtime/trace/list_format.h"
 
 namespace parallax::runtime {
+
+using Lines = std::vector<std::string>;
 
 /// What the options of a model say of its printed form, and what the compiled model does not tell.
 struct DecreasonerOptions {

@@ -3,15 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <vector>
+
+#include "compiler/base/line_diff.h"
 
 namespace parallax::tools {
 namespace {
 
-constexpr std::size_t kContext = 2;           // common lines around a difference
-constexpr std::size_t kMaxShown = 40;         // lines
-constexpr std::size_t kMaxTable = 4'000'000;  // cells of 4 bytes
+constexpr std::size_t kContext = 2;    // common lines around a difference
+constexpr std::size_t kMaxShown = 40;  // lines
 
 using Lines = std::vector<std::string_view>;
 
@@ -31,52 +31,19 @@ Lines lines_of(std::string_view text) {
   return lines;
 }
 
-/// Appends the edits that lead from a[front, a_end) to b[front, b_end) by a longest common
-/// subsequence.
-void align(const Lines& a, const Lines& b, std::size_t front, std::size_t a_end, std::size_t b_end,
-           std::vector<Edit>& edits) {
-  const auto rows = a_end - front;
-  const auto columns = b_end - front;
-  std::size_t i = 0;
-  std::size_t j = 0;
-  if ((rows + 1) <= kMaxTable / (columns + 1)) {
-    // common[i][j]: the length of the longest common subsequence of what follows a[i] and b[j].
-    std::vector<std::uint32_t> common((rows + 1) * (columns + 1), 0);
-    const auto at = [&](std::size_t row, std::size_t column) -> std::uint32_t& {
-      return common[row * (columns + 1) + column];
-    };
-    for (auto row = rows; row-- > 0;) {
-      for (auto column = columns; column-- > 0;) {
-        at(row, column) = a[front + row] == b[front + column]
-                              ? at(row + 1, column + 1) + 1
-                              : std::max(at(row + 1, column), at(row, column + 1));
-      }
-    }
-    while (i < rows && j < columns) {
-      if (a[front + i] == b[front + j]) {
-        edits.push_back({' ', a[front + i++]});
-        ++j;
-      } else if (at(i + 1, j) >= at(i, j + 1)) {
-        edits.push_back({'-', a[front + i++]});
-      } else {
-        edits.push_back({'+', b[front + j++]});
-      }
-    }
-  }
-  while (i < rows) edits.push_back({'-', a[front + i++]});
-  while (j < columns) edits.push_back({'+', b[front + j++]});
-}
-
+/// Every line of both texts once, deleted ones before the added ones.
 std::vector<Edit> edits_between(const Lines& a, const Lines& b) {
-  const auto shorter = std::min(a.size(), b.size());
-  std::size_t front = 0;
-  while (front < shorter && a[front] == b[front]) ++front;
-  std::size_t back = 0;
-  while (back < shorter - front && a[a.size() - 1 - back] == b[b.size() - 1 - back]) ++back;
   std::vector<Edit> edits;
-  for (std::size_t i = 0; i < front; ++i) edits.push_back({' ', a[i]});
-  align(a, b, front, a.size() - back, b.size() - back, edits);
-  for (auto i = a.size() - back; i < a.size(); ++i) edits.push_back({' ', a[i]});
+  std::size_t next = 0;  // in `a`
+  const auto keep_until = [&](std::size_t end) {
+    for (; next < end; ++next) edits.push_back({' ', a[next]});
+  };
+  for (const auto& change : base::line_changes(a, b)) {
+    keep_until(change.a_begin);
+    for (; next < change.a_end; ++next) edits.push_back({'-', a[next]});
+    for (auto k = change.b_begin; k < change.b_end; ++k) edits.push_back({'+', b[k]});
+  }
+  keep_until(a.size());
   return edits;
 }
 

@@ -7,6 +7,7 @@
 
 #include <map>
 
+#include "compiler/base/line_diff.h"
 #include "compiler/pipeline/compile.h"
 #include "runtime/session/solver_session.h"
 #include "tests/support/peer_examples.h"
@@ -95,7 +96,7 @@ TEST_CASE("recorded differences between models are printed byte for byte") {
     for (std::size_t i = 1; i < models.size(); ++i) {
       const auto head = models[i].printed.substr(0, models[i].printed.find(':') + 1);
       if (!head.ends_with("diff:")) continue;
-      CHECK(head + runtime::normal_diff(models[i - 1].lines, models[i].lines) + '\n' ==
+      CHECK(head + base::normal_diff(models[i - 1].lines, models[i].lines) + '\n' ==
             models[i].printed);
       ++compared;
     }

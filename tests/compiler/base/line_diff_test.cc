@@ -1,19 +1,17 @@
-#include "runtime/trace/line_diff.h"
+#include "compiler/base/line_diff.h"
 
 #include <doctest/doctest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 
-#include "tests/support/process.h"
 #include "tests/support/recorded_answer.h"
 
 namespace parallax::test {
 namespace {
 
-using runtime::Lines;
-using runtime::normal_diff;
+using base::LineChange;
+using base::normal_diff;
+using Lines = std::vector<std::string>;
 
 Lines split(const std::string& text) {
   Lines lines;
@@ -52,6 +50,15 @@ TEST_CASE("equal texts have no difference, and each kind of command has its form
   CHECK(normal_diff({"a", "b", "c"}, {"a", "x", "c"}) == "2c2\n< b\n---\n> x\n");
   CHECK(normal_diff({}, {"x"}) == "0a1\n> x\n");
   CHECK(normal_diff({"x", "y"}, {}) == "1,2d0\n< x\n< y\n");
+}
+
+TEST_CASE("changes are as far down as equal lines let them be, a common line between two") {
+  using Views = std::vector<std::string_view>;
+  using Changes = std::vector<LineChange>;
+  CHECK(base::line_changes(Views{"a"}, Views{"a"}).empty());
+  CHECK(base::line_changes(Views{"a", "b"}, Views{"a", "b", "b"}) == Changes{{2, 2, 2, 3}});
+  CHECK(base::line_changes(Views{"a", "b", "c"}, Views{"x", "b", "y"}) ==
+        Changes{{0, 1, 0, 1}, {2, 3, 2, 3}});
 }
 
 TEST_CASE("a difference applied to the old lines gives the new ones, in as few edits as possible") {

@@ -1,28 +1,29 @@
-#include "runtime/trace/line_diff.h"
+#include "compiler/base/line_diff.h"
 
 #include <algorithm>
 #include <cstddef>
 
-namespace parallax::runtime {
+namespace parallax::base {
 namespace {
 
 using Index = std::ptrdiff_t;
+using Lines = std::span<const std::string_view>;
 
 constexpr Index kMaxEdits = 3000;  // 36 MB of saved ends
 
 /// The lines of either side that are not part of the longest common subsequence.
 class Comparison {
  public:
-  Comparison(const Lines& a, const Lines& b)
+  Comparison(Lines a, Lines b)
       : a_(a), b_(b), a_changed_(a.size(), false), b_changed_(b.size(), false) {
-    const auto shorter = std::min(std::ssize(a), std::ssize(b));
+    const auto shorter = std::min(count(a), count(b));
     while (front_ < shorter && same(front_, front_)) ++front_;
     Index back = 0;
-    while (back < shorter - front_ && same(std::ssize(a) - 1 - back, std::ssize(b) - 1 - back)) {
+    while (back < shorter - front_ && same(count(a) - 1 - back, count(b) - 1 - back)) {
       ++back;
     }
-    a_end_ = std::ssize(a) - back;
-    b_end_ = std::ssize(b) - back;
+    a_end_ = count(a) - back;
+    b_end_ = count(b) - back;
     walk_back(reach_end());
     slide(a_, a_changed_);
     slide(b_, b_changed_);
@@ -31,6 +32,7 @@ class Comparison {
   bool b_changed(std::size_t i) const { return i < b_changed_.size() && b_changed_[i]; }
 
  private:
+  static Index count(Lines lines) { return static_cast<Index>(lines.size()); }
   bool same(Index x, Index y) const {
     return a_[static_cast<std::size_t>(x)] == b_[static_cast<std::size_t>(y)];
   }
@@ -77,7 +79,7 @@ class Comparison {
   }
 
   /// Moves every stretch of changes as far down as equal lines let it.
-  static void slide(const Lines& lines, std::vector<bool>& changed) {
+  static void slide(Lines lines, std::vector<bool>& changed) {
     for (auto i = lines.size(); i-- > 0;) {
       if (!changed[i]) continue;
       auto end = i + 1;
@@ -93,8 +95,7 @@ class Comparison {
     }
   }
 
-  const Lines& a_;
-  const Lines& b_;
+  Lines a_, b_;
   std::vector<bool> a_changed_, b_changed_;
   Index front_ = 0, a_end_ = 0, b_end_ = 0;
   std::vector<std::vector<Index>> ends_;  // by edits, then by diagonal + edits
@@ -108,26 +109,37 @@ std::string range_text(std::size_t begin, std::size_t end) {
 
 }  // namespace
 
-std::string normal_diff(const Lines& before, const Lines& after) {
-  const Comparison comparison(before, after);
-  std::string out;
+std::vector<LineChange> line_changes(Lines a, Lines b) {
+  const Comparison comparison(a, b);
+  std::vector<LineChange> changes;
   std::size_t i = 0, j = 0;
-  while (i < before.size() || j < after.size()) {
-    const auto a_begin = i, b_begin = j;
-    while (comparison.a_changed(i)) ++i;
-    while (comparison.b_changed(j)) ++j;
-    if (i == a_begin && j == b_begin) {
-      ++i;
-      ++j;
-      continue;
-    }
-    const char command = i == a_begin ? 'a' : j == b_begin ? 'd' : 'c';
-    out += range_text(a_begin, i) + command + range_text(b_begin, j) + '\n';
-    for (auto k = a_begin; k < i; ++k) out += "< " + before[k] + '\n';
+  while (i < a.size() || j < b.size()) {
+    LineChange change{i, i, j, j};
+    while (comparison.a_changed(change.a_end)) ++change.a_end;
+    while (comparison.b_changed(change.b_end)) ++change.b_end;
+    i = change.a_end + 1;
+    j = change.b_end + 1;
+    if (change.a_begin == change.a_end && change.b_begin == change.b_end) continue;
+    changes.push_back(change);
+  }
+  return changes;
+}
+
+std::string normal_diff(const std::vector<std::string>& before,
+                        const std::vector<std::string>& after) {
+  const std::vector<std::string_view> a(before.begin(), before.end());
+  const std::vector<std::string_view> b(after.begin(), after.end());
+  std::string out;
+  for (const auto& change : line_changes(a, b)) {
+    const bool adds = change.a_begin == change.a_end, deletes = change.b_begin == change.b_end;
+    const char command = adds ? 'a' : deletes ? 'd' : 'c';
+    out += range_text(change.a_begin, change.a_end) + command +
+           range_text(change.b_begin, change.b_end) + '\n';
+    for (auto k = change.a_begin; k < change.a_end; ++k) out += "< " + before[k] + '\n';
     if (command == 'c') out += "---\n";
-    for (auto k = b_begin; k < j; ++k) out += "> " + after[k] + '\n';
+    for (auto k = change.b_begin; k < change.b_end; ++k) out += "> " + after[k] + '\n';
   }
   return out;
 }
 
-}  // namespace parallax::runtime
+}  // namespace parallax::base
