@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <limits>
 #include <optional>
 #include <set>
@@ -13,6 +12,7 @@
 #include "compiler/artifact/symbol_reader.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/whole_number.h"
 
 namespace parallax::compiler {
 namespace {
@@ -201,10 +201,10 @@ bool ArtifactReader::read_fnv(std::uint64_t& hash) {
   constexpr std::size_t kHashDigits = 16;
   if (cursor_.raw_word() != "fnv1a64") return cursor_.expected("`fnv1a64`");
   const auto digits = cursor_.raw_word();
-  const auto* end = digits.data() + digits.size();
-  const auto [stop, error] = std::from_chars(digits.data(), end, hash, 16);
-  const bool fine = digits.size() == kHashDigits && error == std::errc() && stop == end;
-  return fine || cursor_.expected("16 hexadecimal digits");
+  const auto number = base::whole_number<std::uint64_t>(digits, 16);
+  if (digits.size() != kHashDigits || !number) return cursor_.expected("16 hexadecimal digits");
+  hash = *number;
+  return true;
 }
 
 bool ArtifactReader::read_hash() {

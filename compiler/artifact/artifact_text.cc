@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/whole_number.h"
 
 namespace parallax::compiler {
 namespace {
@@ -16,11 +17,9 @@ constexpr std::size_t kQuoteInMessages = 40;  // bytes of a bad word that a mess
 bool is_plain(char c) { return c > 0x20 && c < 0x7F && c != '"' && c != '\\'; }
 
 std::optional<char> hex_byte(std::string_view digits) {
-  unsigned value = 0;
-  const auto* end = digits.data() + digits.size();
-  const auto [stop, error] = std::from_chars(digits.data(), end, value, 16);
-  if (digits.size() != 2 || error != std::errc() || stop != end) return std::nullopt;
-  return static_cast<char>(static_cast<unsigned char>(value));
+  const auto value = base::whole_number<unsigned char>(digits, 16);
+  if (digits.size() != 2 || !value) return std::nullopt;
+  return static_cast<char>(*value);
 }
 
 /// The text between the quotes, or none if an escape is unknown or the closing quote is missing.

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "compiler/artifact/derived.h"
+#include "compiler/base/ascii.h"
 #include "compiler/base/hash.h"
 
 namespace parallax::compiler {
@@ -25,8 +26,6 @@ std::string without_comments(std::string_view text) {
   }
   return out;
 }
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
 TextPlace place_of(const base::SourceRange& range, const base::SourceFiles& files) {
   const auto& file = files[range.file];
@@ -60,7 +59,7 @@ void sort_origins(CompiledModel& model) {
 std::string one_line(std::string_view text) {
   std::string out;
   for (const char c : without_comments(text)) {
-    if (!is_blank(c)) {
+    if (!base::is_space(c)) {
       out += c;
     } else if (!out.empty() && out.back() != ' ') {
       out += ' ';
@@ -76,7 +75,7 @@ void assign_ids(std::vector<Origin>& origins) {
   for (auto& origin : origins) {
     std::string key = origin.what + '\n';
     std::copy_if(origin.text.begin(), origin.text.end(), std::back_inserter(key),
-                 [](char c) { return !is_blank(c); });
+                 [](char c) { return !base::is_space(c); });
     const auto hash = base::fnv1a64(key);
     origin.id = fmt::format("{:08x}", static_cast<std::uint32_t>(hash ^ (hash >> 32U)));
     const auto count = ++used[origin.id];

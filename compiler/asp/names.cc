@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+
+#include "compiler/base/ascii.h"
 
 namespace parallax::compiler {
 namespace {
@@ -14,15 +15,12 @@ constexpr std::array<std::string_view, 20> kReserved = {
     "stopped_in", "horizon",  "started_in", "step",         "noninertial",
     "trajectory", "inertial", "free_start", "axiom_exists", "antitrajectory"};
 
-bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
-bool is_word(char c) { return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0; }
-
 std::string identifier(std::string_view wanted) {
   std::string name;
-  for (const char c : wanted) name += is_word(c) ? c : '_';
+  for (const char c : wanted) name += base::is_name_character(c) ? c : '_';
   const auto first = name.find_first_not_of('_');
-  if (first == std::string::npos || !is_letter(name[first])) return "x" + name;
-  name[first] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[first])));
+  if (first == std::string::npos || !base::is_letter(name[first])) return "x" + name;
+  name[first] = base::to_lower(name[first]);
   return name;
 }
 
@@ -67,12 +65,12 @@ std::string AspNames::fresh(std::string_view wanted) {
 std::string AspNames::original(std::string_view printed) const {
   std::string out;
   for (std::size_t i = 0; i < printed.size();) {
-    if (!is_word(printed[i])) {
+    if (!base::is_name_character(printed[i])) {
       out += printed[i++];
       continue;
     }
     std::size_t end = i;
-    while (end < printed.size() && is_word(printed[end])) ++end;
+    while (end < printed.size() && base::is_name_character(printed[end])) ++end;
     const auto word = printed.substr(i, end - i);
     const auto known = originals_.find(word);
     const bool applied = end < printed.size() && printed[end] == '(';

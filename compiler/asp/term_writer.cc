@@ -1,11 +1,11 @@
 #include "compiler/asp/term_writer.h"
 
 #include <algorithm>
-#include <cctype>
 #include <limits>
 #include <unordered_set>
 #include <utility>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 
 namespace parallax::compiler {
@@ -63,14 +63,12 @@ void TermWriter::start() {
 
 std::string TermWriter::fresh_variable(const std::string& wanted) {
   std::string name;
-  for (const char c : wanted) {
-    name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-  }
+  for (const char c : wanted) name += base::is_name_character(c) ? c : '_';
   const auto first = name.find_first_not_of('_');
-  if (first == std::string::npos || std::isdigit(static_cast<unsigned char>(name[first])) != 0) {
+  if (first == std::string::npos || base::is_digit(name[first])) {
     name = "X" + name;
   } else {
-    name[first] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[first])));
+    name[first] = base::to_upper(name[first]);
   }
   while (!used_.insert(name).second) name += '_';
   return name;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/hash.h"
 
@@ -19,8 +20,8 @@ using Json = nlohmann::ordered_json;
 std::string encoded(std::string_view path) {
   std::string out;
   for (const char c : path) {
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    const bool plain = letter || std::string_view("-._~/").find(c) != std::string_view::npos;
+    const bool plain =
+        is_letter(c) || is_digit(c) || std::string_view("-._~/").find(c) != std::string_view::npos;
     out += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
   }
   return out;

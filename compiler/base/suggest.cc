@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <vector>
 
+#include "compiler/base/ascii.h"
+
 namespace parallax::base {
 namespace {
 
 std::string lower(std::string_view text) {
   std::string out(text);
   for (char& c : out) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    c = to_lower(c);
   }
   return out;
 }

@@ -5,15 +5,14 @@
 #include <set>
 #include <tuple>
 
+#include "compiler/base/ascii.h"
+
 namespace parallax::compiler {
 namespace {
 
 using Indices = std::vector<std::size_t>;
 
-bool is_word(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-         static_cast<unsigned char>(c) >= 0x80;
-}
+bool is_word(char c) { return base::is_name_character(c) || static_cast<unsigned char>(c) >= 0x80; }
 
 /// The first of every text that the other list has not.
 Indices only_in(std::span<const Fact> facts, std::span<const Fact> others) {

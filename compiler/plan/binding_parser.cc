@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 
 namespace parallax::compiler {
@@ -15,11 +16,7 @@ namespace {
 
 /// Characters of types, keys and failure classes.
 bool is_name(char c) {
-  return !is_binding_blank(c) && std::string_view("()|=,;:@/").find(c) == std::string_view::npos;
-}
-
-bool is_word(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  return !base::is_space(c) && std::string_view("()|=,;:@/").find(c) == std::string_view::npos;
 }
 
 }  // namespace
@@ -28,8 +25,9 @@ std::size_t variable_length(std::string_view text) {
   if (text.empty() || text.front() != '?') return 0;
   std::size_t i = 1;
   while (i < text.size()) {
-    const bool hyphen = text[i] == '-' && i + 1 < text.size() && is_word(text[i + 1]);
-    if (!is_word(text[i]) && !hyphen) break;
+    const bool hyphen =
+        text[i] == '-' && i + 1 < text.size() && base::is_name_character(text[i + 1]);
+    if (!base::is_name_character(text[i]) && !hyphen) break;
     ++i;
   }
   return i == 1 ? 0 : i;
@@ -48,7 +46,7 @@ bool BindingParser::expected(std::string_view what) {
   skip_blanks();
   failed_ = true;
   auto stop = i_;
-  while (stop < end_ && !is_binding_blank(text_[stop]) && stop - i_ < 40) ++stop;
+  while (stop < end_ && !base::is_space(text_[stop]) && stop - i_ < 40) ++stop;
   const auto found = i_ == end_ ? std::string("the end of the entry")
                                 : fmt::format("`{}`", text_.substr(i_, stop - i_));
   sink_.error(DiagnosticCode::kBindingSyntax, range(i_, stop), what, found);
@@ -130,7 +128,7 @@ bool BindingParser::parse_arguments(BindingEntry& entry) {
     if (ends) {
       const bool empty =
           std::all_of(text_.begin() + static_cast<std::ptrdiff_t>(begin),
-                      text_.begin() + static_cast<std::ptrdiff_t>(i_), is_binding_blank);
+                      text_.begin() + static_cast<std::ptrdiff_t>(i_), base::is_space);
       if (empty && c == ')' && entry.event_arguments.empty()) return ++i_, true;  // E()
       if (empty) return expected("an argument of the event");
       if (entry.event_arguments.size() == kMaxArguments) {
@@ -160,7 +158,7 @@ bool BindingParser::parse_formula(BindingEntry& entry) {
   const auto begin = i_;
   while (i_ < end_ && text_[i_] != '@') ++i_;
   auto stop = i_;
-  while (stop > begin && is_binding_blank(text_[stop - 1])) --stop;
+  while (stop > begin && base::is_space(text_[stop - 1])) --stop;
   if (i_ == end_) return expected("`@t` or `@t+1` behind the formula");
   if (stop == begin) return expected("a formula before `@`");
   entry.formula_source = range(begin, stop);
@@ -172,7 +170,7 @@ bool BindingParser::parse_formula(BindingEntry& entry) {
   } else if (!take("@t")) {
     return expected("`@t` or `@t+1`");
   }
-  if (i_ < end_ && !is_binding_blank(text_[i_])) return expected("`@t` or `@t+1`");
+  if (i_ < end_ && !base::is_space(text_[i_])) return expected("`@t` or `@t+1`");
   return true;
 }
 

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/ascii.h"
 #include "compiler/plan/binding_text.h"
 #include "compiler/plan/plan_binding.h"
 
@@ -38,7 +39,7 @@ class BindingParser {
     return {file_, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
   }
   void skip_blanks() {
-    while (i_ < end_ && is_binding_blank(text_[i_])) ++i_;
+    while (i_ < end_ && base::is_space(text_[i_])) ++i_;
   }
   std::string_view peek_name() const;
   bool take(std::string_view literal) {

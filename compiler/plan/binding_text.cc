@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
+#include "compiler/base/ascii.h"
+
 namespace parallax::compiler {
 namespace {
 
 bool starts_with_word(std::string_view text, std::string_view word) {
   return text.starts_with(word) &&
-         (text.size() == word.size() || is_binding_blank(text[word.size()]));
+         (text.size() == word.size() || base::is_space(text[word.size()]));
 }
 
 bool starts_entry(std::string_view text) {
@@ -44,7 +46,7 @@ BindingText clean_binding(std::string_view file) {
         }
         out.text[i] = ' ';
         part_start = true;
-      } else if (!is_binding_blank(rest.front())) {
+      } else if (!base::is_space(rest.front())) {
         if (part_start && starts_entry(rest)) out.entries.push_back(i);
         part_start = false;
       }

@@ -7,8 +7,6 @@
 
 namespace parallax::compiler {
 
-inline bool is_binding_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
 /// The text of a binding file, cut into entries.
 struct BindingText {
   std::string text;                  // as long as the file; comments and separators are blanks

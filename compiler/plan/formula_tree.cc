@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/base/ascii.h"
 #include "compiler/plan/binding_text.h"
 
 namespace parallax::compiler {
@@ -170,7 +171,7 @@ FormulaTree without_blanks(const FormulaTree& tree) {
   std::vector<std::uint32_t> moved;
   for (const char c : tree.text) {
     moved.push_back(length(out.text));
-    if (!is_binding_blank(c)) out.text += c;
+    if (!base::is_space(c)) out.text += c;
   }
   moved.push_back(length(out.text));
   for (auto& node : out.nodes) {

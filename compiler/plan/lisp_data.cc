@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "compiler/base/ascii.h"
+
 namespace parallax::compiler {
 namespace {
 
@@ -10,7 +12,7 @@ bool needs_bars(std::string_view name) {
   Number ignored;
   if (Number::parse(name, ignored) != Number::Parse::kNotANumber) return true;
   for (const char c : name) {
-    if (c >= 'A' && c <= 'Z') return true;
+    if (base::is_upper(c)) return true;
     const auto byte = static_cast<unsigned char>(c);
     if (byte <= 0x20 || byte == 0x7F) return true;
     if (std::string_view("()\"';`,|\\:#").find(c) != std::string_view::npos) return true;

@@ -1,9 +1,9 @@
 #include "compiler/plan/lisp_token.h"
 
+#include "compiler/base/ascii.h"
+
 namespace parallax::compiler {
 namespace {
-
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 bool skip_block_comment(LispCursor& cursor) {
   std::int64_t depth = 0;
@@ -63,7 +63,7 @@ LispToken scan_token(LispCursor& cursor) {
         if (token.first_colon < 0) token.first_colon = static_cast<std::int64_t>(token.text.size());
         ++token.colons;
       }
-      token.text += lower(c);
+      token.text += base::to_lower(c);
     }
   }
   return token;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/suggest.h"
 
 namespace parallax::compiler {
@@ -11,7 +12,7 @@ std::string fold(std::string_view name) {
   std::string out;
   for (const char c : name) {
     if (c == '-' || c == '_') continue;
-    out += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    out += base::to_lower(c);
   }
   return out;
 }

@@ -2,10 +2,14 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <numeric>
+
+#include "compiler/base/ascii.h"
+#include "compiler/base/whole_number.h"
 
 namespace parallax::compiler {
 namespace {
@@ -13,8 +17,6 @@ namespace {
 constexpr std::int64_t kMin = std::numeric_limits<std::int64_t>::min();
 // 10^18 is the largest power of ten in 64 bits.
 constexpr std::int64_t kMaxExponent = 18;
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// The parts of a decimal token; `digits` has no point.
 struct Decimal {
@@ -24,23 +26,18 @@ struct Decimal {
   std::int64_t exponent = 0;
 };
 
-bool parse_int64(std::string_view text, std::int64_t& out) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
 bool read_exponent(std::string_view text, std::int64_t& exponent) {
   std::string_view digits = text;
   if (!digits.empty() && (digits.front() == '+' || digits.front() == '-')) digits.remove_prefix(1);
   if (!text.empty() && text.front() == '+') text = digits;  // from_chars knows no plus sign
   if (digits.empty()) return false;
   for (const char c : digits) {
-    if (!is_digit(c)) return false;
+    if (!base::is_digit(c)) return false;
   }
   // Whatever does not fit is far beyond the range of a double.
-  if (!parse_int64(text, exponent) || std::abs(exponent) > 100000) {
-    exponent = text.front() == '-' ? -100000 : 100000;
-  }
+  exponent =
+      base::whole_number<std::int64_t>(text).value_or(text.front() == '-' ? -100000 : 100000);
+  exponent = std::clamp<std::int64_t>(exponent, -100000, 100000);
   return true;
 }
 
@@ -52,9 +49,9 @@ bool split_decimal(std::string_view token, Decimal& out) {
   }
   std::size_t i = 0;
   std::size_t whole = 0;
-  for (; i < token.size() && is_digit(token[i]); ++i, ++whole) out.digits += token[i];
+  for (; i < token.size() && base::is_digit(token[i]); ++i, ++whole) out.digits += token[i];
   if (i < token.size() && token[i] == '.') {
-    for (++i; i < token.size() && is_digit(token[i]); ++i, ++out.fraction_digits) {
+    for (++i; i < token.size() && base::is_digit(token[i]); ++i, ++out.fraction_digits) {
       out.digits += token[i];
     }
   }
@@ -73,9 +70,9 @@ bool power_of_ten(std::int64_t exponent, std::int64_t& out) {
 }
 
 std::optional<Number> exact_decimal(const Decimal& decimal) {
-  std::int64_t mantissa = 0;
-  if (!parse_int64(decimal.digits, mantissa)) return std::nullopt;
-  if (decimal.negative) mantissa = -mantissa;
+  const auto digits = base::whole_number<std::int64_t>(decimal.digits);
+  if (!digits) return std::nullopt;
+  const auto mantissa = decimal.negative ? -*digits : *digits;
   const std::int64_t exponent = decimal.exponent - decimal.fraction_digits;
   std::int64_t scale = 1;
   if (exponent < 0) {
@@ -96,18 +93,16 @@ Number::Parse parse_ratio(std::string_view token, std::size_t slash, Number& out
   if (plus) top.remove_prefix(1);
   const auto digits = [](std::string_view text) {
     for (const char c : text) {
-      if (!is_digit(c)) return false;
+      if (!base::is_digit(c)) return false;
     }
     return !text.empty();
   };
   const bool minus = !plus && !top.empty() && top.front() == '-';
   if (!digits(minus ? top.substr(1) : top) || !digits(bottom)) return Number::Parse::kNotANumber;
-  std::int64_t numerator = 0;
-  std::int64_t denominator = 0;
-  if (!parse_int64(top, numerator) || !parse_int64(bottom, denominator) || numerator == kMin) {
-    return Number::Parse::kOutOfRange;
-  }
-  const auto result = Number::ratio(numerator, denominator);
+  const auto numerator = base::whole_number<std::int64_t>(top);
+  const auto denominator = base::whole_number<std::int64_t>(bottom);
+  if (!numerator || !denominator || *numerator == kMin) return Number::Parse::kOutOfRange;
+  const auto result = Number::ratio(*numerator, *denominator);
   if (!result) return Number::Parse::kZeroDenominator;
   out = *result;
   return Number::Parse::kNumber;

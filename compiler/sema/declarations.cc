@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/sema/elaborator.h"
 #include "compiler/sema/model_options.h"
@@ -17,9 +18,7 @@ using base::DiagnosticCode;
 
 namespace {
 
-bool is_symbol_name(std::string_view name) {
-  return (name[0] >= 'A' && name[0] <= 'Z') || name[0] == '_';
-}
+bool is_symbol_name(std::string_view name) { return base::is_upper(name[0]) || name[0] == '_'; }
 
 /// Constants may also be spelled like variables, `r1`: a name says less than a declaration.
 bool is_constant_name(std::string_view name) {

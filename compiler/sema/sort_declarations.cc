@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 #include "compiler/sema/name_advice.h"
@@ -107,7 +108,7 @@ DepthFirst search_depth_first(const Graph& graph, std::size_t circle_limit) {
 constexpr std::size_t kMostCircles = 20;
 
 bool is_sort_name(std::string_view name) {
-  return std::all_of(name.begin(), name.end(), [](char c) { return c >= 'a' && c <= 'z'; });
+  return std::all_of(name.begin(), name.end(), base::is_lower);
 }
 
 class SortDeclarer {

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <array>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/utf8.h"
 
 namespace parallax::compiler {
 namespace {
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
 
 struct Spelled {
   std::string_view text;
@@ -55,7 +53,7 @@ constexpr std::array<std::string_view, 11> kKeywords = {
     "reified", "manualrelease", "ignore", "completion", "load"};
 
 bool starts_token(char c) {
-  if (is_name_part(c) || is_blank(c)) return true;
+  if (base::is_name_character(c) || is_blank(c)) return true;
   return std::any_of(kPunctuation.begin(), kPunctuation.end(),
                      [c](const Spelled& spelled) { return spelled.text[0] == c; });
 }
@@ -63,12 +61,11 @@ bool starts_token(char c) {
 }  // namespace
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
-bool is_name_start(char c) { return is_lower(c) || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool is_name_part(char c) { return is_name_start(c) || is_digit(c); }
+bool is_name_start(char c) { return base::is_letter(c) || c == '_'; }
 
 LineKind classify_line(std::string_view line) {
   std::size_t end = 0;
-  while (end < line.size() && is_lower(line[end])) ++end;
+  while (end < line.size() && base::is_lower(line[end])) ++end;
   if (end == 0) return LineKind::kFormulaText;
   const auto word = line.substr(0, end);
   const bool keyword = std::find(kKeywords.begin(), kKeywords.end(), word) != kKeywords.end();
@@ -81,7 +78,8 @@ LineKind classify_line(std::string_view line) {
   if (next == end) return LineKind::kFormulaText;
   if (keyword) return LineKind::kStatement;
   // Two names side by side are no formula; anything else after the first can only be one.
-  return is_name_part(line[next]) ? LineKind::kStatement : LineKind::kFormulaTextOnlyHere;
+  return base::is_name_character(line[next]) ? LineKind::kStatement
+                                             : LineKind::kFormulaTextOnlyHere;
 }
 
 std::string shortened(std::string_view text) {
@@ -164,7 +162,7 @@ void Lexer::skip_illegal() {
 std::uint32_t Lexer::parameter_end() const {
   if (mode_ != Mode::kBinding || text_[position_] != '?') return position_;
   const auto is_part = [this](std::uint32_t at) {
-    return at < text_.size() && is_name_part(text_[at]);
+    return at < text_.size() && base::is_name_character(text_[at]);
   };
   auto end = position_ + 1;
   while (is_part(end) || (end < text_.size() && text_[end] == '-' && is_part(end + 1))) ++end;
@@ -177,14 +175,14 @@ bool Lexer::scan_word() {
   if (end != position_) {
     token_.kind = TokenKind::kName;
   } else if (is_name_start(first)) {
-    while (end < text_.size() && is_name_part(text_[end])) ++end;
+    while (end < text_.size() && base::is_name_character(text_[end])) ++end;
     token_.kind = TokenKind::kName;
-  } else if (is_digit(first)) {
-    while (end < text_.size() && is_digit(text_[end])) ++end;
+  } else if (base::is_digit(first)) {
+    while (end < text_.size() && base::is_digit(text_[end])) ++end;
     // `0.5` is one number, the period of `=0.` ends a formula.
-    if (end + 1 < text_.size() && text_[end] == '.' && is_digit(text_[end + 1])) {
+    if (end + 1 < text_.size() && text_[end] == '.' && base::is_digit(text_[end + 1])) {
       ++end;
-      while (end < text_.size() && is_digit(text_[end])) ++end;
+      while (end < text_.size() && base::is_digit(text_[end])) ++end;
     }
     token_.kind = TokenKind::kNumber;
   } else {
@@ -225,7 +223,7 @@ void Lexer::scan() {
       }
       if (kind == LineKind::kFormulaTextOnlyHere) {
         auto end = position_;
-        while (is_lower(text_[end])) ++end;
+        while (base::is_lower(text_[end])) ++end;
         sink_.warning(base::DiagnosticCode::kLineTakenForDeclaration,
                       base::SourceRange{file_, position_, end},
                       shortened(text_.substr(position_, end - position_)));

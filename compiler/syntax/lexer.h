@@ -37,7 +37,6 @@ struct Token {
 
 bool is_blank(char c);  // space, tab, carriage return, form feed
 bool is_name_start(char c);
-bool is_name_part(char c);
 
 /// What a line is, by its first word.
 enum class LineKind : std::uint8_t {

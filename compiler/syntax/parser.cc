@@ -3,6 +3,7 @@
 #include <charconv>
 #include <string>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/syntax/ast.h"
@@ -65,7 +66,7 @@ class StatementParser {
   Word name() {
     skip_blanks();
     const auto begin = position_;
-    while (!at_end() && is_name_part(text_[position_])) ++position_;
+    while (!at_end() && base::is_name_character(text_[position_])) ++position_;
     return {begin, position_};
   }
   /// The next run of anything but blanks.

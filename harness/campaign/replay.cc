@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/whole_number.h"
 #include "harness/campaign/compare.h"
 #include "harness/campaign/journal.h"
 #include "harness/campaign/recorded_run.h"
@@ -16,11 +16,9 @@ namespace {
 
 using base::DiagnosticCode;
 
-std::optional<std::int64_t> whole(std::string_view text) {
-  std::int64_t value = 0;
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || rest != text.data() + text.size() || value < 1) return std::nullopt;
-  return value;
+std::optional<std::int64_t> positive(std::string_view text) {
+  const auto value = base::whole_number<std::int64_t>(text);
+  return value && *value >= 1 ? value : std::nullopt;
 }
 
 }  // namespace
@@ -28,8 +26,8 @@ std::optional<std::int64_t> whole(std::string_view text) {
 std::optional<SampleId> parse_sample_id(std::string_view text) {
   const auto dot = text.find('.');
   if (dot == std::string_view::npos) return std::nullopt;
-  const auto trace = whole(text.substr(0, dot));
-  const auto sample = whole(text.substr(dot + 1));
+  const auto trace = positive(text.substr(0, dot));
+  const auto sample = positive(text.substr(dot + 1));
   if (!trace || !sample) return std::nullopt;
   return SampleId{*trace, *sample};
 }

@@ -1,17 +1,11 @@
 #include <algorithm>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
 
 namespace parallax::harness {
 namespace {
-
-bool is_word(std::string_view text) {
-  if (text.empty() || (text[0] >= '0' && text[0] <= '9')) return false;
-  return std::all_of(text.begin(), text.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-  });
-}
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -25,7 +19,7 @@ std::optional<SymbolPattern> parse_pattern(std::string_view text) {
   SymbolPattern pattern;
   const auto open = text.find('(');
   const auto symbol = trimmed(text.substr(0, open));
-  if (!is_word(symbol)) return std::nullopt;
+  if (!base::is_identifier(symbol)) return std::nullopt;
   pattern.symbol = std::string(symbol);
   if (open == std::string_view::npos) return pattern;
   text = trimmed(text.substr(open));
@@ -34,7 +28,7 @@ std::optional<SymbolPattern> parse_pattern(std::string_view text) {
   while (!rest.empty()) {
     const auto comma = rest.find(',');
     const auto word = trimmed(rest.substr(0, comma));
-    if (!is_word(word)) return std::nullopt;
+    if (!base::is_identifier(word)) return std::nullopt;
     const auto& known = pattern.parameters;
     if (std::find(known.begin(), known.end(), word) != known.end()) return std::nullopt;
     pattern.parameters.emplace_back(word);

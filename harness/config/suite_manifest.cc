@@ -6,6 +6,7 @@
 #include <map>
 #include <system_error>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/yaml_fields.h"
 
@@ -19,17 +20,14 @@ constexpr std::int64_t kMaxTraces = 1'000'000'000;
 constexpr std::size_t kMaxIdLength = 100;
 constexpr NumberBounds kTimeLimit{0.0, 86400.0, true, false};
 
-bool is_alphanumeric(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-}
-
 /// Ids become file names and are typed in shells: what is wrong with this one, or nothing.
 std::string id_problem(std::string_view id) {
   if (id.size() > kMaxIdLength) return fmt::format("it is longer than {} bytes", kMaxIdLength);
-  if (id.empty() || !is_alphanumeric(id.front()))
+  if (id.empty() || !base::is_name_character(id.front()) || id.front() == '_') {
     return "it does not begin with a letter or a digit";
+  }
   const auto bad = std::find_if(id.begin(), id.end(), [](char c) {
-    return !is_alphanumeric(c) && c != '_' && c != '-' && c != '.';
+    return !base::is_name_character(c) && c != '-' && c != '.';
   });
   return bad == id.end() ? "" : "it has other characters than letters, digits, `_`, `-` and `.`";
 }

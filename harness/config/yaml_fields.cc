@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 
@@ -22,10 +23,9 @@ std::string strip_plus(const std::string& text) {
 bool looks_numeric(const std::string& text) {
   // from_chars alone would take "inf", "nan" and hexadecimal words.
   const bool plain = std::all_of(text.begin(), text.end(), [](char c) {
-    return (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '+' || c == 'e' || c == 'E';
+    return base::is_digit(c) || c == '.' || c == '-' || c == '+' || c == 'e' || c == 'E';
   });
-  return plain &&
-         std::any_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+  return plain && std::any_of(text.begin(), text.end(), base::is_digit);
 }
 
 template <typename T>
@@ -41,7 +41,7 @@ std::optional<T> parsed(const std::string& text) {
 
 bool is_infinite_or_nan(const std::string& text) {
   std::string word;
-  for (const char c : text) word += (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
+  for (const char c : text) word += base::to_lower(c);
   if (word.starts_with('+') || word.starts_with('-')) word.erase(0, 1);
   if (word.starts_with('.')) word.erase(0, 1);
   return word == "inf" || word == "nan" || word == "infinity";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/utf8.h"
 
@@ -57,8 +58,8 @@ std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t
 std::string shell_word(const std::string& text) {
   const bool plain =
       !text.empty() && text.front() != '-' && std::all_of(text.begin(), text.end(), [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-               std::string_view("/._-+=:,@%").find(c) != std::string_view::npos;
+        return base::is_name_character(c) ||
+               std::string_view("/.-+=:,@%").find(c) != std::string_view::npos;
       });
   if (plain) return text;
   std::string out = "'";

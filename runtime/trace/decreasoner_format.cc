@@ -1,12 +1,12 @@
 #include "runtime/trace/decreasoner_format.h"
 
 #include <algorithm>
-#include <charconv>
 #include <iterator>
 #include <string_view>
 
 #include "compiler/artifact/origin_kinds.h"
 #include "compiler/base/line_diff.h"
+#include "compiler/base/whole_number.h"
 
 namespace parallax::runtime {
 
@@ -61,12 +61,9 @@ std::vector<bool> unmentioned(const CompiledModel& model) {
 
 /// The last argument, if it is a number.
 std::optional<Timepoint> last_number(std::string_view name) {
-  const auto begin = name.find_last_of("(,") + 1;
-  Timepoint number = 0;
-  const auto* end = name.data() + name.size() - 1;
-  const auto [stop, error] = std::from_chars(name.data() + begin, end, number);
-  if (name.empty() || error != std::errc() || stop != end) return std::nullopt;
-  return number;
+  if (!name.ends_with(')')) return std::nullopt;
+  name.remove_suffix(1);
+  return base::whole_number<Timepoint>(name.substr(name.find_last_of("(,") + 1));
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #include "runtime/trace/itf_format.h"
 
 #include <algorithm>
-#include <charconv>
 #include <nlohmann/json.hpp>
 
+#include "compiler/base/whole_number.h"
 #include "runtime/trace/atom_text.h"
 
 namespace parallax::runtime {
@@ -21,12 +21,10 @@ std::string dumped(const Json& json) {
 
 /// Numbers become integers, large ones in the form that ITF has for them, all else strings.
 Json argument_value(const std::string& text) {
-  std::int64_t number = 0;
-  const auto* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc() || stop != end) return text;
-  if (number > kLargestInteger || number < -kLargestInteger) return Json{{"#bigint", text}};
-  return number;
+  const auto number = base::whole_number<std::int64_t>(text);
+  if (!number) return text;
+  if (*number > kLargestInteger || *number < -kLargestInteger) return Json{{"#bigint", text}};
+  return *number;
 }
 
 Json tuple(const std::string& atom) {

@@ -1,11 +1,11 @@
 #include "runtime/trace/located_json.h"
 
 #include <algorithm>
-#include <charconv>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/whole_number.h"
 
 namespace parallax::runtime {
 
@@ -216,12 +216,7 @@ std::string_view JsonValue::text() const {
 
 std::optional<std::int64_t> JsonValue::integer() const {
   if (!is(JsonKind::kNumber)) return std::nullopt;
-  const auto written = text();
-  std::int64_t number = 0;
-  const auto* end = written.data() + written.size();
-  const auto [stop, error] = std::from_chars(written.data(), end, number);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return number;
+  return base::whole_number<std::int64_t>(text());
 }
 
 std::vector<JsonValue> JsonValue::items() const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 
 namespace parallax::runtime {
@@ -11,10 +12,6 @@ namespace parallax::runtime {
 using base::DiagnosticCode;
 
 namespace {
-
-bool is_blank(std::string_view text) {
-  return text.find_first_not_of(" \t\r\n") == std::string_view::npos;
-}
 
 /// Does the text hold an object on each line, rather than one object over several? One line that
 /// opens more than it closes settles it. Strings may hold brackets.
@@ -40,7 +37,7 @@ std::vector<base::SourceRange> lines_of(base::FileId file, std::string_view text
   std::vector<base::SourceRange> lines;
   for (std::size_t begin = 0; begin < text.size();) {
     const auto end = std::min(text.find('\n', begin), text.size());
-    if (!is_blank(text.substr(begin, end - begin))) {
+    if (!base::is_all_space(text.substr(begin, end - begin))) {
       lines.push_back({file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)});
     }
     begin = end + 1;

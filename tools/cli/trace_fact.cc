@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <string_view>
 #include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
+#include "compiler/base/whole_number.h"
 #include "compiler/syntax/lexer.h"
 #include "compiler/syntax/parser.h"
 #include "compiler/syntax/printer.h"
@@ -102,13 +102,10 @@ base::Result<TraceFact> parse_fact(const std::string& text, const compiler::Comp
                                    near ? fmt::format(", but `{}`", *near) : ""));
   }
   if (fact.kind != AtomKind::kPredicate) {
-    compiler::Timepoint time = 0;
-    const auto* end = parts.time.data() + parts.time.size();
-    const auto [stop, error] = std::from_chars(parts.time.data(), end, time);
-    if (error != std::errc() || stop != end || time < 0) {
+    fact.time = base::whole_number<compiler::Timepoint>(parts.time);
+    if (fact.time.value_or(-1) < 0) {
       return fail(place, fmt::format("`{}` is no timepoint", parts.time));
     }
-    fact.time = time;
   }
   fact.atom = compiler::AtomIndex(model).find(fact.kind, fact.name, fact.time);
   return fact;

@@ -1,26 +1,18 @@
 #include "tools/suite/shard.h"
 
-#include <charconv>
-
 #include "compiler/base/hash.h"
+#include "compiler/base/whole_number.h"
 
 namespace parallax::tools {
-namespace {
-
-bool parse_whole(std::string_view text, std::uint32_t& out) {
-  const auto* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, out);
-  return error == std::errc() && stop == end;
-}
-
-}  // namespace
-
 std::optional<Shard> parse_shard(std::string_view text) {
   const auto slash = text.find('/');
   if (slash == std::string_view::npos) return std::nullopt;
   Shard shard;
-  if (!parse_whole(text.substr(0, slash), shard.index)) return std::nullopt;
-  if (!parse_whole(text.substr(slash + 1), shard.count)) return std::nullopt;
+  const auto index = base::whole_number<std::uint32_t>(text.substr(0, slash));
+  const auto count = base::whole_number<std::uint32_t>(text.substr(slash + 1));
+  if (!index || !count) return std::nullopt;
+  shard.index = *index;
+  shard.count = *count;
   if (shard.index < 1 || shard.index > shard.count || shard.count > kMaxShards) {
     return std::nullopt;
   }

@@ -1,8 +1,8 @@
-#include <charconv>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "compiler/base/whole_number.h"
 #include "tools/bench/families/families.h"
 #include "tools/bench/families/tuned.h"
 
@@ -60,11 +60,9 @@ const Family kFamilies[] = {
 std::optional<int> parameter(std::string_view word) {
   const bool negative = word.starts_with('m');
   if (negative) word.remove_prefix(1);
-  int value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  if (value < 0 || value > kMaxFamilyParameter) return std::nullopt;
-  return negative ? -value : value;
+  const auto value = base::whole_number<int>(word);
+  if (!value || *value < 0 || *value > kMaxFamilyParameter) return std::nullopt;
+  return negative ? -*value : *value;
 }
 
 /// `robot`, `4`, `2`, `8`.
