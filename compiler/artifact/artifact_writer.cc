@@ -6,7 +6,6 @@
 #include <iterator>
 
 #include "compiler/artifact/artifact_text.h"
-#include "compiler/artifact/atom_kinds.h"
 #include "compiler/artifact/clause_runs.h"
 #include "compiler/artifact/derived.h"
 #include "compiler/artifact/places.h"
@@ -129,9 +128,9 @@ class ArtifactWriter {
     for (std::size_t i = 0; i < model_.fixed.size(); ++i) {
       const auto& atom = model_.fixed[i];
       const auto usual = fixed_occur_[i] ? AtomKind::kAuxiliary : AtomKind::kUnused;
-      if (atom == Atom{usual, {}, std::nullopt}) continue;
+      if (atom == Atom{usual, {}, std::nullopt, {}}) continue;
       print("c dec atom {} {}", i + 1, to_string(atom.kind));
-      word(atom.name);
+      word(printed(atom));
       if (atom.time) number(*atom.time);
       out_ += '\n';
     }
@@ -143,7 +142,7 @@ class ArtifactWriter {
       PARALLAX_REQUIRE(!origin.id.empty(), "every origin has an id");
       out_ += "c dec axiom";
       word(origin.id);
-      word(origin.what);
+      word(to_string(origin.kind));
       places_.write_place(origin.place, out_);
       word(origin.text);
       out_ += '\n';

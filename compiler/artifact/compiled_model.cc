@@ -11,36 +11,37 @@ std::vector<std::string> names_of(const std::vector<GroundName>& ground) {
   return names;
 }
 
-std::string plan_cut_atom(std::size_t number) { return "BOUND(" + std::to_string(number) + ")"; }
-
 Atom CompiledModel::atom(std::int32_t v) const {
   PARALLAX_REQUIRE(v >= 1 && v <= variable_count(), "a variable of the model");
   if (v <= base()) return fixed[static_cast<std::size_t>(v) - 1];
   const auto place = v - base() - 1;
   const auto& slot = slots[static_cast<std::size_t>(place % stride())];
-  return {slot.kind, slot.name, place / stride()};
+  return {slot.kind, slot.name, place / stride(), {}};
 }
 
-void CompiledModel::for_each_atom(
-    const std::function<void(std::int32_t, AtomKind, const std::string&, std::optional<Timepoint>)>&
-        visit) const {
+void CompiledModel::for_each_atom(const std::function<void(const AtomRef&)>& visit) const {
+  const PlanAtom none;
+  const auto show = [&](AtomKind kind, std::uint32_t slot, Timepoint t, const std::string& name,
+                        std::size_t number) {
+    visit({variable(slot, t), kind, t, name, none, static_cast<std::uint32_t>(number)});
+  };
   for (Timepoint t = 0; t <= horizon; ++t) {
-    for (const auto& fluent : fluents) {
-      if (fluent.slot) visit(variable(*fluent.slot, t), AtomKind::kHoldsAt, fluent.name, t);
+    for (std::size_t f = 0; f < fluents.size(); ++f) {
+      if (fluents[f].slot) show(AtomKind::kHoldsAt, *fluents[f].slot, t, fluents[f].name, f);
     }
     for (std::size_t f = 0; f < release_slots.size(); ++f) {
-      if (!release_slots[f]) continue;
-      visit(variable(*release_slots[f], t), AtomKind::kReleasedAt, fluents[f].name, t);
+      if (release_slots[f]) show(AtomKind::kReleasedAt, *release_slots[f], t, fluents[f].name, f);
     }
     if (t == horizon) break;
-    for (const auto& event : events) {
-      if (event.slot) visit(variable(*event.slot, t), AtomKind::kHappens, event.name, t);
+    for (std::size_t e = 0; e < events.size(); ++e) {
+      if (events[e].slot) show(AtomKind::kHappens, *events[e].slot, t, events[e].name, e);
     }
   }
   for (std::size_t i = 0; i < fixed.size(); ++i) {
     const auto& atom = fixed[i];
-    if (atom.kind == AtomKind::kAuxiliary || atom.kind == AtomKind::kUnused) continue;
-    visit(static_cast<std::int32_t>(i) + 1, atom.kind, atom.name, atom.time);
+    if (is_nameless(atom.kind)) continue;
+    visit({static_cast<std::int32_t>(i) + 1, atom.kind, atom.time, atom.name, atom.plan,
+           static_cast<std::uint32_t>(i)});
   }
 }
 
@@ -51,9 +52,14 @@ AtomIndex::AtomIndex(const CompiledModel& model) : model_(&model) {
   }
   for (std::size_t i = 0; i < model.fixed.size(); ++i) {
     const auto& atom = model.fixed[i];
-    if (atom.kind == AtomKind::kAuxiliary || atom.kind == AtomKind::kUnused) continue;
-    fixed_.emplace(std::tuple(atom.kind, atom.time.value_or(kUntimed), atom.name),
-                   static_cast<std::int32_t>(i + 1));
+    if (is_nameless(atom.kind)) continue;
+    const auto time = atom.time.value_or(kUntimed);
+    const auto variable = static_cast<std::int32_t>(i + 1);
+    if (is_of_plan(atom.kind)) {
+      plan_.emplace(std::tuple(atom.kind, time, atom.plan), variable);
+    } else {
+      fixed_.emplace(std::tuple(atom.kind, time, atom.name), variable);
+    }
   }
 }
 
@@ -69,6 +75,12 @@ std::optional<Literal> AtomIndex::find(AtomKind kind, std::string_view name,
   }
   const auto found = fixed_.find(std::tuple(kind, time.value_or(kUntimed), std::string(name)));
   if (found == fixed_.end()) return std::nullopt;
+  return Literal::positive(found->second);
+}
+
+std::optional<Literal> AtomIndex::plan(AtomKind kind, const PlanAtom& plan, Timepoint t) const {
+  const auto found = plan_.find(std::tuple(kind, t, plan));
+  if (found == plan_.end()) return std::nullopt;
   return Literal::positive(found->second);
 }
 

@@ -12,38 +12,12 @@
 #include <variant>
 #include <vector>
 
+#include "compiler/artifact/atom.h"
 #include "compiler/artifact/literal.h"
+#include "compiler/artifact/origin.h"
 #include "compiler/base/source_file.h"
 
 namespace parallax::compiler {
-
-enum class AtomKind : std::uint8_t {
-  kHoldsAt,
-  kHappens,
-  kReleasedAt,
-  kPredicate,  // a user's predicate; its time, if any, is one of the printed arguments
-  kLocation,   // the plan's control is at a location: name "L3"
-  kHit,        // the state constraints hold at this timepoint
-  kRunning,    // the plan has not ended at this timepoint
-  kSucceeded,  // the perform of a location at the timepoint before succeeded: name "L3"
-  kResult,     // what that perform returned: name "cup1"
-  kRegister,   // a returned object that the plan still knows: name "?item1=cup1"
-  kAuxiliary,  // stands for a subformula; no name
-  kUnused,     // no clause mentions it
-};
-
-/// What a SAT variable stands for. `name` is printed without blanks: `RobotIn(r1)`, `Go(r2)`.
-struct Atom {
-  AtomKind kind = AtomKind::kUnused;
-  std::string name;
-  std::optional<Timepoint> time;
-  friend bool operator==(const Atom&, const Atom&) = default;
-};
-
-/// The horizon from which on an atom exists: an event at t needs the step to t + 1.
-inline Timepoint needed_horizon(const Atom& atom) {
-  return atom.time.value_or(0) + (atom.kind == AtomKind::kHappens ? 1 : 0);
-}
 
 /// A symbol of every timepoint.
 struct Slot {
@@ -79,28 +53,6 @@ class ClauseList {
   std::vector<std::size_t> ends_;
 };
 
-/// A range of a source text as messages print it; it outlives the text.
-struct TextPlace {
-  std::string file;  // as the user named it
-  base::LineColumn begin;
-  base::LineColumn end;  // one column beyond the last
-  friend bool operator==(const TextPlace&, const TextPlace&) = default;
-};
-
-/// Where a clause comes from: an axiom, an effect axiom, a perform, a state constraint. Clauses
-/// that no text asks for (frame axioms DEC5 to DEC8) carry the declaration of their fluent.
-struct Origin {
-  base::SourceRange source;  // of a model that was read from an artifact: a line of that file
-  std::string what;       // "axiom", "effect axiom", "frame axiom", "plan step", "state constraint"
-  std::string id = {};    // unique in the model; depends on `what` and the text alone
-  TextPlace place = {};   // where `source` was when the model was compiled
-  std::string text = {};  // of the source, on one line, without comments
-};
-
-/// `Origin::what` of clauses that follow from the others and only shorten the search: an
-/// explanation must not rest on them.
-inline constexpr std::string_view kInvariantOrigin = "state invariant";
-
 /// An argument of a plan step for the controllers, as the designator gave it.
 using PlanValue = std::variant<double, std::int64_t, std::string>;
 
@@ -119,9 +71,6 @@ struct PlanCut {
   base::SourceRange source;
   TextPlace place = {};  // as in Origin
 };
-/// The name of the location atom that stands for the cut with this number: `BOUND(0)`.
-std::string plan_cut_atom(std::size_t number);
-
 /// A text that took part in the compilation.
 struct SourceText {
   std::string name;
@@ -140,6 +89,26 @@ struct Section {
   bool repeated = false;
   Timepoint width = 0;  // repeated: copies for timepoints 0 .. horizon - width
   friend bool operator==(const Section&, const Section&) = default;
+};
+
+/// An atom of the model as `for_each_atom` shows it; the texts belong to the model.
+struct AtomRef {
+  std::int32_t variable = 0;
+  AtomKind kind = AtomKind::kUnused;
+  std::optional<Timepoint> time;
+  const std::string& name;   // as in Atom
+  const PlanAtom& plan;      // as in Atom
+  std::uint32_t number = 0;  // of the fluent or event, else of the place in `fixed`
+
+  FluentId fluent() const {
+    PARALLAX_REQUIRE(kind == AtomKind::kHoldsAt || kind == AtomKind::kReleasedAt, "of a fluent");
+    return FluentId(number);
+  }
+  EventId event() const {
+    PARALLAX_REQUIRE(kind == AtomKind::kHappens, "of an event");
+    return EventId(number);
+  }
+  Literal literal() const { return Literal::positive(variable); }
 };
 
 /// The compiled model as data: symbols, clauses, provenance. It says nothing of how it was made
@@ -173,7 +142,7 @@ struct CompiledModel {
   std::vector<Origin> origins;
   std::vector<PlanStep> plan;      // by location number; empty without a plan
   std::vector<PlanCut> plan_cuts;  // empty if the whole plan was unrolled
-  bool has_constraints = false;  // kHit atoms exist
+  bool has_constraints = false;    // kHit atoms exist
 
   std::int32_t base() const { return static_cast<std::int32_t>(fixed.size()); }
   std::int32_t stride() const { return static_cast<std::int32_t>(slots.size()); }
@@ -185,26 +154,38 @@ struct CompiledModel {
   }
   /// The atom of a variable, 1 <= v <= variable_count().
   Atom atom(std::int32_t v) const;
-  /// Calls visit(variable, kind, name, time) for every variable that stands for an atom of the
-  /// model, in canonical order: timepoint by timepoint fluents, releases, events in declaration
-  /// order, then the fixed ones. Linear in what it visits.
-  void for_each_atom(const std::function<void(std::int32_t, AtomKind, const std::string&,
-                                              std::optional<Timepoint>)>& visit) const;
+  /// Calls `visit` for every variable that stands for an atom of the model, in canonical order:
+  /// timepoint by timepoint fluents, releases, events in declaration order, then the fixed ones.
+  /// Linear in what it visits.
+  void for_each_atom(const std::function<void(const AtomRef&)>& visit) const;
 };
 
-/// Variable look-up by (kind, name, time).
+/// Variable look-up. None: the atom is false in every trace, or there is no such atom.
 class AtomIndex {
  public:
   /// `model` outlives the index.
   explicit AtomIndex(const CompiledModel& model);
-  /// None: the atom is false in every trace, or there is no such atom.
+  /// An atom of the model, by its name.
   std::optional<Literal> find(AtomKind kind, std::string_view name,
                               std::optional<Timepoint> time) const;
+  /// An atom of the plan.
+  std::optional<Literal> plan(AtomKind kind, const PlanAtom& plan, Timepoint t) const;
+  std::optional<Literal> hit(Timepoint t) const { return plan(AtomKind::kHit, {}, t); }
+  std::optional<Literal> running(Timepoint t) const { return plan(AtomKind::kRunning, {}, t); }
+  /// Is the plan's control at a step or a cut?
+  std::optional<Literal> at(const PlanAtom& place, Timepoint t) const {
+    return plan(AtomKind::kLocation, place, t);
+  }
+  /// Has the perform at t - 1 succeeded?
+  std::optional<Literal> succeeded(PlanStepId step, Timepoint t) const {
+    return plan(AtomKind::kSucceeded, step, t);
+  }
 
  private:
   const CompiledModel* model_;
   std::map<std::pair<AtomKind, std::string>, std::uint32_t, std::less<>> slots_;
   std::map<std::tuple<AtomKind, Timepoint, std::string>, std::int32_t, std::less<>> fixed_;
+  std::map<std::tuple<AtomKind, Timepoint, PlanAtom>, std::int32_t> plan_;
 };
 
 }  // namespace parallax::compiler

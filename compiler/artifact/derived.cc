@@ -44,10 +44,10 @@ Occurrences occurrences(const CompiledModel& model) {
 
 std::vector<std::int32_t> observable_variables(const CompiledModel& model) {
   std::vector<std::int32_t> variables;
-  model.for_each_atom(
-      [&](std::int32_t v, AtomKind kind, const std::string&, std::optional<Timepoint>) {
-        if (kind == AtomKind::kHoldsAt || kind == AtomKind::kHappens) variables.push_back(v);
-      });
+  model.for_each_atom([&](const AtomRef& atom) {
+    const bool observable = atom.kind == AtomKind::kHoldsAt || atom.kind == AtomKind::kHappens;
+    if (observable) variables.push_back(atom.variable);
+  });
   std::sort(variables.begin(), variables.end());
   return variables;
 }

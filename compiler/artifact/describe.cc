@@ -40,7 +40,7 @@ void sort_origins(CompiledModel& model) {
     const auto key = [&](std::uint32_t i) {
       const auto& source = model.origins[i].source;
       return std::tuple(source.file.index(), source.begin, source.end,
-                        std::string_view(model.origins[i].what));
+                        to_string(model.origins[i].kind));
     };
     return key(a) < key(b);
   });
@@ -73,7 +73,7 @@ std::string one_line(std::string_view text) {
 void assign_ids(std::vector<Origin>& origins) {
   std::map<std::string, std::uint32_t> used;
   for (auto& origin : origins) {
-    std::string key = origin.what + '\n';
+    auto key = std::string(to_string(origin.kind)) + '\n';
     std::copy_if(origin.text.begin(), origin.text.end(), std::back_inserter(key),
                  [](char c) { return !base::is_space(c); });
     const auto hash = base::fnv1a64(key);

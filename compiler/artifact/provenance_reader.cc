@@ -19,8 +19,12 @@ bool ProvenanceReader::read_axiom() {
   if (!origins_.emplace(origin.id, index).second) {
     return cursor_.fail(DiagnosticCode::kArtifactTwice, fmt::format("the axiom `{}`", origin.id));
   }
-  if (!cursor_.word("the kind of an axiom", origin.what) ||
-      !places_.read_place(cursor_, origin.place) || !cursor_.word("a text", origin.text)) {
+  std::string kind;
+  if (!cursor_.word("the kind of an axiom", kind)) return false;
+  const auto known = origin_kind(kind);
+  if (!known) return cursor_.expected("the kind of an axiom");
+  origin.kind = *known;
+  if (!places_.read_place(cursor_, origin.place) || !cursor_.word("a text", origin.text)) {
     return false;
   }
   origin.source = cursor_.last();

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "compiler/artifact/atom_kinds.h"
 #include "compiler/artifact/derived.h"
 #include "compiler/base/diagnostic_codes.h"
 
@@ -103,7 +102,8 @@ bool SymbolReader::read_atom() {
     return cursor_.fail(DiagnosticCode::kArtifactTwice, fmt::format("variable {}", v));
   }
   fixed_taken_[index] = true;
-  if (!read_kind(atom.kind) || !cursor_.word("a name", atom.name)) return false;
+  std::string name;
+  if (!read_kind(atom.kind) || !cursor_.word("a name", name)) return false;
   if (!cursor_.at_line_end()) {
     const auto last = model_.horizon - (atom.kind == AtomKind::kHappens ? 1 : 0);
     if (!cursor_.number("a timepoint", 0, last, time)) return false;
@@ -112,9 +112,13 @@ bool SymbolReader::read_atom() {
   const bool timeless = atom.kind == AtomKind::kHoldsAt || atom.kind == AtomKind::kHappens ||
                         atom.kind == AtomKind::kReleasedAt;
   if (timeless && !atom.time) return cursor_.expected("a timepoint");
-  if (!is_nameless(atom.kind) &&
-      !unique(atom.kind, atom.time.value_or(kUntimed), atom.name, false)) {
+  if (!is_nameless(atom.kind) && !unique(atom.kind, atom.time.value_or(kUntimed), name, false)) {
     return false;
+  }
+  if (is_of_plan(atom.kind)) {
+    atom.plan = plan_atom(atom.kind, name);
+  } else {
+    atom.name = std::move(name);
   }
   model_.fixed[index] = std::move(atom);
   return cursor_.end_of_line();
@@ -136,7 +140,7 @@ bool SymbolReader::check_hits() {
   if (!model_.has_constraints) return true;
   const AtomIndex index(model_);
   for (Timepoint t = 1; t <= model_.horizon; ++t) {
-    if (index.find(AtomKind::kHit, "hit", t)) continue;
+    if (index.hit(t)) continue;
     return cursor_.fail(DiagnosticCode::kArtifactMissing,
                         fmt::format("c dec atom VARIABLE Hit hit {}", t));
   }

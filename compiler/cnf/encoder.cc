@@ -176,13 +176,12 @@ class Encoder {
       const auto& atom = model_.atom(variable);
       const auto place = layout.place[next++];
       fixed_places_[static_cast<std::size_t>(variable)] = place;
-      out_.fixed[place] = {atom.kind, model_.atom_name(atom), std::nullopt};
-      if (atom.time != GroundAtom::kUntimed) out_.fixed[place].time = atom.time;
+      out_.fixed[place] = model_.described(atom);
     }
     for (std::size_t i = 0; i < builder.auxiliaries().size(); ++i) {
       if (builder.auxiliaries()[i].moves) continue;
       auxiliary_places_[i] = layout.place[next++];
-      out_.fixed[auxiliary_places_[i]] = {AtomKind::kAuxiliary, "", std::nullopt};
+      out_.fixed[auxiliary_places_[i]] = {AtomKind::kAuxiliary, "", std::nullopt, {}};
     }
     moves_.resize(builder.auxiliaries().size());
     for (std::size_t i = 0; i < moves_.size(); ++i) moves_[i] = builder.auxiliaries()[i].moves;

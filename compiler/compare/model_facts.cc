@@ -186,11 +186,12 @@ std::vector<Fact> artifact_facts(const CompiledModel& model) {
   for (std::size_t i = 0; i < model.origins.size(); ++i) {
     const auto& origin = model.origins[i];
     if (clauses[i] == 0) continue;
-    const auto key = origin.what + ": " + canonical_origin(origin.text);
+    const auto kind = std::string(to_string(origin.kind)) + ": ";
+    const auto key = kind + canonical_origin(origin.text);
     facts.push_back({FactKind::kAxiom,
                      key,
                      key + clause_count(clauses[i]),
-                     origin.what + ": " + origin.text + clause_count(clauses[i]),
+                     kind + origin.text + clause_count(clauses[i]),
                      {origin.place.file, origin.place.begin.line}});
   }
   return facts;

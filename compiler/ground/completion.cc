@@ -20,7 +20,8 @@ CompletionWriter::CompletionWriter(GroundModel& model, Meaning meaning)
     if (completion.predicate == core.happens) kind = AtomKind::kHappens;
     if (completion.predicate == core.holds_at) kind = AtomKind::kHoldsAt;
     if (completion.predicate == core.released_at) kind = AtomKind::kReleasedAt;
-    entries_.push_back({&completion, kind, model.add_origin(completion.source, "completion"), {}});
+    entries_.push_back(
+        {&completion, kind, model.add_origin(completion.source, OriginKind::kCompletion), {}});
   }
 }
 

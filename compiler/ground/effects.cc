@@ -19,7 +19,7 @@ class InertiaWriter {
     for (std::size_t i = 0; i < symbols.size(); ++i) {
       const auto& symbol = symbols[symbols.id_at(i)];
       origins_.push_back(symbol.kind == SymbolKind::kFluent
-                             ? model.add_origin(symbol.declared, "frame axiom")
+                             ? model.add_origin(symbol.declared, OriginKind::kFrameAxiom)
                              : 0);
     }
   }
@@ -117,7 +117,7 @@ class TrajectoryWriter {
       : model_(model), rows_(rows), grounder_(grounder) {}
 
   void write(const TrajectoryAxiom& axiom) {
-    origin_ = model_.add_origin(axiom.source, "trajectory axiom");
+    origin_ = model_.add_origin(axiom.source, OriginKind::kTrajectoryAxiom);
     grounder_.start(axiom.source);
     chains_.clear();
     const auto found =
@@ -195,7 +195,7 @@ class TrajectoryWriter {
 EffectGrounder::EffectGrounder(GroundModel& model, FormulaGrounder& grounder, EffectRows& rows)
     : model_(model), grounder_(grounder), rows_(rows) {
   for (const auto& effect : model.typed().effects) {
-    origins_.push_back(model.add_origin(effect.source, "effect axiom"));
+    origins_.push_back(model.add_origin(effect.source, OriginKind::kEffectAxiom));
   }
 }
 

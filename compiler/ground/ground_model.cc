@@ -95,16 +95,14 @@ FormulaId GroundModel::predicate(GroundTermId term) {
   return formulas_.atom(entry->second);
 }
 
-FormulaId GroundModel::named_atom(AtomKind kind, std::string name, std::optional<Timepoint> time) {
-  const auto key = std::tuple(kind, name, time.value_or(GroundAtom::kUntimed));
-  const auto found = named_.find(key);
-  if (found != named_.end()) return formulas_.atom(found->second);
-  atoms_.push_back(
-      {kind, static_cast<std::uint32_t>(names_.size()), time.value_or(GroundAtom::kUntimed)});
-  names_.push_back(std::move(name));
-  const auto variable = static_cast<std::int32_t>(atoms_.size());
-  named_.emplace(key, variable);
-  return formulas_.atom(variable);
+FormulaId GroundModel::plan_atom(AtomKind kind, PlanAtom plan, Timepoint t) {
+  const auto [entry, added] = plan_variables_.try_emplace(
+      std::tuple(kind, plan, t), static_cast<std::int32_t>(atoms_.size() + 1));
+  if (added) {
+    atoms_.push_back({kind, static_cast<std::uint32_t>(plan_atoms_.size()), t});
+    plan_atoms_.push_back(std::move(plan));
+  }
+  return formulas_.atom(entry->second);
 }
 
 FormulaId GroundModel::auxiliary_atom(Timepoint time) {
@@ -127,12 +125,24 @@ std::string GroundModel::atom_name(const GroundAtom& atom) const {
     case AtomKind::kSucceeded:
     case AtomKind::kResult:
     case AtomKind::kRegister:
-      return names_[atom.index];
+      return to_string(atom.kind, plan_atoms_[atom.index]);
     case AtomKind::kAuxiliary:
     case AtomKind::kUnused:
       break;
   }
   return {};
+}
+
+Atom GroundModel::described(const GroundAtom& atom) const {
+  Atom out;
+  out.kind = atom.kind;
+  if (atom.time != GroundAtom::kUntimed) out.time = atom.time;
+  if (is_of_plan(atom.kind)) {
+    out.plan = plan_atoms_[atom.index];
+  } else {
+    out.name = atom_name(atom);
+  }
+  return out;
 }
 
 FormulaId GroundModel::shifted(FormulaId formula, Timepoint steps) {
@@ -148,8 +158,8 @@ FormulaId GroundModel::shifted(FormulaId formula, Timepoint steps) {
       memo);
 }
 
-std::uint32_t GroundModel::add_origin(base::SourceRange source, std::string what) {
-  origins_.push_back({source, std::move(what)});
+std::uint32_t GroundModel::add_origin(base::SourceRange source, OriginKind kind) {
+  origins_.push_back({source, kind});
   return static_cast<std::uint32_t>(origins_.size() - 1);
 }
 

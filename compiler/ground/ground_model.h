@@ -79,7 +79,7 @@ class GroundModel {
     return found->second;
   }
   /// An atom that is made when first asked for.
-  FormulaId named_atom(AtomKind kind, std::string name, std::optional<Timepoint> time);
+  FormulaId plan_atom(AtomKind kind, PlanAtom plan, Timepoint t);
   /// A new atom without a meaning of its own, of the horizon `time`.
   FormulaId auxiliary_atom(Timepoint time);
 
@@ -89,6 +89,8 @@ class GroundModel {
   }
   std::size_t atom_count() const { return atoms_.size(); }
   std::string atom_name(const GroundAtom& atom) const;
+  /// What the compiled model says of it.
+  Atom described(const GroundAtom& atom) const;
   /// The formula with every timepoint moved by `steps`.
   FormulaId shifted(FormulaId formula, Timepoint steps);
 
@@ -99,7 +101,7 @@ class GroundModel {
   bool may_hold(std::uint32_t fluent) const { return may_hold_[fluent]; }
   bool may_happen(std::uint32_t event) const { return may_happen_[event]; }
 
-  std::uint32_t add_origin(base::SourceRange source, std::string what);
+  std::uint32_t add_origin(base::SourceRange source, OriginKind kind);
   void require(FormulaId formula, std::uint32_t origin);
   /// Says the formula, whose earliest timepoint is 0, of every timepoint 0 .. horizon - width.
   void require_always(FormulaId formula, std::uint32_t origin, Timepoint width);
@@ -135,8 +137,8 @@ class GroundModel {
   std::unordered_map<std::uint64_t, std::int32_t> timed_;
   std::unordered_map<GroundTermId, std::int32_t> predicates_;
   std::set<SymbolId> closed_;
-  std::map<std::tuple<AtomKind, std::string, Timepoint>, std::int32_t> named_;
-  std::vector<std::string> names_;
+  std::map<std::tuple<AtomKind, PlanAtom, Timepoint>, std::int32_t> plan_variables_;
+  std::vector<PlanAtom> plan_atoms_;
   std::vector<Constraint> constraints_;
   std::vector<Origin> origins_;
   std::vector<std::pair<base::SourceRange, std::int64_t>> charges_;

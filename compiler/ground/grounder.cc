@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "compiler/artifact/origin_kinds.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/formula/formula.h"
 #include "compiler/ground/completion.h"
@@ -139,7 +138,7 @@ class Grounder {
     } else if (*formula == falsity && is_false_whatever_happens(axiom)) {
       sink_.error(DiagnosticCode::kFormulaIsFalse, axiom.source);
     } else {
-      const auto origin = model_.add_origin(axiom.source, "axiom");
+      const auto origin = model_.add_origin(axiom.source, OriginKind::kAxiom);
       if (always) {
         model_.require_always(*formula, origin, profile.width);
       } else {
@@ -168,7 +167,7 @@ class Grounder {
     std::vector<FormulaId> asserted;
     for (const auto& constraint : model_.constraints()) asserted.push_back(constraint.formula);
     const auto mentioned = atoms_of(model_.formulas(), asserted);
-    const auto origin = model_.add_origin({}, std::string(kUnmentionedOrigin));
+    const auto origin = model_.add_origin({}, OriginKind::kUnmentioned);
     const auto deny = [&](FormulaId atom) {
       const auto variable = model_.formulas().variable(atom);
       if (!std::binary_search(mentioned.begin(), mentioned.end(), variable)) {

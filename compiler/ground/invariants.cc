@@ -281,8 +281,7 @@ class InvariantFinder {
   }
 
   std::uint32_t origin_of(const Group& group) {
-    return model_.add_origin(model_.fluent_symbol(group[0]).declared,
-                             std::string(kInvariantOrigin));
+    return model_.add_origin(model_.fluent_symbol(group[0]).declared, OriginKind::kInvariant);
   }
 
   void add_at_most_one(const Group& group) {

@@ -54,19 +54,20 @@ class CostCounter {
   void count_products() {
     const auto& typed = ground_.typed();
     const auto& universe = ground_.universe();
-    const auto add = [&](base::SourceRange source, const char* what, std::uint64_t size) {
-      auto& entry = cost(source, what);
+    const auto add = [&](base::SourceRange source, OriginKind kind, std::uint64_t size) {
+      auto& entry = cost(source, std::string(to_string(kind)));
       entry.product = size > kGreatest - entry.product ? kGreatest : entry.product + size;
     };
     for (const auto& axiom : typed.axioms) {
-      add(axiom.source, "axiom", expansion_size(typed, universe, axiom.formula));
+      add(axiom.source, OriginKind::kAxiom, expansion_size(typed, universe, axiom.formula));
     }
     const auto with_head = [&](const auto& axiom) {
       return expansion_size(typed, universe, axiom.condition, axiom.variables);
     };
-    for (const auto& effect : typed.effects) add(effect.source, "effect axiom", with_head(effect));
+    for (const auto& effect : typed.effects)
+      add(effect.source, OriginKind::kEffectAxiom, with_head(effect));
     for (const auto& axiom : typed.trajectories) {
-      add(axiom.source, "trajectory axiom", with_head(axiom));
+      add(axiom.source, OriginKind::kTrajectoryAxiom, with_head(axiom));
     }
   }
 
@@ -76,7 +77,7 @@ class CostCounter {
       const auto copies = static_cast<std::size_t>(section.copies);
       for (auto i = section.begin; i < section.begin + section.clauses; ++i) {
         const auto& origin = compiled_.origins[compiled_.clause_origins[i]];
-        auto& entry = cost(origin.source, origin.what);
+        auto& entry = cost(origin.source, std::string(to_string(origin.kind)));
         entry.clauses += copies;
         entry.literals += copies * compiled_.clauses[i].size();
       }

@@ -15,7 +15,7 @@ namespace parallax::compiler {
 /// axioms and invariants), a plan step, a state constraint.
 struct AxiomCost {
   base::SourceRange source;
-  std::string what;  // as Origin::what
+  std::string what;  // the kind of the origin, printed
   /// Instances of its atoms in a full expansion over all sorts, known before grounding; 0 where the
   /// text is no formula of the model. Stays at the greatest number if it is beyond 64 bits.
   std::uint64_t product = 0;

@@ -7,7 +7,7 @@ namespace parallax::compiler {
 base::Status encode_constraints(const std::vector<StateConstraint>& constraints, Timepoint first,
                                 GroundModel& model, FormulaGrounder& grounder,
                                 base::DiagnosticSink& sink) {
-  const auto origin = model.add_origin(constraints.front().source, "state constraint");
+  const auto origin = model.add_origin(constraints.front().source, OriginKind::kStateConstraint);
   auto& formulas = model.formulas();
   std::vector<bool> ever(constraints.size(), false);
   for (Timepoint t = first; t <= model.horizon(); ++t) {
@@ -26,7 +26,7 @@ base::Status encode_constraints(const std::vector<StateConstraint>& constraints,
       }
       parts.push_back(value.value_or(formulas.falsity()));
     }
-    const auto hit = model.named_atom(AtomKind::kHit, "hit", t);
+    const auto hit = model.plan_atom(AtomKind::kHit, {}, t);
     model.require(formulas.equivalence(hit, formulas.conjunction(parts)), origin);
   }
   for (std::size_t i = 0; i < constraints.size(); ++i) {

@@ -51,7 +51,7 @@ class PlanEncoder {
       event_numbers_.emplace(model.events()[i], i);
     }
     for (const auto& location : graph.locations) {
-      origins_.push_back(model.add_origin(location.source, "plan step"));
+      origins_.push_back(model.add_origin(location.source, OriginKind::kPlanStep));
     }
   }
 
@@ -100,21 +100,25 @@ class PlanEncoder {
     return sink_.error_count() == errors_at_start_;
   }
 
-  std::string node_name(NodeNumber node) const {
-    if (node < graph_.locations.size()) return fmt::format("L{}", node);
+  PlanAtom place_of(NodeNumber node) const {
+    if (node < graph_.locations.size()) return step_of(node);
     const auto place = node - graph_.locations.size();
     const auto& terminal = graph_.terminals[graph_.terminals.id_at(place)];
     switch (terminal.kind) {
       case TerminalKind::kDone:
-        return "DONE";
+        return PlanEnd{"DONE"};
       case TerminalKind::kFailed:
-        return fmt::format("FAILED({})", terminal.detail);
+        return PlanEnd{fmt::format("FAILED({})", terminal.detail)};
       case TerminalKind::kNever:
-        return "NEVER";
+        return PlanEnd{"NEVER"};
       case TerminalKind::kBound:
-        return plan_cut_atom(cut_number(graph_, place));
+        return PlanCutId(static_cast<std::uint32_t>(cut_number(graph_, place)));
     }
     return {};
+  }
+
+  static PlanStepId step_of(NodeNumber node) {
+    return PlanStepId(static_cast<std::uint32_t>(node));
   }
 
   std::uint32_t origin_of(NodeNumber node) const {
@@ -149,7 +153,7 @@ class PlanEncoder {
   std::optional<FormulaId> decision(BranchId id, Timepoint t) {
     const auto& branch = graph_.branches[id];
     if (branch.free) {
-      return model_.named_atom(AtomKind::kLocation, fmt::format("CHOICE({})", id.index()), t);
+      return model_.plan_atom(AtomKind::kLocation, PlanChoiceId(id.index()), t);
     }
     return registers_.ground(formulas_.guards[id.index()], t, t, branch.source);
   }
@@ -170,7 +174,7 @@ class PlanEncoder {
         for (const auto reached : incoming[node]) model_.require(~reached, origin_of(0));
         continue;
       }
-      const auto pc = model_.named_atom(AtomKind::kLocation, node_name(node), t);
+      const auto pc = model_.plan_atom(AtomKind::kLocation, place_of(node), t);
       auto& formulas = model_.formulas();
       model_.require(formulas.equivalence(pc, formulas.disjunction(incoming[node])),
                      origin_of(node));
@@ -216,7 +220,7 @@ class PlanEncoder {
       const auto success = step.success(id);
       if (!success) return;
       auto& formulas = model_.formulas();
-      const auto ok = model_.named_atom(AtomKind::kSucceeded, node_name(node), t + 1);
+      const auto ok = model_.plan_atom(AtomKind::kSucceeded, step_of(node), t + 1);
       model_.require(formulas.equivalence(ok, formulas.conjunction(*here[node], *success)),
                      origin_of(node));
       const auto failed = formulas.conjunction(*here[node], ~ok);
@@ -238,7 +242,7 @@ class PlanEncoder {
       }
       open.push_back(*here[node]);
     }
-    const auto running = model_.named_atom(AtomKind::kRunning, "running", t);
+    const auto running = model_.plan_atom(AtomKind::kRunning, {}, t);
     model_.require(model_.formulas().equivalence(running, model_.formulas().disjunction(open)),
                    origin_of(0));
   }

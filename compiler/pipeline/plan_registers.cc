@@ -1,7 +1,5 @@
 #include "compiler/pipeline/plan_registers.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <charconv>
 #include <utility>
@@ -35,12 +33,12 @@ PlanRegisters::PlanRegisters(const PlanGraph& graph, const PlanFormulas& formula
 }
 
 FormulaId PlanRegisters::holds(ModelValueId id, const Value& value, Timepoint t) {
-  return model_.named_atom(AtomKind::kRegister,
-                           fmt::format("{}={}", graph_.values[id].name, value.name), t);
+  return model_.plan_atom(AtomKind::kRegister, RegisterValue{graph_.values[id].name, value.name},
+                          t);
 }
 
 FormulaId PlanRegisters::returned(const Value& value, Timepoint t) {
-  return model_.named_atom(AtomKind::kResult, value.name, t);
+  return model_.plan_atom(AtomKind::kResult, ReturnedObject{value.name}, t);
 }
 
 std::vector<PlanRegisters::Reading> PlanRegisters::readings(const FormulaTree& event) const {

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "compiler/artifact/atom_kinds.h"
-
 namespace parallax::runtime {
 
 using compiler::AtomKind;
@@ -16,11 +14,12 @@ CompletenessClaim::CompletenessClaim(const CompiledModel& model)
       lengths_(model),
       index_(model),
       variables_(model.has_constraints ? lengths_.last() : model.variable_count()) {
-  model.for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
-                          std::optional<Timepoint> time) {
+  model.for_each_atom([&](const compiler::AtomRef& atom) {
+    const auto kind = atom.kind;
     const bool result = kind == AtomKind::kResult && model.has_constraints;
     if (kind != AtomKind::kHoldsAt && kind != AtomKind::kHappens && !result) return;
-    observables_.push_back({Literal::positive(variable), kind, time.value_or(0), name});
+    const auto name = result ? to_string(kind, atom.plan) : atom.name;
+    observables_.push_back({atom.literal(), kind, atom.time.value_or(0), name});
   });
 }
 
@@ -80,7 +79,7 @@ void CompletenessClaim::visit_end(Timepoint n, const Visit& visit) const {
   };
   for (Timepoint t = 1; t <= n; ++t) imply(lengths_.reaches(t));
   for (Timepoint t = 0; t <= n; ++t) {
-    const auto hit = index_.find(AtomKind::kHit, "hit", t);
+    const auto hit = index_.hit(t);
     PARALLAX_REQUIRE(hit.has_value() || t == 0, "every timepoint from 1 has its hit atom");
     if (hit) imply(t == n ? *hit : ~*hit);
   }
@@ -94,9 +93,9 @@ void CompletenessClaim::visit_going_on(const Visit& visit) const {
   };
   for (Timepoint t = 1; t <= model_.horizon; ++t) imply(lengths_.reaches(t));
   for (Timepoint t = 0; t <= model_.horizon; ++t) {
-    if (const auto hit = index_.find(AtomKind::kHit, "hit", t)) imply(~*hit);
+    if (const auto hit = index_.hit(t)) imply(~*hit);
   }
-  if (const auto running = index_.find(AtomKind::kRunning, "running", model_.horizon)) {
+  if (const auto running = index_.running(model_.horizon)) {
     imply(*running);
   }
 }
@@ -108,7 +107,7 @@ void CompletenessClaim::visit_lengths(const Visit& visit) const {
     some.push_back(lengths_.goes_on());
     visit_going_on(visit);
   }
-  const bool hits_at_start = index_.find(AtomKind::kHit, "hit", 0).has_value();
+  const bool hits_at_start = index_.hit(0).has_value();
   for (Timepoint n = hits_at_start ? 0 : 1; n <= model_.horizon; ++n) {
     some.push_back(lengths_.ends(n));
     visit_end(n, visit);

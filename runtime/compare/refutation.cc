@@ -55,7 +55,7 @@ Refutation::Refutation(const compiler::CompiledModel& model, const Definitions& 
 /// What follows from other clauses, or holds by definition, is never needed.
 bool Refutation::is_relevant(std::size_t clause) const {
   if (definitions_.is_gate_clause[clause]) return false;
-  return model_.origins[model_.clause_origins[clause]].what != compiler::kInvariantOrigin;
+  return model_.origins[model_.clause_origins[clause]].kind != compiler::OriginKind::kInvariant;
 }
 
 void Refutation::add(std::map<Timepoint, std::vector<Literal>>& found, std::size_t clause,

@@ -41,7 +41,7 @@ class RepeatedStep {
 
  private:
   std::optional<Literal> at(AtomKind kind, std::size_t step, Timepoint t) const {
-    return index_.find(kind, 'L' + std::to_string(step), t);
+    return index_.plan(kind, compiler::PlanStepId(static_cast<std::uint32_t>(step)), t);
   }
   SolveStatus solve(Literal wanted, Timepoint n) {
     return session_.solve(n, std::span(&wanted, 1));

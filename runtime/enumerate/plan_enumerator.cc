@@ -25,7 +25,7 @@ std::string_view to_string(Exploration exploration) {
 PlanEnumerator::PlanEnumerator(SolverSession& session, const PlanEnumeratorOptions& options)
     : session_(&session), options_(options), index_(session.model()) {
   PARALLAX_REQUIRE(session.model().has_constraints, "the model was compiled with constraints");
-  if (index_.find(AtomKind::kHit, "hit", 0)) first_ = 0;
+  if (index_.hit(0)) first_ = 0;
   n_ = first_ - 1;
 }
 
@@ -33,7 +33,7 @@ PlanEnumerator::PlanEnumerator(SolverSession& session, const PlanEnumeratorOptio
 std::vector<Literal> PlanEnumerator::hit_at(Timepoint n) const {
   std::vector<Literal> literals;
   for (Timepoint t = options_.all_hits ? n : first_; t <= n; ++t) {
-    const auto hit = index_.find(AtomKind::kHit, "hit", t);
+    const auto hit = index_.hit(t);
     PARALLAX_REQUIRE(hit.has_value(), "every timepoint from the first has its hit atom");
     literals.push_back(t < n ? ~*hit : *hit);
   }
@@ -45,17 +45,18 @@ void PlanEnumerator::prepare_orders(Timepoint n) {
   start_order_.clear();
   state_order_.clear();
   choice_order_.clear();
-  std::map<std::pair<Timepoint, std::string>, Literal> results;
-  session_->model().for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
-                                      std::optional<Timepoint> when) {
-    const auto literal = Literal::positive(variable);
-    const auto time = when.value_or(0);
-    if (kind == AtomKind::kHappens && time < n) key_order_.push_back(literal);
-    if (kind == AtomKind::kResult && time <= n) results.emplace(std::pair(time, name), literal);
-    if (kind == AtomKind::kLocation && time <= n && name.starts_with("CHOICE")) {
+  std::map<std::pair<Timepoint, compiler::PlanAtom>, Literal> results;
+  session_->model().for_each_atom([&](const compiler::AtomRef& atom) {
+    const auto literal = atom.literal();
+    const auto time = atom.time.value_or(0);
+    if (atom.kind == AtomKind::kHappens && time < n) key_order_.push_back(literal);
+    if (atom.kind == AtomKind::kResult && time <= n) {
+      results.emplace(std::pair(time, atom.plan), literal);
+    }
+    if (std::holds_alternative<compiler::PlanChoiceId>(atom.plan) && time <= n) {
       choice_order_.push_back(literal);
     }
-    if (kind != AtomKind::kHoldsAt || time > n) return;
+    if (atom.kind != AtomKind::kHoldsAt || time > n) return;
     (time == 0 ? start_order_ : state_order_).push_back(~literal);
   });
   for (const auto& [what, literal] : results) key_order_.push_back(literal);
@@ -146,10 +147,11 @@ base::Known PlanEnumerator::admits(const Trace& trace,
       return base::Known::kNo;
     }
   }
-  session_->model().for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
-                                      std::optional<Timepoint> when) {
-    const auto literal = Literal::positive(variable);
-    const auto time = when.value_or(0);
+  session_->model().for_each_atom([&](const compiler::AtomRef& atom) {
+    const auto literal = atom.literal();
+    const auto kind = atom.kind;
+    const auto& name = atom.name;
+    const auto time = atom.time.value_or(0);
     const auto among = [&](const std::vector<std::string>& names) {
       return std::binary_search(names.begin(), names.end(), name);
     };
@@ -158,7 +160,9 @@ base::Known PlanEnumerator::admits(const Trace& trace,
       assumptions.push_back(among(point.happens) ? literal : ~literal);
     } else if (kind == AtomKind::kResult && time <= n) {
       const auto& point = trace.points[static_cast<std::size_t>(time) - 1];
-      assumptions.push_back(point.returned == name ? literal : ~literal);
+      const auto* returned = std::get_if<compiler::ReturnedObject>(&atom.plan);
+      const bool is_true = returned != nullptr && point.returned == returned->object;
+      assumptions.push_back(is_true ? literal : ~literal);
     } else if (kind == AtomKind::kHoldsAt && time == 0) {
       assumptions.push_back(among(trace.points.front().holds) ? literal : ~literal);
     } else if (kind == AtomKind::kHoldsAt && time == n) {
@@ -175,9 +179,9 @@ void PlanEnumerator::finish() {
   done_ = true;
   std::vector<Literal> unmet;
   for (Timepoint t = first_; t <= n_ && !options_.all_hits; ++t) {
-    unmet.push_back(~*index_.find(AtomKind::kHit, "hit", t));
+    unmet.push_back(~*index_.hit(t));
   }
-  const auto running = index_.find(AtomKind::kRunning, "running", n_);
+  const auto running = index_.running(n_);
   auto going_on = unmet;
   if (running) going_on.push_back(*running);
   switch (session_->solve(n_, going_on)) {
@@ -206,7 +210,7 @@ bool PlanEnumerator::find_open_ends(std::span<const Literal> unmet, bool running
 SolveStatus PlanEnumerator::find_cuts(std::span<const Literal> unmet) {
   std::vector<Literal> assumptions(unmet.begin(), unmet.end());
   for (std::size_t cut = 0; cut < session_->model().plan_cuts.size(); ++cut) {
-    const auto there = index_.find(AtomKind::kLocation, compiler::plan_cut_atom(cut), n_);
+    const auto there = index_.at(compiler::PlanCutId(static_cast<std::uint32_t>(cut)), n_);
     if (!there) continue;
     assumptions.push_back(*there);
     const auto status = session_->solve(n_, assumptions);
@@ -221,7 +225,7 @@ SolveStatus PlanEnumerator::find_cuts(std::span<const Literal> unmet) {
 SolveStatus PlanEnumerator::find_step(std::span<const Literal> unmet) {
   std::vector<std::pair<std::size_t, Literal>> steps;
   for (std::size_t step = 0; step < session_->model().plan.size(); ++step) {
-    const auto there = index_.find(AtomKind::kLocation, 'L' + std::to_string(step), n_);
+    const auto there = index_.at(compiler::PlanStepId(static_cast<std::uint32_t>(step)), n_);
     if (there) steps.emplace_back(step, *there);
   }
   for (;;) {

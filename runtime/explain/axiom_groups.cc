@@ -39,7 +39,7 @@ AxiomGroups group_axioms(const compiler::CompiledModel& model) {
   std::map<std::string, std::size_t> files;
   std::map<Key, std::vector<std::uint32_t>> by_place;
   for (std::uint32_t i = 0; i < model.origins.size(); ++i) {
-    if (!used[i] || model.origins[i].what == compiler::kInvariantOrigin) continue;
+    if (!used[i] || model.origins[i].kind == compiler::OriginKind::kInvariant) continue;
     by_place[key_of(model.origins[i], i, files)].push_back(i);
   }
   AxiomGroups groups;

@@ -16,7 +16,7 @@ constexpr int kMaxParts = 60;
 
 std::string atom_text(const Atom& atom) {
   const auto timed = [&](const char* head) {
-    return head + atom.name + ',' + std::to_string(atom.time.value_or(0)) + ')';
+    return head + printed(atom) + ',' + std::to_string(atom.time.value_or(0)) + ')';
   };
   switch (atom.kind) {
     case AtomKind::kHoldsAt:

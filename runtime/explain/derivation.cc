@@ -8,6 +8,7 @@ namespace parallax::runtime {
 
 using compiler::AtomKind;
 using compiler::Literal;
+using compiler::OriginKind;
 using compiler::Timepoint;
 
 namespace {
@@ -21,10 +22,12 @@ std::uint32_t stage_of(AtomKind kind, Timepoint t) {
   return 2 * static_cast<std::uint32_t>(t) + (kind == AtomKind::kHappens ? 1 : 0);
 }
 
-std::uint8_t phase_of(const std::string& what, bool is_definition, std::size_t size) {
-  if (is_definition || what == "effect axiom" || what == "trajectory axiom") return 0;
-  if (what == "frame axiom") return 1;
-  if (what == "completion") return 4;
+std::uint8_t phase_of(OriginKind kind, bool is_definition, std::size_t size) {
+  if (is_definition || kind == OriginKind::kEffectAxiom || kind == OriginKind::kTrajectoryAxiom) {
+    return 0;
+  }
+  if (kind == OriginKind::kFrameAxiom) return 1;
+  if (kind == OriginKind::kCompletion) return 4;
   return size == 1 ? 2 : 3;
 }
 
@@ -45,10 +48,10 @@ Derivation::Derivation(const compiler::CompiledModel& model, Timepoint n, std::v
 
 void Derivation::find_stages() {
   stages_.assign(values_.size(), kNoStage);
-  model_.for_each_atom(
-      [&](std::int32_t variable, AtomKind kind, const std::string&, std::optional<Timepoint> time) {
-        if (time) stages_[static_cast<std::size_t>(variable) - 1] = stage_of(kind, *time);
-      });
+  model_.for_each_atom([&](const compiler::AtomRef& atom) {
+    if (!atom.time) return;
+    stages_[static_cast<std::size_t>(atom.variable) - 1] = stage_of(atom.kind, *atom.time);
+  });
   for (std::size_t v = 0; v < model_.fixed.size(); ++v) {
     const auto& atom = model_.fixed[v];
     if (atom.time && atom.kind != AtomKind::kAuxiliary)
@@ -64,15 +67,15 @@ void Derivation::sort_clauses() {
   phases_.assign(model_.clauses.size(), 0);
   std::vector<std::uint32_t> meets(model_.fixed.size(), last);
   for (std::size_t i = 0; i < model_.clauses.size(); ++i) {
-    const auto& what = model_.origins[model_.clause_origins[i]].what;
-    if (model_.clause_timepoints[i] > n_ || what == compiler::kInvariantOrigin) continue;
+    const auto kind = model_.origins[model_.clause_origins[i]].kind;
+    if (model_.clause_timepoints[i] > n_ || kind == OriginKind::kInvariant) continue;
     std::uint32_t stage = 0;
     for (const auto literal : model_.clauses[i]) {
       const auto own = stages_[static_cast<std::size_t>(literal.var()) - 1];
       if (own != kNoStage) stage = std::max(stage, own);
     }
     clause_stages_[i] = stage;
-    phases_[i] = phase_of(what, model_.clause_is_definition[i], model_.clauses[i].size());
+    phases_[i] = phase_of(kind, model_.clause_is_definition[i], model_.clauses[i].size());
     schedule_.push_back(i);
     for (const auto literal : model_.clauses[i]) {
       const auto v = static_cast<std::size_t>(literal.var()) - 1;

@@ -50,7 +50,7 @@ void ExecutionFormula::choose_length(
   std::vector<Literal> some;
   for (Timepoint n = 1; n <= model_.horizon; ++n) {
     some.push_back(ends(n));
-    const auto hit = index.find(compiler::AtomKind::kHit, "hit", n);
+    const auto hit = index.hit(n);
     PARALLAX_REQUIRE(hit.has_value(), "every timepoint from 1 has its hit atom");
     const Literal hits[] = {~ends(n), *hit};
     const Literal reached[] = {~ends(n), reaches(n)};

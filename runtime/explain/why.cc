@@ -13,6 +13,7 @@ namespace {
 using compiler::AtomKind;
 using compiler::CompiledModel;
 using compiler::Literal;
+using compiler::OriginKind;
 using compiler::Timepoint;
 
 class Explainer {
@@ -37,16 +38,16 @@ class Explainer {
   }
 
  private:
-  const std::string& what(std::size_t clause) const {
-    return model_.origins[model_.clause_origins[clause]].what;
+  OriginKind kind(std::size_t clause) const {
+    return model_.origins[model_.clause_origins[clause]].kind;
   }
   bool is_effect(std::size_t clause) const {
-    return what(clause) == "effect axiom" || what(clause) == "trajectory axiom";
+    return kind(clause) == OriginKind::kEffectAxiom || kind(clause) == OriginKind::kTrajectoryAxiom;
   }
   bool is_inertia(Literal fact) const {
     const auto reason = derivation_.reason(fact.var());
     const auto atom = model_.atom(fact.var());
-    return reason != Derivation::kChosen && what(reason) == "frame axiom" &&
+    return reason != Derivation::kChosen && kind(reason) == OriginKind::kFrameAxiom &&
            atom.time.value_or(0) > 0 && !premises(reason, fact).empty();
   }
 
@@ -118,7 +119,7 @@ class Explainer {
 
   WhyKind kind_of(std::size_t reason, const WhyStep& step) const {
     if (is_effect(reason)) return WhyKind::kEffect;
-    if (what(reason) == "completion") return WhyKind::kCompletion;
+    if (kind(reason) == OriginKind::kCompletion) return WhyKind::kCompletion;
     return step.premises.empty() ? WhyKind::kStated : WhyKind::kAxiom;
   }
 
@@ -152,7 +153,8 @@ class Explainer {
 
   void note_others(Literal fact, WhyStep& step) {
     for (const auto clause : derivation_.other_reasons(fact)) {
-      if (!is_effect(clause) && !(options_.alternatives && what(clause) == "frame axiom")) continue;
+      if (!is_effect(clause) && !(options_.alternatives && kind(clause) == OriginKind::kFrameAxiom))
+        continue;
       step.also.push_back(clause);
       if (!options_.alternatives) continue;
       for (const auto premise : premises(clause, fact)) open_.push_back(premise);

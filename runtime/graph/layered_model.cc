@@ -148,8 +148,9 @@ class Splitter {
     }
     if (fits) return true;
     const auto& origin = model_.origins[model_.clause_origins[c]];
-    reason_ = fmt::format("the clauses of `{}` look at more than two neighbouring timepoints",
-                          origin.text.empty() ? origin.what : origin.text);
+    reason_ =
+        fmt::format("the clauses of `{}` look at more than two neighbouring timepoints",
+                    origin.text.empty() ? to_string(origin.kind) : std::string_view(origin.text));
     return false;
   }
 

@@ -41,19 +41,17 @@ std::pair<Timepoint, Timepoint> TraceReplay::lengths() const {
 
 TraceReplay::Units TraceReplay::units_of(const ClaimedTrace& trace) const {
   Units units;
-  model_->for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
-                            std::optional<Timepoint> time) {
-    const auto needed = time.value_or(0) + (kind == AtomKind::kHappens ? 1 : 0);
+  model_->for_each_atom([&](const compiler::AtomRef& atom) {
+    const auto needed = atom.time.value_or(0) + (atom.kind == AtomKind::kHappens ? 1 : 0);
     if (needed > trace.length()) return;
-    const auto* claims = claims_of(trace, kind, time);
+    const auto* claims = claims_of(trace, atom.kind, atom.time);
     if (claims == nullptr) return;
-    const auto value = claims->value(name);
+    const auto value = claims->value(atom.name);
     if (!value) {
       ++units.hidden;
       return;
     }
-    const auto literal = Literal::positive(variable);
-    units.said.push_back({*value ? literal : ~literal, needed});
+    units.said.push_back({*value ? atom.literal() : ~atom.literal(), needed});
   });
   return units;
 }
@@ -109,7 +107,7 @@ ReplayVerdict TraceReplay::replay(const ClaimedTrace& trace) {
   std::vector<Literal> hits;
   if (model_->has_constraints) {
     for (Timepoint t = 1; t <= length; ++t) {
-      const auto hit = index_.find(AtomKind::kHit, "hit", t);
+      const auto hit = index_.hit(t);
       PARALLAX_REQUIRE(hit.has_value(), "every timepoint from 1 has its hit atom");
       hits.push_back(t < length ? ~*hit : *hit);
     }
@@ -148,7 +146,7 @@ ReplayVerdict TraceReplay::find_end(const Units& units, Timepoint length) {
   ReplayVerdict verdict;
   std::vector<Literal> no_hits;
   for (Timepoint t = 1; t < length; ++t) {
-    no_hits.push_back(~*index_.find(AtomKind::kHit, "hit", t));
+    no_hits.push_back(~*index_.hit(t));
     const auto status = solve(units, length, no_hits);
     if (status == SolveStatus::kSatisfiable) continue;
     verdict.kind = status == SolveStatus::kUnsatisfiable ? Kind::kNoFirstHit : Kind::kUnknown;
@@ -164,7 +162,7 @@ UnsatCore TraceReplay::blame(const ClaimedTrace& trace, Timepoint timepoint) con
   // The claims join as definitions: those are never left out of a core.
   auto model = *model_;
   const auto origin = static_cast<std::uint32_t>(model.origins.size());
-  model.origins.push_back({{}, "trace"});
+  model.origins.push_back({{}, compiler::OriginKind::kTrace});
   for (const auto& unit : units_of(trace).said) {
     if (unit.needed > timepoint) continue;
     model.clauses.add(std::span(&unit.literal, 1));

@@ -9,7 +9,7 @@ SelectedOrigins::SelectedOrigins(const compiler::CompiledModel& model, compiler:
   for (std::size_t i = 0; i < model.clauses.size(); ++i) {
     const auto origin = model.clause_origins[i];
     if (model.clause_timepoints[i] > n) continue;
-    if (model.origins[origin].what == compiler::kInvariantOrigin) continue;
+    if (model.origins[origin].kind == compiler::OriginKind::kInvariant) continue;
     clause.assign(model.clauses[i].begin(), model.clauses[i].end());
     if (!model.clause_is_definition[i]) clause.push_back(~selector(origin));
     solver_->add_clause(clause);

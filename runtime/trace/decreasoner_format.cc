@@ -4,7 +4,6 @@
 #include <iterator>
 #include <string_view>
 
-#include "compiler/artifact/origin_kinds.h"
 #include "compiler/base/line_diff.h"
 #include "compiler/base/whole_number.h"
 
@@ -51,7 +50,7 @@ void append_sorted(Lines lines, Lines& out) {
 std::vector<bool> unmentioned(const CompiledModel& model) {
   std::vector<bool> result(static_cast<std::size_t>(model.variable_count()) + 1, false);
   for (std::size_t i = 0; i < model.clauses.size(); ++i) {
-    if (model.origins[model.clause_origins[i]].what != compiler::kUnmentionedOrigin) continue;
+    if (model.origins[model.clause_origins[i]].kind != compiler::OriginKind::kUnmentioned) continue;
     for (const auto literal : model.clauses[i]) {
       result[static_cast<std::size_t>(literal.var())] = true;
     }
@@ -81,18 +80,17 @@ void DecreasonerFormat::collect(const CompiledModel& model) {
   const auto add = [&](AtomKind kind, const std::string& name, std::optional<Timepoint> time) {
     propositions_.push_back({kind, name, time, line_of(kind, name, time)});
   };
-  model.for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
-                          std::optional<Timepoint> time) {
-    if (silent[static_cast<std::size_t>(variable)]) return;
-    switch (kind) {
+  model.for_each_atom([&](const compiler::AtomRef& atom) {
+    if (silent[static_cast<std::size_t>(atom.variable)]) return;
+    switch (atom.kind) {
       case AtomKind::kHoldsAt:
-        holds_[static_cast<std::size_t>(*time)].push_back(name);
-        add(kind, name, time);
+        holds_[static_cast<std::size_t>(*atom.time)].push_back(atom.name);
+        add(atom.kind, atom.name, atom.time);
         break;
       case AtomKind::kHappens:
       case AtomKind::kReleasedAt:
       case AtomKind::kPredicate:
-        add(kind, name, time);
+        add(atom.kind, atom.name, atom.time);
         break;
       case AtomKind::kLocation:
       case AtomKind::kHit:

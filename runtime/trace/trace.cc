@@ -1,62 +1,54 @@
 #include "runtime/trace/trace.h"
 
 #include <algorithm>
-#include <charconv>
-#include <string_view>
 
 namespace parallax::runtime {
 
 using compiler::AtomKind;
 using compiler::Literal;
 
-namespace {
-
-/// Location atoms are named L0, L1, ... after the plan's steps; terminals have other names.
-std::optional<std::size_t> step_number(std::string_view name, std::size_t count) {
-  if (!name.starts_with('L')) return std::nullopt;
-  std::size_t number = 0;
-  const auto* end = name.data() + name.size();
-  const auto [stop, error] = std::from_chars(name.data() + 1, end, number);
-  if (error != std::errc() || stop != end || number >= count) return std::nullopt;
-  return number;
-}
-
-}  // namespace
-
 Trace decode_trace(const CompiledModel& model, Timepoint length,
                    const std::function<bool(Literal)>& value) {
   Trace trace;
   trace.points.resize(static_cast<std::size_t>(length) + 1);
-  model.for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
-                          std::optional<Timepoint> time) {
-    if (time.value_or(0) + (kind == AtomKind::kHappens ? 1 : 0) > length) return;
-    if (!value(Literal::positive(variable))) return;
-    if (!time) {
-      if (kind == AtomKind::kPredicate) trace.predicates.push_back(name);
+  model.for_each_atom([&](const compiler::AtomRef& atom) {
+    if (atom.time.value_or(0) + (atom.kind == AtomKind::kHappens ? 1 : 0) > length) return;
+    if (!value(atom.literal())) return;
+    if (!atom.time) {
+      if (atom.kind == AtomKind::kPredicate) trace.predicates.push_back(atom.name);
       return;
     }
-    auto& point = trace.points[static_cast<std::size_t>(*time)];
-    switch (kind) {
+    const auto time = static_cast<std::size_t>(*atom.time);
+    auto& point = trace.points[time];
+    switch (atom.kind) {
       case AtomKind::kHoldsAt:
-        point.holds.push_back(name);
+        point.holds.push_back(atom.name);
         break;
       case AtomKind::kHappens:
-        point.happens.push_back(name);
+        point.happens.push_back(atom.name);
         break;
       case AtomKind::kReleasedAt:
-        point.released.push_back(name);
+        point.released.push_back(atom.name);
         break;
       case AtomKind::kLocation:
-        if (*time < length) point.plan_step = step_number(name, model.plan.size());
+        // A choice that is taken here says nothing of the step.
+        if (*atom.time == length) break;
+        if (const auto* step = std::get_if<compiler::PlanStepId>(&atom.plan)) {
+          if (step->index() < model.plan.size()) point.plan_step = step->index();
+        }
         break;
       case AtomKind::kSucceeded:
-        trace.points[static_cast<std::size_t>(*time) - 1].succeeded = true;
+        trace.points[time - 1].succeeded = true;
         break;
       case AtomKind::kResult:
-        trace.points[static_cast<std::size_t>(*time) - 1].returned = name;
+        if (const auto* returned = std::get_if<compiler::ReturnedObject>(&atom.plan)) {
+          trace.points[time - 1].returned = returned->object;
+        }
         break;
       case AtomKind::kRegister:
-        point.registers.emplace(name.substr(0, name.find('=')), name.substr(name.find('=') + 1));
+        if (const auto* known = std::get_if<compiler::RegisterValue>(&atom.plan)) {
+          point.registers.emplace(known->name, known->object);
+        }
         break;
       case AtomKind::kPredicate:
       case AtomKind::kHit:

@@ -65,9 +65,8 @@ TraceList solver_valuations(const compiler::CompiledModel& model, std::size_t li
   TraceList list;
   const auto points = static_cast<std::size_t>(model.horizon) + 1;
   auto& predicates = list.predicates.emplace();
-  model.for_each_atom([&](std::int32_t, AtomKind kind, const std::string& name,
-                          std::optional<compiler::Timepoint>) {
-    if (kind == AtomKind::kPredicate) predicates.insert(name);
+  model.for_each_atom([&](const compiler::AtomRef& atom) {
+    if (atom.kind == AtomKind::kPredicate) predicates.insert(atom.name);
   });
   while (list.traces.size() < limit) {
     if (session.solve(model.horizon, {}) != runtime::SolveStatus::kSatisfiable) {
@@ -79,13 +78,14 @@ TraceList solver_valuations(const compiler::CompiledModel& model, std::size_t li
                     std::vector<std::set<std::string>>(points),
                     {}};
     std::vector<Literal> others;
-    model.for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
-                            std::optional<compiler::Timepoint> time) {
-      const auto literal = Literal::positive(variable);
+    model.for_each_atom([&](const compiler::AtomRef& atom) {
+      const auto literal = atom.literal();
       const bool value = session.value(literal);
       others.push_back(value ? ~literal : literal);
       if (!value) return;
-      const auto t = static_cast<std::size_t>(time.value_or(0));
+      const auto kind = atom.kind;
+      const auto& name = atom.name;
+      const auto t = static_cast<std::size_t>(atom.time.value_or(0));
       if (kind == AtomKind::kHoldsAt) trace.holds[t].insert(name);
       if (kind == AtomKind::kHappens) trace.happens[t].insert(name);
       if (kind == AtomKind::kReleasedAt) trace.released[t].insert(name);

@@ -14,8 +14,8 @@ inline std::string place_text(const compiler::Origin& origin) {
 
 /// The text of an axiom; of a frame axiom what its declaration stands for.
 inline std::string axiom_text(const compiler::Origin& origin) {
-  if (origin.what == "frame axiom") return "inertia of " + origin.text;
-  return origin.text.empty() ? origin.what : origin.text;
+  if (origin.kind == compiler::OriginKind::kFrameAxiom) return "inertia of " + origin.text;
+  return origin.text.empty() ? std::string(to_string(origin.kind)) : origin.text;
 }
 
 }  // namespace parallax::tools

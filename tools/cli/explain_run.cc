@@ -51,16 +51,15 @@ class Observation {
   ObservedRun make(const json& discrepancy) {
     const auto last = discrepancy.value("first_divergence", 0);
     run_.observed.length = std::clamp(last, 0, model_.horizon);
-    model_.for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
-                             std::optional<Timepoint> time) {
-      if (!time || *time >= run_.observed.length) return;
-      const auto t = static_cast<std::size_t>(*time);
-      if (kind == AtomKind::kHappens && t < trace_.events.size()) {
-        state(variable, trace_.events[t] == name);
+    model_.for_each_atom([&](const compiler::AtomRef& atom) {
+      if (!atom.time || *atom.time >= run_.observed.length) return;
+      const auto t = static_cast<std::size_t>(*atom.time);
+      if (atom.kind == AtomKind::kHappens && t < trace_.events.size()) {
+        state(atom.variable, trace_.events[t] == atom.name);
       }
-      if (kind == AtomKind::kHoldsAt && t == 0 && !trace_.holds.empty()) {
+      if (atom.kind == AtomKind::kHoldsAt && t == 0 && !trace_.holds.empty()) {
         const auto& holds = trace_.holds.front();
-        state(variable, std::find(holds.begin(), holds.end(), name) != holds.end());
+        state(atom.variable, std::find(holds.begin(), holds.end(), atom.name) != holds.end());
       }
     });
     for (Timepoint t = 0; t < run_.observed.length; ++t) {

@@ -63,7 +63,7 @@ class SetWriter {
       list.push_back({{"file", origin.place.file},
                       {"line", origin.place.begin.line},
                       {"column", origin.place.begin.column},
-                      {"what", origin.what},
+                      {"what", to_string(origin.kind)},
                       {"text", origin.text},
                       {"instances", instances_of(group)}});
     }

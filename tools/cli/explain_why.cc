@@ -65,14 +65,13 @@ std::optional<ValuedTrace> value(const compiler::CompiledModel& model,
                                  const runtime::Trace& trace) {
   runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
   std::vector<Literal> assumptions;
-  model.for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string& name,
-                          std::optional<compiler::Timepoint> time) {
+  model.for_each_atom([&](const compiler::AtomRef& atom) {
+    const auto& [kind, time] = std::tie(atom.kind, atom.time);
     const auto t = time.value_or(0) + (kind == AtomKind::kHappens ? 1 : 0);
     if (t > trace.length()) return;
     const auto has = [&](const std::vector<std::string>& names) {
-      const auto literal = Literal::positive(variable);
-      assumptions.push_back(std::binary_search(names.begin(), names.end(), name) ? literal
-                                                                                 : ~literal);
+      const bool is_true = std::binary_search(names.begin(), names.end(), atom.name);
+      assumptions.push_back(is_true ? atom.literal() : ~atom.literal());
     };
     if (kind == AtomKind::kPredicate && !time) has(trace.predicates);
     if (!time) return;

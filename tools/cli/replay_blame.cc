@@ -60,7 +60,7 @@ std::optional<Blame> core_blame(const compiler::Compilation& compilation,
   Blame blame{verdict.timepoint, {}, {}};
   for (const auto index : core.origins) {
     const auto& origin = compilation.model.origins[index];
-    auto note = note_at(origin.source, origin.what);
+    auto note = note_at(origin.source, std::string(to_string(origin.kind)));
     // In a compiled model the source is a line of that file.
     if (compilation.typed == nullptr) {
       note.text += fmt::format(" of {}:{}", origin.place.file, origin.place.begin.line);

@@ -49,7 +49,7 @@ base::Known report_if_unsatisfiable(const compiler::CompiledModel& model, compil
   const auto first = blamed.empty() ? base::SourceRange{} : blamed.front()->source;
   auto diagnostic = sink.error(base::DiagnosticCode::kModelUnsatisfiable, first, steps);
   for (const auto* origin : blamed) {
-    diagnostic.note(origin->source, fmt::format("this {} takes part", origin->what));
+    diagnostic.note(origin->source, fmt::format("this {} takes part", to_string(origin->kind)));
   }
   diagnostic.note(proof_remark(model, steps, core.origins));
   if (!core.is_minimal) diagnostic.note("stopped: not every one of them may be needed");
@@ -109,7 +109,7 @@ base::Status EnumeratedTraces::explain_absence() const {
     return sink.already_reported();
   }
   for (const auto& origin : model_->origins) {
-    if (origin.what != "state constraint") continue;
+    if (origin.kind != compiler::OriginKind::kStateConstraint) continue;
     sink.warning(base::DiagnosticCode::kNoTraceReachesConstraint, origin.source, model_->horizon);
   }
   return base::Unit{};

@@ -185,7 +185,8 @@ class TraceFileReplay {
                                                  : fmt::format("do not hold at {}", timepoint);
     base::DiagnosticNote note{std::nullopt, "the state constraints " + text};
     for (const auto& origin : model_.origins) {
-      if (origin.what == "state constraint" && !note.range) note.range = origin.source;
+      if (origin.kind == compiler::OriginKind::kStateConstraint && !note.range)
+        note.range = origin.source;
     }
     const auto range = note.range.value_or(trace.source);
     sink_.error(DiagnosticCode::kTraceNoFirstHit, range, trace.number, text);

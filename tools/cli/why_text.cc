@@ -54,17 +54,18 @@ std::string WhyText::state(Literal literal) const {
     case AtomKind::kReleasedAt:
       return atom.name + (is ? " is released from inertia" : " is subject to inertia");
     case AtomKind::kLocation:
-      return (is ? "the plan is at " : "the plan is not at ") + atom.name;
+      return (is ? "the plan is at " : "the plan is not at ") + printed(atom);
     case AtomKind::kHit:
       return is ? "the state constraints hold" : "the state constraints do not hold";
     case AtomKind::kRunning:
       return is ? "the plan goes on" : "the plan has ended";
     case AtomKind::kSucceeded:
-      return "the perform at " + atom.name + (is ? " succeeded" : " did not succeed");
+      return "the perform at " + printed(atom) + (is ? " succeeded" : " did not succeed");
     case AtomKind::kResult:
-      return "the perform before " + std::string(is ? "returned " : "did not return ") + atom.name;
+      return "the perform before " + std::string(is ? "returned " : "did not return ") +
+             printed(atom);
     case AtomKind::kRegister:
-      return std::string(is ? "the plan knows " : "the plan does not know ") + atom.name;
+      return std::string(is ? "the plan knows " : "the plan does not know ") + printed(atom);
     case AtomKind::kPredicate:
     case AtomKind::kAuxiliary:
     case AtomKind::kUnused:
@@ -172,7 +173,7 @@ std::string WhyText::json(const TraceFact& fact, std::optional<Literal> asked,
   const auto place = [](const compiler::Origin& origin) {
     return ordered_json{{"file", origin.place.file},
                         {"line", origin.place.begin.line},
-                        {"what", origin.what},
+                        {"what", to_string(origin.kind)},
                         {"text", origin.text}};
   };
   const auto names = [&](const std::vector<Literal>& literals) {

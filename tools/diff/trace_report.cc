@@ -87,7 +87,8 @@ std::string witness_text(const SideView& side, bool lost) {
   for (const auto i : witness.excluding) {
     const auto& origin = side.refused.compiled->origins[i];
     const auto* mark = side.edited_places.contains(place_of(origin)) ? " (edited)" : "";
-    out += fmt::format("      {}  {}: {}{}\n", place_of(origin), origin.what, origin.text, mark);
+    out += fmt::format("      {}  {}: {}{}\n", place_of(origin), to_string(origin.kind),
+                       origin.text, mark);
   }
   if (side.edits && !side.edits->empty()) {
     out +=
@@ -159,7 +160,7 @@ Json witness_json(const SideView& side, bool lost) {
   out["contradicts"] = Json::array();
   for (const auto i : witness.excluding) {
     const auto& origin = side.refused.compiled->origins[i];
-    out["contradicts"].push_back({{"what", origin.what},
+    out["contradicts"].push_back({{"what", to_string(origin.kind)},
                                   {"text", origin.text},
                                   {"file", origin.place.file},
                                   {"line", origin.place.begin.line},

@@ -108,8 +108,8 @@ TEST_CASE("an axiom that goes takes its own clauses along, and nothing else move
   const WrittenModel after(text);
   const auto gone = added(after.artifact(), before.artifact());
   const auto came = added(before.artifact(), after.artifact());
-  // Gone: the hashes of text and lines, the axiom, its run, its clause, the header. Came: hashes and
-  // header; the next axiom's place is relative to the one that went.
+  // Gone: the hashes of text and lines, the axiom, its run, its clause, the header. Came: hashes
+  // and header; the next axiom's place is relative to the one that went.
   CHECK(gone.size() == 7);
   CHECK(came.size() == 4);
   CHECK(std::any_of(came.begin(), came.end(),
@@ -134,7 +134,8 @@ TEST_CASE("ids of axioms depend on their text alone") {
   CHECK(ids.size() == model.compiled.origins.size());
   std::vector<std::string> equal;
   for (const auto& origin : model.compiled.origins) {
-    if (origin.what == "axiom" && !origin.text.starts_with("!")) equal.push_back(origin.id);
+    if (origin.kind == compiler::OriginKind::kAxiom && !origin.text.starts_with("!"))
+      equal.push_back(origin.id);
   }
   REQUIRE(equal.size() == 2);
   CHECK(equal[1] == equal[0] + ".2");

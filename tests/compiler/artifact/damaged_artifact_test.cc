@@ -64,6 +64,7 @@ TEST_CASE("every kind of damage has its message") {
   CHECK(codes_of(with(text, "c dec stride ", "c dec stride 9999999")) == "E6012");
   CHECK(codes_of(with(text, "c dec stride ", "c dec colour blue\nc dec stride ")) == "E6003");
   CHECK(codes_of(with(text, "c dec clauses ", "c dec clauses x")) == "E6010");
+  CHECK(codes_of(with(text, "\"effect axiom\"", "\"side effect\"")) == "E6003");
   CHECK(codes_of(with(text, "p cnf ", "p cnf 1")) == "E6008");
   CHECK(codes_of(with(text, "c p show ", "c p show 1 ")) == "E6013");
   CHECK(codes_of(with(text, "c dec hash fnv1a64 ", "c dec hash fnv1a64 0")) == "E6003");

@@ -30,7 +30,7 @@ std::set<std::string> invariants_of(const std::string& text) {
   std::set<std::string> found;
   for (const auto& section : model.sections) {
     for (auto i = section.begin; i < section.begin + section.clauses; ++i) {
-      if (model.origins[model.clause_origins[i]].what != compiler::kInvariantOrigin) continue;
+      if (model.origins[model.clause_origins[i]].kind != compiler::OriginKind::kInvariant) continue;
       std::set<std::string> literals;
       for (const auto literal : model.clauses[i]) {
         const auto atom = model.atom(literal.var());

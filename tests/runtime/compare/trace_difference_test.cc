@@ -121,15 +121,14 @@ bool allows(const CompiledModel& model, const std::set<std::uint32_t>& origins,
   }
   runtime::SolverSession session(part, runtime::make_cadical_solver());
   std::vector<compiler::Literal> observation;
-  model.for_each_atom([&](std::int32_t variable, compiler::AtomKind kind, const std::string& name,
-                          std::optional<Timepoint> time) {
-    const bool happens = kind == compiler::AtomKind::kHappens;
-    if (!happens && kind != compiler::AtomKind::kHoldsAt) return;
-    if (*time + (happens ? 1 : 0) > by || !lists.is_shared(name)) return;
-    const auto& point = trace.points[static_cast<std::size_t>(*time)];
+  model.for_each_atom([&](const compiler::AtomRef& atom) {
+    const bool happens = atom.kind == compiler::AtomKind::kHappens;
+    if (!happens && atom.kind != compiler::AtomKind::kHoldsAt) return;
+    if (*atom.time + (happens ? 1 : 0) > by || !lists.is_shared(atom.name)) return;
+    const auto& point = trace.points[static_cast<std::size_t>(*atom.time)];
     const auto& names = happens ? point.happens : point.holds;
-    const auto literal = compiler::Literal::positive(variable);
-    observation.push_back(std::count(names.begin(), names.end(), name) != 0 ? literal : ~literal);
+    const bool is_true = std::count(names.begin(), names.end(), atom.name) != 0;
+    observation.push_back(is_true ? atom.literal() : ~atom.literal());
   });
   return session.solve(by, observation) == runtime::SolveStatus::kSatisfiable;
 }

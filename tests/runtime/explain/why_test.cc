@@ -142,11 +142,10 @@ bool follows(const compiler::CompiledModel& model, const std::vector<bool>& valu
       solver->add_clause(model.clauses[i]);
     }
   }
-  model.for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string&,
-                          std::optional<compiler::Timepoint>) {
-    if (kind != AtomKind::kReleasedAt) return;
-    const auto literal = Literal::positive(variable);
-    solver->assume(values[static_cast<std::size_t>(variable) - 1] ? literal : ~literal);
+  model.for_each_atom([&](const compiler::AtomRef& atom) {
+    if (atom.kind != AtomKind::kReleasedAt) return;
+    const auto literal = atom.literal();
+    solver->assume(values[static_cast<std::size_t>(atom.variable) - 1] ? literal : ~literal);
   });
   for (const auto premise : step.premises) solver->assume(premise);
   for (const auto premise : step.absent) solver->assume(premise);
@@ -161,11 +160,11 @@ TEST_CASE("each step of random models follows from its axiom and from facts told
     if (model.sink.has_errors()) continue;
     const auto& compiled = model.compiled;
     for (const auto& values : valuations(compiled, 2)) {
-      compiled.for_each_atom([&](std::int32_t variable, AtomKind kind, const std::string&,
-                                 std::optional<compiler::Timepoint> time) {
-        if ((kind != AtomKind::kHoldsAt && kind != AtomKind::kHappens) || *time == 0) return;
-        const auto positive = Literal::positive(variable);
-        const auto asked = values[static_cast<std::size_t>(variable) - 1] ? positive : ~positive;
+      compiled.for_each_atom([&](const compiler::AtomRef& atom) {
+        const bool observable = atom.kind == AtomKind::kHoldsAt || atom.kind == AtomKind::kHappens;
+        if (!observable || *atom.time == 0) return;
+        const bool is_true = values[static_cast<std::size_t>(atom.variable) - 1];
+        const auto asked = is_true ? atom.literal() : ~atom.literal();
         const auto steps = runtime::explain_fact(compiled, compiled.horizon, values, asked);
         ++chains;
         REQUIRE(!steps.empty());

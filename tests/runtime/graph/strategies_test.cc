@@ -140,10 +140,9 @@ TEST_CASE("a level with many children is halved and the list stays the same") {
   for (const std::size_t most : {1U, 2U, 3U, 15U}) {
     runtime::SolverSession session(model.compiled, runtime::make_cadical_solver());
     std::vector<compiler::Literal> atoms;
-    model.compiled.for_each_atom([&](std::int32_t variable, compiler::AtomKind kind,
-                                     const std::string&, std::optional<runtime::Timepoint>) {
-      if (kind == compiler::AtomKind::kHoldsAt || kind == compiler::AtomKind::kHappens) {
-        atoms.push_back(compiler::Literal::positive(variable));
+    model.compiled.for_each_atom([&](const compiler::AtomRef& atom) {
+      if (atom.kind == compiler::AtomKind::kHoldsAt || atom.kind == compiler::AtomKind::kHappens) {
+        atoms.push_back(atom.literal());
       }
     });
     runtime::TraceTree tree(session, {atoms}, "tree", most);

@@ -232,7 +232,7 @@ TEST_CASE("the first timepoint that fails is named, and a core of what it contra
   const auto core = replay.blame(trace, 2);
   REQUIRE(core.status == runtime::SolveStatus::kUnsatisfiable);
   REQUIRE(core.origins.size() == 1);
-  CHECK(model.compiled.origins[core.origins.front()].what == "frame axiom");
+  CHECK(model.compiled.origins[core.origins.front()].kind == compiler::OriginKind::kFrameAxiom);
 }
 
 TEST_CASE("with no values of the rest, several origins are blamed together") {

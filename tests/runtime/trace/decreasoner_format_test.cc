@@ -40,9 +40,8 @@ std::vector<runtime::Trace> all_models(const compiler::CompiledModel& model) {
     const auto value = [&](compiler::Literal literal) { return session.value(literal); };
     found.push_back(runtime::decode_trace(model, model.horizon, value));
     std::vector<compiler::Literal> blocking;
-    model.for_each_atom([&](std::int32_t variable, compiler::AtomKind, const std::string&,
-                            std::optional<compiler::Timepoint>) {
-      const auto literal = compiler::Literal::positive(variable);
+    model.for_each_atom([&](const compiler::AtomRef& atom) {
+      const auto literal = atom.literal();
       blocking.push_back(value(literal) ? ~literal : literal);
     });
     session.add_clause(blocking);
