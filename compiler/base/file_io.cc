@@ -8,29 +8,11 @@
 #include <cerrno>
 #include <cstring>
 
+#include "compiler/base/descriptor.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/utf8.h"
 
 namespace parallax::base {
-namespace {
-
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  int get() const { return fd_; }
-  bool valid() const { return fd_ >= 0; }
-
- private:
-  int fd_;
-};
-
-}  // namespace
-
 bool write_all(int fd, std::string_view text) {
   while (!text.empty()) {
     const auto written = ::write(fd, text.data(), text.size());

@@ -2,19 +2,18 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <linux/close_range.h>
 #include <poll.h>
 #include <signal.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <mutex>
 #include <thread>
+
+#include "compiler/base/subprocess.h"
 
 namespace parallax::harness {
 namespace {
@@ -33,95 +32,9 @@ void ignore_sigpipe() {
   std::call_once(once, [] { ::signal(SIGPIPE, SIG_IGN); });
 }
 
-void close_fd(int& fd) {
-  if (fd >= 0) ::close(fd);
-  fd = -1;
-}
-
-struct Pipe {
-  int read = -1, write = -1;
-  Pipe() {
-    int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) == 0) read = ends[0], write = ends[1];
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  ~Pipe() {
-    close_fd(read);
-    close_fd(write);
-  }
-  bool valid() const { return read >= 0; }
-};
-
-int take(int& fd) {
-  const int out = fd;
-  fd = -1;
-  return out;
-}
-
 std::string ending_text(const siginfo_t& info) {
   if (info.si_code == CLD_EXITED) return fmt::format("exit status {}", info.si_status);
   return fmt::format("signal {} ({})", info.si_status, ::strsignal(info.si_status));
-}
-
-/// What the child needs to become the command; made before the fork, as only calls that are safe in
-/// a signal handler may follow it.
-struct ChildPlan {
-  std::vector<char*> arguments;
-  int input, output, errors, report;
-  pid_t parent;
-};
-
-/// Every other descriptor is closed by the exec.
-void close_on_exec_from(int first) {
-  if (::close_range(static_cast<unsigned>(first), ~0U, CLOSE_RANGE_CLOEXEC) == 0) return;
-  const long limit = ::sysconf(_SC_OPEN_MAX);  // a kernel before 5.11
-  for (int fd = first; fd < limit; ++fd) ::fcntl(fd, F_SETFD, FD_CLOEXEC);
-}
-
-/// In the child. Comes back, with errno, only when the command could not be started.
-void become(const ChildPlan& plan) {
-  // No spawn attribute offers this. The parent may have gone before it was asked for.
-  if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return;
-  if (::getppid() != plan.parent) ::_exit(EXIT_FAILURE);
-  if (::setsid() < 0) return;
-  if (::dup2(plan.input, STDIN_FILENO) < 0 || ::dup2(plan.output, STDOUT_FILENO) < 0 ||
-      ::dup2(plan.errors, STDERR_FILENO) < 0) {
-    return;
-  }
-  close_on_exec_from(STDERR_FILENO + 1);
-  // Default signals: what this program ignores or handles is its own affair.
-  for (const int signal : {SIGPIPE, SIGINT, SIGTERM, SIGHUP}) ::signal(signal, SIG_DFL);
-  sigset_t none;
-  sigemptyset(&none);
-  ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  ::execvp(plan.arguments[0], plan.arguments.data());  // glibc's does not allocate
-}
-
-/// The child's number, or -1. A handler of ours must not run in the child, so signals wait.
-pid_t fork_child(const ChildPlan& plan) {
-  sigset_t all, before;
-  sigfillset(&all);
-  ::pthread_sigmask(SIG_SETMASK, &all, &before);
-  const pid_t pid = ::fork();
-  if (pid == 0) {
-    become(plan);
-    const int why = errno;
-    const auto written = ::write(plan.report, &why, sizeof why);
-    ::_exit(written == sizeof why ? EXIT_FAILURE : EXIT_FAILURE + 1);
-  }
-  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  return pid;
-}
-
-/// What the child says of its start: 0 once the exec has closed the pipe's other end.
-int start_failure(int report) {
-  int why = 0;
-  ssize_t count = 0;
-  do {
-    count = ::read(report, &why, sizeof why);
-  } while (count < 0 && errno == EINTR);
-  return count == sizeof why ? why : 0;
 }
 
 }  // namespace
@@ -135,39 +48,35 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, const std::a
 ChildProcess::~ChildProcess() { end(Clock::now()); }
 
 void ChildProcess::start(const std::vector<std::string>& command) {
-  Pipe input, output, errors, report;
-  if (!input.valid() || !output.valid() || !errors.valid() || !report.valid()) {
+  base::Pipe input, output, errors;
+  if (!input.valid() || !output.valid() || !errors.valid()) {
     start_error_ = fmt::format("no pipe: {}", std::strerror(errno));
     return;
   }
-  ChildPlan plan{{}, input.read, output.write, errors.write, report.write, ::getpid()};
-  for (const auto& word : command) plan.arguments.push_back(const_cast<char*>(word.c_str()));
-  plan.arguments.push_back(nullptr);
-  pid_ = fork_child(plan);
-  int failure = pid_ < 0 ? errno : 0;
-  if (pid_ > 0) {
-    close_fd(report.write);
-    failure = start_failure(report.read);
-    if (failure != 0) ::waitpid(pid_, nullptr, 0);
-  }
-  if (failure != 0) {
-    pid_ = -1;
-    start_error_ = fmt::format("cannot start `{}`: {}", command[0], std::strerror(failure));
+  base::SpawnOptions options;
+  options.input = input.read.get();
+  options.output = output.write.get();
+  options.errors = errors.write.get();
+  options.own_session = true;
+  const auto child = base::spawn(command, options);
+  if (child.pid < 0) {
+    start_error_ = fmt::format("cannot start `{}`: {}", command[0], std::strerror(child.error));
     return;
   }
-  input_ = take(input.write);
-  output_ = take(output.read);
-  errors_ = take(errors.read);
-  for (const int fd : {input_, output_, errors_}) ::fcntl(fd, F_SETFL, O_NONBLOCK);
+  pid_ = child.pid;
+  input_ = std::move(input.write);
+  output_ = std::move(output.read);
+  errors_ = std::move(errors.read);
+  for (const auto* end : {&input_, &output_, &errors_}) ::fcntl(end->get(), F_SETFL, O_NONBLOCK);
 }
 
 void ChildProcess::drain_errors() {
   char chunk[4096];
-  while (errors_ >= 0) {
-    const auto count = ::read(errors_, chunk, sizeof chunk);
+  while (errors_.valid()) {
+    const auto count = ::read(errors_.get(), chunk, sizeof chunk);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return;  // nothing there now
-    if (count == 0) return close_fd(errors_);
+    if (count == 0) return errors_.close();
     error_text_.append(chunk, static_cast<std::size_t>(count));
     if (error_text_.size() > 2 * kErrorBytes) {
       error_text_.erase(0, error_text_.size() - kErrorBytes);
@@ -179,8 +88,8 @@ void ChildProcess::drain_errors() {
 bool ChildProcess::poll_once(short output_events, Clock::time_point deadline) {
   const auto left = std::chrono::duration_cast<milliseconds>(deadline - Clock::now());
   const auto slice = std::clamp(left + milliseconds(1), milliseconds(0), milliseconds(kPollSlice));
-  pollfd fds[2] = {{output_events == POLLOUT ? input_ : output_, output_events, 0},
-                   {errors_, POLLIN, 0}};  // poll skips negative descriptors
+  pollfd fds[2] = {{output_events == POLLOUT ? input_.get() : output_.get(), output_events, 0},
+                   {errors_.get(), POLLIN, 0}};  // poll skips negative descriptors
   const int ready = ::poll(fds, 2, static_cast<int>(slice.count()));
   if (ready > 0 && fds[1].revents != 0) drain_errors();
   return ready > 0 && fds[0].revents != 0;
@@ -191,7 +100,7 @@ bool ChildProcess::write_line(std::string_view line, Clock::time_point deadline)
   text += '\n';
   std::string_view rest = text;
   while (!rest.empty()) {
-    const auto count = ::write(input_, rest.data(), rest.size());
+    const auto count = ::write(input_.get(), rest.data(), rest.size());
     if (count > 0) {
       rest.remove_prefix(static_cast<std::size_t>(count));
     } else if (errno == EAGAIN) {
@@ -220,7 +129,7 @@ ChildProcess::Wait ChildProcess::read_line(std::string& line, Clock::time_point 
     if (Clock::now() >= deadline) return Wait::kTimeout;
     if (!poll_once(POLLIN, deadline)) continue;
     char chunk[1 << 14];
-    const auto count = ::read(output_, chunk, sizeof chunk);
+    const auto count = ::read(output_.get(), chunk, sizeof chunk);
     if (count == 0) return Wait::kEnd;
     if (count > 0) buffer_.append(chunk, static_cast<std::size_t>(count));
   }
@@ -235,7 +144,7 @@ bool ChildProcess::has_ended() const {
 
 bool ChildProcess::wait_until_ended(Clock::time_point deadline) {
   for (;;) {
-    if (errors_ >= 0) drain_errors();
+    if (errors_.valid()) drain_errors();
     if (has_ended()) return true;
     if (Clock::now() >= deadline) return false;
     std::this_thread::sleep_for(kReapSlice);
@@ -244,7 +153,7 @@ bool ChildProcess::wait_until_ended(Clock::time_point deadline) {
 
 std::string ChildProcess::end(Clock::time_point deadline) {
   if (pid_ < 0) return ending_;
-  close_fd(input_);
+  input_.close();
   if (!wait_until_ended(deadline)) {
     ::kill(-pid_, SIGTERM);
     wait_until_ended(Clock::now() + kTermGrace);
@@ -256,8 +165,8 @@ std::string ChildProcess::end(Clock::time_point deadline) {
   }
   ending_ = ending_text(info);
   drain_errors();
-  close_fd(output_);
-  close_fd(errors_);
+  output_.close();
+  errors_.close();
   pid_ = -1;
   return ending_;
 }

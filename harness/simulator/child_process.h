@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/descriptor.h"
+
 namespace parallax::harness {
 
 /// One child process with pipes on its three standard descriptors, in a session of its own, so
@@ -49,7 +51,7 @@ class ChildProcess {
   bool stopped() const { return stop_ != nullptr && stop_->load(); }
 
   pid_t pid_ = -1;  // also the process group
-  int input_ = -1, output_ = -1, errors_ = -1;
+  base::Descriptor input_, output_, errors_;
   const std::atomic<bool>* stop_;
   std::string start_error_;
   std::string buffer_;      // read from standard output, not yet returned

@@ -9,45 +9,20 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <csignal>
+
+#include "compiler/base/descriptor.h"
+#include "compiler/base/subprocess.h"
 
 namespace parallax::tools {
 namespace {
 
 /// A program on a busy machine gets a part of a processor; one that waits for ever gets none.
 constexpr double kWallPerCpu = 10.0;
-
-/// A descriptor that is closed at the end of its scope.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int number() const { return number_; }
-
- private:
-  int number_;
-};
-
-/// After fork, in the child: only calls that are allowed there.
-[[noreturn]] void become(char* const* argv, const char* folder, int output, rlim_t cpu_s) {
-  const rlimit no_core{0, 0};
-  ::setrlimit(RLIMIT_CORE, &no_core);
-  const rlimit cpu{cpu_s, cpu_s + 1};
-  ::setrlimit(RLIMIT_CPU, &cpu);
-  const int null = ::open("/dev/null", O_RDWR);
-  ::dup2(null, STDIN_FILENO);
-  ::dup2(output, STDOUT_FILENO);
-  ::dup2(null, STDERR_FILENO);
-  if (*folder != '\0' && ::chdir(folder) != 0) _exit(126);
-  ::execvp(argv[0], argv);
-  _exit(127);
-}
+constexpr int kNoSuchProgram = 127;  // as in shells
 
 double seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
@@ -56,9 +31,9 @@ double seconds(const timeval& time) {
 /// Waits for the end of the child, or kills it at the limit. True if it was killed.
 bool kill_at_limit(pid_t child, double limit_s) {
   // glibc 2.36 declares pidfd_open for C only.
-  const Descriptor handle(static_cast<int>(::syscall(SYS_pidfd_open, child, 0)));
-  if (handle.number() < 0) return false;  // the caller waits without a limit
-  pollfd ended{handle.number(), POLLIN, 0};
+  const base::Descriptor handle(static_cast<int>(::syscall(SYS_pidfd_open, child, 0)));
+  if (handle.get() < 0) return false;  // the caller waits without a limit
+  pollfd ended{handle.get(), POLLIN, 0};
   if (::poll(&ended, 1, static_cast<int>(1e3 * limit_s)) > 0) return false;
   ::kill(child, SIGKILL);
   return true;
@@ -79,20 +54,24 @@ void read_output(int file, ChildRun& run) {
 
 std::optional<ChildRun> run_child(const std::vector<std::string>& command,
                                   const ChildOptions& options) {
-  const Descriptor output(
+  const base::Descriptor output(
       ::open(options.output.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
-  if (output.number() < 0) return std::nullopt;
-  std::vector<std::string> words = command;
-  std::vector<char*> argv;
-  for (auto& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-
+  const base::Descriptor null(::open("/dev/null", O_RDWR | O_CLOEXEC));
+  if (!output.valid() || !null.valid()) return std::nullopt;
+  base::SpawnOptions spawning;
+  spawning.folder = options.folder;
+  spawning.input = null.get();
+  spawning.output = output.get();
+  spawning.errors = null.get();
+  spawning.cpu_limit_s = static_cast<std::uint64_t>(std::ceil(options.time_limit_s));
   const auto begin = std::chrono::steady_clock::now();
-  const pid_t child = ::fork();
-  if (child < 0) return std::nullopt;
-  const auto cpu_s = static_cast<rlim_t>(std::ceil(options.time_limit_s));
-  if (child == 0) become(argv.data(), options.folder.c_str(), output.number(), cpu_s);
+  const auto [child, error] = base::spawn(command, spawning);
   ChildRun run;
+  if (error == ENOENT || error == EACCES || error == ENOEXEC || error == ENOTDIR) {
+    run.code = kNoSuchProgram;
+    return run;
+  }
+  if (child < 0) return std::nullopt;
   run.stopped = kill_at_limit(child, kWallPerCpu * options.time_limit_s);
   int status = 0;
   rusage usage{};
@@ -101,8 +80,8 @@ std::optional<ChildRun> run_child(const std::vector<std::string>& command,
   run.cost.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   run.cost.peak_mb = 1024e-6 * static_cast<double>(usage.ru_maxrss);
   run.stopped = run.stopped || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU);
-  run.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  read_output(output.number(), run);
+  run.code = base::exit_code(status);
+  read_output(output.get(), run);
   return run;
 }
 

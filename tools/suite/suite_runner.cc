@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <csignal>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "compiler/base/file_io.h"
-#include "tools/suite/child_process.h"
+#include "compiler/base/subprocess.h"
 #include "tools/suite/expectation.h"
 #include "tools/suite/text_difference.h"
 
@@ -37,7 +39,26 @@ std::string first_error(const std::string& document) {
   return {};
 }
 
-void report_no_answer(const ChildResult& child, CaseResult& result) {
+constexpr std::size_t kMaxMessageBytes = std::size_t{64} << 10U;
+
+/// Runs this program again with other arguments. When `stop` is raised it is asked to end and
+/// waited for all the same.
+base::Captured run_this_program(const std::vector<std::string>& arguments,
+                                const std::atomic<bool>& stop) {
+  std::vector<std::string> command = {"parallax"};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  base::CaptureOptions options;
+  options.program = "/proc/self/exe";
+  options.max_errors = kMaxMessageBytes;
+  options.signal_when = [&stop, told = false]() mutable {
+    if (told || !stop.load()) return 0;
+    told = true;
+    return SIGTERM;
+  };
+  return base::capture(command, options);
+}
+
+void report_no_answer(const base::Captured& child, CaseResult& result) {
   result.outcome = Outcome::kError;
   result.problems = {no_answer(child.code)};
   if (auto error = first_error(child.out); !error.empty()) {

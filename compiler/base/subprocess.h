@@ -1,0 +1,60 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace parallax::base {
+
+/// How a program is started. Descriptors stay the caller's; -1 leaves the child ours.
+struct SpawnOptions {
+  std::string program = {};  // the file to run; empty: the first word of the command
+  std::string folder = {};   // working directory; empty: ours
+  int input = -1;
+  int output = -1;
+  int errors = -1;
+  /// In a session of its own, so that it can be ended together with everything it has started, and
+  /// with default signals. The system kills it when the thread that started it ends.
+  bool own_session = false;
+  std::optional<std::uint64_t> cpu_limit_s = {};  // then SIGXCPU, a second later SIGKILL; no core
+};
+
+struct Spawned {
+  pid_t pid = -1;
+  int error = 0;  // an `errno`, if there is no process
+};
+
+/// Starts a program with its arguments, looked up in PATH, no shell; whoever calls waits for its
+/// end. Other descriptors of ours are closed in it. Safe from several threads.
+Spawned spawn(const std::vector<std::string>& command, const SpawnOptions& options);
+
+/// Of a status that wait() has given: the exit code, or 128 + signal.
+int exit_code(int status);
+
+/// Waits for the end of a child: its exit code, or 128 + signal.
+int wait_for(pid_t child);
+
+struct CaptureOptions {
+  std::string program = {};  // as in SpawnOptions
+  std::string folder = {};
+  bool without_input = false;                  // reads /dev/null instead of our standard input
+  std::size_t max_errors = std::string::npos;  // bytes of standard error that are kept: the first
+  /// Asked many times a second while the program runs; a signal that it names is sent.
+  std::function<int()> signal_when = {};
+};
+
+struct Captured {
+  int code = -1;  // exit code, 128 + signal, or -1 if it could not be started
+  int error = 0;  // why not, an `errno`
+  std::string out;
+  std::string err;
+};
+
+/// Runs a program to its end and keeps what it writes.
+Captured capture(const std::vector<std::string>& command, const CaptureOptions& options = {});
+
+}  // namespace parallax::base
