@@ -4,10 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <map>
 #include <sstream>
+
+#include "compiler/base/whole_number.h"
 
 namespace parallax::tools {
 namespace {
@@ -24,10 +25,8 @@ CLI::Validator finite_range(double lower, double upper) {
 
 CLI::Validator whole_number(std::int64_t lower, std::int64_t upper) {
   const auto check = [lower, upper](std::string& text) -> std::string {
-    std::int64_t value = 0;
-    const auto* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    const bool fine = error == std::errc() && stop == end && value >= lower && value <= upper;
+    const auto value = base::whole_number<std::int64_t>(text);
+    const bool fine = value && *value >= lower && *value <= upper;
     return fine ? std::string()
                 : fmt::format("{} is no whole number from {} to {}", text, lower, upper);
   };
