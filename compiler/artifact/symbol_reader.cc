@@ -12,7 +12,7 @@ using base::DiagnosticCode;
 
 // "Times" of what is unique in the whole model.
 constexpr Timepoint kEveryTime = -1;
-constexpr Timepoint kUntimed = -2;
+constexpr Timepoint kNoTime = -2;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ bool SymbolReader::claim_slot(std::int64_t slot, AtomKind kind, const std::strin
 /// `NAME SLOT` or `NAME never`; slots from `lower` up to and without `upper`.
 bool SymbolReader::read_ground_name(std::string_view what, AtomKind kind, std::int64_t lower,
                                     std::int64_t upper, GroundName& name) {
-  if (!cursor_.word(what, name.name) || !unique(kind, kUntimed, name.name, true)) return false;
+  if (!cursor_.word(what, name.name) || !unique(kind, kNoTime, name.name, true)) return false;
   const auto text = cursor_.raw_word();
   if (text == "never") return true;
   std::int64_t slot = 0;
@@ -112,7 +112,7 @@ bool SymbolReader::read_atom() {
   const bool timeless = atom.kind == AtomKind::kHoldsAt || atom.kind == AtomKind::kHappens ||
                         atom.kind == AtomKind::kReleasedAt;
   if (timeless && !atom.time) return cursor_.expected("a timepoint");
-  if (!is_nameless(atom.kind) && !unique(atom.kind, atom.time.value_or(kUntimed), name, false)) {
+  if (!is_nameless(atom.kind) && !unique(atom.kind, atom.time.value_or(kNoTime), name, false)) {
     return false;
   }
   if (is_of_plan(atom.kind)) {

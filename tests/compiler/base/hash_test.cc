@@ -23,8 +23,8 @@ TEST_CASE("a word is one step whose high bits come down") {
   CHECK(fnv1a64_word(0, 0) == 0);
   CHECK(fnv1a64_word(0, 1) == (kFnvPrime ^ (kFnvPrime >> 29U)));
   // A plain step would leave the low bits of both alike.
-  CHECK((fnv1a64_word(kFnvStart, std::uint64_t{1} << 63U) & 0xFFFFFFFFU) !=
-        (fnv1a64_word(kFnvStart, 0) & 0xFFFFFFFFU));
+  CHECK((fnv1a64_word(kFnvStart, std::uint64_t{1} << 63U) & 0xFFFFFFFFFFU) !=
+        (fnv1a64_word(kFnvStart, 0) & 0xFFFFFFFFFFU));
 }
 
 }  // namespace
