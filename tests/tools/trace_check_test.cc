@@ -1,6 +1,6 @@
 // `parallax traces --check`, and what it says when a trace is wrong.
 
-#include "tools/cli/trace_check.h"
+#include "tools/app/trace_check.h"
 
 #include <doctest/doctest.h>
 

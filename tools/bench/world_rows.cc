@@ -11,9 +11,9 @@
 #include "harness/campaign/sample_runner.h"
 #include "harness/robot/ode_simulator.h"
 #include "harness/simulator/process_simulator.h"
+#include "tools/app/scenario_model.h"
+#include "tools/app/trace_feed.h"
 #include "tools/bench/bench.h"
-#include "tools/cli/scenario_model.h"
-#include "tools/cli/trace_feed.h"
 
 namespace parallax::tools {
 namespace {
@@ -33,10 +33,10 @@ double seconds_of(const std::function<void()>& work) {
 using Acts = std::vector<harness::ActionCall>;
 
 /// What the first trace asks of the simulator.
-Acts acts_of(const ScenarioModel& loaded, Invocation& invocation) {
-  EnumeratedTraces traces(loaded.compilation.model, invocation);
+Acts acts_of(const ScenarioModel& loaded, Context& context) {
+  EnumeratedTraces traces(loaded.compilation.model, context);
   const auto trace = traces.next();
-  return *harness::action_calls(loaded.scenario, **trace, invocation.sink());
+  return *harness::action_calls(loaded.scenario, **trace, context.sink());
 }
 
 /// One whole simulation; returns the simulated seconds.
@@ -70,11 +70,11 @@ void add_figure(Bench& bench, const char* name, std::string note) {
 void measure_scenario_trace(Bench& bench) {
   std::vector<double> all, solving;
   for (int i = 0; i < kRepetitions; ++i) {
-    Invocation invocation{CommonOptions{}};
+    Context context;
     all.push_back(seconds_of([&] {
-      const auto loaded = load_scenario_model(kScenario, invocation);
+      const auto loaded = load_scenario_model(kScenario, context);
       solving.push_back(seconds_of([&] {
-        EnumeratedTraces traces(loaded->compilation.model, invocation);
+        EnumeratedTraces traces(loaded->compilation.model, context);
         (void)traces.next();
       }));
     }));
@@ -128,18 +128,17 @@ void measure_worker(Bench& bench, harness::OdeSimulator& simulator, const Acts& 
 void measure_world(Bench& bench) {
   bench.begin("the two-region world");
   measure_scenario_trace(bench);
-  Invocation invocation{CommonOptions{}};
-  const auto loaded = load_scenario_model(kScenario, invocation);
-  const auto acts = acts_of(*loaded, invocation);
+  Context context;
+  const auto loaded = load_scenario_model(kScenario, context);
+  const auto acts = acts_of(*loaded, context);
   harness::OdeSimulator simulator(loaded->scenario.world);
   measure_simulation(bench, simulator, *loaded, acts, box_start);
   measure_worker(bench, simulator, acts);
 
   bench.begin("the kitchen, first trace of the repaired plan");
-  const auto kitchen = load_scenario_model(kKitchen, invocation);
+  const auto kitchen = load_scenario_model(kKitchen, context);
   harness::OdeSimulator kitchen_simulator(kitchen->scenario.world);
-  measure_simulation(bench, kitchen_simulator, *kitchen, acts_of(*kitchen, invocation),
-                     kitchen_start);
+  measure_simulation(bench, kitchen_simulator, *kitchen, acts_of(*kitchen, context), kitchen_start);
 }
 
 void measure_demo(Bench& bench) {

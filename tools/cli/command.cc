@@ -10,10 +10,14 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/sarif.h"
+#include "tools/app/version.h"
 #include "tools/cli/signals.h"
-#include "tools/cli/version.h"
 
 namespace parallax::tools {
+
+Invocation::Invocation(const CommonOptions& options)
+    : Context({options.json, options.time_limit_s, options.memory_limit_mb}, stop_flag()),
+      options_(options) {}
 
 bool Invocation::color_on(int descriptor) const {
   if (options_.color != "auto") return options_.color == "always";
@@ -51,45 +55,45 @@ void Invocation::document(std::string json) { document_ = std::move(json); }
 /// A reader that has seen enough (head) closes the pipe: that is no error of ours to speak of.
 void Invocation::report_output_error() {
   if (output_error_ == 0 || output_error_ == EPIPE) return;
-  sink_.error_about(base::DiagnosticCode::kFileNotWritable, "standard output",
-                    std::strerror(output_error_));
+  sink().error_about(base::DiagnosticCode::kFileNotWritable, "standard output",
+                     std::strerror(output_error_));
 }
 
 void Invocation::print_diagnostics(const std::vector<base::Diagnostic>& diagnostics) const {
   if (options_.diagnostics == "sarif") {
-    write_error(base::to_sarif(diagnostics, files_, kVersion) + '\n');
+    write_error(base::to_sarif(diagnostics, files(), kVersion) + '\n');
     return;
   }
   if (options_.diagnostics == "json") {
-    if (!diagnostics.empty()) write_error(base::to_json(diagnostics, files_) + '\n');
+    if (!diagnostics.empty()) write_error(base::to_json(diagnostics, files()) + '\n');
     return;
   }
   for (const auto& diagnostic : diagnostics) {
     const bool is_error = base::info(diagnostic.code).severity == base::Severity::kError;
     if (options_.quiet && !is_error) continue;
-    write_error(base::to_text(diagnostic, files_, {color_on(STDERR_FILENO)}));
+    write_error(base::to_text(diagnostic, files(), {color_on(STDERR_FILENO)}));
   }
   const auto rest = [](std::size_t count, const char* what) {
     if (count <= base::DiagnosticSink::kUsualLimit) return;
     const auto hidden = count - base::DiagnosticSink::kUsualLimit;
     write_error(fmt::format("{} further {} not shown\n", hidden, what));
   };
-  rest(sink_.error_count(), "errors are");
-  if (!options_.quiet) rest(sink_.warning_count(), "warnings are");
+  rest(sink().error_count(), "errors are");
+  if (!options_.quiet) rest(sink().warning_count(), "warnings are");
 }
 
 int Invocation::finish(int code) {
   report_output_error();
-  const auto diagnostics = sink_.sorted();
+  const auto diagnostics = sink().sorted();
   print_diagnostics(diagnostics);
   if (!document_.empty()) {
     const auto end = document_.rfind('}');
     if (!diagnostics.empty()) {
-      document_.insert(end, ",\"diagnostics\":" + base::to_json(diagnostics, files_));
+      document_.insert(end, ",\"diagnostics\":" + base::to_json(diagnostics, files()));
     }
     result(document_);
-  } else if (options_.json && (sink_.has_errors() || code != 0)) {
-    result(error_document(diagnostics, files_));
+  } else if (options_.json && (sink().has_errors() || code != 0)) {
+    result(error_document(diagnostics, files()));
   }
   // Written last, so looked at last: the document above may be what could not be written.
   if (output_error_ != 0) {
@@ -98,9 +102,9 @@ int Invocation::finish(int code) {
     }
     return code != 0 ? code : 2;
   }
-  if (!sink_.has_errors()) return code;
+  if (!sink().has_errors()) return code;
   // A command that knows better (a finding, an interruption) keeps its code.
-  return code != 0 ? code : sink_.exit_code();
+  return code != 0 ? code : sink().exit_code();
 }
 
 void add_common_options(OptionTable& table, CommonOptions& options) {

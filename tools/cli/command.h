@@ -8,6 +8,7 @@
 
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/source_file.h"
+#include "tools/app/context.h"
 #include "tools/cli/option_table.h"
 
 namespace parallax::tools {
@@ -26,23 +27,23 @@ struct CommonOptions {
   std::int64_t memory_limit_mb = 0;  // 0: none
 };
 
-/// One run of one command: its texts, what was reported, where results go.
-class Invocation {
+/// One run of one command: where results go, and what ends it.
+class Invocation final : public Context {
  public:
-  explicit Invocation(const CommonOptions& options) : options_(options) {}
+  explicit Invocation(const CommonOptions& options);
   const CommonOptions& options() const { return options_; }
-  base::SourceFiles& files() { return files_; }
-  base::DiagnosticSink& sink() { return sink_; }
 
   bool color_on(int descriptor) const;
-  /// Progress and remarks: on standard error, unless --quiet.
-  void remark(const std::string& text) const;
+  /// On standard error, unless --quiet.
+  void remark(const std::string& text) const override;
+  /// On standard error.
+  void statistics(const std::string& text) const override { write_error(text); }
   /// The result of the command; standard output holds nothing else.
   /// When it cannot be written the stop flag is raised, and `finish` reports it.
-  void result(const std::string& text);
+  void result(const std::string& text) override;
   /// The result under --json: one object. What was reported becomes its field `diagnostics` when it
   /// is printed, by finish.
-  void document(std::string json);
+  void document(std::string json) override;
   /// The question was answered to its end, even if a limit was reached meanwhile.
   void answered() { answered_ = true; }
   bool is_answered() const { return answered_; }
@@ -55,8 +56,6 @@ class Invocation {
   void print_diagnostics(const std::vector<base::Diagnostic>& diagnostics) const;
 
   CommonOptions options_;
-  base::SourceFiles files_;
-  base::DiagnosticSink sink_;
   std::string document_;
   bool answered_ = false;
   int output_error_ = 0;  // errno of the first failed write

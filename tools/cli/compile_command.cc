@@ -3,8 +3,10 @@
 #include "compiler/artifact/artifact_writer.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
-#include "tools/cli/emit_stage.h"
-#include "tools/cli/scenario_model.h"
+#include "tools/app/emit_stage.h"
+#include "tools/app/scenario_model.h"
+#include "tools/cli/command.h"
+#include "tools/cli/shared_options.h"
 
 namespace parallax::tools {
 namespace {

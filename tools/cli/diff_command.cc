@@ -8,6 +8,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
+#include "tools/cli/command.h"
 #include "tools/diff/model_difference.h"
 #include "tools/diff/revision.h"
 #include "tools/diff/run_facts.h"

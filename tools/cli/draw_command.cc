@@ -9,9 +9,9 @@
 #include "harness/draw/action_recorder.h"
 #include "harness/draw/scene_svg.h"
 #include "harness/robot/ode_simulator.h"
+#include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
 #include "tools/cli/sample_option.h"
-#include "tools/cli/scenario_model.h"
 #include "tools/cli/signals.h"
 
 namespace parallax::tools {

@@ -4,9 +4,11 @@
 #include <memory>
 #include <optional>
 
-#include "tools/cli/explain_run.h"
-#include "tools/cli/explain_why.h"
-#include "tools/cli/plain_models.h"
+#include "tools/app/explain_run.h"
+#include "tools/app/explain_why.h"
+#include "tools/app/scenario_model.h"
+#include "tools/cli/command.h"
+#include "tools/cli/shared_options.h"
 
 namespace parallax::tools {
 namespace {

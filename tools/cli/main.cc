@@ -8,13 +8,13 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/suggest.h"
+#include "tools/app/version.h"
 #include "tools/cli/command.h"
 #include "tools/cli/command_line.h"
 #include "tools/cli/diff_command.h"
 #include "tools/cli/explain_command.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/signals.h"
-#include "tools/cli/version.h"
 
 namespace parallax::tools {
 namespace {

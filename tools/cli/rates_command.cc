@@ -3,11 +3,11 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/rates.h"
 #include "harness/report/report.h"
+#include "tools/app/scenario_model.h"
+#include "tools/app/trace_feed.h"
 #include "tools/cli/command.h"
-#include "tools/cli/scenario_model.h"
 #include "tools/cli/signals.h"
 #include "tools/cli/simulator_factory.h"
-#include "tools/cli/trace_feed.h"
 
 namespace parallax::tools {
 namespace {

@@ -5,9 +5,9 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/replay.h"
 #include "harness/report/report.h"
+#include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
 #include "tools/cli/sample_option.h"
-#include "tools/cli/scenario_model.h"
 #include "tools/cli/signals.h"
 #include "tools/cli/simulator_factory.h"
 

@@ -5,13 +5,13 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/campaign.h"
 #include "harness/report/report.h"
+#include "tools/app/scenario_model.h"
+#include "tools/app/trace_feed.h"
+#include "tools/app/version.h"
 #include "tools/cli/command.h"
 #include "tools/cli/run_folder.h"
-#include "tools/cli/scenario_model.h"
 #include "tools/cli/signals.h"
 #include "tools/cli/simulator_factory.h"
-#include "tools/cli/trace_feed.h"
-#include "tools/cli/version.h"
 
 namespace parallax::tools {
 namespace {

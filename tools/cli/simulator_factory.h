@@ -1,7 +1,7 @@
 #pragma once
 
 #include "harness/campaign/campaign.h"
-#include "tools/cli/scenario_model.h"
+#include "tools/app/scenario_model.h"
 
 namespace parallax::tools {
 

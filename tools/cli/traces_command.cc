@@ -4,15 +4,17 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "runtime/trace/vocabulary.h"
-#include "tools/cli/certify.h"
+#include "tools/app/certify.h"
+#include "tools/app/open_ends.h"
+#include "tools/app/scenario_model.h"
+#include "tools/app/trace_listing.h"
+#include "tools/app/trace_search.h"
+#include "tools/app/trace_writer.h"
+#include "tools/app/traces_replay.h"
+#include "tools/cli/command.h"
 #include "tools/cli/limits.h"
-#include "tools/cli/open_ends.h"
-#include "tools/cli/scenario_model.h"
+#include "tools/cli/shared_options.h"
 #include "tools/cli/signals.h"
-#include "tools/cli/trace_listing.h"
-#include "tools/cli/trace_search.h"
-#include "tools/cli/trace_writer.h"
-#include "tools/cli/traces_replay.h"
 
 namespace parallax::tools {
 namespace {
@@ -177,7 +179,7 @@ int list_traces(const TracesOptions& options, Invocation& invocation) {
                      check ? &*check : nullptr, certifier, invocation);
   std::optional<Ending> ending;
   if (model.has_constraints) {
-    ending = list_plan_traces(options.search, model, certifier, writer);
+    ending = list_plan_traces(options.search, model, certifier, writer, invocation);
   } else {
     ending = list_model_traces(options.search, model, certifier, writer, invocation);
   }

@@ -8,12 +8,14 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "runtime/enumerate/plan_enumerator.h"
-#include "tools/cli/certify.h"
-#include "tools/cli/open_ends.h"
-#include "tools/cli/scenario_model.h"
+#include "tools/app/certify.h"
+#include "tools/app/open_ends.h"
+#include "tools/app/scenario_model.h"
+#include "tools/app/trace_check.h"
+#include "tools/app/trace_feed.h"
+#include "tools/cli/command.h"
+#include "tools/cli/shared_options.h"
 #include "tools/cli/signals.h"
-#include "tools/cli/trace_check.h"
-#include "tools/cli/trace_feed.h"
 
 namespace parallax::tools {
 namespace {
@@ -191,7 +193,7 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   auto answer = ask(model, certifier);
   // Nothing can go wrong in a model without executions.
   if (!answer.violation && answer.exploration != runtime::Exploration::kStopped &&
-      report_if_unsatisfiable(model, 0, invocation.sink()) == base::Known::kNo) {
+      report_if_unsatisfiable(model, 0, invocation) == base::Known::kNo) {
     return 0;
   }
   const bool holds = !answer.violation && answer.exploration != runtime::Exploration::kStopped;

@@ -8,7 +8,6 @@
 #include "compiler/ground/grounder.h"
 #include "compiler/sema/check.h"
 #include "runtime/session/solver_session.h"
-#include "tools/cli/signals.h"
 
 namespace parallax::tools {
 namespace {
@@ -21,10 +20,10 @@ using compiler::Timepoint;
 
 /// None if the text is no right model.
 std::optional<CompiledModel> compile_text(const std::string& text, Timepoint horizon,
-                                          const ModelOptions& options) {
+                                          const ModelOptions& options, Context& context) {
   base::SourceFiles files;
   base::DiagnosticSink sink;
-  const auto input = compile_input(options);
+  const auto input = compile_input(options, context);
   const auto file = files.add("variant.e", text);
   const auto ast = compiler::load_model_text(file, ".", input.load, files, sink);
   if (!ast) return std::nullopt;
@@ -40,7 +39,7 @@ std::optional<CompiledModel> compile_text(const std::string& text, Timepoint hor
 
 /// Has the model a trace with these observables?
 base::Known admits(const CompiledModel& model, const runtime::Trace& trace,
-                   const runtime::SharedVocabulary& vocabulary) {
+                   const runtime::SharedVocabulary& vocabulary, const Context& context) {
   const compiler::AtomIndex index(model);
   std::vector<Literal> observation;
   for (const auto& atom : vocabulary.shared) {
@@ -52,7 +51,7 @@ base::Known admits(const CompiledModel& model, const runtime::Trace& trace,
     if (!literal && is_true) return base::Known::kNo;
     if (literal) observation.push_back(is_true ? *literal : ~*literal);
   }
-  runtime::SolverSession session(model, runtime::make_cadical_solver(&stop_flag()));
+  runtime::SolverSession session(model, runtime::make_cadical_solver(&context.stop()));
   return runtime::possible(session.solve(model.horizon, observation));
 }
 
@@ -78,16 +77,17 @@ std::optional<std::vector<Edit>> responsible_edits(const std::vector<Fact>& kept
                                                    const std::vector<Edit>& edits,
                                                    const runtime::Trace& trace,
                                                    const runtime::SharedVocabulary& vocabulary,
-                                                   const ModelOptions& options) {
+                                                   const ModelOptions& options, Context& context) {
   if (edits.size() > kMaxTriedEdits) return std::nullopt;
   auto undone = edits;
   // One edit alone is responsible for what it brings.
   for (std::size_t i = 0; i < undone.size() && undone.size() > 1;) {
     auto fewer = undone;
     fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
-    const auto model = compile_text(variant(kept, refused, fewer), trace.length(), options);
-    const auto admitted = model ? admits(*model, trace, vocabulary) : base::Known::kNo;
-    if (admitted == base::Known::kUndecided || stop_flag().load()) return std::nullopt;
+    const auto model =
+        compile_text(variant(kept, refused, fewer), trace.length(), options, context);
+    const auto admitted = model ? admits(*model, trace, vocabulary, context) : base::Known::kNo;
+    if (admitted == base::Known::kUndecided || context.stopped()) return std::nullopt;
     if (admitted == base::Known::kYes) {
       undone = std::move(fewer);
     } else {

@@ -5,7 +5,7 @@
 
 #include "compiler/compare/fact.h"
 #include "runtime/compare/trace_difference.h"
-#include "tools/cli/model_options.h"
+#include "tools/app/model_options.h"
 
 namespace parallax::tools {
 
@@ -27,6 +27,6 @@ std::optional<std::vector<Edit>> responsible_edits(const std::vector<compiler::F
                                                    const std::vector<Edit>& edits,
                                                    const runtime::Trace& trace,
                                                    const runtime::SharedVocabulary& vocabulary,
-                                                   const ModelOptions& options);
+                                                   const ModelOptions& options, Context& context);
 
 }  // namespace parallax::tools

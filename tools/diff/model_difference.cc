@@ -6,7 +6,6 @@
 #include <set>
 
 #include "compiler/base/diagnostic_codes.h"
-#include "tools/cli/signals.h"
 
 namespace parallax::tools {
 namespace {
@@ -47,20 +46,20 @@ std::vector<Edit> edits_of(const compiler::FactDifference& facts, bool old_is_ke
 
 class ModelComparison {
  public:
-  ModelComparison(const ModelDiffOptions& options, Invocation& invocation)
-      : options_(options), invocation_(invocation) {
+  ModelComparison(const ModelDiffOptions& options, Context& context)
+      : options_(options), context_(context) {
     options_.load.compile = options.traces;
   }
 
   base::Result<ModelDifference> run(const std::string& old_path, RevisionKind old_kind,
                                     const std::string& new_path, RevisionKind new_kind) {
-    auto a = load_model_revision(old_path, old_kind, options_.load, invocation_);
-    auto b = load_model_revision(new_path, new_kind, options_.load, invocation_);
-    if (!a || !b) return invocation_.sink().already_reported();
+    auto a = load_model_revision(old_path, old_kind, options_.load, context_);
+    auto b = load_model_revision(new_path, new_kind, options_.load, context_);
+    if (!a || !b) return context_.sink().already_reported();
     out_.old_side = *std::move(a);
     out_.new_side = *std::move(b);
-    if (!align_horizons()) return invocation_.sink().already_reported();
-    if (!align_facts()) return invocation_.sink().already_reported();
+    if (!align_horizons()) return context_.sink().already_reported();
+    if (!align_facts()) return context_.sink().already_reported();
     if (options_.facts) {
       compiler::drop_equal_order(out_.old_side.facts, out_.new_side.facts);
       out_.facts = compiler::compare_facts(out_.old_side.facts, out_.new_side.facts);
@@ -83,7 +82,7 @@ class ModelComparison {
       if (side->kind != RevisionKind::kModel || side->compiled->horizon == shorter) continue;
       auto load = options_.load;
       load.model.horizon = shorter;
-      auto again = load_model_revision(side->name, side->kind, load, invocation_);
+      auto again = load_model_revision(side->name, side->kind, load, context_);
       if (!again) return false;
       *side = *std::move(again);
     }
@@ -96,7 +95,7 @@ class ModelComparison {
                        (out_.new_side.kind == RevisionKind::kArtifact);
     if (!mixed) return true;
     if (!options_.traces) {
-      invocation_.sink().error_about(
+      context_.sink().error_about(
           base::DiagnosticCode::kUsage, out_.old_side.name,
           "a text and a compiled model have only compiled facts in common; leave --no-traces out");
       return false;
@@ -117,7 +116,7 @@ class ModelComparison {
     options.list_limit = options_.list_limit;
     // Whoever asks for more may wait for more.
     options.graph = {10 * options_.list_limit, 20 * options_.list_limit};
-    options.stop = &stop_flag();
+    options.stop = &context_.stop();
     options.first_edited = edited_origins(a, out_.old_side.facts, edited_facts(out_.facts, true));
     options.second_edited = edited_origins(b, out_.new_side.facts, edited_facts(out_.facts, false));
     out_.traces = runtime::compare_traces(a, b, options);
@@ -131,11 +130,12 @@ class ModelComparison {
     const auto& kept = lost ? out_.old_side : out_.new_side;
     const auto& refused = lost ? out_.new_side : out_.old_side;
     return responsible_edits(kept.facts, refused.facts, edits_of(out_.facts, lost),
-                             side.witness->trace, out_.traces->vocabulary, options_.load.model);
+                             side.witness->trace, out_.traces->vocabulary, options_.load.model,
+                             context_);
   }
 
   ModelDiffOptions options_;
-  Invocation& invocation_;
+  Context& context_;
   ModelDifference out_;
 };
 
@@ -143,9 +143,8 @@ class ModelComparison {
 
 base::Result<ModelDifference> compare_models(const std::string& old_path, RevisionKind old_kind,
                                              const std::string& new_path, RevisionKind new_kind,
-                                             const ModelDiffOptions& options,
-                                             Invocation& invocation) {
-  return ModelComparison(options, invocation).run(old_path, old_kind, new_path, new_kind);
+                                             const ModelDiffOptions& options, Context& context) {
+  return ModelComparison(options, context).run(old_path, old_kind, new_path, new_kind);
 }
 
 }  // namespace parallax::tools

@@ -32,8 +32,7 @@ struct ModelDifference {
 
 base::Result<ModelDifference> compare_models(const std::string& old_path, RevisionKind old_kind,
                                              const std::string& new_path, RevisionKind new_kind,
-                                             const ModelDiffOptions& options,
-                                             Invocation& invocation);
+                                             const ModelDiffOptions& options, Context& context);
 
 /// The part about traces, for people and as JSON. `stat`: numbers without witnesses.
 std::string traces_text(const ModelDifference& difference, bool stat);

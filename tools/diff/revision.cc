@@ -6,7 +6,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "compiler/compare/model_facts.h"
-#include "tools/cli/scenario_model.h"
+#include "tools/app/scenario_model.h"
 
 namespace parallax::tools {
 namespace {
@@ -28,33 +28,33 @@ void add_text_facts(const std::vector<std::string>& models, const compiler::Load
 }
 
 base::Result<ModelRevision> load_texts(const std::string& path, const LoadRevision& options,
-                                       Invocation& invocation) {
+                                       Context& context) {
   ModelRevision out{path, RevisionKind::kModel, {}, std::nullopt, true};
   auto model = options.model;
   model.models.insert(model.models.begin(), path);
-  const auto load = compile_input(model).load;
+  const auto load = compile_input(model, context).load;
   if (options.compile) {
-    auto compilation = compile_models(model, invocation);
-    if (!compilation) return invocation.sink().already_reported();
+    auto compilation = compile_models(model, context);
+    if (!compilation) return context.sink().already_reported();
     out.compiled = std::move(compilation->model);
     add_text_facts(model.models, load, out.facts);
     return out;
   }
   const std::vector<fs::path> paths(model.models.begin(), model.models.end());
-  const auto ast = compiler::load_model(paths, load, invocation.files(), invocation.sink());
-  if (!ast || invocation.sink().has_errors()) return invocation.sink().already_reported();
-  out.facts = compiler::model_facts(*ast, invocation.files());
+  const auto ast = compiler::load_model(paths, load, context.files(), context.sink());
+  if (!ast || context.sink().has_errors()) return context.sink().already_reported();
+  out.facts = compiler::model_facts(*ast, context.files());
   return out;
 }
 
 base::Result<ModelRevision> load_compiled(const std::string& path, const LoadRevision& options,
-                                          Invocation& invocation) {
+                                          Context& context) {
   ModelRevision out{path, RevisionKind::kArtifact, {}, std::nullopt, false};
-  auto model = compiler::load_artifact(path, invocation.files(), invocation.sink());
-  if (!model) return invocation.sink().already_reported();
+  auto model = compiler::load_artifact(path, context.files(), context.sink());
+  if (!model) return context.sink().already_reported();
   const auto horizon = options.model.horizon;
   if (horizon > model->horizon) {
-    return invocation.sink().error_about(
+    return context.sink().error_about(
         base::DiagnosticCode::kHorizonNotExtensible, path, horizon,
         fmt::format("it was compiled for the horizon {}", model->horizon));
   }
@@ -63,11 +63,10 @@ base::Result<ModelRevision> load_compiled(const std::string& path, const LoadRev
   return out;
 }
 
-base::Result<ModelRevision> load_scenario_revision(const std::string& path,
-                                                   Invocation& invocation) {
+base::Result<ModelRevision> load_scenario_revision(const std::string& path, Context& context) {
   ModelRevision out{path, RevisionKind::kScenario, {}, std::nullopt, false};
-  auto loaded = load_scenario_model(path, invocation);
-  if (!loaded) return invocation.sink().already_reported();
+  auto loaded = load_scenario_model(path, context);
+  if (!loaded) return context.sink().already_reported();
   const auto& scenario = loaded->scenario;
   std::vector<std::string> models;
   for (const auto& model : scenario.models) models.push_back(model.text);
@@ -75,12 +74,12 @@ base::Result<ModelRevision> load_scenario_revision(const std::string& path,
   for (const auto* part : {&scenario.plan, &scenario.bind}) {
     if (!*part) continue;
     const auto kind = part == &scenario.plan ? RevisionKind::kPlan : RevisionKind::kBinding;
-    const auto plan = load_plan_revision((*part)->text, kind, invocation);
-    if (!plan) return invocation.sink().already_reported();
+    const auto plan = load_plan_revision((*part)->text, kind, context);
+    if (!plan) return context.sink().already_reported();
     out.facts.insert(out.facts.end(), plan->facts.begin(), plan->facts.end());
   }
   for (const auto& constraint : scenario.constraints) {
-    const auto& file = invocation.files()[constraint.source.file];
+    const auto& file = context.files()[constraint.source.file];
     out.facts.push_back({FactKind::kAxiom,
                          "",
                          "constraint " + constraint.text,
@@ -114,11 +113,10 @@ bool has_traces(RevisionKind kind) {
 }
 
 base::Result<ModelRevision> load_model_revision(const std::string& path, RevisionKind kind,
-                                                const LoadRevision& options,
-                                                Invocation& invocation) {
-  if (kind == RevisionKind::kArtifact) return load_compiled(path, options, invocation);
-  if (kind == RevisionKind::kScenario) return load_scenario_revision(path, invocation);
-  return load_texts(path, options, invocation);
+                                                const LoadRevision& options, Context& context) {
+  if (kind == RevisionKind::kArtifact) return load_compiled(path, options, context);
+  if (kind == RevisionKind::kScenario) return load_scenario_revision(path, context);
+  return load_texts(path, options, context);
 }
 
 void use_artifact_facts(ModelRevision& revision) {
@@ -127,17 +125,17 @@ void use_artifact_facts(ModelRevision& revision) {
 }
 
 base::Result<PlanRevision> load_plan_revision(const std::string& path, RevisionKind kind,
-                                              Invocation& invocation) {
+                                              Context& context) {
   PlanRevision out{path, {}, std::nullopt};
-  const auto file = base::load_text(path, invocation.files(), invocation.sink());
-  if (!file) return invocation.sink().already_reported();
+  const auto file = base::load_text(path, context.files(), context.sink());
+  if (!file) return context.sink().already_reported();
   if (kind == RevisionKind::kBinding) {
-    out.facts = compiler::binding_facts(*file, invocation.files());
+    out.facts = compiler::binding_facts(*file, context.files());
     return out;
   }
-  auto lisp = compiler::read_lisp(invocation.files(), *file, invocation.sink());
-  if (!lisp) return invocation.sink().already_reported();
-  out.facts = compiler::plan_facts(*lisp, invocation.files());
+  auto lisp = compiler::read_lisp(context.files(), *file, context.sink());
+  if (!lisp) return context.sink().already_reported();
+  out.facts = compiler::plan_facts(*lisp, context.files());
   out.lisp = *std::move(lisp);
   return out;
 }

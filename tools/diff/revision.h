@@ -7,8 +7,8 @@
 #include "compiler/artifact/compiled_model.h"
 #include "compiler/compare/fact.h"
 #include "compiler/compare/plan_facts.h"
-#include "tools/cli/command.h"
-#include "tools/cli/model_options.h"
+#include "tools/app/context.h"
+#include "tools/app/model_options.h"
 
 namespace parallax::tools {
 
@@ -44,8 +44,7 @@ struct LoadRevision {
 
 /// Reads and, if asked for, compiles one side.
 base::Result<ModelRevision> load_model_revision(const std::string& path, RevisionKind kind,
-                                                const LoadRevision& options,
-                                                Invocation& invocation);
+                                                const LoadRevision& options, Context& context);
 
 /// The facts of a compiled model, for comparing one with texts.
 void use_artifact_facts(ModelRevision& revision);
@@ -57,6 +56,6 @@ struct PlanRevision {
   std::optional<compiler::LispText> lisp;  // of a plan; its form i is fact i
 };
 base::Result<PlanRevision> load_plan_revision(const std::string& path, RevisionKind kind,
-                                              Invocation& invocation);
+                                              Context& context);
 
 }  // namespace parallax::tools

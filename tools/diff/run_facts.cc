@@ -94,17 +94,17 @@ class ReportReader {
 
 }  // namespace
 
-base::Result<std::vector<Fact>> load_run_facts(const std::string& path, Invocation& invocation) {
+base::Result<std::vector<Fact>> load_run_facts(const std::string& path, Context& context) {
   std::error_code error;
   const auto file = fs::is_directory(path, error) ? fs::path(path) / "report.json" : fs::path(path);
   const auto refuse = [&](const char* why) {
-    auto built = invocation.sink().error_about(base::DiagnosticCode::kNoJournal, file.string());
+    auto built = context.sink().error_about(base::DiagnosticCode::kNoJournal, file.string());
     built.note(why);
     return built;
   };
   if (!fs::exists(file, error)) return refuse("there is no such file");
-  const auto text = base::read_file(file, invocation.sink());
-  if (!text) return invocation.sink().already_reported();
+  const auto text = base::read_file(file, context.sink());
+  if (!text) return context.sink().already_reported();
   const auto report = Json::parse(*text, nullptr, false);
   if (report.is_discarded() || !report.is_object()) return refuse("it is no JSON object");
   if (!field(report, "verdict").is_string() || !field(report, "traces").is_array()) {

@@ -4,14 +4,13 @@
 #include <vector>
 
 #include "compiler/compare/fact.h"
-#include "tools/cli/command.h"
+#include "tools/app/context.h"
 
 namespace parallax::tools {
 
 /// What the report of a run says: its settings as declarations; its verdict, and for every trace
 /// its verdict and its discrepancies, as axioms. A trace is known by its events and its initial
 /// state. `path` is a run folder or a report.json (E7111).
-base::Result<std::vector<compiler::Fact>> load_run_facts(const std::string& path,
-                                                         Invocation& invocation);
+base::Result<std::vector<compiler::Fact>> load_run_facts(const std::string& path, Context& context);
 
 }  // namespace parallax::tools

@@ -15,54 +15,54 @@ namespace {
 
 using Text = base::Result<std::string>;
 
-Text model_text(const std::string& path, Invocation& invocation) {
-  const auto file = base::load_text(path, invocation.files(), invocation.sink());
-  if (!file) return invocation.sink().already_reported();
-  const auto ast = compiler::parse_file(*file, invocation.files(), invocation.sink());
-  if (invocation.sink().has_errors()) return invocation.sink().already_reported();
-  return canonical_text(compiler::text_facts(ast, invocation.files()));
+Text model_text(const std::string& path, Context& context) {
+  const auto file = base::load_text(path, context.files(), context.sink());
+  if (!file) return context.sink().already_reported();
+  const auto ast = compiler::parse_file(*file, context.files(), context.sink());
+  if (context.sink().has_errors()) return context.sink().already_reported();
+  return canonical_text(compiler::text_facts(ast, context.files()));
 }
 
-Text artifact_text(const std::string& path, Invocation& invocation) {
-  const auto model = compiler::load_artifact(path, invocation.files(), invocation.sink());
-  if (!model) return invocation.sink().already_reported();
+Text artifact_text(const std::string& path, Context& context) {
+  const auto model = compiler::load_artifact(path, context.files(), context.sink());
+  if (!model) return context.sink().already_reported();
   return canonical_text(compiler::artifact_facts(*model));
 }
 
-Text plan_text(const std::string& path, RevisionKind kind, Invocation& invocation) {
-  const auto plan = load_plan_revision(path, kind, invocation);
-  if (!plan) return invocation.sink().already_reported();
+Text plan_text(const std::string& path, RevisionKind kind, Context& context) {
+  const auto plan = load_plan_revision(path, kind, context);
+  if (!plan) return context.sink().already_reported();
   return plan->lisp ? compiler::canonical_plan(*plan->lisp) : canonical_text(plan->facts);
 }
 
 }  // namespace
 
-Text canonical_text_of(const std::string& path, Invocation& invocation) {
+Text canonical_text_of(const std::string& path, Context& context) {
   const auto kind = kind_of(path);
   if (kind) {
     switch (*kind) {
       case RevisionKind::kModel:
-        return model_text(path, invocation);
+        return model_text(path, context);
       case RevisionKind::kArtifact:
-        return artifact_text(path, invocation);
+        return artifact_text(path, context);
       case RevisionKind::kPlan:
       case RevisionKind::kBinding:
-        return plan_text(path, *kind, invocation);
+        return plan_text(path, *kind, context);
       case RevisionKind::kTraces: {
-        const auto set = load_trace_set(path, invocation);
-        if (!set) return invocation.sink().already_reported();
+        const auto set = load_trace_set(path, context);
+        if (!set) return context.sink().already_reported();
         return canonical_text(*set);
       }
       case RevisionKind::kRun: {
-        const auto facts = load_run_facts(path, invocation);
-        if (!facts) return invocation.sink().already_reported();
+        const auto facts = load_run_facts(path, context);
+        if (!facts) return context.sink().already_reported();
         return canonical_text(*facts);
       }
       case RevisionKind::kScenario:
         break;
     }
   }
-  return invocation.sink().error_about(
+  return context.sink().error_about(
       base::DiagnosticCode::kUsage, path,
       "there is a canonical text of models (.e, .dec.cnf), plans (.lisp, .bind), trace files "
       "(.jsonl) and runs only");

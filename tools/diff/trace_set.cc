@@ -130,20 +130,20 @@ std::size_t events_before(const runtime::Trace& trace, std::int64_t t) {
 
 }  // namespace
 
-base::Result<TraceSet> load_trace_set(const std::string& path, Invocation& invocation) {
-  const auto file = base::load_text(path, invocation.files(), invocation.sink());
-  if (!file) return invocation.sink().already_reported();
+base::Result<TraceSet> load_trace_set(const std::string& path, Context& context) {
+  const auto file = base::load_text(path, context.files(), context.sink());
+  if (!file) return context.sink().already_reported();
   TraceSet out;
   out.name = path;
   LineReader reader(out);
-  const auto text = invocation.files()[*file].text();
+  const auto text = context.files()[*file].text();
   for (std::size_t at = 0; at < text.size();) {
     const auto end = std::min(text.find('\n', at), text.size());
     const auto why = end == at ? std::string() : reader.read(text.substr(at, end - at));
     if (!why.empty()) {
       const base::SourceRange place{*file, static_cast<std::uint32_t>(at),
                                     static_cast<std::uint32_t>(end)};
-      return invocation.sink().error(base::DiagnosticCode::kTraceFileSyntax, place, why);
+      return context.sink().error(base::DiagnosticCode::kTraceFileSyntax, place, why);
     }
     at = end + 1;
   }

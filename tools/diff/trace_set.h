@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "runtime/trace/trace.h"
-#include "tools/cli/command.h"
+#include "tools/app/context.h"
 
 namespace parallax::tools {
 
@@ -18,7 +18,7 @@ struct TraceSet {
 };
 
 /// Reads lines of `parallax traces --format jsonl` (E6101). Linear in the file.
-base::Result<TraceSet> load_trace_set(const std::string& path, Invocation& invocation);
+base::Result<TraceSet> load_trace_set(const std::string& path, Context& context);
 
 /// The traces with changes only, sorted, and what is known of the list.
 std::string canonical_text(const TraceSet& set);

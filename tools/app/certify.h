@@ -1,0 +1,69 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "runtime/certify/certificate.h"
+#include "runtime/session/solver_session.h"
+#include "runtime/solver/sat_solver.h"
+#include "tools/app/context.h"
+
+namespace parallax::tools {
+
+/// `--certify[=FILE]`: whether a list of traces is complete, as a checked proof.
+struct CertifyOption {
+  std::string file;  // empty: not asked for
+  bool keep = true;  // false: the files are gone when the command ends, so nobody is told of them
+};
+
+/// Collects the traces of a list and proves at its end that there are no others. Without the option
+/// it does nothing and says so.
+class TraceCertifier {
+ public:
+  /// `models`: as on the command line; the first one names the file where the user does not. All
+  /// references outlive the object.
+  TraceCertifier(const CertifyOption& option, const std::vector<std::string>& models,
+                 const runtime::CompiledModel& model, Context& context);
+
+  bool is_asked() const { return claim_.has_value(); }
+  /// A solver for the search, whose work is logged as a proof where one is asked for. It has to be
+  /// gone before the list is concluded.
+  std::unique_ptr<runtime::SatSolver> solver();
+  /// How a session is to load it.
+  runtime::Loading loading() const {
+    return files_ ? runtime::Loading::kWhole : runtime::Loading::kAsNeeded;
+  }
+  /// The files can be written. False: reported.
+  bool ready() const { return !option_.file.empty() == files_.has_value(); }
+  void add(const runtime::Trace& trace) {
+    if (claim_) claim_->add(trace);
+  }
+  /// Makes and checks the proof; `exploration`: what is known of the traces that were not listed.
+  /// `searched`: the solver above found that there are no others.
+  void conclude(const std::string& exploration, bool searched);
+  /// Warns that there is nothing to prove.
+  void decline(const std::string& reason);
+
+  /// The list is not what it claims to be, or nobody could tell.
+  bool refuted() const { return verdict_ == "proof not accepted"; }
+  /// `no proof`, `proof checked`, `proof not accepted` or `proof not checked`.
+  const std::string& verdict() const { return verdict_; }
+  std::string proof_file() const { return files_ ? files_->proof_path().string() : ""; }
+  /// ` (proof checked)` after what claims to be complete, else nothing.
+  std::string remark(const std::string& exploration) const;
+  /// What made an accepted proof: `search` or `fresh solve`.
+  const std::string& origin() const { return origin_; }
+  /// `"proof":"checked","proof_origin":"search","proof_file":"..",`: none, checked, not accepted,
+  /// not checked; the rest only with a proof that was accepted.
+  std::string fields() const;
+
+ private:
+  const CertifyOption& option_;
+  Context& context_;
+  std::optional<runtime::ProofFiles> files_;
+  std::optional<runtime::CompletenessClaim> claim_;
+  std::string verdict_ = "no proof", origin_;
+};
+
+}  // namespace parallax::tools

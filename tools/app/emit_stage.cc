@@ -1,0 +1,143 @@
+#include "tools/app/emit_stage.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "compiler/asp/asp_export.h"
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
+#include "compiler/sema/check.h"
+#include "compiler/sema/model_text.h"
+#include "compiler/syntax/lexer.h"
+#include "compiler/syntax/loader.h"
+#include "compiler/syntax/printer.h"
+
+namespace parallax::tools {
+namespace {
+
+std::string_view word(compiler::TokenKind kind) {
+  switch (kind) {
+    case compiler::TokenKind::kName:
+      return "name";
+    case compiler::TokenKind::kNumber:
+      return "number";
+    case compiler::TokenKind::kOperator:
+      return "operator";
+    case compiler::TokenKind::kOpenParen:
+    case compiler::TokenKind::kCloseParen:
+    case compiler::TokenKind::kOpenBracket:
+    case compiler::TokenKind::kCloseBracket:
+    case compiler::TokenKind::kOpenBrace:
+    case compiler::TokenKind::kCloseBrace:
+      return "bracket";
+    case compiler::TokenKind::kComma:
+      return "comma";
+    case compiler::TokenKind::kPeriod:
+      return "period";
+    case compiler::TokenKind::kColon:
+      return "colon";
+    case compiler::TokenKind::kStatementLine:
+      return "statement";
+    case compiler::TokenKind::kEnd:
+      return "end";
+  }
+  return "?";
+}
+
+void append_tokens(base::FileId id, Context& context, std::string& out) {
+  const auto& file = context.files()[id];
+  const auto size = static_cast<std::uint32_t>(file.text().size());
+  compiler::Lexer lexer({id, 0, size}, file.text(), compiler::Lexer::Mode::kFile, context.sink());
+  out += "; " + file.name() + '\n';
+  while (lexer.peek().kind != compiler::TokenKind::kEnd) {
+    const auto token = lexer.peek();
+    const bool statement = token.kind == compiler::TokenKind::kStatementLine;
+    auto text = file.text({id, token.begin, token.end});
+    while (!text.empty() && compiler::is_blank(text.back())) text.remove_suffix(1);
+    const auto place = file.position(token.begin);
+    out += fmt::format("{}:{} {} {}\n", place.line, place.column, word(token.kind), text);
+    if (statement) {
+      lexer.skip_statement();
+    } else {
+      lexer.next();
+    }
+  }
+}
+
+std::string tokens(const ModelOptions& options, Context& context) {
+  std::string out;
+  for (const auto& path : options.models) {
+    const auto file = base::load_text(path, context.files(), context.sink());
+    if (file) append_tokens(*file, context, out);
+  }
+  return out;
+}
+
+std::string statements(const compiler::ModelAst& ast, const base::SourceFiles& files) {
+  std::string out;
+  for (const auto& file : ast.files) {
+    if (file.built_in) continue;
+    out += "; " + files[file.ast.file()].name() + '\n' + compiler::print_file(file.ast);
+  }
+  return out;
+}
+
+std::string typed(const compiler::ModelAst& ast, const compiler::CheckOptions& check,
+                  Context& context) {
+  const auto model = compiler::check_model(ast, context.files(), context.sink(), check);
+  if (!model) return {};
+  std::string loads;
+  for (const auto& file : ast.files) {
+    if (file.built_in) loads += "load " + context.files()[file.ast.file()].name() + '\n';
+  }
+  return loads + compiler::to_text(*model, [&](const base::SourceRange& range) {
+           return std::none_of(ast.files.begin(), ast.files.end(), [&](const auto& file) {
+             return !file.built_in && file.ast.file() == range.file;
+           });
+         });
+}
+
+std::string logic_program(const compiler::ModelAst& ast, const compiler::CheckOptions& check,
+                          const ModelOptions& options, Context& context) {
+  auto& sink = context.sink();
+  if (!options.compat.empty()) {
+    sink.error_about(base::DiagnosticCode::kUsage, "",
+                     "--emit=lp has the standard meaning only; drop --compat");
+    return {};
+  }
+  const auto model = compiler::check_model(ast, context.files(), sink, check);
+  if (!model) return {};
+  auto program = compiler::to_asp(*model, context.files(), {}, sink);
+  return program ? std::move(program->text) : std::string();
+}
+
+}  // namespace
+
+bool is_front_end_stage(std::string_view stage) {
+  return stage == "tokens" || stage == "ast" || stage == "typed" || stage == "lp";
+}
+
+base::Result<std::string> front_end_text(std::string_view stage, const ModelOptions& options,
+                                         Context& context) {
+  auto& sink = context.sink();
+  std::string text;
+  if (stage == "tokens") {
+    text = tokens(options, context);
+  } else {
+    const auto input = compile_input(options, context);
+    const auto ast = compiler::load_model(input.models, input.load, context.files(), sink);
+    if (!ast) return sink.already_reported();
+    compiler::CheckOptions check;
+    if (input.horizon) {
+      check.time_lower = 0;
+      check.time_upper = input.horizon;
+    }
+    text = stage == "ast"  ? statements(*ast, context.files())
+           : stage == "lp" ? logic_program(*ast, check, options, context)
+                           : typed(*ast, check, context);
+  }
+  if (sink.has_errors()) return sink.already_reported();
+  return text;
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "tools/app/model_options.h"
+
+namespace parallax::tools {
+
+/// Is it a stage before grounding: tokens, ast, typed, lp?
+bool is_front_end_stage(std::string_view stage);
+
+/// The models after that stage as text: the tokens with their places, the statements as the printer
+/// writes them, the checked model, or the checked model as a logic program for clingo. What is
+/// wrong with the models is in the sink; then nothing is printed.
+base::Result<std::string> front_end_text(std::string_view stage, const ModelOptions& options,
+                                         Context& context);
+
+}  // namespace parallax::tools

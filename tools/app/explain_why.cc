@@ -1,0 +1,153 @@
+#include "tools/app/explain_why.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "runtime/enumerate/plan_enumerator.h"
+#include "runtime/explain/why.h"
+#include "runtime/graph/trace_counter.h"
+#include "tools/app/explain_place.h"
+#include "tools/app/trace_fact.h"
+#include "tools/app/why_text.h"
+
+namespace parallax::tools {
+namespace {
+
+using compiler::AtomKind;
+using compiler::Literal;
+using runtime::WhyStep;
+
+/// A trace with a valuation of every variable.
+struct ValuedTrace {
+  compiler::Timepoint length = 0;
+  std::vector<bool> values;
+};
+
+/// A trace by its number; else how many there are, in digits.
+struct Found {
+  std::optional<runtime::Trace> trace;
+  std::string count;
+};
+
+Found find_planned(const compiler::CompiledModel& model, std::int64_t number,
+                   const Context& context) {
+  runtime::SolverSession session(model, runtime::make_cadical_solver(&context.stop()));
+  runtime::PlanEnumerator enumerator(session);
+  Found found;
+  std::int64_t count = 0;
+  for (; count < number; ++count) {
+    found.trace = enumerator.next();
+    if (!found.trace) break;
+  }
+  found.count = std::to_string(count);
+  return found;
+}
+
+Found find_trace(const compiler::CompiledModel& model, std::int64_t number,
+                 const Context& context) {
+  if (model.has_constraints) return find_planned(model, number, context);
+  runtime::TraceQuery query;
+  query.wanted = number;
+  query.stop = &context.stop();
+  runtime::ModelTraces traces(model, query);
+  traces.seek(static_cast<long>(number - 1));
+  Found found;
+  found.trace = traces.next();
+  query.wanted = 0;
+  if (!found.trace) found.count = runtime::count_traces(model, query).count.get_str();
+  return found;
+}
+
+/// Every atom as the trace has it; what it does not show is the solver's choice.
+std::optional<ValuedTrace> value(const compiler::CompiledModel& model, const runtime::Trace& trace,
+                                 const Context& context) {
+  runtime::SolverSession session(model, runtime::make_cadical_solver(&context.stop()));
+  std::vector<Literal> assumptions;
+  model.for_each_atom([&](const compiler::AtomRef& atom) {
+    const auto& [kind, time] = std::tie(atom.kind, atom.time);
+    const auto t = time.value_or(0) + (kind == AtomKind::kHappens ? 1 : 0);
+    if (t > trace.length()) return;
+    const auto has = [&](const std::vector<std::string>& names) {
+      const bool is_true = std::binary_search(names.begin(), names.end(), atom.name);
+      assumptions.push_back(is_true ? atom.literal() : ~atom.literal());
+    };
+    if (kind == AtomKind::kPredicate && !time) has(trace.predicates);
+    if (!time) return;
+    const auto& point = trace.points[static_cast<std::size_t>(*time)];
+    if (kind == AtomKind::kHoldsAt) has(point.holds);
+    if (kind == AtomKind::kHappens) has(point.happens);
+    if (kind == AtomKind::kReleasedAt) has(point.released);
+  });
+  if (session.solve(trace.length(), assumptions) != runtime::SolveStatus::kSatisfiable) {
+    return std::nullopt;
+  }
+  ValuedTrace valued{trace.length(), {}};
+  for (std::int32_t v = 1; v <= model.variable_count(); ++v) {
+    valued.values.push_back(session.value(Literal::positive(v)));
+  }
+  return valued;
+}
+
+base::Result<ValuedTrace> load_trace(const compiler::CompiledModel& model, std::int64_t number,
+                                     Context& context) {
+  const auto found = find_trace(model, number, context);
+  const auto valued = found.trace ? value(model, *found.trace, context) : std::nullopt;
+  if (valued) return *valued;
+  if (context.stopped()) {
+    return context.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
+                                      fmt::format("trace {} was not reached", number));
+  }
+  return context.sink().error_about(
+      base::DiagnosticCode::kNoSuchTrace, "--trace", number,
+      found.count == "0" ? "the model has none" : fmt::format("the model has {}", found.count));
+}
+
+/// The last timepoint at which the atom of a fact can be.
+bool is_within(const TraceFact& fact, compiler::Timepoint length) {
+  return fact.time.value_or(0) + (fact.kind == AtomKind::kHappens ? 1 : 0) <= length;
+}
+
+}  // namespace
+
+int explain_why(const compiler::CompiledModel& model, const WhyCommand& command, Context& context) {
+  const auto fact = parse_fact(command.fact, model, context);
+  if (!fact) return 0;
+  const auto trace = load_trace(model, command.trace, context);
+  if (!trace) return 0;
+  if (!is_within(*fact, trace->length)) {
+    context.sink().error_about(
+        base::DiagnosticCode::kNoSuchFact, "--why", command.fact,
+        fmt::format("trace {} ends at {}{}", command.trace, trace->length,
+                    fact->kind == AtomKind::kHappens ? ", where nothing happens any more" : ""));
+    return 0;
+  }
+  WhyText text(model, command.trace);
+  std::vector<WhyStep> steps;
+  std::optional<Literal> asked;
+  if (fact->atom) {
+    const bool holds = trace->values[static_cast<std::size_t>(fact->atom->var()) - 1];
+    asked = holds ? *fact->atom : ~*fact->atom;
+    runtime::WhyOptions options;
+    options.alternatives = command.all;
+    options.stop = &context.stop();
+    steps = runtime::explain_fact(model, trace->length, trace->values, *asked, options);
+  }
+  if (context.form().json) {
+    context.document(text.json(*fact, asked, steps));
+  } else {
+    context.result(text.text(*fact, asked, steps));
+  }
+  const bool undecided = std::any_of(steps.begin(), steps.end(), [](const WhyStep& step) {
+    return step.kind == runtime::WhyKind::kUndecided;
+  });
+  if (undecided) {
+    context.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
+                               "whether every choice is one is not known");
+  }
+  return 0;
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/artifact/artifact_reader.h"
+#include "compiler/pipeline/compile.h"
+#include "tools/app/context.h"
+
+namespace parallax::tools {
+
+/// The options of every command that reads a model.
+struct ModelOptions {
+  std::vector<std::string> models;
+  std::vector<std::string> include_dirs;
+  bool allow_outside = false;
+  std::string compat;              // "decreasoner", or empty for the standard meaning
+  std::int64_t horizon = -1;       // -1: as the model says
+  std::vector<std::string> until;  // state constraints
+  /// `verify`: traces end where this formula does not hold.
+  std::optional<std::string> property = std::nullopt;
+  std::string plan, bind;      // Lisp file and binding table; both or none
+  std::string plan_entry;      // the function to run; empty: as the plan says
+  std::string regions;         // the scenario whose regions the plan's poses lie in
+  std::int32_t max_loop = 16;  // iterations of a loop that nothing static ends
+  std::int32_t max_call_depth = 8;
+  std::int32_t location_samples = 0;  // further solutions that `next-solution` gives
+  std::string par = "in-order";       // the branches of `par`: in-order or interleave
+  std::int64_t max_horizon = 50;      // of plans, where nothing says the horizon
+  bool lint = false;                  // `check`: report what is legal but hardly meant
+  bool stats = false;                 // count what each axiom costs; commands offer it themselves
+};
+
+compiler::CompileInput compile_input(const ModelOptions& options, const Context& context);
+
+/// Is one of the models a compiled one (`.cnf`)?
+bool names_artifact(const ModelOptions& options);
+/// The compiled model that the options name, read without the front end. Reports a second model,
+/// options that belong to the compilation, and another horizon (E6014).
+base::Result<compiler::CompiledModel> load_artifact(const ModelOptions& options, Context& context);
+
+}  // namespace parallax::tools

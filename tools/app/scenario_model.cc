@@ -1,0 +1,241 @@
+#include "tools/app/scenario_model.h"
+
+#include <cmath>
+#include <limits>
+
+#include "compiler/base/file_io.h"
+#include "harness/campaign/campaign.h"
+#include "tools/app/formula_argument.h"
+#include "tools/app/version.h"
+
+namespace parallax::tools {
+namespace {
+
+/// The plan's poses are located with the regions that the simulation is mapped with.
+class RegionLocator final : public compiler::PoseLocator {
+ public:
+  explicit RegionLocator(const harness::RegionMap& regions) : regions_(&regions) {}
+
+  std::optional<std::string> region_of(std::string_view function,
+                                       const compiler::Pose& pose) const override {
+    const auto* region = regions_->locate(function, point(pose));
+    if (region == nullptr) return std::nullopt;
+    return region->name;
+  }
+
+  std::optional<Nearest> nearest(std::string_view function,
+                                 const compiler::Pose& pose) const override {
+    std::optional<Nearest> best;
+    const auto at = point(pose);
+    for (const auto& region : regions_->regions()) {
+      if (!region.frame.empty() || !regions_->answers(function, region)) continue;
+      const auto here = distance(region, at);
+      if (!best || here.distance_m < best->distance_m) best = here;
+    }
+    return best;
+  }
+
+ private:
+  /// An angle counts as outside, not as a distance.
+  Nearest distance(const harness::Region& region, const harness::Point& at) const {
+    double squared_m2 = 0.0;
+    std::string outside;
+    for (const auto axis : harness::kRegionAxes) {
+      const auto& bound = region.on(axis);
+      if (!bound) continue;
+      const double value = at[static_cast<std::size_t>(axis)];
+      const double outside_m = std::max({bound->lower - value, value - bound->upper, 0.0});
+      if (axis == harness::RegionAxis::kYaw ? contains_yaw(region, at) : outside_m == 0.0) continue;
+      if (axis != harness::RegionAxis::kYaw) squared_m2 += outside_m * outside_m;
+      outside +=
+          fmt::format("{}{}: {:.4g} is not from {:.4g} to {:.4g}", outside.empty() ? "" : "; ",
+                      to_string(axis), value, bound->lower, bound->upper);
+    }
+    return {region.name, std::sqrt(squared_m2), outside};
+  }
+
+  bool contains_yaw(const harness::Region& region, const harness::Point& at) const {
+    auto moved = at;
+    for (const auto axis : harness::kRegionAxes) {
+      const auto& bound = region.on(axis);
+      if (bound && axis != harness::RegionAxis::kYaw) {
+        moved[static_cast<std::size_t>(axis)] = bound->midpoint();
+      }
+    }
+    return regions_->contains(region, moved);
+  }
+
+  /// A place is a point that something lies at: its height is that of the lowest point.
+  static harness::Point point(const compiler::Pose& pose) {
+    return {pose.x_m, pose.y_m, pose.z_m, compiler::yaw_rad(pose), pose.z_m};
+  }
+  const harness::RegionMap* regions_;
+};
+
+/// Where a formula of the scenario can be parsed: in the file itself if it stands there word for
+/// word, else (escapes, folded lines) as a text of its own.
+compiler::ConstraintText constraint_text(const harness::LocatedText& text,
+                                         base::SourceFiles& files) {
+  const auto size = static_cast<std::uint32_t>(text.text.size());
+  const auto offset = files.text(text.source).find(text.text);
+  if (offset != std::string_view::npos) {
+    const auto begin = text.source.begin + static_cast<std::uint32_t>(offset);
+    const base::SourceRange range{text.source.file, begin, begin + size};
+    return {range, range, false};
+  }
+  const auto file = files.add(files[text.source.file].name(), text.text);
+  return {{file, 0, size}, text.source, false};
+}
+
+/// Traces are to end where the property does not hold, also right at the start.
+base::Status look_for_violations(const std::string& property, compiler::CompileInput& input,
+                                 Context& context) {
+  const auto range = formula_argument("--property", property, context);
+  if (!range) return context.sink().already_reported();
+  input.constraints = {{*range, *range, true}};
+  input.hits_at_start = true;
+  return base::Unit{};
+}
+
+base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scenario,
+                                                   const RegionLocator& locator, Context& context) {
+  auto& files = context.files();
+  auto& sink = context.sink();
+  compiler::CompileInput input;
+  for (const auto& model : scenario.models) input.models.emplace_back(model.text);
+  input.horizon = scenario.horizon;
+  input.ground.stop = &context.stop();
+  input.producer = fmt::format("parallax {}", kVersion);
+  for (const auto& text : scenario.constraints) {
+    input.constraints.push_back(constraint_text(text, files));
+  }
+  if (scenario.plan) {
+    const auto plan = base::load_text(scenario.plan->text, files, sink);
+    const auto bind = base::load_text(scenario.bind->text, files, sink);
+    if (!plan || !bind) return sink.already_reported();
+    input.plan = compiler::PlanInput{*plan, *bind, std::nullopt, &locator};
+  }
+  return input;
+}
+
+/// How a model is compiled beyond what the user says.
+struct Switches {
+  bool costs = false;
+  bool plain = false;  // plain_models.h
+  void apply(compiler::CompileInput& input) const {
+    input.costs = costs;
+    if (!plain) return;
+    input.ground.relevance = false;
+    input.ground.invariants = false;
+  }
+};
+
+base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& context,
+                                 const Switches& switches,
+                                 const std::optional<std::string>& property = std::nullopt) {
+  auto& sink = context.sink();
+  auto scenario = harness::load_scenario(path, context.files(), sink);
+  if (!scenario) return sink.already_reported();
+  auto scenario_hash = harness::hash_of_sources(context.files());
+  const RegionLocator locator(scenario->mapping->regions());
+  auto input = compile_input(*scenario, locator, context);
+  if (!input) return sink.already_reported();
+  switches.apply(*input);
+  if (property && !look_for_violations(*property, *input, context)) {
+    return sink.already_reported();
+  }
+  auto compilation = compiler::compile_model(*input, context.files(), sink);
+  if (!compilation) return sink.already_reported();
+  const auto& model = compilation->model;
+  if (!harness::check_against_model(*scenario, compiler::names_of(model.fluents),
+                                    compiler::names_of(model.events), sink)) {
+    return sink.already_reported();
+  }
+  return ScenarioModel{*std::move(scenario), *std::move(compilation),
+                       harness::hash_of_sources(context.files()), std::move(scenario_hash)};
+}
+
+/// Reads plan, binding table and regions; without --regions no pose lies anywhere. `regions` holds
+/// what the locator points to.
+base::Status add_plan(const ModelOptions& options, std::optional<harness::Scenario>& regions,
+                      std::optional<RegionLocator>& locator, compiler::CompileInput& input,
+                      Context& context) {
+  auto& sink = context.sink();
+  static const harness::RegionMap kNowhere{harness::RegionSet()};
+  if (!options.regions.empty()) {
+    auto scenario = harness::load_scenario(options.regions, context.files(), sink);
+    if (!scenario) return sink.already_reported();
+    regions = *std::move(scenario);
+  }
+  locator.emplace(regions ? regions->mapping->regions() : kNowhere);
+  const auto plan = base::load_text(options.plan, context.files(), sink);
+  const auto bind = base::load_text(options.bind, context.files(), sink);
+  if (!plan || !bind) return sink.already_reported();
+  input.plan = compiler::PlanInput{.plan = *plan,
+                                   .binding = *bind,
+                                   .entry = std::nullopt,
+                                   .locator = &*locator,
+                                   .max_call_depth = options.max_call_depth,
+                                   .max_loop = options.max_loop,
+                                   .location_samples = options.location_samples,
+                                   .interleave = options.par == "interleave",
+                                   .max_horizon = options.max_horizon};
+  if (!options.plan_entry.empty()) input.plan->entry = options.plan_entry;
+  return base::Unit{};
+}
+
+base::Result<compiler::Compilation> compile(const ModelOptions& options, Context& context,
+                                            const Switches& switches) {
+  const auto& first = options.models.front();
+  if (names_artifact(options)) {
+    auto model = load_artifact(options, context);
+    if (!model) return context.sink().already_reported();
+    compiler::Compilation compiled;
+    compiled.model = *std::move(model);
+    return compiled;
+  }
+  if (options.models.size() == 1 && (first.ends_with(".yaml") || first.ends_with(".yml"))) {
+    auto loaded = load(first, context, switches, options.property);
+    if (!loaded) return context.sink().already_reported();
+    return std::move(loaded->compilation);
+  }
+  auto input = compile_input(options, context);
+  switches.apply(input);
+  for (const auto& formula : options.until) {
+    const auto range = formula_argument("--until", formula, context);
+    if (!range) return context.sink().already_reported();
+    input.constraints.push_back({*range, *range, false});
+  }
+  std::optional<harness::Scenario> regions;
+  std::optional<RegionLocator> locator;
+  if (!options.plan.empty() && !add_plan(options, regions, locator, input, context)) {
+    return context.sink().already_reported();
+  }
+  if (options.property && !look_for_violations(*options.property, input, context)) {
+    return context.sink().already_reported();
+  }
+  return compiler::compile_model(input, context.files(), context.sink());
+}
+
+}  // namespace
+
+base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path, Context& context,
+                                                bool costs) {
+  return load(path, context, {costs, false});
+}
+
+base::Result<ScenarioModel> load_plain_scenario(const std::filesystem::path& path,
+                                                Context& context) {
+  return load(path, context, {false, true});
+}
+
+base::Result<compiler::Compilation> compile_models(const ModelOptions& options, Context& context) {
+  return compile(options, context, {options.stats, false});
+}
+
+base::Result<compiler::Compilation> compile_plain_models(const ModelOptions& options,
+                                                         Context& context) {
+  return compile(options, context, {false, true});
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,156 @@
+#include "tools/app/trace_feed.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "harness/region/state_mapping.h"
+#include "runtime/explain/contradiction.h"
+#include "runtime/session/unsat_core.h"
+#include "tools/app/open_ends.h"
+
+namespace parallax::tools {
+
+namespace {
+
+/// Was the contradiction between these origins' axioms checked by a proof?
+std::string proof_remark(const Context& context, const compiler::CompiledModel& model,
+                         compiler::Timepoint steps, const std::vector<std::uint32_t>& core) {
+  const auto axioms = runtime::group_axioms(model);
+  std::set<std::uint32_t> groups;
+  for (const auto origin : core) groups.insert(axioms.group_of[origin]);
+  runtime::ExecutionFormula formula(model, runtime::Observed{steps, {}});
+  runtime::ProofLimits limits;
+  limits.stop = &context.stop();
+  runtime::Effort none(0);  // the proof may stand on more than it needs
+  const auto ground =
+      runtime::ground_contradiction(formula, axioms, {groups.begin(), groups.end()}, limits, none);
+  if (ground.proof.verdict == runtime::ProofVerdict::kAccepted) {
+    return "a proof of the contradiction was checked";
+  }
+  return "no proof of the contradiction was accepted: " + ground.proof.reason;
+}
+
+}  // namespace
+
+base::Known report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Timepoint steps,
+                                    Context& context) {
+  const auto core =
+      runtime::find_unsat_core(model, steps, runtime::make_cadical_solver(&context.stop()));
+  if (core.status != runtime::SolveStatus::kUnsatisfiable) return runtime::possible(core.status);
+  // Several origins can share a place (the frame axiom and the declaration of a fluent).
+  std::vector<const compiler::Origin*> blamed;
+  for (const auto index : core.origins) blamed.push_back(&model.origins[index]);
+  const auto first = blamed.empty() ? base::SourceRange{} : blamed.front()->source;
+  auto diagnostic = context.sink().error(base::DiagnosticCode::kModelUnsatisfiable, first, steps);
+  for (const auto* origin : blamed) {
+    diagnostic.note(origin->source, fmt::format("this {} takes part", to_string(origin->kind)));
+  }
+  diagnostic.note(proof_remark(context, model, steps, core.origins));
+  if (!core.is_minimal) diagnostic.note("stopped: not every one of them may be needed");
+  return base::Known::kNo;
+}
+
+EnumeratedTraces::EnumeratedTraces(const compiler::CompiledModel& model, Context& context,
+                                   const runtime::PlanEnumeratorOptions& options)
+    : model_(&model),
+      context_(&context),
+      split_initial_(options.split_initial),
+      fluents_(compiler::names_of(model.fluents)),
+      session_(std::make_unique<runtime::SolverSession>(
+          model, runtime::make_cadical_solver(&context.stop()))),
+      enumerator_(std::make_unique<runtime::PlanEnumerator>(*session_, options)) {
+  std::sort(fluents_.begin(), fluents_.end());
+}
+
+base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next() {
+  const auto trace = enumerator_->next();
+  const bool is_stopped = enumerator_->exploration() == runtime::Exploration::kStopped;
+  if (trace && (trace->other_initial_states == base::Known::kUndecided ||
+                trace->other_outcomes == base::Known::kUndecided)) {
+    // The solver was stopped: nothing would be simulated, and the caveats are not known.
+    return std::optional<harness::CampaignTrace>();
+  }
+  if (!trace) {
+    if (given_ == 0 && !is_stopped && !explain_absence())
+      return context_->sink().already_reported();
+    return std::optional<harness::CampaignTrace>();
+  }
+  ++given_;
+  current_ = *trace;
+  auto converted = convert(*trace);
+  if (!converted) return context_->sink().already_reported();
+  return std::optional<harness::CampaignTrace>(*std::move(converted));
+}
+
+std::string EnumeratedTraces::exploration() const {
+  return std::string(runtime::to_string(enumerator_->exploration()));
+}
+
+std::vector<std::string> EnumeratedTraces::bounds() const {
+  return open_end_texts(*model_, enumerator_->open_ends());
+}
+
+base::Known EnumeratedTraces::admits(const harness::CampaignTrace& trace,
+                                     const std::map<std::string, bool>& last_state) {
+  PARALLAX_REQUIRE(trace.number == current_.number, "only the trace given last is asked about");
+  return enumerator_->admits(current_, last_state);
+}
+
+/// Of a search that came to its end: that nothing meets the constraints is proved.
+base::Status EnumeratedTraces::explain_absence() const {
+  auto& sink = context_->sink();
+  if (report_if_unsatisfiable(*model_, model_->horizon, *context_) == base::Known::kNo) {
+    return sink.already_reported();
+  }
+  for (const auto& origin : model_->origins) {
+    if (origin.kind != compiler::OriginKind::kStateConstraint) continue;
+    sink.warning(base::DiagnosticCode::kNoTraceReachesConstraint, origin.source, model_->horizon);
+  }
+  return base::Unit{};
+}
+
+base::Result<harness::CampaignTrace> EnumeratedTraces::convert(const runtime::Trace& trace) const {
+  harness::CampaignTrace out;
+  out.number = trace.number;
+  out.key = runtime::event_key(trace);
+  // Traces of the same events are told apart by where they start.
+  if (split_initial_)
+    out.key += fmt::format(" from {}", fmt::join(trace.points.front().holds, ";"));
+  out.other_initial_states = trace.other_initial_states == base::Known::kYes;
+  out.other_outcomes = trace.other_outcomes == base::Known::kYes;
+  for (const auto& point : trace.points) out.holds.push_back(point.holds);
+  for (std::size_t t = 0; t + 1 < trace.points.size(); ++t) {
+    const auto& point = trace.points[t];
+    if (point.happens.size() != 1) {
+      const auto where = model_->origins.front().source;
+      return context_->sink().error(base::DiagnosticCode::kSeveralEventsAtOnce, where,
+                                    point.happens.size(), t);
+    }
+    harness::TraceEvent event;
+    const auto term = harness::ground_fluent(point.happens.front());
+    event.text = term.text;
+    event.symbol = term.symbol;
+    event.arguments = term.arguments;
+    if (point.plan_step) {
+      const auto& step = model_->plan[*point.plan_step];
+      event.source = context_->files().place(step.source);
+      for (const auto& [name, value] : step.arguments) {
+        std::visit([&, key = name](const auto& v) { event.plan_arguments[key] = v; }, value);
+        // An object that the plan knows from the model is named by its register.
+        if (const auto* text = std::get_if<std::string>(&value)) {
+          const auto known = point.registers.find(*text);
+          if (known != point.registers.end()) event.plan_arguments[name] = known->second;
+        }
+      }
+    }
+    out.events.push_back(std::move(event));
+  }
+  return out;
+}
+
+}  // namespace parallax::tools

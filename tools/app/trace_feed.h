@@ -1,0 +1,49 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compiler/artifact/compiled_model.h"
+#include "harness/campaign/trace_input.h"
+#include "runtime/enumerate/plan_enumerator.h"
+#include "tools/app/context.h"
+
+namespace parallax::tools {
+
+/// Hands the traces of a compiled model to a campaign, one at a time: the solver waits while the
+/// campaign simulates.
+class EnumeratedTraces final : public harness::TraceFeed {
+ public:
+  /// `model` and `context` outlive the feed.
+  EnumeratedTraces(const compiler::CompiledModel& model, Context& context,
+                   const runtime::PlanEnumeratorOptions& options = {});
+  base::Result<std::optional<harness::CampaignTrace>> next() override;
+  std::string exploration() const override;
+  std::vector<std::string> bounds() const override;
+  const std::vector<std::string>& fluents() const override { return fluents_; }
+  base::Known admits(const harness::CampaignTrace& trace,
+                     const std::map<std::string, bool>& last_state) override;
+  std::int64_t solve_calls() const { return session_->solve_calls(); }
+
+ private:
+  base::Result<harness::CampaignTrace> convert(const runtime::Trace& trace) const;
+  base::Status explain_absence() const;
+
+  const compiler::CompiledModel* model_;
+  Context* context_;
+  bool split_initial_;
+  std::vector<std::string> fluents_;
+  std::unique_ptr<runtime::SolverSession> session_;
+  std::unique_ptr<runtime::PlanEnumerator> enumerator_;
+  runtime::Trace current_;  // the one given last
+  std::int64_t given_ = 0;
+};
+
+/// Has the model an execution of `steps` steps? If it has none, reports why: the axioms of a
+/// minimal core, each with its place.
+base::Known report_if_unsatisfiable(const compiler::CompiledModel& model, compiler::Timepoint steps,
+                                    Context& context);
+
+}  // namespace parallax::tools

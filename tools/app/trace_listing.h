@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "compiler/pipeline/compile.h"
+#include "runtime/trace/list_format.h"
+#include "tools/app/model_options.h"
+
+namespace parallax::tools {
+
+/// How a list of traces is to be written.
+struct ListingOptions {
+  std::string format = "text";  // text, jsonl, itf, csv, decreasoner
+  std::string output;           // itf: a folder of one file for each trace; else empty
+};
+
+/// Reports options that do not go together.
+bool check_listing(const ModelOptions& model, const ListingOptions& options,
+                   base::DiagnosticSink& sink);
+
+/// The format as an object; none for text and jsonl, which have functions of their own.
+/// `one_trace`: at most one is asked for. The compilation and the context outlive it.
+std::unique_ptr<runtime::ListFormat> make_listing(const ModelOptions& model,
+                                                  const ListingOptions& options, bool one_trace,
+                                                  const compiler::Compilation& compilation,
+                                                  Context& context);
+
+/// What standard output gets if a limit ends the process in the middle of the list.
+std::string stopped_text(const std::string& format);
+
+}  // namespace parallax::tools

@@ -1,0 +1,156 @@
+#include "tools/app/trace_search.h"
+
+#include <fmt/format.h>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "runtime/enumerate/model_enumerator.h"
+#include "runtime/enumerate/plan_enumerator.h"
+#include "runtime/graph/trace_counter.h"
+#include "runtime/graph/trace_sampler.h"
+#include "tools/app/open_ends.h"
+
+namespace parallax::tools {
+namespace {
+
+using runtime::Strategy;
+
+/// Of a certified list so many traces are searched by the logged solver before another strategy
+/// takes over: blocking grows dearer with each.
+constexpr std::int64_t kLogged = 64;
+
+runtime::TraceQuery query_of(const SearchOptions& options, const Context& context) {
+  runtime::TraceQuery query;
+  query.distinct =
+      options.distinct == "all" ? runtime::Distinct::kAll : runtime::Distinct::kObservable;
+  for (const auto& [strategy, name] : runtime::kStrategyNames) {
+    if (name == options.strategy) query.strategy = strategy;
+  }
+  query.wanted = options.sample > 0 ? 0 : options.limit;
+  query.stop = &context.stop();
+  return query;
+}
+
+void show_stats(const SearchOptions& options, const runtime::SourceStats& stats, Context& context) {
+  if (!options.stats || context.form().json) return;
+  context.statistics(fmt::format("strategy {}{}{}; {} states, {} transitions, {} solver calls\n",
+                                 stats.strategy, stats.remark.empty() ? "" : ", not the graph: ",
+                                 stats.remark, stats.states, stats.transitions, stats.solve_calls));
+}
+
+void report_refusal(const SearchOptions& options, const std::string& reason, Context& context) {
+  context.sink().error_about(base::DiagnosticCode::kStrategyRefused, "", options.strategy, reason);
+}
+
+/// May the log of a search by blocking become the proof? Other strategies do not leave one.
+bool leaves_proof(const runtime::TraceQuery& query, const TraceCertifier& certifier) {
+  const bool blocks = query.strategy == Strategy::kAuto || query.strategy == Strategy::kBlocking;
+  return certifier.is_asked() && blocks;
+}
+
+/// The search by blocking that leaves a proof; none if there are more traces than are worth it.
+std::optional<Ending> list_logged(const runtime::TraceQuery& query,
+                                  const compiler::CompiledModel& model, TraceCertifier& certifier,
+                                  TraceWriter& writer, runtime::SourceStats& stats,
+                                  const Context& context) {
+  runtime::SolverSession session(model, certifier.solver(), certifier.loading());
+  runtime::ModelEnumerator enumerator(session, query.distinct);
+  const auto most = query.strategy == Strategy::kAuto ? kLogged : INT64_MAX;
+  while (!writer.full() && writer.count() < most && !context.stopped()) {
+    const auto trace = enumerator.next();
+    if (!trace) break;
+    writer.write(*trace);
+  }
+  // At the limit one more call tells "these are all" from "there are more".
+  if (!enumerator.exhausted() && !context.stopped()) (void)enumerator.next();
+  stats = enumerator.stats();
+  if (enumerator.exhausted()) return Ending{"complete", true, {}, true};
+  if (writer.full() || context.stopped()) return Ending{};
+  return std::nullopt;
+}
+
+std::optional<Ending> draw(const SearchOptions& options, const compiler::CompiledModel& model,
+                           TraceWriter& writer, Context& context) {
+  const auto sample = runtime::sample_traces(model, query_of(options, context),
+                                             static_cast<std::size_t>(options.sample),
+                                             static_cast<std::uint64_t>(options.seed));
+  if (!sample.refusal.empty()) {
+    report_refusal(options, sample.refusal, context);
+    return std::nullopt;
+  }
+  for (const auto& trace : sample.traces) writer.write(trace);
+  show_stats(options, sample.stats, context);
+  if (!sample.complete) return Ending{};
+  return Ending{.exploration = fmt::format("drawn from {} with seed {}",
+                                           sample.population.get_str(), options.seed)};
+}
+
+}  // namespace
+
+Ending list_plan_traces(const SearchOptions& options, const compiler::CompiledModel& model,
+                        TraceCertifier& certifier, TraceWriter& writer, Context& context) {
+  runtime::SolverSession session(model, certifier.solver(), certifier.loading());
+  runtime::PlanEnumerator enumerator(
+      session, {.all_hits = options.hits == "all", .split_initial = options.split_initial});
+  while (!writer.full() && !context.stopped()) {
+    const auto trace = enumerator.next();
+    if (!trace) break;
+    writer.write(*trace);
+  }
+  return {std::string(runtime::to_string(enumerator.exploration())),
+          enumerator.exploration() == runtime::Exploration::kAllTracesExplored,
+          open_end_texts(model, enumerator.open_ends()), true};
+}
+
+std::optional<Ending> list_model_traces(const SearchOptions& options,
+                                        const compiler::CompiledModel& model,
+                                        TraceCertifier& certifier, TraceWriter& writer,
+                                        Context& context) {
+  if (options.sample > 0) return draw(options, model, writer, context);
+  const auto query = query_of(options, context);
+  if (leaves_proof(query, certifier)) {
+    runtime::SourceStats stats;
+    const auto ending = list_logged(query, model, certifier, writer, stats, context);
+    if (ending) {
+      show_stats(options, stats, context);
+      return ending;
+    }
+  }
+  runtime::ModelTraces traces(model, query);
+  if (!traces.refusal().empty()) {
+    report_refusal(options, traces.refusal(), context);
+    return std::nullopt;
+  }
+  const auto before = options.from - 1 + writer.count();
+  if (before > 0) traces.seek(static_cast<long>(before));
+  writer.write_all(traces);
+  // At the limit one more call tells "these are all" from "there are more".
+  if (writer.full() && !context.stopped()) (void)traces.next();
+  show_stats(options, traces.stats(), context);
+  if (!traces.exhausted()) return Ending{};
+  return Ending{options.from > 1 ? "complete from there on" : "complete", options.from == 1};
+}
+
+std::optional<CountedTraces> count_model_traces(const SearchOptions& options,
+                                                const compiler::CompiledModel& model,
+                                                TraceCertifier& certifier, Context& context) {
+  auto query = query_of(options, context);
+  query.wanted = 0;
+  if (leaves_proof(query, certifier)) {
+    // Only of a model without traces the number is proved.
+    runtime::SolverSession session(model, certifier.solver(), certifier.loading());
+    if (session.solve(model.horizon, {}) == runtime::SolveStatus::kUnsatisfiable) {
+      return CountedTraces{"0", "blocking", {"complete", true, {}, true}};
+    }
+  }
+  const auto counted = runtime::count_traces(model, query);
+  if (!counted.refusal.empty()) {
+    report_refusal(options, counted.refusal, context);
+    return std::nullopt;
+  }
+  show_stats(options, counted.stats, context);
+  CountedTraces result{counted.count.get_str(), counted.stats.strategy, {}};
+  if (counted.complete) result.ending = {"complete", true};
+  return result;
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/graph/model_traces.h"
+#include "tools/app/certify.h"
+#include "tools/app/context.h"
+#include "tools/app/trace_writer.h"
+
+namespace parallax::tools {
+
+/// Which traces are asked for, and how they are to be found.
+struct SearchOptions {
+  std::int64_t limit = 10;  // 0: all
+  std::string distinct = "observable";
+  std::string strategy = "auto";
+  std::int64_t from = 1;
+  std::int64_t sample = 0;  // so many are drawn; 0: they are listed
+  std::int64_t seed = 1;
+  std::string hits = "first";  // the last two: of plans and state constraints
+  bool split_initial = false;
+  bool stats = false;  // say how they were found
+};
+
+/// What is known of the traces that were not listed, and how.
+struct Ending {
+  std::string exploration = "stopped";
+  bool complete = false;
+  std::vector<std::string> bounds = {};  // why it is complete up to the bound only
+  bool searched = false;  // the certifier's solver found by itself that there are no others
+};
+
+/// Traces of a model with a plan or constraints.
+Ending list_plan_traces(const SearchOptions& options, const compiler::CompiledModel& model,
+                        TraceCertifier& certifier, TraceWriter& writer, Context& context);
+
+/// Traces of a model: listed, or drawn where a sample is asked for. None if the strategy cannot be
+/// had, reported. Where a proof is asked for the first ones are searched by the certifier's solver.
+std::optional<Ending> list_model_traces(const SearchOptions& options,
+                                        const compiler::CompiledModel& model,
+                                        TraceCertifier& certifier, TraceWriter& writer,
+                                        Context& context);
+
+/// The number of traces of a model without making them. None if the strategy cannot be had,
+/// reported.
+struct CountedTraces {
+  std::string number, strategy;
+  Ending ending;
+};
+std::optional<CountedTraces> count_model_traces(const SearchOptions& options,
+                                                const compiler::CompiledModel& model,
+                                                TraceCertifier& certifier, Context& context);
+
+}  // namespace parallax::tools

@@ -1,0 +1,65 @@
+#include "tools/app/trace_writer.h"
+
+#include <fmt/format.h>
+
+namespace parallax::tools {
+namespace {
+
+/// Text is handed on in blocks of this size, so that listing millions is not a call for each.
+constexpr std::size_t kBlock = std::size_t{1} << 16U;
+
+}  // namespace
+
+const runtime::TraceFormat& TraceWriter::format() const {
+  return form_.format == "jsonl" ? runtime::jsonl_format() : runtime::text_format();
+}
+
+void TraceWriter::print(const runtime::Trace& trace) {
+  if (form_.count_only) return;
+  if (context_.form().json) {
+    list_ += (list_.empty() ? "" : ",") + runtime::to_jsonl(trace);
+  } else if (form_.listing != nullptr) {
+    context_.result(form_.listing->trace(trace));
+  } else {
+    context_.result(runtime::format_trace(format(), trace));
+  }
+}
+
+void TraceWriter::write(const runtime::Trace& trace) {
+  ++count_;
+  print(trace);
+  if (check_ != nullptr) check_->check(trace);
+  certifier_.add(trace);
+}
+
+void TraceWriter::write_all(runtime::TraceSource& source) {
+  // Traces as such are needed for checks, for a proof, for the document and for other formats only.
+  const bool as_text = check_ == nullptr && !certifier_.is_asked() && !form_.count_only &&
+                       form_.listing == nullptr && !context_.form().json;
+  std::string block;
+  while (!full() && !context_.stopped()) {
+    if (as_text) {
+      if (!source.print_next(format(), block)) break;
+      ++count_;
+      // The first ones appear at once.
+      if (block.size() < kBlock && count_ > 100) continue;
+      context_.result(block);
+      block.clear();
+    } else {
+      const auto trace = source.next();
+      if (!trace) break;
+      write(*trace);
+    }
+  }
+  if (!block.empty()) context_.result(block);
+}
+
+std::string TraceWriter::checked_field() const {
+  return check_ == nullptr ? "" : fmt::format("\"checked\":{},", check_->checked());
+}
+
+std::string TraceWriter::checked_remark() const {
+  return check_ == nullptr ? "" : fmt::format(", {} checked", check_->checked());
+}
+
+}  // namespace parallax::tools

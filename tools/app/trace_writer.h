@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+
+#include "runtime/enumerate/trace_source.h"
+#include "runtime/trace/list_format.h"
+#include "tools/app/certify.h"
+#include "tools/app/context.h"
+#include "tools/app/trace_check.h"
+
+namespace parallax::tools {
+
+/// Prints traces as they are found and counts them; under --json they are kept for the document.
+/// What is checked is printed all the same.
+class TraceWriter {
+ public:
+  struct Form {
+    std::string format = "text";  // or "jsonl"
+    bool count_only = false;
+    std::int64_t limit = 0;  // 0: none
+    /// In place of `format`, for what is neither text nor jsonl; outlives the writer.
+    runtime::ListFormat* listing = nullptr;
+  };
+  /// `check` may be null; else it outlives the writer, as the others do.
+  TraceWriter(Form form, TraceCheck* check, TraceCertifier& certifier, Context& context)
+      : form_(std::move(form)), check_(check), certifier_(certifier), context_(context) {
+    if (form_.listing != nullptr) context_.result(form_.listing->begin());
+  }
+
+  bool full() const { return !form_.count_only && form_.limit > 0 && count_ == form_.limit; }
+  void write(const runtime::Trace& trace);
+  /// Everything that the source has, up to the limit.
+  void write_all(runtime::TraceSource& source);
+
+  std::int64_t count() const { return count_; }
+  const std::string& list() const { return list_; }
+  bool agreed() const { return check_ == nullptr || check_->agreed(); }
+  /// `"checked":N,` where traces are checked.
+  std::string checked_field() const;
+  /// `, N checked` where traces are checked.
+  std::string checked_remark() const;
+
+ private:
+  const runtime::TraceFormat& format() const;
+  void print(const runtime::Trace& trace);
+
+  Form form_;
+  TraceCheck* check_;
+  TraceCertifier& certifier_;
+  Context& context_;
+  std::int64_t count_ = 0;
+  std::string list_;
+};
+
+}  // namespace parallax::tools

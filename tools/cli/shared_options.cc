@@ -1,0 +1,120 @@
+#include "tools/cli/shared_options.h"
+
+#include "runtime/graph/model_traces.h"
+#include "tools/cli/command.h"
+
+namespace parallax::tools {
+namespace {
+
+std::vector<std::string> strategy_names() {
+  std::vector<std::string> names;
+  for (const auto& [strategy, name] : runtime::kStrategyNames) names.emplace_back(name);
+  return names;
+}
+
+}  // namespace
+
+void add_model_options(OptionTable& command, ModelOptions& options) {
+  command
+      .option("models", options.models, "Model files (.e), or one that `compile` wrote (.dec.cnf)")
+      .required();
+  // One value each time, so that a model may follow.
+  command.option("-I,--include", options.include_dirs, "Folder in which `load` looks")
+      .list(ListForm::kOneEachTime);
+  command.flag("--allow-outside", options.allow_outside,
+               "Let `load` leave the folders of the models");
+  command.option("--compat", options.compat, "Meaning of the 2005 reasoner where it differs")
+      .check(OneOf{{"decreasoner"}});
+  command.option("--horizon", options.horizon, "Last timepoint; replaces the range of `time`")
+      .check(IntRange{0, 1'000'000});
+  command
+      .option("--until", options.until,
+              "Formula over `time`: traces end where it holds for the first time")
+      .list(ListForm::kOneEachTime);
+}
+
+void add_plan_options(OptionTable& command, ModelOptions& options) {
+  command.option("--plan", options.plan, "Plan to unroll with the models (.lisp)").needs("--bind");
+  command.option("--bind", options.bind, "What the plan's designators mean").needs("--plan");
+  command.option("--plan-entry", options.plan_entry, "The plan's function to run").needs("--plan");
+  command.option("--regions", options.regions, "Scenario whose regions the plan's poses lie in")
+      .needs("--plan");
+  command.option("--max-loop", options.max_loop, "Iterations of a loop that nothing static ends")
+      .check(WholeNumber{1, 10'000})
+      .show_default();
+  command.option("--max-call-depth", options.max_call_depth, "Active calls of one function")
+      .check(WholeNumber{1, 1'000})
+      .show_default();
+  command
+      .option("--location-samples", options.location_samples,
+              "Further solutions that `next-solution` has of a location")
+      .check(WholeNumber{0, 1'000})
+      .show_default();
+  command
+      .option("--par", options.par,
+              "The branches of `par`: in-order, or interleave for every order of their performs")
+      .check(OneOf{{"in-order", "interleave"}})
+      .show_default();
+  command
+      .option("--max-horizon", options.max_horizon,
+              "Without --horizon and a range of `time`: the longest path of the plan, but no "
+              "more than this")
+      .check(WholeNumber{1, 10'000})
+      .show_default();
+}
+
+void add_search_options(OptionTable& command, SearchOptions& options) {
+  command.option("--limit", options.limit, "Stop after this many traces; 0: all")
+      .check(NonNegative{})
+      .show_default();
+  command.option("--from", options.from, "Begin with the trace of this number")
+      .check(WholeNumber{1, kMaxSeed})
+      .show_default();
+  command.option("--sample", options.sample, "So many traces, each any one equally likely")
+      .check(WholeNumber{1, 1'000'000});
+  command.option("--seed", options.seed, "Of --sample")
+      .check(WholeNumber{0, kMaxSeed})
+      .show_default();
+  command
+      .option("--strategy", options.strategy,
+              "auto, search, graph, tree, guarded or blocking: the traces and their order are "
+              "the same, the time is not")
+      .check(OneOf{strategy_names()})
+      .show_default();
+  command
+      .option("--hits", options.hits,
+              "Where traces end: first (at the first hit of the constraints) or all (at each)")
+      .check(OneOf{{"first", "all"}})
+      .show_default();
+  command.flag("--split-initial", options.split_initial,
+               "List every initial state, not only every sequence of events");
+}
+
+void add_listing_options(OptionTable& command, ListingOptions& options) {
+  command
+      .option("--format", options.format,
+              "text (changes only), jsonl, itf (Informal Trace Format), csv, or decreasoner (as "
+              "the 2005 reasoner prints models)")
+      .check(OneOf{{"text", "jsonl", "itf", "csv", "decreasoner"}})
+      .show_default();
+  command.option("--output", options.output,
+                 "With --format itf: a new folder, one file for each trace");
+}
+
+void add_certify_option(OptionTable& command, CertifyOption& option) {
+  command
+      .flag("--certify", option.file,
+            "Write a DRAT proof that there are no other traces, and the formula it refutes "
+            "(FILE.cnf), and check it; the usual FILE is the model's name with .drat")
+      .named_value("[=FILE]");
+}
+
+void add_replay_options(OptionTable& command, ReplayTracesOptions& options) {
+  command.option("--replay", options.file,
+                 "Hold the traces of this file (jsonl or itf) against the model; exit 1 if one "
+                 "is no trace of it");
+  command.flag("--other-model", options.other_model,
+               "Replay traces of another model that has the same names");
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "tools/app/certify.h"
+#include "tools/app/model_options.h"
+#include "tools/app/trace_listing.h"
+#include "tools/app/trace_search.h"
+#include "tools/app/traces_replay.h"
+#include "tools/cli/option_table.h"
+
+namespace parallax::tools {
+
+/// Options that several commands have.
+void add_model_options(OptionTable& command, ModelOptions& options);
+/// --plan and what belongs to it.
+void add_plan_options(OptionTable& command, ModelOptions& options);
+void add_search_options(OptionTable& command, SearchOptions& options);
+void add_listing_options(OptionTable& command, ListingOptions& options);
+/// `--certify` takes its file after `=` only, so that a model may follow it.
+void add_certify_option(OptionTable& command, CertifyOption& option);
+void add_replay_options(OptionTable& command, ReplayTracesOptions& options);
+
+}  // namespace parallax::tools
