@@ -9,8 +9,8 @@
 namespace parallax::tools {
 namespace {
 
-constexpr std::size_t kMaxNotes = 5;         // for one trace
-constexpr std::size_t kMaxViolations = 500;  // looked through for the first one
+constexpr std::size_t kMaxNotes = 5;            // for one trace
+constexpr std::size_t kMaxLookedThrough = 500;  // looked through for the first one
 
 std::set<std::string> truths(const runtime::AtomClaims& claims) {
   std::set<std::string> names;
@@ -20,7 +20,7 @@ std::set<std::string> truths(const runtime::AtomClaims& claims) {
   return names;
 }
 
-compiler::Valuation valuation_of(const runtime::ClaimedTrace& trace) {
+compiler::Valuation claimed_valuation(const runtime::ClaimedTrace& trace) {
   compiler::Valuation valuation;
   for (const auto& point : trace.points) {
     valuation.holds.push_back(truths(point.holds));
@@ -40,7 +40,7 @@ base::DiagnosticNote note_at(const base::SourceRange& source, std::string text) 
 
 std::optional<Blame> evaluated_blame(const runtime::ClaimedTrace& trace,
                                      const compiler::ReferenceEvaluator& evaluator) {
-  auto found = evaluator.violations(valuation_of(trace), kMaxViolations).violations;
+  auto found = evaluator.violations(claimed_valuation(trace), kMaxLookedThrough).violations;
   if (found.empty()) return std::nullopt;
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.timepoint < b.timepoint; });

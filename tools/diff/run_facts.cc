@@ -13,24 +13,24 @@ namespace parallax::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using SortedJson = nlohmann::json;
 using compiler::Fact;
 using compiler::FactKind;
 
 /// A text as it is, anything else as JSON.
-std::string word(const Json& value) {
+std::string word(const SortedJson& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-std::string joined(const Json& list) {
+std::string joined(const SortedJson& list) {
   std::string out;
   if (!list.is_array()) return word(list);
   for (const auto& item : list) out += (out.empty() ? "" : ", ") + word(item);
   return out;
 }
 
-const Json& field(const Json& object, const char* name) {
-  static const Json kNothing;
+const SortedJson& field(const SortedJson& object, const char* name) {
+  static const SortedJson kNothing;
   if (!object.is_object()) return kNothing;
   const auto found = object.find(name);
   return found == object.end() ? kNothing : *found;
@@ -38,7 +38,8 @@ const Json& field(const Json& object, const char* name) {
 
 class ReportReader {
  public:
-  ReportReader(const Json& report, std::string file) : report_(report), file_(std::move(file)) {}
+  ReportReader(const SortedJson& report, std::string file)
+      : report_(report), file_(std::move(file)) {}
 
   std::vector<Fact> run() {
     for (const auto* name : {"scenario", "seed", "tool_version", "simulator", "criterion"}) {
@@ -60,7 +61,7 @@ class ReportReader {
     facts_.push_back({kind, key, text, text, {file_, 0}});
   }
 
-  void add_trace(const Json& trace) {
+  void add_trace(const SortedJson& trace) {
     const auto name = fmt::format("trace [{}] from [{}]", joined(field(trace, "events")),
                                   joined(field(trace, "initial_state")));
     names_[word(field(trace, "trace"))] = name;
@@ -72,7 +73,7 @@ class ReportReader {
                     word(field(certified, "epsilon"))));
   }
 
-  void add_discrepancy(const Json& found) {
+  void add_discrepancy(const SortedJson& found) {
     const auto trace = names_.find(word(field(found, "trace")));
     std::string fluents;
     const auto& list = field(found, "fluents");
@@ -86,7 +87,7 @@ class ReportReader {
         fmt::format("first at {}: {}", word(field(found, "first_divergence")), fluents));
   }
 
-  const Json& report_;
+  const SortedJson& report_;
   const std::string file_;
   std::map<std::string, std::string> names_;  // by number
   std::vector<Fact> facts_;
@@ -105,7 +106,7 @@ base::Result<std::vector<Fact>> load_run_facts(const std::string& path, Context&
   if (!fs::exists(file, error)) return refuse("there is no such file");
   const auto text = base::read_file(file, context.sink());
   if (!text) return context.sink().already_reported();
-  const auto report = Json::parse(*text, nullptr, false);
+  const auto report = SortedJson::parse(*text, nullptr, false);
   if (report.is_discarded() || !report.is_object()) return refuse("it is no JSON object");
   if (!field(report, "verdict").is_string() || !field(report, "traces").is_array()) {
     return refuse("it has no `verdict` and `traces`");

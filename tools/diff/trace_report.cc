@@ -145,7 +145,7 @@ Json json_of(const std::optional<runtime::TraceNumber>& number) {
   return number ? json_of(*number) : Json(nullptr);
 }
 
-Json json_of(const compiler::Fact& fact) {
+Json fact_json(const compiler::Fact& fact) {
   return {{"text", fact.shown}, {"file", fact.place.file}, {"line", fact.place.line}};
 }
 
@@ -170,8 +170,8 @@ Json witness_json(const SideView& side, bool lost) {
   if (!side.edits) return out;
   out["edits"] = Json::array();
   for (const auto& edit : *side.edits) {
-    Json kept = edit.kept ? json_of(side.kept.facts[*edit.kept]) : Json(nullptr);
-    Json refused = edit.refused ? json_of(side.refused.facts[*edit.refused]) : Json(nullptr);
+    Json kept = edit.kept ? fact_json(side.kept.facts[*edit.kept]) : Json(nullptr);
+    Json refused = edit.refused ? fact_json(side.refused.facts[*edit.refused]) : Json(nullptr);
     out["edits"].push_back(lost ? Json{{"old", kept}, {"new", refused}}
                                 : Json{{"old", refused}, {"new", kept}});
   }

@@ -13,7 +13,7 @@
 namespace parallax::tools {
 namespace {
 
-using Json = nlohmann::json;
+using SortedJson = nlohmann::json;
 using Names = std::vector<std::string>;
 using Step = std::pair<Names, Names>;  // what happens before a timepoint, what holds at it
 
@@ -24,7 +24,7 @@ class LineReader {
 
   /// Empty if all is well.
   std::string read(std::string_view line) {
-    const auto json = Json::parse(line, nullptr, false);
+    const auto json = SortedJson::parse(line, nullptr, false);
     if (json.is_discarded()) return "it is no JSON";
     if (!json.is_object()) return "it is no object";
     if (json.contains("summary")) {
@@ -54,7 +54,7 @@ class LineReader {
   }
 
  private:
-  static bool read_names(const Json& point, const char* key, Names& names) {
+  static bool read_names(const SortedJson& point, const char* key, Names& names) {
     if (!point.is_object()) return false;
     const auto list = point.find(key);
     if (list == point.end()) return true;
