@@ -146,7 +146,7 @@ void print_none(const compiler::CompiledModel& model, const std::optional<Observ
 void print(const runtime::MinimalSets& found, const SetOptions& options,
            const std::optional<ObservedRun>& run, const runtime::ProofLimits& limits,
            SetWriter& writer, Context& context) {
-  const bool json = context.form().json;
+  const bool as_json = context.form().json;
   ordered_json document = {{"status", "ok"},
                            {"satisfiable", false},
                            {"smallest", !options.all && found.proven},
@@ -154,7 +154,7 @@ void print(const runtime::MinimalSets& found, const SetOptions& options,
   if (run) document["observed"] = run->lines;
   auto sets = ordered_json::array();
   auto effort = effort_of(context.form().time_limit_s);
-  if (!json) {
+  if (!as_json) {
     context.result(
         fmt::format("The model has no trace{}; {} of axioms that contradict {} ({}):\n{}",
                     run ? " in which this happens" : "", counted(found.sets.size(), "minimal set"),
@@ -166,7 +166,7 @@ void print(const runtime::MinimalSets& found, const SetOptions& options,
       context.sink().error_about(base::DiagnosticCode::kProofRejected, "", ground.proof.reason);
     }
     const auto* proof = proof_word(ground.proof.verdict);
-    if (json) {
+    if (as_json) {
       sets.push_back({{"size", found.sets[i].size()},
                       {"proof", proof},
                       {"instances_minimal", ground.minimal},
@@ -177,7 +177,7 @@ void print(const runtime::MinimalSets& found, const SetOptions& options,
           ground.minimal ? "" : "; instances not minimal: stopped", writer.text()));
     }
   }
-  if (!json) return;
+  if (!as_json) return;
   document["sets"] = std::move(sets);
   context.document(document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
 }

@@ -10,10 +10,10 @@
 namespace parallax::tools {
 namespace {
 
-constexpr const char* kKitchen = PARALLAX_SOURCE_DIR "/scenarios/kitchen";
+constexpr const char* kKitchenFolder = PARALLAX_SOURCE_DIR "/scenarios/kitchen";
 
 std::string kitchen_text() {
-  std::ifstream in(std::string(kKitchen) + "/domain.e");
+  std::ifstream in(std::string(kKitchenFolder) + "/domain.e");
   std::ostringstream out;
   out << in.rdbuf();
   return out.str();
@@ -34,7 +34,7 @@ void measure_difference(Bench& bench) {
   std::ofstream(bench.path("new.e")) << edited;
   for (const auto* horizon : {"5", "15"}) {
     auto contestant = parallax_with({"diff", bench.path("old.e"), bench.path("new.e"), "--with",
-                                     std::string(kKitchen) + "/start.e", "-I", kKitchen,
+                                     std::string(kKitchenFolder) + "/start.e", "-I", kKitchenFolder,
                                      "--horizon", horizon, "--quiet"});
     contestant.good_codes = {1};
     bench.compare(std::string("horizon ") + horizon, {contestant});

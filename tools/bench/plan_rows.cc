@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <ctime>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 #include "compiler/pipeline/compile.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/bench/bench.h"
+#include "tools/bench/stopwatch.h"
 
 namespace parallax::tools {
 namespace {
@@ -32,17 +32,6 @@ class KitchenPlaces final : public compiler::PoseLocator {
   std::optional<Nearest> nearest(std::string_view, const compiler::Pose&) const override {
     return std::nullopt;
   }
-};
-
-/// Processor time: other work on the machine does not count.
-class Stopwatch {
- public:
-  double milliseconds() const {
-    return 1000.0 * static_cast<double>(std::clock() - start_) / CLOCKS_PER_SEC;
-  }
-
- private:
-  std::clock_t start_ = std::clock();
 };
 
 std::optional<compiler::Compilation> compile(int horizon, bool with_plan) {
@@ -78,19 +67,19 @@ void add_figure(Bench& bench, std::string name, std::string note) {
 }
 
 void measure_traces(Bench& bench, const compiler::CompiledModel& model) {
-  const Stopwatch loading;
+  Stopwatch loading;
   runtime::SolverSession session(model, runtime::make_cadical_solver());
   runtime::PlanEnumerator enumerator(session);
   const auto first = enumerator.next();
   add_figure(bench, "first trace",
-             fmt::format("{:.0f} ms behind the clauses, {}", loading.milliseconds(),
+             fmt::format("{:.0f} ms behind the clauses, {}", loading.lap_ms(),
                          first ? fmt::format("{} events", first->length()) : "there is none"));
   double worst = 0.0;
   double sum = 0.0;
   for (int further = 0;; ++further) {
-    const Stopwatch watch;
+    Stopwatch watch;
     const auto trace = enumerator.next();
-    const double ms = watch.milliseconds();
+    const double ms = watch.lap_ms();
     if (!trace) {
       add_figure(bench, "further traces",
                  fmt::format("{}, {:.0f} ms each, {:.0f} ms at most", further,
@@ -109,9 +98,9 @@ void measure_plan(Bench& bench) {
   bench.begin("a plan of 155 lines in the kitchen, processor time");
   std::optional<compiler::Compilation> longest;
   for (const int horizon : kHorizons) {
-    const Stopwatch watch;
+    Stopwatch watch;
     auto compilation = compile(horizon, true);
-    const double ms = watch.milliseconds();
+    const double ms = watch.lap_ms();
     const auto alone = compile(horizon, false);
     if (!compilation || !alone) return add_figure(bench, "compilation", "the kitchen is missing");
     add_figure(bench, fmt::format("horizon {}", horizon),

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <ctime>
 #include <filesystem>
 #include <vector>
 
@@ -12,26 +11,9 @@
 #include "compiler/ground/grounder.h"
 #include "compiler/sema/check.h"
 #include "compiler/syntax/loader.h"
+#include "tools/bench/stopwatch.h"
 
 namespace parallax::tools {
-namespace {
-
-/// Milliseconds of processor time since the last call, or since it was made.
-class Stopwatch {
- public:
-  double lap_ms() {
-    const auto now = std::clock();
-    const auto lap = now - begin_;
-    begin_ = now;
-    return 1e3 * static_cast<double>(lap) / CLOCKS_PER_SEC;
-  }
-
- private:
-  std::clock_t begin_ = std::clock();
-};
-
-}  // namespace
-
 int print_stages(const std::string& file) {
   base::SourceFiles files;
   base::DiagnosticSink sink;

@@ -19,7 +19,8 @@ namespace parallax::tools {
 namespace {
 
 constexpr const char* kScenario = PARALLAX_SOURCE_DIR "/scenarios/two_regions/scenario.yaml";
-constexpr const char* kKitchen = PARALLAX_SOURCE_DIR "/scenarios/kitchen/plan2_modified.yaml";
+constexpr const char* kKitchenScenario =
+    PARALLAX_SOURCE_DIR "/scenarios/kitchen/plan2_modified.yaml";
 constexpr int kRepetitions = 15;
 
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
@@ -136,7 +137,7 @@ void measure_world(Bench& bench) {
   measure_worker(bench, simulator, acts);
 
   bench.begin("the kitchen, first trace of the repaired plan");
-  const auto kitchen = load_scenario_model(kKitchen, context);
+  const auto kitchen = load_scenario_model(kKitchenScenario, context);
   harness::OdeSimulator kitchen_simulator(kitchen->scenario.world);
   measure_simulation(bench, kitchen_simulator, *kitchen, acts_of(*kitchen, context), kitchen_start);
 }

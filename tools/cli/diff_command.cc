@@ -38,14 +38,14 @@ std::string quoted(const std::string& text) {
 }
 
 /// What every kind of comparison ends with: a text, or the fields of a document.
-struct Outcome {
+struct Comparison {
   bool differs = false;
   std::string text;
   std::string kind;    // "model"
   std::string fields;  // `"axioms":{...},...`
 };
 
-int print(const DiffOptions& options, const Outcome& outcome, Invocation& invocation) {
+int print(const DiffOptions& options, const Comparison& outcome, Invocation& invocation) {
   if (invocation.options().json) {
     invocation.document(
         fmt::format("{{\"status\":\"ok\",\"equal\":{},\"kind\":\"{}\",\"old\":{},\"new\":{},{}}}\n",
@@ -90,7 +90,7 @@ int diff_models(const DiffOptions& options, RevisionKind old_kind, RevisionKind 
                                     options.models, invocation);
   if (!found) return 0;
   const auto report = found->report();
-  Outcome out;
+  Comparison out;
   out.kind = "model";
   out.differs = !found->facts.empty();
   if (found->traces) {
@@ -143,7 +143,7 @@ int diff_plans(const DiffOptions& options, RevisionKind kind, Invocation& invoca
   if (!before || !after) return 0;
   compiler::drop_equal_order(before->facts, after->facts);
   const auto report = compare(before->facts, after->facts);
-  Outcome out;
+  Comparison out;
   out.kind = "plan";
   out.differs = !report.difference.empty();
   out.fields = facts_fields(report, "order", "forms");
@@ -159,7 +159,7 @@ int diff_runs(const DiffOptions& options, Invocation& invocation) {
   const auto after = load_run_facts(options.new_path, invocation);
   if (!before || !after) return 0;
   const auto report = compare(*before, *after);
-  Outcome out;
+  Comparison out;
   out.kind = "run";
   out.differs = !report.difference.empty();
   out.fields = facts_fields(report, "settings", "results");
@@ -189,7 +189,7 @@ int diff_trace_files(const DiffOptions& options, Invocation& invocation) {
   const auto after = load_trace_set(options.new_path, invocation);
   if (!before || !after) return 0;
   const auto lost = only_in(*before, *after), gained = only_in(*after, *before);
-  Outcome out;
+  Comparison out;
   out.kind = "traces";
   out.differs = lost.count + gained.count != 0;
   const Json document = {

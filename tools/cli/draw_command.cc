@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using base::DiagnosticCode;
 
-struct Options {
+struct DrawOptions {
   std::string what;  // scenario file or run folder
   std::string out;
   std::string sample;
@@ -41,7 +41,7 @@ struct Album {
 
 class Writer {
  public:
-  Writer(const Options& options, const harness::Scenario& scenario,
+  Writer(const DrawOptions& options, const harness::Scenario& scenario,
          const std::vector<harness::Picture>& pictures, Invocation& invocation)
       : invocation_(invocation) {
     if (!options.no_regions) svg_.regions = &scenario.mapping->regions();
@@ -76,7 +76,7 @@ class Writer {
 };
 
 /// The world as it stands at a reset without a drawn start.
-int draw_start(const Options& options, Invocation& invocation) {
+int draw_start(const DrawOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   if (!options.sample.empty()) {
     sink.error_about(DiagnosticCode::kUsage, "", "--sample is for folders of runs");
@@ -139,7 +139,7 @@ base::Result<Album> simulate(const harness::RecordedRun& run, const harness::Sce
 }
 
 /// A picture of the start and one after each action of a recorded simulation.
-int draw_run(const Options& options, Invocation& invocation) {
+int draw_run(const DrawOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto id = parse_sample_option(options.sample, sink);
   if (!id) return 0;
@@ -186,7 +186,7 @@ int draw_run(const Options& options, Invocation& invocation) {
   return 0;
 }
 
-int draw(const Options& options, Invocation& invocation) {
+int draw(const DrawOptions& options, Invocation& invocation) {
   std::error_code error;
   return fs::is_directory(options.what, error) ? draw_run(options, invocation)
                                                : draw_start(options, invocation);
@@ -195,7 +195,7 @@ int draw(const Options& options, Invocation& invocation) {
 }  // namespace
 
 Command draw_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DrawOptions>();
   OptionTable command(
       "draw", "Pictures of a scenario's world, or of each action of a recorded simulation (SVG)");
   command.footer(

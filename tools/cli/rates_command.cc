@@ -12,13 +12,13 @@
 namespace parallax::tools {
 namespace {
 
-struct Options {
+struct RateOptions {
   std::string scenario;
   std::string match;
   harness::RatesOptions rates;
 };
 
-int run_rates(const Options& options, Invocation& invocation) {
+int run_rates(const RateOptions& options, Invocation& invocation) {
   auto loaded = load_scenario_model(options.scenario, invocation);
   if (!loaded) return 0;
   if (!options.match.empty()) loaded->scenario.match_model = options.match == "model";
@@ -46,7 +46,7 @@ int run_rates(const Options& options, Invocation& invocation) {
 }  // namespace
 
 Command rates_command() {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RateOptions>();
   OptionTable command(
       "rates", "How often does each trace go wrong, and why: uniform runs, counted by cause");
   command.footer(

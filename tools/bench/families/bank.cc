@@ -9,7 +9,8 @@
 namespace parallax::tools {
 namespace {
 
-constexpr const char* kWorld = R"(; {0} accounts of up to {1}, transfers of up to {2}, {3} steps.
+constexpr const char* kBankWorld =
+    R"(; {0} accounts of up to {1}, transfers of up to {2}, {3} steps.
 
 range time 0 {3}
 sort account
@@ -50,7 +51,7 @@ balance+amount<={1}.
 
 /// The world and the opening balances.
 std::string opened_bank(const BankSize& size) {
-  std::string text = fmt::format(kWorld, size.accounts, size.max_balance, size.max_amount,
+  std::string text = fmt::format(kBankWorld, size.accounts, size.max_balance, size.max_amount,
                                  size.horizon, numbered_names("Acc", size.accounts));
   const int share = size.max_balance / size.accounts;
   for (int account = 1; account <= size.accounts; ++account) {

@@ -6,7 +6,8 @@
 namespace parallax::tools {
 namespace {
 
-constexpr const char* kWorld = R"(; A robot carries {0} things along a row of {1} rooms, {2} steps.
+constexpr const char* kRobotWorld =
+    R"(; A robot carries {0} things along a row of {1} rooms, {2} steps.
 
 range time 0 {2}
 sort room: integer
@@ -49,12 +50,11 @@ Happens(Grasp(thing),time) -> ({{room}} HoldsAt(Robot(room),time) & HoldsAt(Lies
 [thing] !HoldsAt(Carries(thing),0).
 )";
 
-int first_room(int thing, int rooms) { return thing % 2 == 1 ? 1 : rooms; }
-
 }  // namespace
 
 std::string roaming_model(int rooms, int things, int horizon) {
-  std::string text = fmt::format(kWorld, things, rooms, horizon, numbered_names("Thing", things));
+  std::string text =
+      fmt::format(kRobotWorld, things, rooms, horizon, numbered_names("Thing", things));
   for (int thing = 1; thing <= things; ++thing) {
     text += fmt::format("[room] HoldsAt(LiesIn(Thing{},room),0) <-> room={}.\n", thing,
                         first_room(thing, rooms));

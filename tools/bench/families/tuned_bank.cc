@@ -5,7 +5,7 @@
 namespace parallax::tools {
 namespace {
 
-constexpr const char* kWorld = R"(account(1..{0}).
+constexpr const char* kTunedBankWorld = R"(account(1..{0}).
 balance(0..{1}).
 amount(1..{2}).
 fluent(has(A,V)) :- account(A), balance(V).
@@ -22,8 +22,8 @@ terminates(pay(A,B,M),has(B,V),T) :- happens(pay(A,B,M),T), holds(has(B,V),T), V
 )";
 
 std::string tuned_world(const BankSize& size) {
-  return tuned_calculus(size.horizon) + fmt::format(kWorld, size.accounts, size.max_balance,
-                                                    size.max_amount,
+  return tuned_calculus(size.horizon) + fmt::format(kTunedBankWorld, size.accounts,
+                                                    size.max_balance, size.max_amount,
                                                     size.max_balance / size.accounts);
 }
 

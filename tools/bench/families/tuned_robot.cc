@@ -1,11 +1,12 @@
 #include <fmt/core.h>
 
+#include "tools/bench/families/object_names.h"
 #include "tools/bench/families/tuned.h"
 
 namespace parallax::tools {
 namespace {
 
-constexpr const char* kWorld = R"(room(1..{}).
+constexpr const char* kTunedRobotWorld = R"(room(1..{}).
 thing(1..{}).
 fluent(robot(R)) :- room(R).
 fluent(lies(X,R)) :- thing(X), room(R).
@@ -35,12 +36,10 @@ terminates(drop(X),lies(X,R),T) :- happens(drop(X),T), room(R), not holds(robot(
 :- holds(carries(X),0).
 )";
 
-int first_room(int thing, int rooms) { return thing % 2 == 1 ? 1 : rooms; }
-
 }  // namespace
 
 std::string tuned_roaming(int rooms, int things, int horizon) {
-  std::string text = tuned_calculus(horizon) + fmt::format(kWorld, rooms, things);
+  std::string text = tuned_calculus(horizon) + fmt::format(kTunedRobotWorld, rooms, things);
   for (int thing = 1; thing <= things; ++thing) {
     text += fmt::format(":- not holds(lies({0},{1}),0).\n:- holds(lies({0},R),0), R != {1}.\n",
                         thing, first_room(thing, rooms));
