@@ -45,9 +45,11 @@ function(parallax_library name)
   cmake_parse_arguments(arg "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   add_library(parallax_${name} STATIC ${arg_SOURCES})
   add_library(parallax::${name} ALIAS parallax_${name})
-  target_include_directories(parallax_${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_include_directories(parallax_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_link_libraries(parallax_${name} PUBLIC ${arg_DEPENDS}
-                        PRIVATE parallax_warnings ${arg_PRIVATE_DEPENDS})
+                        PRIVATE $<BUILD_INTERFACE:parallax_warnings> ${arg_PRIVATE_DEPENDS})
+  target_compile_features(parallax_${name} PUBLIC cxx_std_20)
+  set_target_properties(parallax_${name} PROPERTIES EXPORT_NAME ${name})
   parallax_batches(parallax_${name} ${arg_SOURCES})
   parallax_headers(parallax_${name} ${arg_SOURCES})
   parallax_record_layer(parallax::${name} "${arg_SOURCES}" "${arg_DEPENDS};${arg_PRIVATE_DEPENDS}")
@@ -67,6 +69,39 @@ function(parallax_headers target)
   list(REMOVE_ITEM headers "" ${taken})
   set_property(GLOBAL APPEND PROPERTY parallax_headers ${headers})
   target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
+endfunction()
+
+# parallax_install_library(LIBRARY): exports the interface library with everything below it, so that
+# `find_package(parallax)` finds it. Headers lie in include/parallax, rooted as in the repository.
+function(parallax_install_library library)
+  set(open ${library})
+  set(below "")
+  while(open)
+    list(POP_FRONT open target)
+    get_target_property(links ${target} INTERFACE_LINK_LIBRARIES)
+    foreach(link ${links})
+      string(REGEX REPLACE "^\\$<LINK_ONLY:(.*)>$" "\\1" link "${link}")
+      string(REGEX REPLACE "^parallax::" "parallax_" name "${link}")
+      if(NOT name STREQUAL link AND NOT name IN_LIST below)
+        list(APPEND below ${name})
+        list(APPEND open ${name})
+      endif()
+    endforeach()
+  endwhile()
+  set(config ${CMAKE_INSTALL_LIBDIR}/cmake/parallax)
+  install(TARGETS ${library} ${below} EXPORT parallaxTargets COMPONENT development
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/parallax COMPONENT development
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/parallax COMPONENT development)
+  install(EXPORT parallaxTargets NAMESPACE parallax:: DESTINATION ${config} COMPONENT development)
+  include(CMakePackageConfigHelpers)
+  set(modules ${PROJECT_SOURCE_DIR}/tools/cmake)
+  set(made ${PROJECT_BINARY_DIR}/generated/parallaxConfig)
+  configure_package_config_file(${modules}/parallaxConfig.cmake.in ${made}.cmake
+    INSTALL_DESTINATION ${config})
+  write_basic_package_version_file(${made}Version.cmake COMPATIBILITY SameMinorVersion)
+  install(FILES ${made}.cmake ${made}Version.cmake ${modules}/FindCadical.cmake
+    ${modules}/FindGmp.cmake ${modules}/FindOde.cmake DESTINATION ${config}
+    COMPONENT development)
 endfunction()
 
 # parallax_program(NAME SOURCES a.cc ... DEPENDS lib ...): an executable, which is a layer as well.
