@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "compiler/base/json.h"
 #include "compiler/ground/expansion_size.h"
 
 namespace parallax::compiler {
@@ -133,7 +133,7 @@ std::string cost_json(const std::vector<AxiomCost>& costs, const base::SourceFil
                     {"clauses", cost.clauses},
                     {"literals", cost.literals}});
   }
-  return list.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return base::json_text(list);
 }
 
 }  // namespace parallax::compiler

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include "compiler/base/json.h"
 #include "harness/campaign/criterion_json.h"
 #include "harness/campaign/state_json.h"
 
@@ -27,21 +26,9 @@ const Json& field(const Json& object, const char* name) {
 
 template <typename T>
 T get(const Json& object, const char* name) {
-  const auto& value = field(object, name);
-  bool right = false;
-  if constexpr (std::is_same_v<T, std::string>) {
-    right = value.is_string();
-  } else if constexpr (std::is_same_v<T, bool>) {
-    right = value.is_boolean();
-  } else if constexpr (std::is_same_v<T, double>) {
-    right = value.is_number();
-  } else if constexpr (std::is_same_v<T, std::uint64_t>) {
-    right = value.is_number_unsigned();
-  } else {
-    right = value.is_number_integer();
-  }
-  if (!right) throw Foreign{fmt::format("`{}` has the wrong type", name)};
-  return value.get<T>();
+  auto value = base::json_as<T>(field(object, name));
+  if (!value) throw Foreign{fmt::format("`{}` has the wrong type", name)};
+  return *std::move(value);
 }
 
 const Json& list(const Json& object, const char* name) {

@@ -1,8 +1,7 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
 #include "harness/campaign/criterion_json.h"
 #include "harness/campaign/state_json.h"
 #include "harness/report/report.h"
@@ -13,9 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text_of(const Json& json, int indent) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace) + '\n';
-}
+std::string text_of(const Json& json, int indent) { return base::json_text(json, indent) + '\n'; }
 
 /// {"box.x": [1, 2], "box.y": 0}
 Json json_of(const std::vector<SampledDimension>& dimensions) {

@@ -1,9 +1,9 @@
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
+#include "compiler/base/json.h"
 #include "harness/simulator/protocol.h"
 
 namespace parallax::harness {
@@ -44,7 +44,7 @@ class FieldReader {
   std::string string(const Json& parent, const char* name, bool required = true) {
     const Json* json = member(parent, name, required);
     if (json == nullptr) return {};
-    if (json->is_string()) return json->get<std::string>();
+    if (auto value = base::json_as<std::string>(*json)) return *std::move(value);
     fail("`" + std::string(name) + "` is not a string");
     return {};
   }
@@ -52,7 +52,7 @@ class FieldReader {
   double number(const Json& parent, const char* name, bool required = true) {
     const Json* json = member(parent, name, required);
     if (json == nullptr) return 0.0;
-    if (json->is_number()) return json->get<double>();
+    if (auto value = base::json_as<double>(*json)) return *std::move(value);
     fail("`" + std::string(name) + "` is not a number");
     return 0.0;
   }
@@ -60,7 +60,7 @@ class FieldReader {
   std::int64_t integer(const Json& parent, const char* name) {
     const Json* json = member(parent, name, true);
     if (json == nullptr) return 0;
-    if (json->is_number_integer()) return json->get<std::int64_t>();
+    if (auto value = base::json_as<std::int64_t>(*json)) return *std::move(value);
     fail("`" + std::string(name) + "` is not an integer");
     return 0;
   }
@@ -68,7 +68,7 @@ class FieldReader {
   bool boolean(const Json& parent, const char* name, bool required = true) {
     const Json* json = member(parent, name, required);
     if (json == nullptr) return false;
-    if (json->is_boolean()) return json->get<bool>();
+    if (auto value = base::json_as<bool>(*json)) return *std::move(value);
     fail("`" + std::string(name) + "` is not a boolean");
     return false;
   }

@@ -1,6 +1,6 @@
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "compiler/base/json.h"
 #include "harness/simulator/protocol.h"
 
 namespace parallax::harness {
@@ -19,9 +19,7 @@ Json state_to_json(const State& state) {
 }
 
 /// One line. A name that is not UTF-8 becomes one that is, rather than an exception.
-std::string line_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string line_of(const Json& json) { return base::json_text(json); }
 
 Json error_to_json(const ErrorReply& error) {
   return Json{{"code", error.code}, {"message", error.message}};

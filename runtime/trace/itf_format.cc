@@ -1,8 +1,8 @@
 #include "runtime/trace/itf_format.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "compiler/base/json.h"
 #include "compiler/base/whole_number.h"
 #include "runtime/trace/atom_text.h"
 
@@ -16,7 +16,7 @@ constexpr const char* kDescription = "https://apalache.informal.systems/docs/adr
 constexpr std::int64_t kLargestInteger = (std::int64_t{1} << 53U) - 1;
 
 std::string dumped(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);  // file names may be any bytes
+  return base::json_text(json);  // file names may be any bytes
 }
 
 /// Numbers become integers, large ones in the form that ITF has for them, all else strings.

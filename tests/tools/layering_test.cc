@@ -21,8 +21,8 @@ struct Include {
   bool system = false;
 };
 
-std::vector<std::string> source_files(
-    const std::vector<std::string>& folders = {"compiler", "runtime", "harness", "tools"}) {
+std::vector<std::string> source_files(const std::vector<std::string>& folders = {
+                                          "compiler", "runtime", "harness", "tools"}) {
   const fs::path root = PARALLAX_SOURCE_DIR;
   std::vector<std::string> files;
   for (const auto& folder : folders) {
@@ -175,7 +175,8 @@ TEST_CASE("each third-party library stays behind its seam") {
     for (const auto& include : includes_of(file)) {
       if (!include.system) continue;
       if (include.target.starts_with("nlohmann/")) {
-        CHECK_MESSAGE(!file.ends_with(".h"), file << " shows a JSON type in a header");
+        const bool fine = !file.ends_with(".h") || file == "compiler/base/json.h";
+        CHECK_MESSAGE(fine, file << " shows a JSON type in a header");
       }
       for (const auto& seam : seams) {
         if (!include.target.starts_with(seam.prefix)) continue;

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/json.h"
 #include "runtime/certify/logged_solver.h"
 #include "runtime/enumerate/plan_enumerator.h"
 
@@ -87,8 +87,7 @@ std::string TraceCertifier::fields() const {
   if (verdict_ == "proof checked") out += fmt::format("\"proof_origin\":\"{}\",", origin_);
   if (verdict_ == "proof checked" && option_.keep) {
     const auto text = [](const std::filesystem::path& path) {
-      return nlohmann::json(path.string())
-          .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+      return base::json_text(nlohmann::json(path.string()));
     };
     out += fmt::format("\"proof_file\":{},\"formula_file\":{},", text(files_->proof_path()),
                        text(files_->formula_path()));

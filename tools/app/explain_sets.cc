@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/json.h"
 #include "runtime/explain/clause_text.h"
 #include "runtime/explain/contradiction.h"
 #include "tools/app/explain_place.h"
@@ -179,7 +179,7 @@ void print(const runtime::MinimalSets& found, const SetOptions& options,
   }
   if (!as_json) return;
   document["sets"] = std::move(sets);
-  context.document(document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
+  context.document(base::json_text(document) + '\n');
 }
 
 }  // namespace

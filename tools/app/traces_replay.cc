@@ -1,11 +1,11 @@
 #include "tools/app/traces_replay.h"
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
 #include "compiler/reference/reference_evaluator.h"
 #include "runtime/replay/trace_replay.h"
 #include "runtime/trace/trace_reader.h"
@@ -52,14 +52,13 @@ class TraceFileReplay {
     }
     if (context_.stopped()) context_.remark("stopped before the last trace");
     if (context_.form().json) {
-      context_.document(Json{{"status", sound_ ? "ok" : "error"},
-                             {"traces", seen_},
-                             {"agree", seen_ - failed_},
-                             {"fail", failed_},
-                             {"checked", checked_},
-                             {"complete", finished_},
-                             {"list", list_}}
-                            .dump(-1, ' ', false, Json::error_handler_t::replace) +
+      context_.document(base::json_text(Json{{"status", sound_ ? "ok" : "error"},
+                                             {"traces", seen_},
+                                             {"agree", seen_ - failed_},
+                                             {"fail", failed_},
+                                             {"checked", checked_},
+                                             {"complete", finished_},
+                                             {"list", list_}}) +
                         '\n');
       return;
     }

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <set>
 
+#include "compiler/base/json.h"
 #include "tools/app/explain_place.h"
 
 namespace parallax::tools {
@@ -200,7 +200,7 @@ std::string WhyText::json(const TraceFact& fact, std::optional<Literal> asked,
   ordered_json document = {{"status", "ok"}, {"trace", trace_}};
   document["fact"] = asked ? clauses_.literal(*asked) : "!" + fact.name;
   document["steps"] = std::move(list);
-  return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+  return base::json_text(document) + '\n';
 }
 
 }  // namespace parallax::tools

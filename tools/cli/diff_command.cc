@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
 #include "tools/cli/command.h"
 #include "tools/diff/model_difference.h"
 #include "tools/diff/revision.h"
@@ -33,9 +33,7 @@ struct DiffOptions {
   bool traces_only = false;
 };
 
-std::string quoted(const std::string& text) {
-  return Json(base::printable(text)).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string quoted(const std::string& text) { return base::json_text(Json(base::printable(text))); }
 
 /// What every kind of comparison ends with: a text, or the fields of a document.
 struct Comparison {
@@ -99,9 +97,9 @@ int diff_models(const DiffOptions& options, RevisionKind old_kind, RevisionKind 
     report_unknown(*found, invocation);
   }
   if (invocation.options().json) {
-    out.fields =
-        facts_fields(report, "declarations", "axioms") + ",\"traces\":" + traces_json(*found) +
-        ",\"remarks\":" + Json(found->remarks).dump(-1, ' ', false, Json::error_handler_t::replace);
+    out.fields = facts_fields(report, "declarations", "axioms") +
+                 ",\"traces\":" + traces_json(*found) +
+                 ",\"remarks\":" + base::json_text(Json(found->remarks));
   } else {
     out.text = facts_text(report, "declarations", "axioms", options.stat);
     for (const auto& remark : found->remarks) out.text += remark + '\n';
@@ -197,7 +195,7 @@ int diff_trace_files(const DiffOptions& options, Invocation& invocation) {
       {"new", {{"count", after->traces.size()}, {"complete", after->complete}}},
       {"lost", side_json(lost)},
       {"gained", side_json(gained)}};
-  out.fields = "\"traces\":" + document.dump(-1, ' ', false, Json::error_handler_t::replace);
+  out.fields = "\"traces\":" + base::json_text(document);
   for (const auto* set : {&*before, &*after}) {
     out.text += fmt::format("{}: {} {}{}\n", set->name, set->traces.size(),
                             set->traces.size() == 1 ? "trace" : "traces",

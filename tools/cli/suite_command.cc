@@ -3,10 +3,10 @@
 #include <cstdlib>
 #include <memory>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/json.h"
 #include "tools/cli/command.h"
 #include "tools/cli/signals.h"
 #include "tools/suite/shard.h"
@@ -144,7 +144,7 @@ std::string summary_document(const SuiteRecord& record) {
                                    {"not_run", record.count(Outcome::kNotFinished)},
                                    {"skipped", record.count(Outcome::kSkipped)},
                                    {"cases", list}};
-  return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+  return base::json_text(document) + '\n';
 }
 
 int run_suite(const SuiteOptions& options, Invocation& invocation) {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
+#include "compiler/base/json.h"
 
 namespace parallax::tools {
 namespace {
@@ -69,7 +69,7 @@ std::string to_json(const FactReport& report, FactKind kind) {
     out["changed"].push_back(
         {{"old", json_of(report.old_facts[i])}, {"new", json_of(report.new_facts[j])}});
   }
-  return out.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return base::json_text(out);
 }
 
 }  // namespace parallax::tools

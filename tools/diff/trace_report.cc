@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include "compiler/base/json.h"
 #include "tools/diff/model_difference.h"
 
 namespace parallax::tools {
@@ -225,7 +224,7 @@ std::string traces_json(const ModelDifference& difference) {
               {"new", json_of(traces.second_count)}};
   out["lost"] = side_json(view(difference, true), true);
   out["gained"] = side_json(view(difference, false), false);
-  return out.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return base::json_text(out);
 }
 
 }  // namespace parallax::tools

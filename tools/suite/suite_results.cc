@@ -1,10 +1,10 @@
 #include "tools/suite/suite_results.h"
 
-#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
 
 namespace parallax::tools {
 namespace fs = std::filesystem;
@@ -34,7 +34,7 @@ base::Status write_results(const fs::path& folder, EarlierResults earlier,
   fs::create_directories(folder, error);
   const nlohmann::json json = {{"schema_version", 1}, {"cases", earlier}};
   // Names are bytes of paths: what is no UTF-8 is replaced rather than refused.
-  const auto text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+  const auto text = base::json_text(json, 2) + '\n';
   return base::write_file_atomically(folder / kResultsFile, text, sink);
 }
 

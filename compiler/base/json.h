@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace parallax::base {
+
+/// A document as text; on one line, or with so many blanks for each level. Texts may hold any bytes
+/// (names of files do): what is no UTF-8 becomes U+FFFD, where nlohmann would throw.
+template <typename Json>
+std::string json_text(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+/// One string as JSON writes it, with its quotes.
+inline std::string json_quoted(std::string_view text) { return json_text(nlohmann::json(text)); }
+
+/// The value, if it is of just this type: nothing is converted but integers to `double`, nothing is
+/// taken for a number that does not fit.
+template <typename T, typename Json>
+std::optional<T> json_as(const Json& value) {
+  bool fits = false;
+  if constexpr (std::is_same_v<T, std::string>) {
+    fits = value.is_string();
+  } else if constexpr (std::is_same_v<T, bool>) {
+    fits = value.is_boolean();
+  } else if constexpr (std::is_same_v<T, double>) {
+    fits = value.is_number();
+  } else if constexpr (std::is_same_v<T, std::uint64_t>) {
+    fits = value.is_number_unsigned();
+  } else {
+    static_assert(std::is_same_v<T, std::int64_t>, "a type that JSON has");
+    fits = value.is_number_integer() &&
+           !(value.is_number_unsigned() && value.template get<std::uint64_t>() > INT64_MAX);
+  }
+  if (!fits) return std::nullopt;
+  return value.template get<T>();
+}
+
+/// The member of an object; null if there is none or `object` is none.
+template <typename Json>
+const Json* json_member(const Json& object, const char* name) {
+  const auto found = object.is_object() ? object.find(name) : object.end();
+  return found == object.end() ? nullptr : &*found;
+}
+
+}  // namespace parallax::base
