@@ -1,41 +1,49 @@
 #include "compiler/cnf/encoder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "compiler/cnf/clause_builder.h"
+#include "compiler/cnf/clause_text.h"
 #include "compiler/cnf/slot_table.h"
 #include "compiler/formula/formula.h"
+#include "compiler/ground/ground_text.h"
 
 namespace parallax::compiler {
 namespace {
 
-/// Numbers the variables and writes the clauses.
+/// Turns constraints into clauses over variables of the formula store, gives every variable its
+/// place, and writes the clauses over the places. The passes stand in the table below.
 class Encoder {
  public:
-  explicit Encoder(GroundModel& model) : model_(model), formulas_(model.formulas()) {}
+  explicit Encoder(GroundModel& model)
+      : model_(model), formulas_(model.formulas()), constraints_(model.constraints()) {}
 
-  CompiledModel run() && {
-    auto constraints = model_.constraints();
-    drop_impossible(constraints);
-    ClauseBuilder builder(model_);
-    for (const auto& constraint : constraints) builder.add(constraint);
-    out_.horizon = model_.horizon();
-    out_.origins = model_.origins();
-    hash_nodes();
-    find_mentioned(builder);
-    number_slots(builder);
-    number_fixed(builder);
-    write(builder.once(), Constraint::kOnce);
-    for (const auto& [width, clauses] : builder.repeated()) write(clauses, width);
-    return std::move(out_);
-  }
+  static std::span<const Pass<Encoder>> passes();
+  PassSize size() const;
+  CompiledModel take() && { return std::move(out_); }
 
  private:
+  std::string constraint_text(const base::SourceFiles* files) const;
+  std::string clause_text(const base::SourceFiles* files) const {
+    return clause_lines(model_, *builder_, files);
+  }
+  std::string hash_text(const base::SourceFiles* files) const;
+  std::string place_text(const base::SourceFiles* /*files*/) const { return place_lines(out_); }
+  std::string numbered_text(const base::SourceFiles* files) const {
+    return numbered_lines(out_, files);
+  }
+
   /// Atoms that no trace can make true are false, and have no variable.
-  void drop_impossible(std::vector<Constraint>& constraints) {
+  void drop_impossible() {
     RewriteMemo memo;
-    for (auto& constraint : constraints) {
+    for (auto& constraint : constraints_) {
       constraint.formula = rewrite_atoms(
           model_.formulas(), constraint.formula,
           [&](std::int32_t variable) {
@@ -46,6 +54,11 @@ class Encoder {
           },
           memo);
     }
+  }
+
+  void build_clauses() {
+    builder_.emplace(model_);
+    for (const auto& constraint : constraints_) builder_->add(constraint);
   }
 
   /// A hash for every node that depends on names and structure only.
@@ -81,7 +94,7 @@ class Encoder {
   }
 
   /// Atoms other than those of fluents and events have a variable if some clause mentions them.
-  void find_mentioned(const ClauseBuilder& builder) {
+  void find_mentioned() {
     std::vector<bool> mentioned(model_.atom_count() + 1, false);
     const auto note = [&](const std::vector<OpenClause>& clauses) {
       for (const auto& clause : clauses) {
@@ -90,8 +103,8 @@ class Encoder {
         }
       }
     };
-    note(builder.once());
-    for (const auto& [width, clauses] : builder.repeated()) note(clauses);
+    note(builder_->once());
+    for (const auto& [width, clauses] : builder_->repeated()) note(clauses);
     for (std::size_t i = 1; i < mentioned.size(); ++i) {
       if (mentioned[i] && !is_slot_kind(model_.atom(static_cast<std::int32_t>(i)).kind)) {
         fixed_atoms_.push_back(static_cast<std::int32_t>(i));
@@ -103,7 +116,9 @@ class Encoder {
            kind == AtomKind::kHappens;
   }
 
-  void number_slots(const ClauseBuilder& builder) {
+  void number_slots() {
+    out_.horizon = model_.horizon();
+    const auto& builder = *builder_;
     const auto fluents = static_cast<std::uint32_t>(model_.fluents().size());
     const auto events = static_cast<std::uint32_t>(model_.events().size());
     // First the slots of states: fluents, releases, auxiliaries of state axioms.
@@ -162,7 +177,9 @@ class Encoder {
     }
   }
 
-  void number_fixed(const ClauseBuilder& builder) {
+  void number_fixed() {
+    find_mentioned();
+    const auto& builder = *builder_;
     std::vector<std::uint64_t> hashes;
     for (const auto variable : fixed_atoms_) hashes.push_back(atom_hash(model_.atom(variable)));
     for (const auto& auxiliary : builder.auxiliaries()) {
@@ -210,6 +227,12 @@ class Encoder {
     return open.negated ? ~literal : literal;
   }
 
+  void write_clauses() {
+    out_.origins = model_.origins();
+    write(builder_->once(), Constraint::kOnce);
+    for (const auto& [width, clauses] : builder_->repeated()) write(clauses, width);
+  }
+
   void write(const std::vector<OpenClause>& clauses, Timepoint width) {
     if (clauses.empty()) return;
     const bool repeated = width != Constraint::kOnce;
@@ -247,6 +270,8 @@ class Encoder {
 
   GroundModel& model_;
   FormulaStore& formulas_;
+  std::vector<Constraint> constraints_;
+  std::optional<ClauseBuilder> builder_;  // from `clauses` on
   CompiledModel out_;
   std::vector<std::uint64_t> hashes_;  // by node
   std::map<std::pair<AtomKind, std::uint32_t>, std::uint64_t> symbol_hashes_;
@@ -257,8 +282,73 @@ class Encoder {
   std::vector<bool> moves_;                      // by auxiliary
 };
 
+std::span<const Pass<Encoder>> Encoder::passes() {
+  using E = Encoder;
+  static constexpr std::array<Pass<E>, 6> kPasses = {{
+      {{"impossible-atoms", "atoms that no trace makes true become false"},
+       &E::drop_impossible,
+       &E::constraint_text},
+      {{"clauses", "formulas become clauses, parts of them auxiliaries"},
+       &E::build_clauses,
+       &E::clause_text},
+      {{"hashes", "a hash for every atom and part, from names and structure"},
+       &E::hash_nodes,
+       &E::hash_text},
+      {{"slots", "places in a block: fluents, releases, events, parts that move"},
+       &E::number_slots,
+       &E::place_text},
+      {{"fixed-places", "places of everything that does not move"},
+       &E::number_fixed,
+       &E::place_text},
+      {{"numbering", "clauses over variables, a section for each width"},
+       &E::write_clauses,
+       &E::numbered_text},
+  }};
+  return kPasses;
+}
+
+PassSize Encoder::size() const {
+  PassSize size{model_.atom_count(), formulas_.node_count(), constraints_.size(), 0};
+  if (!builder_) return size;
+  size.clauses = builder_->once().size();
+  for (const auto& [width, clauses] : builder_->repeated()) size.clauses += clauses.size();
+  return size;
+}
+
+std::string Encoder::constraint_text(const base::SourceFiles* files) const {
+  auto formulas = formula_text(model_);
+  for (const auto& constraint : constraints_) formulas.count(constraint.formula);
+  const auto lines = constraint_lines(model_, constraints_, formulas, files);
+  return "; constraints\n" + lines + "; parts\n" + formulas.definitions();
+}
+
+std::string Encoder::hash_text(const base::SourceFiles* /*files*/) const {
+  std::string out;
+  const auto add = [&](const std::string& what, std::uint64_t hash) {
+    out += fmt::format("{:016x} {}\n", hash, what);
+  };
+  for (std::uint32_t node = 0; node < hashes_.size(); ++node) {
+    const auto id = formulas_.at(node);
+    if (formulas_.kind(id) == FormulaNodeKind::kAtom) {
+      add(atom_text(model_, formulas_.variable(id)), hashes_[node]);
+    }
+  }
+  const auto& auxiliaries = builder_->auxiliaries();
+  for (std::size_t i = 0; i < auxiliaries.size(); ++i) {
+    add(fmt::format("#{}{}", i + 1, auxiliaries[i].moves ? " (moves)" : ""),
+        hashes_[auxiliaries[i].formula.node()]);
+  }
+  return out;
+}
+
 }  // namespace
 
-CompiledModel encode(GroundModel& model) { return Encoder(model).run(); }
+std::vector<PassInfo> encode_passes() { return infos_of(Encoder::passes()); }
+
+CompiledModel encode(GroundModel& model, PassLog* log) {
+  Encoder encoder(model);
+  run_passes(Encoder::passes(), encoder, log);
+  return std::move(encoder).take();
+}
 
 }  // namespace parallax::compiler

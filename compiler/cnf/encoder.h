@@ -1,7 +1,10 @@
 #pragma once
 
+#include <vector>
+
 #include "compiler/artifact/compiled_model.h"
 #include "compiler/ground/ground_model.h"
+#include "compiler/ground/pass.h"
 
 namespace parallax::compiler {
 
@@ -9,7 +12,10 @@ namespace parallax::compiler {
 /// emitted directly, everything deeper gets an auxiliary variable that is defined in the polarity
 /// in which it is used (Plaisted and Greenbaum 1986). What holds at every timepoint is encoded once
 /// and repeated by moving its variables. Fills everything of the result but `plan` and
-/// `has_constraints`. Linear in the formula graph, and in the clauses written.
-CompiledModel encode(GroundModel& model);
+/// `has_constraints`. Linear in the formula graph, and in the clauses written. `log` may be null.
+CompiledModel encode(GroundModel& model, PassLog* log = nullptr);
+
+/// The passes of encoding in their order.
+std::vector<PassInfo> encode_passes();
 
 }  // namespace parallax::compiler

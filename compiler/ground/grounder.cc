@@ -1,6 +1,8 @@
 #include "compiler/ground/grounder.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
@@ -9,6 +11,7 @@
 #include "compiler/ground/effects.h"
 #include "compiler/ground/expansion_size.h"
 #include "compiler/ground/formula_grounder.h"
+#include "compiler/ground/ground_text.h"
 #include "compiler/ground/invariants.h"
 #include "compiler/ground/narrative.h"
 #include "compiler/ground/possible_atoms.h"
@@ -23,7 +26,7 @@ namespace {
 
 /// Grounds in the order in which knowledge grows: what does not depend on time, what is said of
 /// single timepoints, the narrative with the states it leads through, and then the rest, joined
-/// over what is still possible.
+/// over what is still possible. The passes stand in the table below.
 class Grounder {
  public:
   Grounder(GroundModel& model, const GroundOptions& options, base::DiagnosticSink& sink)
@@ -35,50 +38,110 @@ class Grounder {
         possible_(model),
         rows_(model.fluents().size()),
         effects_(model, grounder_, rows_),
-        completion_(model, options.meaning) {
-    for (const auto& axiom : typed_.axioms)
+        completion_(model, options.meaning),
+        standard_(options.meaning == Meaning::kStandard),
+        relevance_(standard_ && options.relevance),
+        asserted_(typed_.axioms.size(), false) {
+    for (const auto& axiom : typed_.axioms) {
       profiles_.push_back(time_profile(typed_, axiom.formula));
+      // Axioms over effects wait for the effects.
+      if (axiom.mentions_effects) profiles_.back().shape = TimeShape::kMixed;
+    }
+    bounds_have_changed();
   }
 
-  void run() {
-    standard_ = options_.meaning == Meaning::kStandard;
-    relevance_ = standard_ && options_.relevance;
-    if (!relevance_) {
-      for (const auto& effect : typed_.effects) effects_.ground(effect);
-      grounder_.use_effects(rows_);
-      assert_axioms([](const TimeProfile&) { return true; });
-      return finish();
-    }
-    grounder_.use_possible(&possible_);
-    assert_axioms([](const TimeProfile& p) { return p.shape == TimeShape::kRigid; });
+  static std::span<const Pass<Grounder>> passes();
+  PassSize size() const {
+    return {model_.atom_count(), model_.formulas().node_count(), model_.constraints().size(), 0};
+  }
+  std::string text(const base::SourceFiles* files) const {
+    return ground_text(model_, rows_, files);
+  }
+  /// The last axiom's instances are charged to it when something else begins.
+  void finish() { grounder_.start({}); }
+
+ private:
+  // --- the passes, in order ---
+
+  void rigid_axioms() { assert_axioms(TimeShape::kRigid); }
+
+  void predicate_tables() {
     tabulate_predicates(model_, completion_, possible_);
-    grounder_.use_possible(&possible_);
-    assert_axioms([](const TimeProfile& p) { return p.shape == TimeShape::kFixed; });
+    bounds_have_changed();
+  }
+
+  void fixed_axioms() { assert_axioms(TimeShape::kFixed); }
+
+  void narrative() {
     Narrative narrative(model_, possible_, rows_, effects_, options_.keep_unreachable);
     // A formula may ask for the effects of an event that never happens.
     if (!some_axiom_mentions_effects()) narrative.schedule(completion_);
-    grounder_.use_possible(&possible_);
+    bounds_have_changed();
     narrative.walk();
+  }
+
+  void effects() {
     for (const auto& effect : typed_.effects) {
       if (!effects_.is_scheduled(effect)) effects_.ground(effect);
     }
-    drop_unreachable(model_, possible_, rows_, options_.keep_unreachable);
-    grounder_.use_possible(&possible_);
-    grounder_.use_effects(rows_);
-    assert_axioms([](const TimeProfile& p) {
-      return p.shape == TimeShape::kUniform || p.shape == TimeShape::kMixed;
-    });
-    finish();
   }
 
- private:
-  void finish() {
-    completion_.write();
-    assert_trajectories(model_, rows_, grounder_);
-    assert_inertia(model_, rows_, standard_ && options_.templates);
-    if (standard_ && options_.templates && options_.invariants) add_invariants(model_, rows_);
-    if (!standard_) deny_unmentioned();
-    grounder_.start({});  // charges what the last axiom took
+  void reachability() {
+    drop_unreachable(model_, possible_, rows_, options_.keep_unreachable);
+    bounds_have_changed();
+  }
+
+  void other_axioms() {
+    grounder_.use_effects(rows_);
+    assert_axioms(std::nullopt);
+  }
+
+  void completion() { completion_.write(); }
+  void trajectories() { assert_trajectories(model_, rows_, grounder_); }
+  void inertia() { assert_inertia(model_, rows_, standard_ && options_.templates); }
+  void invariants() { add_invariants(model_, rows_); }
+
+  /// In the 2005 reasoner's meaning an atom that stands in no formula is false.
+  void unmentioned_atoms() {
+    std::vector<FormulaId> asserted;
+    for (const auto& constraint : model_.constraints()) asserted.push_back(constraint.formula);
+    const auto mentioned = atoms_of(model_.formulas(), asserted);
+    const auto origin = model_.add_origin({}, OriginKind::kUnmentioned);
+    const auto deny = [&](FormulaId atom) {
+      const auto variable = model_.formulas().variable(atom);
+      if (!std::binary_search(mentioned.begin(), mentioned.end(), variable)) {
+        model_.require(~atom, origin);
+      }
+    };
+    for (Timepoint t = 0; t <= model_.horizon(); ++t) {
+      for (std::uint32_t f = 0; f < model_.fluents().size(); ++f) {
+        deny(model_.holds(f, t));
+        if (model_.can_be_released(f)) deny(model_.released(f, t));
+      }
+      if (t == model_.horizon()) break;
+      for (std::uint32_t e = 0; e < model_.events().size(); ++e) deny(model_.happens(e, t));
+    }
+    for (std::size_t i = 0; i < model_.atom_count(); ++i) {
+      const auto variable = static_cast<std::int32_t>(i + 1);
+      if (model_.atom(variable).kind != AtomKind::kPredicate) continue;
+      deny(model_.formulas().atom(variable));
+    }
+  }
+
+  // --- when they apply ---
+
+  bool uses_relevance() const { return relevance_; }
+  bool has_trajectories() const { return !typed_.trajectories.empty(); }
+  bool looks_for_invariants() const {
+    return standard_ && options_.templates && options_.invariants;
+  }
+  bool has_old_meaning() const { return !standard_; }
+
+  // --- what they share ---
+
+  /// Joins that were planned over the earlier bounds are planned anew.
+  void bounds_have_changed() {
+    if (relevance_) grounder_.use_possible(&possible_);
   }
 
   bool some_axiom_mentions_effects() const {
@@ -86,13 +149,12 @@ class Grounder {
                        [](const Axiom& axiom) { return axiom.mentions_effects; });
   }
 
-  template <typename Wanted>
-  void assert_axioms(const Wanted& wanted) {
+  /// The axioms of this shape; without one, all that are left.
+  void assert_axioms(std::optional<TimeShape> shape) {
     for (std::size_t i = 0; i < typed_.axioms.size(); ++i) {
-      auto profile = profiles_[i];
-      // Axioms over effects wait for the effects.
-      if (typed_.axioms[i].mentions_effects) profile.shape = TimeShape::kMixed;
-      if (wanted(profile)) assert_axiom(typed_.axioms[i], profile);
+      if (asserted_[i] || (shape && profiles_[i].shape != *shape)) continue;
+      asserted_[i] = true;
+      assert_axiom(typed_.axioms[i], profiles_[i]);
     }
   }
 
@@ -162,33 +224,6 @@ class Grounder {
     return !grounder_.failed() && formula && *formula == model_.formulas().falsity();
   }
 
-  /// In the 2005 reasoner's meaning an atom that stands in no formula is false.
-  void deny_unmentioned() {
-    std::vector<FormulaId> asserted;
-    for (const auto& constraint : model_.constraints()) asserted.push_back(constraint.formula);
-    const auto mentioned = atoms_of(model_.formulas(), asserted);
-    const auto origin = model_.add_origin({}, OriginKind::kUnmentioned);
-    const auto deny = [&](FormulaId atom) {
-      const auto variable = model_.formulas().variable(atom);
-      if (!std::binary_search(mentioned.begin(), mentioned.end(), variable)) {
-        model_.require(~atom, origin);
-      }
-    };
-    for (Timepoint t = 0; t <= model_.horizon(); ++t) {
-      for (std::uint32_t f = 0; f < model_.fluents().size(); ++f) {
-        deny(model_.holds(f, t));
-        if (model_.can_be_released(f)) deny(model_.released(f, t));
-      }
-      if (t == model_.horizon()) break;
-      for (std::uint32_t e = 0; e < model_.events().size(); ++e) deny(model_.happens(e, t));
-    }
-    for (std::size_t i = 0; i < model_.atom_count(); ++i) {
-      const auto variable = static_cast<std::int32_t>(i + 1);
-      if (model_.atom(variable).kind != AtomKind::kPredicate) continue;
-      deny(model_.formulas().atom(variable));
-    }
-  }
-
   GroundModel& model_;
   const TypedModel& typed_;
   const GroundOptions& options_;
@@ -198,20 +233,67 @@ class Grounder {
   EffectRows rows_;
   EffectGrounder effects_;
   CompletionWriter completion_;
+  bool standard_, relevance_;
   std::vector<TimeProfile> profiles_;  // by axiom
-  bool standard_ = true, relevance_ = true;
+  std::vector<bool> asserted_;         // by axiom
 };
+
+std::span<const Pass<Grounder>> Grounder::passes() {
+  using G = Grounder;
+  static constexpr std::array<Pass<G>, 12> kPasses = {{
+      {{"rigid-axioms", "axioms in which no timepoint stands"},
+       &G::rigid_axioms,
+       &G::text,
+       &G::uses_relevance},
+      {{"predicate-tables", "which atoms of user predicates may be true"},
+       &G::predicate_tables,
+       &G::text,
+       &G::uses_relevance},
+      {{"fixed-axioms", "axioms about single timepoints"},
+       &G::fixed_axioms,
+       &G::text,
+       &G::uses_relevance},
+      {{"narrative", "events at known timepoints, their effects, which fluents may hold when"},
+       &G::narrative,
+       &G::text,
+       &G::uses_relevance},
+      {{"effects", "rows of the effect axioms of all other events"}, &G::effects, &G::text},
+      {{"reachability", "what no effect can bring about is left out"},
+       &G::reachability,
+       &G::text,
+       &G::uses_relevance},
+      {{"axioms", "axioms that are left: about every timepoint, or about effects"},
+       &G::other_axioms,
+       &G::text},
+      {{"completion", "completed atoms without a reason are false"}, &G::completion, &G::text},
+      {{"trajectories", "DEC3 and DEC4"}, &G::trajectories, &G::text, &G::has_trajectories},
+      {{"inertia", "DEC5 to DEC12 over the rows"}, &G::inertia, &G::text},
+      {{"invariants", "groups of fluents of which at most one, or exactly one, holds"},
+       &G::invariants,
+       &G::text,
+       &G::looks_for_invariants},
+      {{"unmentioned-atoms", "atoms in no formula are false (--compat decreasoner)"},
+       &G::unmentioned_atoms,
+       &G::text,
+       &G::has_old_meaning},
+  }};
+  return kPasses;
+}
 
 }  // namespace
 
+std::vector<PassInfo> ground_passes() { return infos_of(Grounder::passes()); }
+
 base::Result<GroundModel> ground_model(const TypedModel& typed, const GroundOptions& options,
-                                       base::DiagnosticSink& sink) {
+                                       base::DiagnosticSink& sink, PassLog* log) {
   const auto errors_before = sink.error_count();
   GroundTermStore terms;
   auto universe = Universe::make(typed, options, terms, sink);
   if (!universe) return sink.already_reported();
   GroundModel model(typed, std::move(terms), *std::move(universe));
-  Grounder(model, options, sink).run();
+  Grounder grounder(model, options, sink);
+  run_passes(Grounder::passes(), grounder, log);
+  grounder.finish();
   if (sink.error_count() != errors_before) return sink.already_reported();
   return model;
 }

@@ -135,6 +135,13 @@ void describe(const CompileInput& input, const base::SourceFiles& files, Compile
 
 }  // namespace
 
+std::vector<PassInfo> compile_passes() {
+  auto passes = ground_passes();
+  const auto more = encode_passes();
+  passes.insert(passes.end(), more.begin(), more.end());
+  return passes;
+}
+
 base::Result<Compilation> compile_model(const CompileInput& input, base::SourceFiles& files,
                                         base::DiagnosticSink& sink) {
   // Who asks for the old meaning need not hear where it differs.
@@ -165,7 +172,8 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
   }
   if (!constraints || (input.plan && !plan)) return sink.already_reported();
 
-  auto ground = ground_model(*typed, input.ground, sink);
+  PassLog log{input.emit_pass, &files};
+  auto ground = ground_model(*typed, input.ground, sink, &log);
   if (!ground) return sink.already_reported();
   FormulaGrounder grounder(*ground, input.ground, sink);
   if (plan && !encode_plan(plan->graph, plan->formulas, plan->events, *ground, grounder, sink)) {
@@ -176,7 +184,8 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
     return sink.already_reported();
   }
   Compilation result;
-  result.model = encode(*ground);
+  result.model = encode(*ground, &log);
+  result.passes = std::move(log);
   if (input.costs) result.costs = axiom_costs(*ground, result.model);
   result.model.has_constraints = !constraints->empty();
   if (plan) {

@@ -8,6 +8,7 @@
 
 #include "compiler/artifact/compiled_model.h"
 #include "compiler/base/diagnostic.h"
+#include "compiler/ground/pass.h"
 #include "compiler/ground/universe.h"
 #include "compiler/pipeline/axiom_cost.h"
 #include "compiler/plan/plan_graph.h"
@@ -48,17 +49,23 @@ struct CompileInput {
   std::vector<ConstraintText> constraints;
   bool hits_at_start = false;  // the constraints may also hold at timepoint 0
   GroundOptions ground;
-  std::string producer;  // the program and its version, for the artifact; may be empty
-  bool costs = false;    // also count what each axiom costs
-  bool lint = false;     // also report what is legal but hardly meant (W21xx)
+  std::string producer;   // the program and its version, for the artifact; may be empty
+  bool costs = false;     // also count what each axiom costs
+  std::string emit_pass;  // the value after this pass is wanted as text; may be empty
+  bool lint = false;      // also report what is legal but hardly meant (W21xx)
 };
 
 struct Compilation {
   CompiledModel model;
   std::unique_ptr<TypedModel> typed;  // the checked model, for an independent evaluation
   std::vector<AxiomCost> costs;       // if asked for
+  PassLog passes;                     // what ran, how long, and the text of `emit_pass`
   std::optional<PlanGraph> plan;      // the unrolled control flow, for dumps
 };
+
+/// The passes of grounding and encoding, in the order in which they run. Plan and constraints are
+/// encoded between the two.
+std::vector<PassInfo> compile_passes();
 
 /// The whole front end: load, parse, check, unroll the plan, ground, encode. Every error of every
 /// stage that could be reached is in the sink.

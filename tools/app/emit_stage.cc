@@ -113,6 +113,28 @@ std::string logic_program(const compiler::ModelAst& ast, const compiler::CheckOp
 
 }  // namespace
 
+std::vector<compiler::PassInfo> emit_stages() {
+  std::vector<compiler::PassInfo> stages = {
+      {"tokens", "words of the files with their places"},
+      {"ast", "statements, one a line"},
+      {"typed", "the checked model; a model again"},
+      {"lp", "the checked model as a logic program for clingo"}};
+  const auto passes = compiler::compile_passes();
+  stages.insert(stages.end(), passes.begin(), passes.end());
+  stages.push_back({"cnf", "the compiled model: DIMACS with symbols"});
+  stages.push_back({"cfg", "the plan's control flow"});
+  stages.push_back({"cfg-dot", "the same as a picture for Graphviz"});
+  return stages;
+}
+
+std::string stage_list() {
+  std::string list;
+  for (const auto& stage : emit_stages()) {
+    list += fmt::format("{:<18}{}\n", stage.name, stage.description);
+  }
+  return list;
+}
+
 bool is_front_end_stage(std::string_view stage) {
   return stage == "tokens" || stage == "ast" || stage == "typed" || stage == "lp";
 }

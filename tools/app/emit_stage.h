@@ -2,10 +2,16 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tools/app/model_options.h"
 
 namespace parallax::tools {
+
+/// Everything that `compile --emit` prints, in the order in which it comes about.
+std::vector<compiler::PassInfo> emit_stages();
+/// The stages a line each, with what they are.
+std::string stage_list();
 
 /// Is it a stage before grounding: tokens, ast, typed, lp?
 bool is_front_end_stage(std::string_view stage);

@@ -29,6 +29,7 @@ struct ModelOptions {
   std::string par = "in-order";       // the branches of `par`: in-order or interleave
   std::int64_t max_horizon = 50;      // of plans, where nothing says the horizon
   bool lint = false;                  // `check`: report what is legal but hardly meant
+  std::string emit_pass;              // `compile`: the pass whose value is printed
   bool stats = false;                 // count what each axiom costs; commands offer it themselves
 };
 

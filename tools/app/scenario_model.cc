@@ -122,8 +122,10 @@ base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scen
 struct Switches {
   bool costs = false;
   bool plain = false;  // plain_models.h
+  std::string emit_pass = {};
   void apply(compiler::CompileInput& input) const {
     input.costs = costs;
+    input.emit_pass = emit_pass;
     if (!plain) return;
     input.ground.relevance = false;
     input.ground.invariants = false;
@@ -230,7 +232,7 @@ base::Result<ScenarioModel> load_plain_scenario(const std::filesystem::path& pat
 }
 
 base::Result<compiler::Compilation> compile_models(const ModelOptions& options, Context& context) {
-  return compile(options, context, {options.stats, false});
+  return compile(options, context, {options.stats, false, options.emit_pass});
 }
 
 base::Result<compiler::Compilation> compile_plain_models(const ModelOptions& options,

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <memory>
 
 #include "compiler/artifact/artifact_writer.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
+#include "compiler/pipeline/pass_report.h"
 #include "tools/app/emit_stage.h"
 #include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
@@ -18,11 +20,12 @@ struct CompileOptions {
   bool no_projection = false;
 };
 
-/// The table goes to standard error: standard output may hold the artifact.
+/// The tables go to standard error: standard output may hold the artifact.
 void report_costs(const CompileOptions& options, const compiler::Compilation& compilation,
                   Invocation& invocation) {
   if (options.model.stats && !invocation.options().json) {
-    write_error(compiler::cost_table(compilation.costs, invocation.files()));
+    write_error(compiler::cost_table(compilation.costs, invocation.files()) + '\n' +
+                compiler::pass_table(compilation.passes));
   }
 }
 
@@ -41,7 +44,21 @@ int write_front_end_stage(const CompileOptions& options, Invocation& invocation)
   return 0;
 }
 
-int compile_and_write(const CompileOptions& options, Invocation& invocation) {
+bool is_pass(std::string_view stage) {
+  const auto passes = compiler::compile_passes();
+  return std::any_of(passes.begin(), passes.end(),
+                     [&](const auto& pass) { return pass.name == stage; });
+}
+
+int compile_and_write(CompileOptions& options, Invocation& invocation) {
+  if (options.emit == "help") {
+    invocation.result(stage_list());
+    return 0;
+  }
+  if (options.model.models.empty()) {
+    invocation.sink().error_about(base::DiagnosticCode::kUsage, "", "models is required");
+    return 0;
+  }
   if (options.emit != "cnf" && names_artifact(options.model)) {
     invocation.sink().error_about(
         base::DiagnosticCode::kUsage, options.model.models.front(),
@@ -50,12 +67,15 @@ int compile_and_write(const CompileOptions& options, Invocation& invocation) {
   }
   if (is_front_end_stage(options.emit)) return write_front_end_stage(options, invocation);
   auto& sink = invocation.sink();
+  if (is_pass(options.emit)) options.model.emit_pass = options.emit;
   const auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
   report_costs(options, *compilation, invocation);
   std::string text;
   if (options.emit == "cnf") {
     text = compiler::to_artifact(compilation->model, {.projection_line = !options.no_projection});
+  } else if (compilation->passes.text) {
+    text = *compilation->passes.text;
   } else if (!compilation->plan) {
     sink.error_about(
         base::DiagnosticCode::kUsage, "",
@@ -78,7 +98,8 @@ int compile_and_write(const CompileOptions& options, Invocation& invocation) {
     if (invocation.options().json) {
       const auto axioms =
           options.model.stats
-              ? ",\"axioms\":" + compiler::cost_json(compilation->costs, invocation.files())
+              ? ",\"axioms\":" + compiler::cost_json(compilation->costs, invocation.files()) +
+                    ",\"passes\":" + compiler::pass_json(compilation->passes)
               : "";
       invocation.document(fmt::format("{{\"status\":\"ok\",\"variables\":{},\"clauses\":{}{}}}\n",
                                       compilation->model.variable_count(),
@@ -86,6 +107,13 @@ int compile_and_write(const CompileOptions& options, Invocation& invocation) {
     }
   }
   return 0;
+}
+
+std::vector<std::string> stage_names() {
+  std::vector<std::string> names;
+  for (const auto& stage : emit_stages()) names.emplace_back(stage.name);
+  names.emplace_back("help");
+  return names;
 }
 
 }  // namespace
@@ -101,18 +129,18 @@ Command compile_command() {
       "  parallax compile scenarios/two_regions/edge.yaml --emit=cfg\n"
       "  parallax compile domain.e start.e --plan fetch.lisp --bind robot.bind \\\n"
       "      --regions scenario.yaml --emit=cfg-dot -o plan.dot");
-  add_model_options(command, options->model);
+  add_model_options(command, options->model).is_required = false;  // --emit=help needs none
   add_plan_options(command, options->model);
   command.flag("--no-projection-line", options->no_projection,
                "Leave out `c t pmc` and `c p show`, for readers that take no comment there");
-  command.flag("--stats", options->model.stats,
-               "Show on standard error what each axiom costs, dearest first");
+  command.flag(
+      "--stats", options->model.stats,
+      "Show on standard error what each axiom costs, dearest first, and what each pass took");
   command.option("-o,--output", options->out, "File to write; default: standard output");
   command
       .option("--emit", options->emit,
-              "What to print: tokens, ast, typed (the model read), lp (for clingo), cnf, cfg "
-              "(plan), cfg-dot (picture)")
-      .check(OneOf{{"tokens", "ast", "typed", "lp", "cnf", "cfg", "cfg-dot"}})
+              "What to print: a stage, or the value after a pass; `help` lists them")
+      .check(OneOf{stage_names()})
       .show_default();
   return {std::move(command),
           [options](Invocation& invocation) { return compile_and_write(*options, invocation); }};

@@ -14,10 +14,11 @@ std::vector<std::string> strategy_names() {
 
 }  // namespace
 
-void add_model_options(OptionTable& command, ModelOptions& options) {
-  command
-      .option("models", options.models, "Model files (.e), or one that `compile` wrote (.dec.cnf)")
-      .required();
+Option& add_model_options(OptionTable& command, ModelOptions& options) {
+  auto& models = command
+                     .option("models", options.models,
+                             "Model files (.e), or one that `compile` wrote (.dec.cnf)")
+                     .required();
   // One value each time, so that a model may follow.
   command.option("-I,--include", options.include_dirs, "Folder in which `load` looks")
       .list(ListForm::kOneEachTime);
@@ -31,6 +32,7 @@ void add_model_options(OptionTable& command, ModelOptions& options) {
       .option("--until", options.until,
               "Formula over `time`: traces end where it holds for the first time")
       .list(ListForm::kOneEachTime);
+  return models;
 }
 
 void add_plan_options(OptionTable& command, ModelOptions& options) {

@@ -9,8 +9,8 @@
 
 namespace parallax::tools {
 
-/// Options that several commands have.
-void add_model_options(OptionTable& command, ModelOptions& options);
+/// Options that several commands have. Returns the one of the models themselves, which is required.
+Option& add_model_options(OptionTable& command, ModelOptions& options);
 /// --plan and what belongs to it.
 void add_plan_options(OptionTable& command, ModelOptions& options);
 void add_search_options(OptionTable& command, SearchOptions& options);
