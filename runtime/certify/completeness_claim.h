@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compiler/artifact/compiled_model.h"
-#include "runtime/session/length_variables.h"
+#include "runtime/session/solver_session.h"
 #include "runtime/trace/trace.h"
 
 namespace parallax::runtime {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "runtime/compare/event_counter.h"
+#include "runtime/compare/circuit.h"
 #include "runtime/compare/refutation.h"
-#include "runtime/compare/vocabulary.h"
+#include "runtime/compare/shared_vocabulary.h"
 #include "runtime/session/solver_session.h"
 #include "runtime/trace/trace.h"
 

@@ -1,15 +1,52 @@
 #include "runtime/compare/trace_difference.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <functional>
 #include <memory>
+#include <span>
 #include <utility>
 #include <variant>
+#include <vector>
 
+#include "compiler/artifact/compiled_model.h"
 #include "runtime/compare/common_count.h"
-#include "runtime/compare/exclusion.h"
+#include "runtime/session/unsat_core.h"
 
 namespace parallax::runtime {
 namespace {
+
+/// A minimal set of origins (indices, ascending) whose clauses up to timepoint `by` cannot hold
+/// together with the observation: dropping any one of them lets it pass. Origins for which
+/// `dispensable` says yes are dropped first, so that those of them that remain are needed with all
+/// others at hand. Empty if the solver was stopped. The observation is no trace of the model.
+/// Cost: a solver call for each member of the first core.
+std::vector<std::uint32_t> excluding_origins(const compiler::CompiledModel& model,
+                                             compiler::Timepoint by,
+                                             std::span<const compiler::Literal> observation,
+                                             const std::function<bool(std::uint32_t)>& dispensable,
+                                             const std::atomic<bool>* stop);
+
+std::vector<std::uint32_t> excluding_origins(const compiler::CompiledModel& model,
+                                             compiler::Timepoint by,
+                                             std::span<const Literal> observation,
+                                             const std::function<bool(std::uint32_t)>& dispensable,
+                                             const std::atomic<bool>* stop) {
+  SelectedOrigins selected(model, by, make_cadical_solver(stop));
+  for (const auto literal : observation) selected.require(literal);
+  // Candidates are tried from the end.
+  std::vector<std::uint32_t> candidates;
+  for (const bool last : {false, true}) {
+    for (std::uint32_t i = 0; i < model.origins.size(); ++i) {
+      if (dispensable(i) == last) candidates.push_back(i);
+    }
+  }
+  if (selected.solve(candidates) != SolveStatus::kUnsatisfiable) return {};
+  auto needed = shrink_to_needed(selected, std::move(candidates));
+  if (needed.stopped) return {};
+  return std::move(needed.origins);
+}
 
 /// Counters larger than this are not built; the witness may then have more events than needed.
 constexpr std::size_t kMaxCounter = 4'000'000;

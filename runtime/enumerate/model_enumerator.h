@@ -1,7 +1,11 @@
 #pragma once
 
+#include <atomic>
+#include <limits>
+#include <memory>
 #include <vector>
 
+#include "runtime/enumerate/clause_search.h"
 #include "runtime/enumerate/trace_source.h"
 #include "runtime/session/solver_session.h"
 
@@ -23,6 +27,76 @@ class ModelEnumerator final : public TraceSource {
   std::vector<Literal> order_;  // the atoms, false preferred
   std::int64_t found_ = 0;
   bool exhausted_ = false;
+};
+
+/// Descends a tree whose levels are blocks of atoms. At a node, which is a valuation of the blocks
+/// above and is assumed, the valuations of the next block are found by blocking clauses under a
+/// guard of their own; the guard is retired before the first child is entered. So no blocking
+/// clause outlives its node, and memory is one path with its siblings.
+class TraceTree final : public TraceSource {
+ public:
+  /// `session` outlives the tree. `levels`: blocks of atoms in canonical order that together tell
+  /// traces apart. A level with more children than `most_children` is halved where it shows.
+  TraceTree(SolverSession& session, std::vector<std::vector<Literal>> levels, std::string name,
+            std::size_t most_children);
+  std::optional<Trace> next() override;
+  bool exhausted() const override { return exhausted_; }
+  SourceStats stats() const override;
+
+ private:
+  struct Child {
+    std::vector<bool> values;  // of the level's atoms
+    Trace trace;               // at the last level
+  };
+  struct Node {
+    std::vector<Child> children;  // in canonical order
+    std::size_t next = 0;
+    std::size_t assumed = 0;  // assumptions of the levels above
+  };
+
+  bool expand();
+  bool find_children(Node& node, bool& too_many);
+  void halve(std::size_t level);
+
+  SolverSession* session_;
+  std::vector<std::vector<Literal>> levels_;
+  std::string name_;
+  std::size_t most_children_;
+  std::vector<Node> path_;
+  std::vector<Literal> assumptions_;
+  std::int64_t found_ = 0;
+  bool started_ = false;
+  bool stopped_ = false;  // there may be further traces, but no way to them is left
+  bool exhausted_ = false;
+};
+
+/// Begins with one level, which is halved until no node has more than about a thousand children.
+std::unique_ptr<TraceTree> make_trace_tree(SolverSession& session, Distinct distinct);
+/// Two levels only: blocking clauses that are retired with the first half of the horizon.
+std::unique_ptr<TraceTree> make_guarded_blocking(SolverSession& session, Distinct distinct);
+
+/// The traces by search alone: the next one is where the search goes on. Nothing is kept of those
+/// before, and there is no solver to wait for; but what a goal far ahead rules out is tried all the
+/// same.
+class SearchTraces final : public TraceSource {
+ public:
+  /// Gives up where a trace costs more than `conflicts`. `model` outlives the traces; `stop` may be
+  /// null.
+  SearchTraces(const CompiledModel& model, Distinct distinct, const std::atomic<bool>* stop,
+               std::int64_t conflicts = std::numeric_limits<std::int64_t>::max());
+  std::optional<Trace> next() override;
+  bool exhausted() const override { return exhausted_; }
+  /// Are there perhaps more traces, for which the budget does not suffice?
+  bool gave_up() const { return gave_up_; }
+  SourceStats stats() const override;
+
+ private:
+  const CompiledModel& model_;
+  const std::atomic<bool>* stop_;
+  std::int64_t conflicts_;
+  ClauseSearch search_;
+  std::int64_t found_ = 0;
+  bool exhausted_ = false, gave_up_ = false;
 };
 
 }  // namespace parallax::runtime

@@ -1,15 +1,85 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
-#include "runtime/explain/axiom_groups.h"
-#include "runtime/explain/effort.h"
-#include "runtime/explain/execution_formula.h"
+#include "compiler/artifact/compiled_model.h"
 #include "runtime/solver/sat_solver.h"
 
 namespace parallax::runtime {
+
+/// Facts that are not in question: what was seen of one execution.
+struct Observed {
+  compiler::Timepoint length = 0;  // it went so far
+  std::vector<compiler::Literal> facts;
+};
+
+/// "There is a trace", clause by clause of the model, so that clauses can be left out.
+///
+/// Without state constraints a trace satisfies every clause. With constraints it ends at some
+/// timepoint from 1 on at which they hold, and satisfies the clauses up to there: variables beyond
+/// the model's choose the length, and a clause of timepoint t > 0 binds if the trace reaches t.
+/// With an observation the length is what was seen, and its facts hold.
+class ExecutionFormula {
+ public:
+  /// `model` outlives the object.
+  explicit ExecutionFormula(const compiler::CompiledModel& model,
+                            std::optional<Observed> observed = std::nullopt);
+
+  const compiler::CompiledModel& model() const { return model_; }
+  std::int32_t variables() const { return variables_; }
+  /// Says nothing by itself: it defines an auxiliary.
+  bool is_definition(std::size_t clause) const { return model_.clause_is_definition[clause]; }
+  /// Clause `index` of the model; the view lasts until the next call.
+  std::span<const compiler::Literal> clause(std::size_t index);
+  /// The length, the definitions, what was observed.
+  void for_each_always(const std::function<void(std::span<const compiler::Literal>)>& visit);
+
+ private:
+  bool is_guarded() const { return model_.has_constraints || observed_.has_value(); }
+  void choose_length(const std::function<void(std::span<const compiler::Literal>)>& visit) const;
+  compiler::Literal reaches(compiler::Timepoint t) const;
+  compiler::Literal ends(compiler::Timepoint n) const;
+
+  const compiler::CompiledModel& model_;
+  std::optional<Observed> observed_;
+  std::int32_t variables_;
+  std::vector<compiler::Literal> clause_;
+};
+
+/// The origins of a model put together by the text they stand for: what an explanation names is a
+/// place in a source file. State invariants belong to no group: they follow from the others.
+struct AxiomGroups {
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+  std::vector<std::vector<std::uint32_t>> origins;  // by group, ascending; groups in source order
+  std::vector<std::uint32_t> group_of;              // by origin; kNone: of no group
+  std::size_t size() const { return origins.size(); }
+};
+
+/// Groups the origins that have clauses.
+AxiomGroups group_axioms(const compiler::CompiledModel& model);
+
+/// What the solver may spend on making sets smaller, in conflicts, so that the same is reached on
+/// every machine. One question gets at most a tenth of it.
+class Effort {
+ public:
+  explicit Effort(std::int64_t conflicts)
+      : left_(conflicts), share_(std::max<std::int64_t>(conflicts / 10, 1)) {}
+
+  bool is_spent() const { return left_ <= 0; }
+  /// Of the next question.
+  std::int64_t share() const { return std::min(left_, share_); }
+  /// Every question counts, however easy it was.
+  void spend(std::int64_t conflicts) { left_ -= conflicts + 1; }
+
+ private:
+  std::int64_t left_, share_;
+};
 
 /// A set of numbers, ascending.
 using IndexSet = std::vector<std::uint32_t>;

@@ -1,13 +1,84 @@
 #include "runtime/explain/minimal_sets.h"
 
 #include <algorithm>
+#include <atomic>
+#include <memory>
 #include <numeric>
+#include <optional>
 #include <utility>
 
-#include "runtime/explain/hitting_set.h"
+#include "runtime/explain/group_solver.h"
 
 namespace parallax::runtime {
 namespace {
+
+/// Smallest sets that have an element of each given set, by a SAT solver and a sequential counter
+/// (Sinz 2005). Size: elements times `bound` clauses.
+class HittingSets {
+ public:
+  /// Elements 0 .. count - 1; nobody asks for sets with more than `bound` elements.
+  HittingSets(std::size_t count, std::size_t bound, const std::atomic<bool>* stop);
+  void add(const IndexSet& to_hit);
+  /// A smallest one; none if every one has more than `bound` elements, or the solver was stopped
+  /// (then `stopped`). The size never falls from call to call.
+  std::optional<IndexSet> smallest();
+  bool stopped() const { return stopped_; }
+  /// No hitting set is smaller than this.
+  std::size_t lower_bound() const { return size_; }
+
+ private:
+  Literal element(std::size_t i) const {
+    return Literal::positive(static_cast<std::int32_t>(i) + 1);
+  }
+  /// At least j of the elements 0 .. i are in the set, 1 <= j <= bound + 1.
+  Literal at_least(std::size_t j, std::size_t i) const;
+
+  std::unique_ptr<SatSolver> solver_;
+  std::size_t count_, bound_, size_ = 0;
+  bool stopped_ = false;
+};
+
+HittingSets::HittingSets(std::size_t count, std::size_t bound, const std::atomic<bool>* stop)
+    : solver_(make_cadical_solver(stop)), count_(count), bound_(bound) {
+  for (std::size_t i = 0; i < count; ++i) {
+    solver_->set_phase(~element(i));
+    const Literal one[] = {~element(i), at_least(1, i)};
+    solver_->add_clause(one);
+    for (std::size_t j = 1; i > 0 && j <= bound + 1; ++j) {
+      const Literal kept[] = {~at_least(j, i - 1), at_least(j, i)};
+      solver_->add_clause(kept);
+      if (j == 1) continue;
+      const Literal more[] = {~element(i), ~at_least(j - 1, i - 1), at_least(j, i)};
+      solver_->add_clause(more);
+    }
+  }
+}
+
+Literal HittingSets::at_least(std::size_t j, std::size_t i) const {
+  return Literal::positive(static_cast<std::int32_t>(count_ + i * (bound_ + 1) + j));
+}
+
+void HittingSets::add(const IndexSet& to_hit) {
+  std::vector<Literal> clause;
+  for (const auto i : to_hit) clause.push_back(element(i));
+  solver_->add_clause(clause);
+}
+
+std::optional<IndexSet> HittingSets::smallest() {
+  for (; size_ <= bound_; ++size_) {
+    if (count_ > 0) solver_->assume(~at_least(size_ + 1, count_ - 1));
+    const auto status = solver_->solve();
+    stopped_ = status == SolveStatus::kUnknown;
+    if (stopped_) return std::nullopt;
+    if (status == SolveStatus::kUnsatisfiable) continue;
+    IndexSet set;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      if (solver_->value(element(i))) set.push_back(i);
+    }
+    return set;
+  }
+  return std::nullopt;
+}
 
 IndexSet everything(const GroupSolver& solver) {
   IndexSet all(solver.group_count());

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/enumerate/search_traces.h"
+#include "runtime/enumerate/model_enumerator.h"
 #include "runtime/graph/graph_paths.h"
 #include "runtime/graph/trace_graph.h"
 #include "runtime/session/solver_session.h"
@@ -99,5 +100,32 @@ class ModelTraces final : public TraceSource {
   std::string refusal_;
   std::string remark_;  // why the graph was not used
 };
+
+struct TraceCount {
+  mpz_class count;
+  bool complete = false;  // else at least so many
+  SourceStats stats;
+  std::string refusal;  // why the strategy that was asked for cannot be had; nothing was counted
+};
+
+/// Counts the traces of a model without constraints at its full horizon. Left to choose, a few are
+/// found one by one; if there are more, the graph counts them, and where the model has none, the
+/// tree does.
+TraceCount count_traces(const CompiledModel& model, const TraceQuery& query);
+
+struct TraceSample {
+  /// Numbered 1 .. size as drawn; each was any of `population` traces with equal probability,
+  /// whatever the others. Empty if there is no trace or the search was stopped.
+  std::vector<Trace> traces;
+  mpz_class population;
+  bool complete = false;  // else stopped
+  SourceStats stats;
+  std::string refusal;  // as of TraceCount
+};
+
+/// Draws `size` traces uniformly, with replacement. The same seed draws the same traces whatever
+/// the strategy. With the graph each costs one walk; without it all traces are found twice.
+TraceSample sample_traces(const CompiledModel& model, const TraceQuery& query, std::size_t size,
+                          std::uint64_t seed);
 
 }  // namespace parallax::runtime

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/proof/dimacs_reader.h"
+#include "runtime/proof/proof_reader.h"
 
 namespace parallax::runtime {
 namespace {

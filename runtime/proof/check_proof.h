@@ -4,7 +4,7 @@
 #include <string>
 
 #include "runtime/proof/drat_checker.h"
-#include "runtime/proof/drat_reader.h"
+#include "runtime/proof/proof_reader.h"
 
 namespace parallax::runtime {
 

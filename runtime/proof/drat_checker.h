@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "runtime/proof/proof_clauses.h"
-#include "runtime/proof/proof_propagator.h"
 
 namespace parallax::runtime {
 

@@ -32,7 +32,6 @@ class ClaimReader {
   std::unordered_set<std::string> fluents_, events_, predicates_;  // for look-up only
 };
 
-base::Result<ClaimedTrace> read_jsonl_trace(const JsonValue& root, ClaimReader& reader);
 base::Result<ClaimedTrace> read_itf_trace(const JsonValue& root, ClaimReader& reader);
 
 }  // namespace parallax::runtime

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/trace/list_format.h"
+#include "runtime/trace/trace_format.h"
 
 namespace parallax::runtime {
 

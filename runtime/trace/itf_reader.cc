@@ -8,7 +8,6 @@
 #include <set>
 
 #include "compiler/base/diagnostic_codes.h"
-#include "runtime/trace/atom_text.h"
 #include "runtime/trace/claim_reader.h"
 #include "runtime/trace/itf_format.h"
 

@@ -6,8 +6,8 @@
 
 #include "runtime/compare/trace_difference.h"
 #include "runtime/enumerate/dead_steps.h"
+#include "runtime/enumerate/model_enumerator.h"
 #include "runtime/enumerate/plan_enumerator.h"
-#include "runtime/enumerate/trace_tree.h"
 #include "runtime/explain/minimal_sets.h"
 #include "runtime/explain/why.h"
 #include "runtime/replay/trace_replay.h"

@@ -6,7 +6,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/json.h"
-#include "runtime/certify/logged_solver.h"
+#include "runtime/certify/certificate.h"
 #include "runtime/enumerate/plan_enumerator.h"
 
 namespace parallax::tools {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/explain/execution_formula.h"
+#include "runtime/explain/group_solver.h"
 #include "tools/app/context.h"
 
 namespace parallax::tools {

@@ -8,7 +8,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/explain/why.h"
-#include "runtime/graph/trace_counter.h"
+#include "runtime/graph/model_traces.h"
 #include "tools/app/explain_place.h"
 #include "tools/app/trace_fact.h"
 #include "tools/app/why_text.h"

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "compiler/pipeline/compile.h"
-#include "runtime/trace/list_format.h"
+#include "runtime/trace/trace_format.h"
 #include "tools/app/model_options.h"
 
 namespace parallax::tools {

@@ -5,8 +5,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "runtime/enumerate/model_enumerator.h"
 #include "runtime/enumerate/plan_enumerator.h"
-#include "runtime/graph/trace_counter.h"
-#include "runtime/graph/trace_sampler.h"
+#include "runtime/graph/model_traces.h"
 #include "tools/app/open_ends.h"
 
 namespace parallax::tools {

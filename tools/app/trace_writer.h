@@ -3,7 +3,7 @@
 #include <string>
 
 #include "runtime/enumerate/trace_source.h"
-#include "runtime/trace/list_format.h"
+#include "runtime/trace/trace_format.h"
 #include "tools/app/certify.h"
 #include "tools/app/context.h"
 #include "tools/app/trace_check.h"

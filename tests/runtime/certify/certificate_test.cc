@@ -7,7 +7,6 @@
 #include <fstream>
 #include <functional>
 
-#include "runtime/certify/logged_solver.h"
 #include "runtime/enumerate/model_enumerator.h"
 #include "tests/support/planned_model.h"
 #include "tests/support/random_model.h"

@@ -2,8 +2,8 @@
 
 #include <set>
 
-#include "runtime/enumerate/trace_tree.h"
-#include "runtime/graph/trace_sampler.h"
+#include "runtime/enumerate/model_enumerator.h"
+#include "runtime/graph/model_traces.h"
 #include "tests/support/classic_models.h"
 #include "tests/support/random_model.h"
 #include "tests/support/text_model.h"

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "runtime/enumerate/model_enumerator.h"
-#include "runtime/graph/trace_counter.h"
+#include "runtime/graph/model_traces.h"
 #include "tests/support/random_model.h"
 #include "tests/support/text_model.h"
 

@@ -1,5 +1,3 @@
-#include "runtime/session/needed_origins.h"
-
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/session/unsat_core.h"
 #include "tests/support/text_model.h"
 
 namespace parallax::test {

@@ -11,7 +11,6 @@
 #include "parallax/compile.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/graph/model_traces.h"
-#include "runtime/graph/trace_counter.h"
 #include "runtime/trace/trace.h"
 #include "tools/app/trace_feed.h"
 

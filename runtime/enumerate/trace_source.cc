@@ -1,4 +1,4 @@
-#include "runtime/enumerate/projection.h"
+#include "runtime/enumerate/trace_source.h"
 
 namespace parallax::runtime {
 

@@ -1,4 +1,4 @@
-#include "runtime/compare/vocabulary.h"
+#include "runtime/compare/shared_vocabulary.h"
 
 #include <algorithm>
 #include <map>
