@@ -81,7 +81,7 @@ std::vector<std::string> ignored_fluents(const StateMapping& mapping,
   std::set<std::string> out;
   for (const auto& fluent : fluents) {
     const auto* binding = mapping.find(fluent.symbol);
-    if (binding == nullptr || !std::holds_alternative<IgnoredBinding>(binding->condition)) continue;
+    if (binding == nullptr || !binding->is_ignored()) continue;
     out.insert(fluent.symbol + (fluent.arguments.empty() ? "()" : "(..)"));
   }
   return {out.begin(), out.end()};
@@ -90,28 +90,12 @@ std::vector<std::string> ignored_fluents(const StateMapping& mapping,
 State mapped_part(const StateMapping& mapping, const std::vector<GroundFluent>& fluents,
                   const State& observation) {
   State out;
-  const auto take = [&](const std::string& variable) {
-    const auto found = observation.find(variable);
-    if (found != observation.end()) out.insert(*found);
-  };
   for (const auto& fluent : fluents) {
     const auto* binding = mapping.find(fluent.symbol);
     PARALLAX_REQUIRE(binding != nullptr, "the mapping was checked against the model's fluents");
-    if (const auto* flagged = std::get_if<FlagBinding>(&binding->condition)) {
-      take(with_arguments(flagged->variable, fluent));
-    } else if (const auto* range = std::get_if<RangeBinding>(&binding->condition)) {
-      take(with_arguments(range->variable, fluent));
-    } else if (const auto* equal = std::get_if<EqualsBinding>(&binding->condition)) {
-      take(with_arguments(equal->variable, fluent));
-    } else if (const auto* inside = std::get_if<InsideBinding>(&binding->condition)) {
-      const auto* region = mapping.regions().find(fluent.arguments.at(inside->region_argument));
-      for (const auto axis : kRegionAxes) {
-        if (region == nullptr || !region->on(axis)) continue;
-        take(with_arguments(inside->body, fluent) + '.' + std::string(to_string(axis)));
-      }
-      for (const auto& flag : {inside->unless, inside->only_if}) {
-        if (flag) take(with_arguments(*flag, fluent));
-      }
+    for (const auto& variable : binding->variables(fluent, mapping.regions())) {
+      const auto found = observation.find(variable);
+      if (found != observation.end()) out.insert(*found);
     }
   }
   return out;

@@ -41,12 +41,10 @@ const Region* region_of(const Scenario& scenario, const CampaignTrace& trace,
     const auto fluent = ground_fluent(text);
     const auto* binding = scenario.mapping->find(fluent.symbol);
     if (binding == nullptr) continue;
-    const auto* inside = std::get_if<InsideBinding>(&binding->condition);
+    const auto* inside = binding->inside();
     if (inside == nullptr || !inside->drawn) continue;
     if (with_arguments(inside->body, fluent) != body) continue;
-    if (inside->region_argument >= fluent.arguments.size()) continue;
-    const auto* region =
-        scenario.mapping->regions().find(fluent.arguments[inside->region_argument]);
+    const auto* region = inside->region_of(fluent, scenario.mapping->regions());
     if (region != nullptr) return region;
   }
   return nullptr;

@@ -43,8 +43,8 @@ RegressionFrame regression_frame(const StateMapping& mapping, const StartCuboid&
   for (const auto& fluent : fluents) {
     const FluentBinding* binding = mapping.find(fluent.symbol);
     PARALLAX_REQUIRE(binding != nullptr, "the mapping was checked against the model's fluents");
-    if (std::holds_alternative<IgnoredBinding>(binding->condition)) continue;
-    const auto* inside = std::get_if<InsideBinding>(&binding->condition);
+    if (binding->is_ignored()) continue;
+    const auto* inside = binding->inside();
     if (inside != nullptr && is_covered(fluent, *inside, cells)) continue;
     frame.not_covered.push_back(fluent.text);
   }

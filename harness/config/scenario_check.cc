@@ -17,30 +17,6 @@ std::vector<std::string> names_of(const std::vector<Parameter>& parameters) {
   return names;
 }
 
-/// The variables that a binding reads, as far as they do not depend on the fluent's arguments.
-std::vector<std::string> variables_of(const FluentBinding& binding, const RegionMap& regions) {
-  std::vector<std::string> out;
-  if (const auto* flag = std::get_if<FlagBinding>(&binding.condition)) {
-    out.push_back(flag->variable);
-  } else if (const auto* range = std::get_if<RangeBinding>(&binding.condition)) {
-    out.push_back(range->variable);
-  } else if (const auto* equal = std::get_if<EqualsBinding>(&binding.condition)) {
-    out.push_back(equal->variable);
-  } else if (const auto* inside = std::get_if<InsideBinding>(&binding.condition)) {
-    for (const auto axis : kRegionAxes) {
-      const auto& all = regions.regions();
-      const bool bounded =
-          !all.empty() && std::all_of(all.begin(), all.end(),
-                                      [&](const Region& r) { return r.on(axis).has_value(); });
-      if (bounded) out.push_back(fmt::format("{}.{}", inside->body, to_string(axis)));
-    }
-    if (inside->unless) out.push_back(*inside->unless);
-    if (inside->only_if) out.push_back(*inside->only_if);
-  }
-  std::erase_if(out, [](const std::string& v) { return v.find('{') != std::string::npos; });
-  return out;
-}
-
 void check_event(const Scenario& scenario, const GroundFluent& event, base::DiagnosticSink& sink) {
   const auto action = std::find_if(scenario.actions.begin(), scenario.actions.end(),
                                    [&](const ActionBinding& a) { return a.event == event.symbol; });
@@ -98,7 +74,7 @@ base::Status check_variables(const Scenario& scenario, const std::vector<Paramet
   const auto errors_before = sink.error_count();
   const auto known = names_of(parameters);
   for (const auto& binding : scenario.mapping->bindings()) {
-    for (const auto& variable : variables_of(binding, scenario.mapping->regions())) {
+    for (const auto& variable : binding.constant_variables(scenario.mapping->regions())) {
       if (std::find(known.begin(), known.end(), variable) != known.end()) continue;
       auto error = sink.error(DiagnosticCode::kUnknownSimVariable, binding.source, variable);
       add_suggestion(error, variable, known, "variables");
@@ -134,7 +110,7 @@ base::Status check_against_model(const Scenario& scenario, const std::vector<std
   const auto mapped = scenario.mapping->check(ground, scenario.mapping_source, sink);
   const bool compares = std::any_of(ground.begin(), ground.end(), [&](const GroundFluent& fluent) {
     const auto* binding = scenario.mapping->find(fluent.symbol);
-    return binding != nullptr && !std::holds_alternative<IgnoredBinding>(binding->condition);
+    return binding != nullptr && !binding->is_ignored();
   });
   if (mapped && !compares) sink.error(DiagnosticCode::kNothingCompared, scenario.mapping_source);
   std::vector<GroundFluent> ground_events;

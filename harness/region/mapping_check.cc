@@ -27,7 +27,7 @@ void report_unmapped(const std::string& symbol, const std::vector<std::string>& 
 
 void check_region(const FluentBinding& binding, const GroundFluent& fluent,
                   const RegionMap& regions, base::DiagnosticSink& sink) {
-  const auto* inside = std::get_if<InsideBinding>(&binding.condition);
+  const auto* inside = binding.inside();
   if (inside == nullptr) return;
   if (inside->region_argument >= fluent.arguments.size()) {
     sink.error(DiagnosticCode::kMappingArity, binding.source, binding.fluent,

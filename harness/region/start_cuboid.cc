@@ -43,56 +43,22 @@ class DemandCollector {
   void add(const GroundFluent& fluent, bool wanted) {
     const FluentBinding* binding = mapping_.find(fluent.symbol);
     PARALLAX_REQUIRE(binding != nullptr, "the mapping was checked against the model's fluents");
-    if (const auto* flagged = std::get_if<FlagBinding>(&binding->condition)) {
-      if (wanted && !flagged->at_start) needs_flag(flagged->variable, fluent, *binding);
-      if (!wanted && flagged->at_start) excludes_flag(flagged->variable, fluent, *binding);
-    } else if (const auto* range = std::get_if<RangeBinding>(&binding->condition)) {
-      const auto& interval = wanted ? range->holds : range->fails;
-      if (range->at_start < interval.lower || range->at_start > interval.upper) {
-        needs_value(range->variable, range->at_start, fluent, wanted, *binding);
+    if (at_reset_) {
+      if (const auto conflict = binding->reset_conflict(fluent, wanted)) {
+        problems_.push_back({*conflict, binding->source, fluent.symbol});
       }
-    } else if (const auto* equal = std::get_if<EqualsBinding>(&binding->condition)) {
-      if (wanted) needs_flag(equal->variable, fluent, *binding);
-    } else if (const auto* inside = std::get_if<InsideBinding>(&binding->condition)) {
-      add_inside(fluent, wanted, *inside, *binding);
     }
+    if (const auto* inside = binding->inside()) add_inside(fluent, wanted, *inside);
   }
   const Demands& demands() const { return demands_; }
   const std::vector<Problem>& problems() const { return problems_; }
 
  private:
-  void needs_flag(const std::string& pattern, const GroundFluent& fluent,
-                  const FluentBinding& binding) {
-    if (!at_reset_) return;
-    problems_.push_back({fmt::format("`{}` holds, but a reset cannot make `{}` true", fluent.text,
-                                     with_arguments(pattern, fluent)),
-                         binding.source, fluent.symbol});
-  }
-
-  void excludes_flag(const std::string& pattern, const GroundFluent& fluent,
-                     const FluentBinding& binding) {
-    if (!at_reset_) return;
-    problems_.push_back({fmt::format("`{}` does not hold, but a reset makes `{}` true", fluent.text,
-                                     with_arguments(pattern, fluent)),
-                         binding.source, fluent.symbol});
-  }
-
-  void needs_value(const std::string& pattern, double value, const GroundFluent& fluent,
-                   bool wanted, const FluentBinding& binding) {
-    if (!at_reset_) return;
-    problems_.push_back(
-        {fmt::format("`{}` {}, but a reset makes `{}` {}", fluent.text,
-                     wanted ? "holds" : "does not hold", with_arguments(pattern, fluent), value),
-         binding.source, fluent.symbol});
-  }
-
-  void add_inside(const GroundFluent& fluent, bool wanted, const InsideBinding& inside,
-                  const FluentBinding& binding) {
-    if (wanted && inside.only_if) needs_flag(*inside.only_if, fluent, binding);
+  void add_inside(const GroundFluent& fluent, bool wanted, const InsideBinding& inside) {
     // A false fluent says where the body is not only if no flag can be the reason for it.
     if (!wanted && (inside.only_if || (inside.unless && !at_reset_))) return;
     if (!inside.drawn && at_reset_) return;
-    const Region* region = mapping_.regions().find(fluent.arguments.at(inside.region_argument));
+    const Region* region = inside.region_of(fluent, mapping_.regions());
     PARALLAX_REQUIRE(region != nullptr, "the mapping was checked against the regions");
     auto& demand = demands_[with_arguments(inside.body, fluent)];
     (wanted ? demand.inside : demand.outside).push_back({region, fluent.text});
@@ -276,28 +242,8 @@ std::vector<std::string> StateMapping::wrong_at_start(const std::vector<GroundFl
   for (const auto& fluent : fluents) {
     const FluentBinding* binding = find(fluent.symbol);
     PARALLAX_REQUIRE(binding != nullptr, "the mapping was checked against the model's fluents");
-    const auto lower_flag = [&](const std::string& pattern) {
-      start.emplace(with_arguments(pattern, fluent), false);
-    };
-    if (const auto* flagged = std::get_if<FlagBinding>(&binding->condition)) {
-      start.emplace(with_arguments(flagged->variable, fluent), flagged->at_start);
-    } else if (const auto* range = std::get_if<RangeBinding>(&binding->condition)) {
-      start.emplace(with_arguments(range->variable, fluent), range->at_start);
-    } else if (const auto* equal = std::get_if<EqualsBinding>(&binding->condition)) {
-      start.emplace(with_arguments(equal->variable, fluent), std::string());
-    } else if (const auto* inside = std::get_if<InsideBinding>(&binding->condition)) {
-      if (inside->unless) lower_flag(*inside->unless);
-      if (inside->only_if) lower_flag(*inside->only_if);
-      if (!inside->drawn) continue;
-      const Region* region = regions_.find(fluent.arguments.at(inside->region_argument));
-      if (region != nullptr && !region->frame.empty()) {
-        static constexpr std::array<const char*, 3> kItems = {".x", ".y", ".z"};
-        for (std::size_t i = 0; i < kItems.size(); ++i) {
-          start.emplace(region->frame + kItems[i], region->frame_start[i]);
-        }
-        start.emplace(region->frame + ".yaw", 0.0);
-      }
-    }
+    binding->add_reset_values(fluent, regions_, start);
+    if (const auto* inside = binding->inside(); inside != nullptr && !inside->drawn) continue;
     const auto observed = holds(fluent, start);
     if (observed && *observed != true_fluents.contains(fluent.text)) wrong.push_back(fluent.text);
   }

@@ -5,63 +5,11 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <variant>
 #include <vector>
 
-#include "harness/region/region.h"
-#include "harness/simulator/simulator.h"
+#include "harness/region/fluent_binding.h"
 
 namespace parallax::harness {
-
-/// Fluent F(.., r, ..) holds iff `body` lies in region r: argument number `region_argument` names
-/// the region. `unless` / `only_if` are boolean variables that must be false / true besides.
-struct InsideBinding {
-  std::string body;  // "box" reads box.x, box.y, ...; "{0}" stands for argument 0
-  std::size_t region_argument = 0;
-  std::optional<std::string> unless;  // "box.held"
-  std::optional<std::string> only_if;
-  bool drawn = true;  // false: a reset puts the body there by itself, nothing is drawn
-};
-
-/// Fluent holds iff a boolean variable is true; "{0}.held" takes argument 0 of the fluent.
-struct FlagBinding {
-  std::string variable;
-  bool at_start = false;  // its value after a reset
-};
-
-/// Fluent holds iff a variable lies in one interval, and does not iff it lies in the other one:
-/// between the two it does neither, which is no state of the model ("a drawer half open").
-struct RangeBinding {
-  std::string variable;
-  Interval holds, fails;
-  double at_start = 0.0;
-};
-
-/// Fluent holds iff a variable has this text; "{0}" stands for argument 0. Empty after a reset.
-struct EqualsBinding {
-  std::string variable;
-  std::string text;
-};
-
-/// Said on purpose: this fluent has no continuous meaning and is not compared.
-struct IgnoredBinding {};
-
-struct FluentBinding {
-  std::string fluent;  // symbol name, "RobotIn"
-  std::size_t arity = 0;
-  std::variant<InsideBinding, FlagBinding, RangeBinding, EqualsBinding, IgnoredBinding> condition;
-  base::SourceRange source;
-};
-
-/// A ground fluent as the model prints it, "RobotIn(r1)", taken apart.
-struct GroundFluent {
-  std::string text;
-  std::string symbol;
-  std::vector<std::string> arguments;
-};
-/// Inverse of printing without blanks; nested terms stay one argument.
-GroundFluent ground_fluent(std::string_view text);
 
 /// One continuous dimension to draw: uniform on [lower, upper), or fixed where both are equal.
 struct SampledDimension {
@@ -76,12 +24,6 @@ struct StartCuboid {
 
 /// Is the variable an angle? By its name: "box.yaw".
 bool is_angle(std::string_view variable);
-
-/// "{0}.held" with the fluent's arguments put in. A number beyond the last one stays as it is.
-std::string with_arguments(std::string_view pattern, const GroundFluent& fluent);
-
-/// What a continuous state says of a fluent.
-enum class Reading : std::uint8_t { kFails, kHolds, kNeither };
 
 /// m and its inverse, from one binding per fluent symbol.
 class StateMapping {

@@ -1,0 +1,318 @@
+#include "harness/region/fluent_binding.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "compiler/base/contract.h"
+
+namespace parallax::harness {
+namespace {
+
+const Value* look_up(const State& state, const std::string& variable,
+                     std::set<std::string>* missing) {
+  const auto found = state.find(variable);
+  if (found != state.end()) return &found->second;
+  if (missing != nullptr) missing->insert(variable);
+  return nullptr;
+}
+
+std::optional<double> number(const State& state, const std::string& variable,
+                             std::set<std::string>* missing) {
+  const Value* value = look_up(state, variable, missing);
+  if (value == nullptr) return std::nullopt;
+  if (const auto* real = std::get_if<double>(value)) return *real;
+  if (const auto* whole = std::get_if<std::int64_t>(value)) return static_cast<double>(*whole);
+  if (missing != nullptr) missing->insert(variable);  // a word or a flag is no position
+  return std::nullopt;
+}
+
+/// Adapters that know no booleans send 0 and 1.
+std::optional<bool> flag(const State& state, const std::string& variable,
+                         std::set<std::string>* missing) {
+  const Value* value = look_up(state, variable, missing);
+  if (value == nullptr) return std::nullopt;
+  if (const auto* boolean = std::get_if<bool>(value)) return *boolean;
+  if (const auto* whole = std::get_if<std::int64_t>(value)) return *whole != 0;
+  if (missing != nullptr) missing->insert(variable);
+  return std::nullopt;
+}
+
+/// Takes a point of the world into the frame of a body, as far as the region bounds it.
+void into_frame(const std::string& frame, const State& state, std::set<std::string>* missing,
+                Point& point) {
+  const auto at = [&](const char* item) {
+    return number(state, fmt::format("{}.{}", frame, item), missing).value_or(0.0);
+  };
+  const double yaw = at("yaw");
+  double& x = point[static_cast<std::size_t>(RegionAxis::kX)];
+  double& y = point[static_cast<std::size_t>(RegionAxis::kY)];
+  const double dx = x - at("x"), dy = y - at("y");
+  x = std::cos(yaw) * dx + std::sin(yaw) * dy;
+  y = std::cos(yaw) * dy - std::sin(yaw) * dx;
+  point[static_cast<std::size_t>(RegionAxis::kYaw)] -= yaw;
+  for (const RegionAxis axis : {RegionAxis::kZ, RegionAxis::kBottom}) {
+    point[static_cast<std::size_t>(axis)] -= at("z");
+  }
+}
+
+Reading reading(bool holds) { return holds ? Reading::kHolds : Reading::kFails; }
+
+/// A flag that has to be true at a reset, which puts every flag down.
+std::string needs_flag(const std::string& pattern, const GroundFluent& fluent) {
+  return fmt::format("`{}` holds, but a reset cannot make `{}` true", fluent.text,
+                     with_arguments(pattern, fluent));
+}
+
+}  // namespace
+
+GroundFluent ground_fluent(std::string_view text) {
+  GroundFluent result{std::string(text), {}, {}};
+  const auto open = text.find('(');
+  result.symbol = text.substr(0, open);
+  if (open == std::string_view::npos) return result;
+  PARALLAX_REQUIRE(text.back() == ')', "a ground fluent ends with its last parenthesis");
+  const auto inner = text.substr(open + 1, text.size() - open - 2);
+  if (inner.empty()) return result;
+  int depth = 0;
+  result.arguments.emplace_back();
+  for (const char c : inner) {
+    if (c == '(') ++depth;
+    if (c == ')') --depth;
+    if (c == ',' && depth == 0) {
+      result.arguments.emplace_back();
+    } else {
+      result.arguments.back().push_back(c);
+    }
+  }
+  return result;
+}
+
+std::string with_arguments(std::string_view pattern, const GroundFluent& fluent) {
+  std::string result(pattern);
+  for (std::size_t i = 0; i < fluent.arguments.size(); ++i) {
+    const std::string place = fmt::format("{{{}}}", i);
+    const auto& argument = fluent.arguments[i];
+    for (auto at = result.find(place); at != std::string::npos;
+         at = result.find(place, at + argument.size())) {
+      result.replace(at, place.size(), argument);
+    }
+  }
+  return result;
+}
+
+const Region* InsideBinding::region_of(const GroundFluent& fluent, const RegionMap& regions) const {
+  return region_argument < fluent.arguments.size() ? regions.find(fluent.arguments[region_argument])
+                                                   : nullptr;
+}
+
+bool InsideBinding::flags_allow(const GroundFluent& fluent, const State& state,
+                                std::set<std::string>* missing) const {
+  const auto allowed = [&](const std::optional<std::string>& variable, bool wanted) {
+    if (!variable) return true;
+    return flag(state, with_arguments(*variable, fluent), missing) == wanted;
+  };
+  // Both are evaluated, so that every missing variable is named.
+  const bool not_excluded = allowed(unless, false);
+  const bool enabled = allowed(only_if, true);
+  return not_excluded && enabled;
+}
+
+std::optional<Reading> InsideBinding::read(const GroundFluent& fluent, const State& state,
+                                           const RegionMap& regions,
+                                           std::set<std::string>* missing) const {
+  const Region* region = region_of(fluent, regions);
+  PARALLAX_REQUIRE(region != nullptr, "the mapping was checked against the regions");
+  const std::string name = with_arguments(body, fluent);
+  Point point{};
+  bool complete = true;
+  for (const RegionAxis axis : kRegionAxes) {
+    // A point in a turned frame takes both x and y.
+    const bool needed =
+        region->on(axis).has_value() ||
+        (!region->frame.empty() && (axis == RegionAxis::kX || axis == RegionAxis::kY));
+    if (!needed) continue;
+    const auto value = number(state, fmt::format("{}.{}", name, to_string(axis)), missing);
+    complete = complete && value.has_value();
+    point[static_cast<std::size_t>(axis)] = value.value_or(0.0);
+  }
+  if (!region->frame.empty()) into_frame(region->frame, state, missing, point);
+  return reading(flags_allow(fluent, state, missing) && complete &&
+                 regions.contains(*region, point));
+}
+
+std::vector<std::string> InsideBinding::variables(const GroundFluent& fluent,
+                                                  const RegionMap& regions) const {
+  std::vector<std::string> out;
+  const Region* region = region_of(fluent, regions);
+  for (const RegionAxis axis : kRegionAxes) {
+    if (region == nullptr || !region->on(axis)) continue;
+    out.push_back(fmt::format("{}.{}", with_arguments(body, fluent), to_string(axis)));
+  }
+  for (const auto& variable : {unless, only_if}) {
+    if (variable) out.push_back(with_arguments(*variable, fluent));
+  }
+  return out;
+}
+
+std::vector<std::string> InsideBinding::constant_variables(const RegionMap& regions) const {
+  std::vector<std::string> out;
+  const auto& all = regions.regions();
+  for (const RegionAxis axis : kRegionAxes) {
+    const bool bounded = !all.empty() && std::all_of(all.begin(), all.end(), [&](const Region& r) {
+      return r.on(axis).has_value();
+    });
+    if (bounded) out.push_back(fmt::format("{}.{}", body, to_string(axis)));
+  }
+  if (unless) out.push_back(*unless);
+  if (only_if) out.push_back(*only_if);
+  return out;
+}
+
+std::optional<std::string> InsideBinding::reset_conflict(const GroundFluent& fluent,
+                                                         bool wanted) const {
+  if (!wanted || !only_if) return std::nullopt;
+  return needs_flag(*only_if, fluent);
+}
+
+void InsideBinding::add_reset_values(const GroundFluent& fluent, const RegionMap& regions,
+                                     State& state) const {
+  for (const auto& variable : {unless, only_if}) {
+    if (variable) state.emplace(with_arguments(*variable, fluent), false);
+  }
+  const Region* region = region_of(fluent, regions);
+  if (!drawn || region == nullptr || region->frame.empty()) return;
+  static constexpr std::array<const char*, 3> kItems = {".x", ".y", ".z"};
+  for (std::size_t i = 0; i < kItems.size(); ++i) {
+    state.emplace(region->frame + kItems[i], region->frame_start[i]);
+  }
+  state.emplace(region->frame + ".yaw", 0.0);
+}
+
+std::optional<Reading> FlagBinding::read(const GroundFluent& fluent, const State& state,
+                                         const RegionMap& /*regions*/,
+                                         std::set<std::string>* missing) const {
+  return reading(flag(state, with_arguments(variable, fluent), missing).value_or(false));
+}
+
+std::vector<std::string> FlagBinding::variables(const GroundFluent& fluent,
+                                                const RegionMap& /*regions*/) const {
+  return {with_arguments(variable, fluent)};
+}
+
+std::vector<std::string> FlagBinding::constant_variables(const RegionMap& /*regions*/) const {
+  return {variable};
+}
+
+std::optional<std::string> FlagBinding::reset_conflict(const GroundFluent& fluent,
+                                                       bool wanted) const {
+  if (wanted == at_start) return std::nullopt;
+  if (wanted) return needs_flag(variable, fluent);
+  return fmt::format("`{}` does not hold, but a reset makes `{}` true", fluent.text,
+                     with_arguments(variable, fluent));
+}
+
+void FlagBinding::add_reset_values(const GroundFluent& fluent, const RegionMap& /*regions*/,
+                                   State& state) const {
+  state.emplace(with_arguments(variable, fluent), at_start);
+}
+
+std::optional<Reading> RangeBinding::read(const GroundFluent& fluent, const State& state,
+                                          const RegionMap& /*regions*/,
+                                          std::set<std::string>* missing) const {
+  const auto value = number(state, with_arguments(variable, fluent), missing);
+  if (!value) return Reading::kFails;
+  const auto within = [&](const Interval& i) { return *value >= i.lower && *value <= i.upper; };
+  if (within(holds)) return Reading::kHolds;
+  return within(fails) ? Reading::kFails : Reading::kNeither;
+}
+
+std::vector<std::string> RangeBinding::variables(const GroundFluent& fluent,
+                                                 const RegionMap& /*regions*/) const {
+  return {with_arguments(variable, fluent)};
+}
+
+std::vector<std::string> RangeBinding::constant_variables(const RegionMap& /*regions*/) const {
+  return {variable};
+}
+
+std::optional<std::string> RangeBinding::reset_conflict(const GroundFluent& fluent,
+                                                        bool wanted) const {
+  const auto& interval = wanted ? holds : fails;
+  if (at_start >= interval.lower && at_start <= interval.upper) return std::nullopt;
+  return fmt::format("`{}` {}, but a reset makes `{}` {}", fluent.text,
+                     wanted ? "holds" : "does not hold", with_arguments(variable, fluent),
+                     at_start);
+}
+
+void RangeBinding::add_reset_values(const GroundFluent& fluent, const RegionMap& /*regions*/,
+                                    State& state) const {
+  state.emplace(with_arguments(variable, fluent), at_start);
+}
+
+std::optional<Reading> EqualsBinding::read(const GroundFluent& fluent, const State& state,
+                                           const RegionMap& /*regions*/,
+                                           std::set<std::string>* missing) const {
+  const std::string name = with_arguments(variable, fluent);
+  const Value* value = look_up(state, name, missing);
+  if (value == nullptr) return Reading::kFails;
+  if (const auto* word = std::get_if<std::string>(value)) {
+    return reading(*word == with_arguments(text, fluent));
+  }
+  if (missing != nullptr) missing->insert(name);
+  return Reading::kFails;
+}
+
+std::vector<std::string> EqualsBinding::variables(const GroundFluent& fluent,
+                                                  const RegionMap& /*regions*/) const {
+  return {with_arguments(variable, fluent)};
+}
+
+std::vector<std::string> EqualsBinding::constant_variables(const RegionMap& /*regions*/) const {
+  return {variable};
+}
+
+std::optional<std::string> EqualsBinding::reset_conflict(const GroundFluent& fluent,
+                                                         bool wanted) const {
+  if (!wanted) return std::nullopt;
+  return needs_flag(variable, fluent);
+}
+
+void EqualsBinding::add_reset_values(const GroundFluent& fluent, const RegionMap& /*regions*/,
+                                     State& state) const {
+  state.emplace(with_arguments(variable, fluent), std::string());
+}
+
+std::optional<Reading> FluentBinding::read(const GroundFluent& ground, const State& state,
+                                           const RegionMap& regions,
+                                           std::set<std::string>* missing) const {
+  return std::visit([&](const auto& kind) { return kind.read(ground, state, regions, missing); },
+                    condition);
+}
+
+std::vector<std::string> FluentBinding::variables(const GroundFluent& ground,
+                                                  const RegionMap& regions) const {
+  return std::visit([&](const auto& kind) { return kind.variables(ground, regions); }, condition);
+}
+
+std::vector<std::string> FluentBinding::constant_variables(const RegionMap& regions) const {
+  auto out =
+      std::visit([&](const auto& kind) { return kind.constant_variables(regions); }, condition);
+  std::erase_if(out, [](const std::string& v) { return v.find('{') != std::string::npos; });
+  return out;
+}
+
+std::optional<std::string> FluentBinding::reset_conflict(const GroundFluent& ground,
+                                                         bool wanted) const {
+  return std::visit([&](const auto& kind) { return kind.reset_conflict(ground, wanted); },
+                    condition);
+}
+
+void FluentBinding::add_reset_values(const GroundFluent& ground, const RegionMap& regions,
+                                     State& state) const {
+  std::visit([&](const auto& kind) { kind.add_reset_values(ground, regions, state); }, condition);
+}
+
+}  // namespace parallax::harness

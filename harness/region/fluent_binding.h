@@ -1,0 +1,147 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "harness/region/region.h"
+#include "harness/simulator/simulator.h"
+
+namespace parallax::harness {
+
+/// A ground fluent as the model prints it, "RobotIn(r1)", taken apart.
+struct GroundFluent {
+  std::string text;
+  std::string symbol;
+  std::vector<std::string> arguments;
+};
+/// Inverse of printing without blanks; nested terms stay one argument.
+GroundFluent ground_fluent(std::string_view text);
+
+/// "{0}.held" with the fluent's arguments put in. A number beyond the last one stays as it is.
+std::string with_arguments(std::string_view pattern, const GroundFluent& fluent);
+
+/// What a continuous state says of a fluent.
+enum class Reading : std::uint8_t { kFails, kHolds, kNeither };
+
+// Kinds of conditions. Each answers the same four questions about a ground fluent of its symbol;
+// FluentBinding asks them of whichever kind it has:
+//
+//   read              what does the state say? A variable that the state lacks makes the fluent
+//                     false and is added to `missing`, if that is given
+//   variables         which variables is that read from, bodies of frames aside?
+//   reset_conflict    why can no reset make the fluent hold (not hold)?
+//   add_reset_values  sets the variables that a reset gives a value, where `state` has none
+//
+// and constant_variables: those that every fluent of the symbol is read from, as patterns.
+
+/// Fluent F(.., r, ..) holds iff `body` lies in region r: argument number `region_argument` names
+/// the region. `unless` / `only_if` are boolean variables that must be false / true besides.
+struct InsideBinding {
+  std::string body;  // "box" reads box.x, box.y, ...; "{0}" stands for argument 0
+  std::size_t region_argument = 0;
+  std::optional<std::string> unless;  // "box.held"
+  std::optional<std::string> only_if;
+  bool drawn = true;  // false: a reset puts the body there by itself, nothing is drawn
+
+  std::optional<Reading> read(const GroundFluent& fluent, const State& state,
+                              const RegionMap& regions, std::set<std::string>* missing) const;
+  std::vector<std::string> variables(const GroundFluent& fluent, const RegionMap& regions) const;
+  std::vector<std::string> constant_variables(const RegionMap& regions) const;
+  std::optional<std::string> reset_conflict(const GroundFluent& fluent, bool wanted) const;
+  void add_reset_values(const GroundFluent& fluent, const RegionMap& regions, State& state) const;
+
+  /// The region that the fluent names; null if there is none of this name.
+  const Region* region_of(const GroundFluent& fluent, const RegionMap& regions) const;
+  /// Do `unless` and `only_if` let the fluent hold?
+  bool flags_allow(const GroundFluent& fluent, const State& state,
+                   std::set<std::string>* missing) const;
+};
+
+/// Fluent holds iff a boolean variable is true; "{0}.held" takes argument 0 of the fluent.
+struct FlagBinding {
+  std::string variable;
+  bool at_start = false;  // its value after a reset
+
+  std::optional<Reading> read(const GroundFluent& fluent, const State& state,
+                              const RegionMap& regions, std::set<std::string>* missing) const;
+  std::vector<std::string> variables(const GroundFluent& fluent, const RegionMap& regions) const;
+  std::vector<std::string> constant_variables(const RegionMap& regions) const;
+  std::optional<std::string> reset_conflict(const GroundFluent& fluent, bool wanted) const;
+  void add_reset_values(const GroundFluent& fluent, const RegionMap& regions, State& state) const;
+};
+
+/// Fluent holds iff a variable lies in one interval, and does not iff it lies in the other one:
+/// between the two it does neither, which is no state of the model ("a drawer half open").
+struct RangeBinding {
+  std::string variable;
+  Interval holds, fails;
+  double at_start = 0.0;
+
+  std::optional<Reading> read(const GroundFluent& fluent, const State& state,
+                              const RegionMap& regions, std::set<std::string>* missing) const;
+  std::vector<std::string> variables(const GroundFluent& fluent, const RegionMap& regions) const;
+  std::vector<std::string> constant_variables(const RegionMap& regions) const;
+  std::optional<std::string> reset_conflict(const GroundFluent& fluent, bool wanted) const;
+  void add_reset_values(const GroundFluent& fluent, const RegionMap& regions, State& state) const;
+};
+
+/// Fluent holds iff a variable has this text; "{0}" stands for argument 0. Empty after a reset.
+struct EqualsBinding {
+  std::string variable;
+  std::string text;
+
+  std::optional<Reading> read(const GroundFluent& fluent, const State& state,
+                              const RegionMap& regions, std::set<std::string>* missing) const;
+  std::vector<std::string> variables(const GroundFluent& fluent, const RegionMap& regions) const;
+  std::vector<std::string> constant_variables(const RegionMap& regions) const;
+  std::optional<std::string> reset_conflict(const GroundFluent& fluent, bool wanted) const;
+  void add_reset_values(const GroundFluent& fluent, const RegionMap& regions, State& state) const;
+};
+
+/// Said on purpose: this fluent has no continuous meaning and is not compared.
+struct IgnoredBinding {
+  std::optional<Reading> read(const GroundFluent&, const State&, const RegionMap&,
+                              std::set<std::string>*) const {
+    return std::nullopt;
+  }
+  std::vector<std::string> variables(const GroundFluent&, const RegionMap&) const { return {}; }
+  std::vector<std::string> constant_variables(const RegionMap&) const { return {}; }
+  std::optional<std::string> reset_conflict(const GroundFluent&, bool) const {
+    return std::nullopt;
+  }
+  void add_reset_values(const GroundFluent&, const RegionMap&, State&) const {}
+};
+
+/// What a fluent symbol means in the continuous world. Regions are those of the mapping, which was
+/// checked against the model's fluents.
+struct FluentBinding {
+  std::string fluent;  // symbol name, "RobotIn"
+  std::size_t arity = 0;
+  std::variant<InsideBinding, FlagBinding, RangeBinding, EqualsBinding, IgnoredBinding> condition;
+  base::SourceRange source;
+
+  /// None if the fluent is ignored on purpose.
+  std::optional<Reading> read(const GroundFluent& ground, const State& state,
+                              const RegionMap& regions, std::set<std::string>* missing) const;
+  /// The variables that the fluent is read from.
+  std::vector<std::string> variables(const GroundFluent& ground, const RegionMap& regions) const;
+  /// Those of them that do not depend on the fluent's arguments.
+  std::vector<std::string> constant_variables(const RegionMap& regions) const;
+  /// Why a reset cannot make the fluent hold, or not hold, as `wanted`; none: it can, as far as
+  /// what is not drawn goes.
+  std::optional<std::string> reset_conflict(const GroundFluent& ground, bool wanted) const;
+  /// Adds what a reset gives the variables of the fluent that are not drawn, where `state` has no
+  /// value for them.
+  void add_reset_values(const GroundFluent& ground, const RegionMap& regions, State& state) const;
+
+  bool is_ignored() const { return std::holds_alternative<IgnoredBinding>(condition); }
+  /// How the fluent puts a body into a region; null if it is about something else.
+  const InsideBinding* inside() const { return std::get_if<InsideBinding>(&condition); }
+};
+
+}  // namespace parallax::harness
