@@ -96,7 +96,7 @@ const ControllerSpec* known_controller(const std::string& name, base::SourceRang
 /// `from_plan`: names of the plan's arguments and what the controller calls them.
 void read_from_plan(const YamlNode& node, const ControllerSpec* controller, ActionBinding& action,
                     base::DiagnosticSink& sink) {
-  const YamlFields all(node, fmt::format("`from_plan` of `{}`", action.event), sink);
+  const YamlFields all(node, fmt::format("`{}` of `{}`", Key::kFromPlan, action.event), sink);
   action.from_plan.emplace();
   for (const auto& entry : node.entries) {
     const auto to = read_text(entry.value, fmt::format("`{}`", entry.key), sink);
@@ -125,13 +125,13 @@ std::optional<ActionBinding> read_action(const YamlEntry& entry, bool built_in,
   action.source = entry.key_range;
   const YamlFields fields(entry.value, fmt::format("the action of `{}`", pattern->symbol), sink);
   if (!entry.value.is_map()) return std::nullopt;
-  const auto* controller = fields.find("controller");
+  const auto* controller = fields.find(Key::kController);
   if (controller == nullptr) {
     sink.error(DiagnosticCode::kActionWithoutController, entry.key_range, entry.key);
     return std::nullopt;
   }
-  fields.text("controller", action.controller);
-  fields.number("time_limit_s", NumberBounds{0.0, kMaxTimeLimitS, true, false},
+  fields.text(Key::kController, action.controller);
+  fields.number(Key::kTimeLimitS, NumberBounds{0.0, kMaxTimeLimitS, true, false},
                 action.time_limit_s);
   const ControllerSpec* table = nullptr;
   if (built_in && !action.controller.empty()) {
@@ -140,8 +140,8 @@ std::optional<ActionBinding> read_action(const YamlEntry& entry, bool built_in,
   }
   ArgumentReader reader(*pattern, table, sink);
   for (const auto& argument : entry.value.entries) {
-    if (argument.key == "controller" || argument.key == "time_limit_s") continue;
-    if (argument.key == "from_plan") {
+    if (argument.key == Key::kController || argument.key == Key::kTimeLimitS) continue;
+    if (argument.key == Key::kFromPlan) {
       read_from_plan(argument.value, table, action, sink);
       continue;
     }
@@ -162,7 +162,7 @@ std::optional<ActionBinding> read_action(const YamlEntry& entry, bool built_in,
 std::vector<ActionBinding> read_actions(const YamlNode& node, bool built_in,
                                         base::DiagnosticSink& sink) {
   std::vector<ActionBinding> actions;
-  const YamlFields all(node, "`actions`", sink);
+  const YamlFields all(node, key_text(Key::kActions), sink);
   std::map<std::string, base::SourceRange> seen;
   for (const auto& entry : node.entries) {
     auto action = read_action(entry, built_in, sink);

@@ -15,25 +15,25 @@ using base::DiagnosticCode;
 BoxShape read_shape(const YamlNode& node, std::string what, base::DiagnosticSink& sink) {
   BoxShape shape;
   YamlFields fields(node, std::move(what), sink);
-  fields.only({"size_m", "at_m", "yaw_rad"});
-  fields.require("size_m");
-  read_vector(fields, "size_m", shape.size_m);
-  read_vector(fields, "at_m", shape.p_BS);
-  fields.number("yaw_rad", kAnyNumber, shape.yaw_rad);
+  fields.only({Key::kSizeM, Key::kAtM, Key::kYawRad});
+  fields.require(Key::kSizeM);
+  read_vector(fields, Key::kSizeM, shape.size_m);
+  read_vector(fields, Key::kAtM, shape.p_BS);
+  fields.number(Key::kYawRad, kAnyNumber, shape.yaw_rad);
   return shape;
 }
 
 /// A bowl: a bottom and a ring of walls, its origin in the middle of its height.
 void read_ring(const YamlNode& node, BodySpec& body, base::DiagnosticSink& sink) {
-  YamlFields fields(node, fmt::format("`ring` of the body `{}`", body.name), sink);
-  fields.only({"diameter_m", "height_m", "wall_m", "sides"});
+  YamlFields fields(node, fmt::format("`{}` of the body `{}`", Key::kRing, body.name), sink);
+  fields.only({Key::kDiameterM, Key::kHeightM, Key::kWallM, Key::kSides});
   double diameter_m = 0.0, height_m = 0.0, wall_m = 0.0;
   std::int64_t sides = 12;
-  for (const char* key : {"diameter_m", "height_m", "wall_m"}) fields.require(key);
-  fields.number("diameter_m", kPositive, diameter_m);
-  fields.number("height_m", kPositive, height_m);
-  fields.number("wall_m", kPositive, wall_m);
-  fields.integer("sides", 4, 64, sides);
+  for (const auto key : {Key::kDiameterM, Key::kHeightM, Key::kWallM}) fields.require(key);
+  fields.number(Key::kDiameterM, kPositive, diameter_m);
+  fields.number(Key::kHeightM, kPositive, height_m);
+  fields.number(Key::kWallM, kPositive, wall_m);
+  fields.integer(Key::kSides, 4, 64, sides);
   if (!(diameter_m > 2.0 * wall_m && height_m > wall_m)) {
     sink.error(DiagnosticCode::kYamlOutOfBounds, node.range, fields.what(), "all wall",
                "wider and higher than its walls");
@@ -55,20 +55,21 @@ void read_ring(const YamlNode& node, BodySpec& body, base::DiagnosticSink& sink)
 
 /// One box, or a list of them under `shapes`, or a ring of them.
 void read_shapes(const YamlFields& fields, BodySpec& body) {
-  const auto* list = fields.find("shapes");
-  const auto* ring = fields.find("ring");
+  const auto* list = fields.find(Key::kShapes);
+  const auto* ring = fields.find(Key::kRing);
   if (list == nullptr && ring == nullptr) {
-    if (fields.require("size_m") == nullptr) return;
+    if (fields.require(Key::kSizeM) == nullptr) return;
     BoxShape shape;
-    read_vector(fields, "size_m", shape.size_m);
+    read_vector(fields, Key::kSizeM, shape.size_m);
     body.shapes.push_back(shape);
     return;
   }
-  for (const char* other : {"size_m", list != nullptr ? "ring" : "size_m"}) {
+  for (const auto other : {Key::kSizeM, list != nullptr ? Key::kRing : Key::kSizeM}) {
     const auto* extra = fields.find(other);
     if (extra == nullptr) continue;
-    fields.sink().error(DiagnosticCode::kUnknownKey, extra->range, other,
-                        fields.what() + ", which has `shapes` or `ring`");
+    fields.sink().error(
+        DiagnosticCode::kUnknownKey, extra->range, other,
+        fmt::format("{}, which has `{}` or `{}`", fields.what(), Key::kShapes, Key::kRing));
     return;
   }
   if (ring != nullptr) {
@@ -76,8 +77,8 @@ void read_shapes(const YamlFields& fields, BodySpec& body) {
     return;
   }
   if (!list->is_list()) {
-    fields.sink().error(DiagnosticCode::kWrongYamlKind, list->range, "`shapes`", describe(*list),
-                        "a list of boxes");
+    fields.sink().error(DiagnosticCode::kWrongYamlKind, list->range, key_text(Key::kShapes),
+                        describe(*list), "a list of boxes");
     return;
   }
   for (const auto& item : list->items) {
@@ -90,17 +91,18 @@ GraspSpec read_grasp(const YamlNode& node, std::string what, base::DiagnosticSin
   static constexpr std::array<std::string_view, 2> kApproaches = {"level", "above"};
   GraspSpec grasp;
   YamlFields fields(node, std::move(what), sink);
-  fields.only({"at_m", "frame", "wrist_rad", "approach", "width_m", "effort_n"});
-  fields.require("width_m");
-  read_vector(fields, "at_m", grasp.p_BG);
-  if (const auto frame = fields.choice("frame", "frame of a grasp", kFrames)) {
+  fields.only(
+      {Key::kAtM, Key::kFrame, Key::kWristRad, Key::kApproach, Key::kWidthM, Key::kEffortN});
+  fields.require(Key::kWidthM);
+  read_vector(fields, Key::kAtM, grasp.p_BG);
+  if (const auto frame = fields.choice(Key::kFrame, "frame of a grasp", kFrames)) {
     grasp.follows_body = *frame == 1;
   }
   grasp.from_above =
-      fields.choice("approach", "approach of a grasp", kApproaches) == std::size_t{1};
-  fields.number("wrist_rad", kAnyNumber, grasp.wrist_rad);
-  fields.number("width_m", kPositive, grasp.width_m);
-  fields.number("effort_n", kPositive, grasp.effort_n);
+      fields.choice(Key::kApproach, "approach of a grasp", kApproaches) == std::size_t{1};
+  fields.number(Key::kWristRad, kAnyNumber, grasp.wrist_rad);
+  fields.number(Key::kWidthM, kPositive, grasp.width_m);
+  fields.number(Key::kEffortN, kPositive, grasp.effort_n);
   return grasp;
 }
 
@@ -116,35 +118,37 @@ BodySpec read_body(const YamlEntry& entry, base::DiagnosticSink& sink) {
   BodySpec body;
   body.name = entry.key;
   YamlFields fields(entry.value, fmt::format("the body `{}`", entry.key), sink);
-  fields.only({"size_m", "shapes", "ring", "mass_kg", "material", "position_m", "yaw_rad",
-               "gravity", "collides", "settable", "kind", "grasp"});
+  fields.only({Key::kSizeM, Key::kShapes, Key::kRing, Key::kMassKg, Key::kMaterial, Key::kPositionM,
+               Key::kYawRad, Key::kGravity, Key::kCollides, Key::kSettable, Key::kKind,
+               Key::kGrasp});
   read_shapes(fields, body);
-  fields.number("mass_kg", kNotNegative, body.mass_kg);
-  fields.text("material", body.material);
-  read_vector(fields, "position_m", body.p_WB);
-  fields.number("yaw_rad", kAnyNumber, body.yaw_rad);
-  fields.boolean("gravity", body.gravity);
-  fields.boolean("collides", body.collides);
-  fields.texts("settable", body.settable);
-  fields.text("kind", body.kind);
-  if (const auto* grasp = fields.find("grasp")) {
-    body.grasp = read_grasp(*grasp, fmt::format("`grasp` of the body `{}`", entry.key), sink);
+  fields.number(Key::kMassKg, kNotNegative, body.mass_kg);
+  fields.text(Key::kMaterial, body.material);
+  read_vector(fields, Key::kPositionM, body.p_WB);
+  fields.number(Key::kYawRad, kAnyNumber, body.yaw_rad);
+  fields.boolean(Key::kGravity, body.gravity);
+  fields.boolean(Key::kCollides, body.collides);
+  fields.texts(Key::kSettable, body.settable);
+  fields.text(Key::kKind, body.kind);
+  if (const auto* grasp = fields.find(Key::kGrasp)) {
+    body.grasp =
+        read_grasp(*grasp, fmt::format("`{}` of the body `{}`", Key::kGrasp, entry.key), sink);
   }
   return body;
 }
 
 HandleSpec read_handle(const YamlNode& node, base::DiagnosticSink& sink) {
   HandleSpec handle;
-  YamlFields fields(node, "`handle`", sink);
-  fields.only({"at_m", "approach", "wrist_rad", "width_m"});
-  fields.require("at_m");
-  read_vector(fields, "at_m", handle.p_CH);
-  read_vector(fields, "approach", handle.approach);
-  fields.number("wrist_rad", kAnyNumber, handle.wrist_rad);
-  fields.number("width_m", kPositive, handle.width_m);
+  YamlFields fields(node, key_text(Key::kHandle), sink);
+  fields.only({Key::kAtM, Key::kApproach, Key::kWristRad, Key::kWidthM});
+  fields.require(Key::kAtM);
+  read_vector(fields, Key::kAtM, handle.p_CH);
+  read_vector(fields, Key::kApproach, handle.approach);
+  fields.number(Key::kWristRad, kAnyNumber, handle.wrist_rad);
+  fields.number(Key::kWidthM, kPositive, handle.width_m);
   if (handle.approach.norm() < 1e-9) {
-    sink.error(DiagnosticCode::kYamlOutOfBounds, node.range, "`approach`", "without a direction",
-               "a vector with a length");
+    sink.error(DiagnosticCode::kYamlOutOfBounds, node.range, key_text(Key::kApproach),
+               "without a direction", "a vector with a length");
   }
   return handle;
 }
@@ -153,11 +157,11 @@ PlaceSpec read_place(const YamlEntry& entry, base::DiagnosticSink& sink) {
   PlaceSpec place;
   place.name = entry.key;
   YamlFields fields(entry.value, fmt::format("the place `{}`", entry.key), sink);
-  fields.only({"frame", "at_m", "yaw_rad"});
-  fields.require("at_m");
-  fields.text("frame", place.frame);
-  read_vector(fields, "at_m", place.p_FP);
-  fields.number("yaw_rad", kAnyNumber, place.yaw_rad);
+  fields.only({Key::kFrame, Key::kAtM, Key::kYawRad});
+  fields.require(Key::kAtM);
+  fields.text(Key::kFrame, place.frame);
+  read_vector(fields, Key::kAtM, place.p_FP);
+  fields.number(Key::kYawRad, kAnyNumber, place.yaw_rad);
   return place;
 }
 

@@ -23,23 +23,23 @@ InsideBinding read_inside(const YamlFields& fields, const SymbolPattern& pattern
   InsideBinding binding;
   auto& sink = fields.sink();
   std::string parameter;
-  fields.text("inside", parameter);
+  fields.text(Key::kInside, parameter);
   const auto& names = pattern.parameters;
   const auto found = std::find(names.begin(), names.end(), parameter);
   if (found != names.end()) {
     binding.region_argument = static_cast<std::size_t>(found - names.begin());
   } else if (!parameter.empty()) {
-    auto error = sink.error(DiagnosticCode::kUnknownPatternParameter, fields.find("inside")->range,
-                            parameter, pattern.symbol);
+    auto error = sink.error(DiagnosticCode::kUnknownPatternParameter,
+                            fields.find(Key::kInside)->range, parameter, pattern.symbol);
     add_suggestion(error, parameter, names, "parameters");
   }
-  if (const auto* body = fields.require("body")) {
-    fields.text("body", binding.body);
+  if (const auto* body = fields.require(Key::kBody)) {
+    fields.text(Key::kBody, binding.body);
     binding.body = with_positions(binding.body, pattern, body->range, sink);
   }
-  read_flag_name(fields, "unless", pattern, binding.unless);
-  read_flag_name(fields, "only_if", pattern, binding.only_if);
-  fields.boolean("drawn", binding.drawn);
+  read_flag_name(fields, Key::kUnless, pattern, binding.unless);
+  read_flag_name(fields, Key::kOnlyIf, pattern, binding.only_if);
+  fields.boolean(Key::kDrawn, binding.drawn);
   return binding;
 }
 
@@ -53,19 +53,19 @@ std::string read_pattern_text(const YamlFields& fields, std::string_view key,
 }
 
 FlagBinding read_flag(YamlFields& fields, const SymbolPattern& pattern) {
-  fields.only({"flag", "at_start"});
+  fields.only({Key::kFlag, Key::kAtStart});
   FlagBinding binding;
-  binding.variable = read_pattern_text(fields, "flag", pattern);
-  fields.boolean("at_start", binding.at_start);
+  binding.variable = read_pattern_text(fields, Key::kFlag, pattern);
+  fields.boolean(Key::kAtStart, binding.at_start);
   return binding;
 }
 
 RangeBinding read_range(YamlFields& fields, const SymbolPattern& pattern) {
-  fields.only({"range", "holds", "fails", "at_start"});
+  fields.only({Key::kRange, Key::kHolds, Key::kFails, Key::kAtStart});
   RangeBinding binding;
-  binding.variable = read_pattern_text(fields, "range", pattern);
+  binding.variable = read_pattern_text(fields, Key::kRange, pattern);
   for (const auto& [key, interval] :
-       {std::pair{"holds", &binding.holds}, std::pair{"fails", &binding.fails}}) {
+       {std::pair{Key::kHolds, &binding.holds}, std::pair{Key::kFails, &binding.fails}}) {
     const auto* node = fields.require(key);
     if (node == nullptr) continue;
     if (const auto read = read_interval(*node, fmt::format("`{}`", key), fields.sink())) {
@@ -77,20 +77,21 @@ RangeBinding read_range(YamlFields& fields, const SymbolPattern& pattern) {
     }
   }
   if (binding.holds.lower <= binding.fails.upper && binding.fails.lower <= binding.holds.upper &&
-      fields.find("fails") != nullptr) {
-    fields.sink().error(DiagnosticCode::kYamlOutOfBounds, fields.find("fails")->range, "`fails`",
-                        "an interval that meets `holds`", "apart from it");
+      fields.find(Key::kFails) != nullptr) {
+    fields.sink().error(DiagnosticCode::kYamlOutOfBounds, fields.find(Key::kFails)->range,
+                        key_text(Key::kFails), "an interval that meets " + key_text(Key::kHolds),
+                        "apart from it");
   }
-  fields.number("at_start", kAnyNumber, binding.at_start);
+  fields.number(Key::kAtStart, kAnyNumber, binding.at_start);
   return binding;
 }
 
 EqualsBinding read_equals(YamlFields& fields, const SymbolPattern& pattern) {
-  fields.only({"equals", "text"});
+  fields.only({Key::kEquals, Key::kText});
   EqualsBinding binding;
-  binding.variable = read_pattern_text(fields, "equals", pattern);
-  fields.require("text");
-  binding.text = read_pattern_text(fields, "text", pattern);
+  binding.variable = read_pattern_text(fields, Key::kEquals, pattern);
+  fields.require(Key::kText);
+  binding.text = read_pattern_text(fields, Key::kText, pattern);
   return binding;
 }
 
@@ -111,20 +112,21 @@ std::optional<FluentBinding> read_binding(const YamlEntry& entry, base::Diagnost
   }
   YamlFields fields(value, fmt::format("the mapping of `{}`", pattern->symbol), sink);
   if (!value.is_map()) return std::nullopt;
-  if (fields.find("flag") != nullptr) {
+  if (fields.find(Key::kFlag) != nullptr) {
     binding.condition = read_flag(fields, *pattern);
     return binding;
   }
-  if (fields.find("range") != nullptr) {
+  if (fields.find(Key::kRange) != nullptr) {
     binding.condition = read_range(fields, *pattern);
     return binding;
   }
-  if (fields.find("equals") != nullptr) {
+  if (fields.find(Key::kEquals) != nullptr) {
     binding.condition = read_equals(fields, *pattern);
     return binding;
   }
-  fields.only({"inside", "body", "unless", "only_if", "drawn", "flag", "range", "equals"});
-  if (fields.require("inside") == nullptr) return std::nullopt;
+  fields.only({Key::kInside, Key::kBody, Key::kUnless, Key::kOnlyIf, Key::kDrawn, Key::kFlag,
+               Key::kRange, Key::kEquals});
+  if (fields.require(Key::kInside) == nullptr) return std::nullopt;
   binding.condition = read_inside(fields, *pattern);
   return binding;
 }
@@ -145,7 +147,7 @@ void refuse_repeated(Bindings& bindings, Name name, base::DiagnosticSink& sink) 
 
 std::vector<FluentBinding> read_mapping(const YamlNode& node, base::DiagnosticSink& sink) {
   std::vector<FluentBinding> bindings;
-  const YamlFields all(node, "`mapping`", sink);
+  const YamlFields all(node, key_text(Key::kMapping), sink);
   for (const auto& entry : node.entries) {
     if (auto binding = read_binding(entry, sink)) bindings.push_back(std::move(*binding));
   }
@@ -155,12 +157,12 @@ std::vector<FluentBinding> read_mapping(const YamlNode& node, base::DiagnosticSi
 }
 
 void read_sampling(const YamlNode& node, Scenario& scenario, base::DiagnosticSink& sink) {
-  YamlFields fields(node, "`sampling`", sink);
-  fields.only({"inset_m", "variables"});
-  fields.number("inset_m", kNotNegative, scenario.sampling_inset_m);
-  const auto* variables = fields.find("variables");
+  YamlFields fields(node, key_text(Key::kSampling), sink);
+  fields.only({Key::kInsetM, Key::kVariables});
+  fields.number(Key::kInsetM, kNotNegative, scenario.sampling_inset_m);
+  const auto* variables = fields.find(Key::kVariables);
   if (variables == nullptr) return;
-  const YamlFields all(*variables, "`variables`", sink);
+  const YamlFields all(*variables, key_text(Key::kVariables), sink);
   for (const auto& entry : variables->entries) {
     const auto name = fmt::format("`{}`", entry.key);
     const auto interval = read_interval(entry.value, name, sink);

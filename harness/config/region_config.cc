@@ -11,7 +11,12 @@ namespace {
 
 using base::DiagnosticCode;
 
-constexpr std::array<std::string_view, 5> kAxisKeys = {"x", "y", "z", "yaw", "bottom"};
+/// The axes under their own names.
+std::vector<std::string_view> axis_keys() {
+  std::vector<std::string_view> keys;
+  for (const auto axis : kRegionAxes) keys.push_back(to_string(axis));
+  return keys;
+}
 
 /// Bounds of a region, each a list of two numbers.
 void read_bounds(const YamlFields& fields, Region& region) {
@@ -30,8 +35,8 @@ void read_bounds(const YamlFields& fields, Region& region) {
 
 /// Where starts are drawn: numbers or lists of two, within the bounds.
 void read_start(const YamlNode& node, Region& region, base::DiagnosticSink& sink) {
-  YamlFields fields(node, fmt::format("`start` of the region `{}`", region.name), sink);
-  fields.only(kAxisKeys);
+  YamlFields fields(node, fmt::format("`{}` of the region `{}`", Key::kStart, region.name), sink);
+  fields.only(axis_keys());
   for (const auto axis : kRegionAxes) {
     const auto* range = fields.find(to_string(axis));
     if (range == nullptr) continue;
@@ -55,7 +60,7 @@ void read_start(const YamlNode& node, Region& region, base::DiagnosticSink& sink
 }
 
 void read_frame(const YamlFields& fields, const WorldSpec& world, Region& region) {
-  fields.text("frame", region.frame);
+  fields.text(Key::kFrame, region.frame);
   if (region.frame.empty()) return;
   const auto body = std::find_if(world.bodies.begin(), world.bodies.end(),
                                  [&](const BodySpec& b) { return b.name == region.frame; });
@@ -63,13 +68,14 @@ void read_frame(const YamlFields& fields, const WorldSpec& world, Region& region
     std::vector<std::string> known;
     for (const auto& each : world.bodies) known.push_back(each.name);
     auto error = fields.sink().error(DiagnosticCode::kYamlUnknownChoice,
-                                     fields.find("frame")->range, region.frame, "body");
+                                     fields.find(Key::kFrame)->range, region.frame, Key::kBody);
     add_suggestion(error, region.frame, known, "bodies");
     return;
   }
   if (body->yaw_rad != 0.0) {
-    fields.sink().error(DiagnosticCode::kYamlOutOfBounds, fields.find("frame")->range, "`frame`",
-                        "a body that is turned at the start", "one with yaw_rad 0");
+    fields.sink().error(DiagnosticCode::kYamlOutOfBounds, fields.find(Key::kFrame)->range,
+                        key_text(Key::kFrame), "a body that is turned at the start",
+                        "one with yaw_rad 0");
   }
   region.frame_start = {body->p_WB.x(), body->p_WB.y(), body->p_WB.z()};
 }
@@ -79,10 +85,12 @@ Region read_region(const YamlEntry& entry, const WorldSpec& world, base::Diagnos
   region.name = entry.key;
   region.source = entry.key_range;
   YamlFields fields(entry.value, fmt::format("the region `{}`", entry.key), sink);
-  fields.only({"x", "y", "z", "yaw", "bottom", "frame", "start"});
+  auto keys = axis_keys();
+  keys.insert(keys.end(), {Key::kFrame, Key::kStart});
+  fields.only(keys);
   read_bounds(fields, region);
   read_frame(fields, world, region);
-  if (const auto* start = fields.find("start")) read_start(*start, region, sink);
+  if (const auto* start = fields.find(Key::kStart)) read_start(*start, region, sink);
   return region;
 }
 
@@ -91,11 +99,12 @@ RegionSection read_section(YamlFields& fields, std::string name, const WorldSpec
   static constexpr std::array<std::string_view, 2> kGaps = {"error", "allowed"};
   RegionSection section;
   section.name = std::move(name);
-  section.gaps_allowed = fields.choice("gaps", "value of `gaps`", kGaps) == std::size_t{1};
-  fields.texts("for", section.functions);
-  const auto* cells = fields.require("cells");
+  section.gaps_allowed =
+      fields.choice(Key::kGaps, "value of " + key_text(Key::kGaps), kGaps) == std::size_t{1};
+  fields.texts(Key::kFor, section.functions);
+  const auto* cells = fields.require(Key::kCells);
   if (cells == nullptr) return section;
-  const YamlFields all(*cells, "`cells`", sink);
+  const YamlFields all(*cells, key_text(Key::kCells), sink);
   for (const auto& entry : cells->entries) {
     section.regions.push_back(read_region(entry, world, sink));
   }
@@ -107,18 +116,18 @@ RegionSection read_section(YamlFields& fields, std::string name, const WorldSpec
 std::vector<RegionSection> read_regions(const YamlNode& node, const WorldSpec& world,
                                         base::DiagnosticSink& sink) {
   std::vector<RegionSection> sections;
-  YamlFields fields(node, "`regions`", sink);
-  const auto* sets = fields.find("sets");
+  YamlFields fields(node, key_text(Key::kRegions), sink);
+  const auto* sets = fields.find(Key::kSets);
   if (sets == nullptr) {
-    fields.only({"cells", "gaps", "for"});
+    fields.only({Key::kCells, Key::kGaps, Key::kFor});
     sections.push_back(read_section(fields, {}, world, sink));
     return sections;
   }
-  fields.only({"sets"});
-  const YamlFields all(*sets, "`sets`", sink);
+  fields.only({Key::kSets});
+  const YamlFields all(*sets, key_text(Key::kSets), sink);
   for (const auto& entry : sets->entries) {
     YamlFields inner(entry.value, fmt::format("the set `{}`", entry.key), sink);
-    inner.only({"cells", "gaps", "for"});
+    inner.only({Key::kCells, Key::kGaps, Key::kFor});
     sections.push_back(read_section(inner, entry.key, world, sink));
   }
   return sections;

@@ -33,19 +33,19 @@ bool read_enum(const YamlFields& fields, std::string_view key,
 
 /// A preset, and single readings laid over it; the report then calls the result "custom".
 void read_paper_rule(const YamlFields& fields, PaperRuleSpec& rule) {
-  const auto preset = fields.choice("preset", "preset", kPresets);
+  const auto preset = fields.choice(Key::kPreset, Key::kPreset, kPresets);
   if (preset == std::size_t{1}) rule = paper_repaired();
-  bool changed = read_enum(fields, "sigma", kSigmas, rule.sigma);
-  changed = read_enum(fields, "root", kRoots, rule.root) || changed;
-  changed = read_enum(fields, "intercept", kIntercepts, rule.intercept) || changed;
-  changed = read_enum(fields, "interval", kIntervals, rule.interval) || changed;
-  changed = changed || fields.find("extra_runs") != nullptr ||
-            fields.find("exempt_inherited") != nullptr || fields.find("tolerance_m") != nullptr ||
-            fields.find("bonferroni") != nullptr;
-  fields.integer("extra_runs", 0, kMaxRuns, rule.extra_runs);
-  fields.boolean("exempt_inherited", rule.exempt_inherited);
-  fields.number("tolerance_m", kNotNegative, rule.tolerance_m);
-  fields.boolean("bonferroni", rule.bonferroni);
+  bool changed = read_enum(fields, Key::kSigma, kSigmas, rule.sigma);
+  changed = read_enum(fields, Key::kRoot, kRoots, rule.root) || changed;
+  changed = read_enum(fields, Key::kIntercept, kIntercepts, rule.intercept) || changed;
+  changed = read_enum(fields, Key::kInterval, kIntervals, rule.interval) || changed;
+  changed = changed || fields.find(Key::kExtraRuns) != nullptr ||
+            fields.find(Key::kExemptInherited) != nullptr ||
+            fields.find(Key::kToleranceM) != nullptr || fields.find(Key::kBonferroni) != nullptr;
+  fields.integer(Key::kExtraRuns, 0, kMaxRuns, rule.extra_runs);
+  fields.boolean(Key::kExemptInherited, rule.exempt_inherited);
+  fields.number(Key::kToleranceM, kNotNegative, rule.tolerance_m);
+  fields.boolean(Key::kBonferroni, rule.bonferroni);
   if (changed) rule.preset = "custom, from " + rule.preset;
 }
 
@@ -58,16 +58,17 @@ CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink) {
   YamlNode map = node;
   if (node.is_scalar()) {
     map = YamlNode{YamlNode::Kind::kMap, node.range, {}, false, {}, {}};
-    map.entries.push_back({"kind", node.range, node});
+    map.entries.push_back({std::string(Key::kKind), node.range, node});
   }
-  YamlFields fields(map, "`criterion`", sink);
-  fields.only({"kind", "confidence", "epsilon", "preset", "sigma", "root", "intercept", "interval",
-               "extra_runs", "exempt_inherited", "tolerance_m", "bonferroni"});
-  if (fields.choice("kind", "criterion", kKinds) == std::size_t{1}) {
+  YamlFields fields(map, key_text(Key::kCriterion), sink);
+  fields.only({Key::kKind, Key::kConfidence, Key::kEpsilon, Key::kPreset, Key::kSigma, Key::kRoot,
+               Key::kIntercept, Key::kInterval, Key::kExtraRuns, Key::kExemptInherited,
+               Key::kToleranceM, Key::kBonferroni});
+  if (fields.choice(Key::kKind, Key::kCriterion, kKinds) == std::size_t{1}) {
     criterion.kind = CriterionKind::kPaper;
   }
-  fields.number("confidence", kOpenUnit, criterion.confidence_level);
-  fields.number("epsilon", kOpenUnit, criterion.epsilon);
+  fields.number(Key::kConfidence, kOpenUnit, criterion.confidence_level);
+  fields.number(Key::kEpsilon, kOpenUnit, criterion.epsilon);
   read_paper_rule(fields, criterion.paper);
   return criterion;
 }
@@ -77,39 +78,41 @@ SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink) {
   simulator.source = node.range;
   if (node.is_scalar()) {
     if (node.text == "ode") return simulator;
-    auto error = sink.error(DiagnosticCode::kYamlUnknownChoice, node.range, node.text, "simulator");
+    auto error =
+        sink.error(DiagnosticCode::kYamlUnknownChoice, node.range, node.text, Key::kSimulator);
     const std::vector<std::string> known = {"ode"};
     add_suggestion(error, node.text, known, "known, besides `command: [...]`");
     return simulator;
   }
-  YamlFields fields(node, "`simulator`", sink);
-  fields.only({"command", "hello_timeout_s", "reset_timeout_s", "act_timeout_s",
-               "observe_timeout_s", "close_timeout_s", "min_real_time_factor", "recycle_after"});
-  fields.texts("command", simulator.command);
-  const auto* command = fields.find("command");
+  YamlFields fields(node, key_text(Key::kSimulator), sink);
+  fields.only({Key::kCommand, Key::kHelloTimeoutS, Key::kResetTimeoutS, Key::kActTimeoutS,
+               Key::kObserveTimeoutS, Key::kCloseTimeoutS, Key::kMinRealTimeFactor,
+               Key::kRecycleAfter});
+  fields.texts(Key::kCommand, simulator.command);
+  const auto* command = fields.find(Key::kCommand);
   if (command != nullptr && command->is_list() && command->items.empty()) {
-    sink.error(DiagnosticCode::kWrongYamlKind, command->range, "`command`", "empty",
+    sink.error(DiagnosticCode::kWrongYamlKind, command->range, key_text(Key::kCommand), "empty",
                "a list of a program and its arguments");
   }
-  fields.number("hello_timeout_s", kTimeout, simulator.hello_timeout_s);
-  fields.number("reset_timeout_s", kTimeout, simulator.reset_timeout_s);
-  fields.number("act_timeout_s", kTimeout, simulator.act_timeout_s);
-  fields.number("observe_timeout_s", kTimeout, simulator.observe_timeout_s);
-  fields.number("close_timeout_s", kTimeout, simulator.close_timeout_s);
-  fields.number("min_real_time_factor", kPositive, simulator.min_real_time_factor);
-  fields.integer("recycle_after", 0, kMaxRuns, simulator.recycle_after);
+  fields.number(Key::kHelloTimeoutS, kTimeout, simulator.hello_timeout_s);
+  fields.number(Key::kResetTimeoutS, kTimeout, simulator.reset_timeout_s);
+  fields.number(Key::kActTimeoutS, kTimeout, simulator.act_timeout_s);
+  fields.number(Key::kObserveTimeoutS, kTimeout, simulator.observe_timeout_s);
+  fields.number(Key::kCloseTimeoutS, kTimeout, simulator.close_timeout_s);
+  fields.number(Key::kMinRealTimeFactor, kPositive, simulator.min_real_time_factor);
+  fields.integer(Key::kRecycleAfter, 0, kMaxRuns, simulator.recycle_after);
   return simulator;
 }
 
 Limits read_limits(const YamlNode& node, base::DiagnosticSink& sink) {
   Limits limits;
-  YamlFields fields(node, "`limits`", sink);
-  fields.only({"max_runs", "max_traces", "max_rejected_starts", "max_lost_in_a_row"});
-  fields.integer("max_runs", 0, kMaxRuns, limits.max_runs);
-  if (const auto* max_runs = fields.find("max_runs")) limits.max_runs_source = max_runs->range;
-  fields.integer("max_traces", 0, kMaxRuns, limits.max_traces);
-  fields.integer("max_rejected_starts", 1, kMaxRuns, limits.max_rejected_starts);
-  fields.integer("max_lost_in_a_row", 1, kMaxRuns, limits.max_lost_in_a_row);
+  YamlFields fields(node, key_text(Key::kLimits), sink);
+  fields.only({Key::kMaxRuns, Key::kMaxTraces, Key::kMaxRejectedStarts, Key::kMaxLostInARow});
+  fields.integer(Key::kMaxRuns, 0, kMaxRuns, limits.max_runs);
+  if (const auto* max_runs = fields.find(Key::kMaxRuns)) limits.max_runs_source = max_runs->range;
+  fields.integer(Key::kMaxTraces, 0, kMaxRuns, limits.max_traces);
+  fields.integer(Key::kMaxRejectedStarts, 1, kMaxRuns, limits.max_rejected_starts);
+  fields.integer(Key::kMaxLostInARow, 1, kMaxRuns, limits.max_lost_in_a_row);
   return limits;
 }
 
@@ -117,17 +120,17 @@ namespace {
 
 RateExpectation read_rate(const YamlNode& node, base::DiagnosticSink& sink) {
   RateExpectation rate;
-  YamlFields fields(node, "`rate`", sink);
-  fields.only({"between", "trace", "runs"});
-  fields.integer("trace", 1, kMaxRuns, rate.trace);
-  fields.integer("runs", 1, kMaxRuns, rate.runs);
-  const auto* between = fields.require("between");
-  const auto bounds = fields.numbers("between", 2);
+  YamlFields fields(node, key_text(Key::kRate), sink);
+  fields.only({Key::kBetween, Key::kTrace, Key::kRuns});
+  fields.integer(Key::kTrace, 1, kMaxRuns, rate.trace);
+  fields.integer(Key::kRuns, 1, kMaxRuns, rate.runs);
+  const auto* between = fields.require(Key::kBetween);
+  const auto bounds = fields.numbers(Key::kBetween, 2);
   if (between == nullptr || !bounds) return rate;
   rate.lower = (*bounds)[0];
   rate.upper = (*bounds)[1];
   if (!(rate.lower >= 0.0 && rate.lower <= rate.upper && rate.upper <= 1.0)) {
-    sink.error(DiagnosticCode::kYamlOutOfBounds, between->range, "`between`",
+    sink.error(DiagnosticCode::kYamlOutOfBounds, between->range, key_text(Key::kBetween),
                fmt::format("{:g} and {:g}", rate.lower, rate.upper),
                "two numbers from 0 to 1, the lower first");
   }
@@ -141,22 +144,22 @@ Expectation read_expectation(const YamlNode& node, base::DiagnosticSink& sink) {
                                                                 "inconclusive"};
   const auto errors_before = sink.error_count();
   Expectation expect;
-  YamlFields fields(node, "`expect`", sink);
-  fields.only(
-      {"verdict", "iterations", "max_simulations", "fluents", "rate", "time_limit_s", "fast"});
-  if (const auto verdict = fields.choice("verdict", "verdict", kVerdicts)) {
+  YamlFields fields(node, key_text(Key::kExpect), sink);
+  fields.only({Key::kVerdict, Key::kIterations, Key::kMaxSimulations, Key::kFluents, Key::kRate,
+               Key::kTimeLimitS, Key::kFast});
+  if (const auto verdict = fields.choice(Key::kVerdict, Key::kVerdict, kVerdicts)) {
     expect.verdict = std::string(kVerdicts[*verdict]);
   }
-  fields.integer("iterations", 0, kMaxRuns, expect.iterations);
-  fields.integer("max_simulations", 0, std::numeric_limits<std::int64_t>::max(),
+  fields.integer(Key::kIterations, 0, kMaxRuns, expect.iterations);
+  fields.integer(Key::kMaxSimulations, 0, std::numeric_limits<std::int64_t>::max(),
                  expect.max_simulations);
-  fields.texts("fluents", expect.fluents);
-  if (const auto* fluents = fields.find("fluents")) expect.fluents_source = fluents->range;
-  if (const auto* rate = fields.find("rate")) expect.rate = read_rate(*rate, sink);
-  fields.number("time_limit_s", kTimeout, expect.time_limit_s);
-  fields.boolean("fast", expect.fast);
+  fields.texts(Key::kFluents, expect.fluents);
+  if (const auto* fluents = fields.find(Key::kFluents)) expect.fluents_source = fluents->range;
+  if (const auto* rate = fields.find(Key::kRate)) expect.rate = read_rate(*rate, sink);
+  fields.number(Key::kTimeLimitS, kTimeout, expect.time_limit_s);
+  fields.boolean(Key::kFast, expect.fast);
   if (!expect.of_run() && !expect.rate && sink.error_count() == errors_before) {
-    sink.error(DiagnosticCode::kCaseExpectsNothing, node.range, "expect");
+    sink.error(DiagnosticCode::kCaseExpectsNothing, node.range, Key::kExpect);
   }
   return expect;
 }

@@ -79,7 +79,8 @@ void check_free_regions(const Scenario& scenario, base::DiagnosticSink& sink) {
     const auto& bottom = region.on(RegionAxis::kBottom);
     if (bottom && region.frame.empty() && bottom->upper < 0.0) {
       sink.error(DiagnosticCode::kBadWorld, region.source, "regions/" + region.name,
-                 fmt::format("lies below the floor: `bottom` ends at {:g}", bottom->upper));
+                 fmt::format("lies below the floor: `{}` ends at {:g}",
+                             to_string(RegionAxis::kBottom), bottom->upper));
       continue;
     }
     if (auto box = box_of(region, false)) wholes.push_back(*std::move(box));
@@ -102,25 +103,27 @@ class ScenarioReader {
       : fields_(root, "the scenario", sink), files_(files), sink_(sink) {}
 
   void read(Scenario& scenario) {
-    fields_.only({"include", "name", "model", "plan", "bind", "constraints", "horizon", "world",
-                  "regions", "mapping", "actions", "sampling", "criterion", "match", "simulator",
-                  "limits", "expect"});
+    fields_.only({Key::kInclude, Key::kName, Key::kModel, Key::kPlan, Key::kBind, Key::kConstraints,
+                  Key::kHorizon, Key::kWorld, Key::kRegions, Key::kMapping, Key::kActions,
+                  Key::kSampling, Key::kCriterion, Key::kMatch, Key::kSimulator, Key::kLimits,
+                  Key::kExpect});
     static constexpr std::array<std::string_view, 2> kMatches = {"model", "trace"};
-    if (fields_.choice("match", "value of `match`", kMatches) == std::size_t{1}) {
+    if (fields_.choice(Key::kMatch, "value of " + key_text(Key::kMatch), kMatches) ==
+        std::size_t{1}) {
       scenario.match_model = false;
     }
-    fields_.text("name", scenario.title);
+    fields_.text(Key::kName, scenario.title);
     read_problem(scenario);
     read_simulation(scenario);
     read_meaning(scenario);
-    if (const auto* node = fields_.find("criterion")) {
+    if (const auto* node = fields_.find(Key::kCriterion)) {
       scenario.criterion = read_criterion(*node, sink_);
     } else {
       scenario.criterion.paper = paper_literal();
     }
-    if (const auto* node = fields_.find("limits")) scenario.limits = read_limits(*node, sink_);
+    if (const auto* node = fields_.find(Key::kLimits)) scenario.limits = read_limits(*node, sink_);
     // An empty one takes back what an included file expects.
-    if (const auto* node = fields_.find("expect");
+    if (const auto* node = fields_.find(Key::kExpect);
         node != nullptr && node->kind != YamlNode::Kind::kNull) {
       scenario.expect = read_expectation(*node, sink_);
     }
@@ -129,69 +132,69 @@ class ScenarioReader {
  private:
   /// model, plan, bind, constraints, horizon: what the compiler reads.
   void read_problem(Scenario& scenario) {
-    if (const auto* node = fields_.require("model")) {
-      scenario.models = located_texts(*node, "`model`");
+    if (const auto* node = fields_.require(Key::kModel)) {
+      scenario.models = located_texts(*node, key_text(Key::kModel));
       for (auto& model : scenario.models) resolve(model);
     }
-    scenario.plan = optional_path("plan");
-    scenario.bind = optional_path("bind");
+    scenario.plan = optional_path(Key::kPlan);
+    scenario.bind = optional_path(Key::kBind);
     if (scenario.plan.has_value() != scenario.bind.has_value()) {
-      const auto* given = fields_.find(scenario.plan ? "plan" : "bind");
+      const auto* given = fields_.find(scenario.plan ? Key::kPlan : Key::kBind);
       sink_.error(DiagnosticCode::kMissingKey, given->range, "the scenario",
-                  scenario.plan ? "bind" : "plan");
+                  scenario.plan ? Key::kBind : Key::kPlan);
     }
-    if (const auto* node = fields_.find("constraints")) {
-      scenario.constraints = located_texts(*node, "`constraints`");
+    if (const auto* node = fields_.find(Key::kConstraints)) {
+      scenario.constraints = located_texts(*node, key_text(Key::kConstraints));
     }
-    if (const auto* node = fields_.require("horizon")) {
+    if (const auto* node = fields_.require(Key::kHorizon)) {
       std::int64_t horizon = 0;
-      fields_.integer("horizon", 1, kMaxHorizon, horizon);
+      fields_.integer(Key::kHorizon, 1, kMaxHorizon, horizon);
       scenario.horizon = static_cast<std::int32_t>(horizon);
       scenario.horizon_source = node->range;
     }
   }
 
   void read_simulation(Scenario& scenario) {
-    if (const auto* node = fields_.find("simulator")) {
+    if (const auto* node = fields_.find(Key::kSimulator)) {
       scenario.simulator = read_simulator(*node, sink_);
     } else {
       scenario.simulator.source = fields_.node().range;
     }
     // Another simulator has a world of its own; the built-in one needs ours.
     const bool built_in = scenario.simulator.command.empty();
-    const auto* world = built_in ? fields_.require("world") : fields_.find("world");
+    const auto* world = built_in ? fields_.require(Key::kWorld) : fields_.find(Key::kWorld);
     if (world != nullptr) {
       scenario.world = read_world(*world, sink_);
-      if (const auto* bodies = world->find("bodies")) {
+      if (const auto* bodies = world->find(Key::kBodies)) {
         for (const auto& body : bodies->value.entries) {
           scenario.body_sources.emplace(body.key, body.key_range);
         }
       }
     }
-    if (const auto* node = fields_.require("actions")) {
+    if (const auto* node = fields_.require(Key::kActions)) {
       scenario.actions = read_actions(*node, built_in, sink_);
-      scenario.actions_source = key_range("actions");
+      scenario.actions_source = key_range(Key::kActions);
     }
   }
 
   void read_meaning(Scenario& scenario) {
-    const auto* regions = fields_.require("regions");
-    const auto* mapping = fields_.require("mapping");
+    const auto* regions = fields_.require(Key::kRegions);
+    const auto* mapping = fields_.require(Key::kMapping);
     const auto errors_before = sink_.error_count();
     std::vector<RegionSection> sections;
     if (regions != nullptr) {
       sections = read_regions(*regions, scenario.world, sink_);
-      scenario.regions_source = key_range("regions");
+      scenario.regions_source = key_range(Key::kRegions);
     }
     const bool regions_read = sink_.error_count() == errors_before;
     std::vector<FluentBinding> bindings;
     if (mapping != nullptr) {
       bindings = read_mapping(*mapping, sink_);
-      scenario.mapping_source = key_range("mapping");
+      scenario.mapping_source = key_range(Key::kMapping);
     }
     scenario.sampling_source = scenario.regions_source;
-    if (const auto* node = fields_.find("sampling")) {
-      scenario.sampling_source = key_range("sampling");
+    if (const auto* node = fields_.find(Key::kSampling)) {
+      scenario.sampling_source = key_range(Key::kSampling);
       read_sampling(*node, scenario, sink_);
     }
     if (!regions_read) return;  // a region without its bounds would be reported once more

@@ -39,16 +39,16 @@ class ManifestReader {
 
   void read(const YamlNode& root, SuiteManifest& manifest) {
     YamlFields fields(root, "the manifest", sink_);
-    fields.only({"defaults", "cases"});
+    fields.only({Key::kDefaults, Key::kCases});
     YamlNode defaults;
-    if (const auto* node = fields.find("defaults")) {
+    if (const auto* node = fields.find(Key::kDefaults)) {
       check_defaults(*node);
       defaults = *node;
     }
-    const auto* cases = fields.require("cases");
+    const auto* cases = fields.require(Key::kCases);
     if (cases == nullptr) return;
     if (!cases->is_list() || cases->items.empty()) {
-      sink_.error(DiagnosticCode::kWrongYamlKind, cases->range, "`cases`",
+      sink_.error(DiagnosticCode::kWrongYamlKind, cases->range, key_text(Key::kCases),
                   cases->is_list() ? "empty" : describe(*cases), "a list of cases");
       return;
     }
@@ -60,10 +60,10 @@ class ManifestReader {
  private:
   /// Only what several cases can share; mistakes in the values show where they are read.
   void check_defaults(const YamlNode& node) {
-    YamlFields fields(node, "`defaults`", sink_);
-    fields.only({"horizon", "constraints", "limits", "expect"});
-    if (const auto* expect = fields.find("expect")) {
-      YamlFields(*expect, "`expect` of `defaults`", sink_).only({"complete"});
+    YamlFields fields(node, key_text(Key::kDefaults), sink_);
+    fields.only({Key::kHorizon, Key::kConstraints, Key::kLimits, Key::kExpect});
+    if (const auto* expect = fields.find(Key::kExpect)) {
+      YamlFields(*expect, key_text(Key::kExpect) + " of `defaults`", sink_).only({Key::kComplete});
     }
   }
 
@@ -72,19 +72,20 @@ class ManifestReader {
     out.source = node.range;
     YamlFields fields(node, "the case", sink_);
     if (!node.is_map()) return out;
-    fields.only({"id", "model", "horizon", "constraints", "limits", "expect"});
-    if (const auto* id = fields.require("id")) read_id(*id, out);
-    if (const auto* models = fields.require("model")) {
-      out.models = located_texts(*models, "`model`");
+    fields.only(
+        {Key::kId, Key::kModel, Key::kHorizon, Key::kConstraints, Key::kLimits, Key::kExpect});
+    if (const auto* id = fields.require(Key::kId)) read_id(*id, out);
+    if (const auto* models = fields.require(Key::kModel)) {
+      out.models = located_texts(*models, key_text(Key::kModel));
       for (auto& model : out.models) resolve_model(model);
     }
-    fields.integer("horizon", 0, kMaxHorizon, out.horizon);
-    if (const auto* constraints = fields.find("constraints")) {
-      out.constraints = located_texts(*constraints, "`constraints`");
+    fields.integer(Key::kHorizon, 0, kMaxHorizon, out.horizon);
+    if (const auto* constraints = fields.find(Key::kConstraints)) {
+      out.constraints = located_texts(*constraints, key_text(Key::kConstraints));
     }
-    if (const auto* limits = fields.find("limits")) read_limits(*limits, out);
+    if (const auto* limits = fields.find(Key::kLimits)) read_limits(*limits, out);
     const auto errors_before = sink_.error_count();
-    if (const auto* expect = fields.find("expect")) read_expectation(*expect, out.expect);
+    if (const auto* expect = fields.find(Key::kExpect)) read_expectation(*expect, out.expect);
     const bool nothing = !out.expect.traces && !out.expect.golden;
     if (nothing && sink_.error_count() == errors_before) {
       sink_.error(DiagnosticCode::kCaseExpectsNothing, out.source, out.id);
@@ -93,7 +94,7 @@ class ManifestReader {
   }
 
   void read_id(const YamlNode& node, ManifestCase& out) {
-    const auto id = read_text(node, "`id`", sink_);
+    const auto id = read_text(node, key_text(Key::kId), sink_);
     if (!id) return;
     out.id = *id;
     out.source = node.range;
@@ -108,28 +109,29 @@ class ManifestReader {
   }
 
   void read_limits(const YamlNode& node, ManifestCase& out) {
-    YamlFields fields(node, "`limits` of a case", sink_);
-    fields.only({"time_s", "memory_mb"});
-    fields.number("time_s", kTimeLimit, out.time_limit_s);
-    fields.integer("memory_mb", 16, 10'000'000, out.memory_limit_mb);
+    YamlFields fields(node, key_text(Key::kLimits) + " of a case", sink_);
+    fields.only({Key::kTimeS, Key::kMemoryMb});
+    fields.number(Key::kTimeS, kTimeLimit, out.time_limit_s);
+    fields.integer(Key::kMemoryMb, 16, 10'000'000, out.memory_limit_mb);
   }
 
   void read_expectation(const YamlNode& node, TraceExpectation& out) {
     const auto errors_before = sink_.error_count();
-    YamlFields fields(node, "`expect` of a case", sink_);
-    fields.only({"traces", "complete", "golden"});
-    fields.integer("traces", 0, kMaxTraces, out.traces);
-    fields.boolean("complete", out.complete);
-    if (const auto* golden = fields.find("golden")) {
-      if (auto text = read_text(*golden, "`golden`", sink_)) {
+    YamlFields fields(node, key_text(Key::kExpect) + " of a case", sink_);
+    fields.only({Key::kTraces, Key::kComplete, Key::kGolden});
+    fields.integer(Key::kTraces, 0, kMaxTraces, out.traces);
+    fields.boolean(Key::kComplete, out.complete);
+    if (const auto* golden = fields.find(Key::kGolden)) {
+      if (auto text = read_text(*golden, key_text(Key::kGolden), sink_)) {
         out.golden = LocatedText{
             path_beside(golden->range, *text, files_).lexically_normal().string(), golden->range};
       }
     }
     if (!out.complete && out.traces.value_or(0) < 1 && sink_.error_count() == errors_before) {
-      const auto* place = fields.find(out.traces ? "traces" : "complete");
-      sink_.error(DiagnosticCode::kYamlOutOfBounds, place->range, "`traces`",
-                  out.traces ? "0" : "not given", "at least 1 where `complete` is false");
+      const auto* place = fields.find(out.traces ? Key::kTraces : Key::kComplete);
+      sink_.error(DiagnosticCode::kYamlOutOfBounds, place->range, key_text(Key::kTraces),
+                  out.traces ? "0" : "not given",
+                  fmt::format("at least 1 where `{}` is false", Key::kComplete));
     }
   }
 

@@ -15,36 +15,36 @@ using base::DiagnosticCode;
 
 SolverSpec read_solver(const YamlNode& node, base::DiagnosticSink& sink) {
   SolverSpec solver;
-  YamlFields fields(node, "`solver`", sink);
-  fields.only({"timestep_s", "gravity_m_s2", "erp", "cfm", "surface_layer_m",
-               "max_correcting_velocity_m_s", "start_penetration_m", "max_contacts_per_pair",
-               "sleep_linear_m_s", "sleep_angular_rad_s", "sleep_after_s", "contact_erp",
-               "contact_cfm", "held_after_s", "held_clearance_m"});
-  fields.number("contact_erp", kPositive, solver.contact_erp);
-  fields.number("contact_cfm", kNotNegative, solver.contact_cfm);
-  fields.number("held_after_s", kNotNegative, solver.held_after_s);
-  fields.number("held_clearance_m", kAnyNumber, solver.held_clearance_m);
-  fields.number("timestep_s", kPositive, solver.timestep_s);
+  YamlFields fields(node, key_text(Key::kSolver), sink);
+  fields.only({Key::kTimestepS, "gravity_m_s2", Key::kErp, Key::kCfm, Key::kSurfaceLayerM,
+               Key::kMaxCorrectingVelocityMS, Key::kStartPenetrationM, Key::kMaxContactsPerPair,
+               Key::kSleepLinearMS, Key::kSleepAngularRadS, Key::kSleepAfterS, Key::kContactErp,
+               Key::kContactCfm, Key::kHeldAfterS, Key::kHeldClearanceM});
+  fields.number(Key::kContactErp, kPositive, solver.contact_erp);
+  fields.number(Key::kContactCfm, kNotNegative, solver.contact_cfm);
+  fields.number(Key::kHeldAfterS, kNotNegative, solver.held_after_s);
+  fields.number(Key::kHeldClearanceM, kAnyNumber, solver.held_clearance_m);
+  fields.number(Key::kTimestepS, kPositive, solver.timestep_s);
   fields.number("gravity_m_s2", kAnyNumber, solver.gravity_m_s2);
-  fields.number("erp", kNotNegative, solver.erp);
-  fields.number("cfm", kNotNegative, solver.cfm);
-  fields.number("surface_layer_m", kNotNegative, solver.surface_layer_m);
-  fields.number("max_correcting_velocity_m_s", kPositive, solver.max_correcting_velocity_m_s);
-  fields.number("start_penetration_m", kNotNegative, solver.start_penetration_m);
-  fields.integer("max_contacts_per_pair", 1, 64, solver.max_contacts_per_pair);
-  fields.number("sleep_linear_m_s", kNotNegative, solver.sleep_linear_m_s);
-  fields.number("sleep_angular_rad_s", kNotNegative, solver.sleep_angular_rad_s);
-  fields.number("sleep_after_s", kNotNegative, solver.sleep_after_s);
+  fields.number(Key::kErp, kNotNegative, solver.erp);
+  fields.number(Key::kCfm, kNotNegative, solver.cfm);
+  fields.number(Key::kSurfaceLayerM, kNotNegative, solver.surface_layer_m);
+  fields.number(Key::kMaxCorrectingVelocityMS, kPositive, solver.max_correcting_velocity_m_s);
+  fields.number(Key::kStartPenetrationM, kNotNegative, solver.start_penetration_m);
+  fields.integer(Key::kMaxContactsPerPair, 1, 64, solver.max_contacts_per_pair);
+  fields.number(Key::kSleepLinearMS, kNotNegative, solver.sleep_linear_m_s);
+  fields.number(Key::kSleepAngularRadS, kNotNegative, solver.sleep_angular_rad_s);
+  fields.number(Key::kSleepAfterS, kNotNegative, solver.sleep_after_s);
   return solver;
 }
 
 void read_axis(const YamlFields& fields, JointSpec& joint) {
   static constexpr std::array<std::string_view, 3> kWords = {"x", "y", "z"};
-  const auto* axis = fields.find("axis");
+  const auto* axis = fields.find(Key::kAxis);
   if (axis == nullptr) return;
   if (axis->is_list()) {
-    read_vector(fields, "axis", joint.axis_W);
-  } else if (const auto word = fields.choice("axis", "axis", kWords)) {
+    read_vector(fields, Key::kAxis, joint.axis_W);
+  } else if (const auto word = fields.choice(Key::kAxis, Key::kAxis, kWords)) {
     joint.axis_W = Eigen::Vector3d::Unit(static_cast<Eigen::Index>(*word));
   }
 }
@@ -54,23 +54,23 @@ JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
   JointSpec joint;
   joint.name = entry.key;
   YamlFields fields(entry.value, fmt::format("the joint `{}`", entry.key), sink);
-  fields.only(
-      {"type", "parent", "child", "axis", "range_m", "max_force_n", "max_torque_nm", "handle"});
-  const auto type = fields.choice("type", "type of joint", kTypes);
+  fields.only({Key::kType, Key::kParent, Key::kChild, Key::kAxis, Key::kRangeM, Key::kMaxForceN,
+               Key::kMaxTorqueNm, Key::kHandle});
+  const auto type = fields.choice(Key::kType, "type of joint", kTypes);
   if (type == std::size_t{1}) joint.type = JointType::kFixed;
   if (type == std::size_t{2}) joint.type = JointType::kGantry;
-  fields.text("parent", joint.parent);
+  fields.text(Key::kParent, joint.parent);
   if (joint.parent == "world") joint.parent.clear();
-  fields.require("child");
-  fields.text("child", joint.child);
+  fields.require(Key::kChild);
+  fields.text(Key::kChild, joint.child);
   read_axis(fields, joint);
-  if (const auto range = fields.numbers("range_m", 2)) {
+  if (const auto range = fields.numbers(Key::kRangeM, 2)) {
     joint.low_m = (*range)[0];
     joint.high_m = (*range)[1];
   }
-  fields.number("max_force_n", kNotNegative, joint.max_force_n);
-  fields.number("max_torque_nm", kNotNegative, joint.max_torque_nm);
-  if (const auto* handle = fields.find("handle")) joint.handle = read_handle(*handle, sink);
+  fields.number(Key::kMaxForceN, kNotNegative, joint.max_force_n);
+  fields.number(Key::kMaxTorqueNm, kNotNegative, joint.max_torque_nm);
+  if (const auto* handle = fields.find(Key::kHandle)) joint.handle = read_handle(*handle, sink);
   return joint;
 }
 
@@ -78,10 +78,10 @@ JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
 FrictionSpec read_friction(const YamlNode& node, const std::vector<std::string>& materials,
                            base::DiagnosticSink& sink) {
   FrictionSpec friction;
-  YamlFields fields(node, "`friction`", sink);
-  fields.number("default", kNotNegative, friction.fallback);
+  YamlFields fields(node, key_text(Key::kFriction), sink);
+  fields.number(Key::kDefault, kNotNegative, friction.fallback);
   for (const auto& entry : node.entries) {
-    if (entry.key == "default") continue;
+    if (entry.key == Key::kDefault) continue;
     const auto hyphen = entry.key.find('-');
     std::array<std::string, 2> pair = {
         entry.key.substr(0, hyphen),
@@ -131,25 +131,25 @@ base::SourceRange range_of(const YamlNode& world, std::string_view path) {
 WorldSpec read_world(const YamlNode& node, base::DiagnosticSink& sink) {
   const auto errors_before = sink.error_count();
   WorldSpec world;
-  YamlFields fields(node, "`world`", sink);
-  fields.only(
-      {"include", "solver", "friction", "floor_material", "bodies", "joints", "places", "robot"});
-  fields.text("floor_material", world.floor_material);
-  if (const auto* solver = fields.find("solver")) world.solver = read_solver(*solver, sink);
-  if (const auto* bodies = fields.require("bodies")) {
-    const YamlFields all(*bodies, "`bodies`", sink);
+  YamlFields fields(node, key_text(Key::kWorld), sink);
+  fields.only({Key::kInclude, Key::kSolver, Key::kFriction, Key::kFloorMaterial, Key::kBodies,
+               Key::kJoints, Key::kPlaces, Key::kRobot});
+  fields.text(Key::kFloorMaterial, world.floor_material);
+  if (const auto* solver = fields.find(Key::kSolver)) world.solver = read_solver(*solver, sink);
+  if (const auto* bodies = fields.require(Key::kBodies)) {
+    const YamlFields all(*bodies, key_text(Key::kBodies), sink);
     for (const auto& entry : bodies->entries) world.bodies.push_back(read_body(entry, sink));
   }
-  if (const auto* joints = fields.find("joints")) {
-    const YamlFields all(*joints, "`joints`", sink);
+  if (const auto* joints = fields.find(Key::kJoints)) {
+    const YamlFields all(*joints, key_text(Key::kJoints), sink);
     for (const auto& entry : joints->entries) world.joints.push_back(read_joint(entry, sink));
   }
-  if (const auto* places = fields.find("places")) {
-    const YamlFields all(*places, "`places`", sink);
+  if (const auto* places = fields.find(Key::kPlaces)) {
+    const YamlFields all(*places, key_text(Key::kPlaces), sink);
     for (const auto& entry : places->entries) world.places.push_back(read_place(entry, sink));
   }
-  if (const auto* robot = fields.find("robot")) read_robot(*robot, world, sink);
-  if (const auto* friction = fields.find("friction")) {
+  if (const auto* robot = fields.find(Key::kRobot)) read_robot(*robot, world, sink);
+  if (const auto* friction = fields.find(Key::kFriction)) {
     world.friction = read_friction(*friction, materials_of(world), sink);
   }
   // Laid over an included world, bodies may come in any order; the result must not depend on it.

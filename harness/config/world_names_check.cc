@@ -106,10 +106,10 @@ void check_ranges(const Scenario& scenario, const std::vector<GroundFluent>& flu
     if (!slider) continue;
     const JointSpec& joint = layout.sliders[*slider];
     for (const auto& [key, interval] :
-         {std::pair{"holds", &range->holds}, std::pair{"fails", &range->fails}}) {
+         {std::pair{Key::kHolds, &range->holds}, std::pair{Key::kFails, &range->fails}}) {
       const bool met = (!joint.high_m || interval->lower <= *joint.high_m + kPlay_m) &&
                        (!joint.low_m || interval->upper >= *joint.low_m - kPlay_m);
-      if (met || !reported.insert(fluent.symbol + key).second) continue;
+      if (met || !reported.insert(fluent.symbol + std::string(key)).second) continue;
       sink.error(
           DiagnosticCode::kBadWorld, binding->source,
           fmt::format("mapping/{}/{}", fluent.symbol, key),

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/config/keys.h"
 #include "harness/config/yaml_reader.h"
 #include "harness/region/region.h"
 #include "harness/simulator/simulator.h"

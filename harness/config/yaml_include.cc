@@ -4,6 +4,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
+#include "harness/config/keys.h"
 #include "harness/config/yaml_reader.h"
 
 namespace parallax::harness {
@@ -44,7 +45,7 @@ class Includer {
   base::Result<YamlNode> resolved(YamlNode node) {
     bool failed = false;
     for (auto& entry : node.entries) {
-      if (entry.key == "include" || !entry.value.is_map()) continue;
+      if (entry.key == Key::kInclude || !entry.value.is_map()) continue;
       auto value = resolved(std::move(entry.value));
       if (value) {
         entry.value = std::move(*value);
@@ -53,10 +54,10 @@ class Includer {
       }
     }
     if (failed) return sink_.already_reported();
-    const auto* found = node.find("include");
+    const auto* found = node.find(Key::kInclude);
     if (found == nullptr) return node;
     const YamlEntry include = *found;
-    std::erase_if(node.entries, [](const YamlEntry& entry) { return entry.key == "include"; });
+    std::erase_if(node.entries, [](const YamlEntry& entry) { return entry.key == Key::kInclude; });
     auto under = included(include);
     if (!under) return sink_.already_reported();
     under->range = node.range;
@@ -69,8 +70,8 @@ class Includer {
     YamlNode result{YamlNode::Kind::kMap, include.key_range, {}, false, {}, {}};
     bool failed = names.empty();
     if (failed) {
-      sink_.error(DiagnosticCode::kWrongYamlKind, include.key_range, "`include`", "empty",
-                  "a file name");
+      sink_.error(DiagnosticCode::kWrongYamlKind, include.key_range, key_text(Key::kInclude),
+                  "empty", "a file name");
     }
     for (const auto& name : names) {
       auto root = one(name);
@@ -86,8 +87,8 @@ class Includer {
 
   base::Result<YamlNode> one(const YamlNode& name) {
     if (!name.is_scalar()) {
-      return sink_.error(DiagnosticCode::kWrongYamlKind, name.range, "`include`", describe(name),
-                         "a file name");
+      return sink_.error(DiagnosticCode::kWrongYamlKind, name.range, key_text(Key::kInclude),
+                         describe(name), "a file name");
     }
     const auto path = path_beside(name.range, name.text, files_);
     if (++includes_ > kMaxIncludes) {
