@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
 
 #include "compiler/base/contract.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/hash.h"
 #include "harness/campaign/journal.h"
 #include "harness/campaign/run_folder.h"
-#include "harness/campaign/run_limit.h"
 #include "harness/campaign/trace_campaign.h"
+#include "harness/confidence/clean_runs.h"
 #include "harness/sampling/rng.h"
 
 namespace parallax::harness {
@@ -19,6 +20,39 @@ namespace {
 
 using base::DiagnosticCode;
 using Clock = std::chrono::steady_clock;
+
+constexpr std::int64_t kLeastRunLimit = 300;
+
+/// How many simulations a trace may take, and how many the criterion asks for if all are clean.
+struct RunLimit {
+  std::int64_t max_runs = 0;
+  std::int64_t needed = 0;  // 0: it cannot tell
+};
+
+/// `limits: max_runs`, or twice what the criterion needs and at least 300 where none is given: room
+/// for a lost run, after which more are needed.
+RunLimit run_limit(const Scenario& scenario) {
+  const auto& criterion = scenario.criterion;
+  RunLimit limit{scenario.limits.max_runs, 0};
+  if (criterion.kind == CriterionKind::kCleanRuns) {
+    limit.needed = runs_needed(criterion.confidence_level, criterion.epsilon);
+  }
+  if (limit.max_runs == 0) limit.max_runs = std::max(kLeastRunLimit, 2 * limit.needed);
+  return limit;
+}
+
+/// Reports kRunLimitTooLow where the criterion can never be met, at the scenario's number unless
+/// another one took its place.
+void warn_of_low_limit(const Scenario& scenario, const base::SourceFiles& files,
+                       base::DiagnosticSink& sink) {
+  const auto limit = run_limit(scenario);
+  if (limit.max_runs >= limit.needed) return;
+  const auto& source = scenario.limits.max_runs_source;
+  const bool written = source && files.text(*source) == std::to_string(limit.max_runs);
+  sink.warning(DiagnosticCode::kRunLimitTooLow,
+               written ? *source : base::SourceRange{scenario.source, 0, 0}, limit.max_runs,
+               limit.needed);
+}
 
 TraceLine trace_line(const TracePlan& plan) {
   TraceLine line{plan.trace.number, plan.trace.key, plan.trace.holds, {}, {}, plan.calls};

@@ -8,6 +8,7 @@
 
 #include "compiler/base/contract.h"
 #include "harness/confidence/clean_runs.h"
+#include "harness/confidence/criterion_spec.h"
 
 namespace parallax::harness {
 
@@ -73,6 +74,21 @@ std::unique_ptr<ConfidenceCriterion> make_criterion(const CriterionSpec& spec) {
   }
   PARALLAX_REQUIRE(false, "a known kind of criterion");
   return nullptr;
+}
+
+PaperRuleSpec paper_literal() { return {}; }
+
+PaperRuleSpec paper_repaired() {
+  PaperRuleSpec spec;
+  spec.sigma = SigmaKind::kResidualSd;
+  spec.root = RootKind::kFinal;
+  spec.intercept = InterceptKind::kFree;
+  spec.interval = IntervalKind::kPrediction;
+  spec.extra_runs = 2;
+  spec.exempt_inherited = true;
+  spec.tolerance_m = 0.01;
+  spec.preset = "paper-repaired";
+  return spec;
 }
 
 }  // namespace parallax::harness

@@ -1,12 +1,53 @@
 #include "harness/region/state_mapping.h"
 
+#include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "compiler/base/contract.h"
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/suggest.h"
 
 namespace parallax::harness {
+namespace {
+
+using base::DiagnosticCode;
+
+std::vector<std::string> region_names(const RegionMap& regions) {
+  std::vector<std::string> names;
+  for (const auto& region : regions.regions()) names.push_back(region.name);
+  return names;
+}
+
+void report_unmapped(const std::string& symbol, const std::vector<std::string>& known,
+                     base::SourceRange blame, base::DiagnosticSink& sink) {
+  auto report = sink.error(DiagnosticCode::kFluentNotMapped, blame, symbol);
+  if (const auto near = base::nearest_name(symbol, known)) {
+    report.note(fmt::format("`{}` is mapped; is that the one?", *near));
+  }
+}
+
+void check_region(const FluentBinding& binding, const GroundFluent& fluent,
+                  const RegionMap& regions, base::DiagnosticSink& sink) {
+  const auto* inside = binding.inside();
+  if (inside == nullptr) return;
+  if (inside->region_argument >= fluent.arguments.size()) {
+    sink.error(DiagnosticCode::kMappingArity, binding.source, binding.fluent,
+               inside->region_argument + 1, fluent.text, fluent.arguments.size());
+    return;
+  }
+  const auto& name = fluent.arguments[inside->region_argument];
+  if (regions.find(name) != nullptr) return;
+  auto report = sink.error(DiagnosticCode::kMappingNoRegion, binding.source, fluent.text, name);
+  if (const auto near = base::nearest_name(name, region_names(regions))) {
+    report.note(fmt::format("there is a region `{}`", *near));
+  }
+}
+
+}  // namespace
+
 bool is_angle(std::string_view variable) { return variable.ends_with(".yaw"); }
 
 StateMapping::StateMapping(RegionMap regions, std::vector<FluentBinding> bindings)
@@ -64,6 +105,30 @@ std::vector<std::string> StateMapping::outside(const std::vector<GroundFluent>& 
     if (!in_some) bodies.push_back(text);
   }
   return bodies;
+}
+
+base::Status StateMapping::check(const std::vector<GroundFluent>& fluents, base::SourceRange blame,
+                                 base::DiagnosticSink& sink) const {
+  const auto errors_before = sink.error_count();
+  std::vector<std::string> known;
+  for (const auto& binding : bindings_) known.push_back(binding.fluent);
+  std::set<std::string> faulty;  // symbols that were reported as a whole
+  for (const auto& fluent : fluents) {
+    if (faulty.contains(fluent.symbol)) continue;
+    const FluentBinding* binding = find(fluent.symbol);
+    if (binding == nullptr) {
+      report_unmapped(fluent.symbol, known, blame, sink);
+      faulty.insert(fluent.symbol);
+    } else if (binding->arity != fluent.arguments.size()) {
+      sink.error(DiagnosticCode::kMappingArity, binding->source, binding->fluent, binding->arity,
+                 fluent.text, fluent.arguments.size());
+      faulty.insert(fluent.symbol);
+    } else {
+      check_region(*binding, fluent, regions_, sink);
+    }
+  }
+  if (sink.error_count() != errors_before) return sink.already_reported();
+  return base::Unit{};
 }
 
 }  // namespace parallax::harness

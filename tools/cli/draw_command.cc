@@ -5,7 +5,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "harness/campaign/compare.h"
-#include "harness/campaign/recorded_run.h"
+#include "harness/campaign/replay.h"
 #include "harness/draw/action_recorder.h"
 #include "harness/draw/scene_svg.h"
 #include "harness/robot/ode_simulator.h"
