@@ -18,8 +18,6 @@ namespace {
 
 using base::DiagnosticCode;
 
-constexpr std::int64_t kMaxHorizon = 1'000'000;
-
 /// Regions where things are laid down at the start must have something below them.
 void check_supported_starts(const Scenario& scenario, base::DiagnosticSink& sink) {
   const auto at = [](const Region& region, RegionAxis axis) -> std::optional<double> {
@@ -133,7 +131,7 @@ class ScenarioReader {
   /// model, plan, bind, constraints, horizon: what the compiler reads.
   void read_problem(Scenario& scenario) {
     if (const auto* node = fields_.require(Key::kModel)) {
-      scenario.models = located_texts(*node, key_text(Key::kModel));
+      scenario.models = located_texts(*node, Key::kModel, sink_);
       for (auto& model : scenario.models) resolve(model);
     }
     scenario.plan = optional_path(Key::kPlan);
@@ -144,7 +142,7 @@ class ScenarioReader {
                   scenario.plan ? Key::kBind : Key::kPlan);
     }
     if (const auto* node = fields_.find(Key::kConstraints)) {
-      scenario.constraints = located_texts(*node, key_text(Key::kConstraints));
+      scenario.constraints = located_texts(*node, Key::kConstraints, sink_);
     }
     if (const auto* node = fields_.require(Key::kHorizon)) {
       std::int64_t horizon = 0;
@@ -219,20 +217,6 @@ class ScenarioReader {
   }
 
   /// A text, or a list of texts.
-  std::vector<LocatedText> located_texts(const YamlNode& node, std::string_view name) {
-    const auto items = node.is_list() ? node.items : std::vector<YamlNode>{node};
-    std::vector<LocatedText> out;
-    for (const auto& item : items) {
-      if (auto text = read_text(item, name, sink_)) {
-        out.push_back({std::move(*text), item.range});
-      }
-    }
-    if (items.empty()) {
-      sink_.error(DiagnosticCode::kWrongYamlKind, node.range, name, "empty", "a list of texts");
-    }
-    return out;
-  }
-
   std::optional<LocatedText> optional_path(std::string_view key) {
     const auto* node = fields_.find(key);
     if (node == nullptr) return std::nullopt;
@@ -260,6 +244,21 @@ class ScenarioReader {
 };
 
 }  // namespace
+
+std::vector<LocatedText> located_texts(const YamlNode& node, std::string_view key,
+                                       base::DiagnosticSink& sink) {
+  const auto items = node.is_list() ? node.items : std::vector<YamlNode>{node};
+  std::vector<LocatedText> out;
+  for (const auto& item : items) {
+    auto text = read_text(item, key_text(key), sink);
+    if (text) out.push_back({std::move(*text), item.range});
+  }
+  if (items.empty()) {
+    sink.error(DiagnosticCode::kWrongYamlKind, node.range, key_text(key), "empty",
+               "a list of texts");
+  }
+  return out;
+}
 
 base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,
                                      base::DiagnosticSink& sink) {

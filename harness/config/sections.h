@@ -2,6 +2,7 @@
 
 // Only harness/config/*.cc include this header.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,12 @@
 #include "harness/config/yaml_fields.h"
 
 namespace parallax::harness {
+
+inline constexpr std::int64_t kMaxHorizon = 1'000'000;  // of scenarios and cases alike
+
+/// The text, or list of texts, under a key.
+std::vector<LocatedText> located_texts(const YamlNode& node, std::string_view key,
+                                       base::DiagnosticSink& sink);
 
 /// Each reads one section of a scenario, reporting at its keys; what is wrong keeps its default.
 

@@ -8,14 +8,13 @@
 
 #include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
-#include "harness/config/yaml_fields.h"
+#include "harness/config/sections.h"
 
 namespace parallax::harness {
 namespace {
 
 using base::DiagnosticCode;
 
-constexpr std::int64_t kMaxHorizon = 1'000'000;
 constexpr std::int64_t kMaxTraces = 1'000'000'000;
 constexpr std::size_t kMaxIdLength = 100;
 constexpr NumberBounds kTimeLimit{0.0, 86400.0, true, false};
@@ -76,12 +75,12 @@ class ManifestReader {
         {Key::kId, Key::kModel, Key::kHorizon, Key::kConstraints, Key::kLimits, Key::kExpect});
     if (const auto* id = fields.require(Key::kId)) read_id(*id, out);
     if (const auto* models = fields.require(Key::kModel)) {
-      out.models = located_texts(*models, key_text(Key::kModel));
+      out.models = located_texts(*models, Key::kModel, sink_);
       for (auto& model : out.models) resolve_model(model);
     }
     fields.integer(Key::kHorizon, 0, kMaxHorizon, out.horizon);
     if (const auto* constraints = fields.find(Key::kConstraints)) {
-      out.constraints = located_texts(*constraints, key_text(Key::kConstraints));
+      out.constraints = located_texts(*constraints, Key::kConstraints, sink_);
     }
     if (const auto* limits = fields.find(Key::kLimits)) read_limits(*limits, out);
     const auto errors_before = sink_.error_count();
@@ -133,19 +132,6 @@ class ManifestReader {
                   out.traces ? "0" : "not given",
                   fmt::format("at least 1 where `{}` is false", Key::kComplete));
     }
-  }
-
-  /// A text, or a list of texts.
-  std::vector<LocatedText> located_texts(const YamlNode& node, std::string_view name) {
-    const auto items = node.is_list() ? node.items : std::vector<YamlNode>{node};
-    std::vector<LocatedText> out;
-    for (const auto& item : items) {
-      if (auto text = read_text(item, name, sink_)) out.push_back({std::move(*text), item.range});
-    }
-    if (items.empty()) {
-      sink_.error(DiagnosticCode::kWrongYamlKind, node.range, name, "empty", "a list of texts");
-    }
-    return out;
   }
 
   void resolve_model(LocatedText& model) {

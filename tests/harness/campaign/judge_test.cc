@@ -1,0 +1,164 @@
+// Judgements of observations made by hand, and what is said of their causes.
+
+#include "harness/campaign/judge.h"
+
+#include <doctest/doctest.h>
+
+namespace parallax::harness {
+namespace {
+
+Region cell(std::string name, double lower, double upper) {
+  Region region;
+  region.name = std::move(name);
+  region.on(RegionAxis::kX) = Interval{lower, upper};
+  return region;
+}
+
+/// A box on a line of two cells, a drawer that is open, closed, or half open, and a mood.
+StateMapping mapping() {
+  base::DiagnosticSink sink;
+  auto regions = RegionSet::make({cell("r1", 0, 1), cell("r2", 1, 2)}, false, sink);
+  REQUIRE(regions.has_value());
+  return StateMapping(*regions,
+                      {{"BoxIn", 1, InsideBinding{"box", 0, "box.held", {}}, {}},
+                       {"Held", 0, FlagBinding{"box.held"}, {}},
+                       {"Open", 0, RangeBinding{"drawer.q", {0.3, 0.5}, {0.0, 0.1}, 0.0}, {}},
+                       {"On", 1, EqualsBinding{"lamp", "{0}"}, {}},
+                       {"Tired", 0, IgnoredBinding{}, {}},
+                       {"LookingAt", 1, IgnoredBinding{}, {}}});
+}
+
+std::vector<GroundFluent> fluents() {
+  std::vector<GroundFluent> out;
+  for (const auto* text : {"BoxIn(r1)", "BoxIn(r2)", "Held()", "LookingAt(r1)", "LookingAt(r2)",
+                           "On(red)", "Open()", "Tired()"}) {
+    out.push_back(ground_fluent(text));
+  }
+  return out;
+}
+
+/// From r2 over the gripper to r1.
+CampaignTrace trace() {
+  CampaignTrace out;
+  out.number = 1;
+  out.holds = {{"BoxIn(r2)", "Tired()"}, {"Held()"}, {"BoxIn(r1)"}};
+  out.events = {{"PickUp(box)", "PickUp", {"box"}, {}, {}}, {"Place(r1)", "Place", {"r1"}, {}, {}}};
+  return out;
+}
+
+State state(double box_m, bool held, double drawer_m = 0.0) {
+  return {{"box.x", box_m},
+          {"box.held", held},
+          {"drawer.q", drawer_m},
+          {"lamp", std::string("off")},
+          {"digest", std::string("ab")}};
+}
+
+const std::vector<ActionOutcome> kDone = {{SimStatus::kOk, "", 1.0}, {SimStatus::kOk, "", 2.0}};
+
+Judgement judged(const std::vector<State>& observations) {
+  return judge(mapping(), fluents(), trace(), observations);
+}
+
+TEST_CASE("observations that say what the trace says match, whatever is ignored") {
+  const auto judgement = judged({state(1.5, false), state(1.5, true), state(0.5, false)});
+  CHECK(judgement.matches());
+  CHECK_FALSE(judgement.first_divergence.has_value());
+  CHECK_FALSE(judgement.parted.has_value());
+  CHECK(judgement.missing.empty());
+  CHECK_FALSE(judgement.in_no_state);
+  CHECK(judgement.last_state == std::map<std::string, bool>{{"BoxIn(r1)", true},
+                                                            {"BoxIn(r2)", false},
+                                                            {"Held()", false},
+                                                            {"On(red)", false},
+                                                            {"Open()", false}});
+}
+
+TEST_CASE("a start that is another one diverges at timepoint 0, even if the end is right") {
+  const auto judgement = judged({state(0.5, false), state(1.5, true), state(0.5, false)});
+  CHECK(judgement.matches());
+  CHECK(judgement.first_divergence == 0);
+  REQUIRE(judgement.first.size() == 2);
+  CHECK(judgement.first[0].fluent == "BoxIn(r1)");
+  CHECK_FALSE(judgement.first[0].predicted);
+  CHECK(judgement.first[0].observed);
+  CHECK(judgement.first[1].fluent == "BoxIn(r2)");
+  CHECK_FALSE(judgement.parted.has_value());
+}
+
+TEST_CASE("what differs at the end, where it began to, and the action that failed there") {
+  const auto judgement = judged({state(1.5, false), state(1.5, false), state(1.5, false)});
+  CHECK_FALSE(judgement.matches());
+  CHECK(judgement.first_divergence == 1);
+  CHECK(judgement.parted == 1);
+  REQUIRE(judgement.at_parting.size() == 2);
+  CHECK(judgement.at_parting[0].fluent == "BoxIn(r2)");
+  CHECK(judgement.at_parting[1].fluent == "Held()");
+  REQUIRE(judgement.last.size() == 2);
+  CHECK(judgement.last[0].fluent == "BoxIn(r1)");
+  CHECK(judgement.last[0].timepoint == 2);
+
+  auto outcomes = kDone;
+  CHECK(cause_of(trace(), judgement, outcomes).text == "PickUp(box): BoxIn(r2)");
+  CHECK(cause_of(trace(), judgement, outcomes).reason.empty());
+  outcomes[0] = {SimStatus::kFailed, "slipped: 3 N", 1.0};
+  CHECK(cause_of(trace(), judgement, outcomes).text == "PickUp(box): slipped");
+  CHECK(cause_of(trace(), judgement, outcomes).reason == "slipped: 3 N");
+  outcomes[0] = {SimStatus::kTruncated, "", 1.0};
+  CHECK(cause_of(trace(), judgement, outcomes).text == "PickUp(box): truncated");
+}
+
+TEST_CASE("a simulation that comes back has not parted before it leaves for good") {
+  const auto judgement = judged({state(1.5, false), state(0.5, false), state(0.5, true)});
+  CHECK(judgement.first_divergence == 1);
+  CHECK(judgement.parted == 1);
+  const auto back = judged({state(1.5, false), state(0.5, false), state(0.5, false)});
+  CHECK(back.matches());
+  CHECK(back.first_divergence == 1);
+  CHECK_FALSE(back.parted.has_value());
+}
+
+TEST_CASE(
+    "a body beyond all regions and a value between two intervals are no states of the model") {
+  // The trace puts the box somewhere, so that fluent differs and the body is not named once more.
+  const auto beyond = judged({state(1.5, false), state(1.5, true), state(7.0, false)});
+  REQUIRE(beyond.last.size() == 1);
+  CHECK(beyond.last[0].fluent == "BoxIn(r1)");
+  const auto dropped = judged({state(1.5, false), state(7.0, false), state(0.5, false)});
+  REQUIRE(dropped.first.size() == 2);
+  CHECK(dropped.first[0].fluent == "Held()");
+  CHECK(dropped.first[1].fluent == "BoxIn(outside)");
+  CHECK(dropped.first[1].observed);
+  const auto half_open = judged({state(1.5, false), state(1.5, true), state(0.5, false, 0.2)});
+  CHECK(half_open.in_no_state);
+  REQUIRE(half_open.last.size() == 1);
+  CHECK(half_open.last[0].fluent == "Open()");
+  CHECK_FALSE(half_open.last[0].predicted);
+  CHECK(half_open.last[0].observed);
+}
+
+TEST_CASE("variables that are not there are named") {
+  auto last = state(0.5, false);
+  last.erase("drawer.q");
+  last["lamp"] = 3.0;
+  const auto judgement = judged({state(1.5, false), state(1.5, true), last});
+  CHECK(judgement.missing == std::set<std::string>{"drawer.q", "lamp"});
+}
+
+TEST_CASE("without events the cause is the start") {
+  auto only = trace();
+  only.events.clear();
+  only.holds.resize(1);
+  const auto judgement = judge(mapping(), fluents(), only, {state(0.5, false)});
+  CHECK(cause_of(only, judgement, {}).text == "start: BoxIn(r1)");
+}
+
+TEST_CASE("ignored symbols are listed once, and the rest of a state is what is compared") {
+  CHECK(ignored_fluents(mapping(), fluents()) ==
+        std::vector<std::string>{"LookingAt(..)", "Tired()"});
+  CHECK(mapped_part(mapping(), fluents(), state(0.5, true)) ==
+        State{{"box.held", true}, {"box.x", 0.5}, {"drawer.q", 0.0}, {"lamp", std::string("off")}});
+}
+
+}  // namespace
+}  // namespace parallax::harness
