@@ -53,9 +53,8 @@ PaperVerdict paper_rule(const RegressionInput& input, const PaperRuleSpec& spec,
 /// Refuses besides when a run ended in another state that the model admits: the rule supposes one.
 PaperVerdict paper_rule(const Tally& tally, const PaperRuleSpec& spec, double confidence_level);
 
-/// The first number of clean runs at which the rule holds, looking after every run. Quadratic in
-/// the number of runs if it never does; none where it is refused: 1 ms for 90, 1.7 s for 4603 runs
-/// of six parameters.
+/// The first number of clean runs at which the rule holds, looking after every run; none where it
+/// is refused or never does. Linear in the number of runs.
 std::optional<std::int64_t> paper_stopped_at(const Tally& tally, const PaperRuleSpec& spec,
                                              double confidence_level);
 

@@ -21,8 +21,27 @@ struct LinearFit {
   double leverage(const Eigen::VectorXd& x) const;
 };
 
-/// Fits y (s) = D b, D = x (s x n) with a leading column of ones if asked for, by QR with column
-/// pivoting; the normal equations are never formed. None if the columns are not independent.
+/// Least squares of several outcomes over the same rows, which come one at a time: y (s) = D b with
+/// D = x (s x n) and a leading column of ones if asked for. Kept is the triangle of the QR
+/// decomposition of [D Y], turned on with each row, so a row costs O((k + m)^2) and a fit O(k^3)
+/// whatever s is. The normal equations are never formed.
+class RunningRegression {
+ public:
+  RunningRegression(Eigen::Index parameters, Eigen::Index outcomes, bool with_intercept);
+  /// One row of finite numbers: x (n), y (m).
+  void add(const Eigen::VectorXd& x, const Eigen::VectorXd& y);
+  Eigen::Index runs() const { return runs_; }
+  /// None if the columns of D are not independent.
+  std::optional<LinearFit> fit(Eigen::Index outcome) const;
+
+ private:
+  bool with_intercept_;
+  Eigen::Index columns_;      // k, of D
+  Eigen::Index runs_ = 0;     // s
+  Eigen::MatrixXd triangle_;  // (k + m x k + m), upper
+};
+
+/// The same for one outcome y (s) over x (s x n).
 std::optional<LinearFit> fit_line(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
                                   bool with_intercept);
 
