@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
+#include "compiler/base/json.h"
 
 namespace parallax::compiler {
 
@@ -28,7 +28,7 @@ std::string pass_json(const PassLog& log) {
                     {"clauses", run.size.clauses},
                     {"timing", {{"seconds", run.seconds}}}});
   }
-  return list.dump();
+  return base::json_text(list);
 }
 
 }  // namespace parallax::compiler
