@@ -1,5 +1,3 @@
-#include "tools/app/explain_run.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "harness/campaign/journal.h"
+#include "tools/app/explain.h"
 #include "tools/app/scenario_model.h"
 
 namespace parallax::tools {

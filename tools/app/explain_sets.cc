@@ -1,5 +1,3 @@
-#include "tools/app/explain_sets.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include "compiler/base/json.h"
 #include "runtime/explain/clause_text.h"
 #include "runtime/explain/contradiction.h"
+#include "tools/app/explain.h"
 #include "tools/app/explain_place.h"
 
 namespace parallax::tools {

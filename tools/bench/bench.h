@@ -80,4 +80,14 @@ void measure_world(Bench& bench);
 void measure_demo(Bench& bench);
 void measure_build(Bench& bench);
 
+/// Compiles a model file in this process and prints one line: processor time of reading and
+/// grounding, of making clauses, of writing them as text; numbers of clauses and bytes. 3 if the
+/// model has an error.
+int print_stages(const std::string& file);
+
+/// CaDiCaL and nothing else: reads a DIMACS file with the solver's own reader and solves it once.
+/// The exit code of a SAT competition program: 10 satisfiable, 20 unsatisfiable; 1 if the file
+/// cannot be read.
+int solve_plainly(const std::string& file);
+
 }  // namespace parallax::tools

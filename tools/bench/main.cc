@@ -7,8 +7,6 @@
 
 #include "tools/bench/bench.h"
 #include "tools/bench/families/families.h"
-#include "tools/bench/plain_cadical.h"
-#include "tools/bench/stages.h"
 #include "tools/cli/command_line.h"
 
 namespace parallax::tools {

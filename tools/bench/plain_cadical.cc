@@ -1,6 +1,6 @@
-#include "tools/bench/plain_cadical.h"
-
 #include <cadical.hpp>
+
+#include "tools/bench/bench.h"
 
 namespace parallax::tools {
 

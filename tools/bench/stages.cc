@@ -1,5 +1,3 @@
-#include "tools/bench/stages.h"
-
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -11,9 +9,11 @@
 #include "compiler/ground/grounder.h"
 #include "compiler/sema/check.h"
 #include "compiler/syntax/loader.h"
+#include "tools/bench/bench.h"
 #include "tools/bench/stopwatch.h"
 
 namespace parallax::tools {
+
 int print_stages(const std::string& file) {
   base::SourceFiles files;
   base::DiagnosticSink sink;

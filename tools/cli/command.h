@@ -84,6 +84,8 @@ Command diagnostics_command();
 Command fmt_command();
 Command rates_command();
 Command draw_command();
+Command explain_command();
+Command diff_command();
 Command worker_command();
 
 /// {"status": "error", "diagnostics": [...]} and a newline.

@@ -1,5 +1,3 @@
-#include "tools/cli/diff_command.h"
-
 #include <fmt/format.h>
 
 #include <memory>

@@ -11,7 +11,7 @@
 #include "harness/robot/ode_simulator.h"
 #include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
-#include "tools/cli/sample_option.h"
+#include "tools/cli/shared_options.h"
 #include "tools/cli/signals.h"
 
 namespace parallax::tools {

@@ -1,11 +1,8 @@
-#include "tools/cli/explain_command.h"
-
 #include <filesystem>
 #include <memory>
 #include <optional>
 
-#include "tools/app/explain_run.h"
-#include "tools/app/explain_why.h"
+#include "tools/app/explain.h"
 #include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
 #include "tools/cli/shared_options.h"

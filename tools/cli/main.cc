@@ -11,8 +11,6 @@
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
 #include "tools/cli/command_line.h"
-#include "tools/cli/diff_command.h"
-#include "tools/cli/explain_command.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/signals.h"
 

@@ -7,7 +7,7 @@
 #include "harness/report/report.h"
 #include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
-#include "tools/cli/sample_option.h"
+#include "tools/cli/shared_options.h"
 #include "tools/cli/signals.h"
 #include "tools/cli/simulator_factory.h"
 

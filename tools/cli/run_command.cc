@@ -1,6 +1,8 @@
 #include <unistd.h>
 
+#include <filesystem>
 #include <memory>
+#include <string>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/campaign.h"
@@ -9,12 +11,40 @@
 #include "tools/app/trace_feed.h"
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
-#include "tools/cli/run_folder.h"
 #include "tools/cli/signals.h"
 #include "tools/cli/simulator_factory.h"
 
 namespace parallax::tools {
 namespace {
+
+/// The folder of a run that names none: out/STEM, or out/STEM-2, ... where a run is there already.
+/// Finished work is never overwritten.
+std::filesystem::path default_run_folder(const std::filesystem::path& scenario);
+
+/// The newest of those folders, for --resume; the first one if there is none.
+std::filesystem::path newest_run_folder(const std::filesystem::path& scenario);
+
+/// out/STEM, out/STEM-2, out/STEM-3, ...
+std::filesystem::path numbered(const std::filesystem::path& scenario, int number) {
+  const auto stem = scenario.stem().string();
+  return std::filesystem::path("out") / (number == 1 ? stem : stem + "-" + std::to_string(number));
+}
+
+int first_free(const std::filesystem::path& scenario) {
+  int number = 1;
+  std::error_code error;
+  while (std::filesystem::exists(numbered(scenario, number), error)) ++number;
+  return number;
+}
+
+std::filesystem::path default_run_folder(const std::filesystem::path& scenario) {
+  return numbered(scenario, first_free(scenario));
+}
+
+std::filesystem::path newest_run_folder(const std::filesystem::path& scenario) {
+  const int free = first_free(scenario);
+  return numbered(scenario, free == 1 ? 1 : free - 1);
+}
 
 struct RunOptions {
   std::string scenario;

@@ -1,5 +1,8 @@
 #include "tools/cli/shared_options.h"
 
+#include <fmt/format.h>
+
+#include "compiler/base/diagnostic_codes.h"
 #include "runtime/graph/model_traces.h"
 #include "tools/cli/command.h"
 
@@ -117,6 +120,15 @@ void add_replay_options(OptionTable& command, ReplayTracesOptions& options) {
                  "is no trace of it");
   command.flag("--other-model", options.other_model,
                "Replay traces of another model that has the same names");
+}
+
+base::Result<std::optional<harness::SampleId>> parse_sample_option(const std::string& text,
+                                                                   base::DiagnosticSink& sink) {
+  if (text.empty()) return std::optional<harness::SampleId>();
+  const auto id = harness::parse_sample_id(text);
+  if (id) return id;
+  return sink.error_about(base::DiagnosticCode::kUsage, "",
+                          fmt::format("--sample takes TRACE.SAMPLE such as 2.4, not `{}`", text));
 }
 
 }  // namespace parallax::tools

@@ -1,5 +1,10 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
+#include "compiler/base/diagnostic.h"
+#include "harness/campaign/replay.h"
 #include "tools/app/certify.h"
 #include "tools/app/model_options.h"
 #include "tools/app/trace_listing.h"
@@ -18,5 +23,10 @@ void add_listing_options(OptionTable& command, ListingOptions& options);
 /// `--certify` takes its file after `=` only, so that a model may follow it.
 void add_certify_option(OptionTable& command, CertifyOption& option);
 void add_replay_options(OptionTable& command, ReplayTracesOptions& options);
+
+/// The value of `--sample` of commands that take a recorded run: none if it was not given. Reports
+/// kUsage if it is no `TRACE.SAMPLE`.
+base::Result<std::optional<harness::SampleId>> parse_sample_option(const std::string& text,
+                                                                   base::DiagnosticSink& sink);
 
 }  // namespace parallax::tools

@@ -4,6 +4,7 @@
 #include "compiler/base/whole_number.h"
 
 namespace parallax::tools {
+
 std::optional<Shard> parse_shard(std::string_view text) {
   const auto slash = text.find('/');
   if (slash == std::string_view::npos) return std::nullopt;

@@ -8,6 +8,7 @@
 #include "compiler/base/file_io.h"
 
 namespace parallax::tools {
+
 namespace fs = std::filesystem;
 
 namespace {

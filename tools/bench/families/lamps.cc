@@ -2,6 +2,7 @@
 
 #include "tools/bench/families/families.h"
 #include "tools/bench/families/object_names.h"
+#include "tools/bench/families/tuned.h"
 
 namespace parallax::tools {
 
@@ -27,6 +28,22 @@ event Flip(lamp)
 std::string distant_model(int lamps, int horizon) {
   return lamps_model(lamps, horizon) +
          fmt::format("\n[lamp] Happens(Flip(lamp),0) -> !Happens(Flip(lamp),{}).\n", horizon - 1);
+}
+
+std::string tuned_lamps(int lamps, int horizon) {
+  constexpr const char* kText = R"(lamp(1..{}).
+fluent(lit(L)) :- lamp(L).
+{{ happens(flip(L),T) : lamp(L) }} :- step(T).
+initiates(flip(L),lit(L),T) :- happens(flip(L),T), not holds(lit(L),T).
+terminates(flip(L),lit(L),T) :- happens(flip(L),T), holds(lit(L),T).
+:- holds(lit(L),0).
+:- lamp(L), not holds(lit(L),horizon).
+)";
+  return tuned_calculus(horizon) + fmt::format(kText, lamps);
+}
+
+std::string tuned_distant(int lamps, int horizon) {
+  return tuned_lamps(lamps, horizon) + ":- happens(flip(L),0), happens(flip(L),horizon-1).\n";
 }
 
 }  // namespace parallax::tools

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/artifact/compiled_model.h"
 #include "runtime/explain/group_solver.h"
 #include "tools/app/context.h"
 
@@ -28,5 +29,21 @@ struct ObservedRun {
 /// With `run`: none that is like it.
 int explain_sets(const compiler::CompiledModel& model, const SetOptions& options,
                  const std::optional<ObservedRun>& run, Context& context);
+
+/// Which axioms are to blame for a discrepancy of a recorded run? The events of its trace and the
+/// start are taken as they were, and what was observed at the first divergence; minimal sets of
+/// axioms that exclude that are printed. `sample`: TRACE.SAMPLE, or empty for the first
+/// discrepancy.
+int explain_run(const std::string& run_dir, const std::string& sample, const SetOptions& options,
+                Context& context);
+
+struct WhyCommand {
+  std::string fact;        // `HoldsAt(F,3)`, `!HoldsAt(F(a),3)`, `Happens(E(),2)`
+  std::int64_t trace = 1;  // its number in the list of traces
+  bool all = false;        // tell further causes as well
+};
+
+/// Tells the chain of facts behind one fact of a trace. Reports kNoSuchFact and kNoSuchTrace.
+int explain_why(const compiler::CompiledModel& model, const WhyCommand& command, Context& context);
 
 }  // namespace parallax::tools
