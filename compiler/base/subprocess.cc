@@ -49,7 +49,12 @@ void default_handlers(bool also_ignored) {
   }
 }
 
-bool redirect(int from, int to) { return from < 0 || ::dup2(from, to) >= 0; }
+bool redirect(int from, int to) {
+  if (from < 0) return true;
+  // dup2 would leave it to be closed by the exec.
+  if (from == to) return ::fcntl(to, F_SETFD, 0) == 0;
+  return ::dup2(from, to) >= 0;
+}
 
 /// In the child. Comes back, with errno, only when the program could not be started.
 void become(const ChildPlan& plan) {
