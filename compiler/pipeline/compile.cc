@@ -9,9 +9,9 @@
 #include "compiler/artifact/describe.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/cnf/encoder.h"
+#include "compiler/ground/formula_grounder.h"
 #include "compiler/ground/grounder.h"
 #include "compiler/lint/lint.h"
-#include "compiler/pipeline/constraint_encoder.h"
 #include "compiler/pipeline/plan_encoder.h"
 #include "compiler/pipeline/plan_formulas.h"
 #include "compiler/plan/plan_binding.h"
@@ -29,7 +29,8 @@ struct CheckedPlan {
   std::set<std::string> events;
 };
 
-/// The constants that the object of an entry can be: those of the sort of its place in the formula.
+/// The constants that the object of an entry can be: those of the sort of its
+/// place in the formula.
 base::Result<std::vector<std::string>> candidates(const ObjectBinding& binding,
                                                   const TypedModel& model,
                                                   base::DiagnosticSink& sink) {
@@ -51,7 +52,8 @@ base::Result<std::vector<std::string>> candidates(const ObjectBinding& binding,
   return out;
 }
 
-/// The range of `time` where nobody gives one: up to the longest path of the plan.
+/// The range of `time` where nobody gives one: up to the longest path of the
+/// plan.
 void set_horizon(const PlanGraph& graph, std::int64_t max_horizon, TypedModel& model) {
   auto& time = model.sorts[*model.core.time];
   const bool given =
@@ -110,6 +112,13 @@ base::Result<CheckedFormula> check_constraint(const ConstraintText& constraint, 
   return check_formula(model, parsed->ast, root, {}, sink);
 }
 
+/// A state constraint with its place: a formula about a final timepoint, called
+/// `time` in it.
+struct StateConstraint {
+  CheckedFormula formula;
+  base::SourceRange source;
+};
+
 base::Result<std::vector<StateConstraint>> check_constraints(
     const std::vector<ConstraintText>& constraints, TypedModel& model,
     const base::SourceFiles& files, base::DiagnosticSink& sink) {
@@ -125,7 +134,42 @@ base::Result<std::vector<StateConstraint>> check_constraints(
   return checked;
 }
 
-/// What the model says of its own making, so that it can be read without the texts.
+/// Defines an atom `hit` for every timepoint from `first` on: all constraints
+/// hold there. An instance that names a timepoint before 0 does not hold.
+base::Status encode_constraints(const std::vector<StateConstraint>& constraints, Timepoint first,
+                                GroundModel& model, FormulaGrounder& grounder,
+                                base::DiagnosticSink& sink) {
+  const auto origin = model.add_origin(constraints.front().source, OriginKind::kStateConstraint);
+  auto& formulas = model.formulas();
+  std::vector<bool> ever(constraints.size(), false);
+  for (Timepoint t = first; t <= model.horizon(); ++t) {
+    std::vector<FormulaId> parts;
+    for (std::size_t i = 0; i < constraints.size(); ++i) {
+      const auto& constraint = constraints[i];
+      grounder.start(constraint.source);
+      if (constraint.formula.time) {
+        grounder.bind(*constraint.formula.time, model.terms().integer(t));
+      }
+      const auto value = grounder.ground(constraint.formula.formula);
+      if (grounder.failed()) return sink.already_reported();
+      if (value) ever[i] = true;
+      if (value && model.needed_horizon_of(*value) > t) {
+        return sink.error(base::DiagnosticCode::kConstraintLooksAhead, constraint.source);
+      }
+      parts.push_back(value.value_or(formulas.falsity()));
+    }
+    const auto hit = model.plan_atom(AtomKind::kHit, {}, t);
+    model.require(formulas.equivalence(hit, formulas.conjunction(parts)), origin);
+  }
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    if (ever[i]) continue;
+    return sink.error(base::DiagnosticCode::kNothingToSay, constraints[i].source, model.horizon());
+  }
+  return base::Unit{};
+}
+
+/// What the model says of its own making, so that it can be read without the
+/// texts.
 void describe(const CompileInput& input, const base::SourceFiles& files, CompiledModel& model) {
   model.producer = input.producer;
   if (input.ground.meaning == Meaning::kDecreasoner) model.options["compat"] = "decreasoner";

@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <utility>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 
@@ -21,7 +23,32 @@ std::optional<PerformKind> perform_kind(const Value& value) {
   return std::nullopt;
 }
 
+std::string fold(std::string_view name) {
+  std::string out;
+  for (const char c : name) {
+    if (c == '-' || c == '_') continue;
+    out += base::to_lower(c);
+  }
+  return out;
+}
+
 }  // namespace
+
+ModelNames::ModelNames(std::span<const std::string> names) : names_(names.begin(), names.end()) {
+  for (const auto& name : names_) by_folded_.emplace(fold(name), name);
+}
+
+std::optional<std::string> ModelNames::find(std::string_view name) const {
+  if (names_.empty()) return std::string(name);
+  if (std::find(names_.begin(), names_.end(), name) != names_.end()) return std::string(name);
+  const auto found = by_folded_.find(fold(name));
+  if (found == by_folded_.end()) return std::nullopt;
+  return found->second;
+}
+
+std::optional<std::string> ModelNames::nearest(std::string_view name) const {
+  return base::nearest_name(name, names_, 3);
+}
 
 /// The value of a key by role: `pose` and `location` are both the target.
 std::optional<ValueId> PerformResolver::key_value(ValueId designator, std::string_view key) const {
@@ -120,7 +147,9 @@ Result<FormulaTree> PerformResolver::constant(ValueId id, std::string_view what,
       }
       return wrong("a designator without a name; name it, or detect it first");
     case ValueKind::kPose:
-      return wrong("a pose where a name is needed; map it with `region`, `place` or `gaze`");
+      return wrong(
+          "a pose where a name is needed; map it with `region`, `place` "
+          "or `gaze`");
     case ValueKind::kNil:
       return wrong("nil");
     case ValueKind::kCons:

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,7 +11,6 @@
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/result.h"
 #include "compiler/plan/failure_classes.h"
-#include "compiler/plan/model_names.h"
 #include "compiler/plan/plan_binding.h"
 #include "compiler/plan/plan_graph.h"
 #include "compiler/plan/plan_value.h"
@@ -18,11 +18,28 @@
 
 namespace parallax::compiler {
 
+/// Finds the model's spelling of a plan's name: Lisp folds case and writes
+/// hyphens, a model has neither, so `top-drawer` means `topDrawer`.
+class ModelNames {
+ public:
+  explicit ModelNames(std::span<const std::string> names);
+  /// The name as the model writes it; an exact match goes first, then the first
+  /// one declared that is equal up to case, `-` and `_`. Without any names
+  /// every name is taken as it is.
+  std::optional<std::string> find(std::string_view name) const;
+  /// For a suggestion.
+  std::optional<std::string> nearest(std::string_view name) const;
+
+ private:
+  std::vector<std::string> names_;
+  std::map<std::string, std::string, std::less<>> by_folded_;
+};
+
 /// The key of a location that says where it is; the others only narrow it.
 std::optional<std::size_t> leading_key(const Value& location);
 
-/// Says what one performed designator means in the model: event, success formula, failure class
-/// and the arguments for a controller.
+/// Says what one performed designator means in the model: event, success
+/// formula, failure class and the arguments for a controller.
 class PerformResolver {
  public:
   PerformResolver(const PlanBinding& binding, const PoseLocator& locator, ModelNames constants,
@@ -37,31 +54,35 @@ class PerformResolver {
         values_(values),
         sink_(sink) {}
 
-  /// The first entry in written order all of whose keys the designator has; null: CPL030.
+  /// The first entry in written order all of whose keys the designator has;
+  /// null: CPL030.
   const BindingEntry* find_entry(ValueId designator, base::SourceRange source);
-  /// The same without a report, if it is an action that a function of the plan carries out.
+  /// The same without a report, if it is an action that a function of the plan
+  /// carries out.
   const BindingEntry* find_plan(ValueId designator) const;
-  /// The location without targets, calls and result. CPL031 outside all regions, CPL032 and CPL033
-  /// for wrong values.
+  /// The location without targets, calls and result. CPL031 outside all
+  /// regions, CPL032 and CPL033 for wrong values.
   base::Result<PlanLocation> resolve(const BindingEntry& entry, ValueId designator,
                                      base::SourceRange source);
   /// The value that a variable of the entry stands for.
   base::Result<ValueId> variable(const BindingEntry& entry, ValueId designator,
                                  std::string_view name, base::SourceRange source);
 
-  /// The formula of `(holds '(fluent argument...))`, or of a query; `query_only`: CPL030 if it is
-  /// none.
+  /// The formula of `(holds '(fluent argument...))`, or of a query;
+  /// `query_only`: CPL030 if it is none.
   base::Result<FormulaTree> question(ValueId list, bool query_only, base::SourceRange source);
 
-  /// An object that the event needs the name of and the plan has neither named nor detected; the
-  /// way there: designators from the value of a key inwards, each with the key that leads on.
+  /// An object that the event needs the name of and the plan has neither named
+  /// nor detected; the way there: designators from the value of a key inwards,
+  /// each with the key that leads on.
   struct Reference {
     const ObjectBinding* binding = nullptr;
     std::vector<std::pair<ValueId, std::size_t>> path;  // the performed designator first
     ValueId object;
   };
   std::optional<Reference> reference(const BindingEntry& entry, ValueId designator) const;
-  /// What must hold for the object of the reference to be the one with this name.
+  /// What must hold for the object of the reference to be the one with this
+  /// name.
   base::Result<FormulaTree> candidate(const Reference& reference, std::string_view name,
                                       base::SourceRange source);
 

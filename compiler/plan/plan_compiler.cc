@@ -2,259 +2,185 @@
 
 #include <fmt/core.h>
 
+#include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
-#include "compiler/plan/plan_builtins.h"
+#include "compiler/plan/function_calls.h"
 
 namespace parallax::compiler {
+namespace {
 
 using base::DiagnosticCode;
 
-// --- emitting -----------------------------------------------------------------------------------
-
-std::size_t PlanCompiler::emit(PlanOp op, std::uint32_t a, std::uint32_t b, DatumId source) {
-  auto& code = code_.units[frame().unit].code;
-  code.push_back({op, a, b, source});
-  return code.size() - 1;
+bool defines_function(std::string_view head) {
+  return head == "defun" || head == "def-cram-function" || head == "def-top-level-cram-function";
 }
 
-void PlanCompiler::adjust(int change) {
-  frame().height = static_cast<std::uint32_t>(static_cast<int>(frame().height) + change);
+bool defines_global(std::string_view head) {
+  return head == "defparameter" || head == "defvar" || head == "defconstant";
 }
 
-void PlanCompiler::emit_constant(ValueId value, DatumId source) {
-  emit(PlanOp::kConstant, value.index(), 0, source);
-  adjust(1);
+bool is_housekeeping(std::string_view head) {
+  return head == "in-package" || head == "defpackage" || head == "declaim" || head == "declare" ||
+         head == "proclaim" || head == "export";
 }
 
-/// A jump whose target is not known yet; a conditional one takes its test off the stack.
-std::size_t PlanCompiler::emit_jump(PlanOp op, DatumId source) {
-  if (op == PlanOp::kJumpIfNil) adjust(-1);
-  return emit(op, 0, 0, source);
-}
+/// Collects what the file defines, compiles it, then what is to be run.
+class PlanCompiler {
+ public:
+  PlanCompiler(const LispText& text, ValueStore& values, base::DiagnosticSink& sink,
+               bool interleave)
+      : text_(text), sink_(sink), c_(text, values, sink, interleave) {}
 
-void PlanCompiler::patch_jump(std::size_t at) { code_.units[frame().unit].code[at].a = here(); }
-
-std::uint32_t PlanCompiler::here() const {
-  return static_cast<std::uint32_t>(code_.units[frames_.back().unit].code.size());
-}
-
-std::uint32_t PlanCompiler::string_index(std::string_view text) {
-  const auto found = string_ids_.find(text);
-  if (found != string_ids_.end()) return found->second;
-  const auto index = static_cast<std::uint32_t>(code_.strings.size());
-  code_.strings.emplace_back(text);
-  string_ids_.emplace(std::string(text), index);
-  return index;
-}
-
-void PlanCompiler::emit_builtin(std::string_view name, std::uint32_t arguments, DatumId source) {
-  const auto builtin = find_builtin(name);
-  PARALLAX_REQUIRE(builtin.has_value(), "the compiler only uses built-ins that exist");
-  emit(PlanOp::kBuiltin, *builtin, arguments, source);
-  adjust(1 - static_cast<int>(arguments));
-}
-
-// --- units and scopes
-// -----------------------------------------------------------------------------
-
-std::uint32_t PlanCompiler::declare_unit(std::string_view name, DatumId source,
-                                         std::uint32_t parameters) {
-  PlanUnit unit;
-  unit.name = name;
-  unit.source = source;
-  unit.parameters = parameters;
-  code_.units.push_back(std::move(unit));
-  return static_cast<std::uint32_t>(code_.units.size() - 1);
-}
-
-void PlanCompiler::enter_unit(std::uint32_t unit) {
-  frames_.push_back({unit, code_.units[unit].parameters, 0});
-}
-
-void PlanCompiler::leave_unit(PlanOp last, DatumId source) {
-  emit(last, 0, 0, source);
-  frames_.pop_back();
-}
-
-/// Names the value on top; it stays a variable until the scope is cut back and it is squeezed out.
-void PlanCompiler::bind_variable(std::string_view name) {
-  const auto depth = static_cast<std::uint32_t>(frames_.size() - 1);
-  scope_.push_back({BindingKind::kVariable, std::string(name), depth, frame().height - 1});
-}
-
-const PlanCompiler::LexicalBinding* PlanCompiler::lookup(BindingKind kind,
-                                                         std::string_view name) const {
-  for (auto binding = scope_.rbegin(); binding != scope_.rend(); ++binding) {
-    if (binding->kind == kind && binding->name == name) return &*binding;
-  }
-  return nullptr;
-}
-
-std::uint32_t PlanCompiler::level_of(const LexicalBinding& binding) const {
-  return static_cast<std::uint32_t>(frames_.size() - 1) - binding.frame;
-}
-
-void PlanCompiler::emit_variable(PlanOp op, const LexicalBinding& binding, DatumId source) {
-  emit(op, level_of(binding), binding.index, source);
-  if (op == PlanOp::kLoad) adjust(1);
-}
-
-void PlanCompiler::emit_local(PlanOp op, std::uint32_t place, DatumId source) {
-  emit(op, 0, place, source);
-  if (op == PlanOp::kLoad) adjust(1);
-}
-
-void PlanCompiler::store_and_drop(std::uint32_t place, DatumId source) {
-  emit_local(PlanOp::kStore, place, source);
-  emit(PlanOp::kPop, 0, 0, source);
-  adjust(-1);
-}
-
-PlanCompiler::Block PlanCompiler::open_block(std::string_view name) {
-  const Block block{static_cast<std::uint32_t>(code_.exits.size()), scope_.size()};
-  code_.exits.push_back({0, frame().height, frame().guards});
-  const auto depth = static_cast<std::uint32_t>(frames_.size() - 1);
-  scope_.push_back({BindingKind::kBlock, std::string(name), depth, block.exit});
-  return block;
-}
-
-/// The block ends here, one value higher than it began: that of its form.
-void PlanCompiler::close_block(const Block& block) {
-  code_.exits[block.exit].pc = here();
-  scope_.resize(block.scope);
-}
-
-void PlanCompiler::emit_exit(const LexicalBinding& target, DatumId source) {
-  emit(PlanOp::kExit, level_of(target), target.index, source);
-}
-
-// --- dispatch
-// -------------------------------------------------------------------------------------
-
-void PlanCompiler::compile(DatumId form) {
-  switch (data_[form].kind) {
-    case DatumKind::kSymbol:
-      return compile_symbol(form);
-    case DatumKind::kKeyword:
-    case DatumKind::kNumber:
-    case DatumKind::kString:
-    case DatumKind::kCharacter:
-      return emit_constant(datum_value(form), form);
-    case DatumKind::kList:
-      return compile_list(form);
-  }
-}
-
-void PlanCompiler::compile_symbol(DatumId symbol) {
-  const auto& name = data_.name(symbol);
-  if (name == "nil" || name == "t") return emit_constant(datum_value(symbol), symbol);
-  if (const auto* binding = lookup(BindingKind::kVariable, name)) {
-    return emit_variable(PlanOp::kLoad, *binding, symbol);
-  }
-  if (const auto global = globals_.find(name); global != globals_.end()) {
-    emit(PlanOp::kLoadGlobal, global->second, 0, symbol);
-    return adjust(1);
-  }
-  failed_ = true;
-  std::vector<std::string> names;
-  for (const auto& binding : scope_) {
-    if (binding.kind == BindingKind::kVariable) names.push_back(binding.name);
-  }
-  for (const auto& [global, index] : globals_) names.push_back(global);
-  auto error = sink_.error(DiagnosticCode::kUnboundPlanVariable, data_.source(symbol), name);
-  if (const auto near = base::nearest_name(name, names)) {
-    error.fix(fmt::format("replace `{}` with `{}`", name, *near));
-  }
-  emit_constant(values_.nil(), symbol);
-}
-
-void PlanCompiler::compile_list(DatumId form) {
-  const auto items = data_.children(form);
-  if (items.empty()) return emit_constant(values_.nil(), form);
-  const auto head = data_.head(form);
-  if (!head) {
-    malformed(form, "a form starts with a name");
-    return emit_constant(values_.nil(), form);
-  }
-  if (const auto callee = find_callee(*head); callee && callee->function != nullptr) {
-    return call(form, *head, *callee, items.subspan(1));
-  }
-  const auto known = forms().find(*head);
-  if (known != forms().end()) {
-    const auto height = frame().height;
-    (this->*known->second)(form, items);
-    PARALLAX_ASSERT(failed_ || frame().height == height + 1);
-    // A form that reported an error may have stopped half-way; what follows is still checked.
-    frame().height = height + 1;
-    return;
-  }
-  if (const auto callee = find_callee(*head)) return call(form, *head, *callee, items.subspan(1));
-  if (head->starts_with("check-") && head->ends_with("-collisions")) {
-    return form_projection_check(form, items);
-  }
-  unknown_form(form, *head);
-  emit_constant(values_.nil(), form);
-}
-
-void PlanCompiler::compile_body(Items body) {
-  if (body.empty()) return emit_constant(values_.nil(), text_.forms.front());
-  for (std::size_t i = 0; i < body.size(); ++i) {
-    compile(body[i]);
-    if (i + 1 == body.size()) return;
-    emit(PlanOp::kPop, 0, 0, body[i]);
-    adjust(-1);
-  }
-}
-
-// --- the whole plan
-// -------------------------------------------------------------------------------
-
-void PlanCompiler::compile_main(const std::optional<std::string>& entry) {
-  code_.main = declare_unit("the plan", text_.forms.front(), 0);
-  enter_unit(code_.main);
-  std::optional<std::string> name = entry;
-  if (!name && bare_forms_.empty() && !function_order_.empty()) name = function_order_.back();
-  if (!name) {
-    compile_body(bare_forms_);
-  } else if (const auto found = functions_.find(*name); found == functions_.end()) {
-    std::vector<std::string> names = function_order_;
-    failed_ = true;
-    auto error = sink_.error(DiagnosticCode::kNoPlanEntry, data_.source(text_.forms.front()),
-                             fmt::format("no function `{}`", *name));
-    if (const auto near = base::nearest_name(*name, names)) {
-      error.fix(fmt::format("name `{}`", *near));
-    }
-  } else if (Callee callee;
-             !found->second.parameters.empty() && !found->second.parameters.front().optional) {
-    failed_ = true;
-    sink_
-        .error(DiagnosticCode::kNoPlanEntry, data_.source(found->second.source),
-               fmt::format("`{}` needs arguments", *name))
-        .fix(fmt::format("call it at top level: ({} ...)", *name));
-  } else {
-    callee.function = &found->second;
-    call(found->second.source, *name, callee, {});
-  }
-  leave_unit(PlanOp::kDone, text_.forms.front());
-}
-
-base::Result<PlanCode> PlanCompiler::compile(const std::optional<std::string>& entry) {
-  collect_definitions();
-  if (text_.forms.empty() || (bare_forms_.empty() && functions_.empty())) {
-    const auto where = text_.forms.empty() ? base::SourceRange{} : data_.source(text_.forms[0]);
+  base::Result<PlanCode> compile(const std::optional<std::string>& entry) {
     if (text_.forms.empty()) {
       return sink_.error(DiagnosticCode::kNoPlanEntry, base::SourceRange{text_.file, 0, 0},
                          "the file has no forms");
     }
-    return sink_.error(DiagnosticCode::kNoPlanEntry, where, "only definitions of variables");
+    collect_definitions();
+    if (bare_forms_.empty() && c_.defined.functions.empty()) {
+      return c_.error(DiagnosticCode::kNoPlanEntry, text_.forms.front(),
+                      "only definitions of variables");
+    }
+    compile_functions();
+    compile_main(entry);
+    if (c_.failed()) return sink_.already_reported();
+    return std::move(c_.code.code());
   }
-  compile_functions();
-  compile_main(entry);
-  if (failed_) return sink_.already_reported();
-  return std::move(code_);
+
+ private:
+  bool define_name(DatumId form, DatumId name) {
+    if (!c_.data.is_symbol(name)) {
+      c_.malformed(form, "expected a name");
+      return false;
+    }
+    const auto [entry, added] = defined_.emplace(c_.data.name(name), name);
+    if (added) return true;
+    c_.error(DiagnosticCode::kDuplicatePlanDefinition, name, c_.data.name(name))
+        .note(c_.data.source(entry->second), "first defined here");
+    return false;
+  }
+
+  void define_function(DatumId form, FormItems items) {
+    if (items.size() < 3) return c_.malformed(form, "expected a name, parameters and a body");
+    if (!define_name(form, items[1])) return;
+    const auto& name = c_.data.name(items[1]);
+    if (plan_forms().contains(name))
+      return c_.unsupported(form, fmt::format("`{}` is a built-in form", name));
+    const auto function = declare_function(c_, form, name, items[2]);
+    c_.code.code().functions.emplace(name, function.unit);
+    c_.defined.functions.emplace(name, function);
+    c_.defined.function_order.push_back(name);
+  }
+
+  void define_global(DatumId form, FormItems items) {
+    if (items.size() < 2) return c_.malformed(form, "expected a name and a value");
+    // A function and a variable of one name live in different namespaces in Lisp; here they clash.
+    if (!define_name(form, items[1])) return;
+    c_.defined.globals.emplace(c_.data.name(items[1]),
+                               static_cast<std::uint32_t>(c_.code.code().globals.size()));
+    c_.code.code().globals.push_back({c_.data.name(items[1]), form});
+    global_forms_.push_back(form);
+  }
+
+  void define_condition(DatumId form, FormItems items) {
+    if (items.size() < 3 || !c_.data.is_symbol(items[1]) || !c_.data.is_list(items[2])) {
+      return c_.malformed(form, "expected a name and a list of parents");
+    }
+    std::vector<std::string> parents;
+    for (const auto parent : c_.data.children(items[2])) {
+      if (const auto known = c_.failure_class(parent)) parents.push_back(*known);
+    }
+    if (parents.empty()) parents.emplace_back("simple-plan-failure");
+    if (c_.code.code().classes.add(c_.data.name(items[1]), std::move(parents))) return;
+    c_.error(DiagnosticCode::kDuplicatePlanDefinition, items[1], c_.data.name(items[1]));
+  }
+
+  void collect_definitions() {
+    // Failure classes come first: a handler may stand above the definition of its class.
+    for (const auto form : text_.forms) {
+      if (c_.data.head(form) == "define-condition") define_condition(form, c_.data.children(form));
+    }
+    for (const auto form : text_.forms) {
+      const auto head = c_.data.head(form).value_or("");
+      const auto items = c_.data.children(form);
+      if (defines_function(head)) {
+        define_function(form, items);
+      } else if (defines_global(head)) {
+        define_global(form, items);
+      } else if (!is_housekeeping(head) && head != "define-condition") {
+        bare_forms_.push_back(form);
+      }
+    }
+  }
+
+  void compile_functions() {
+    const auto first = text_.forms.front();
+    c_.code.code().definitions = c_.code.declare_unit("the definitions", first, 0);
+    c_.code.enter_unit(c_.code.code().definitions);
+    for (const auto form : global_forms_) {
+      const auto items = c_.data.children(form);
+      if (items.size() > 2) {
+        c_.compile(items[2]);
+      } else {
+        c_.nil(form);
+      }
+      c_.code.emit(PlanOp::kStoreGlobal, c_.defined.globals.at(c_.data.name(items[1])), 0, form);
+      c_.code.adjust(-1);
+    }
+    c_.code.leave_unit(PlanOp::kDone, first);
+    for (const auto& name : c_.defined.function_order) {
+      const auto& function = c_.defined.functions.at(name);
+      compile_function(c_, function, name, c_.data.children(function.source).subspan(3));
+    }
+  }
+
+  void compile_main(const std::optional<std::string>& entry) {
+    c_.code.code().main = c_.code.declare_unit("the plan", text_.forms.front(), 0);
+    c_.code.enter_unit(c_.code.code().main);
+    std::optional<std::string> name = entry;
+    if (!name && bare_forms_.empty() && !c_.defined.function_order.empty())
+      name = c_.defined.function_order.back();
+    if (!name) {
+      c_.compile_body(bare_forms_);
+    } else if (const auto found = c_.defined.functions.find(*name);
+               found == c_.defined.functions.end()) {
+      std::vector<std::string> names = c_.defined.function_order;
+      auto error = c_.error(DiagnosticCode::kNoPlanEntry, text_.forms.front(),
+                            fmt::format("no function `{}`", *name));
+      if (const auto near = base::nearest_name(*name, names)) {
+        error.fix(fmt::format("name `{}`", *near));
+      }
+    } else if (Callee callee;
+               !found->second.parameters.empty() && !found->second.parameters.front().optional) {
+      c_.error(DiagnosticCode::kNoPlanEntry, found->second.source,
+               fmt::format("`{}` needs arguments", *name))
+          .fix(fmt::format("call it at top level: ({} ...)", *name));
+    } else {
+      callee.function = &found->second;
+      compile_call(c_, found->second.source, *name, callee, {});
+    }
+    c_.code.leave_unit(PlanOp::kDone, text_.forms.front());
+  }
+
+  const LispText& text_;
+  base::DiagnosticSink& sink_;
+  FormCompiler c_;
+  std::map<std::string, DatumId, std::less<>> defined_;  // where, by name
+  std::vector<DatumId> global_forms_;
+  std::vector<DatumId> bare_forms_;
+};
+
+}  // namespace
+
+base::Result<PlanCode> compile_plan(const LispText& text, const std::optional<std::string>& entry,
+                                    bool interleave, ValueStore& values,
+                                    base::DiagnosticSink& sink) {
+  return PlanCompiler(text, values, sink, interleave).compile(entry);
 }
 
 }  // namespace parallax::compiler

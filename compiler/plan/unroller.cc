@@ -209,7 +209,7 @@ base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files, base::FileId
   const auto text = read_lisp(files, plan, sink);
   if (!text) return sink.already_reported();
   ValueStore values;
-  const auto code = PlanCompiler(*text, values, sink, options.interleave).compile(options.entry);
+  const auto code = compile_plan(*text, options.entry, options.interleave, values, sink);
   if (!code) return sink.already_reported();
   return Explorer(text->data, *code, binding, locator, options, values, sink).explore();
 }

@@ -1,17 +1,18 @@
+// What a form compiler says of forms that are wrong or not in the subset.
 #include <fmt/core.h>
 
-#include <array>
-#include <utility>
+#include <algorithm>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
+#include "compiler/plan/form_compiler.h"
 #include "compiler/plan/plan_builtins.h"
-#include "compiler/plan/plan_compiler.h"
 
 namespace parallax::compiler {
-namespace {
 
 using base::DiagnosticCode;
+
+namespace {
 
 constexpr std::size_t kMaxSuggestions = 50;
 
@@ -82,63 +83,62 @@ const Hint* find_hint(const Hint (&table)[kSize], std::string_view form) {
 
 }  // namespace
 
-std::string PlanCompiler::form_name(DatumId form) const {
-  if (const auto head = data_.head(form)) return std::string(*head);
-  if (!data_.is_list(form)) return print_datum(data_, form);
+std::string FormCompiler::form_name(DatumId form) const {
+  if (const auto head = data.head(form)) return std::string(*head);
+  if (!data.is_list(form)) return print_datum(data, form);
   return "(...)";
 }
 
-void PlanCompiler::malformed(DatumId form, std::string_view text) {
-  failed_ = true;
-  sink_.error(DiagnosticCode::kMalformedForm, data_.source(form), form_name(form), text);
+void FormCompiler::malformed(DatumId form, std::string_view text) {
+  error(DiagnosticCode::kMalformedForm, form, form_name(form), text);
 }
 
-void PlanCompiler::unsupported(DatumId form, std::string_view text) {
-  failed_ = true;
-  sink_.error(DiagnosticCode::kUnsupportedPlanForm, data_.source(form), form_name(form), text);
+void FormCompiler::refuse(DatumId form, std::string_view text) {
+  malformed(form, text);
+  nil(form);
 }
 
-void PlanCompiler::unknown_form(DatumId form, std::string_view name) {
-  failed_ = true;
+void FormCompiler::unsupported(DatumId form, std::string_view text) {
+  error(DiagnosticCode::kUnsupportedPlanForm, form, form_name(form), text);
+}
+
+void FormCompiler::unknown_form(DatumId form, std::string_view name) {
   if (const auto* hint = find_hint(kReactive, name)) {
-    sink_.error(DiagnosticCode::kReactiveForm, data_.source(form), name)
+    error(DiagnosticCode::kReactiveForm, form, name)
         .note(fmt::format("the nearest form of the subset is `{}`", hint->text));
     return;
   }
   if (const auto* hint = find_hint(kRejected, name)) {
-    sink_.error(DiagnosticCode::kUnsupportedPlanForm, data_.source(form), name, hint->text);
+    error(DiagnosticCode::kUnsupportedPlanForm, form, name, hint->text);
     return;
   }
-  auto error = sink_.error(DiagnosticCode::kUnknownPlanForm, data_.source(form), name);
+  auto report = error(DiagnosticCode::kUnknownPlanForm, form, name);
   // Looking for the nearest name is the expensive part; nobody reads the thousandth suggestion.
   if (sink_.error_count() > kMaxSuggestions) return;
   std::vector<std::string> names;
-  for (const auto& [known, function] : functions_) names.push_back(known);
-  for (const auto& [known, function] : forms()) names.emplace_back(known);
+  for (const auto& [known, function] : defined.functions) names.push_back(known);
+  for (const auto& [known, function] : plan_forms()) names.emplace_back(known);
   for (const auto& builtin : plan_builtins()) {
     if (builtin.name.front() != '%') names.emplace_back(builtin.name);
   }
   // Half the word may be wrong: naming the nearest form helps more than naming none.
   const auto near = base::nearest_name(name, names, std::max<std::size_t>(2, name.size() / 2));
-  if (near) error.note(fmt::format("the nearest form of the subset is `{}`", *near));
+  if (near) report.note(fmt::format("the nearest form of the subset is `{}`", *near));
 }
 
-/// What is not evaluated must not perform either: the plan would silently lose an action.
-bool PlanCompiler::check_no_perform(DatumId form) {
+void FormCompiler::check_no_perform(DatumId form) {
   std::vector<DatumId> open = {form};
   while (!open.empty()) {
     const auto datum = open.back();
     open.pop_back();
-    const auto items = data_.children(datum);
-    if (data_.head(datum) == "perform") {
-      failed_ = true;
-      sink_.error(DiagnosticCode::kUnsupportedPlanForm, data_.source(datum), "perform",
-                  fmt::format("the arguments of `{}` are not evaluated", form_name(form)));
-      return false;
+    const auto items = data.children(datum);
+    if (data.head(datum) == "perform") {
+      error(DiagnosticCode::kUnsupportedPlanForm, datum, "perform",
+            fmt::format("the arguments of `{}` are not evaluated", form_name(form)));
+      return;
     }
     open.insert(open.end(), items.begin(), items.end());
   }
-  return true;
 }
 
 }  // namespace parallax::compiler

@@ -1,0 +1,220 @@
+#include <utility>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/plan/form_compiler.h"
+
+namespace parallax::compiler {
+namespace {
+
+using base::DiagnosticCode;
+
+struct HandlerSource {
+  std::vector<DatumId> classes;
+  std::optional<DatumId> variable;
+  FormItems body;
+  DatumId source;
+};
+
+/// `class`, `(or class...)` or `(class...)`.
+std::vector<DatumId> class_list(FormCompiler& c, DatumId datum) {
+  if (c.data.head(datum) == "quote" && c.data[datum].count == 2)
+    return class_list(c, c.data.children(datum)[1]);
+  if (!c.data.is_list(datum)) return {datum};
+  auto items = c.data.children(datum);
+  if (c.data.head(datum) == "or") items = items.subspan(1);
+  return {items.begin(), items.end()};
+}
+
+/// A handler runs on top of the failed body, in a frame of its own; `retry_exit` starts the body.
+std::uint32_t compile_handler(FormCompiler& c, const HandlerSource& handler,
+                              std::uint32_t retry_exit) {
+  const auto scope = c.code.scope().size();
+  c.code.show(c.code.named(BindingKind::kRetry, "", retry_exit));
+  const auto unit = c.code.declare_unit("a failure handler", handler.source, 1);
+  c.code.enter_unit(unit);
+  if (handler.variable) {
+    c.code.show(c.code.named(BindingKind::kVariable, c.data.name(*handler.variable), 0));
+  }
+  c.compile_body(c.skip_declarations(handler.body));
+  c.code.leave_unit(PlanOp::kEndHandler, handler.source);
+  c.code.cut_scope(scope);
+  return unit;
+}
+
+void handling(FormCompiler& c, DatumId form, const std::vector<HandlerSource>& handlers,
+              FormItems body) {
+  const auto block = c.code.open_block("nil");
+  const auto start = c.code.open_exit();
+  // `retry` comes back here with a value, as every exit does.
+  c.nil(form);
+  c.code.set_exit(start);
+  c.code.drop(form);
+  std::vector<HandlerClause> table;
+  for (const auto& handler : handlers) {
+    const auto unit = compile_handler(c, handler, start);
+    for (const auto name : handler.classes) {
+      if (const auto known = c.failure_class(name)) table.push_back({*known, unit});
+    }
+  }
+  c.code.push_handlers(c.code.add_handlers(std::move(table)), form);
+  c.compile_body(body);
+  c.code.pop_guard(form);
+  c.code.close_block(block);
+}
+
+void form_with_failure_handling(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 2 || (!c.data.is_list(items[1]) && !c.data.is_nil(items[1]))) {
+    return c.refuse(form, "expected a list of handlers and a body");
+  }
+  std::vector<HandlerSource> handlers;
+  for (const auto clause : c.data.children(items[1])) {
+    const auto parts = c.data.children(clause);
+    const auto variable = parts.size() < 2 ? FormItems() : c.data.children(parts[1]);
+    const bool shaped = parts.size() >= 2 &&
+                        (c.data.is_list(parts[1]) || c.data.is_nil(parts[1])) &&
+                        variable.size() <= 1 && (variable.empty() || c.data.is_symbol(variable[0]));
+    if (!shaped) {
+      c.malformed(form, "a handler is (class (variable) form...)");
+      continue;
+    }
+    HandlerSource handler{class_list(c, parts[0]), std::nullopt, parts.subspan(2), clause};
+    if (!variable.empty()) handler.variable = variable[0];
+    handlers.push_back(std::move(handler));
+  }
+  handling(c, form, handlers, items.subspan(2));
+}
+
+/// (handle-failure CLASS (body...) handler...): the macro of CRAM's pick-and-place tutorial.
+void form_handle_failure(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 3 || !c.data.is_list(items[2])) {
+    return c.refuse(form, "expected a class, a list of forms and handler forms");
+  }
+  const HandlerSource handler{class_list(c, items[1]), std::nullopt, items.subspan(3), form};
+  handling(c, form, {handler}, c.data.children(items[2]));
+}
+
+void form_with_retry_counters(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 2 || !c.data.is_list(items[1])) {
+    return c.refuse(form, "expected a list of (counter count)");
+  }
+  const auto scope = c.code.scope().size();
+  std::uint32_t count = 0;
+  std::vector<LexicalBinding> bound;
+  for (const auto counter : c.data.children(items[1])) {
+    const auto parts = c.data.children(counter);
+    if (parts.size() != 2 || !c.data.is_symbol(parts[0])) {
+      c.malformed(form, "a counter is (name count)");
+      continue;
+    }
+    c.compile(parts[1]);  // the current count, and below it the one that reset-counter restores
+    bound.push_back(c.code.named(BindingKind::kCounter, c.data.name(parts[0]), c.code.height()));
+    c.code.load(c.code.height() - 1, counter);
+    count += 2;
+  }
+  c.code.show(bound);
+  c.compile_body(items.subspan(2));
+  c.code.squeeze(count, form);
+  c.code.cut_scope(scope);
+}
+
+const LexicalBinding* counter(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 2 || !c.data.is_symbol(items[1])) {
+    c.malformed(form, "expected the name of a counter");
+    return nullptr;
+  }
+  if (const auto* binding = c.code.lookup(BindingKind::kCounter, c.data.name(items[1])))
+    return binding;
+  c.error(DiagnosticCode::kUnboundPlanVariable, items[1], c.data.name(items[1]))
+      .note("counters are bound by `with-retry-counters`");
+  return nullptr;
+}
+
+void form_do_retry(FormCompiler& c, DatumId form, FormItems items) {
+  const auto* found = counter(c, form, items);
+  if (found == nullptr) return c.nil(form);
+  const LexicalBinding place = *found;
+  c.code.load(place, form);
+  c.code.constant(c.values.number(Number(0)), form);
+  c.code.builtin(">", 2, form);
+  const auto to_else = c.code.jump(PlanOp::kJumpIfNil, form);
+  c.code.load(place, form);
+  c.code.builtin("1-", 1, form);
+  c.code.store(place, form);
+  c.code.drop(form);
+  c.compile_body(items.subspan(2));
+  const auto to_end = c.code.jump(PlanOp::kJump, form);
+  c.code.adjust(-1);
+  c.code.patch_jump(to_else);
+  c.nil(form);
+  c.code.patch_jump(to_end);
+}
+
+void form_get_counter(FormCompiler& c, DatumId form, FormItems items) {
+  const auto* found = counter(c, form, items);
+  if (found == nullptr) return c.nil(form);
+  c.code.load(*found, form);
+}
+
+void form_reset_counter(FormCompiler& c, DatumId form, FormItems items) {
+  const auto* found = counter(c, form, items);
+  if (found == nullptr) return c.nil(form);
+  const LexicalBinding place = *found;
+  LexicalBinding initial = place;
+  --initial.index;
+  c.code.load(initial, form);
+  c.code.store(place, form);
+}
+
+void form_retry(FormCompiler& c, DatumId form, FormItems /*items*/) {
+  c.nil(form);
+  if (const auto* target = c.code.lookup(BindingKind::kRetry, ""))
+    return c.code.leave_to(*target, form);
+  c.error(DiagnosticCode::kRetryOutsideHandler, form);
+}
+
+/// (fail 'class ...), (fail "text" ...), (fail), (fail e) with the variable of a handler.
+void form_fail(FormCompiler& c, DatumId form, FormItems items) {
+  c.check_no_perform(form);
+  const bool has_class = items.size() > 1 && !c.data.is_string(items[1]);
+  if (has_class && c.data.is_symbol(items[1])) {
+    c.compile(items[1]);
+    c.code.emit(PlanOp::kFailValue, 0, 0, form);
+    return;
+  }
+  std::optional<std::string> name = "simple-plan-failure";
+  if (has_class) name = c.failure_class(items[1]);
+  c.code.fail(name.value_or("plan-failure"), form);
+}
+
+void form_unwind_protect(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 2) {
+    return c.refuse(form, "expected a form and clean-up forms");
+  }
+  const auto unit = c.code.declare_unit("a clean-up", form, 0);
+  c.code.enter_unit(unit);
+  c.compile_body(items.subspan(2));
+  c.code.leave_unit(PlanOp::kEndCleanup, form);
+  c.code.push_cleanup(unit, form);
+  c.compile(items[1]);
+  c.code.pop_guard(form);
+  c.code.emit(PlanOp::kRunCleanup, unit, 0, form);
+}
+
+}  // namespace
+
+std::span<const FormEntry> failure_forms() {
+  static constexpr FormEntry kForms[] = {
+      {"with-failure-handling", form_with_failure_handling},
+      {"handle-failure", form_handle_failure},
+      {"with-retry-counters", form_with_retry_counters},
+      {"do-retry", form_do_retry},
+      {"get-counter", form_get_counter},
+      {"reset-counter", form_reset_counter},
+      {"retry", form_retry},
+      {"fail", form_fail},
+      {"unwind-protect", form_unwind_protect},
+  };
+  return kForms;
+}
+
+}  // namespace parallax::compiler

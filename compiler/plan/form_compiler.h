@@ -1,0 +1,119 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "compiler/plan/lisp_reader.h"
+#include "compiler/plan/plan_assembler.h"
+#include "compiler/plan/plan_value.h"
+
+namespace parallax::compiler {
+
+using FormItems = std::span<const DatumId>;
+
+struct PlanParameter {
+  std::string name;
+  std::string keyword;  // not empty: passed by `:keyword`
+  bool optional = false;
+  std::optional<DatumId> default_value;
+};
+
+/// A function of the plan, or a local one: its code is a unit.
+struct PlanFunction {
+  std::uint32_t unit = 0;
+  std::vector<PlanParameter> parameters;
+  DatumId source;
+};
+
+/// What the plan defines at top level, and the local functions met so far.
+struct PlanDefinitions {
+  std::map<std::string, PlanFunction, std::less<>> functions;
+  std::vector<std::string> function_order;
+  std::map<std::uint32_t, PlanFunction> local_functions;  // by unit
+  std::map<std::string, std::uint32_t, std::less<>> globals;
+};
+
+/// What the compilers of the single forms share: the data, the code being written, the names, and
+/// the way back to `compile` for the forms inside. Each form is a function of its own; they stand
+/// by subject in <subject>_forms.cc. Every one of them writes code that leaves one more value on
+/// the stack. Errors are reported wherever they are met, also on paths that no execution takes, and
+/// the compiler goes on.
+class FormCompiler {
+ public:
+  FormCompiler(const LispText& text, ValueStore& store, base::DiagnosticSink& sink,
+               bool par_by_turns)
+      : data(text.data), values(store), interleave(par_by_turns), text_(text), sink_(sink) {}
+
+  void compile(DatumId form);
+  /// The forms in order; the value is the last one's, nil without forms.
+  void compile_body(FormItems body);
+  void nil(DatumId source) { code.constant(values.nil(), source); }
+  /// Quoted data as a value.
+  ValueId datum_value(DatumId datum);
+  /// The failure class that a symbol, perhaps quoted, names; CPL041 if there is none.
+  std::optional<std::string> failure_class(DatumId datum);
+  /// Drops docstrings and declarations at the head of a body.
+  FormItems skip_declarations(FormItems body) const;
+
+  // --- messages; form_errors.cc
+  template <typename... Args>
+  base::DiagnosticBuilder error(base::DiagnosticCode code_of_error, DatumId at,
+                                const Args&... args) {
+    failed_ = true;
+    return sink_.error(code_of_error, data.source(at), args...);
+  }
+  template <typename... Args>
+  void warning(base::DiagnosticCode code_of_warning, DatumId at, const Args&... args) {
+    sink_.warning(code_of_warning, data.source(at), args...);
+  }
+  void malformed(DatumId form, std::string_view text);
+  /// malformed, and nil in the form's place.
+  void refuse(DatumId form, std::string_view text);
+  void unsupported(DatumId form, std::string_view text);
+  void unknown_form(DatumId form, std::string_view name);
+  /// What is not evaluated must not perform either: the plan would silently lose an action.
+  void check_no_perform(DatumId form);
+  std::string form_name(DatumId form) const;
+  bool failed() const { return failed_; }
+
+  const LispData& data;
+  ValueStore& values;
+  const bool interleave;  // the branches of `par` take turns
+  PlanAssembler code;
+  PlanDefinitions defined;
+
+ private:
+  void compile_symbol(DatumId symbol);
+  void compile_list(DatumId form);
+
+  const LispText& text_;
+  base::DiagnosticSink& sink_;
+  bool failed_ = false;
+};
+
+/// Compiles one form; `items` are its parts, the head first.
+using FormFunction = void (*)(FormCompiler& c, DatumId form, FormItems items);
+struct FormEntry {
+  std::string_view name;
+  FormFunction compile;
+};
+
+// The special forms of the subset, by subject.
+std::span<const FormEntry> binding_forms();     // variables, assignment, quoted data
+std::span<const FormEntry> control_forms();     // order, choice, blocks, questions to the model
+std::span<const FormEntry> loop_forms();        // dolist, dotimes, loop, mapcar and its like
+std::span<const FormEntry> failure_forms();     // handlers, retries, clean-ups
+std::span<const FormEntry> try_forms();         // the next branch after a failure
+std::span<const FormEntry> designator_forms();  // designators and their perform
+std::span<const FormEntry> call_forms();        // funcall, apply, local functions
+
+/// All of them, by name.
+const std::map<std::string_view, FormFunction>& plan_forms();
+
+}  // namespace parallax::compiler

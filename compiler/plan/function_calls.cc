@@ -1,0 +1,247 @@
+#include "compiler/plan/function_calls.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/plan/plan_builtins.h"
+
+namespace parallax::compiler {
+
+using base::DiagnosticCode;
+
+namespace {
+
+struct Signature {
+  std::vector<PlanParameter> parameters;
+  bool good = true;
+};
+
+void parameter(FormCompiler& c, DatumId form, DatumId item, std::string_view mode, Signature& out) {
+  PlanParameter result;
+  result.optional = !mode.empty();
+  auto name = item;
+  const auto parts = c.data.children(item);
+  if (result.optional && !parts.empty() && parts.size() <= 2) {
+    name = parts.front();
+    if (parts.size() == 2) result.default_value = parts[1];
+  }
+  if (!c.data.is_symbol(name) || c.data.is_nil(name)) {
+    c.malformed(form, "a parameter is a name");
+    out.good = false;
+    return;
+  }
+  if (result.default_value && !c.data.is_nil(*result.default_value)) {
+    const auto value = *result.default_value;
+    const bool constant = !c.data.is_list(value) || c.data.head(value) == "quote";
+    const bool variable =
+        c.data.is_symbol(value) && c.data.name(value).front() != '*' && c.data.name(value) != "t";
+    if (!constant || variable) {
+      c.unsupported(form, "the default of a parameter must be a constant");
+      out.good = false;
+    }
+  }
+  result.name = c.data.name(name);
+  if (mode == "&key") result.keyword = result.name;
+  out.parameters.push_back(std::move(result));
+}
+
+Signature parameter_list(FormCompiler& c, DatumId form, DatumId list) {
+  Signature out;
+  if (!c.data.is_list(list) && !c.data.is_nil(list)) {
+    c.malformed(form, "expected a list of parameters");
+    out.good = false;
+  }
+  std::string mode;
+  for (const auto item : c.data.children(list)) {
+    const bool marker = c.data.is_symbol(item) && c.data.name(item).starts_with("&");
+    if (!marker) {
+      parameter(c, form, item, mode, out);
+      continue;
+    }
+    mode = c.data.name(item);
+    if (mode == "&optional" || mode == "&key") continue;
+    c.unsupported(form, fmt::format("`{}` in a parameter list", mode));
+    out.good = false;
+    break;
+  }
+  return out;
+}
+
+/// `:test #'eq` and the like add nothing: equality of values is structural.
+FormItems without_test_argument(FormCompiler& c, DatumId form, FormItems arguments) {
+  if (arguments.size() != 4 || !c.data.is_keyword(arguments[2])) return arguments;
+  const auto parts = c.data.children(arguments[3]);
+  const bool named = parts.size() == 2 && c.data.is_symbol(parts[1]);
+  const std::string_view test = named ? std::string_view(c.data.name(parts[1])) : "";
+  const bool equality = test == "eq" || test == "eql" || test == "equal" || test == "equalp";
+  if (c.data.name(arguments[2]) != "test" || !equality) {
+    c.unsupported(form, "only `:test` with eq, eql or equal");
+  }
+  return arguments.subspan(0, 2);
+}
+
+/// Pushes one value for every parameter, in the order of the parameters.
+bool push_arguments(FormCompiler& c, DatumId form, std::string_view name,
+                    const PlanFunction& function, FormItems arguments) {
+  const auto wrong = [&](std::string text) {
+    c.error(DiagnosticCode::kPlanArguments, form, name, text)
+        .note(c.data.source(function.source), "defined here");
+    return false;
+  };
+  const auto height = c.code.height();
+  std::size_t next = 0;
+  for (const auto& parameter : function.parameters) {
+    std::optional<DatumId> value;
+    if (!parameter.keyword.empty()) {
+      for (auto i = next; i + 1 < arguments.size(); i += 2) {
+        const bool mine =
+            c.data.is_keyword(arguments[i]) && c.data.name(arguments[i]) == parameter.keyword;
+        if (mine && !value) value = arguments[i + 1];
+      }
+    } else if (next < arguments.size()) {
+      value = arguments[next++];
+    } else if (!parameter.optional) {
+      c.code.set_height(height);
+      return wrong(fmt::format("no value for `{}`", parameter.name));
+    }
+    if (!value) value = parameter.default_value;
+    if (value) {
+      c.compile(*value);
+    } else {
+      c.nil(form);
+    }
+  }
+  for (auto i = next; i < arguments.size(); i += 2) {
+    const auto keyed = [&](const PlanParameter& parameter) {
+      return c.data.is_keyword(arguments[i]) && parameter.keyword == c.data.name(arguments[i]);
+    };
+    const bool known = i + 1 < arguments.size() &&
+                       std::any_of(function.parameters.begin(), function.parameters.end(), keyed);
+    if (known) continue;
+    c.code.set_height(height);
+    return wrong(fmt::format("unexpected argument `{}`", print_datum(c.data, arguments[i])));
+  }
+  return true;
+}
+
+}  // namespace
+
+PlanFunction declare_function(FormCompiler& c, DatumId form, std::string_view name,
+                              DatumId parameters) {
+  auto signature = parameter_list(c, form, parameters);
+  const auto count = static_cast<std::uint32_t>(signature.parameters.size());
+  const auto unit = c.code.declare_unit(name, form, count);
+  c.code.code().units[unit].recursive_limit = true;
+  return {unit, std::move(signature.parameters), form};
+}
+
+void compile_function(FormCompiler& c, const PlanFunction& function, std::string_view block_name,
+                      FormItems body) {
+  const auto scope = c.code.scope().size();
+  c.code.enter_unit(function.unit);
+  for (std::uint32_t i = 0; i < function.parameters.size(); ++i) {
+    c.code.show(c.code.named(BindingKind::kVariable, function.parameters[i].name, i));
+  }
+  const auto block = c.code.open_block(block_name);
+  c.compile_body(c.skip_declarations(body));
+  c.code.close_block(block);
+  c.code.leave_unit(PlanOp::kReturn, function.source);
+  c.code.cut_scope(scope);
+}
+
+std::optional<Callee> find_callee(const FormCompiler& c, std::string_view name) {
+  Callee callee;
+  if (const auto* local = c.code.lookup(BindingKind::kFunction, name)) {
+    callee.function = &c.defined.local_functions.at(local->index);
+    callee.level = c.code.level_of(*local);
+    return callee;
+  }
+  if (const auto found = c.defined.functions.find(name); found != c.defined.functions.end()) {
+    callee.function = &found->second;
+    return callee;
+  }
+  callee.builtin = find_builtin(name);
+  if (!callee.builtin) return std::nullopt;
+  return callee;
+}
+
+std::optional<Callee> resolve_callee(FormCompiler& c, DatumId form, DatumId function) {
+  const auto head = c.data.head(function).value_or("");
+  auto parts = c.data.children(function);
+  if ((head == "function" || head == "quote") && parts.size() == 2) {
+    function = parts[1];
+    parts = c.data.children(function);
+  }
+  if (c.data.is_symbol(function)) {
+    if (auto callee = find_callee(c, c.data.name(function))) return callee;
+    c.unknown_form(function, c.data.name(function));
+    return std::nullopt;
+  }
+  if (c.data.head(function) != "lambda" || parts.size() < 2) {
+    c.unsupported(form, "the function must be named or written out, as #'f or a lambda");
+    return std::nullopt;
+  }
+  const auto lambda = declare_function(c, function, "a lambda", parts[1]);
+  compile_function(c, lambda, "", parts.subspan(2));
+  Callee callee;
+  callee.function = &(c.defined.local_functions[lambda.unit] = lambda);
+  callee.level = 0;
+  return callee;
+}
+
+void emit_call(FormCompiler& c, const Callee& callee, std::uint32_t count, DatumId source) {
+  if (callee.builtin) {
+    const auto& builtin = plan_builtins()[*callee.builtin];
+    if (count < builtin.min_arguments || count > builtin.max_arguments) {
+      c.error(
+          DiagnosticCode::kPlanArguments, source, builtin.name,
+          fmt::format("takes {} {} arguments, not {}",
+                      count < builtin.min_arguments ? "at least" : "at most",
+                      count < builtin.min_arguments ? builtin.min_arguments : builtin.max_arguments,
+                      count));
+    }
+    c.code.emit(PlanOp::kBuiltin, *callee.builtin, count, source);
+    return c.code.adjust(1 - static_cast<int>(count));
+  }
+  const auto& parameters = callee.function->parameters;
+  const auto optional = [](const PlanParameter& parameter) { return parameter.optional; };
+  const auto required = parameters.size() - static_cast<std::size_t>(std::count_if(
+                                                parameters.begin(), parameters.end(), optional));
+  if (count < required || count > parameters.size()) {
+    c.error(DiagnosticCode::kPlanArguments, source, c.form_name(source),
+            fmt::format("the function takes {} arguments, not {}", required, count));
+  }
+  for (auto i = static_cast<std::size_t>(count); i < parameters.size(); ++i) {
+    if (parameters[i].default_value) {
+      c.compile(*parameters[i].default_value);
+    } else {
+      c.nil(source);
+    }
+  }
+  const auto pushed = std::max(count, static_cast<std::uint32_t>(parameters.size()));
+  const auto op = callee.level ? PlanOp::kCallLocal : PlanOp::kCall;
+  c.code.emit(op, callee.function->unit, callee.level.value_or(0), source);
+  c.code.adjust(1 - static_cast<int>(pushed));
+}
+
+void compile_call(FormCompiler& c, DatumId form, std::string_view name, const Callee& callee,
+                  FormItems arguments) {
+  if (callee.function != nullptr) {
+    if (!push_arguments(c, form, name, *callee.function, arguments)) {
+      return c.nil(form);
+    }
+    const auto count = static_cast<std::uint32_t>(callee.function->parameters.size());
+    return emit_call(c, callee, count, form);
+  }
+  if (name == "member" || name == "find" || name == "assoc" || name == "remove") {
+    arguments = without_test_argument(c, form, arguments);
+  }
+  for (const auto argument : arguments) c.compile(argument);
+  emit_call(c, callee, static_cast<std::uint32_t>(arguments.size()), form);
+}
+
+}  // namespace parallax::compiler

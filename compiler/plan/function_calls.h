@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "compiler/plan/form_compiler.h"
+
+namespace parallax::compiler {
+
+/// What a call goes to: a unit (global, or local with the distance of its frame) or a built-in.
+struct Callee {
+  const PlanFunction* function = nullptr;
+  std::optional<std::uint32_t> level;
+  std::optional<std::uint32_t> builtin;
+};
+
+std::optional<Callee> find_callee(const FormCompiler& c, std::string_view name);
+/// #'f, 'f or a lambda, as the argument of funcall and the mapping functions; none: reported.
+std::optional<Callee> resolve_callee(FormCompiler& c, DatumId form, DatumId function);
+
+/// Writes the code of a call with its arguments.
+void compile_call(FormCompiler& c, DatumId form, std::string_view name, const Callee& callee,
+                  FormItems arguments);
+/// Only the call itself: `count` arguments are on the stack.
+void emit_call(FormCompiler& c, const Callee& callee, std::uint32_t count, DatumId source);
+
+/// Reads the parameter list of a function and gives it a unit, still empty.
+PlanFunction declare_function(FormCompiler& c, DatumId form, std::string_view name,
+                              DatumId parameters);
+/// Fills the unit; `block_name` is the block that return-from may leave.
+void compile_function(FormCompiler& c, const PlanFunction& function, std::string_view block_name,
+                      FormItems body);
+
+}  // namespace parallax::compiler
