@@ -1,6 +1,6 @@
 // The intervals of the paper's rule: quantiles, readings of sigma, the mean's interval, and the
-// prediction intervals over a whole cuboid of starts. Both ends of these are extreme at corners: the
-// mean is linear and the half-width convex in x.
+// prediction intervals over a whole cuboid of starts. Both ends of these are extreme at corners:
+// the mean is linear and the half-width convex in x.
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -1,8 +1,8 @@
 // The loop that all modes share, driven by hand.
 
-#include "compiler/base/hash.h"
 #include "harness/campaign/trial.h"
 
+#include "compiler/base/hash.h"
 #include "harness/campaign/journal.h"
 #include "tests/harness/campaign/two_regions.h"
 
