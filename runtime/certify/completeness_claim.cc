@@ -19,7 +19,7 @@ CompletenessClaim::CompletenessClaim(const CompiledModel& model)
     const bool result = kind == AtomKind::kResult && model.has_constraints;
     if (kind != AtomKind::kHoldsAt && kind != AtomKind::kHappens && !result) return;
     const auto name = result ? to_string(kind, atom.plan) : atom.name;
-    observables_.push_back({atom.literal(), kind, atom.time.value_or(0), name});
+    observables_.push_back({atom.literal(), kind, atom.time.value_or(0), atom.number, name});
   });
 }
 
@@ -42,8 +42,9 @@ void CompletenessClaim::add(const Trace& trace) {
       continue;
     }
     const auto& point = trace.points[static_cast<std::size_t>(observable.time)];
-    const auto& names = observable.kind == AtomKind::kHoldsAt ? point.holds : point.happens;
-    found.values[i] = std::binary_search(names.begin(), names.end(), observable.name);
+    found.values[i] = observable.kind == AtomKind::kHoldsAt
+                          ? contains(point.holds, compiler::FluentId(observable.number))
+                          : contains(point.happens, compiler::EventId(observable.number));
   }
   traces_.push_back(std::move(found));
 }

@@ -46,6 +46,7 @@ class CompletenessClaim {
     compiler::Literal literal;
     compiler::AtomKind kind;
     Timepoint time;
+    std::uint32_t number;  // of the fluent or event
     std::string name;
   };
   struct Found {

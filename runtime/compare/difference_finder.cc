@@ -25,6 +25,7 @@ DifferenceFinder::DifferenceFinder(const CompiledModel& first, const CompiledMod
     : first_(first),
       second_(second),
       vocabulary_(vocabulary),
+      symbols_(symbols_of(first)),
       max_refinements_(max_refinements),
       solver_(make_cadical_solver(stop)),
       circuit_(*solver_, first.variable_count() + 1),
@@ -163,7 +164,7 @@ std::optional<SharedAtom> DifferenceFinder::impossible() const { return impossib
 /// Decodes the trace, and looks for the earliest timepoint: what rules out a part of a trace rules
 /// out the longer ones.
 Answer DifferenceFinder::describe_found(Timepoint by) {
-  trace_ = decode_trace(first_, first_.horizon, [&](Literal literal) {
+  trace_ = decode_trace(first_, symbols_, first_.horizon, [&](Literal literal) {
     const auto mapped = *mapped_first_->find(literal);
     return solver_->value(mapped);
   });

@@ -83,6 +83,7 @@ class DifferenceFinder {
   const CompiledModel& first_;
   const CompiledModel& second_;
   const SharedVocabulary vocabulary_;
+  const Symbols symbols_;
   const std::size_t max_refinements_;
   std::unique_ptr<SatSolver> solver_;
   Circuit circuit_;

@@ -9,7 +9,8 @@
 
 namespace parallax::runtime {
 
-ModelEnumerator::ModelEnumerator(SolverSession& session, Distinct distinct) : session_(&session) {
+ModelEnumerator::ModelEnumerator(SolverSession& session, Distinct distinct)
+    : session_(&session), symbols_(symbols_of(session.model())) {
   for (const auto& block : projection_blocks(session.model(), distinct)) {
     for (const auto atom : block) order_.push_back(~atom);
   }
@@ -24,8 +25,8 @@ std::optional<Trace> ModelEnumerator::next() {
   auto blocking = make_canonical(*session_, n, {}, order_);
   if (!blocking) return std::nullopt;
   session_->require_model(n);
-  auto trace =
-      decode_trace(session_->model(), n, [&](Literal literal) { return session_->value(literal); });
+  auto trace = decode_trace(session_->model(), symbols_, n,
+                            [&](Literal literal) { return session_->value(literal); });
   trace.number = ++found_;
   for (auto& literal : *blocking) literal = ~literal;
   session_->add_clause(*blocking);
@@ -50,6 +51,7 @@ constexpr std::size_t kMostChildren = 1024;
 TraceTree::TraceTree(SolverSession& session, std::vector<std::vector<Literal>> levels,
                      std::string name, std::size_t most_children)
     : session_(&session),
+      symbols_(symbols_of(session.model())),
       levels_(std::move(levels)),
       name_(std::move(name)),
       most_children_(most_children) {
@@ -124,7 +126,7 @@ bool TraceTree::find_children(Node& node, bool& too_many) {
     }
     if (is_last) {
       session_->require_model(n);
-      child.trace = decode_trace(session_->model(), n,
+      child.trace = decode_trace(session_->model(), symbols_, n,
                                  [&](Literal literal) { return session_->value(literal); });
     }
     session_->add_clause(blocking);
@@ -184,6 +186,7 @@ std::vector<Literal> joined(const std::vector<std::vector<Literal>>& blocks) {
 SearchTraces::SearchTraces(const CompiledModel& model, Distinct distinct,
                            const std::atomic<bool>* stop, std::int64_t conflicts)
     : model_(model),
+      symbols_(symbols_of(model)),
       stop_(stop),
       conflicts_(conflicts),
       search_(model.variable_count(), joined(projection_blocks(model, distinct))) {
@@ -210,7 +213,7 @@ std::optional<Trace> SearchTraces::next() {
     PARALLAX_REQUIRE(std::any_of(clause.begin(), clause.end(), value),
                      "what the search finds satisfies every clause");
   }
-  auto trace = decode_trace(model_, model_.horizon, value);
+  auto trace = decode_trace(model_, symbols_, model_.horizon, value);
   trace.number = ++found_;
   return trace;
 }

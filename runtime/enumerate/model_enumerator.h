@@ -24,6 +24,7 @@ class ModelEnumerator final : public TraceSource {
 
  private:
   SolverSession* session_;
+  Symbols symbols_;
   std::vector<Literal> order_;  // the atoms, false preferred
   std::int64_t found_ = 0;
   bool exhausted_ = false;
@@ -59,6 +60,7 @@ class TraceTree final : public TraceSource {
   void halve(std::size_t level);
 
   SolverSession* session_;
+  Symbols symbols_;
   std::vector<std::vector<Literal>> levels_;
   std::string name_;
   std::size_t most_children_;
@@ -92,6 +94,7 @@ class SearchTraces final : public TraceSource {
 
  private:
   const CompiledModel& model_;
+  Symbols symbols_;
   const std::atomic<bool>* stop_;
   std::int64_t conflicts_;
   ClauseSearch search_;

@@ -23,7 +23,10 @@ std::string_view to_string(Exploration exploration) {
 }
 
 PlanEnumerator::PlanEnumerator(SolverSession& session, const PlanEnumeratorOptions& options)
-    : session_(&session), options_(options), index_(session.model()) {
+    : session_(&session),
+      options_(options),
+      index_(session.model()),
+      symbols_(symbols_of(session.model())) {
   PARALLAX_REQUIRE(session.model().has_constraints, "the model was compiled with constraints");
   if (index_.hit(0)) first_ = 0;
   n_ = first_ - 1;
@@ -94,7 +97,7 @@ std::optional<Trace> PlanEnumerator::next() {
       if (done_) return std::nullopt;
       fixed.insert(fixed.end(), literals->begin(), literals->end());
     }
-    auto trace = decode_trace(session_->model(), n_,
+    auto trace = decode_trace(session_->model(), symbols_, n_,
                               [&](Literal literal) { return session_->value(literal); });
     trace.number = ++found_;
     note_alternatives(fixed, head, trace);
@@ -137,36 +140,30 @@ void PlanEnumerator::note_alternatives(std::span<const Literal> fixed, std::size
 }
 
 base::Known PlanEnumerator::admits(const Trace& trace,
-                                   const std::map<std::string, bool>& last_state) {
+                                   const std::map<compiler::FluentId, bool>& last_state) {
   const auto n = trace.length();
   auto assumptions = hit_at(n);
   // What has no variable is false in every trace.
-  for (const auto& fluent : session_->model().fluents) {
-    const auto wanted = last_state.find(fluent.name);
-    if (!fluent.slot && wanted != last_state.end() && wanted->second) {
-      return base::Known::kNo;
-    }
+  for (const auto& [fluent, holds] : last_state) {
+    if (holds && !session_->model().fluents[fluent.index()].slot) return base::Known::kNo;
   }
   session_->model().for_each_atom([&](const compiler::AtomRef& atom) {
     const auto literal = atom.literal();
     const auto kind = atom.kind;
-    const auto& name = atom.name;
     const auto time = atom.time.value_or(0);
-    const auto among = [&](const std::vector<std::string>& names) {
-      return std::binary_search(names.begin(), names.end(), name);
-    };
     if (kind == AtomKind::kHappens && time < n) {
       const auto& point = trace.points[static_cast<std::size_t>(time)];
-      assumptions.push_back(among(point.happens) ? literal : ~literal);
+      assumptions.push_back(contains(point.happens, atom.event()) ? literal : ~literal);
     } else if (kind == AtomKind::kResult && time <= n) {
       const auto& point = trace.points[static_cast<std::size_t>(time) - 1];
       const auto* returned = std::get_if<compiler::ReturnedObject>(&atom.plan);
       const bool is_true = returned != nullptr && point.returned == returned->object;
       assumptions.push_back(is_true ? literal : ~literal);
     } else if (kind == AtomKind::kHoldsAt && time == 0) {
-      assumptions.push_back(among(trace.points.front().holds) ? literal : ~literal);
+      const bool holds = contains(trace.points.front().holds, atom.fluent());
+      assumptions.push_back(holds ? literal : ~literal);
     } else if (kind == AtomKind::kHoldsAt && time == n) {
-      const auto wanted = last_state.find(name);
+      const auto wanted = last_state.find(atom.fluent());
       if (wanted == last_state.end()) return;
       assumptions.push_back(wanted->second ? literal : ~literal);
     }

@@ -53,7 +53,9 @@ class PlanEnumerator {
 
   /// Does the model admit, for the trace's events and initial state, a last state in which each of
   /// these fluents has the value given? One solver call.
-  base::Known admits(const Trace& trace, const std::map<std::string, bool>& last_state);
+  base::Known admits(const Trace& trace, const std::map<compiler::FluentId, bool>& last_state);
+  /// Of the traces' ids.
+  const Symbols& symbols() const { return symbols_; }
 
  private:
   base::Known has_alternative(std::span<const Literal> fixed, std::span<const Literal> different);
@@ -68,6 +70,7 @@ class PlanEnumerator {
   SolverSession* session_;
   PlanEnumeratorOptions options_;
   compiler::AtomIndex index_;
+  Symbols symbols_;
   Timepoint first_ = 1;  // with a hit atom
   Timepoint n_ = 0;
   std::optional<Literal> guard_;  // switches the blocking clauses of length n_ on

@@ -13,11 +13,21 @@ using compiler::AtomKind;
 /// Pieces are kept up to so many bytes.
 constexpr std::size_t kPieces = std::size_t{64} << 20U;
 
-void append_names(const Bits& bits, const std::vector<std::string>& names, std::size_t offset,
-                  std::vector<std::string>& out) {
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (bits[offset + i] && !names[i].empty()) out.push_back(names[i]);
+template <typename Id>
+void append_true(const Bits& bits, const std::vector<std::optional<Id>>& ids, std::size_t offset,
+                 std::vector<Id>& out) {
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (bits[offset + i] && ids[i]) out.push_back(*ids[i]);
   }
+}
+
+/// By slot: the fluent whose release it is.
+std::map<std::uint32_t, compiler::FluentId> releases(const CompiledModel& model) {
+  std::map<std::uint32_t, compiler::FluentId> out;
+  for (std::uint32_t f = 0; f < model.fluents.size(); ++f) {
+    if (model.release_slots[f]) out.emplace(*model.release_slots[f], compiler::FluentId(f));
+  }
+  return out;
 }
 
 }  // namespace
@@ -33,21 +43,24 @@ std::string GraphPaths::obstacle(const TraceGraph& graph, const CompiledModel& m
   return "ReleasedAt atoms are free";
 }
 
-GraphPaths::GraphPaths(const TraceGraph& graph, const CompiledModel& model) : graph_(graph) {
+GraphPaths::GraphPaths(const TraceGraph& graph, const CompiledModel& model)
+    : graph_(graph), symbols_(symbols_of(model)) {
   const auto& layered = graph.model();
-  for (const auto& fluent : model.fluents) {
-    if (fluent.slot) fluents_.push_back(fluent.name);
+  for (std::uint32_t f = 0; f < model.fluents.size(); ++f) {
+    if (model.fluents[f].slot) fluents_.emplace_back(compiler::FluentId(f));
   }
-  for (const auto& event : model.events) {
-    if (event.slot) events_.push_back(event.name);
+  for (std::uint32_t e = 0; e < model.events.size(); ++e) {
+    if (model.events[e].slot) events_.emplace_back(compiler::EventId(e));
   }
+  const auto released = releases(model);
+  const auto release_of = [&](std::uint32_t slot) {
+    const auto found = released.find(slot);
+    return found == released.end() ? std::nullopt : std::optional(found->second);
+  };
   for (auto i = fluents_.size(); i < layered.observed.size(); ++i) {
-    released_in_observed_.push_back(model.slots[layered.observed[i]].name);
+    released_in_observed_.push_back(release_of(layered.observed[i]));
   }
-  for (const auto slot : layered.hidden) {
-    const auto& hidden = model.slots[slot];
-    released_in_hidden_.push_back(hidden.kind == AtomKind::kReleasedAt ? hidden.name : "");
-  }
+  for (const auto slot : layered.hidden) released_in_hidden_.push_back(release_of(slot));
   for (const auto v : layered.true_fixed) {
     const auto& atom = model.fixed[static_cast<std::size_t>(v) - 1];
     if (atom.kind == AtomKind::kPredicate) predicates_.push_back(atom.name);
@@ -136,10 +149,9 @@ const TracePoint& GraphPaths::state(std::uint32_t node) {
   auto& point = entry->second;
   if (!added) return point;
   const auto& bits = graph_.node(node);
-  append_names(bits.observed, fluents_, 0, point.holds);
-  append_names(bits.observed, released_in_observed_, fluents_.size(), point.released);
-  append_names(bits.hidden.front(), released_in_hidden_, 0, point.released);
-  std::sort(point.holds.begin(), point.holds.end());
+  append_true(bits.observed, fluents_, 0, point.holds);
+  append_true(bits.observed, released_in_observed_, fluents_.size(), point.released);
+  append_true(bits.hidden.front(), released_in_hidden_, 0, point.released);
   std::sort(point.released.begin(), point.released.end());
   return point;
 }
@@ -153,8 +165,7 @@ GraphPaths::Shown GraphPaths::shown(std::size_t t) const {
 TracePoint GraphPaths::point(const Shown& shown) {
   auto point = state(shown.node);
   if (shown.events == 0) return point;
-  append_names(graph_.events(shown.events - 1), events_, 0, point.happens);
-  std::sort(point.happens.begin(), point.happens.end());
+  append_true(graph_.events(shown.events - 1), events_, 0, point.happens);
   return point;
 }
 
@@ -162,6 +173,7 @@ std::optional<Trace> GraphPaths::next() {
   if (!advance()) return std::nullopt;
   ++number_;
   Trace trace;
+  trace.symbols = symbols_;
   trace.number = number_.fits_slong_p() ? number_.get_si() : 0;
   for (std::size_t t = 0; t < path_.size(); ++t) trace.points.push_back(point(shown(t)));
   trace.predicates = predicates_;
@@ -185,7 +197,8 @@ const std::string& GraphPaths::piece(const TraceFormat& format, std::size_t t) {
   const auto key = shown(t);
   const auto [entry, added] = pieces_.try_emplace(key);
   if (!added) return entry->second;
-  entry->second = format.point(key.before == 0 ? nullptr : &state(key.before - 1), point(key));
+  const auto* before = key.before == 0 ? nullptr : &state(key.before - 1);
+  entry->second = format.point(*symbols_, before, point(key));
   pieces_size_ += entry->second.size() + sizeof(*entry);
   return entry->second;
 }

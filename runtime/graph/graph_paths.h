@@ -56,8 +56,11 @@ class GraphPaths final : public TraceSource {
   const std::string& piece(const TraceFormat& format, std::size_t t);
 
   const TraceGraph& graph_;
-  std::vector<std::string> fluents_, events_;
-  std::vector<std::string> released_in_observed_, released_in_hidden_;  // empty: something else
+  Symbols symbols_;
+  /// By bit of the graph's vectors; none: something else.
+  std::vector<std::optional<compiler::FluentId>> fluents_, released_in_observed_,
+      released_in_hidden_;
+  std::vector<std::optional<compiler::EventId>> events_;
   std::vector<std::string> predicates_;
   std::vector<Step> path_;     // to the last layer; empty before the first trace
   std::size_t start_ = 0;      // the start that comes next

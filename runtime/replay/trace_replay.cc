@@ -24,7 +24,8 @@ TraceReplay::TraceReplay(const CompiledModel& model, MakeSolver make_solver)
     : model_(&model),
       make_solver_(std::move(make_solver)),
       session_(model, make_solver_()),
-      index_(model) {
+      index_(model),
+      symbols_(symbols_of(model)) {
   for (std::size_t f = 0; f < model.fluents.size(); ++f) {
     if (!model.fluents[f].slot) never_holds_.insert(model.fluents[f].name);
     if (!model.release_slots[f]) never_released_.insert(model.fluents[f].name);
@@ -116,8 +117,8 @@ ReplayVerdict TraceReplay::replay(const ClaimedTrace& trace) {
   const auto status = solve(units, length, hits);
   if (status == SolveStatus::kSatisfiable) {
     verdict.kind = Kind::kAgrees;
-    verdict.completion =
-        decode_trace(*model_, length, [&](Literal literal) { return session_.value(literal); });
+    verdict.completion = decode_trace(*model_, symbols_, length,
+                                      [&](Literal literal) { return session_.value(literal); });
     verdict.completion.number = trace.number;
   } else if (status == SolveStatus::kUnsatisfiable) {
     verdict = find_failure(units, length);

@@ -70,6 +70,7 @@ class TraceReplay {
   MakeSolver make_solver_;
   SolverSession session_;
   compiler::AtomIndex index_;
+  Symbols symbols_;
   std::unordered_set<std::string> never_holds_, never_happens_, never_released_;  // look-up only
 };
 

@@ -2,24 +2,36 @@
 
 #include <algorithm>
 
-#include "runtime/trace/vocabulary.h"
-
 namespace parallax::runtime {
 namespace {
 
-std::vector<std::string> atoms_of(const std::vector<SymbolInstances>& symbols) {
-  std::vector<std::string> atoms;
+void append_names(const std::vector<SymbolInstances>& symbols, const char* before,
+                  const char* after, std::string& row) {
   for (const auto& symbol : symbols) {
-    atoms.insert(atoms.end(), symbol.atoms.begin(), symbol.atoms.end());
+    for (const auto& atom : symbol.atoms) row += ',' + csv_field(before + atom + after);
   }
-  return atoms;
 }
 
-void append_bits(const std::vector<std::string>& columns, const std::vector<std::string>& truths,
+template <typename Id>
+void append_bits(const std::vector<SymbolInstances>& symbols, const std::vector<Id>& truths,
                  std::string& row) {
-  for (const auto& column : columns) {
-    row += std::binary_search(truths.begin(), truths.end(), column) ? ",1" : ",0";
+  for (const auto& symbol : symbols) {
+    for (const auto id : symbol.ids) row += contains(truths, Id(id)) ? ",1" : ",0";
   }
+}
+
+/// Predicates have no ids in a trace.
+void append_predicates(const std::vector<SymbolInstances>& symbols,
+                       const std::vector<std::string>& truths, std::string& row) {
+  for (const auto& symbol : symbols) {
+    for (const auto& atom : symbol.atoms) row += contains(truths, atom) ? ",1" : ",0";
+  }
+}
+
+std::size_t count(const std::vector<SymbolInstances>& symbols) {
+  std::size_t atoms = 0;
+  for (const auto& symbol : symbols) atoms += symbol.atoms.size();
+  return atoms;
 }
 
 }  // namespace
@@ -34,20 +46,14 @@ std::string csv_field(const std::string& text) {
   return out + '"';
 }
 
-CsvFormat::CsvFormat(const CompiledModel& model) {
-  const auto vocabulary = vocabulary_of(model);
-  fluents_ = atoms_of(vocabulary.fluents);
-  released_ = atoms_of(vocabulary.releasable);
-  events_ = atoms_of(vocabulary.events);
-  predicates_ = atoms_of(vocabulary.predicates);
-}
+CsvFormat::CsvFormat(const CompiledModel& model) : vocabulary_(vocabulary_of(model)) {}
 
 std::string CsvFormat::begin() {
   std::string row = "trace,time";
-  for (const auto& name : fluents_) row += ',' + csv_field(name);
-  for (const auto& name : released_) row += ',' + csv_field("ReleasedAt(" + name + ")");
-  for (const auto& name : events_) row += ',' + csv_field(name);
-  for (const auto& name : predicates_) row += ',' + csv_field(name);
+  append_names(vocabulary_.fluents, "", "", row);
+  append_names(vocabulary_.releasable, "ReleasedAt(", ")", row);
+  append_names(vocabulary_.events, "", "", row);
+  append_names(vocabulary_.predicates, "", "", row);
   return row + "\r\n";
 }
 
@@ -56,21 +62,22 @@ std::string CsvFormat::trace(const Trace& trace) {
   for (std::size_t t = 0; t < trace.points.size(); ++t) {
     const auto& point = trace.points[t];
     out += std::to_string(trace.number) + ',' + std::to_string(t);
-    append_bits(fluents_, point.holds, out);
-    append_bits(released_, point.released, out);
+    append_bits(vocabulary_.fluents, point.holds, out);
+    append_bits(vocabulary_.releasable, point.released, out);
     if (t + 1 < trace.points.size()) {
-      append_bits(events_, point.happens, out);
+      append_bits(vocabulary_.events, point.happens, out);
     } else {
-      out.append(events_.size(), ',');
+      out.append(count(vocabulary_.events), ',');
     }
-    append_bits(predicates_, trace.predicates, out);
+    append_predicates(vocabulary_.predicates, trace.predicates, out);
     out += "\r\n";
   }
   return out;
 }
 
 std::string CsvFormat::end(const ListEnd& end) {
-  const auto columns = fluents_.size() + released_.size() + events_.size() + predicates_.size();
+  const auto columns = count(vocabulary_.fluents) + count(vocabulary_.releasable) +
+                       count(vocabulary_.events) + count(vocabulary_.predicates);
   auto row = csv_field("# " + end.exploration + end.remark + ": " + std::to_string(end.traces) +
                        (end.traces == 1 ? " trace" : " traces"));
   return row.append(columns + 1, ',') + "\r\n";

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "runtime/trace/trace_format.h"
+#include "runtime/trace/vocabulary.h"
 
 namespace parallax::runtime {
 
@@ -19,7 +20,8 @@ class CsvFormat final : public ListFormat {
   std::string end(const ListEnd& end) override;
 
  private:
-  std::vector<std::string> fluents_, released_, events_, predicates_;
+  /// By symbol, in the order of the columns.
+  Vocabulary vocabulary_;
 };
 
 /// A field as RFC 4180 asks: quoted where it holds a comma, a quote or a line end.

@@ -13,8 +13,6 @@ using compiler::AtomKind;
 
 namespace {
 
-using Names = std::vector<std::string>;
-
 /// The program of 2005 puts a blank behind every comma.
 std::string spaced(std::string_view name) {
   std::string out;
@@ -23,10 +21,6 @@ std::string spaced(std::string_view name) {
     if (c == ',') out += ' ';
   }
   return out;
-}
-
-bool contains(const Names& sorted, const std::string& name) {
-  return std::binary_search(sorted.begin(), sorted.end(), name);
 }
 
 std::string timed(std::string_view predicate, std::string_view name, Timepoint t) {
@@ -70,27 +64,29 @@ std::optional<Timepoint> last_number(std::string_view name) {
 DecreasonerFormat::DecreasonerFormat(const CompiledModel& model, const DecreasonerOptions& options)
     : options_(options), holds_(static_cast<std::size_t>(model.horizon) + 1) {
   collect(model);
-  for (auto& names : holds_) std::sort(names.begin(), names.end());
+  for (auto& fluents : holds_) std::sort(fluents.begin(), fluents.end());
   std::sort(propositions_.begin(), propositions_.end(),
             [](const Proposition& a, const Proposition& b) { return a.line < b.line; });
 }
 
 void DecreasonerFormat::collect(const CompiledModel& model) {
   const auto silent = unmentioned(model);
-  const auto add = [&](AtomKind kind, const std::string& name, std::optional<Timepoint> time) {
-    propositions_.push_back({kind, name, time, line_of(kind, name, time)});
+  const auto add = [&](AtomKind kind, const std::string& name, std::size_t number,
+                       std::optional<Timepoint> time) {
+    propositions_.push_back(
+        {kind, name, static_cast<std::uint32_t>(number), time, line_of(kind, name, time)});
   };
   model.for_each_atom([&](const compiler::AtomRef& atom) {
     if (silent[static_cast<std::size_t>(atom.variable)]) return;
     switch (atom.kind) {
       case AtomKind::kHoldsAt:
-        holds_[static_cast<std::size_t>(*atom.time)].push_back(atom.name);
-        add(atom.kind, atom.name, atom.time);
+        holds_[static_cast<std::size_t>(*atom.time)].push_back(atom.fluent());
+        add(atom.kind, atom.name, atom.number, atom.time);
         break;
       case AtomKind::kHappens:
       case AtomKind::kReleasedAt:
       case AtomKind::kPredicate:
-        add(atom.kind, atom.name, atom.time);
+        add(atom.kind, atom.name, atom.number, atom.time);
         break;
       case AtomKind::kLocation:
       case AtomKind::kHit:
@@ -106,11 +102,13 @@ void DecreasonerFormat::collect(const CompiledModel& model) {
   // Fluents that nothing releases have no variable here; there, inertia mentions their release.
   for (Timepoint t = 0; t <= model.horizon; ++t) {
     for (std::size_t f = 0; f < model.fluents.size(); ++f) {
-      if (!model.release_slots[f]) add(AtomKind::kReleasedAt, model.fluents[f].name, t);
+      if (!model.release_slots[f]) add(AtomKind::kReleasedAt, model.fluents[f].name, f, t);
     }
   }
   if (!options_.events_completed) return;
-  for (const auto& event : model.events) add(AtomKind::kHappens, event.name, model.horizon);
+  for (std::size_t e = 0; e < model.events.size(); ++e) {
+    add(AtomKind::kHappens, model.events[e].name, e, model.horizon);
+  }
 }
 
 bool DecreasonerFormat::is_true(const Trace& trace, const Proposition& proposition) {
@@ -120,9 +118,11 @@ bool DecreasonerFormat::is_true(const Trace& trace, const Proposition& propositi
   const auto t = static_cast<std::size_t>(proposition.time.value_or(0));
   if (t >= trace.points.size()) return false;
   const auto& point = trace.points[t];
-  if (proposition.kind == AtomKind::kHoldsAt) return contains(point.holds, proposition.name);
-  if (proposition.kind == AtomKind::kHappens) return contains(point.happens, proposition.name);
-  return contains(point.released, proposition.name);
+  if (proposition.kind == AtomKind::kHappens) {
+    return contains(point.happens, compiler::EventId(proposition.number));
+  }
+  const auto& fluents = proposition.kind == AtomKind::kHoldsAt ? point.holds : point.released;
+  return contains(fluents, compiler::FluentId(proposition.number));
 }
 
 /// What was true and is no more, then what was false and is true; of the first timepoint all that
@@ -130,15 +130,16 @@ bool DecreasonerFormat::is_true(const Trace& trace, const Proposition& propositi
 void DecreasonerFormat::append_changes(const Trace& trace, std::size_t t, Lines& out) const {
   const auto& now = trace.points[t].holds;
   Lines gone, come;
-  for (const auto& name : now) {
-    if (t == 0) come.push_back(spaced(name) + '.');
-    if (t == 0 || contains(trace.points[t - 1].holds, name)) continue;
+  const auto name = [&](compiler::FluentId id) { return spaced(trace.symbols->name(id)) + '.'; };
+  for (const auto id : now) {
+    if (t == 0) come.push_back(name(id));
+    if (t == 0 || contains(trace.points[t - 1].holds, id)) continue;
     // A fluent without a proposition at the timepoint before is not said to begin.
-    if (contains(holds_[t - 1], name)) come.push_back('+' + spaced(name) + '.');
+    if (contains(holds_[t - 1], id)) come.push_back('+' + name(id));
   }
   if (t > 0) {
-    for (const auto& name : trace.points[t - 1].holds) {
-      if (!contains(now, name)) gone.push_back('-' + spaced(name) + '.');
+    for (const auto id : trace.points[t - 1].holds) {
+      if (!contains(now, id)) gone.push_back('-' + name(id));
     }
   }
   append_sorted(std::move(gone), out);
@@ -194,7 +195,7 @@ Lines DecreasonerFormat::lines(const Trace& trace) const {
       append_state(trace, t, out);
     }
     Lines events;
-    for (const auto& name : trace.points[t].happens) {
+    for (const auto name : trace.happens(t)) {
       events.push_back(timed("Happens", name, static_cast<Timepoint>(t)) + '.');
     }
     append_sorted(std::move(events), out);

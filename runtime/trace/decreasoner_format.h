@@ -36,6 +36,7 @@ class DecreasonerFormat final : public ListFormat {
   struct Proposition {
     compiler::AtomKind kind;
     std::string name;
+    std::uint32_t number = 0;  // of the fluent or event
     std::optional<Timepoint> time;
     std::string line;  // "Happens(Go(a, b), 3)"
   };
@@ -48,8 +49,9 @@ class DecreasonerFormat final : public ListFormat {
   bool is_shown_with_time(const Proposition& proposition, Timepoint length) const;
 
   DecreasonerOptions options_;
-  std::vector<Proposition> propositions_;        // sorted by line
-  std::vector<std::vector<std::string>> holds_;  // by timepoint: fluents with a proposition, sorted
+  std::vector<Proposition> propositions_;  // sorted by line
+  /// By timepoint: fluents with a proposition, ascending.
+  std::vector<std::vector<compiler::FluentId>> holds_;
   std::int64_t printed_ = 0;
   Lines last_;  // for model_diff
 };

@@ -39,8 +39,6 @@ std::string join_atom(const AtomText& parts) {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Names = std::vector<std::string>;
-
 constexpr const char* kDescription = "https://apalache.informal.systems/docs/adr/015adr-trace.html";
 constexpr std::int64_t kLargestInteger = (std::int64_t{1} << 53U) - 1;
 
@@ -64,18 +62,24 @@ Json tuple(const std::string& atom) {
   return Json{{"#tup", std::move(values)}};
 }
 
-Json map_of(const SymbolInstances& symbol, const Names& truths) {
+/// `is_true(i)`: of the symbol's atom i.
+template <typename IsTrue>
+Json map_of(const SymbolInstances& symbol, const IsTrue& is_true) {
   auto pairs = Json::array();
-  for (const auto& atom : symbol.atoms) {
-    pairs.push_back(
-        Json::array({tuple(atom), std::binary_search(truths.begin(), truths.end(), atom)}));
+  for (std::size_t i = 0; i < symbol.atoms.size(); ++i) {
+    pairs.push_back(Json::array({tuple(symbol.atoms[i]), is_true(i)}));
   }
   return Json{{"#map", std::move(pairs)}};
 }
 
+Json map_of_fluents(const SymbolInstances& symbol, const std::vector<compiler::FluentId>& truths) {
+  return map_of(symbol,
+                [&](std::size_t i) { return contains(truths, compiler::FluentId(symbol.ids[i])); });
+}
+
 std::string joined(const Names& events) {
   std::string out;
-  for (const auto& event : events) out += (out.empty() ? "" : "+") + event;
+  for (const auto event : events) out.append(out.empty() ? "" : "+").append(event);
   return out;
 }
 
@@ -87,12 +91,14 @@ std::string ending(const ListEnd& end) {
 }
 
 /// By event symbol, an option as Quint writes it: `None`, or `Some` set of argument tuples.
-Json picks(const std::vector<SymbolInstances>& symbols, const Names& happened) {
+Json picks(const std::vector<SymbolInstances>& symbols,
+           const std::vector<compiler::EventId>& happened) {
   auto out = Json::object();
   for (const auto& symbol : symbols) {
     auto tuples = Json::array();
-    for (const auto& atom : symbol.atoms) {
-      if (std::binary_search(happened.begin(), happened.end(), atom)) tuples.push_back(tuple(atom));
+    for (std::size_t i = 0; i < symbol.atoms.size(); ++i) {
+      if (!contains(happened, compiler::EventId(symbol.ids[i]))) continue;
+      tuples.push_back(tuple(symbol.atoms[i]));
     }
     out[symbol.symbol] = tuples.empty()
                              ? Json{{"tag", "None"}, {"value", {{"#tup", Json::array()}}}}
@@ -135,12 +141,13 @@ std::string ItfFormat::vars() const {
 }
 
 std::string ItfFormat::state(const Trace& trace, std::size_t t) const {
-  static const Names kNone;
+  static const std::vector<compiler::EventId> kNone;
   const auto& point = trace.points[t];
   const auto& happened = t > 0 ? trace.points[t - 1].happens : kNone;
+  const auto names = t > 0 ? trace.happens(t - 1) : Names();
   auto events = Json::array();
-  for (const auto& event : happened) {
-    const auto parts = split_atom(event).value_or(AtomText{event, {}});
+  for (const auto event : names) {
+    const auto parts = split_atom(event).value_or(AtomText{std::string(event), {}});
     Json entry = {{"event", parts.symbol}, {"arguments", parts.arguments}};
     const auto step = trace.points[t - 1].plan_step;
     const bool planned = step && model_->plan[*step].event == event;
@@ -153,14 +160,16 @@ std::string ItfFormat::state(const Trace& trace, std::size_t t) const {
     events.push_back(std::move(entry));
   }
   Json state = {{"#meta", {{"index", t}, {"events", std::move(events)}}},
-                {kItfAction, t == 0 ? std::string(kItfInit) : joined(happened)},
+                {kItfAction, t == 0 ? std::string(kItfInit) : joined(names)},
                 {kItfPicks, picks(vocabulary_.events, happened)}};
-  for (const auto& symbol : vocabulary_.fluents) state[symbol.symbol] = map_of(symbol, point.holds);
+  for (const auto& symbol : vocabulary_.fluents)
+    state[symbol.symbol] = map_of_fluents(symbol, point.holds);
   for (const auto& symbol : vocabulary_.releasable) {
-    state[std::string(kItfReleased) + symbol.symbol] = map_of(symbol, point.released);
+    state[std::string(kItfReleased) + symbol.symbol] = map_of_fluents(symbol, point.released);
   }
   for (const auto& symbol : vocabulary_.predicates) {
-    state[std::string(kItfPredicate) + symbol.symbol] = map_of(symbol, trace.predicates);
+    state[std::string(kItfPredicate) + symbol.symbol] =
+        map_of(symbol, [&](std::size_t i) { return contains(trace.predicates, symbol.atoms[i]); });
   }
   return dumped(state);
 }

@@ -1,15 +1,41 @@
 #include "runtime/trace/trace.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace parallax::runtime {
 
 using compiler::AtomKind;
 using compiler::Literal;
 
-Trace decode_trace(const CompiledModel& model, Timepoint length,
+namespace {
+
+template <typename Id>
+Names sorted(const compiler::SymbolTable& symbols, std::span<const Id> ids) {
+  Names names;
+  names.reserve(ids.size());
+  for (const auto id : ids) names.push_back(symbols.name(id));
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace
+
+Symbols symbols_of(const CompiledModel& model) {
+  return std::make_shared<const compiler::SymbolTable>(model);
+}
+
+Names sorted_names(const compiler::SymbolTable& symbols, std::span<const compiler::FluentId> ids) {
+  return sorted(symbols, ids);
+}
+Names sorted_names(const compiler::SymbolTable& symbols, std::span<const compiler::EventId> ids) {
+  return sorted(symbols, ids);
+}
+
+Trace decode_trace(const CompiledModel& model, Symbols symbols, Timepoint length,
                    const std::function<bool(Literal)>& value) {
   Trace trace;
+  trace.symbols = std::move(symbols);
   trace.points.resize(static_cast<std::size_t>(length) + 1);
   model.for_each_atom([&](const compiler::AtomRef& atom) {
     if (atom.time.value_or(0) + (atom.kind == AtomKind::kHappens ? 1 : 0) > length) return;
@@ -22,13 +48,13 @@ Trace decode_trace(const CompiledModel& model, Timepoint length,
     auto& point = trace.points[time];
     switch (atom.kind) {
       case AtomKind::kHoldsAt:
-        point.holds.push_back(atom.name);
+        point.holds.push_back(atom.fluent());
         break;
       case AtomKind::kHappens:
-        point.happens.push_back(atom.name);
+        point.happens.push_back(atom.event());
         break;
       case AtomKind::kReleasedAt:
-        point.released.push_back(atom.name);
+        point.released.push_back(atom.fluent());
         break;
       case AtomKind::kLocation:
         // A choice that is taken here says nothing of the step.
@@ -58,7 +84,7 @@ Trace decode_trace(const CompiledModel& model, Timepoint length,
         break;
     }
   });
-  for (auto& point : trace.points) {
+  for (auto& point : trace.points) {  // in any order of the model's variables
     std::sort(point.holds.begin(), point.holds.end());
     std::sort(point.happens.begin(), point.happens.end());
     std::sort(point.released.begin(), point.released.end());
@@ -70,7 +96,7 @@ Trace decode_trace(const CompiledModel& model, Timepoint length,
 std::string event_key(const Trace& trace) {
   std::string key;
   for (std::size_t t = 0; t + 1 < trace.points.size(); ++t) {
-    const auto& happens = trace.points[t].happens;
+    const auto happens = trace.happens(t);
     for (std::size_t i = 0; i < happens.size(); ++i) {
       if (i > 0) key += '+';
       key += happens[i];

@@ -1,13 +1,18 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/artifact/compiled_model.h"
+#include "compiler/artifact/symbol_table.h"
 #include "compiler/base/known.h"
 
 namespace parallax::runtime {
@@ -15,11 +20,27 @@ namespace parallax::runtime {
 using compiler::CompiledModel;
 using compiler::Timepoint;
 
-/// The atoms that are true at one timepoint, sorted by bytes.
+/// The symbols that the ids of a trace stand for. Shared, because a trace outlives the source that
+/// found it and often the model, and all traces of a source have the same.
+using Symbols = std::shared_ptr<const compiler::SymbolTable>;
+Symbols symbols_of(const CompiledModel& model);
+
+/// Printed names, sorted by bytes: views into a symbol table.
+using Names = std::vector<std::string_view>;
+Names sorted_names(const compiler::SymbolTable& symbols, std::span<const compiler::FluentId> ids);
+Names sorted_names(const compiler::SymbolTable& symbols, std::span<const compiler::EventId> ids);
+
+/// Is the id among these, which are ascending?
+template <typename Id>
+bool contains(const std::vector<Id>& ids, Id id) {
+  return std::binary_search(ids.begin(), ids.end(), id);
+}
+
+/// What is true at one timepoint: ids, ascending.
 struct TracePoint {
-  std::vector<std::string> holds;
-  std::vector<std::string> happens;
-  std::vector<std::string> released;
+  std::vector<compiler::FluentId> holds;
+  std::vector<compiler::EventId> happens;
+  std::vector<compiler::FluentId> released;
   /// The plan's step that is performed here: an index into CompiledModel::plan.
   std::optional<std::size_t> plan_step;
   /// Did that step succeed? If it is one that returns something, what it returned.
@@ -32,6 +53,7 @@ struct TracePoint {
 /// One execution trace: timepoints 0 .. length, events at 0 .. length - 1.
 struct Trace {
   std::int64_t number = 0;  // from 1, in the order of enumeration
+  Symbols symbols;          // of the ids in `points`; null only where there are none
   std::vector<TracePoint> points;
   std::vector<std::string> predicates;  // true atoms of user predicates, sorted
   /// Do other initial states lead to the same events? This one is the first in canonical order.
@@ -39,10 +61,21 @@ struct Trace {
   /// Can the same events from the same initial state also end in other states?
   base::Known other_outcomes = base::Known::kNo;
   Timepoint length() const { return static_cast<Timepoint>(points.size()) - 1; }
+
+  Names holds(std::size_t t) const { return names(points[t].holds); }
+  Names happens(std::size_t t) const { return names(points[t].happens); }
+  Names released(std::size_t t) const { return names(points[t].released); }
+
+ private:
+  template <typename Id>
+  Names names(const std::vector<Id>& ids) const {
+    return ids.empty() ? Names() : sorted_names(*symbols, ids);
+  }
 };
 
-/// Reads a trace of the given length from a valuation of the model's variables.
-Trace decode_trace(const CompiledModel& model, Timepoint length,
+/// Reads a trace of the given length from a valuation of the model's variables. `symbols` are the
+/// model's.
+Trace decode_trace(const CompiledModel& model, Symbols symbols, Timepoint length,
                    const std::function<bool(compiler::Literal)>& value);
 
 /// The events of the trace, in order, as one stable text: `Go(r2);PickUp();` (several events of one

@@ -18,7 +18,8 @@ class TraceFormat {
   /// What introduces timepoint t.
   virtual std::string introduction(Timepoint t) const = 0;
   /// One timepoint, independent of its number; `before` is the timepoint before, null at 0.
-  virtual std::string point(const TracePoint* before, const TracePoint& point) const = 0;
+  virtual std::string point(const compiler::SymbolTable& symbols, const TracePoint* before,
+                            const TracePoint& point) const = 0;
   /// What comes after the last timepoint, with the end of the line.
   virtual std::string tail(const std::vector<std::string>& predicates) const = 0;
 };

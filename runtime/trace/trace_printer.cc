@@ -8,10 +8,9 @@
 namespace parallax::runtime {
 namespace {
 
-using Names = std::vector<std::string>;
-
-Names only_in(const Names& a, const Names& b) {
-  Names out;
+template <typename Id>
+std::vector<Id> only_in(const std::vector<Id>& a, const std::vector<Id>& b) {
+  std::vector<Id> out;
   std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(out));
   return out;
 }
@@ -28,7 +27,8 @@ void append(std::string& out, std::string_view mark, const Names& names) {
 bool is_plain(char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; }
 
 /// `["A","B"]`; atoms are names and numbers, but a name in the text may need escapes.
-std::string json_list(const Names& names) {
+template <typename Text>
+std::string json_list(const std::vector<Text>& names) {
   std::string out = "[";
   for (const auto& name : names) {
     if (out.size() > 1) out += ',';
@@ -45,19 +45,20 @@ class TextFormat final : public TraceFormat {
  public:
   std::string head(const std::string& number) const override { return "trace " + number + '\n'; }
   std::string introduction(Timepoint t) const override { return "  " + std::to_string(t) + '\n'; }
-  std::string point(const TracePoint* before, const TracePoint& point) const override {
+  std::string point(const compiler::SymbolTable& symbols, const TracePoint* before,
+                    const TracePoint& point) const override {
     std::string out;
     if (before == nullptr) {
-      append(out, "  ", point.holds);
+      append(out, "  ", sorted_names(symbols, point.holds));
     } else {
-      append(out, "- ", only_in(before->holds, point.holds));
-      append(out, "+ ", only_in(point.holds, before->holds));
+      append(out, "- ", sorted_names(symbols, only_in(before->holds, point.holds)));
+      append(out, "+ ", sorted_names(symbols, only_in(point.holds, before->holds)));
     }
-    append(out, "> ", point.happens);
+    append(out, "> ", sorted_names(symbols, point.happens));
     if (point.returned) append(out, "= ", {*point.returned});
     return out;
   }
-  std::string tail(const Names&) const override { return ""; }
+  std::string tail(const std::vector<std::string>&) const override { return ""; }
 };
 
 class JsonlFormat final : public TraceFormat {
@@ -68,12 +69,14 @@ class JsonlFormat final : public TraceFormat {
   std::string introduction(Timepoint t) const override {
     return (t == 0 ? "{\"time\":" : ",{\"time\":") + std::to_string(t);
   }
-  std::string point(const TracePoint*, const TracePoint& point) const override {
-    return ",\"happens\":" + json_list(point.happens) + ",\"holds\":" + json_list(point.holds) +
-           ",\"released\":" + json_list(point.released) +
+  std::string point(const compiler::SymbolTable& symbols, const TracePoint*,
+                    const TracePoint& point) const override {
+    return ",\"happens\":" + json_list(sorted_names(symbols, point.happens)) +
+           ",\"holds\":" + json_list(sorted_names(symbols, point.holds)) +
+           ",\"released\":" + json_list(sorted_names(symbols, point.released)) +
            (point.returned ? ",\"returned\":" + nlohmann::json(*point.returned).dump() : "") + '}';
   }
-  std::string tail(const Names& predicates) const override {
+  std::string tail(const std::vector<std::string>& predicates) const override {
     return "],\"predicates\":" + json_list(predicates) + "}\n";
   }
 };
@@ -91,12 +94,14 @@ const TraceFormat& jsonl_format() {
 }
 
 std::string format_trace(const TraceFormat& format, const Trace& trace) {
+  static const compiler::SymbolTable kNoSymbols;
+  const auto& symbols = trace.symbols == nullptr ? kNoSymbols : *trace.symbols;
   auto out = format.head(std::to_string(trace.number));
   const TracePoint* before = nullptr;
   Timepoint t = 0;
   for (const auto& point : trace.points) {
     out += format.introduction(t++);
-    out += format.point(before, point);
+    out += format.point(symbols, before, point);
     before = &point;
   }
   return out + format.tail(trace.predicates);

@@ -14,6 +14,7 @@ namespace parallax::runtime {
 struct SymbolInstances {
   std::string symbol;
   std::vector<std::string> atoms;  // printed
+  std::vector<std::uint32_t> ids;  // of the fluent or event; of predicates the place among all
 };
 
 /// The names that traces of a model are written with.

@@ -6,6 +6,7 @@
 #include "compiler/sema/check.h"
 #include "compiler/syntax/loader.h"
 #include "runtime/enumerate/model_enumerator.h"
+#include "tools/app/trace_valuation.h"
 
 namespace parallax::test {
 
@@ -107,14 +108,7 @@ TraceList enumerated_traces(const compiler::CompiledModel& model, std::size_t li
       list.complete = enumerator.exhausted();
       break;
     }
-    Valuation valuation;
-    for (const auto& point : trace->points) {
-      valuation.holds.emplace_back(point.holds.begin(), point.holds.end());
-      valuation.happens.emplace_back(point.happens.begin(), point.happens.end());
-      valuation.released.emplace_back(point.released.begin(), point.released.end());
-    }
-    valuation.predicates.insert(trace->predicates.begin(), trace->predicates.end());
-    list.traces.push_back(std::move(valuation));
+    list.traces.push_back(tools::valuation_of(*trace));
   }
   return list;
 }

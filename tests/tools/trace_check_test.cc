@@ -15,13 +15,19 @@ constexpr const char* kModel =
     "range time 0 1\nfluent On()\nevent Press()\n[time] Initiates(Press(),On(),time).\n"
     "!HoldsAt(On(),0).\n";
 
-runtime::Trace trace_of(std::vector<std::string> first_events,
-                        std::vector<std::string> last_state) {
+runtime::Trace trace_of(const std::vector<std::string>& first_events,
+                        const std::vector<std::string>& last_state,
+                        const std::vector<std::string>& first_state = {}) {
+  const auto symbols = std::make_shared<compiler::SymbolTable>();
   runtime::Trace trace;
+  trace.symbols = symbols;
   trace.number = 7;
   trace.points.resize(2);
-  trace.points[0].happens = std::move(first_events);
-  trace.points[1].holds = std::move(last_state);
+  for (const auto& event : first_events) {
+    trace.points[0].happens.push_back(symbols->add_event(event));
+  }
+  for (const auto& name : first_state) trace.points[0].holds.push_back(symbols->add_fluent(name));
+  for (const auto& name : last_state) trace.points[1].holds.push_back(symbols->add_fluent(name));
   return trace;
 }
 
@@ -47,9 +53,7 @@ TEST_CASE("further violations of one trace are notes") {
   TextModel model(kModel);
   REQUIRE(model.typed != nullptr);
   tools::TraceCheck check(*model.typed, nullptr, model.sink);
-  auto trace = trace_of({}, {});
-  trace.points[0].holds = {"On()"};
-  check.check(trace);
+  check.check(trace_of({}, {}, {"On()"}));
   REQUIRE(model.codes() == "E7201");
   const auto diagnostic = model.sink.sorted().front();
   REQUIRE(diagnostic.notes.size() == 1);

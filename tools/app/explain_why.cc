@@ -292,16 +292,15 @@ std::optional<ValuedTrace> value(const compiler::CompiledModel& model, const run
     const auto& [kind, time] = std::tie(atom.kind, atom.time);
     const auto t = time.value_or(0) + (kind == AtomKind::kHappens ? 1 : 0);
     if (t > trace.length()) return;
-    const auto has = [&](const std::vector<std::string>& names) {
-      const bool is_true = std::binary_search(names.begin(), names.end(), atom.name);
+    const auto say = [&](bool is_true) {
       assumptions.push_back(is_true ? atom.literal() : ~atom.literal());
     };
-    if (kind == AtomKind::kPredicate && !time) has(trace.predicates);
+    if (kind == AtomKind::kPredicate && !time) say(runtime::contains(trace.predicates, atom.name));
     if (!time) return;
     const auto& point = trace.points[static_cast<std::size_t>(*time)];
-    if (kind == AtomKind::kHoldsAt) has(point.holds);
-    if (kind == AtomKind::kHappens) has(point.happens);
-    if (kind == AtomKind::kReleasedAt) has(point.released);
+    if (kind == AtomKind::kHoldsAt) say(runtime::contains(point.holds, atom.fluent()));
+    if (kind == AtomKind::kHappens) say(runtime::contains(point.happens, atom.event()));
+    if (kind == AtomKind::kReleasedAt) say(runtime::contains(point.released, atom.fluent()));
   });
   if (session.solve(trace.length(), assumptions) != runtime::SolveStatus::kSatisfiable) {
     return std::nullopt;

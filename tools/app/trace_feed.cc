@@ -98,7 +98,11 @@ std::vector<std::string> EnumeratedTraces::bounds() const {
 base::Known EnumeratedTraces::admits(const harness::CampaignTrace& trace,
                                      const std::map<std::string, bool>& last_state) {
   PARALLAX_REQUIRE(trace.number == current_.number, "only the trace given last is asked about");
-  return enumerator_->admits(current_, last_state);
+  std::map<compiler::FluentId, bool> ids;
+  for (const auto& [name, holds] : last_state) {
+    if (const auto fluent = enumerator_->symbols()->fluent(name)) ids.emplace(*fluent, holds);
+  }
+  return enumerator_->admits(current_, ids);
 }
 
 /// Of a search that came to its end: that nothing meets the constraints is proved.
@@ -119,11 +123,13 @@ base::Result<harness::CampaignTrace> EnumeratedTraces::convert(const runtime::Tr
   out.number = trace.number;
   out.key = runtime::event_key(trace);
   // Traces of the same events are told apart by where they start.
-  if (split_initial_)
-    out.key += fmt::format(" from {}", fmt::join(trace.points.front().holds, ";"));
+  if (split_initial_) out.key += fmt::format(" from {}", fmt::join(trace.holds(0), ";"));
   out.other_initial_states = trace.other_initial_states == base::Known::kYes;
   out.other_outcomes = trace.other_outcomes == base::Known::kYes;
-  for (const auto& point : trace.points) out.holds.push_back(point.holds);
+  for (std::size_t t = 0; t < trace.points.size(); ++t) {
+    const auto names = trace.holds(t);
+    out.holds.emplace_back(names.begin(), names.end());
+  }
   for (std::size_t t = 0; t + 1 < trace.points.size(); ++t) {
     const auto& point = trace.points[t];
     if (point.happens.size() != 1) {
@@ -132,7 +138,7 @@ base::Result<harness::CampaignTrace> EnumeratedTraces::convert(const runtime::Tr
                                     point.happens.size(), t);
     }
     harness::TraceEvent event;
-    const auto term = harness::ground_fluent(point.happens.front());
+    const auto term = harness::ground_fluent(trace.symbols->name(point.happens.front()));
     event.text = term.text;
     event.symbol = term.symbol;
     event.arguments = term.arguments;

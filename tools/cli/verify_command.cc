@@ -99,10 +99,11 @@ struct PerformedStep {
 };
 
 std::vector<PerformedStep> steps_at(const compiler::CompiledModel& model,
-                                    const runtime::TracePoint& point) {
+                                    const runtime::Trace& trace, std::size_t t) {
+  const auto& point = trace.points[t];
   std::vector<PerformedStep> out;
-  for (const auto& event : point.happens) {
-    PerformedStep step{event, {}, {}};
+  for (const auto event : trace.happens(t)) {
+    PerformedStep step{std::string(event), {}, {}};
     if (point.plan_step) {
       const auto& performed = model.plan[*point.plan_step];
       const auto symbol = performed.event.substr(0, performed.event.find('('));
@@ -120,7 +121,7 @@ std::vector<PerformedStep> steps_at(const compiler::CompiledModel& model,
 std::string trace_text(const compiler::CompiledModel& model, const runtime::Trace& trace) {
   std::string out = runtime::to_text(trace) + "performed\n";
   for (std::size_t t = 0; t + 1 < trace.points.size(); ++t) {
-    for (const auto& step : steps_at(model, trace.points[t])) {
+    for (const auto& step : steps_at(model, trace, t)) {
       out += fmt::format("  {} {}", t, step.event);
       if (!step.place.empty()) out += fmt::format(" at {}, {}", step.place, step.outcome);
       out += '\n';
@@ -156,7 +157,7 @@ std::string answer_json(const compiler::CompiledModel& model, const Answer& answ
     out["timepoint"] = answer.violation->length();
     auto performed = nlohmann::ordered_json::array();
     for (std::size_t t = 0; t + 1 < answer.violation->points.size(); ++t) {
-      for (const auto& step : steps_at(model, answer.violation->points[t])) {
+      for (const auto& step : steps_at(model, *answer.violation, t)) {
         performed.push_back({{"time", t}, {"event", step.event}});
         if (step.place.empty()) continue;
         performed.back()["place"] = step.place;

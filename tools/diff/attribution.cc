@@ -45,8 +45,15 @@ base::Known admits(const CompiledModel& model, const runtime::Trace& trace,
   for (const auto& atom : vocabulary.shared) {
     const auto& name = vocabulary.names[atom.name];
     const auto& point = trace.points[static_cast<std::size_t>(atom.time)];
-    const auto& names = atom.kind == AtomKind::kHoldsAt ? point.holds : point.happens;
-    const bool is_true = std::binary_search(names.begin(), names.end(), name);
+    // The trace is of another model: it has ids of its own.
+    bool is_true = false;
+    if (atom.kind == AtomKind::kHoldsAt) {
+      const auto fluent = trace.symbols->fluent(name);
+      is_true = fluent && runtime::contains(point.holds, *fluent);
+    } else {
+      const auto event = trace.symbols->event(name);
+      is_true = event && runtime::contains(point.happens, *event);
+    }
     const auto literal = index.find(atom.kind, name, atom.time);
     if (!literal && is_true) return base::Known::kNo;
     if (literal) observation.push_back(is_true ? *literal : ~*literal);

@@ -15,7 +15,8 @@ namespace {
 
 using SortedJson = nlohmann::json;
 using Names = std::vector<std::string>;
-using Step = std::pair<Names, Names>;  // what happens before a timepoint, what holds at it
+/// What happens before a timepoint, what holds at it: by name, because two files are compared.
+using Step = std::pair<runtime::Names, runtime::Names>;
 
 /// What one line of a file says, or why it is no line of ours.
 class LineReader {
@@ -39,15 +40,20 @@ class LineReader {
     }
     runtime::Trace trace;
     trace.number = static_cast<std::int64_t>(out_.traces.size()) + 1;
+    trace.symbols = symbols_;
     for (const auto& point : *points) {
-      auto& read = trace.points.emplace_back();
+      Names holds, happens;
       for (const auto& [key, names] :
-           {std::pair("holds", &read.holds), std::pair("happens", &read.happens)}) {
+           {std::pair("holds", &holds), std::pair("happens", &happens)}) {
         if (!read_names(point, key, *names)) {
-          return fmt::format("`{}` of timepoint {} is no list of names", key,
-                             trace.points.size() - 1);
+          return fmt::format("`{}` of timepoint {} is no list of names", key, trace.points.size());
         }
       }
+      auto& read = trace.points.emplace_back();
+      for (const auto& name : holds) read.holds.push_back(symbols_->add_fluent(name));
+      for (const auto& name : happens) read.happens.push_back(symbols_->add_event(name));
+      std::sort(read.holds.begin(), read.holds.end());
+      std::sort(read.happens.begin(), read.happens.end());
     }
     out_.traces.push_back(std::move(trace));
     return {};
@@ -69,14 +75,15 @@ class LineReader {
   }
 
   TraceSet& out_;
+  std::shared_ptr<compiler::SymbolTable> symbols_ = std::make_shared<compiler::SymbolTable>();
 };
 
 std::vector<Step> steps_of(const runtime::Trace& trace) {
   std::vector<Step> steps;
-  Names before;
-  for (const auto& point : trace.points) {
-    steps.emplace_back(before, point.holds);
-    before = point.happens;
+  runtime::Names before;
+  for (std::size_t t = 0; t < trace.points.size(); ++t) {
+    steps.emplace_back(std::move(before), trace.holds(t));
+    before = trace.happens(t);
   }
   return steps;
 }

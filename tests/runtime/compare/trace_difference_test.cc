@@ -43,11 +43,14 @@ class FullLists {
   std::string key(const runtime::Trace& trace, Timepoint n) const {
     std::string out;
     for (Timepoint t = 0; t <= n; ++t) {
-      const auto& point = trace.points[static_cast<std::size_t>(t)];
-      for (const auto& name : point.holds) out += names_.contains(name) ? name + ' ' : "";
+      const auto at = static_cast<std::size_t>(t);
+      const auto add = [&](std::string_view name) {
+        if (names_.contains(std::string(name))) out.append(name).append(" ");
+      };
+      for (const auto name : trace.holds(at)) add(name);
       out += '|';
-      for (const auto& name : point.happens) {
-        if (t < n && names_.contains(name)) out += name + ' ';
+      for (const auto name : trace.happens(at)) {
+        if (t < n) add(name);
       }
       out += ';';
     }
@@ -61,8 +64,8 @@ class FullLists {
   std::size_t shared_events(const runtime::Trace& trace, Timepoint before) const {
     std::size_t count = 0;
     for (Timepoint t = 0; t < before; ++t) {
-      for (const auto& name : trace.points[static_cast<std::size_t>(t)].happens) {
-        if (names_.contains(name)) ++count;
+      for (const auto name : trace.happens(static_cast<std::size_t>(t))) {
+        if (names_.contains(std::string(name))) ++count;
       }
     }
     return count;
@@ -125,8 +128,8 @@ bool allows(const CompiledModel& model, const std::set<std::uint32_t>& origins,
     const bool happens = atom.kind == compiler::AtomKind::kHappens;
     if (!happens && atom.kind != compiler::AtomKind::kHoldsAt) return;
     if (*atom.time + (happens ? 1 : 0) > by || !lists.is_shared(atom.name)) return;
-    const auto& point = trace.points[static_cast<std::size_t>(*atom.time)];
-    const auto& names = happens ? point.happens : point.holds;
+    const auto at = static_cast<std::size_t>(*atom.time);
+    const auto names = happens ? trace.happens(at) : trace.holds(at);
     const bool is_true = std::count(names.begin(), names.end(), atom.name) != 0;
     observation.push_back(is_true ? atom.literal() : ~atom.literal());
   });

@@ -196,10 +196,10 @@ std::set<Model> enumerate(const fs::path& example, const fs::path& root, bool wi
     Model model;
     for (std::size_t t = 0; t < trace->points.size(); ++t) {
       const auto at = "@" + std::to_string(t);
-      for (const auto& fluent : trace->points[t].holds) model.insert(fluent + at);
-      for (const auto& event : trace->points[t].happens) model.insert("!" + event + at);
+      for (const auto fluent : trace->holds(t)) model.insert(std::string(fluent) + at);
+      for (const auto event : trace->happens(t)) model.insert("!" + std::string(event) + at);
       if (!with_released) continue;
-      for (const auto& fluent : trace->points[t].released) model.insert("~" + fluent + at);
+      for (const auto fluent : trace->released(t)) model.insert("~" + std::string(fluent) + at);
     }
     models.insert(model);
   }

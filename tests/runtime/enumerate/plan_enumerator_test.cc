@@ -174,9 +174,11 @@ TEST_CASE("alternatives of a trace are noted, and asked about") {
   CHECK(runtime::event_key(*trace) == "Switch(a1);Go(b2);");
   CHECK(trace->other_outcomes == base::Known::kYes);  // Lit(b2) is free once the robot has come
   CHECK(trace->other_initial_states == base::Known::kYes);  // Lit(b2) at 0 is open
-  CHECK(enumerator.admits(*trace, {{"Lit(b2)", true}, {"At(b2)", true}}) == base::Known::kYes);
-  CHECK(enumerator.admits(*trace, {{"Lit(b2)", false}}) == base::Known::kYes);
-  CHECK(enumerator.admits(*trace, {{"At(a1)", true}}) == base::Known::kNo);
+  const auto fluent = [&](const char* name) { return *trace->symbols->fluent(name); };
+  CHECK(enumerator.admits(*trace, {{fluent("Lit(b2)"), true}, {fluent("At(b2)"), true}}) ==
+        base::Known::kYes);
+  CHECK(enumerator.admits(*trace, {{fluent("Lit(b2)"), false}}) == base::Known::kYes);
+  CHECK(enumerator.admits(*trace, {{fluent("At(a1)"), true}}) == base::Known::kNo);
   CHECK(!enumerator.next());
 }
 

@@ -29,7 +29,10 @@ std::vector<std::string> blocking_traces(const compiler::CompiledModel& model, s
     const auto trace = enumerator.next();
     if (!trace) break;
     auto& text = traces.emplace_back();
-    for (const auto& point : trace->points) text += text_of(point.holds, point.happens);
+    for (std::size_t t = 0; t < trace->points.size(); ++t) {
+      const auto holds = trace->holds(t), happens = trace->happens(t);
+      text += text_of({holds.begin(), holds.end()}, {happens.begin(), happens.end()});
+    }
   }
   return traces;
 }

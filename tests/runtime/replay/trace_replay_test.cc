@@ -219,7 +219,7 @@ TEST_CASE("what is left open gets values: the lamp that stays dark is broken") {
   const auto verdict = replay.replay(lamp({false, false, false}, {true, false}));
   REQUIRE(verdict.kind == Kind::kAgrees);
   CHECK(verdict.hidden == 3);
-  CHECK(verdict.completion.points[0].holds == std::vector<std::string>{"Broken()"});
+  CHECK(verdict.completion.holds(0) == runtime::Names{"Broken()"});
 }
 
 TEST_CASE("the first timepoint that fails is named, and a core of what it contradicts") {

@@ -18,7 +18,8 @@ compiler::CompiledModel one_step() {
 }
 
 runtime::Trace decoded(const compiler::CompiledModel& model) {
-  return runtime::decode_trace(model, 1, [](compiler::Literal) { return true; });
+  return runtime::decode_trace(model, runtime::symbols_of(model), 1,
+                               [](compiler::Literal) { return true; });
 }
 
 TEST_CASE("a choice that is taken at a timepoint does not hide the step that is performed there") {

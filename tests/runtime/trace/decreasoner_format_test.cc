@@ -36,9 +36,10 @@ compiler::Compilation compiled_example(const fs::path& example, const fs::path& 
 std::vector<runtime::Trace> all_models(const compiler::CompiledModel& model) {
   runtime::SolverSession session(model, runtime::make_cadical_solver());
   std::vector<runtime::Trace> found;
+  const auto symbols = runtime::symbols_of(model);
   while (session.solve(model.horizon, {}) == runtime::SolveStatus::kSatisfiable) {
     const auto value = [&](compiler::Literal literal) { return session.value(literal); };
-    found.push_back(runtime::decode_trace(model, model.horizon, value));
+    found.push_back(runtime::decode_trace(model, symbols, model.horizon, value));
     std::vector<compiler::Literal> blocking;
     model.for_each_atom([&](const compiler::AtomRef& atom) {
       const auto literal = atom.literal();

@@ -25,6 +25,29 @@ using compiler::CompiledModel;
 using runtime::Trace;
 using Names = std::vector<std::string>;
 
+/// A trace whose names are told one after the other.
+class NamedTrace {
+ public:
+  explicit NamedTrace(std::int64_t number = 0, std::size_t points = 0) {
+    trace.number = number;
+    trace.symbols = symbols_;
+    trace.points.resize(points);
+  }
+  void holds(std::size_t t, std::string_view name) {
+    trace.points[t].holds.push_back(symbols_->add_fluent(name));
+  }
+  void happens(std::size_t t, std::string_view name) {
+    trace.points[t].happens.push_back(symbols_->add_event(name));
+  }
+  void released(std::size_t t, std::string_view name) {
+    trace.points[t].released.push_back(symbols_->add_fluent(name));
+  }
+  Trace trace;
+
+ private:
+  std::shared_ptr<compiler::SymbolTable> symbols_ = std::make_shared<compiler::SymbolTable>();
+};
+
 constexpr int kTracesOfOneModel = 20;
 
 /// Trace and model in the order in which they are compared; traces are told apart by this text.
@@ -38,9 +61,7 @@ std::string atom_of(const std::string& symbol, const Names& arguments) {
 
 /// The trace that an ITF text tells, by the mapping that docs/trace_formats.md describes.
 Trace trace_of(const ItfFile& file) {
-  Trace trace;
-  trace.number = file.meta.at("trace").get<std::int64_t>();
-  trace.points.resize(file.states.size());
+  NamedTrace out(file.meta.at("trace").get<std::int64_t>(), file.states.size());
   std::set<std::string> predicates;
   for (std::size_t t = 0; t < file.states.size(); ++t) {
     for (const auto& [name, value] : file.states[t]) {
@@ -48,7 +69,7 @@ Trace trace_of(const ItfFile& file) {
       if (name == "mbt::actionTaken") {
         std::istringstream events(value.get<std::string>());
         for (std::string event; t > 0 && std::getline(events, event, '+');) {
-          trace.points[t - 1].happens.push_back(event);
+          out.happens(t - 1, event);
         }
         if (t == 0) CHECK(value == "init");
         continue;
@@ -59,19 +80,17 @@ Trace trace_of(const ItfFile& file) {
         if (!truth.get<bool>()) continue;
         const auto atom = atom_of(symbol, arguments);
         if (name.starts_with("ReleasedAt::")) {
-          trace.points[t].released.push_back(atom);
+          out.released(t, atom);
         } else if (name.starts_with("predicate::")) {
           predicates.insert(atom);
         } else {
-          trace.points[t].holds.push_back(atom);
+          out.holds(t, atom);
         }
       }
     }
-    std::sort(trace.points[t].holds.begin(), trace.points[t].holds.end());
-    std::sort(trace.points[t].released.begin(), trace.points[t].released.end());
   }
-  trace.predicates.assign(predicates.begin(), predicates.end());
-  return trace;
+  out.trace.predicates.assign(predicates.begin(), predicates.end());
+  return out.trace;
 }
 
 /// The picks of a state are its events, by symbol.
@@ -103,59 +122,56 @@ std::vector<Trace> traces_of(const std::string& csv, const CompiledModel& model)
   std::set<std::string> fluents, events;
   for (const auto& fluent : model.fluents) fluents.insert(fluent.name);
   for (const auto& event : model.events) events.insert(event.name);
-  std::vector<Trace> traces;
+  std::vector<NamedTrace> traces;
   for (std::size_t r = 1; r + 1 < records.size(); ++r) {
     const auto number = std::stoll(records[r][0]);
-    if (traces.empty() || traces.back().number != number) traces.emplace_back().number = number;
-    CHECK(records[r][1] == std::to_string(traces.back().points.size()));
-    traces.back().predicates.clear();
-    auto& point = traces.back().points.emplace_back();
+    if (traces.empty() || traces.back().trace.number != number) traces.emplace_back(number);
+    auto& out = traces.back();
+    const auto t = out.trace.points.size();
+    CHECK(records[r][1] == std::to_string(t));
+    out.trace.predicates.clear();
+    out.trace.points.emplace_back();
     for (std::size_t c = 2; c < head.size(); ++c) {
       const auto& field = records[r][c];
       CHECK((field == "0" || field == "1" || (field.empty() && events.contains(head[c]))));
       if (field != "1") continue;
       if (fluents.contains(head[c])) {
-        point.holds.push_back(head[c]);
+        out.holds(t, head[c]);
       } else if (events.contains(head[c])) {
-        point.happens.push_back(head[c]);
+        out.happens(t, head[c]);
       } else if (head[c].starts_with("ReleasedAt(")) {
-        point.released.push_back(head[c].substr(11, head[c].size() - 12));
+        out.released(t, head[c].substr(11, head[c].size() - 12));
       } else {
-        traces.back().predicates.push_back(head[c]);
+        out.trace.predicates.push_back(head[c]);
       }
     }
-    std::sort(point.holds.begin(), point.holds.end());
-    std::sort(point.happens.begin(), point.happens.end());
-    std::sort(point.released.begin(), point.released.end());
   }
-  return traces;
+  std::vector<Trace> told;
+  for (const auto& trace : traces) told.push_back(trace.trace);
+  return told;
 }
 
 /// What is claimed, as a trace; every atom must be claimed.
 Trace trace_of(const runtime::ClaimedTrace& claimed, const CompiledModel& model) {
-  Trace trace;
-  trace.number = claimed.number;
-  trace.points.resize(claimed.points.size());
-  const auto take = [](const runtime::AtomClaims& claims, const std::string& name, Names& names) {
+  NamedTrace out(claimed.number, claimed.points.size());
+  auto& trace = out.trace;
+  const auto is_true = [](const runtime::AtomClaims& claims, const std::string& name) {
     const auto value = claims.value(name);
     REQUIRE_MESSAGE(value.has_value(), name);
-    if (*value) names.push_back(name);
+    return *value;
   };
   for (std::size_t t = 0; t < claimed.points.size(); ++t) {
     const auto& point = claimed.points[t];
     for (std::size_t f = 0; f < model.fluents.size(); ++f) {
-      take(point.holds, model.fluents[f].name, trace.points[t].holds);
+      const auto& name = model.fluents[f].name;
+      if (is_true(point.holds, name)) out.holds(t, name);
       if (!model.release_slots[f]) continue;
-      take(point.released, model.fluents[f].name, trace.points[t].released);
+      if (is_true(point.released, name)) out.released(t, name);
     }
     for (const auto& event : model.events) {
-      if (t + 1 < claimed.points.size()) {
-        take(point.happens, event.name, trace.points[t].happens);
-      }
+      if (t + 1 == claimed.points.size()) continue;
+      if (is_true(point.happens, event.name)) out.happens(t, event.name);
     }
-    std::sort(trace.points[t].holds.begin(), trace.points[t].holds.end());
-    std::sort(trace.points[t].happens.begin(), trace.points[t].happens.end());
-    std::sort(trace.points[t].released.begin(), trace.points[t].released.end());
   }
   for (const auto& [name, claim] : claimed.predicates.listed) {
     if (claim.value) trace.predicates.push_back(name);
@@ -257,12 +273,11 @@ TEST_CASE("a field of a CSV file is quoted where it must be, and only there") {
 }
 
 TEST_CASE("a name in a JSON line is escaped where it must be") {
-  Trace trace;
-  trace.number = 1;
-  trace.points.resize(1);
-  trace.points[0].holds = {"A()", "a\"b\\c", "a\nb\x01", "\xc3\xa9"};
-  const auto line = nlohmann::json::parse(runtime::to_jsonl(trace));
-  CHECK(line["timepoints"][0]["holds"] == trace.points[0].holds);
+  const Names names = {"A()", "a\"b\\c", "a\nb\x01", "\xc3\xa9"};
+  NamedTrace named(1, 1);
+  for (const auto& name : names) named.holds(0, name);
+  const auto line = nlohmann::json::parse(runtime::to_jsonl(named.trace));
+  CHECK(line["timepoints"][0]["holds"] == names);
   CHECK(line["timepoints"][0]["happens"].empty());
 }
 
