@@ -41,7 +41,6 @@ class ClauseBuilder {
   const std::vector<OpenAuxiliary>& auxiliaries() const { return auxiliaries_; }
   /// The horizon that a formula's atoms need; its node's sign does not matter.
   Timepoint needed(FormulaId id) const { return needed_[id.node()]; }
-  bool is_timed(FormulaId id) const { return timed_[id.node()]; }
 
  private:
   OpenLiteral use(FormulaId id, bool moves);
