@@ -10,8 +10,8 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
-#include "harness/engine/region_support.h"
-#include "harness/world/observables.h"
+#include "harness/engine/placement_check.h"
+#include "harness/world/variables.h"
 
 namespace parallax::harness {
 namespace {

@@ -135,7 +135,7 @@ void ActionRecorder::add_sought(const State& arguments) {
   const std::string kind = text_of(arguments, "kind");
   const State state = simulator_.state();
   for (const BodySpec& body : spec_.bodies) {
-    if ((body.kind.empty() ? body.name : body.kind) != kind) continue;
+    if (body.kind_name() != kind) continue;
     const auto found = state.find(body.name + ".perceived");
     if (found == state.end()) continue;
     const auto p_W = origin_of(moments_.back().scene, body.name);

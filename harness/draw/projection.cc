@@ -36,6 +36,11 @@ std::vector<Eigen::Vector2d> hull(std::vector<Eigen::Vector2d> points) {
   return out;
 }
 
+std::vector<Eigen::Vector2d> closed(std::vector<Eigen::Vector2d> points) {
+  if (!points.empty()) points.push_back(points.front());
+  return points;
+}
+
 std::string point_list(const std::vector<Eigen::Vector2d>& points) {
   std::string out;
   for (const Eigen::Vector2d& p : points) {

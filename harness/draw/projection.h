@@ -31,6 +31,9 @@ Rectangle around(const std::vector<Eigen::Vector2d>& points);
 /// Convex hull, counter-clockwise (Andrew 1979).
 std::vector<Eigen::Vector2d> hull(std::vector<Eigen::Vector2d> points);
 
+/// With the first point again at the end.
+std::vector<Eigen::Vector2d> closed(std::vector<Eigen::Vector2d> points);
+
 /// "12.0,3.4 56.7,8.9", as polygons and polylines list their points.
 std::string point_list(const std::vector<Eigen::Vector2d>& points);
 

@@ -1,6 +1,5 @@
 #include "harness/draw/scene.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace parallax::harness {
@@ -44,14 +43,9 @@ Scene scene_of(const OdeWorld& world, const WorldSpec& spec) {
   const WorldLayout& layout = world.layout();
   for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
     const BodyId id = layout.bodies.id_at(i);
-    const Eigen::Matrix3d R_WB = world.rotation(id);
     for (const BoxShape& shape : layout.bodies[id].shapes) {
-      const Eigen::Matrix3d R_WS =
-          R_WB * Eigen::AngleAxisd(shape.yaw_rad, Eigen::Vector3d::UnitZ());
-      scene.boxes.push_back({layout.bodies[id].name,
-                             kind_of(layout, spec, id),
-                             {shape.size_m, world.position(id) + R_WB * shape.p_BS, R_WS},
-                             world.position(id)});
+      scene.boxes.push_back({layout.bodies[id].name, kind_of(layout, spec, id),
+                             world.placed(id, shape), world.position(id)});
     }
   }
   scene.base = base_body(spec);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/draw/scene_action.h"
+#include "harness/draw/scene.h"
 
 namespace parallax::harness {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/draw/scene_action.h"
+#include "harness/draw/scene.h"
 #include "harness/draw/scene_view.h"
 #include "harness/region/region.h"
 

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "compiler/base/xml_text.h"
-#include "harness/draw/scene_marks.h"
 
 namespace parallax::harness {
 namespace {

@@ -6,10 +6,13 @@
 
 #include "harness/draw/label_layout.h"
 #include "harness/draw/projection.h"
-#include "harness/draw/scene_action.h"
+#include "harness/draw/scene.h"
 #include "harness/region/region.h"
 
 namespace parallax::harness {
+
+/// Of what went wrong.
+inline constexpr const char* kWarningColour = "#c00020";
 
 /// The colour of a kind's outlines and names.
 const char* line_colour(SceneKind kind);

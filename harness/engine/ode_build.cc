@@ -15,13 +15,6 @@ Eigen::Matrix3d rotation_z(double angle_rad) {
   return R;
 }
 
-void to_ode(const Eigen::Matrix3d& R, dMatrix3& out) {
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) out[4 * row + column] = R(row, column);
-    out[4 * row + 3] = 0.0;
-  }
-}
-
 double volume_m3(const BodySpec& body) {
   double sum = 0.0;
   for (const BoxShape& shape : body.shapes) sum += shape.size_m.prod();
@@ -43,7 +36,7 @@ dMass mass_in_link(const BodySpec& body, const BodyInLink& place) {
     dMassSetBoxTotal(&part, body.mass_kg * shape.size_m.prod() / volume_m3(body), shape.size_m.x(),
                      shape.size_m.y(), shape.size_m.z());
     dMatrix3 R;
-    to_ode(place.R_LB * rotation_z(shape.yaw_rad), R);
+    copy_rotation(place.R_LB * rotation_z(shape.yaw_rad), R);
     dMassRotate(&part, R);
     const Eigen::Vector3d p_LS = place.p_LB + place.R_LB * shape.p_BS;
     dMassTranslate(&part, p_LS.x(), p_LS.y(), p_LS.z());
@@ -53,6 +46,13 @@ dMass mass_in_link(const BodySpec& body, const BodyInLink& place) {
 }
 
 }  // namespace
+
+void copy_rotation(const Eigen::Matrix3d& R, double (&out)[12]) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) out[4 * row + column] = R(row, column);
+    out[4 * row + 3] = 0.0;
+  }
+}
 
 OdeBuilder::OdeBuilder(const WorldSpec& spec, OdeWorld::Engine& engine)
     : spec_(spec), engine_(engine) {}
@@ -151,7 +151,7 @@ void OdeBuilder::create_links() {
     dBodySetGravityMode(body, gravity ? 1 : 0);
     dBodySetPosition(body, p_WL.x(), p_WL.y(), p_WL.z());
     dMatrix3 R;
-    to_ode(R_LW.transpose(), R);
+    copy_rotation(R_LW.transpose(), R);
     dBodySetRotation(body, R);
     engine_.links.push_back(body);
     engine_.masses_kg.push_back(mass_kg);
@@ -211,7 +211,7 @@ void OdeBuilder::create_box(const BoxShape& shape, BodyId id, GeomInfo& info) {
   dGeomSetData(geom, &info);
   dMatrix3 R;
   const Eigen::Matrix3d R_LS = place.R_LB * rotation_z(shape.yaw_rad);
-  to_ode(R_LS, R);
+  copy_rotation(R_LS, R);
   if (!link) {
     dGeomSetPosition(geom, p.x(), p.y(), p.z());
     dGeomSetRotation(geom, R);

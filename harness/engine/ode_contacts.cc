@@ -13,8 +13,6 @@ namespace {
 
 constexpr int kMostContacts = 16;
 
-const GeomInfo& info_of(dGeomID geom) { return *static_cast<const GeomInfo*>(dGeomGetData(geom)); }
-
 bool moves(dBodyID body) { return body != nullptr && dBodyIsEnabled(body) != 0; }
 
 /// A body at rest on something that begins to move gains less speed in a step than the threshold
@@ -123,6 +121,12 @@ void visit_pairs(OdeWorld::Engine& engine, void* data, dNearCallback* callback) 
 
 }  // namespace
 
+const GeomInfo& info_of(dxGeom* geom) { return *static_cast<const GeomInfo*>(dGeomGetData(geom)); }
+
+std::string name_of(const OdeWorld::Engine& engine, const GeomInfo& info) {
+  return info.body ? engine.layout.bodies[*info.body].name : "floor";
+}
+
 void make_contacts(OdeWorld::Engine& engine) {
   std::fill(engine.touches.begin(), engine.touches.end(), Touch{});
   visit_pairs(engine, &engine, &add_contacts);
@@ -132,10 +136,7 @@ std::optional<Overlap> find_deepest_overlap(OdeWorld::Engine& engine) {
   OverlapSearch search{engine};
   visit_pairs(engine, &search, &search_overlap);
   if (search.first == nullptr) return std::nullopt;
-  const auto name_of = [&](const GeomInfo& info) -> std::string {
-    return info.body ? engine.layout.bodies[*info.body].name : "floor";
-  };
-  Overlap overlap{name_of(*search.first), name_of(*search.second), search.depth_m};
+  Overlap overlap{name_of(engine, *search.first), name_of(engine, *search.second), search.depth_m};
   if (overlap.second < overlap.first) std::swap(overlap.first, overlap.second);
   return overlap;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "harness/engine/ode_world.h"
@@ -12,6 +13,7 @@ struct dxSpace;
 struct dxBody;
 struct dxJoint;
 struct dxJointGroup;
+struct dxGeom;
 struct dxThreadingImplementation;
 
 namespace parallax::harness {
@@ -45,6 +47,9 @@ struct BodyInLink {
   Eigen::Matrix3d R_LB = Eigen::Matrix3d::Identity();
 };
 
+/// Of a geom of the world.
+const GeomInfo& info_of(dxGeom* geom);
+
 /// Everything behind OdeWorld.
 struct OdeWorld::Engine {
   WorldLayout layout;
@@ -68,6 +73,12 @@ struct OdeWorld::Engine {
   bool measure_times = false;
   StepStatistics statistics;
 };
+
+/// Its body's name, or "floor".
+std::string name_of(const OdeWorld::Engine& engine, const GeomInfo& info);
+
+/// A rotation as the engine wants it: four numbers a row.
+void copy_rotation(const Eigen::Matrix3d& R, double (&out)[12]);
 
 /// Creates everything from the layout, in its order. One use per engine.
 class OdeBuilder {

@@ -7,7 +7,7 @@
 namespace parallax::harness {
 namespace {
 
-struct Search {
+struct ProbeSearch {
   const BodyMask& ignored;
   bool floor_counts = true;
   double best = 0.0;  // depth of an overlap, or distance along a ray
@@ -15,11 +15,9 @@ struct Search {
   const GeomInfo* found = nullptr;
 };
 
-const GeomInfo& info_of(dGeomID geom) { return *static_cast<const GeomInfo*>(dGeomGetData(geom)); }
-
 /// One of the two is the probe, which carries no GeomInfo.
 void visit(void* data, dGeomID a, dGeomID b) {
-  auto& search = *static_cast<Search*>(data);
+  auto& search = *static_cast<ProbeSearch*>(data);
   const dGeomID other = dGeomGetData(a) == nullptr ? b : a;
   const GeomInfo& info = info_of(other);
   if (info.body ? search.ignored[info.body->index()] : !search.floor_counts) return;
@@ -36,7 +34,7 @@ void visit(void* data, dGeomID a, dGeomID b) {
   }
 }
 
-void visit_all(OdeWorld::Engine& engine, dGeomID probe, Search& search) {
+void visit_all(OdeWorld::Engine& engine, dGeomID probe, ProbeSearch& search) {
   for (dxSpace* const space : {engine.static_space, engine.movable_space}) {
     dSpaceCollide2(probe, reinterpret_cast<dGeomID>(space), &search, &visit);
   }
@@ -44,7 +42,7 @@ void visit_all(OdeWorld::Engine& engine, dGeomID probe, Search& search) {
 
 /// Finds the first thing that a ray meets.
 void visit_ray(OdeWorld::Engine& engine, const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
-               Search& search) {
+               ProbeSearch& search) {
   const Eigen::Vector3d way = to_W - from_W;
   const double length_m = way.norm();
   if (length_m == 0.0) return;
@@ -57,28 +55,21 @@ void visit_ray(OdeWorld::Engine& engine, const Eigen::Vector3d& from_W, const Ei
   dGeomDestroy(ray);
 }
 
-void visit_box(OdeWorld::Engine& engine, const Probe& probe, Search& search) {
+void visit_box(OdeWorld::Engine& engine, const Probe& probe, ProbeSearch& search) {
   const dGeomID box = dCreateBox(nullptr, probe.size_m.x(), probe.size_m.y(), probe.size_m.z());
   dMatrix3 R;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) R[4 * row + column] = probe.R_WS(row, column);
-    R[4 * row + 3] = 0.0;
-  }
+  copy_rotation(probe.R_WS, R);
   dGeomSetPosition(box, probe.p_WS.x(), probe.p_WS.y(), probe.p_WS.z());
   dGeomSetRotation(box, R);
   visit_all(engine, box, search);
   dGeomDestroy(box);
 }
 
-std::string name_of(const OdeWorld::Engine& engine, const GeomInfo& info) {
-  return info.body ? engine.layout.bodies[*info.body].name : "floor";
-}
-
 }  // namespace
 
 std::optional<Overlap> OdeWorld::find_obstacle(const Probe& probe, const BodyMask& ignored,
                                                double tolerance_m) const {
-  Search search{ignored};
+  ProbeSearch search{ignored};
   visit_box(*engine_, probe, search);
   if (search.found == nullptr || search.best <= tolerance_m) return std::nullopt;
   return Overlap{name_of(*engine_, *search.found), {}, search.best};
@@ -87,7 +78,7 @@ std::optional<Overlap> OdeWorld::find_obstacle(const Probe& probe, const BodyMas
 bool OdeWorld::overlaps(const Probe& probe, BodyId id) const {
   BodyMask others(engine_->layout.bodies.size(), true);
   others[id.index()] = false;
-  Search search{others};
+  ProbeSearch search{others};
   search.floor_counts = false;
   visit_box(*engine_, probe, search);
   return search.found != nullptr;
@@ -95,7 +86,7 @@ bool OdeWorld::overlaps(const Probe& probe, BodyId id) const {
 
 std::optional<RayHit> OdeWorld::cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
                                          const BodyMask& ignored) const {
-  Search search{ignored};
+  ProbeSearch search{ignored};
   visit_ray(*engine_, from_W, to_W, search);
   if (search.found == nullptr) return std::nullopt;
   return RayHit{name_of(*engine_, *search.found), search.best};
@@ -105,7 +96,7 @@ std::optional<double> OdeWorld::ray_meets(const Eigen::Vector3d& from_W,
                                           const Eigen::Vector3d& to_W, BodyId id) const {
   BodyMask others(engine_->layout.bodies.size(), true);
   others[id.index()] = false;
-  Search search{others};
+  ProbeSearch search{others};
   search.floor_counts = false;
   visit_ray(*engine_, from_W, to_W, search);
   if (search.found == nullptr) return std::nullopt;

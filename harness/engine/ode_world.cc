@@ -11,6 +11,7 @@
 #include "compiler/base/hash.h"
 #include "harness/engine/ode_engine.h"
 #include "harness/engine/ode_process.h"
+#include "harness/world/angles.h"
 
 namespace parallax::harness {
 namespace {
@@ -62,6 +63,16 @@ bool fold_state(OdeWorld::Engine& engine) {
     for (int i = 0; i < 4; ++i) mix(engine.digest, q[i]);
   }
   return sane;
+}
+
+/// The engine does not notice that a joint has changed, so sleeping bodies would stay asleep.
+void wake(dxBody* body) {
+  if (body != nullptr && dBodyIsEnabled(body) == 0) dBodyEnable(body);
+}
+
+Eigen::Matrix3d parent_rotation(const OdeWorld& world, const Gantry& gantry) {
+  return gantry.parent == nullptr ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
+                                  : world.rotation(gantry.parent_id);
 }
 
 class Stopwatch {
@@ -169,11 +180,58 @@ void OdeWorld::set_motor(SliderId id, double velocity_m_s, double max_force_n) {
   dxJoint* const joint = engine_->sliders[id.index()];
   dJointSetSliderParam(joint, dParamVel, velocity_m_s);
   dJointSetSliderParam(joint, dParamFMax, max_force_n);
-  // The engine does not notice a changed joint, so sleeping bodies would stay asleep.
-  for (int side = 0; side < 2; ++side) {
-    dxBody* const body = dJointGetBody(joint, side);
-    if (body != nullptr && dBodyIsEnabled(body) == 0) dBodyEnable(body);
+  for (int side = 0; side < 2; ++side) wake(dJointGetBody(joint, side));
+}
+
+Eigen::Vector3d OdeWorld::gantry_position_m(GantryId id) const {
+  const Gantry& gantry = engine_->gantries[id.index()];
+  Eigen::Vector3d p = position(gantry.child_id);
+  if (gantry.parent != nullptr) {
+    p = rotation(gantry.parent_id).transpose() * (p - position(gantry.parent_id));
   }
+  return p - gantry.start_P;
+}
+
+double OdeWorld::gantry_yaw_rad(GantryId id) const {
+  const Gantry& gantry = engine_->gantries[id.index()];
+  const Eigen::Matrix3d R_PC =
+      parent_rotation(*this, gantry).transpose() * rotation(gantry.child_id);
+  return wrapped(heading_rad(R_PC) - gantry.start_yaw_rad);
+}
+
+void OdeWorld::set_gantry(GantryId id, const Eigen::Vector3d& velocity_m_s, double yaw_rate_rad_s) {
+  const Gantry& gantry = engine_->gantries[id.index()];
+  const JointSpec& spec = engine_->layout.gantries[id];
+  Eigen::Vector3d velocity = velocity_m_s;
+  if (gantry.parent != nullptr) {
+    // The engine measures the velocity half way between the two centres of mass, where a turn of
+    // the child counts half; what is asked for is that of the child's centre in the parent.
+    const dReal* a = dBodyGetPosition(gantry.child);
+    const dReal* b = dBodyGetPosition(gantry.parent);
+    const Eigen::Vector3d d(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+    const Eigen::Vector3d d_P = parent_rotation(*this, gantry).transpose() * d;
+    velocity -= 0.5 * yaw_rate_rad_s * Eigen::Vector3d::UnitZ().cross(d_P);
+  }
+  // The tilt that has crept in is taken back at the rate of the engine's own joints.
+  const Eigen::Vector3d up = rotation(gantry.child_id).col(2);
+  const Eigen::Vector3d back =
+      up.cross(Eigen::Vector3d::UnitZ()) * (engine_->solver.erp / engine_->solver.timestep_s);
+  const double rigid = dInfinity;
+  const double vertical_n = gantry.parent == nullptr ? rigid : spec.max_force_n;
+  dJointSetLMotorParam(gantry.linear, dParamVel1, velocity.x());
+  dJointSetLMotorParam(gantry.linear, dParamVel2, velocity.y());
+  dJointSetLMotorParam(gantry.linear, dParamVel3, velocity.z());
+  dJointSetLMotorParam(gantry.linear, dParamFMax1, spec.max_force_n);
+  dJointSetLMotorParam(gantry.linear, dParamFMax2, spec.max_force_n);
+  dJointSetLMotorParam(gantry.linear, dParamFMax3, vertical_n);
+  dJointSetAMotorParam(gantry.angular, dParamVel1, back.x());
+  dJointSetAMotorParam(gantry.angular, dParamVel2, back.y());
+  dJointSetAMotorParam(gantry.angular, dParamVel3, yaw_rate_rad_s);
+  dJointSetAMotorParam(gantry.angular, dParamFMax1, rigid);
+  dJointSetAMotorParam(gantry.angular, dParamFMax2, rigid);
+  dJointSetAMotorParam(gantry.angular, dParamFMax3, spec.max_torque_nm);
+  wake(gantry.child);
+  wake(gantry.parent);
 }
 
 double OdeWorld::mass_kg(BodyId id) const {
@@ -196,12 +254,16 @@ Eigen::Matrix3d OdeWorld::rotation(BodyId id) const {
   return to_matrix(dBodyGetRotation(engine_->links[link->index()])) * place.R_LB;
 }
 
-Bounds OdeWorld::bounds(BodyId id, const BoxShape& shape) const {
+Probe OdeWorld::placed(BodyId id, const BoxShape& shape) const {
   const Eigen::Matrix3d R_WB = rotation(id);
-  const Eigen::Vector3d centre = position(id) + R_WB * shape.p_BS;
-  const Eigen::Matrix3d R_WS = R_WB * Eigen::AngleAxisd(shape.yaw_rad, Eigen::Vector3d::UnitZ());
-  const Eigen::Vector3d half = 0.5 * (R_WS.cwiseAbs() * shape.size_m);
-  return Bounds{centre - half, centre + half};
+  return {shape.size_m, position(id) + R_WB * shape.p_BS,
+          R_WB * Eigen::AngleAxisd(shape.yaw_rad, Eigen::Vector3d::UnitZ())};
+}
+
+Bounds OdeWorld::bounds(BodyId id, const BoxShape& shape) const {
+  const Probe box = placed(id, shape);
+  const Eigen::Vector3d half = 0.5 * (box.R_WS.cwiseAbs() * box.size_m);
+  return Bounds{box.p_WS - half, box.p_WS + half};
 }
 
 Bounds OdeWorld::bounds(BodyId id) const {

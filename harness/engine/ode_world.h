@@ -104,6 +104,8 @@ class OdeWorld {
   double mass_kg(BodyId id) const;
   Eigen::Vector3d position(BodyId id) const;  // of the body's origin in the world [m]
   Eigen::Matrix3d rotation(BodyId id) const;  // R_WB (3 x 3)
+  /// One box of the body, where it is now.
+  Probe placed(BodyId id, const BoxShape& shape) const;
   Bounds bounds(BodyId id) const;
   Bounds bounds(BodyId id, const BoxShape& shape) const;  // of one shape of the body
   const Touch& touch(BodyId id) const;

@@ -16,12 +16,10 @@ Sweep::Sweep(const OdeWorld& world, const BodyMask& bodies, const BodyMask& igno
     ignored_[i] = true;
     const BodyId id = layout.bodies.id_at(i);
     if (!layout.bodies[id].collides) continue;
-    const Eigen::Matrix3d R_WB = world.rotation(id);
     for (const BoxShape& shape : layout.bodies[id].shapes) {
-      const Eigen::Matrix3d R_WS =
-          R_WB * Eigen::AngleAxisd(shape.yaw_rad, Eigen::Vector3d::UnitZ());
-      parts_.push_back({layout.bodies[id].name,
-                        {shape.size_m + room, world.position(id) + R_WB * shape.p_BS, R_WS}});
+      Probe box = world.placed(id, shape);
+      box.size_m += room;
+      parts_.push_back({layout.bodies[id].name, box});
     }
   }
 }

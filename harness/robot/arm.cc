@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/robot/mobile_base.h"
+#include "harness/world/angles.h"
 
 namespace parallax::harness {
 namespace {
@@ -81,7 +81,10 @@ double Arm::opening_m() const { return jaws_.opening_m(world_.slider_position_m(
 
 double Arm::wrist_rad() const { return world_.gantry_yaw_rad(gantry_); }
 
-Eigen::Vector3d Arm::pad_line() const { return world_.rotation(palm_) * jaws_.pad_line_P(); }
+Eigen::Vector3d Arm::pad_line(double wrist_rad) const {
+  const Eigen::Vector3d now = world_.rotation(palm_) * jaws_.pad_line_P();
+  return Eigen::AngleAxisd(wrist_rad - this->wrist_rad(), Eigen::Vector3d::UnitZ()) * now;
+}
 
 Eigen::Vector3d Arm::palm_offset() const { return world_.position(palm_) - tool(); }
 

@@ -7,8 +7,7 @@
 
 #include "harness/engine/jaws.h"
 #include "harness/engine/ode_world.h"
-#include "harness/robot/axis_servo.h"
-#include "harness/robot/line_servo.h"
+#include "harness/robot/servo.h"
 
 namespace parallax::harness {
 
@@ -33,7 +32,8 @@ class Arm {
   Eigen::Vector3d tool() const;  // in the world [m]
   double opening_m() const;
   double wrist_rad() const;
-  Eigen::Vector3d pad_line() const;  // from the far pad to the near one, world, unit
+  /// From the far pad to the near one once the wrist is at `wrist_rad`; world, unit.
+  Eigen::Vector3d pad_line(double wrist_rad) const;
   /// The middle of the palm, seen from the tool [m]; the same whatever way the wrist is turned.
   Eigen::Vector3d palm_offset() const;
   /// How far the palm reaches from its middle along `direction_W` once the wrist is at `wrist_rad`.

@@ -2,21 +2,61 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
+
+#include "harness/robot/line_controller.h"
+#include "harness/robot/mobile_controller.h"
 
 namespace parallax::harness {
 namespace {
 
 constexpr double kPatience = 2.0;      // times the nominal duration of a motion
 constexpr double kLeastLimit_s = 0.3;  // so that a motion of no distance can end
+constexpr double kCloseGrace_s = 0.5;
+constexpr double kBraking_s = 1.0;  // limit
+constexpr int kSupportSteps = 5;    // of contact in a row before a load counts as supported
+
+struct NamedFactory {
+  std::string_view name;  // in controllers()
+  ControllerFactory make;
+};
+
+constexpr std::array<NamedFactory, 14> kFactories = {{
+    {"close-drawer", &make_close_drawer},
+    {"detect", &make_detect},
+    {"drive", &make_drive},
+    {"going", &make_going},
+    {"look", &make_look},
+    {"move-torso", &make_move_torso},
+    {"open-drawer", &make_open_drawer},
+    {"open-gripper", &make_open_gripper},
+    {"park", &make_park},
+    {"pick-up", &make_pick_up},
+    {"picking-up", &make_picking_up},
+    {"place", &make_place},
+    {"placing", &make_placing},
+    {"regrip", &make_regrip},
+}};
 
 }  // namespace
+
+ControllerFactory find_factory(std::string_view name) {
+  const auto found = std::find_if(kFactories.begin(), kFactories.end(),
+                                  [&](const NamedFactory& one) { return one.name == name; });
+  return found == kFactories.end() ? nullptr : found->make;
+}
 
 std::string metres(double value_m) { return fmt::format("{:.3f} m", value_m); }
 
 double patience_s(double distance_m, const Motion& motion) {
   return kPatience * nominal_time_s(distance_m, motion) + kLeastLimit_s;
+}
+
+double closing_time_s(double opening_m, double speed_m_s, double hold_s) {
+  return opening_m / speed_m_s + hold_s + kCloseGrace_s;
 }
 
 std::optional<Outcome> PhasedController::tick(double time_s) {
@@ -30,7 +70,7 @@ std::optional<Outcome> PhasedController::tick(double time_s) {
       begun_ = true;
       if (refusal_) return refusal_;
     }
-    const Phase& phase = phases_[current_];
+    const ActionPhase& phase = phases_[current_];
     const bool done = phase.done();
     if (!done && time_s < phase_end_s_) return std::nullopt;
     if (!done && overdue_.empty()) overdue_ = phase.name;
@@ -42,7 +82,7 @@ std::optional<Outcome> PhasedController::tick(double time_s) {
 
 void PhasedController::add(std::string_view name, std::function<double()> begin,
                            std::function<bool()> done) {
-  Phase phase{name, std::move(begin), std::move(done)};
+  ActionPhase phase{name, std::move(begin), std::move(done)};
   if (!insert_at_) {
     phases_.push_back(std::move(phase));
     return;
@@ -71,6 +111,25 @@ void PhasedController::add_step(std::function<void()> what) {
 
 void PhasedController::refuse(std::string reason, State margins) {
   refusal_ = Outcome{SimStatus::kFailed, std::move(reason), 0.0, std::move(margins)};
+}
+
+void PhasedController::add_braking(std::function<void()> brake, std::function<bool()> at_rest) {
+  add(
+      "braking",
+      [brake = std::move(brake)] {
+        brake();
+        return kBraking_s;
+      },
+      std::move(at_rest));
+}
+
+std::string PhasedController::with_overdue(std::string reason, std::string_view overdue) {
+  if (!overdue.empty()) reason += fmt::format(" ({} did not come to its end)", overdue);
+  return reason;
+}
+
+bool PhasedController::supported(BodyId load) {
+  return support_.note(world().touch(load).support) >= kSupportSteps;
 }
 
 }  // namespace parallax::harness

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "harness/robot/grasp_monitor.h"
+#include "harness/robot/line_robot.h"
 #include "harness/robot/mobile_robot.h"
 #include "harness/robot/perception.h"
-#include "harness/robot/robot.h"
 #include "harness/world/arguments.h"
 
 namespace parallax::harness {
@@ -21,7 +21,7 @@ struct ControlContext {
   const WorldSpec& spec;
   const OdeWorld& world;
   const GraspMonitor& grasp;
-  Robot* line = nullptr;
+  LineRobot* line = nullptr;
   MobileRobot* mobile = nullptr;
   Perception* perception = nullptr;  // of the mobile robot
 };
@@ -41,10 +41,19 @@ using ControllerFactory = std::unique_ptr<Controller> (*)(const ControlContext&,
 ControllerFactory find_factory(std::string_view name);
 
 /// A stretch of an action: begins, and lasts until `done` or for the limit that `begin` gave.
-struct Phase {
+struct ActionPhase {
   std::string_view name;          // "lowering"
   std::function<double()> begin;  // commands the robot; returns the time limit [s]
   std::function<bool()> done;
+};
+
+/// Counts the timesteps in a row in which something was so.
+class StepsInARow {
+ public:
+  std::int64_t note(bool is_so) { return steps_ = is_so ? steps_ + 1 : 0; }
+
+ private:
+  std::int64_t steps_ = 0;
 };
 
 /// A controller made of phases in a row. One whose limit passes is remembered, not the end: the
@@ -65,27 +74,36 @@ class PhasedController : public Controller {
   void add_pause(std::string_view name, double duration_s);
   /// Does something that takes no time.
   void add_step(std::function<void()> what);
+  /// Brakes, and waits until all is at rest.
+  void add_braking(std::function<void()> brake, std::function<bool()> at_rest);
   /// Skips all phases: the next tick returns `outcome`.
   void refuse(std::string reason, State margins = {});
-  bool refused() const { return refusal_.has_value(); }
-  std::string_view overdue() const { return overdue_; }
+  /// `reason`, with the phase that was overdue, if one was.
+  static std::string with_overdue(std::string reason, std::string_view overdue);
+
+  /// To be asked in each timestep of a descent: has the load come to stand on something?
+  bool supported(BodyId load);
 
   /// The judgement after the last phase. `overdue` names the first phase that met its limit.
   virtual Outcome judge(std::string_view overdue) = 0;
 
  private:
   ControlContext context_;
-  std::vector<Phase> phases_;
+  std::vector<ActionPhase> phases_;
   std::size_t current_ = 0;
   std::optional<std::size_t> insert_at_;  // while a phase begins
   bool begun_ = false;
   double phase_end_s_ = 0.0;
   std::string_view overdue_;
   std::optional<Outcome> refusal_;
+  StepsInARow support_;
 };
 
 /// How long a motion of `distance_m` may take before it counts as overdue [s].
 double patience_s(double distance_m, const Motion& motion);
+
+/// How long pads may take to close from `opening_m` and then to squeeze for `hold_s` [s].
+double closing_time_s(double opening_m, double speed_m_s, double hold_s);
 
 /// "0.713 m", for reasons.
 std::string metres(double value_m);

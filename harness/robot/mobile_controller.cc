@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "harness/world/angles.h"
+
 namespace parallax::harness {
 namespace {
 
@@ -15,7 +17,6 @@ constexpr double kToolApproachRate_hz = 10.0;
 constexpr Motion kWrist{1.5, 4.0, 0.005, 10.0};  // radians
 constexpr Motion kFinger{0.10, 0.5, 0.001, 10.0};
 constexpr double kCloseSpeed_m_s = 0.05;
-constexpr double kCloseGrace_s = 0.5;
 /// Room round the arm that a way is looked for with, the most first. The last is for ways that
 /// begin in touch, as that of a load that was just lifted.
 constexpr std::array kRoom_m = {0.04, 0.015, 0.005, -0.002};
@@ -57,6 +58,12 @@ BodyMask MobileController::arm_and_load() const {
   return mask;
 }
 
+Sweep MobileController::arm_sweep(BodyId touched) const {
+  BodyMask ignored = robot().parts();
+  ignored[touched.index()] = true;
+  return {world(), arm_and_load(), ignored, 0.0};
+}
+
 void MobileController::add_tool_move(std::string_view name, std::function<Eigen::Vector3d()> target,
                                      Motion motion) {
   add_tool_move_until(name, std::move(target), motion, [] { return false; });
@@ -76,18 +83,16 @@ void MobileController::add_tool_move_until(std::string_view name,
       [this, done = std::move(done)] { return done() || arm().tool_at_rest(); });
 }
 
-void MobileController::add_tool_path(std::string_view name, std::function<Eigen::Vector3d()> target,
-                                     std::optional<BodyId> touched) {
+void MobileController::add_tool_path(std::string_view name,
+                                     std::function<Eigen::Vector3d()> target) {
   add(
       name,
-      [this, name, target = std::move(target), touched] {
-        BodyMask ignored = robot().parts();
-        if (touched) ignored[touched->index()] = true;
+      [this, name, target = std::move(target)] {
         const Eigen::Vector3d goal = target();
         const double ceiling_m = std::max(robot().carry_point(arm()).z(), arm().tool().z()) + 0.1;
         ToolPath path;
         for (std::size_t i = 0; i < kRoom_m.size() && path.corners.empty(); ++i) {
-          const Sweep sweep(world(), arm_and_load(), ignored, -kRoom_m[i]);
+          const Sweep sweep(world(), arm_and_load(), robot().parts(), -kRoom_m[i]);
           path = find_tool_path(sweep, arm().tool(), goal, -robot().base().heading(), ceiling_m);
         }
         if (path.corners.empty()) {
@@ -135,11 +140,10 @@ void MobileController::add_squeeze(double force_n, double hold_s, std::function<
       "closing",
       [this, force_n, hold_s] {
         arm().squeeze(force_n, kCloseSpeed_m_s);
-        return arm().opening_m() / kCloseSpeed_m_s + hold_s + kCloseGrace_s;
+        return closing_time_s(arm().opening_m(), kCloseSpeed_m_s, hold_s);
       },
-      [this, hold_s, gripped = std::move(gripped), steps = 0]() mutable {
-        steps = gripped() ? steps + 1 : 0;
-        return steps * world().timestep_s() >= hold_s;
+      [this, hold_s, gripped = std::move(gripped), lasted = StepsInARow()]() mutable {
+        return static_cast<double>(lasted.note(gripped())) * world().timestep_s() >= hold_s;
       });
 }
 

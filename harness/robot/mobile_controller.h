@@ -36,15 +36,14 @@ class MobileController : public PhasedController {
 
   /// Refuses unless the tool at `tool_W` lies within reach; true if it does.
   bool require_reach(const Eigen::Vector3d& tool_W, const std::string& what);
-  /// Parts of the arm and what it holds.
-  BodyMask arm_and_load() const;
+  /// The arm and what it holds, against all but the robot and `touched`: what the arm is for.
+  Sweep arm_sweep(BodyId touched) const;
   void add_tool_move(std::string_view name, std::function<Eigen::Vector3d()> target, Motion motion);
   /// The same, but over as soon as `done`.
   void add_tool_move_until(std::string_view name, std::function<Eigen::Vector3d()> target,
                            Motion motion, std::function<bool()> done);
-  /// Finds a free way when it begins, or refuses. `touched` may be met: it is what the arm is for.
-  void add_tool_path(std::string_view name, std::function<Eigen::Vector3d()> target,
-                     std::optional<BodyId> touched);
+  /// Finds a free way when it begins, or refuses.
+  void add_tool_path(std::string_view name, std::function<Eigen::Vector3d()> target);
   void add_wrist(double yaw_rad);  // against the robot's heading
   void add_opening(std::function<double()> opening_m);
   /// Closes with `force_n` until `gripped` has been true for `hold_s`.
@@ -54,6 +53,8 @@ class MobileController : public PhasedController {
   void refuse_with(std::string_view condition, const std::string& text, State margins = {});
 
  private:
+  BodyMask arm_and_load() const;
+
   Arguments arguments_;
   Arm* arm_ = nullptr;
 };

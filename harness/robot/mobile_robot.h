@@ -1,14 +1,53 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "harness/engine/ode_world.h"
 #include "harness/robot/arm.h"
-#include "harness/robot/mobile_base.h"
+#include "harness/robot/servo.h"
 
 namespace parallax::harness {
+
+/// Position in the plane [m] and heading [rad].
+struct PlanarPose {
+  Eigen::Vector2d p = Eigen::Vector2d::Zero();
+  double yaw_rad = 0.0;
+};
+
+/// A base that drives straight lines and turns on the spot. Its wheels follow the floor's relief,
+/// a sine of the way driven, so that what it carries is shaken by the square of its speed.
+class MobileBase {
+ public:
+  MobileBase(const MobileRobotSpec& spec, OdeWorld& world);
+
+  void reset();
+  void drive_to(const Eigen::Vector2d& target, const Motion& motion);
+  void turn_to(double yaw_rad, const Motion& motion);  // the shorter way
+  void brake();
+  bool at_rest() const { return line_.at_rest() && turn_.at_rest(); }
+
+  PlanarPose pose() const;
+  BodyId body() const { return body_; }
+  /// A point of the base frame B, in the world.
+  Eigen::Vector3d to_world(const Eigen::Vector3d& p_B) const;
+  Eigen::Vector3d heading() const;  // x axis of B in the world, level
+
+  void drive_motors();
+
+ private:
+  OdeWorld& world_;
+  BodyId body_;
+  GantryId gantry_;
+  double amplitude_m_, wave_number_rad_m_;
+  LineServo line_;  // z unused
+  AxisServo turn_;  // on the unwrapped heading
+  double yaw_rad_ = 0.0;
+  double driven_m_ = 0.0;
+  Eigen::Vector2d last_ = Eigen::Vector2d::Zero();
+};
 
 /// The robot of a world with MobileRobotSpec: a base, a lifting torso, arms.
 class MobileRobot {
@@ -27,7 +66,6 @@ class MobileRobot {
   const std::vector<Arm>& arms() const { return arms_; }
   Arm* find_arm(std::string_view name);
 
-  bool has_torso() const { return torso_.has_value(); }
   double lift_m() const;  // of the torso above its lowest; 0 without one
   void lift_to(double height_m, const Motion& motion);
   bool torso_at_rest() const { return torso_servo_.at_rest(); }

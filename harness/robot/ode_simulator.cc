@@ -9,10 +9,9 @@
 #include "harness/engine/ode_process.h"
 #include "harness/engine/world_check.h"
 #include "harness/robot/controller.h"
-#include "harness/robot/mobile_observation.h"
+#include "harness/world/angles.h"
 #include "harness/world/arguments.h"
-#include "harness/world/observables.h"
-#include "harness/world/start_state.h"
+#include "harness/world/variables.h"
 
 namespace parallax::harness {
 namespace {
@@ -31,13 +30,71 @@ struct RollPitchYaw {
 
 RollPitchYaw roll_pitch_yaw(const Eigen::Matrix3d& R) {
   return {std::atan2(R(2, 1), R(2, 2)), std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0))),
-          std::atan2(R(1, 0), R(0, 0))};
+          heading_rad(R)};
+}
+
+void observe_arm(const MobileRobot& robot, const Arm& arm, State& out) {
+  const std::string prefix = arm.spec().name + ".";
+  const Eigen::Vector3d tool = arm.tool();
+  out[prefix + "x"] = tool.x();
+  out[prefix + "y"] = tool.y();
+  out[prefix + "z"] = tool.z();
+  out[prefix + "opening"] = arm.opening_m();
+  out[prefix + "parked"] = robot.parked(arm);
+  out[prefix + "open"] = robot.open(arm);
+}
+
+void observe_belief(const Perception& perception, BodyId id, const std::string& prefix,
+                    State& out) {
+  const auto seen = perception.believed(id);
+  const Eigen::Vector3d p = seen.value_or(Eigen::Vector3d::Zero());
+  out[prefix + "perceived"] = perception.belief(id).perceived;
+  out[prefix + "seen.known"] = seen.has_value();
+  out[prefix + "seen.x"] = p.x();
+  out[prefix + "seen.y"] = p.y();
+  out[prefix + "seen.z"] = p.z();
+  out[prefix + "seen.bottom"] = perception.believed_bottom_m(id).value_or(0.0);
+}
+
+/// Adds to `out` what `observables` lists of a world with a mobile robot, but for the poses of free
+/// bodies.
+void observe_mobile(const OdeWorld& world, const MobileRobot& robot, const Perception& perception,
+                    const GraspMonitor& grasp, State& out) {
+  const PlanarPose pose = robot.base().pose();
+  out["robot.x"] = pose.p.x();
+  out["robot.y"] = pose.p.y();
+  out["robot.yaw"] = pose.yaw_rad;
+  out["robot.lift"] = robot.lift_m();
+  out["robot.looking_at"] = perception.gaze();
+  for (const Arm& arm : robot.arms()) observe_arm(robot, arm, out);
+  const WorldLayout& layout = world.layout();
+  for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
+    if (!layout.is_free[i]) continue;
+    const BodyId id = layout.bodies.id_at(i);
+    const std::string prefix = layout.bodies[id].name + ".";
+    out[prefix + "bottom"] = world.bounds(id).low.z();
+    out[prefix + "mass"] = world.mass_kg(id);
+    for (const Arm& arm : robot.arms()) {
+      out[prefix + "held_by." + arm.spec().name] = grasp.held_by(arm.gripper(), id);
+    }
+    observe_belief(perception, id, prefix, out);
+  }
+  for (const SliderId id : observed_sliders(layout, robot.spec())) {
+    const JointSpec& joint = layout.sliders[id];
+    const BodyId child = *layout.find_body(joint.child);
+    const Eigen::Vector3d p = world.position(child);
+    out[joint.name + ".q"] = world.slider_position_m(id);
+    out[joint.child + ".x"] = p.x();
+    out[joint.child + ".y"] = p.y();
+    out[joint.child + ".z"] = p.z();
+    out[joint.child + ".yaw"] = heading_rad(world.rotation(child));
+  }
 }
 
 }  // namespace
 
 struct OdeSimulator::Impl {
-  enum class Phase : std::uint8_t { kFresh, kReady, kLost };
+  enum class Condition : std::uint8_t { kFresh, kReady, kLost };
 
   explicit Impl(const WorldSpec& world_spec)
       : spec(checked(world_spec)), world(spec), grasp(spec, world) {
@@ -70,10 +127,10 @@ struct OdeSimulator::Impl {
   WorldSpec spec;
   OdeWorld world;
   GraspMonitor grasp;
-  std::optional<Robot> line;
+  std::optional<LineRobot> line;
   std::optional<MobileRobot> mobile;
   std::optional<Perception> perception;
-  Phase phase = Phase::kFresh;
+  Condition condition = Condition::kFresh;
   Watcher watcher = nullptr;
   void* watcher_context = nullptr;
 };
@@ -108,7 +165,7 @@ SimulatorInfo OdeSimulator::info() {
 }
 
 Outcome OdeSimulator::reset(const State& initial, std::uint64_t seed) {
-  impl_->phase = Impl::Phase::kFresh;
+  impl_->condition = Impl::Condition::kFresh;
   const StartState start = read_start_state(impl_->spec, impl_->world.layout(), initial);
   if (start.status != SimStatus::kOk) return {start.status, start.reason, 0.0, {}};
 
@@ -121,14 +178,14 @@ Outcome OdeSimulator::reset(const State& initial, std::uint64_t seed) {
             0.0,
             {{"depth", overlap->depth_m}}};
   }
-  impl_->phase = Impl::Phase::kReady;
+  impl_->condition = Impl::Condition::kReady;
   return {};
 }
 
 Outcome OdeSimulator::act(std::string_view action, const State& arguments,
                           double sim_time_limit_s) {
-  PARALLAX_REQUIRE(impl_->phase != Impl::Phase::kFresh, "a successful reset before act");
-  if (impl_->phase == Impl::Phase::kLost) {
+  PARALLAX_REQUIRE(impl_->condition != Impl::Condition::kFresh, "a successful reset before act");
+  if (impl_->condition == Impl::Condition::kLost) {
     return {SimStatus::kLost, "the state of the world has exploded", 0.0, {}};
   }
   const ControllerSpec* spec = find_controller(action);
@@ -160,7 +217,7 @@ Outcome OdeSimulator::act(std::string_view action, const State& arguments,
     if (!(static_cast<double>(steps) * timestep_s <= sim_time_limit_s)) break;
     impl_->drive_motors();
     if (!impl_->world.step()) {
-      impl_->phase = Impl::Phase::kLost;
+      impl_->condition = Impl::Condition::kLost;
       return {SimStatus::kLost, "the state of the world has exploded", time_s, {}};
     }
     impl_->grasp.update();
@@ -175,7 +232,8 @@ Outcome OdeSimulator::act(std::string_view action, const State& arguments,
 }
 
 State OdeSimulator::state() const {
-  PARALLAX_REQUIRE(impl_->phase != Impl::Phase::kFresh, "a successful reset before observe");
+  PARALLAX_REQUIRE(impl_->condition != Impl::Condition::kFresh,
+                   "a successful reset before observe");
   const WorldLayout& layout = impl_->world.layout();
   State state;
   for (std::size_t i = 0; i < layout.bodies.size(); ++i) {

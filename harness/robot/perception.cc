@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "harness/world/angles.h"
+
 namespace parallax::harness {
 namespace {
 
@@ -155,8 +157,7 @@ void Perception::store(BodyId id, const Eigen::Vector3d& p_W, const std::string&
   belief.located = true;
   belief.frame = frame;
   const double below_m = world_.position(id).z() - world_.bounds(id).low.z();
-  const Eigen::Matrix3d R = world_.rotation(id);
-  belief.yaw_rad = std::atan2(R(1, 0), R(0, 0));
+  belief.yaw_rad = heading_rad(world_.rotation(id));
   belief.p_F = p_W;
   if (!belief.frame.empty()) {
     const BodyId carrier = *world_.layout().find_body(belief.frame);
@@ -189,10 +190,7 @@ std::vector<BodyId> Perception::bodies_of_kind(const std::string& kind) const {
   const WorldLayout& layout = world_.layout();
   for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
     const BodyId id = layout.bodies.id_at(i);
-    const std::string& own = layout.bodies[id].kind;
-    if (layout.is_free[i] && (own.empty() ? layout.bodies[id].name : own) == kind) {
-      found.push_back(id);
-    }
+    if (layout.is_free[i] && layout.bodies[id].kind_name() == kind) found.push_back(id);
   }
   return found;
 }

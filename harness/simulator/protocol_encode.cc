@@ -6,44 +6,44 @@
 namespace parallax::harness {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json value_to_json(const Value& value) {
-  return std::visit([](const auto& plain) { return Json(plain); }, value);
+OrderedJson value_to_json(const Value& value) {
+  return std::visit([](const auto& plain) { return OrderedJson(plain); }, value);
 }
 
-Json state_to_json(const State& state) {
-  Json object = Json::object();
+OrderedJson state_to_json(const State& state) {
+  OrderedJson object = OrderedJson::object();
   for (const auto& [name, value] : state) object[name] = value_to_json(value);
   return object;
 }
 
 /// One line. A name that is not UTF-8 becomes one that is, rather than an exception.
-std::string line_of(const Json& json) { return base::json_text(json); }
+std::string line_of(const OrderedJson& json) { return base::json_text(json); }
 
-Json error_to_json(const ErrorReply& error) {
-  return Json{{"code", error.code}, {"message", error.message}};
+OrderedJson error_to_json(const ErrorReply& error) {
+  return OrderedJson{{"code", error.code}, {"message", error.message}};
 }
 
-Json info_to_json(std::int64_t protocol, const SimulatorInfo& info) {
-  Json parameters = Json::array();
+OrderedJson info_to_json(std::int64_t protocol, const SimulatorInfo& info) {
+  OrderedJson parameters = OrderedJson::array();
   for (const Parameter& p : info.parameters) {
-    parameters.push_back(Json{{"name", p.name}, {"unit", p.unit}, {"settable", p.settable}});
+    parameters.push_back(OrderedJson{{"name", p.name}, {"unit", p.unit}, {"settable", p.settable}});
   }
-  Json actions = Json::array();
-  for (const std::string& name : info.actions) actions.push_back(Json{{"name", name}});
-  return Json{{"protocol", protocol},
-              {"name", info.name},
-              {"version", info.version},
-              {"determinism", info.determinism},
-              {"seeds", info.seeds},
-              {"time_step", info.timestep_s},
-              {"params", std::move(parameters)},
-              {"actions", std::move(actions)}};
+  OrderedJson actions = OrderedJson::array();
+  for (const std::string& name : info.actions) actions.push_back(OrderedJson{{"name", name}});
+  return OrderedJson{{"protocol", protocol},
+                     {"name", info.name},
+                     {"version", info.version},
+                     {"determinism", info.determinism},
+                     {"seeds", info.seeds},
+                     {"time_step", info.timestep_s},
+                     {"params", std::move(parameters)},
+                     {"actions", std::move(actions)}};
 }
 
-Json outcome_to_json(const Outcome& outcome) {
-  Json json{{"status", to_string(outcome.status)}};
+OrderedJson outcome_to_json(const Outcome& outcome) {
+  OrderedJson json{{"status", to_string(outcome.status)}};
   if (!outcome.reason.empty()) json["reason"] = outcome.reason;
   json["sim_time"] = outcome.sim_time_s;
   if (!outcome.margins.empty()) json["margins"] = state_to_json(outcome.margins);
@@ -51,20 +51,20 @@ Json outcome_to_json(const Outcome& outcome) {
 }
 
 struct RequestEncoder {
-  Json& json;
+  OrderedJson& json;
   void operator()(const HelloRequest& hello) const {
     json["method"] = "hello";
-    json["params"] = Json{{"protocol", Json(hello.protocols)}};
+    json["params"] = OrderedJson{{"protocol", OrderedJson(hello.protocols)}};
   }
   void operator()(const ResetRequest& reset) const {
     json["method"] = "reset";
-    json["params"] = Json{{"state", state_to_json(reset.state)}, {"seed", reset.seed}};
+    json["params"] = OrderedJson{{"state", state_to_json(reset.state)}, {"seed", reset.seed}};
   }
   void operator()(const ActRequest& act) const {
     json["method"] = "act";
-    json["params"] = Json{{"action", act.action},
-                          {"args", state_to_json(act.arguments)},
-                          {"sim_time_limit", act.sim_time_limit_s}};
+    json["params"] = OrderedJson{{"action", act.action},
+                                 {"args", state_to_json(act.arguments)},
+                                 {"sim_time_limit", act.sim_time_limit_s}};
   }
   void operator()(const ObserveRequest&) const { json["method"] = "observe"; }
   void operator()(const CloseRequest&) const { json["method"] = "close"; }
@@ -72,7 +72,7 @@ struct RequestEncoder {
 };
 
 struct ReplyEncoder {
-  Json& json;
+  OrderedJson& json;
   void operator()(const ErrorReply& error) const { json["error"] = error_to_json(error); }
   void operator()(const HelloReply& hello) const {
     json["result"] = info_to_json(hello.protocol, hello.info);
@@ -81,27 +81,27 @@ struct ReplyEncoder {
     json["result"] = outcome_to_json(reply.outcome);
   }
   void operator()(const ObserveReply& reply) const {
-    json["result"] = Json{{"state", state_to_json(reply.state)}};
+    json["result"] = OrderedJson{{"state", state_to_json(reply.state)}};
   }
-  void operator()(const CloseReply&) const { json["result"] = Json{{"status", "ok"}}; }
+  void operator()(const CloseReply&) const { json["result"] = OrderedJson{{"status", "ok"}}; }
 };
 
 }  // namespace
 
 std::string encode_request(const Request& request) {
-  Json json{{"id", request.id}};
+  OrderedJson json{{"id", request.id}};
   std::visit(RequestEncoder{json}, request.body);
   return line_of(json);
 }
 
 std::string encode_reply(std::int64_t id, const ReplyBody& reply) {
-  Json json{{"id", id}};
+  OrderedJson json{{"id", id}};
   std::visit(ReplyEncoder{json}, reply);
   return line_of(json);
 }
 
 std::string encode_error_without_id(const ErrorReply& error) {
-  return line_of(Json{{"id", nullptr}, {"error", error_to_json(error)}});
+  return line_of(OrderedJson{{"id", nullptr}, {"error", error_to_json(error)}});
 }
 
 std::string first_not_finite(const State& state) {

@@ -22,7 +22,7 @@ const PlaceSpec* find_place(const WorldSpec& world, std::string_view name) {
 bool is_kind(const WorldLayout& layout, std::string_view name) {
   for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
     const BodySpec& body = layout.bodies[layout.bodies.id_at(i)];
-    if (layout.is_free[i] && (body.kind.empty() ? body.name : body.kind) == name) return true;
+    if (layout.is_free[i] && body.kind_name() == name) return true;
   }
   return false;
 }
@@ -103,7 +103,7 @@ std::vector<std::string> names_for(const ArgumentSpec& argument, const WorldSpec
                                    const WorldLayout& layout) {
   std::vector<std::string> names;
   for (const BodySpec& body : layout.bodies) {
-    names.push_back(argument.unit == "kind" && !body.kind.empty() ? body.kind : body.name);
+    names.push_back(argument.unit == "kind" ? body.kind_name() : body.name);
   }
   for (const JointSpec& joint : layout.sliders) names.push_back(joint.name);
   for (const PlaceSpec& place : world.places) names.push_back(place.name);

@@ -10,51 +10,80 @@
 #include <utility>
 
 #include "compiler/base/suggest.h"
-#include "harness/world/mobile_check.h"
+#include "harness/world/robot_check.h"
 #include "harness/world/world_layout.h"
 
 namespace parallax::harness {
 namespace {
 
+constexpr double kMaxGravity_m_s2 = 100.0;  // four times that of the largest planet
 const std::array<std::string, 6> kSettable = {"bottom", "mass", "x", "y", "yaw", "z"};
+
+class SolverChecker {
+ public:
+  explicit SolverChecker(ProblemList& problems) : problems_(problems) {}
+
+  void run(const SolverSpec& s) {
+    // Longer steps are no physics, shorter ones no simulation anybody waits for.
+    require(s.timestep_s >= 1e-5 && s.timestep_s <= 0.1, "timestep_s",
+            "is not within 1e-5 to 0.1 s");
+    require_softness("erp", "cfm", s.erp, s.cfm);
+    require_softness("contact_erp", "contact_cfm", s.contact_erp.value_or(1.0),
+                     s.contact_cfm.value_or(0.0));
+    require_not_negative("surface_layer_m", s.surface_layer_m);
+    require(s.max_correcting_velocity_m_s > 0.0 && std::isfinite(s.max_correcting_velocity_m_s),
+            "max_correcting_velocity_m_s", "is not a positive number");
+    require_not_negative("start_penetration_m", s.start_penetration_m);
+    require_not_negative("sleep_linear_m_s", s.sleep_linear_m_s);
+    require_not_negative("sleep_angular_rad_s", s.sleep_angular_rad_s);
+    require_not_negative("sleep_after_s", s.sleep_after_s);
+    require(s.gravity_m_s2 <= 0.0, "gravity_m_s2", "does not point down: it is not negative");
+    require(s.gravity_m_s2 >= -kMaxGravity_m_s2, "gravity_m_s2", "is stronger than 100 m/s^2");
+    require(s.max_contacts_per_pair >= 1 && s.max_contacts_per_pair <= 16, "max_contacts_per_pair",
+            "is not within 1 to 16");
+  }
+
+ private:
+  void require(bool good, const char* key, const char* message) {
+    problems_.require(good, std::string("solver/") + key, message);
+  }
+  void require_not_negative(const char* key, double value) {
+    require(value >= 0.0 && std::isfinite(value), key, "is negative or not a number");
+  }
+  /// Share of an error that a step corrects, and how much a constraint gives.
+  void require_softness(const char* erp_key, const char* cfm_key, double erp, double cfm) {
+    require(erp > 0.0 && erp <= 1.0, erp_key, "is not within (0, 1]");
+    require(cfm >= 0.0 && cfm <= 1.0, cfm_key, "is not within 0 to 1");
+  }
+
+  ProblemList& problems_;
+};
 
 class StructureChecker {
  public:
-  explicit StructureChecker(const WorldSpec& spec) : spec_(spec) {
-    for (const BodySpec& body : spec.bodies) body_names_.push_back(body.name);
-    for (const JointSpec& joint : spec.joints) joint_names_.push_back(joint.name);
-  }
+  explicit StructureChecker(const WorldSpec& spec)
+      : spec_(spec), body_names_(names_of(spec.bodies)), joint_names_(names_of(spec.joints)) {}
 
   std::vector<WorldProblem> run() {
-    check_solver(spec_.solver, problems_);
+    SolverChecker(problems_).run(spec_.solver);
     check_friction();
     for (const BodySpec& body : spec_.bodies) check_body(body);
     for (const JointSpec& joint : spec_.joints) check_joint(joint);
     check_unique("bodies", body_names_);
     check_unique("joints", joint_names_);
     check_children();
-    if (problems_.empty() && has_robot()) check_robot();
-    if (problems_.empty()) check_mobile(spec_, problems_);
-    return std::move(problems_);
+    if (problems_.empty()) check_line_robot(spec_, problems_);
+    if (problems_.empty()) {
+      check_places();
+      check_grips();
+      check_mobile_robot(spec_, problems_);
+    }
+    return problems_.take();
   }
 
  private:
   void add(std::string path, std::string message, std::string suggestion = {}) {
-    problems_.push_back({std::move(path), std::move(message), std::move(suggestion)});
-  }
-
-  void require_positive(const std::string& path, double value) {
-    if (!(value > 0.0) || !std::isfinite(value)) add(path, "is not a positive number");
-  }
-  void require_not_negative(const std::string& path, double value) {
-    if (!(value >= 0.0) || !std::isfinite(value)) add(path, "is negative or not a number");
-  }
-
-  void require_name(const std::string& path, const std::vector<std::string>& names,
-                    const std::string& kind, const std::string& name) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) return;
-    add(path, name.empty() ? "no " + kind + " is named" : "no " + kind + " `" + name + "`",
-        base::nearest_name(name, names).value_or(""));
+    problems_.add(std::move(path), std::move(message), std::move(suggestion));
   }
 
   void check_unique(const std::string& path, const std::vector<std::string>& names) {
@@ -68,13 +97,13 @@ class StructureChecker {
   void check_friction() {
     std::vector<std::string> materials = {spec_.floor_material};
     for (const BodySpec& body : spec_.bodies) materials.push_back(body.material);
-    require_not_negative("friction/fallback", spec_.friction.fallback);
+    problems_.require_not_negative("friction/fallback", spec_.friction.fallback);
     for (const auto& [pair, mu] : spec_.friction.pairs) {
       const std::string path = "friction/pairs/" + pair.first + "," + pair.second;
-      require_not_negative(path, mu);
+      problems_.require_not_negative(path, mu);
       if (pair.second < pair.first) add(path, "the two materials are not in order");
-      require_name(path, materials, "body of material", pair.first);
-      require_name(path, materials, "body of material", pair.second);
+      problems_.require_name(path, materials, "body of material", pair.first);
+      problems_.require_name(path, materials, "body of material", pair.second);
     }
   }
 
@@ -86,7 +115,7 @@ class StructureChecker {
         add(path, "the name is kept for the robot's own variables");
       }
     }
-    require_not_negative(path + "/mass_kg", body.mass_kg);
+    problems_.require_not_negative(path + "/mass_kg", body.mass_kg);
     if (body.mass_kg > kMaxMass_kg) {
       add(path + "/mass_kg", fmt::format("is more than {:g} kg", kMaxMass_kg));
     }
@@ -150,14 +179,15 @@ class StructureChecker {
 
   void check_joint(const JointSpec& joint) {
     const std::string path = "joints/" + joint.name;
-    if (!joint.parent.empty()) require_name(path + "/parent", body_names_, "body", joint.parent);
-    require_name(path + "/child", body_names_, "body", joint.child);
+    if (!joint.parent.empty())
+      problems_.require_name(path + "/parent", body_names_, "body", joint.parent);
+    problems_.require_name(path + "/child", body_names_, "body", joint.child);
     if (joint.parent == joint.child) add(path + "/child", "is the parent itself");
-    require_not_negative(path + "/max_force_n", joint.max_force_n);
+    problems_.require_not_negative(path + "/max_force_n", joint.max_force_n);
     if (joint.type == JointType::kFixed) return;
     if (joint.type == JointType::kGantry) {
-      require_positive(path + "/max_force_n", joint.max_force_n);
-      require_positive(path + "/max_torque_nm", joint.max_torque_nm);
+      problems_.require_positive(path + "/max_force_n", joint.max_force_n);
+      problems_.require_positive(path + "/max_torque_nm", joint.max_torque_nm);
       return;
     }
     if (!joint.axis_W.allFinite() || joint.axis_W.norm() < 1e-9) {
@@ -197,64 +227,65 @@ class StructureChecker {
     }
   }
 
-  bool has_robot() const {
-    const LineRobotSpec& r = spec_.robot;
-    return !(r.base_joint.empty() && r.base_body.empty() && r.reach_joint.empty() &&
-             r.lift_joint.empty() && r.finger_joint.empty() && r.near_pad_body.empty() &&
-             r.far_pad_body.empty());
-  }
-
-  void check_axis(const std::string& role, const std::string& name, const Eigen::Vector3d* axis) {
-    const std::string path = "robot/" + role;
-    require_name(path, joint_names_, "joint", name);
-    for (const JointSpec& joint : spec_.joints) {
-      if (joint.name != name) continue;
-      if (joint.type != JointType::kSlider) add(path, "`" + name + "` is no slider");
-      if (joint.max_force_n == 0.0) add(path, "`" + name + "` has no motor: max_force_n is 0");
-      if (axis != nullptr && !joint.axis_W.normalized().isApprox(*axis, 1e-9)) {
-        add(path, fmt::format("`{}` does not move along +{}", name, axis->z() > 0.5 ? 'z' : 'x'));
+  void check_places() {
+    for (const PlaceSpec& place : spec_.places) {
+      if (place.p_FP.cwiseAbs().maxCoeff() > kMaxExtent_m) {
+        add("places/" + place.name + "/at_m",
+            fmt::format("is more than {:g} m away", kMaxExtent_m));
       }
-      if (role == "lift_joint" && !joint.low_m) add(path, "`" + name + "` needs a lower stop");
+      if (!place.frame.empty()) {
+        problems_.require_name("places/" + place.name + "/frame", body_names_, "body", place.frame);
+      }
     }
   }
 
-  void check_robot() {
-    const LineRobotSpec& robot = spec_.robot;
-    const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ();
-    check_axis("base_joint", robot.base_joint, &x);
-    check_axis("reach_joint", robot.reach_joint, &x);
-    check_axis("lift_joint", robot.lift_joint, &z);
-    check_axis("finger_joint", robot.finger_joint, nullptr);
-    require_name("robot/base_body", body_names_, "body", robot.base_body);
-    require_name("robot/near_pad_body", body_names_, "body", robot.near_pad_body);
-    require_name("robot/far_pad_body", body_names_, "body", robot.far_pad_body);
-    require_positive("robot/grip_force_n", robot.grip_force_n);
-    require_positive("robot/opening_m", robot.opening_m);
-    if (problems_.empty()) check_one_machine();
-  }
-
-  /// The roles must belong to one machine, or the tool would not follow the axes.
-  void check_one_machine() {
+  /// Where grippers take hold: grasps of bodies, handles of joints.
+  void check_grips() {
     const WorldLayout layout = lay_out(spec_);
-    const auto assembly = [&](const std::string& name) {
-      return layout.assembly_of[layout.find_body(name)->index()];
-    };
-    const std::uint32_t robot = assembly(spec_.robot.base_body);
-    if (robot == 0) add("robot/base_body", "is fixed to the world");
-    for (const std::string& pad : {spec_.robot.near_pad_body, spec_.robot.far_pad_body}) {
-      if (assembly(pad) != robot) {
-        add("robot/base_body",
-            "no joints lead from `" + spec_.robot.base_body + "` to `" + pad + "`");
+    for (const BodySpec& body : spec_.bodies) {
+      if (!body.grasp) continue;
+      const std::string path = "bodies/" + body.name + "/grasp";
+      problems_.require(body.grasp->width_m > 0.0, path + "/width_m", "is not positive");
+      problems_.require(body.grasp->effort_n > 0.0, path + "/effort_n", "is not positive");
+      problems_.require(layout.is_free[layout.find_body(body.name)->index()], path,
+                        "only free bodies are grasped");
+    }
+    for (const JointSpec& joint : spec_.joints) {
+      if (joint.handle && joint.type != JointType::kSlider) {
+        add("joints/" + joint.name + "/handle", "only sliders have handles");
       }
     }
   }
 
   const WorldSpec& spec_;
   std::vector<std::string> body_names_, joint_names_;
-  std::vector<WorldProblem> problems_;
+  ProblemList problems_;
 };
 
 }  // namespace
+
+void ProblemList::add(std::string path, std::string message, std::string suggestion) {
+  found_.push_back({std::move(path), std::move(message), std::move(suggestion)});
+}
+
+void ProblemList::require(bool good, const std::string& path, const char* message) {
+  if (!good) add(path, message);
+}
+
+void ProblemList::require_positive(const std::string& path, double value) {
+  require(value > 0.0 && std::isfinite(value), path, "is not a positive number");
+}
+
+void ProblemList::require_not_negative(const std::string& path, double value) {
+  require(value >= 0.0 && std::isfinite(value), path, "is negative or not a number");
+}
+
+void ProblemList::require_name(const std::string& path, const std::vector<std::string>& names,
+                               const std::string& kind, const std::string& name) {
+  if (std::find(names.begin(), names.end(), name) != names.end()) return;
+  add(path, name.empty() ? "no " + kind + " is named" : "no " + kind + " `" + name + "`",
+      base::nearest_name(name, names).value_or(""));
+}
 
 std::vector<WorldProblem> check_structure(const WorldSpec& spec) {
   return StructureChecker(spec).run();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,36 @@ struct WorldProblem {
   std::string message;     // "no body `palmm`"
   std::string suggestion;  // a name that exists, or empty
 };
+
+/// What checks find, in the order in which they find it.
+class ProblemList {
+ public:
+  ProblemList() = default;
+  explicit ProblemList(std::vector<WorldProblem> found) : found_(std::move(found)) {}
+
+  bool empty() const { return found_.empty(); }
+  std::size_t size() const { return found_.size(); }
+  std::vector<WorldProblem> take() { return std::move(found_); }
+
+  void add(std::string path, std::string message, std::string suggestion = {});
+  void require(bool good, const std::string& path, const char* message);
+  void require_positive(const std::string& path, double value);
+  void require_not_negative(const std::string& path, double value);
+  /// `name` must be one of `names`; `kind` is what they name: "body".
+  void require_name(const std::string& path, const std::vector<std::string>& names,
+                    const std::string& kind, const std::string& name);
+
+ private:
+  std::vector<WorldProblem> found_;
+};
+
+/// The names of bodies, joints or places.
+template <typename List>
+std::vector<std::string> names_of(const List& list) {
+  std::vector<std::string> names;
+  for (const auto& item : list) names.push_back(item.name);
+  return names;
+}
 
 /// What is wrong with the parts of `spec` and with how they hang together, in their order: all that
 /// can be said without building it. Empty: `lay_out` takes it.

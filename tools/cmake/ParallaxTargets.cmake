@@ -18,7 +18,7 @@ set(PARALLAX_BATCH 40000 CACHE STRING "Sources compiled together, in bytes; 0: e
 # parallax_batches(TARGET a.cc ...): file-local names must differ within a folder.
 function(parallax_batches target)
   # Folders in which names still collide.
-  set(apart graph engine robot simulator process_simulator)
+  set(apart graph)
   list(TRANSFORM apart PREPEND parallax_)
   if(PARALLAX_BATCH EQUAL 0 OR target IN_LIST apart)
     return()

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "harness/engine/region_support.h"
+#include "harness/engine/placement_check.h"
 #include "harness/engine/world_check.h"
 #include "tests/harness/kitchen/kitchen_world.h"
 

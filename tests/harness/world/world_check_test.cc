@@ -6,9 +6,9 @@
 #include <cmath>
 #include <string>
 
-#include "harness/robot/axis_servo.h"
+#include "harness/robot/servo.h"
 #include "harness/world/controller_table.h"
-#include "harness/world/observables.h"
+#include "harness/world/variables.h"
 #include "harness/world/world_layout.h"
 #include "tests/harness/world/fetch_world.h"
 

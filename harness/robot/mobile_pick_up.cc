@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "harness/robot/mobile_controller.h"
+#include "harness/world/angles.h"
+
+namespace parallax::harness {
+namespace {
+
+constexpr double kSearch_m = 0.004;  // beyond where the near pad should have met the body
+
+/// Takes hold of a body where it is believed to be, by friction alone, and lifts it.
+class PickUp final : public MobileController {
+ public:
+  PickUp(const ControlContext& context, const Arguments& arguments)
+      : MobileController(context, arguments),
+        object_(*arguments.body("object")),
+        grasp_(*world().layout().bodies[object_].grasp) {
+    if (context.grasp.held_by(arm().gripper(), object_)) {
+      refuse_with(kGraspFailed, fmt::format("`{}` is held already", name_of(object_)));
+    } else if (context.grasp.held_body(arm().gripper())) {
+      refuse_with(kGraspFailed, "the gripper is not empty");
+    } else if (!perception().belief(object_).perceived || !perception().believed(object_)) {
+      refuse_with(kObjectNotFound, fmt::format("`{}` was not perceived", name_of(object_)));
+    } else {
+      plan();
+    }
+  }
+
+ private:
+  void plan() {
+    const double heading_rad = robot().base().pose().yaw_rad;
+    const double frame_rad =
+        grasp_.follows_body ? perception().belief(object_).yaw_rad : heading_rad;
+    const Eigen::AngleAxisd turn(frame_rad, Eigen::Vector3d::UnitZ());
+    // The near pad passes at the clearance; the far one closes up to it.
+    const double clearance_m = number("clearance_m");
+    const double wrist_W = frame_rad + grasp_.wrist_rad;
+    // Pads squeeze along y of the palm: a turn by half a circle is the same grasp with the pads
+    // exchanged; the smaller turn of the wrist is taken.
+    double wrist = wrapped(wrist_W - heading_rad);
+    if (wrist > 0.5 * M_PI) wrist -= M_PI;
+    if (wrist <= -0.5 * M_PI) wrist += M_PI;
+    to_near_ = arm().pad_line(wrist);
+    target_ = *perception().believed(object_) + turn * grasp_.p_BG -
+              to_near_ * (0.5 * arm().spec().opening_m - 0.5 * grasp_.width_m - clearance_m);
+    if (!require_reach(target_, fmt::format("`{}`", name_of(object_)))) return;
+    add_phases(wrist, target_ - number("standoff_m") * way_in());
+  }
+
+  /// Straight down, or level between the pads, so that neither pad brushes the body on its way.
+  Eigen::Vector3d way_in() const {
+    if (grasp_.from_above) return -Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d along = to_near_.cross(Eigen::Vector3d::UnitZ()).normalized();
+    return along.dot(robot().base().heading()) < 0.0 ? Eigen::Vector3d(-along) : along;
+  }
+
+  void add_phases(double wrist, const Eigen::Vector3d& standoff) {
+    const double opening_m =
+        std::min(arm().spec().opening_m, grasp_.width_m + 2.0 * number("clearance_m"));
+    add_wrist(wrist);
+    add_opening([opening_m] { return opening_m; });
+    add_step([this, standoff] { check_last_stretch(standoff); });
+    add_tool_path("reaching", [standoff] { return standoff; });
+    Motion slow = tool_motion();
+    slow.max_speed_m_s = number("approach_speed_m_s");
+    add_tool_move(
+        "approaching", [this] { return target_; }, slow);
+    add_touching();
+    const double given = number("effort_n");
+    add_squeeze(std::isnan(given) ? grasp_.effort_n : given, number("hold_s"), [this] {
+      const Touch& touch = world().touch(object_);
+      return touch.near_pad(arm().gripper()) && touch.far_pad(arm().gripper());
+    });
+    const Motion loaded{number("lift_speed_m_s"), number("lift_acceleration_m_s2"), 0.001, 10.0};
+    add_tool_move(
+        "lifting",
+        [this] {
+          return Eigen::Vector3d(arm().tool() + number("lift_m") * Eigen::Vector3d::UnitZ());
+        },
+        loaded);
+    add_pause("settling", number("settle_s"));
+  }
+
+  /// Brings the near pad to the body, so that the far one does not tip it over.
+  void add_touching() {
+    static constexpr Motion kTouching{0.02, 1.0, 0.0005, 10.0};
+    const double way_m = number("clearance_m") + kSearch_m;
+    add_tool_move_until(
+        "touching", [this, way_m] { return Eigen::Vector3d(arm().tool() - way_m * to_near_); },
+        kTouching, [this] { return world().touch(object_).near_pad(arm().gripper()); });
+    add_step([this] { arm().brake(); });
+  }
+
+  /// The way in and the lift are straight: what is in their way makes the pose unreachable.
+  void check_last_stretch(const Eigen::Vector3d& standoff) {
+    const Sweep sweep = arm_sweep(object_);
+    const Eigen::Vector3d from = arm().tool();
+    auto hit = sweep.along(standoff - from, target_ - standoff, 0.01);
+    if (!hit) {
+      hit = sweep.along(target_ - from, number("lift_m") * Eigen::Vector3d::UnitZ(), 0.01);
+    }
+    if (!hit) return;
+    refuse_with(kManipulationUnreachable, fmt::format("at `{}` `{}` would meet `{}`",
+                                                      name_of(object_), hit->part, hit->obstacle));
+  }
+
+  Outcome judge(std::string_view overdue) override {
+    if (context().grasp.held_by(arm().gripper(), object_)) {
+      perception().forget(object_);
+      const Eigen::Vector3d offset = world().position(object_) - arm().tool();
+      return {SimStatus::kOk, {}, 0.0, {{"grasp_offset", offset.head<2>().norm()}}};
+    }
+    return failed(
+        kGraspFailed,
+        with_overdue(fmt::format("`{}` is not held after the lift", name_of(object_)), overdue));
+  }
+
+  BodyId object_;
+  GraspSpec grasp_;
+  Eigen::Vector3d target_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d to_near_ = Eigen::Vector3d::UnitY();
+};
+
+}  // namespace
+
+std::unique_ptr<Controller> make_pick_up(const ControlContext& context,
+                                         const Arguments& arguments) {
+  return std::make_unique<PickUp>(context, arguments);
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "harness/robot/mobile_controller.h"
+
+namespace parallax::harness {
+namespace {
+
+constexpr double kTorsoTolerance_m = 0.005;
+
+/// Brings the tool to where it is carried.
+class Park final : public MobileController {
+ public:
+  Park(const ControlContext& context, const Arguments& arguments)
+      : MobileController(context, arguments) {
+    add_tool_path("parking", [this] { return robot().carry_point(arm()); });
+    add_pause("settling", number("settle_s"));
+  }
+
+ private:
+  Outcome judge(std::string_view) override {
+    if (robot().parked(arm())) return {};
+    const double error_m = (arm().tool() - robot().carry_point(arm())).norm();
+    return failed(kGoalNotReached,
+                  fmt::format("the tool is {} from where it is carried", metres(error_m)));
+  }
+};
+
+class MoveTorso final : public MobileController {
+ public:
+  MoveTorso(const ControlContext& context, const Arguments& arguments)
+      : MobileController(context, arguments), height_m_(height()) {
+    if (std::isnan(height_m_)) {
+      refuse_with(kGoalNotReached, "neither a place nor height_m is given");
+      return;
+    }
+    if (!robot().lift_allowed(height_m_)) {
+      refuse_with(kGoalNotReached, fmt::format("the torso does not go to {}", metres(height_m_)));
+      return;
+    }
+    const Motion motion{number("max_speed_m_s"), 0.2, 0.001, 10.0};
+    add(
+        "lifting",
+        [this, motion] {
+          robot().lift_to(height_m_, motion);
+          return patience_s(height_m_ - robot().lift_m(), motion);
+        },
+        [this] { return robot().torso_at_rest(); });
+  }
+
+ private:
+  Outcome judge(std::string_view) override {
+    const double error_m = std::abs(robot().lift_m() - height_m_);
+    if (error_m <= kTorsoTolerance_m) return {};
+    return failed(kGoalNotReached, fmt::format("the torso stopped {} away", metres(error_m)));
+  }
+
+  double height() const {
+    const double given_m = number("height_m");
+    const PlaceSpec* place = arguments().place("place");
+    return std::isnan(given_m) && place != nullptr ? place->p_FP.z() : given_m;
+  }
+
+  double height_m_;
+};
+
+/// Opens the gripper wide; what it held falls.
+class OpenGripper final : public MobileController {
+ public:
+  OpenGripper(const ControlContext& context, const Arguments& arguments)
+      : MobileController(context, arguments) {
+    add_opening([this] { return arm().spec().opening_m; });
+    add_pause("settling", number("settle_s"));
+  }
+
+ private:
+  Outcome judge(std::string_view) override {
+    if (robot().open(arm())) return {};
+    return failed(kGoalNotReached, "the gripper did not open");
+  }
+};
+
+/// Squeezes what is held with another force.
+class Regrip final : public MobileController {
+ public:
+  Regrip(const ControlContext& context, const Arguments& arguments)
+      : MobileController(context, arguments) {
+    const std::uint32_t gripper = arm().gripper();
+    if (!context.grasp.held_body(gripper)) {
+      refuse_with(kGraspFailed, "nothing is held");
+      return;
+    }
+    add_squeeze(number("effort_n"), number("hold_s"),
+                [this, gripper] { return is_holding(gripper); });
+  }
+
+ private:
+  bool is_holding(std::uint32_t gripper) const {
+    return context().grasp.held_body(gripper).has_value();
+  }
+
+  Outcome judge(std::string_view) override {
+    if (is_holding(arm().gripper())) return {};
+    return failed(kGraspFailed, "it was lost");
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Controller> make_park(const ControlContext& context, const Arguments& arguments) {
+  return std::make_unique<Park>(context, arguments);
+}
+std::unique_ptr<Controller> make_move_torso(const ControlContext& context,
+                                            const Arguments& arguments) {
+  return std::make_unique<MoveTorso>(context, arguments);
+}
+std::unique_ptr<Controller> make_open_gripper(const ControlContext& context,
+                                              const Arguments& arguments) {
+  return std::make_unique<OpenGripper>(context, arguments);
+}
+std::unique_ptr<Controller> make_regrip(const ControlContext& context, const Arguments& arguments) {
+  return std::make_unique<Regrip>(context, arguments);
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,124 @@
+#include "harness/robot/servo.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace parallax::harness {
+namespace {
+
+constexpr double kHoldRate_hz = 20.0;       // of the correction while keeping a place
+constexpr double kMaxHoldSpeed_m_s = 0.05;  // of the same
+
+constexpr double kSideRate_hz = 20.0;       // of the correction beside the line
+constexpr double kMaxSideSpeed_m_s = 0.05;  // of the same
+constexpr double kNoWay_m = 1e-9;
+
+/// Speed from which `motion` can still stop at the target: constant deceleration far away, in
+/// proportion to the distance nearby, where the two meet in value and slope.
+double approach_speed(double distance_m, const Motion& motion) {
+  const double rate = motion.approach_rate_hz;
+  const double border_m = motion.acceleration_m_s2 / (rate * rate);
+  if (distance_m <= border_m) return rate * distance_m;
+  return std::sqrt(2.0 * motion.acceleration_m_s2 * (distance_m - 0.5 * border_m));
+}
+
+}  // namespace
+
+double nominal_time_s(double distance_m, const Motion& motion) {
+  const double d = std::abs(distance_m);
+  const double v = motion.max_speed_m_s, a = motion.acceleration_m_s2;
+  if (d <= motion.tolerance_m) return 0.0;
+  const double trapezoid_s = d >= v * v / a ? d / v + v / a : 2.0 * std::sqrt(d / a);
+  // The last part decays exponentially from the border of the proportional range.
+  const double rate = motion.approach_rate_hz;
+  const double start_m = std::min({d, a / (rate * rate), v / rate});
+  return trapezoid_s + std::log(std::max(1.0, start_m / motion.tolerance_m)) / rate;
+}
+
+void AxisServo::reset(double position_m) {
+  *this = AxisServo{};
+  target_m_ = position_m;
+}
+
+void AxisServo::move_to(double target_m, const Motion& motion) {
+  restart_ = mode_ == Mode::kPush;
+  mode_ = Mode::kMove;
+  motion_ = motion;
+  target_m_ = target_m;
+}
+
+void AxisServo::brake() {
+  if (mode_ == Mode::kHold) return;
+  restart_ = mode_ == Mode::kPush;
+  mode_ = Mode::kBrake;
+}
+
+void AxisServo::push(double velocity_m_s, double acceleration_m_s2) {
+  mode_ = Mode::kPush;
+  push_velocity_m_s_ = velocity_m_s;
+  motion_.acceleration_m_s2 = acceleration_m_s2;
+}
+
+double AxisServo::wanted_velocity(double position_m) const {
+  switch (mode_) {
+    case Mode::kHold:
+      return std::clamp(kHoldRate_hz * (target_m_ - position_m), -kMaxHoldSpeed_m_s,
+                        kMaxHoldSpeed_m_s);
+    case Mode::kBrake:
+      return 0.0;
+    case Mode::kMove: {
+      const double error_m = target_m_ - position_m;
+      const double speed =
+          std::min(motion_.max_speed_m_s, approach_speed(std::abs(error_m), motion_));
+      return std::copysign(speed, error_m);
+    }
+    case Mode::kPush:
+      return push_velocity_m_s_;
+  }
+  return 0.0;
+}
+
+double AxisServo::next_velocity(double position_m, double rate_m_s, double timestep_s) {
+  if (restart_) command_m_s_ = rate_m_s;  // a saturated push says nothing of the real velocity
+  restart_ = false;
+  if (mode_ == Mode::kMove && std::abs(target_m_ - position_m) <= motion_.tolerance_m) {
+    mode_ = Mode::kBrake;
+  }
+  const double change = motion_.acceleration_m_s2 * timestep_s;
+  command_m_s_ =
+      std::clamp(wanted_velocity(position_m), command_m_s_ - change, command_m_s_ + change);
+  if (mode_ == Mode::kBrake && command_m_s_ == 0.0) {
+    mode_ = Mode::kHold;
+    target_m_ = position_m;
+  }
+  return command_m_s_;
+}
+
+void LineServo::reset(const Eigen::Vector3d& position) {
+  start_ = position;
+  direction_ = Eigen::Vector3d::UnitX();
+  along_.reset(0.0);
+}
+
+void LineServo::move_to(const Eigen::Vector3d& position, const Eigen::Vector3d& target,
+                        const Motion& motion) {
+  const Eigen::Vector3d way = target - position;
+  start_ = position;
+  along_.reset(0.0);
+  if (way.norm() < kNoWay_m) return;
+  direction_ = way.normalized();
+  along_.move_to(way.norm(), motion);
+}
+
+Eigen::Vector3d LineServo::next_velocity(const Eigen::Vector3d& position, double timestep_s) {
+  const double s = direction_.dot(position - start_);
+  const double speed = along_.next_velocity(s, 0.0, timestep_s);
+  const Eigen::Vector3d beside = start_ + s * direction_ - position;
+  const double distance = beside.norm();
+  const double correction = std::min(kSideRate_hz * distance, kMaxSideSpeed_m_s);
+  Eigen::Vector3d velocity = speed * direction_;
+  if (distance > 0.0) velocity += beside * (correction / distance);
+  return velocity;
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace parallax::harness {
+
+/// How an axis is to move. The speed follows a trapezoid over time and falls in proportion to the
+/// distance near the target; the command never jumps, because a velocity step shakes what the
+/// gripper holds by a force that depends on the timestep.
+struct Motion {
+  double max_speed_m_s = 0.25;
+  double acceleration_m_s2 = 0.5;
+  /// The servo brakes as soon as it is this near, and stays where it comes to rest: what is left
+  /// is its honest positioning error, on the side it came from.
+  double tolerance_m = 0.001;
+  double approach_rate_hz = 6.0;  // speed per distance close to the target
+};
+
+/// Time [s] that `motion` takes for `distance_m` if nothing is in the way.
+double nominal_time_s(double distance_m, const Motion& motion);
+
+/// Velocity command of one driven axis, advanced once per timestep.
+class AxisServo {
+ public:
+  /// At rest at `position_m`, and keeps it.
+  void reset(double position_m);
+  void move_to(double target_m, const Motion& motion);
+  /// Comes to rest with the acceleration of the last motion and keeps the place reached.
+  void brake();
+  /// Ramps to a velocity and keeps pushing, force permitting.
+  void push(double velocity_m_s, double acceleration_m_s2);
+
+  /// The command for the next timestep, from the measured position and rate of the axis.
+  double next_velocity(double position_m, double rate_m_s, double timestep_s);
+
+  /// At rest: the last motion or braking is over.
+  bool at_rest() const { return mode_ == Mode::kHold; }
+
+ private:
+  enum class Mode : std::uint8_t { kHold, kBrake, kMove, kPush };
+  double wanted_velocity(double position_m) const;
+
+  Mode mode_ = Mode::kHold;
+  bool restart_ = false;  // the next ramp begins at the measured rate
+  Motion motion_;
+  double target_m_ = 0.0;  // kMove: the goal; kHold: the place to keep
+  double push_velocity_m_s_ = 0.0;
+  double command_m_s_ = 0.0;
+};
+
+/// Velocity command of a point that is to move along straight lines, advanced once per timestep.
+/// The way along the line is an AxisServo's; what lies beside the line is taken back in proportion.
+class LineServo {
+ public:
+  /// At rest at `position`, and keeps it.
+  void reset(const Eigen::Vector3d& position);
+  /// From where it is (as measured) straight to `target`.
+  void move_to(const Eigen::Vector3d& position, const Eigen::Vector3d& target,
+               const Motion& motion);
+  void brake() { along_.brake(); }
+  Eigen::Vector3d next_velocity(const Eigen::Vector3d& position, double timestep_s);
+  bool at_rest() const { return along_.at_rest(); }
+
+ private:
+  Eigen::Vector3d start_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction_ = Eigen::Vector3d::UnitX();
+  AxisServo along_;
+};
+
+}  // namespace parallax::harness
