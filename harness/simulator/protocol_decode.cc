@@ -1,5 +1,4 @@
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -89,13 +88,8 @@ class FieldReader {
   static std::optional<Value> value_of(const Json& json) {
     if (json.is_boolean()) return Value(json.get<bool>());
     if (json.is_string()) return Value(json.get<std::string>());
-    // An integer beyond 64 bits signed is a large number all the same.
-    constexpr auto kMax = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
-    if (json.is_number_unsigned() && json.get<std::uint64_t>() > kMax) {
-      return Value(json.get<double>());
-    }
-    if (json.is_number_integer()) return Value(json.get<std::int64_t>());
-    if (json.is_number_float()) return Value(json.get<double>());
+    if (const auto integer = base::json_as<std::int64_t>(json)) return Value(*integer);
+    if (json.is_number()) return Value(json.get<double>());  // of an integer beyond that, too
     return std::nullopt;
   }
 
@@ -108,8 +102,7 @@ Json parse(std::string_view line) { return Json::parse(line.begin(), line.end(),
 
 std::optional<std::int64_t> id_of(const Json& json) {
   const auto found = json.find("id");
-  if (found == json.end() || !found->is_number_integer()) return std::nullopt;
-  return found->get<std::int64_t>();
+  return found == json.end() ? std::nullopt : base::json_as<std::int64_t>(*found);
 }
 
 Malformed malformed(std::string code, std::string message, std::optional<std::int64_t> id = {}) {
@@ -126,8 +119,8 @@ HelloRequest read_hello(FieldReader& reader, const Json& params) {
     return hello;
   }
   for (const Json& version : *versions) {
-    if (version.is_number_integer()) {
-      hello.protocols.push_back(version.get<std::int64_t>());
+    if (const auto number = base::json_as<std::int64_t>(version)) {
+      hello.protocols.push_back(*number);
     } else {
       reader.fail("`protocol` is not a list of versions");
     }

@@ -180,6 +180,61 @@ TEST_CASE("a request that is not the protocol is malformed") {
   CHECK(request_error(R"({"id":1,"method":"hello","params":{"protocol":1}})") == "invalid_params");
 }
 
+TEST_CASE("an integer that does not fit into 64 bits with a sign is no id and no version") {
+  CHECK(request_error(R"({"id":18446744073709551615,"method":"observe"})") == "invalid_request");
+  CHECK(request_error(R"({"id":9223372036854775808,"method":"close"})") == "invalid_request");
+  CHECK(request_error(R"({"id":1e3,"method":"close"})") == "invalid_request");
+  CHECK(
+      request_error(R"({"id":1,"method":"hello","params":{"protocol":[18446744073709551615]}})") ==
+      "invalid_params");
+  const Request hello{1, HelloRequest{}};
+  CHECK(malformed_message(
+            R"({"id":1,"result":{"protocol":18446744073709551615,"params":[],"actions":[]}})",
+            hello) == "`protocol` is not an integer");
+  CHECK(malformed_message(R"({"id":18446744073709551615,"result":{}})", {-1, ObserveRequest{}}) ==
+        "the reply to request -1 carries no id");
+  const auto least = decode_request(R"({"id":-9223372036854775808,"method":"observe"})");
+  REQUIRE(std::holds_alternative<Request>(least));
+  CHECK(std::get<Request>(least).id == std::numeric_limits<std::int64_t>::min());
+}
+
+TEST_CASE("what a hostile simulator says of itself and of its outcomes is refused") {
+  const Request hello{1, HelloRequest{}}, act{3, ActRequest{}};
+  const auto info = [&](const std::string& more) {
+    return malformed_message(R"({"id":1,"result":{"protocol":1,"name":"x",)" + more + "}}", hello);
+  };
+  CHECK(info(R"("params":{},"actions":[])") == "`params` and `actions` are not lists");
+  CHECK(info(R"("params":[7],"actions":[])") == "an element of `params` is not an object");
+  CHECK(info(R"("params":[{}],"actions":[])") == "`name` is missing");
+  CHECK(info(R"("params":[{"name":"x","settable":1}],"actions":[])") ==
+        "`settable` is not a boolean");
+  CHECK(info(R"("params":[],"actions":[{}])") == "`name` is missing");
+  CHECK(info(R"("params":[],"actions":[[]])") == "an element of `actions` has no name");
+  CHECK(info(R"("params":[],"actions":[""])") == "an element of `actions` has no name");
+  CHECK(info(R"("seeds":"yes","params":[],"actions":[])") == "`seeds` is not a boolean");
+  const auto outcome = [&](const std::string& result) {
+    return malformed_message(R"({"id":3,"result":)" + result + "}", act);
+  };
+  CHECK(outcome(R"({"status":"ok","sim_time":-1})") == "`sim_time` is not within 0 to 1e9 s");
+  CHECK(outcome(R"({"status":"ok","sim_time":1e300})") == "`sim_time` is not within 0 to 1e9 s");
+  CHECK(outcome(R"({"status":"OK"})") == "no status `OK`");
+  CHECK(outcome(R"({"status":null})") == "`status` is not a string");
+  CHECK(outcome(R"({"status":"ok","reason":[]})") == "`reason` is not a string");
+  CHECK(outcome(R"({"status":"ok","margins":{"reach":{}}})") ==
+        "`reach` is neither boolean, number nor string");
+  CHECK(malformed_message(R"({"id":3,"error":{}})", act) == "`code` is missing");
+  CHECK(malformed_message(R"({"id":3,"error":"no"})", act) == "`error` is not an object");
+  CHECK(malformed_message(R"({"id":3,"result":{"status":"ok","reason":"\ud800"}})", act) ==
+        "the line is not JSON");
+}
+
+TEST_CASE("an integer beyond 64 bits is a number in a state") {
+  const auto state = decode_state(R"({"a":9223372036854775807,"b":18446744073709551615})");
+  REQUIRE(std::holds_alternative<State>(state));
+  CHECK(std::get<State>(state).at("a") == Value(std::numeric_limits<std::int64_t>::max()));
+  CHECK(std::get<State>(state).at("b") == Value(18446744073709551615.0));
+}
+
 TEST_CASE("no line of broken pieces of a reply crashes the decoder") {
   const std::string whole =
       R"({"id":3,"result":{"status":"failed","reason":"x","sim_time":2.4,"margins":{"reach":-0.03}}})";
