@@ -1,10 +1,10 @@
 #include "compiler/base/diagnostic.h"
 
-#include "compiler/base/diagnostic_codes.h"
-
 #include <algorithm>
 #include <limits>
 #include <tuple>
+
+#include "compiler/base/diagnostic_codes.h"
 
 namespace parallax::base {
 namespace {

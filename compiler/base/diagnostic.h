@@ -76,8 +76,8 @@ class DiagnosticBuilder {
   std::size_t index_;
 };
 
-/// Collects what is wrong with the user's input; never prints. Beyond the limits errors and warnings
-/// are counted but not kept.
+/// Collects what is wrong with the user's input; never prints. Beyond the limits errors and
+/// warnings are counted but not kept.
 class DiagnosticSink {
  public:
   static constexpr std::size_t kUsualLimit = 20;

@@ -6,12 +6,15 @@ namespace parallax::compiler {
 
 FormulaText::FormulaText(const FormulaStore& store,
                          std::function<std::string(std::int32_t)> atom_name)
-    : store_(store),
-      atom_name_(std::move(atom_name)),
-      uses_(store.node_count(), 0),
-      numbers_(store.node_count(), 0) {}
+    : store_(store), atom_name_(std::move(atom_name)) {}
+
+void FormulaText::know_nodes() {
+  uses_.resize(store_.node_count(), 0);
+  numbers_.resize(store_.node_count(), 0);
+}
 
 void FormulaText::count(FormulaId formula) {
+  know_nodes();
   std::vector<FormulaId> todo = {formula};
   while (!todo.empty()) {
     const auto id = todo.back();
@@ -32,6 +35,7 @@ std::string FormulaText::part_name(FormulaId id) {
 }
 
 std::string FormulaText::text(FormulaId formula) {
+  know_nodes();
   struct Piece {
     FormulaId id;
     const char* fixed = nullptr;  // instead of a formula

@@ -24,6 +24,8 @@ class FormulaText {
   std::string definitions();
 
  private:
+  /// The store may have grown since the last call.
+  void know_nodes();
   std::string part_name(FormulaId id);
 
   const FormulaStore& store_;

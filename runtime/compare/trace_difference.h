@@ -52,8 +52,8 @@ struct TraceDifference {
 };
 
 struct DifferenceOptions {
-  std::size_t list_limit = 200;         // traces that are found one by one to be counted
-  std::size_t max_refinements = 200;    // DifferenceFinder
+  std::size_t list_limit = 200;        // traces that are found one by one to be counted
+  std::size_t max_refinements = 200;   // DifferenceFinder
   GraphLimits graph = {2'000, 4'000};  // for counting beyond `list_limit`
   /// By origin of each model: belongs to an edited axiom.
   std::vector<bool> first_edited, second_edited;

@@ -17,10 +17,7 @@ set(PARALLAX_BATCH 40000 CACHE STRING "Sources compiled together, in bytes; 0: e
 
 # parallax_batches(TARGET a.cc ...): file-local names must differ within a folder.
 function(parallax_batches target)
-  # Folders in which names still collide.
-  set(apart graph)
-  list(TRANSFORM apart PREPEND parallax_)
-  if(PARALLAX_BATCH EQUAL 0 OR target IN_LIST apart)
+  if(PARALLAX_BATCH EQUAL 0)
     return()
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)

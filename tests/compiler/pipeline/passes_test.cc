@@ -86,7 +86,8 @@ TEST_CASE("the value after a pass shows what the pass did") {
   CHECK(!has(value_after("rigid-axioms"), "HoldsAt(On(L1),0)"));
   CHECK(has(value_after("fixed-axioms"), "m.e:9 axiom: !HoldsAt(On(L1),0)"));
   CHECK(!has(value_after("narrative"), "Initiates"));
-  CHECK(has(value_after("effects"), "m.e:10 effect axiom: Initiates(Press(L1),On(L1),time)\n"));
+  CHECK(has(value_after("effects"),
+            "m.e:10 effect axiom: Initiates(Press(L1),On(L1),time) if Good(L1)\n"));
   CHECK(!has(value_after("effects"), "Initiates(Press(L2)"));  // known not to be good
   CHECK(has(value_after("axioms"), "m.e:11 axiom (every timepoint, width 0): "));
   CHECK(has(value_after("inertia"), "m.e:4 frame axiom (every timepoint, width 1): "));

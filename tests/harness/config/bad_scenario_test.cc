@@ -1,6 +1,5 @@
 #include <sys/stat.h>
 
-
 #include "harness/config/scenario.h"
 #include "tests/harness/config/scenario_text.h"
 

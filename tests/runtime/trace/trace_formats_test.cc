@@ -273,7 +273,7 @@ TEST_CASE("a field of a CSV file is quoted where it must be, and only there") {
 }
 
 TEST_CASE("a name in a JSON line is escaped where it must be") {
-  const Names names = {"A()", "a\"b\\c", "a\nb\x01", "\xc3\xa9"};
+  const Names names = {"A()", "a\nb\x01", "a\"b\\c", "\xc3\xa9"};  // sorted by bytes
   NamedTrace named(1, 1);
   for (const auto& name : names) named.holds(0, name);
   const auto line = nlohmann::json::parse(runtime::to_jsonl(named.trace));
