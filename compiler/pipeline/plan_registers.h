@@ -8,7 +8,6 @@
 #include "compiler/ground/formula_grounder.h"
 #include "compiler/pipeline/plan_formulas.h"
 #include "compiler/plan/plan_graph.h"
-#include "compiler/plan/plan_liveness.h"
 
 namespace parallax::compiler {
 

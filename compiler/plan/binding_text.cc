@@ -1,8 +1,11 @@
 #include "compiler/plan/binding_text.h"
 
-#include <algorithm>
+#include <fmt/core.h>
 
-#include "compiler/base/ascii.h"
+#include <algorithm>
+#include <utility>
+
+#include "compiler/base/diagnostic_codes.h"
 
 namespace parallax::compiler {
 namespace {
@@ -26,6 +29,11 @@ bool is_separator(std::string_view line_before, std::string_view after) {
   after.remove_prefix(word);
   return starts_entry(after) || starts_with_word(after, "else") ||
          starts_with_word(after, "returns") || after.starts_with("ok:");
+}
+
+/// Characters of types, keys and failure classes.
+bool is_binding_name(char c) {
+  return !base::is_space(c) && std::string_view("()|=,;:@/").find(c) == std::string_view::npos;
 }
 
 }  // namespace
@@ -54,6 +62,88 @@ BindingText clean_binding(std::string_view file) {
     begin = end + 1;
   }
   return out;
+}
+
+std::size_t variable_length(std::string_view text) {
+  if (text.empty() || text.front() != '?') return 0;
+  std::size_t i = 1;
+  while (i < text.size()) {
+    const bool hyphen =
+        text[i] == '-' && i + 1 < text.size() && base::is_name_character(text[i + 1]);
+    if (!base::is_name_character(text[i]) && !hyphen) break;
+    ++i;
+  }
+  return i == 1 ? 0 : i;
+}
+
+void BindingCursor::enter(std::size_t entry) {
+  i_ = entry == kPreamble ? 0 : cleaned_.entries[entry];
+  const auto next = entry + 1;  // of the preamble: the first
+  end_ = next < entries() ? cleaned_.entries[next] : text().size();
+}
+
+std::string_view BindingCursor::peek_name() const {
+  const auto left = rest();
+  std::size_t length = 0;
+  while (length < left.size() && is_binding_name(left[length]) &&
+         !left.substr(length).starts_with("->")) {
+    ++length;
+  }
+  return left.substr(0, length);
+}
+
+bool BindingCursor::take(std::string_view literal) {
+  skip_blanks();
+  if (!rest().starts_with(literal)) return false;
+  i_ += literal.size();
+  return true;
+}
+
+bool BindingCursor::take_word(std::string_view word) {
+  skip_blanks();
+  if (peek_name() != word) return false;
+  i_ += word.size();
+  return true;
+}
+
+bool BindingCursor::expected(std::string_view what) {
+  skip_blanks();
+  failed_ = true;
+  auto stop = i_;
+  while (stop < end_ && !base::is_space(text()[stop]) && stop - i_ < 40) ++stop;
+  const auto found = at_end() ? std::string("the end of the entry")
+                              : fmt::format("`{}`", rest().substr(0, stop - i_));
+  sink_.error(base::DiagnosticCode::kBindingSyntax, range(i_, stop), what, found);
+  return false;
+}
+
+bool BindingCursor::name(std::string_view what, std::string& out) {
+  skip_blanks();
+  const auto word = peek_name();
+  if (word.empty() || word.front() == '?') return expected(what);
+  out = word;
+  i_ += word.size();
+  return true;
+}
+
+bool BindingCursor::variable(std::string& out) {
+  skip_blanks();
+  const auto length = variable_length(rest());
+  if (length == 0) return expected("a variable such as `?o`");
+  out = rest().substr(0, length);
+  i_ += length;
+  return true;
+}
+
+bool BindingCursor::variables(std::vector<std::string>& out) {
+  if (!take("(")) return true;
+  while (!take(")")) {
+    std::string one;
+    if (!variable(one)) return false;
+    out.push_back(std::move(one));
+    take(",");
+  }
+  return true;
 }
 
 }  // namespace parallax::compiler

@@ -5,6 +5,9 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/base/ascii.h"
+#include "compiler/base/diagnostic.h"
+
 namespace parallax::compiler {
 
 /// The text of a binding file, cut into entries.
@@ -16,5 +19,53 @@ struct BindingText {
 /// An entry starts with `motion`, `action`, `query` or `object` at the start of a line or behind a
 /// separating `;`.
 BindingText clean_binding(std::string_view file);
+
+/// A parameter `?x` at the start of `text`: its length, 0 if there is none.
+std::size_t variable_length(std::string_view text);
+
+/// Reads the words of one entry after the other. What should stand there and does not is E4001.
+class BindingCursor {
+ public:
+  BindingCursor(std::string_view file_text, base::FileId file, base::DiagnosticSink& sink)
+      : file_(file), sink_(sink), cleaned_(clean_binding(file_text)) {}
+
+  const std::string& text() const { return cleaned_.text; }
+  std::size_t entries() const { return cleaned_.entries.size(); }
+  /// Goes to an entry; `kPreamble` is what stands before the first one.
+  static constexpr std::size_t kPreamble = static_cast<std::size_t>(-1);
+  void enter(std::size_t entry);
+
+  std::size_t position() const { return i_; }
+  bool at_end() const { return i_ == end_; }
+  char peek() const { return text()[i_]; }
+  void advance(std::size_t count = 1) { i_ += count; }
+  /// What is left of the entry.
+  std::string_view rest() const { return std::string_view(text()).substr(i_, end_ - i_); }
+  base::SourceRange range(std::size_t begin, std::size_t end) const {
+    return {file_, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+  }
+  void skip_blanks() {
+    while (i_ < end_ && base::is_space(peek())) ++i_;
+  }
+  std::string_view peek_name() const;
+  bool take(std::string_view literal);
+  bool take_word(std::string_view word);
+  /// The name of something; false: reported.
+  bool name(std::string_view what, std::string& out);
+  bool variable(std::string& out);
+  /// (?a ?b), with or without commas; nothing at all is an empty list.
+  bool variables(std::vector<std::string>& out);
+  /// Reports that `what` does not stand here; false.
+  bool expected(std::string_view what);
+  bool failed() const { return failed_; }
+
+ private:
+  base::FileId file_;
+  base::DiagnosticSink& sink_;
+  BindingText cleaned_;
+  std::size_t i_ = 0;
+  std::size_t end_ = 0;  // of the entry
+  bool failed_ = false;
+};
 
 }  // namespace parallax::compiler

@@ -48,14 +48,11 @@ void form_if(FormCompiler& c, DatumId form, FormItems items) {
   c.compile(items[1]);
   const auto to_else = c.code.jump(PlanOp::kJumpIfNil, items[1]);
   c.compile(items[2]);
+  if (items.size() == 3) return c.otherwise_nil({to_else}, form);
   const auto to_end = c.code.jump(PlanOp::kJump, form);
   c.code.adjust(-1);
   c.code.patch_jump(to_else);
-  if (items.size() == 4) {
-    c.compile(items[3]);
-  } else {
-    c.nil(form);
-  }
+  c.compile(items[3]);
   c.code.patch_jump(to_end);
 }
 
@@ -66,11 +63,7 @@ void form_when(FormCompiler& c, DatumId form, FormItems items) {
   c.compile(items[1]);
   const auto to_else = c.code.jump(PlanOp::kJumpIfNil, items[1]);
   c.compile_body(items.subspan(2));
-  const auto to_end = c.code.jump(PlanOp::kJump, form);
-  c.code.adjust(-1);
-  c.code.patch_jump(to_else);
-  c.nil(form);
-  c.code.patch_jump(to_end);
+  c.otherwise_nil({to_else}, form);
 }
 
 void form_unless(FormCompiler& c, DatumId form, FormItems items) {
@@ -120,12 +113,7 @@ void form_and(FormCompiler& c, DatumId form, FormItems items) {
     to_nil.push_back(c.code.jump(PlanOp::kJumpIfNil, item));
   }
   c.compile(items.back());
-  if (to_nil.empty()) return;
-  const auto to_end = c.code.jump(PlanOp::kJump, form);
-  c.code.adjust(-1);
-  for (const auto jump : to_nil) c.code.patch_jump(jump);
-  c.nil(form);
-  c.code.patch_jump(to_end);
+  if (!to_nil.empty()) c.otherwise_nil(to_nil, form);
 }
 
 void form_or(FormCompiler& c, DatumId form, FormItems items) {

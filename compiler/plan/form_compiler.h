@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
@@ -54,6 +56,8 @@ class FormCompiler {
   /// The forms in order; the value is the last one's, nil without forms.
   void compile_body(FormItems body);
   void nil(DatumId source) { code.constant(values.nil(), source); }
+  /// Closes a body, whose value is on the stack: where one of the jumps led past it, it is nil.
+  void otherwise_nil(const std::vector<std::size_t>& to_else, DatumId source);
   /// Quoted data as a value.
   ValueId datum_value(DatumId datum);
   /// The failure class that a symbol, perhaps quoted, names; CPL041 if there is none.
@@ -61,7 +65,7 @@ class FormCompiler {
   /// Drops docstrings and declarations at the head of a body.
   FormItems skip_declarations(FormItems body) const;
 
-  // --- messages; form_errors.cc
+  // --- messages
   template <typename... Args>
   base::DiagnosticBuilder error(base::DiagnosticCode code_of_error, DatumId at,
                                 const Args&... args) {
@@ -108,12 +112,26 @@ struct FormEntry {
 std::span<const FormEntry> binding_forms();     // variables, assignment, quoted data
 std::span<const FormEntry> control_forms();     // order, choice, blocks, questions to the model
 std::span<const FormEntry> loop_forms();        // dolist, dotimes, loop, mapcar and its like
-std::span<const FormEntry> failure_forms();     // handlers, retries, clean-ups
-std::span<const FormEntry> try_forms();         // the next branch after a failure
+std::span<const FormEntry> failure_forms();     // handlers, retries, clean-ups, the next branch
 std::span<const FormEntry> designator_forms();  // designators and their perform
 std::span<const FormEntry> call_forms();        // funcall, apply, local functions
 
 /// All of them, by name.
 const std::map<std::string_view, FormFunction>& plan_forms();
+
+/// A loop over a list that is known: two variables on the stack, the rest of the list and its
+/// current element.
+struct ListLoop {
+  std::uint32_t list = 0;  // place of the rest
+  std::uint32_t item = 0;  // place of the element
+  std::uint32_t top = 0;
+  std::size_t end_jump = 0;
+};
+
+/// Opens the loop over the list on top. The body follows and leaves one value, which end_list_loop
+/// drops.
+ListLoop begin_list_loop(FormCompiler& c, std::string_view variable, DatumId source);
+/// Closes the loop; its two variables are still there, the second one nil.
+void end_list_loop(FormCompiler& c, const ListLoop& loop, DatumId source);
 
 }  // namespace parallax::compiler

@@ -2,12 +2,16 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
-#include "compiler/plan/lisp_reader_state.h"
 
 namespace parallax::compiler {
 
@@ -15,6 +19,175 @@ using base::DiagnosticCode;
 using base::SourceRange;
 
 namespace {
+
+/// A cursor over the text of one plan file. Byte offsets; never past the end.
+class LispCursor {
+ public:
+  explicit LispCursor(std::string_view text) : text_(text) {}
+  bool at_end() const { return position_ >= text_.size(); }
+  std::uint32_t position() const { return static_cast<std::uint32_t>(position_); }
+  /// The byte `ahead` of the cursor; 0 beyond the end.
+  char peek(std::size_t ahead = 0) const {
+    return position_ + ahead < text_.size() ? text_[position_ + ahead] : '\0';
+  }
+  char take() { return text_[position_++]; }
+  void skip(std::size_t count) { position_ = std::min(position_ + count, text_.size()); }
+  std::string_view since(std::uint32_t begin) const {
+    return text_.substr(begin, position_ - begin);
+  }
+
+ private:
+  std::string_view text_;
+  std::size_t position_ = 0;
+};
+
+/// A symbol-like token: letters outside |bars| folded to lower case, escapes resolved.
+struct LispToken {
+  std::string text;
+  bool escaped = false;           // some part was written in |bars| or after a backslash
+  bool unterminated = false;      // the text ended inside |bars|
+  bool ends_with_colon = false;   // unescaped
+  std::int64_t first_colon = -1;  // index in `text` of the first unescaped colon
+  std::int64_t colons = 0;        // number of unescaped colons
+};
+
+bool skip_block_comment(LispCursor& cursor) {
+  std::int64_t depth = 0;
+  do {
+    if (cursor.at_end()) return false;
+    if (cursor.peek() == '#' && cursor.peek(1) == '|') {
+      ++depth;
+      cursor.skip(2);
+    } else if (cursor.peek() == '|' && cursor.peek(1) == '#') {
+      --depth;
+      cursor.skip(2);
+    } else {
+      cursor.skip(1);
+    }
+  } while (depth > 0);
+  return true;
+}
+
+/// The inside of |bars|, the cursor behind the opening one.
+void scan_bars(LispCursor& cursor, LispToken& token) {
+  token.escaped = true;
+  while (!cursor.at_end()) {
+    char c = cursor.take();
+    if (c == '|') return;
+    if (c == '\\' && !cursor.at_end()) c = cursor.take();
+    token.text += c;
+  }
+  token.unterminated = true;
+}
+
+bool is_lisp_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
+}
+
+/// Ends a token: blanks and ( ) " ' ; ` ,
+bool is_lisp_delimiter(char c) {
+  return is_lisp_blank(c) || std::string_view("()\"';`,").find(c) != std::string_view::npos;
+}
+
+LispToken scan_token(LispCursor& cursor) {
+  LispToken token;
+  while (!cursor.at_end() && !is_lisp_delimiter(cursor.peek())) {
+    const char c = cursor.take();
+    token.ends_with_colon = c == ':';
+    if (c == '|') {
+      scan_bars(cursor, token);
+    } else if (c == '\\') {
+      token.escaped = true;
+      if (cursor.at_end()) {
+        token.unterminated = true;
+      } else {
+        token.text += cursor.take();
+      }
+    } else {
+      if (c == ':') {
+        if (token.first_colon < 0) token.first_colon = static_cast<std::int64_t>(token.text.size());
+        ++token.colons;
+      }
+      token.text += base::to_lower(c);
+    }
+  }
+  return token;
+}
+
+/// Skips blanks, `; comments` and nested `#| comments |#`. False if a block comment does not end;
+/// `begin` is then its place.
+bool skip_blanks(LispCursor& cursor, std::uint32_t& begin) {
+  while (!cursor.at_end()) {
+    if (is_lisp_blank(cursor.peek())) {
+      cursor.skip(1);
+    } else if (cursor.peek() == ';') {
+      while (!cursor.at_end() && cursor.peek() != '\n') cursor.skip(1);
+    } else if (cursor.peek() == '#' && cursor.peek(1) == '|') {
+      begin = cursor.position();
+      if (!skip_block_comment(cursor)) return false;
+    } else {
+      return true;
+    }
+  }
+  return true;
+}
+
+/// What waits for its next datum.
+enum class OpenKind : std::uint8_t {
+  kList,
+  kPrefix,   // 'x and the like: takes one datum
+  kFeature,  // #+ or #-: takes the feature expression
+  kSkip,     // takes one datum and drops it
+};
+
+struct OpenDatum {
+  OpenKind kind = OpenKind::kList;
+  std::uint32_t begin = 0;
+  std::size_t first_child = 0;  // kList: index into the stack of finished children
+  std::string_view word;        // kPrefix: the symbol at the head of the list
+  bool negated = false;         // kFeature: #-
+};
+
+/// Reads a file without recursion: what is open lies on a stack.
+class LispReader {
+ public:
+  LispReader(const base::SourceFiles& files, base::FileId file, base::DiagnosticSink& sink)
+      : file_(file), cursor_(files[file].text()), sink_(sink) {}
+
+  base::Result<LispText> read();
+
+ private:
+  base::SourceRange range(std::uint32_t begin) const { return {file_, begin, cursor_.position()}; }
+  base::DiagnosticBuilder unreadable(base::SourceRange where, std::string_view text) {
+    failed_ = true;
+    return sink_.error(base::DiagnosticCode::kUnreadableDatum, where, text);
+  }
+  bool suppressed() const { return skips_ != 0; }
+  bool push(OpenDatum open);
+  void pop();
+  void deliver(DatumId datum);
+  void deliver_once(DatumId datum, std::optional<DatumId>& wrapped);
+  void close_list();
+  void read_next();
+  void read_string();
+  void read_token();
+  void read_symbol(const LispToken& token, std::uint32_t begin);
+  void read_sharp();
+  void read_character(std::uint32_t begin);
+  void reject_macro(std::uint32_t begin);
+  void report_open_list();
+
+  base::FileId file_;
+  LispCursor cursor_;
+  base::DiagnosticSink& sink_;
+  LispText out_;
+  std::vector<OpenDatum> open_;
+  std::vector<DatumId> finished_;                // children of the open lists
+  std::size_t skips_ = 0;                        // open kSkip frames
+  std::optional<base::SourceRange> column_one_;  // first `(` at column 1 inside an open list
+  bool failed_ = false;
+  bool stopped_ = false;
+};
 
 /// True if `feature` holds with the feature set {seecer}.
 bool feature_holds(const LispData& data, DatumId feature) {
@@ -28,8 +201,6 @@ bool feature_holds(const LispData& data, DatumId feature) {
   }
   return all;
 }
-
-}  // namespace
 
 bool LispReader::push(OpenDatum open) {
   if (open_.size() >= kMaxLispDepth) {
@@ -174,6 +345,118 @@ base::Result<LispText> LispReader::read() {
   if (failed_) return sink_.already_reported();
   return std::move(out_);
 }
+
+void LispReader::read_string() {
+  const auto begin = cursor_.position();
+  cursor_.skip(1);
+  std::string text;
+  while (!cursor_.at_end()) {
+    char c = cursor_.take();
+    if (c == '"') {
+      return deliver(out_.data.add_named(DatumKind::kString, text, "", range(begin)));
+    }
+    if (c == '\\' && !cursor_.at_end()) c = cursor_.take();
+    text += c;
+  }
+  unreadable({file_, begin, begin + 1}, "this string does not end");
+  stopped_ = true;
+}
+
+void LispReader::read_token() {
+  const auto begin = cursor_.position();
+  const auto token = scan_token(cursor_);
+  if (token.unterminated) {
+    unreadable({file_, begin, begin + 1}, "this symbol does not end");
+    stopped_ = true;
+    return;
+  }
+  if (!token.escaped) {
+    Number number;
+    switch (Number::parse(token.text, number)) {
+      case Number::Parse::kNumber:
+        return deliver(out_.data.add_number(number, range(begin)));
+      case Number::Parse::kOutOfRange:
+        unreadable(range(begin), "this number is out of range");
+        return deliver(out_.data.add_number(Number(0), range(begin)));
+      case Number::Parse::kZeroDenominator:
+        unreadable(range(begin), "this ratio has the denominator 0");
+        return deliver(out_.data.add_number(Number(0), range(begin)));
+      case Number::Parse::kNotANumber:
+        break;
+    }
+    if (token.text.find_first_not_of('.') == std::string::npos) {
+      unreadable(range(begin), "dotted pairs are not read");
+      return;
+    }
+  }
+  read_symbol(token, begin);
+}
+
+void LispReader::read_symbol(const LispToken& token, std::uint32_t begin) {
+  if (token.first_colon < 0) {
+    return deliver(out_.data.add_named(DatumKind::kSymbol, token.text, "", range(begin)));
+  }
+  const auto colon = static_cast<std::size_t>(token.first_colon);
+  const auto colons = static_cast<std::size_t>(token.colons);
+  const std::string_view text = token.text;
+  const auto name = text.substr(std::min(colon + colons, text.size()));
+  const bool together = text.substr(colon, colons).find_first_not_of(':') == std::string_view::npos;
+  const bool well_formed = together && !token.ends_with_colon && colons <= (colon == 0 ? 1U : 2U);
+  if (!well_formed) unreadable(range(begin), "misplaced `:` in this symbol");
+  const auto kind = colon == 0 ? DatumKind::kKeyword : DatumKind::kSymbol;
+  deliver(out_.data.add_named(kind, name, text.substr(0, colon), range(begin)));
+}
+
+void LispReader::read_character(std::uint32_t begin) {
+  cursor_.skip(2);
+  const auto name_begin = cursor_.position();
+  if (cursor_.at_end()) {
+    unreadable(range(begin), "a character is missing after `#\\`");
+    return;
+  }
+  const bool delimiter = is_lisp_delimiter(cursor_.take());
+  while (!delimiter && !cursor_.at_end() && !is_lisp_delimiter(cursor_.peek())) cursor_.skip(1);
+  const auto name = cursor_.since(name_begin);
+  deliver(out_.data.add_named(DatumKind::kCharacter, name, "", range(begin)));
+}
+
+/// Reports the macro and goes on behind its letters, so that the datum after it is read plainly.
+void LispReader::reject_macro(std::uint32_t begin) {
+  cursor_.skip(1);
+  while (cursor_.peek() >= '0' && cursor_.peek() <= '9') cursor_.skip(1);
+  const bool list_follows = cursor_.peek() == '(';
+  if (!cursor_.at_end() && !list_follows) cursor_.skip(1);
+  if (suppressed()) return;
+  failed_ = true;
+  sink_.error(DiagnosticCode::kUnsupportedReaderMacro, range(begin),
+              list_follows ? std::string("#(") : std::string(cursor_.since(begin)));
+}
+
+void LispReader::read_sharp() {
+  const auto begin = cursor_.position();
+  switch (cursor_.peek(1)) {
+    case '\'':
+      cursor_.skip(2);
+      push({OpenKind::kPrefix, begin, 0, "function", false});
+      return;
+    case '+':
+    case '-': {
+      const bool negated = cursor_.peek(1) == '-';
+      cursor_.skip(2);
+      push({OpenKind::kFeature, begin, 0, {}, negated});
+      return;
+    }
+    case '\\':
+      return read_character(begin);
+    case ':':  // an uninterned symbol, as in (in-package #:demo)
+      cursor_.skip(2);
+      return read_token();
+    default:
+      return reject_macro(begin);
+  }
+}
+
+}  // namespace
 
 base::Result<LispText> read_lisp(const base::SourceFiles& files, base::FileId file,
                                  base::DiagnosticSink& sink) {

@@ -10,11 +10,12 @@
 #include "compiler/base/suggest.h"
 
 namespace parallax::compiler {
-namespace {
 
 using base::DiagnosticCode;
 using base::Result;
 using base::SourceRange;
+
+namespace {
 
 std::optional<PerformKind> perform_kind(const Value& value) {
   if (value.kind != ValueKind::kDesignator) return std::nullopt;
@@ -30,6 +31,12 @@ std::string fold(std::string_view name) {
     out += base::to_lower(c);
   }
   return out;
+}
+
+bool is_undetected(const ValueStore& values, ValueId id) {
+  const auto& value = values[id];
+  return value.kind == ValueKind::kDesignator && value.designator == DesignatorKind::kObject &&
+         !values.key(id, "name");
 }
 
 }  // namespace
@@ -317,6 +324,131 @@ base::DiagnosticBuilder PerformResolver::unbound_query(std::string_view name, st
     error.note(fmt::format("the nearest query is `{}`", *near));
   }
   return error;
+}
+
+std::optional<std::size_t> leading_key(const Value& location) {
+  for (std::size_t i = 0; i < location.keys.size(); ++i) {
+    if (normalise_key(location.keys[i].first) == "target") return i;
+  }
+  for (std::size_t i = 0; i < location.keys.size(); ++i) {
+    const auto& key = location.keys[i].first;
+    const bool narrows = key == "side" || key == "reachable-for" || key == "visible-for";
+    if (!narrows && key != kSolutionKey) return i;
+  }
+  return std::nullopt;
+}
+
+std::optional<PerformResolver::Reference> PerformResolver::reference(const BindingEntry& entry,
+                                                                     ValueId designator) const {
+  const auto& keys = values_[designator].keys;
+  for (const auto& wanted : entry.keys) {
+    if (wanted.property) continue;  // of the designator itself, as `:object type ?y`
+    std::size_t at = 0;
+    while (at < keys.size() && normalise_key(keys[at].first) != wanted.key) ++at;
+    if (at == keys.size()) continue;
+    Reference out;
+    out.path.emplace_back(designator, at);
+    out.object = keys[at].second;
+    // Every step goes into a part of a finite value.
+    while (values_.kind(out.object) == ValueKind::kDesignator &&
+           values_[out.object].designator == DesignatorKind::kLocation) {
+      const auto next = leading_key(values_[out.object]);
+      if (!next) break;
+      out.path.emplace_back(out.object, *next);
+      out.object = values_[out.object].keys[*next].second;
+    }
+    if (!is_undetected(values_, out.object)) continue;
+    for (const auto& binding : binding_.objects) {
+      bool fits = true;
+      for (const auto& key : binding.keys) fits = fits && key_value(out.object, key.key);
+      if (!fits) continue;
+      out.binding = &binding;
+      return out;
+    }
+  }
+  return std::nullopt;
+}
+
+base::Result<FormulaTree> PerformResolver::candidate(const Reference& reference,
+                                                     std::string_view name,
+                                                     base::SourceRange source) {
+  Variables variables;
+  for (const auto& key : reference.binding->keys) {
+    variables.emplace(key.variable, *key_value(reference.object, key.key));
+  }
+  variables.emplace(reference.binding->variable, values_.symbol(name));
+  return fill(reference.binding->formula, variables, source);
+}
+
+void PerformResolver::flatten(const std::string& name, ValueId id, PlanArguments& out) const {
+  const auto& value = values_[id];
+  const auto pose = target(id).pose;
+  if (pose) {
+    out.emplace(name + ".x", pose->x_m);
+    out.emplace(name + ".y", pose->y_m);
+    out.emplace(name + ".z", pose->z_m);
+    out.emplace(name + ".yaw", yaw_rad(*pose));
+    if (const auto sample = values_.key(id, kSolutionKey))
+      flatten(name + ".solution", *sample, out);
+    return;
+  }
+  switch (value.kind) {
+    case ValueKind::kSymbol:
+      out.emplace(name, constants_.find(value.text).value_or(value.text));
+      return;
+    case ValueKind::kString:
+      out.emplace(name, value.text);
+      return;
+    case ValueKind::kNumber:
+      if (value.number.is_integer()) {
+        out.emplace(name, value.number.numerator());
+      } else {
+        out.emplace(name, value.number.value());
+      }
+      return;
+    case ValueKind::kModel:
+      out.emplace(name, value.model);
+      return;
+    case ValueKind::kDesignator:
+      for (const auto& [key, item] : value.keys) {
+        flatten(key == "name" ? name : fmt::format("{}.{}", name, key), item, out);
+      }
+      return;
+    case ValueKind::kVector:
+      out.emplace(name + ".x", value.pose.x_m);
+      out.emplace(name + ".y", value.pose.y_m);
+      out.emplace(name + ".z", value.pose.z_m);
+      return;
+    case ValueKind::kCons: {
+      std::size_t index = 0;
+      for (const auto item : values_.elements(id).value_or(std::vector<ValueId>())) {
+        flatten(fmt::format("{}.{}", name, index++), item, out);
+      }
+      return;
+    }
+    case ValueKind::kNil:
+    case ValueKind::kQuaternion:
+    case ValueKind::kPose:
+    case ValueKind::kFailure:
+    case ValueKind::kCounter:
+      return;
+  }
+}
+
+/// Every key but the type. Of two keys with one role the second keeps its own name.
+PlanArguments PerformResolver::arguments(ValueId designator) const {
+  PlanArguments out;
+  std::vector<std::string> roles;
+  for (const auto& [key, value] : values_[designator].keys) {
+    if (key == "type") continue;
+    auto role = normalise_key(key);
+    for (const auto& taken : roles) {
+      if (taken == role) role = key;
+    }
+    roles.push_back(role);
+    flatten(role, value, out);
+  }
+  return out;
 }
 
 }  // namespace parallax::compiler

@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
-#include "compiler/plan/binding_parser.h"
+#include "compiler/plan/binding_text.h"
 
 namespace parallax::compiler {
 
@@ -16,6 +20,48 @@ using base::DiagnosticCode;
 using base::SourceRange;
 
 namespace {
+
+/// Reads the entries one by one and recovers at the next one.
+class BindingParser {
+ public:
+  BindingParser(const base::SourceFiles& files, base::FileId file, base::DiagnosticSink& sink)
+      : sink_(sink), at_(files[file].text(), file, sink) {}
+
+  base::Result<PlanBinding> parse();
+
+ private:
+  struct Alias {
+    PerformKind kind = PerformKind::kMotion;
+    std::vector<std::string> types;
+    std::optional<PerformKind> target_kind;
+    std::string target;
+    SourceRange source;
+  };
+  void parse_entry();
+  void parse_query(std::size_t begin);
+  void parse_object(std::size_t begin);
+  bool types_of(std::vector<std::string>& types);
+  bool parse_alias(Alias alias);
+  bool parse_keys(BindingEntry& entry);
+  bool parse_key(BindingEntry& entry);
+  bool parse_event(BindingEntry& entry);
+  bool parse_plan_call(BindingEntry& entry);
+  bool parse_arguments(BindingEntry& entry);
+  bool parse_formula(BindingEntry& entry);
+  bool parse_formula_now(BindingEntry& entry);
+  bool parse_tail(BindingEntry& entry);
+  bool nothing_left();
+  bool repeat_mapping(BindingEntry& entry);
+  bool check_variables(const BindingEntry& entry);
+  bool add(const BindingEntry& entry);
+  void expand_aliases();
+
+  base::DiagnosticSink& sink_;
+  BindingCursor at_;
+  PlanBinding out_;
+  std::vector<Alias> aliases_;
+  bool failed_ = false;
+};
 
 bool same_keys(const BindingEntry& a, const BindingEntry& b) {
   std::set<std::string> left;
@@ -25,7 +71,229 @@ bool same_keys(const BindingEntry& a, const BindingEntry& b) {
   return left == right;
 }
 
-}  // namespace
+/// The entry ends here.
+bool BindingParser::nothing_left() {
+  at_.skip_blanks();
+  return at_.at_end() || at_.expected("the next entry");
+}
+
+bool BindingParser::parse_formula_now(BindingEntry& entry) {
+  if (!parse_formula(entry)) return false;
+  return entry.time_offset == 0 || at_.expected("a formula `@t`, not `@t+1`, before");
+}
+
+/// `-> plan f(?a,?b)`: the perform runs a function of the plan.
+bool BindingParser::parse_plan_call(BindingEntry& entry) {
+  std::string function;
+  if (!at_.name("the function of the plan", function) || !at_.variables(entry.plan_arguments))
+    return false;
+  entry.plan = std::move(function);
+  return nothing_left();
+}
+
+/// `query NAME (?a ?b) ok: FORMULA @t`
+void BindingParser::parse_query(std::size_t begin) {
+  QueryBinding query;
+  if (!at_.name("the name of a query", query.name)) return;
+  query.source = at_.range(begin, at_.position());
+  BindingEntry entry;
+  entry.source = query.source;
+  if (!at_.variables(query.variables)) return;
+  for (const auto& one : query.variables) entry.keys.push_back({{}, {}, one});
+  if (!parse_formula_now(entry) || !nothing_left() || !repeat_mapping(entry) ||
+      !check_variables(entry)) {
+    return;
+  }
+  for (const auto& other : out_.queries) {
+    const bool same = other.name == query.name && other.variables.size() == query.variables.size();
+    if (!same) continue;
+    failed_ = true;
+    sink_.error(base::DiagnosticCode::kDuplicateBinding, query.source, "query", query.name)
+        .note(other.source, "first bound here");
+    return;
+  }
+  query.formula = std::move(entry.formula);
+  query.formula_source = entry.formula_source;
+  out_.queries.push_back(std::move(query));
+}
+
+/// `object (:type ?y) ok: FORMULA @t returns ?o else CLASS`
+void BindingParser::parse_object(std::size_t begin) {
+  ObjectBinding object;
+  object.source = at_.range(begin, at_.position());
+  BindingEntry entry;
+  entry.source = object.source;
+  entry.failure_class = object.failure_class;
+  if (!parse_keys(entry) || !parse_formula_now(entry)) return;
+  object.keys = entry.keys;
+  if (!at_.take_word("returns")) {
+    at_.expected("`returns` and the variable that stands for the object");
+    return;
+  }
+  if (!at_.variable(object.variable) || !parse_tail(entry)) return;
+  if (entry.returns) {
+    at_.expected("one variable that is returned, not two,");
+    return;
+  }
+  entry.keys.push_back({{}, {}, object.variable});
+  if (!repeat_mapping(entry) || !check_variables(entry)) return;
+  object.formula = std::move(entry.formula);
+  object.formula_source = entry.formula_source;
+  object.failure_class = std::move(entry.failure_class);
+  object.failure_source = entry.failure_source;
+  out_.objects.push_back(std::move(object));
+}
+
+bool BindingParser::types_of(std::vector<std::string>& types) {
+  do {
+    std::string type;
+    if (!at_.name("the name of a type", type)) return false;
+    types.push_back(std::move(type));
+  } while (at_.take("|"));
+  return true;
+}
+
+bool BindingParser::parse_alias(Alias alias) {
+  if (at_.take_word("motion")) alias.target_kind = PerformKind::kMotion;
+  if (!alias.target_kind && at_.take_word("action")) alias.target_kind = PerformKind::kAction;
+  const auto begin = (at_.skip_blanks(), at_.position());
+  if (!at_.name("the name of a type", alias.target)) return false;
+  alias.source = at_.range(begin, at_.position());
+  at_.skip_blanks();
+  if (!at_.at_end()) return at_.expected("nothing behind an alias");
+  aliases_.push_back(std::move(alias));
+  return true;
+}
+
+bool BindingParser::parse_key(BindingEntry& entry) {
+  BindingKey key;
+  if (!at_.take(":")) return at_.expected("a key such as `:target`");
+  std::string word;
+  if (!at_.name("the name of a key", word)) return false;
+  key.key = normalise_key(word);
+  at_.skip_blanks();
+  if (const auto property = at_.peek_name(); !property.empty() && property.front() != '?') {
+    key.property = property;
+    at_.advance(property.size());
+    at_.skip_blanks();
+  }
+  const auto length = variable_length(at_.rest());
+  if (length != 0) {
+    key.variable = at_.rest().substr(0, length);
+    at_.advance(length);
+  } else {
+    key.variable = key.key == "target" ? "?p" : fmt::format("?{}", key.key.substr(0, 1));
+  }
+  entry.keys.push_back(std::move(key));
+  return true;
+}
+
+bool BindingParser::parse_keys(BindingEntry& entry) {
+  if (!at_.take("(")) return true;  // a type without arguments
+  while (!at_.take(")")) {
+    at_.skip_blanks();
+    if (at_.at_end()) return at_.expected("`)`");
+    if (!parse_key(entry)) return false;
+  }
+  return true;
+}
+
+bool BindingParser::parse_arguments(BindingEntry& entry) {
+  constexpr std::size_t kMaxArguments = 100;
+  if (!at_.take("(")) return true;
+  int depth = 0;
+  auto begin = at_.position();
+  for (; !at_.at_end(); at_.advance()) {
+    const char c = at_.peek();
+    const bool ends = depth == 0 && (c == ',' || c == ')');
+    if (ends) {
+      const auto argument_text = std::string_view(at_.text()).substr(begin, at_.position() - begin);
+      const bool empty = std::all_of(argument_text.begin(), argument_text.end(), base::is_space);
+      if (empty && c == ')' && entry.event_arguments.empty()) return at_.take(")");  // E()
+      if (empty) return at_.expected("an argument of the event");
+      if (entry.event_arguments.size() == kMaxArguments) {
+        return at_.expected(fmt::format("at most {} arguments", kMaxArguments));
+      }
+      const auto argument = read_formula_tree(at_.range(begin, at_.position()), at_.text(), sink_);
+      if (!argument) return failed_ = true, false;
+      entry.event_arguments.push_back(without_blanks(*argument));
+      if (c == ')') return at_.take(")");
+      begin = at_.position() + 1;
+    }
+    if (c == '(') ++depth;
+    if (c == ')') --depth;
+  }
+  return at_.expected("`)`");
+}
+
+bool BindingParser::parse_event(BindingEntry& entry) {
+  if (!at_.take("->")) return at_.expected(entry.keys.empty() ? "`(`, `->` or `=`" : "`->`");
+  if (at_.take_word("plan")) return parse_plan_call(entry);
+  return at_.name("the event", entry.event_symbol) && parse_arguments(entry);
+}
+
+bool BindingParser::parse_formula(BindingEntry& entry) {
+  if (!at_.take("ok:")) return at_.expected("`ok:` and the formula of success");
+  at_.skip_blanks();
+  const auto begin = at_.position();
+  while (!at_.at_end() && at_.peek() != '@') at_.advance();
+  auto stop = at_.position();
+  while (stop > begin && base::is_space(at_.text()[stop - 1])) --stop;
+  if (at_.at_end()) return at_.expected("`@t` or `@t+1` behind the formula");
+  if (stop == begin) return at_.expected("a formula before `@`");
+  entry.formula_source = at_.range(begin, stop);
+  auto formula = read_formula_tree(entry.formula_source, at_.text(), sink_);
+  if (!formula) return failed_ = true, false;
+  entry.formula = std::move(*formula);
+  if (at_.take("@t+1")) {
+    entry.time_offset = 1;
+  } else if (!at_.take("@t")) {
+    return at_.expected("`@t` or `@t+1`");
+  }
+  if (!at_.at_end() && !base::is_space(at_.peek())) return at_.expected("`@t` or `@t+1`");
+  return true;
+}
+
+bool BindingParser::parse_tail(BindingEntry& entry) {
+  for (;;) {
+    at_.skip_blanks();
+    if (at_.at_end()) return true;
+    if (at_.take_word("returns")) {
+      std::string variable;
+      if (!at_.name("the variable that is returned", variable)) return false;
+      entry.returns = std::move(variable);
+    } else if (at_.take_word("else")) {
+      const auto begin = (at_.skip_blanks(), at_.position());
+      if (!at_.name("a failure class", entry.failure_class)) return false;
+      entry.failure_source = at_.range(begin, at_.position());
+    } else {
+      return at_.expected("`returns`, `else` or the next entry");
+    }
+  }
+}
+
+void BindingParser::parse_entry() {
+  BindingEntry entry;
+  const auto begin = at_.position();
+  if (at_.take_word("query")) return parse_query(begin);
+  if (at_.take_word("object")) return parse_object(begin);
+  entry.kind = at_.take_word("motion") ? PerformKind::kMotion : PerformKind::kAction;
+  if (entry.kind == PerformKind::kAction) at_.take_word("action");
+  std::vector<std::string> types;
+  if (!types_of(types)) return;
+  entry.source = at_.range(begin, at_.position());
+  if (at_.take("=")) {
+    parse_alias({entry.kind, std::move(types), {}, {}, {}});
+    return;
+  }
+  if (!parse_keys(entry) || !parse_event(entry)) return;
+  if (!entry.plan && (!parse_formula(entry) || !parse_tail(entry))) return;
+  if (!repeat_mapping(entry) || !check_variables(entry)) return;
+  for (auto& type : types) {
+    entry.type = std::move(type);
+    add(entry);
+  }
+}
 
 /// Gives a bare `place` in the formula the variable of the event's only `place(...)`.
 bool BindingParser::repeat_mapping(BindingEntry& entry) {
@@ -117,18 +385,21 @@ void BindingParser::expand_aliases() {
 }
 
 base::Result<PlanBinding> BindingParser::parse() {
-  end_ = cleaned_.entries.empty() ? text_.size() : cleaned_.entries.front();
-  skip_blanks();
-  if (i_ != end_) expected("an entry that starts with `motion`, `action`, `query` or `object`");
-  for (std::size_t n = 0; n < cleaned_.entries.size(); ++n) {
-    i_ = cleaned_.entries[n];
-    end_ = n + 1 < cleaned_.entries.size() ? cleaned_.entries[n + 1] : text_.size();
+  at_.enter(BindingCursor::kPreamble);
+  at_.skip_blanks();
+  if (!at_.at_end()) {
+    at_.expected("an entry that starts with `motion`, `action`, `query` or `object`");
+  }
+  for (std::size_t entry = 0; entry < at_.entries(); ++entry) {
+    at_.enter(entry);
     parse_entry();
   }
   expand_aliases();
-  if (failed_) return sink_.already_reported();
+  if (failed_ || at_.failed()) return sink_.already_reported();
   return std::move(out_);
 }
+
+}  // namespace
 
 std::string_view to_string(PerformKind kind) {
   return kind == PerformKind::kMotion ? "motion" : "action";

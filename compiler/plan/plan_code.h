@@ -44,7 +44,7 @@ enum class PlanOp : std::uint8_t {
   kFail,          // fail with class (string) a
   kFailValue,     // pop a failure or a class name and fail with it
   kExpectList,    // the top must be a list that is known (CPL021, CPL008)
-  kPar,           // start the branches of table a, each by turns (plan_branches.cc)
+  kPar,           // start the branches of table a, each by turns
   kEndBranch,     // a branch is over, with the top as its value
   kTick,          // count variable a up; cut here beyond the loop limit
   kDone,          // the plan is over

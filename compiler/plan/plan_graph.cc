@@ -3,8 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <map>
+#include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
+#include <variant>
 
 namespace parallax::compiler {
 namespace {
@@ -64,6 +68,54 @@ std::vector<PlanTarget> successors(const PlanGraph& graph, std::size_t node) {
   }
   return {};
 }
+
+/// Adds `more`; true if that was news.
+bool include(RegisterSet& set, const RegisterSet& more) {
+  const auto before = set.size();
+  set.insert(more.begin(), more.end());
+  return set.size() != before;
+}
+
+RegisterSet read_by(const PlanLocation& location) {
+  auto out = registers_in(location.event);
+  include(out, registers_in(location.success.formula));
+  for (const auto& [name, value] : location.arguments) {
+    if (const auto* id = std::get_if<ModelValueId>(&value)) out.insert(*id);
+  }
+  return out;
+}
+
+/// The locations that control can come to from `start`.
+class Reach {
+ public:
+  Reach(const PlanGraph& graph, const PlanTarget& start)
+      : locations(graph.locations.size(), false), branches_(graph.branches.size(), false) {
+    open_ = {start};
+    while (!open_.empty()) {
+      const auto target = open_.back();
+      open_.pop_back();
+      ++visits;
+      if (const auto* location = std::get_if<LocationId>(&target)) {
+        if (locations[location->index()]) continue;
+        locations[location->index()] = true;
+        open_.push_back(graph.locations[*location].on_success);
+        open_.push_back(graph.locations[*location].on_failure);
+      } else if (const auto* branch = std::get_if<BranchId>(&target)) {
+        if (branches_[branch->index()]) continue;
+        branches_[branch->index()] = true;
+        open_.push_back(graph.branches[*branch].if_true);
+        open_.push_back(graph.branches[*branch].if_false);
+      }
+    }
+  }
+
+  std::vector<bool> locations;
+  std::size_t visits = 0;
+
+ private:
+  std::vector<bool> branches_;
+  std::vector<PlanTarget> open_;
+};
 
 }  // namespace
 
@@ -178,6 +230,63 @@ std::optional<std::int64_t> longest_path(const PlanGraph& graph) {
     open.pop_back();
   }
   return longest[node_of(graph, graph.entry)];
+}
+
+const RegisterSet& PlanLiveness::at(const PlanTarget& target) const {
+  static const RegisterSet kNone;
+  if (const auto* location = std::get_if<LocationId>(&target)) return locations[location->index()];
+  if (const auto* branch = std::get_if<BranchId>(&target)) return branches[branch->index()];
+  return kNone;
+}
+
+PlanLiveness plan_liveness(const PlanGraph& graph) {
+  PlanLiveness out;
+  for (const auto& location : graph.locations) out.locations.push_back(read_by(location));
+  for (const auto& branch : graph.branches) {
+    out.branches.push_back(branch.free ? RegisterSet() : registers_in(branch.guard));
+  }
+  for (bool changed = !graph.values.empty(); changed;) {
+    changed = false;
+    for (auto i = graph.branches.size(); i-- > 0;) {
+      const auto& branch = graph.branches[graph.branches.id_at(i)];
+      changed = include(out.branches[i], out.at(branch.if_true)) || changed;
+      changed = include(out.branches[i], out.at(branch.if_false)) || changed;
+    }
+    for (auto i = graph.locations.size(); i-- > 0;) {
+      const auto& location = graph.locations[graph.locations.id_at(i)];
+      auto behind = out.at(location.on_success);
+      if (location.result) behind.erase(*location.result);
+      changed = include(out.locations[i], behind) || changed;
+      changed = include(out.locations[i], out.at(location.on_failure)) || changed;
+    }
+  }
+  return out;
+}
+
+std::vector<std::vector<LocationId>> earlier_attempts(const PlanGraph& graph,
+                                                      std::size_t max_visits) {
+  using Attempt = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, FormulaTree>;
+  std::map<Attempt, std::vector<LocationId>> attempts;
+  for (std::size_t i = 0; i < graph.locations.size(); ++i) {
+    const auto id = graph.locations.id_at(i);
+    const auto& location = graph.locations[id];
+    attempts[{location.source.file.index(), location.source.begin, location.source.end,
+              location.event}]
+        .push_back(id);
+  }
+  std::vector<std::vector<LocationId>> earlier(graph.locations.size());
+  std::size_t visits = 0;
+  for (const auto& [attempt, ids] : attempts) {
+    for (const auto id : ids) {
+      if (visits > max_visits) return earlier;
+      const Reach reach(graph, graph.locations[id].on_failure);
+      visits += reach.visits;
+      for (const auto later : ids) {
+        if (reach.locations[later.index()]) earlier[later.index()].push_back(id);
+      }
+    }
+  }
+  return earlier;
 }
 
 }  // namespace parallax::compiler

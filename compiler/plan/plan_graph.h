@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -120,5 +121,31 @@ std::string dump_dot(const PlanGraph& graph, const base::SourceFiles& files);
 /// The number of performs on the longest way from the entry to a terminal; none if a cycle makes
 /// it unlimited. Linear in the graph's size.
 std::optional<std::int64_t> longest_path(const PlanGraph& graph);
+
+using RegisterSet = std::set<ModelValueId>;
+
+/// Which registers the rest of the plan still reads: by location and by branch. Terminals read
+/// none.
+struct PlanLiveness {
+  std::vector<RegisterSet> locations;
+  std::vector<RegisterSet> branches;
+  /// Of a place that control goes to.
+  const RegisterSet& at(const PlanTarget& target) const;
+  /// On the way behind a location.
+  const RegisterSet& behind(const PlanLocation& location, bool success) const {
+    return at(success ? location.on_success : location.on_failure);
+  }
+};
+
+/// The least fixed point, backwards. At most (places times registers) rounds over the graph, and
+/// hardly ever more than three.
+PlanLiveness plan_liveness(const PlanGraph& graph);
+
+/// For every location: the earlier attempts that it repeats, sorted. An attempt is a location of
+/// the same perform form with the same event, behind whose failure the location can come; itself
+/// too, where control can return. Looks at no more than `max_visits` places; what comes after that
+/// repeats nothing.
+std::vector<std::vector<LocationId>> earlier_attempts(const PlanGraph& graph,
+                                                      std::size_t max_visits = 20'000'000);
 
 }  // namespace parallax::compiler

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,7 +16,9 @@ struct Pose {
 };
 
 /// Rotation about the vertical axis of the pose's quaternion [rad], in (-pi, pi].
-double yaw_rad(const Pose& pose);
+inline double yaw_rad(const Pose& p) {
+  return std::atan2(2.0 * (p.qw * p.qz + p.qx * p.qy), 1.0 - 2.0 * (p.qy * p.qy + p.qz * p.qz));
+}
 
 /// The mapping from continuous poses to the model's constants. The caller answers with the same
 /// regions that the simulation maps states with, so that plan and simulator cannot disagree.
@@ -36,9 +39,11 @@ class PoseLocator {
   virtual std::optional<Nearest> nearest(std::string_view function, const Pose& pose) const = 0;
   /// The constant for a location given by an object, such as (a location (in (an object (name
   /// drawer)))): by default the object itself. `relation` is the key: in, on, of.
-  virtual std::optional<std::string> region_of_object(std::string_view function,
-                                                      std::string_view relation,
-                                                      std::string_view object) const;
+  virtual std::optional<std::string> region_of_object(std::string_view /*function*/,
+                                                      std::string_view /*relation*/,
+                                                      std::string_view object) const {
+    return std::string(object);
+  }
 };
 
 }  // namespace parallax::compiler

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
-#include "compiler/plan/plan_repeats.h"
+#include "compiler/plan/plan_graph.h"
 #include "runtime/enumerate/dead_steps.h"
 
 namespace parallax::tools {

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "compiler/pipeline/compile.h"
-#include "compiler/plan/plan_repeats.h"
+#include "compiler/plan/plan_graph.h"
 #include "runtime/enumerate/dead_steps.h"
 #include "tests/support/planned_model.h"
 
