@@ -45,7 +45,19 @@ void CompiledModel::for_each_atom(const std::function<void(const AtomRef&)>& vis
   }
 }
 
-AtomIndex::AtomIndex(const CompiledModel& model) : model_(&model) {
+std::optional<Literal> CompiledModel::of_slot(std::optional<std::uint32_t> slot,
+                                              Timepoint t) const {
+  if (!slot || t < 0 || t > (*slot < state_slots ? horizon : horizon - 1)) return std::nullopt;
+  return Literal::positive(variable(*slot, t));
+}
+
+AtomIndex::AtomIndex(const CompiledModel& model) : model_(&model), fluents_(model.slots.size()) {
+  for (std::size_t f = 0; f < model.fluents.size(); ++f) {
+    const FluentId id(static_cast<std::uint32_t>(f));
+    if (const auto slot = model.fluents[f].slot) fluents_[*slot] = id;
+    if (f >= model.release_slots.size()) continue;
+    if (const auto slot = model.release_slots[f]) fluents_[*slot] = id;
+  }
   for (std::uint32_t slot = 0; slot < model.slots.size(); ++slot) {
     if (model.slots[slot].name.empty()) continue;
     slots_.emplace(std::pair(model.slots[slot].kind, model.slots[slot].name), slot);
@@ -76,6 +88,12 @@ std::optional<Literal> AtomIndex::find(AtomKind kind, std::string_view name,
   const auto found = fixed_.find(std::tuple(kind, time.value_or(kUntimed), std::string(name)));
   if (found == fixed_.end()) return std::nullopt;
   return Literal::positive(found->second);
+}
+
+std::optional<FluentId> AtomIndex::fluent(std::int32_t variable) const {
+  const auto place = variable - model_->base() - 1;
+  if (place < 0) return std::nullopt;
+  return fluents_[static_cast<std::size_t>(place % model_->stride())];
 }
 
 std::optional<Literal> AtomIndex::plan(AtomKind kind, const PlanAtom& plan, Timepoint t) const {

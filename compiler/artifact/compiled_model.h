@@ -154,10 +154,24 @@ struct CompiledModel {
   }
   /// The atom of a variable, 1 <= v <= variable_count().
   Atom atom(std::int32_t v) const;
+  /// None: false in every trace, or there is no such timepoint.
+  std::optional<Literal> holds_at(FluentId fluent, Timepoint t) const {
+    return of_slot(fluents[fluent.index()].slot, t);
+  }
+  std::optional<Literal> released_at(FluentId fluent, Timepoint t) const {
+    return fluent.index() < release_slots.size() ? of_slot(release_slots[fluent.index()], t)
+                                                 : std::nullopt;
+  }
+  std::optional<Literal> happens_at(EventId event, Timepoint t) const {
+    return of_slot(events[event.index()].slot, t);
+  }
   /// Calls `visit` for every variable that stands for an atom of the model, in canonical order:
   /// timepoint by timepoint fluents, releases, events in declaration order, then the fixed ones.
   /// Linear in what it visits.
   void for_each_atom(const std::function<void(const AtomRef&)>& visit) const;
+
+ private:
+  std::optional<Literal> of_slot(std::optional<std::uint32_t> slot, Timepoint t) const;
 };
 
 /// Variable look-up. None: the atom is false in every trace, or there is no such atom.
@@ -168,6 +182,8 @@ class AtomIndex {
   /// An atom of the model, by its name.
   std::optional<Literal> find(AtomKind kind, std::string_view name,
                               std::optional<Timepoint> time) const;
+  /// The fluent that the atom of a variable, HoldsAt or ReleasedAt, is about; none of any other.
+  std::optional<FluentId> fluent(std::int32_t variable) const;
   /// An atom of the plan.
   std::optional<Literal> plan(AtomKind kind, const PlanAtom& plan, Timepoint t) const;
   std::optional<Literal> hit(Timepoint t) const { return plan(AtomKind::kHit, {}, t); }
@@ -184,6 +200,7 @@ class AtomIndex {
  private:
   const CompiledModel* model_;
   std::map<std::pair<AtomKind, std::string>, std::uint32_t, std::less<>> slots_;
+  std::vector<std::optional<FluentId>> fluents_;  // by slot
   std::map<std::tuple<AtomKind, Timepoint, std::string>, std::int32_t, std::less<>> fixed_;
   std::map<std::tuple<AtomKind, Timepoint, PlanAtom>, std::int32_t> plan_;
 };

@@ -111,7 +111,8 @@ class Explainer {
   std::optional<Literal> release_of(Literal fact) const {
     const auto atom = model_.atom(fact.var());
     if (atom.kind != AtomKind::kHoldsAt || atom.time.value_or(0) == 0) return std::nullopt;
-    const auto released = index_.find(AtomKind::kReleasedAt, atom.name, atom.time);
+    const auto fluent = index_.fluent(fact.var());
+    const auto released = fluent ? model_.released_at(*fluent, *atom.time) : std::nullopt;
     const bool known = released && derivation_.is_known(*released) &&
                        derivation_.rank(released->var()) < derivation_.rank(fact.var());
     return known ? released : std::nullopt;
@@ -127,14 +128,15 @@ class Explainer {
   void follow_inertia(Literal fact, WhyStep& step) {
     step.kind = WhyKind::kInertia;
     step.origin = model_.clause_origins[derivation_.reason(fact.var())];
-    const auto atom = model_.atom(fact.var());
+    const auto fluent = index_.fluent(fact.var());
     auto at = fact;
-    auto time = *atom.time;
+    auto time = *model_.atom(fact.var()).time;
     while (time > 0 && is_inertia(at)) {
       std::optional<Literal> before;
       for (const auto premise : premises(derivation_.reason(at.var()), at)) {
         const auto other = model_.atom(premise.var());
-        if (other.kind == AtomKind::kHoldsAt && other.name == atom.name && other.time == time - 1) {
+        if (other.kind == AtomKind::kHoldsAt && index_.fluent(premise.var()) == fluent &&
+            other.time == time - 1) {
           before = premise;
         } else if (other.kind == AtomKind::kHappens && !premise.is_positive()) {
           step.absent.push_back(premise);

@@ -6,8 +6,14 @@
 #include <vector>
 
 #include "compiler/artifact/compiled_model.h"
+#include "runtime/explain/clause_text.h"
+#include "runtime/explain/contradiction.h"
 #include "runtime/explain/group_solver.h"
+#include "runtime/explain/minimal_sets.h"
+#include "runtime/explain/why.h"
 #include "tools/app/context.h"
+#include "tools/app/scenario_model.h"
+#include "tools/app/trace_fact.h"
 
 namespace parallax::tools {
 
@@ -22,28 +28,77 @@ struct ObservedRun {
   std::vector<std::string> lines;  // how it is told: "RobotAt(bTable) does not hold at 6"
 };
 
-/// Why has the model no trace? Prints minimal sets of axioms that contradict each other, with the
-/// ground instances that take part, or that there is no contradiction. The exit code: 1 if there is
-/// one. Reports kExplanationCutShort if the search was stopped, kProofRejected if the checker does
-/// not follow the solver.
-/// With `run`: none that is like it.
-int explain_sets(const compiler::CompiledModel& model, const SetOptions& options,
-                 const std::optional<ObservedRun>& run, Context& context);
+/// An axiom of a contradiction, with those of its ground instances that take part.
+struct BlamedAxiom {
+  std::uint32_t origin = 0;            // index into CompiledModel::origins
+  std::vector<std::string> instances;  // as formulas, by timepoint
+};
 
-/// Which axioms are to blame for a discrepancy of a recorded run? The events of its trace and the
-/// start are taken as they were, and what was observed at the first divergence; minimal sets of
-/// axioms that exclude that are printed. `sample`: TRACE.SAMPLE, or empty for the first
-/// discrepancy.
-int explain_run(const std::string& run_dir, const std::string& sample, const SetOptions& options,
-                Context& context);
+/// A minimal set of axioms, looked at closely.
+struct Contradiction {
+  std::vector<BlamedAxiom> axioms;
+  bool instances_minimal = false;  // none of the instances can go
+  runtime::ProofVerdict proof = runtime::ProofVerdict::kNotFinished;  // that they contradict
+};
 
-struct WhyCommand {
+/// Why has a model no trace, or none that is like a run that was observed? First the minimal sets
+/// of its axioms are found; each may then be looked at closely, which takes its time.
+class ContradictionSearch {
+ public:
+  /// Model and context outlive the search.
+  ContradictionSearch(const compiler::CompiledModel& model, const std::optional<ObservedRun>& run,
+                      Context& context);
+
+  /// Sets of groups of axioms; none if there is no contradiction. Reports kExplanationCutShort if
+  /// the search was stopped before that was known.
+  base::Result<runtime::MinimalSets> sets(const SetOptions& options);
+  /// Which instances of the set's axioms it takes, and a proof. Reports kProofRejected if the
+  /// checker does not follow the solver.
+  Contradiction look_at(const runtime::IndexSet& set);
+
+ private:
+  std::vector<std::string> instances_of(std::uint32_t group,
+                                        const std::vector<std::size_t>& clauses) const;
+
+  Context& context_;
+  runtime::ExecutionFormula formula_;
+  runtime::AxiomGroups axioms_;
+  runtime::ClauseText texts_;
+  runtime::Effort effort_;  // for the instances of all sets together
+};
+
+/// A discrepancy of a recorded run: the events of its trace and the start as they were, and what
+/// was observed at the first divergence, for a ContradictionSearch in the scenario's model.
+struct ObservedDiscrepancy {
+  ScenarioModel loaded;
+  ObservedRun run;
+};
+
+/// `sample`: TRACE.SAMPLE, or empty for the first discrepancy. None if the run found none. Reports
+/// what is wrong with the run folder, and a scenario that has changed since.
+base::Result<std::optional<ObservedDiscrepancy>> load_discrepancy(const std::string& run_dir,
+                                                                  const std::string& sample,
+                                                                  Context& context);
+
+struct WhyQuery {
   std::string fact;        // `HoldsAt(F,3)`, `!HoldsAt(F(a),3)`, `Happens(E(),2)`
   std::int64_t trace = 1;  // its number in the list of traces
   bool all = false;        // tell further causes as well
 };
 
-/// Tells the chain of facts behind one fact of a trace. Reports kNoSuchFact and kNoSuchTrace.
-int explain_why(const compiler::CompiledModel& model, const WhyCommand& command, Context& context);
+/// The chain of facts behind one fact of a trace.
+struct FactExplanation {
+  TraceFact fact;
+  std::int64_t trace = 0;
+  /// The fact as it is in the trace. None: no clause mentions the atom, so that it is false in
+  /// every trace, and there are no steps.
+  std::optional<compiler::Literal> asked;
+  std::vector<runtime::WhyStep> steps;  // earliest first
+};
+
+/// Reports kNoSuchFact and kNoSuchTrace; also, with a result, kExplanationCutShort if the search
+/// was stopped before it was known whether every choice is one.
+base::Result<FactExplanation> explain_why(const compiler::CompiledModel& model,
+                                          const WhyQuery& query, Context& context);
 
 }  // namespace parallax::tools

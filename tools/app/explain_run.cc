@@ -95,38 +95,29 @@ class Observation {
 
 }  // namespace
 
-int explain_run(const std::string& run_dir, const std::string& sample, const SetOptions& options,
-                Context& context) {
+base::Result<std::optional<ObservedDiscrepancy>> load_discrepancy(const std::string& run_dir,
+                                                                  const std::string& sample,
+                                                                  Context& context) {
   auto& sink = context.sink();
   // The journal is no source of the scenario: it is read into a set of its own.
   base::SourceFiles journal_files;
   const auto journal = harness::read_journal(run_dir, journal_files, sink);
-  if (!journal) return 0;
+  if (!journal) return sink.already_reported();
   const auto discrepancy = find_discrepancy(run_dir, sample, sink);
-  if (!discrepancy) return 0;
-  if (!*discrepancy || !journal->header) {
-    if (context.form().json) {
-      context.document("{\"status\":\"ok\",\"satisfiable\":true,\"sets\":[]}\n");
-    } else {
-      context.result("The run found no discrepancy: there is nothing to explain.\n");
-    }
-    return 0;
-  }
-  const auto loaded = load_plain_scenario(journal->header->scenario, context);
-  if (!loaded) return 0;
+  if (!discrepancy) return sink.already_reported();
+  if (!*discrepancy || !journal->header) return std::optional<ObservedDiscrepancy>();
+  auto loaded = load_plain_scenario(journal->header->scenario, context);
+  if (!loaded) return sink.already_reported();
   if (loaded->sources_hash != journal->header->scenario_hash) {
-    sink.error_about(base::DiagnosticCode::kJournalMismatch, run_dir, "scenario_hash",
-                     journal->header->scenario_hash, loaded->sources_hash);
-    return 0;
+    return sink.error_about(base::DiagnosticCode::kJournalMismatch, run_dir, "scenario_hash",
+                            journal->header->scenario_hash, loaded->sources_hash);
   }
   const auto trace = journal->traces.find((*discrepancy)->value("trace", 0));
   if (trace == journal->traces.end()) {
-    sink.error_about(base::DiagnosticCode::kNoSuchSample, run_dir, "of this trace");
-    return 0;
+    return sink.error_about(base::DiagnosticCode::kNoSuchSample, run_dir, "of this trace");
   }
-  const auto& model = loaded->compilation.model;
-  const auto run = Observation(model, trace->second).make(**discrepancy);
-  return explain_sets(model, options, run, context);
+  auto run = Observation(loaded->compilation.model, trace->second).make(**discrepancy);
+  return std::optional(ObservedDiscrepancy{*std::move(loaded), std::move(run)});
 }
 
 }  // namespace parallax::tools

@@ -13,7 +13,6 @@
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
-#include "compiler/base/json.h"
 #include "compiler/pipeline/compile.h"
 #include "compiler/reference/reference_evaluator.h"
 #include "runtime/replay/trace_replay.h"
@@ -113,13 +112,14 @@ std::optional<Blame> core_blame(const compiler::Compilation& compilation,
 using base::DiagnosticCode;
 using runtime::ClaimedTrace;
 using runtime::ReplayVerdict;
-using Json = nlohmann::ordered_json;
 
 class TraceFileReplay {
  public:
-  TraceFileReplay(const compiler::Compilation& compilation, Context& context)
+  TraceFileReplay(const compiler::Compilation& compilation,
+                  const std::function<void(const ReplayedTrace&)>& hear, Context& context)
       : compilation_(compilation),
         model_(compilation.model),
+        hear_(hear),
         context_(context),
         sink_(context.sink()),
         replay_(model_, [&context] { return runtime::make_cadical_solver(&context.stop()); }) {}
@@ -130,42 +130,16 @@ class TraceFileReplay {
     runtime::ClaimReader reader(vocabulary, sink_);
     for (const auto& place : head.traces) {
       if (context_.stopped()) return true;
-      const auto trace = runtime::read_trace(place, seen_ + 1, context_.files(), reader);
+      const auto trace = runtime::read_trace(place, result_.seen + 1, context_.files(), reader);
       if (!trace || !has_right_length(*trace)) return false;
       if (!judge(*trace)) return true;
-      ++seen_;
+      ++result_.seen;
     }
-    finished_ = true;
+    result_.finished = true;
     return true;
   }
 
-  void close(const runtime::TraceFileHead& head) {
-    const char* state = finished_ ? "complete" : "stopped";
-    if (!head.closed) {
-      context_.remark("the file does not say how its list ended: there may be more traces");
-    }
-    if (context_.stopped()) context_.remark("stopped before the last trace");
-    if (context_.form().json) {
-      context_.document(base::json_text(Json{{"status", sound_ ? "ok" : "error"},
-                                             {"traces", seen_},
-                                             {"agree", seen_ - failed_},
-                                             {"fail", failed_},
-                                             {"checked", checked_},
-                                             {"complete", finished_},
-                                             {"list", list_}}) +
-                        '\n');
-      return;
-    }
-    context_.result(fmt::format("{} {} replayed, {}: {} agree, {} fail, {} checked\n", seen_,
-                                seen_ == 1 ? "trace" : "traces", state, seen_ - failed_, failed_,
-                                checked_));
-  }
-
-  int exit_code() const {
-    if (!sound_) return 5;
-    if (failed_ > 0) return 1;
-    return finished_ ? 0 : 4;
-  }
+  TracesReplay result() && { return std::move(result_); }
 
  private:
   bool has_right_length(const ClaimedTrace& trace) {
@@ -203,19 +177,14 @@ class TraceFileReplay {
     if (const auto* evaluator = usable_evaluator()) {
       const auto result = evaluator->violations(valuation_of(verdict.completion), 1);
       if (!result.violations.empty()) {
-        sound_ = false;
+        result_.sound = false;
         sink_.error_about(DiagnosticCode::kTraceDisagrees, "", trace.number,
                           result.violations.front().text);
         return true;
       }
-      if (result.finished) ++checked_;
+      if (result.finished) ++result_.checked;
     }
-    list_.push_back({{"trace", trace.number}, {"agrees", true}, {"hidden", verdict.hidden}});
-    say(fmt::format(
-        "trace {}: agrees{}\n", trace.number,
-        verdict.hidden == 0
-            ? ""
-            : fmt::format(", with values for {} atoms that it does not mention", verdict.hidden)));
+    note({trace.number, true, verdict.hidden, 0, {}, std::nullopt});
     return true;
   }
 
@@ -250,7 +219,7 @@ class TraceFileReplay {
 
   /// The solver finds no values, but nothing is open and the evaluator sees nothing wrong.
   std::optional<Blame> disagreement(const ClaimedTrace& trace) {
-    sound_ = false;
+    result_.sound = false;
     sink_.error_about(DiagnosticCode::kTraceDisagrees, "", trace.number,
                       "by the solver; the evaluation of its axioms finds nothing wrong");
     return std::nullopt;
@@ -287,56 +256,47 @@ class TraceFileReplay {
 
   void note_failure(const ClaimedTrace& trace, std::int64_t timepoint,
                     const base::DiagnosticNote& first) {
-    ++failed_;
-    const auto place = first.range ? context_.files().place(*first.range) : std::string();
-    Json entry = {
-        {"trace", trace.number}, {"agrees", false}, {"timepoint", timepoint}, {"text", first.text}};
-    if (first.range) {
-      const auto& file = context_.files()[first.range->file];
-      const auto position = file.position(first.range->begin);
-      entry["file"] = file.name();
-      entry["line"] = position.line;
-      entry["column"] = position.column;
-    }
-    list_.push_back(std::move(entry));
-    say(fmt::format("trace {}: fails at timepoint {}{}\n", trace.number, timepoint,
-                    place.empty() ? "" : ", " + place));
+    ++result_.failed;
+    note({trace.number, false, 0, timepoint, first.text, first.range});
   }
 
-  void say(const std::string& line) {
-    if (!context_.form().json) context_.result(line);
+  void note(ReplayedTrace trace) {
+    result_.traces.push_back(std::move(trace));
+    hear_(result_.traces.back());
   }
 
   const compiler::Compilation& compilation_;
   const compiler::CompiledModel& model_;
+  const std::function<void(const ReplayedTrace&)>& hear_;
   Context& context_;
   base::DiagnosticSink& sink_;
   runtime::TraceReplay replay_;
   std::unique_ptr<compiler::ReferenceEvaluator> evaluator_;  // made for the first trace
-  std::int64_t seen_ = 0, failed_ = 0, checked_ = 0;
-  bool finished_ = false, sound_ = true;
-  Json list_ = Json::array();
+  TracesReplay result_;
 };
 
 }  // namespace
 
-int replay_traces(const ModelOptions& model, const ReplayTracesOptions& options, Context& context) {
-  const auto compilation = compile_models(model, context);
-  if (!compilation) return 0;
+base::Result<TracesReplay> replay_traces(const ModelOptions& model,
+                                         const ReplayTracesOptions& options,
+                                         const std::function<void(const ReplayedTrace&)>& report,
+                                         Context& context) {
   auto& sink = context.sink();
+  const auto compilation = compile_models(model, context);
+  if (!compilation) return sink.already_reported();
   const auto file = base::load_text(options.file, context.files(), sink);
-  if (!file) return 0;
+  if (!file) return sink.already_reported();
   const auto head = runtime::open_trace_file(*file, context.files(), sink);
-  if (!head) return 0;
+  if (!head) return sink.already_reported();
   const auto hash = runtime::model_hash(compilation->model);
   if (!options.other_model && head->model && *head->model != hash) {
-    sink.error(DiagnosticCode::kTraceOtherModel, head->model_source, *head->model, hash);
-    return 0;
+    return sink.error(DiagnosticCode::kTraceOtherModel, head->model_source, *head->model, hash);
   }
-  TraceFileReplay replay(*compilation, context);
-  if (!replay.run(*head)) return 0;
-  replay.close(*head);
-  return replay.exit_code();
+  TraceFileReplay replay(*compilation, report, context);
+  if (!replay.run(*head)) return sink.already_reported();
+  auto result = std::move(replay).result();
+  result.closed = head->closed;
+  return result;
 }
 
 }  // namespace parallax::tools

@@ -1,7 +1,12 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "compiler/base/source_file.h"
 #include "tools/app/model_options.h"
 
 namespace parallax::tools {
@@ -11,11 +16,33 @@ struct ReplayTracesOptions {
   bool other_model = false;  // --other-model
 };
 
-/// `traces --replay`: holds the traces of a file against the model. Prints a line for each trace
-/// and reports those that fail (E7204, E7205) at the first axiom and timepoint. Every trace that
-/// agrees is checked again by the reference evaluator, where the model can be expanded. The exit
-/// code: 1 if a trace fails, 4 if the run was stopped before the last one; files that cannot be
-/// read are reported (E61xx).
-int replay_traces(const ModelOptions& model, const ReplayTracesOptions& options, Context& context);
+/// What became of one trace of a file.
+struct ReplayedTrace {
+  std::int64_t number = 0;
+  bool agrees = false;
+  std::int64_t hidden = 0;  // agrees, with values for so many atoms that it does not mention
+  // One that fails: where it does first, why, and the place of the axiom.
+  std::int64_t timepoint = 0;
+  std::string reason;
+  std::optional<base::SourceRange> source;
+};
+
+struct TracesReplay {
+  std::vector<ReplayedTrace> traces;  // in order of the file
+  std::int64_t seen = 0, failed = 0;
+  std::int64_t checked = 0;  // agree, and the reference evaluator says so, too
+  bool finished = false;     // not stopped before the last one
+  bool sound = true;         // solver and evaluator never disagreed
+  bool closed = false;       // the file says how its list ended
+};
+
+/// `traces --replay`: holds the traces of a file against the model. `report` hears of each as soon
+/// as it is known. Reports those that fail (E7204, E7205) at the first axiom and timepoint. Every
+/// trace that agrees is checked again by the reference evaluator, where the model can be expanded.
+/// Files that cannot be read are reported (E61xx).
+base::Result<TracesReplay> replay_traces(const ModelOptions& model,
+                                         const ReplayTracesOptions& options,
+                                         const std::function<void(const ReplayedTrace&)>& report,
+                                         Context& context);
 
 }  // namespace parallax::tools

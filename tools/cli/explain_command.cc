@@ -1,10 +1,13 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "tools/app/explain.h"
 #include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
+#include "tools/cli/explain_text.h"
 #include "tools/cli/shared_options.h"
 
 namespace parallax::tools {
@@ -13,7 +16,7 @@ namespace {
 struct ExplainOptions {
   ModelOptions model;
   SetOptions sets;
-  WhyCommand why;
+  WhyQuery why;
   bool asks_why = false;
   std::string sample;  // of a run folder
 };
@@ -33,18 +36,66 @@ std::optional<compiler::CompiledModel> compile(const ExplainOptions& options,
   return std::move(usual->model);
 }
 
+/// Minimal sets of contradictory axioms, each printed as soon as it was looked at.
+int explain_contradiction(const compiler::CompiledModel& model,
+                          const std::optional<ObservedRun>& run, const SetOptions& options,
+                          Invocation& invocation) {
+  const bool as_json = invocation.options().json;
+  const auto* observed = run ? &*run : nullptr;
+  ContradictionSearch search(model, run, invocation);
+  const auto found = search.sets(options);
+  if (!found) return 0;
+  if (found->sets.empty()) {
+    as_json ? invocation.document(no_contradiction_json())
+            : invocation.result(no_contradiction_text(model, observed));
+    return 0;
+  }
+  if (!as_json) invocation.result(contradiction_head(*found, options, observed));
+  std::vector<Contradiction> sets;
+  for (const auto& set : found->sets) {
+    sets.push_back(search.look_at(set));
+    if (!as_json) invocation.result(contradiction_text(model, sets.size(), sets.back()));
+  }
+  if (as_json) {
+    invocation.document(contradictions_json(model, *found, options, observed, sets));
+  }
+  if (!invocation.stopped()) return 1;
+  invocation.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
+                                found->proven ? "not every instance shown is needed"
+                                              : "the sets may not be what was asked for");
+  return 0;
+}
+
+int explain_run(const ExplainOptions& options, Invocation& invocation) {
+  const auto found = load_discrepancy(options.model.models.front(), options.sample, invocation);
+  if (!found) return 0;
+  if (!*found) {
+    invocation.options().json
+        ? invocation.document(no_contradiction_json())
+        : invocation.result("The run found no discrepancy: there is nothing to explain.\n");
+    return 0;
+  }
+  const auto& [loaded, run] = **found;
+  return explain_contradiction(loaded.compilation.model, run, options.sets, invocation);
+}
+
 int explain(const ExplainOptions& options, Invocation& invocation) {
-  const auto& first = options.model.models.front();
   std::error_code ignored;
-  if (std::filesystem::is_directory(first, ignored)) {
-    return explain_run(first, options.sample, options.sets, invocation);
+  if (std::filesystem::is_directory(options.model.models.front(), ignored)) {
+    return explain_run(options, invocation);
   }
   const auto model = compile(options, invocation);
   if (!model) return 0;
-  if (!options.asks_why) return explain_sets(*model, options.sets, std::nullopt, invocation);
+  if (!options.asks_why) {
+    return explain_contradiction(*model, std::nullopt, options.sets, invocation);
+  }
   auto why = options.why;
   why.all = options.sets.all;
-  return explain_why(*model, why, invocation);
+  const auto explanation = explain_why(*model, why, invocation);
+  if (!explanation) return 0;
+  invocation.options().json ? invocation.document(why_json(*model, *explanation))
+                            : invocation.result(why_text(*model, *explanation));
+  return 0;
 }
 
 }  // namespace

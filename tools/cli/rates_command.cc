@@ -4,10 +4,11 @@
 #include "harness/campaign/rates.h"
 #include "harness/report/report.h"
 #include "tools/app/scenario_model.h"
+#include "tools/app/simulator_factory.h"
 #include "tools/app/trace_feed.h"
 #include "tools/cli/command.h"
+#include "tools/cli/shared_options.h"
 #include "tools/cli/signals.h"
-#include "tools/cli/simulator_factory.h"
 
 namespace parallax::tools {
 namespace {
@@ -31,7 +32,8 @@ int run_rates(const RateOptions& options, Invocation& invocation) {
   EnumeratedTraces traces(model, invocation);
   auto rates = options.rates;
   rates.stop = &stop_flag();
-  const auto result = harness::estimate_rates(loaded->scenario, traces, simulator_factory(*loaded),
+  const auto result = harness::estimate_rates(loaded->scenario, traces,
+                                              simulator_factory(*loaded, own_worker(), stop_flag()),
                                               rates, invocation.sink());
   if (!result) return 0;
   if (invocation.options().json) {

@@ -6,10 +6,10 @@
 #include "harness/campaign/replay.h"
 #include "harness/report/report.h"
 #include "tools/app/scenario_model.h"
+#include "tools/app/simulator_factory.h"
 #include "tools/cli/command.h"
 #include "tools/cli/shared_options.h"
 #include "tools/cli/signals.h"
-#include "tools/cli/simulator_factory.h"
 
 namespace parallax::tools {
 namespace {
@@ -39,7 +39,8 @@ int replay(const ReplayOptions& options, Invocation& invocation) {
     return 0;
   }
   const auto result = harness::replay_sample(options.run_dir, *id, loaded->sources_hash,
-                                             simulator_factory(*loaded), invocation.files(), sink);
+                                             simulator_factory(*loaded, own_worker(), stop_flag()),
+                                             invocation.files(), sink);
   if (!result) return 0;
   if (result->outcome == harness::ReplayOutcome::kCannot) {
     sink.error_about(base::DiagnosticCode::kReplayImpossible, options.run_dir, result->reason);

@@ -8,11 +8,12 @@
 #include "harness/campaign/campaign.h"
 #include "harness/report/report.h"
 #include "tools/app/scenario_model.h"
+#include "tools/app/simulator_factory.h"
 #include "tools/app/trace_feed.h"
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
+#include "tools/cli/shared_options.h"
 #include "tools/cli/signals.h"
-#include "tools/cli/simulator_factory.h"
 
 namespace parallax::tools {
 namespace {
@@ -118,7 +119,8 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
       model, invocation,
       {.all_hits = options.hits == "all", .split_initial = options.split_initial});
   const auto campaign = campaign_options(options, *loaded, invocation);
-  const auto result = harness::run_campaign(loaded->scenario, traces, simulator_factory(*loaded),
+  const auto result = harness::run_campaign(loaded->scenario, traces,
+                                            simulator_factory(*loaded, own_worker(), stop_flag()),
                                             campaign, invocation.files(), sink);
   if (campaign.progress) write_error("\r\x1b[K");
   if (!result) return 0;

@@ -122,6 +122,8 @@ void add_replay_options(OptionTable& command, ReplayTracesOptions& options) {
                "Replay traces of another model that has the same names");
 }
 
+std::vector<std::string> own_worker() { return {"/proc/self/exe", "worker"}; }
+
 base::Result<std::optional<harness::SampleId>> parse_sample_option(const std::string& text,
                                                                    base::DiagnosticSink& sink) {
   if (text.empty()) return std::optional<harness::SampleId>();

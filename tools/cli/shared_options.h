@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compiler/base/diagnostic.h"
 #include "harness/campaign/replay.h"
@@ -23,6 +24,9 @@ void add_listing_options(OptionTable& command, ListingOptions& options);
 /// `--certify` takes its file after `=` only, so that a model may follow it.
 void add_certify_option(OptionTable& command, CertifyOption& option);
 void add_replay_options(OptionTable& command, ReplayTracesOptions& options);
+
+/// What serves as the built-in simulator: this very program.
+std::vector<std::string> own_worker();
 
 /// The value of `--sample` of commands that take a recorded run: none if it was not given. Reports
 /// kUsage if it is no `TRACE.SAMPLE`.

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/json.h"
 #include "runtime/trace/vocabulary.h"
 #include "tools/app/certify.h"
 #include "tools/app/open_ends.h"
@@ -141,11 +142,71 @@ bool asks_for_models(const TracesOptions& options) {
          options.search.strategy != "auto";
 }
 
+std::string replayed_text(const ReplayedTrace& trace, const base::SourceFiles& files) {
+  if (trace.agrees) {
+    if (trace.hidden == 0) return fmt::format("trace {}: agrees\n", trace.number);
+    return fmt::format("trace {}: agrees, with values for {} atoms that it does not mention\n",
+                       trace.number, trace.hidden);
+  }
+  const auto place = trace.source ? files.place(*trace.source) : std::string();
+  return fmt::format("trace {}: fails at timepoint {}{}\n", trace.number, trace.timepoint,
+                     place.empty() ? "" : ", " + place);
+}
+
+nlohmann::ordered_json json_of(const ReplayedTrace& trace, const base::SourceFiles& files) {
+  if (trace.agrees) return {{"trace", trace.number}, {"agrees", true}, {"hidden", trace.hidden}};
+  nlohmann::ordered_json out = {{"trace", trace.number},
+                                {"agrees", false},
+                                {"timepoint", trace.timepoint},
+                                {"text", trace.reason}};
+  if (trace.source) {
+    const auto& file = files[trace.source->file];
+    const auto position = file.position(trace.source->begin);
+    out["file"] = file.name();
+    out["line"] = position.line;
+    out["column"] = position.column;
+  }
+  return out;
+}
+
+int replay(const TracesOptions& options, Invocation& invocation) {
+  const bool as_json = invocation.options().json;
+  const auto& files = invocation.files();
+  const auto say = [&](const ReplayedTrace& trace) {
+    if (!as_json) invocation.result(replayed_text(trace, files));
+  };
+  const auto result = replay_traces(options.model, options.replay, say, invocation);
+  if (!result) return 0;
+  if (!result->closed) {
+    invocation.remark("the file does not say how its list ended: there may be more traces");
+  }
+  if (invocation.stopped()) invocation.remark("stopped before the last trace");
+  const auto agree = result->seen - result->failed;
+  if (as_json) {
+    auto list = nlohmann::ordered_json::array();
+    for (const auto& trace : result->traces) list.push_back(json_of(trace, files));
+    const nlohmann::ordered_json document = {{"status", result->sound ? "ok" : "error"},
+                                             {"traces", result->seen},
+                                             {"agree", agree},
+                                             {"fail", result->failed},
+                                             {"checked", result->checked},
+                                             {"complete", result->finished},
+                                             {"list", std::move(list)}};
+    invocation.document(base::json_text(document) + '\n');
+  } else {
+    invocation.result(fmt::format("{} {} replayed, {}: {} agree, {} fail, {} checked\n",
+                                  result->seen, result->seen == 1 ? "trace" : "traces",
+                                  result->finished ? "complete" : "stopped", agree, result->failed,
+                                  result->checked));
+  }
+  if (!result->sound) return 5;
+  if (result->failed > 0) return 1;
+  return result->finished ? 0 : 4;
+}
+
 int list_traces(const TracesOptions& options, Invocation& invocation) {
   const auto start = std::chrono::steady_clock::now();
-  if (!options.replay.file.empty()) {
-    return replay_traces(options.model, options.replay, invocation);
-  }
+  if (!options.replay.file.empty()) return replay(options, invocation);
   if (!is_usable(options, invocation)) return 0;
   if (!check_listing(options.model, options.listing, invocation.sink())) return 0;
   const auto compilation = compile_models(options.model, invocation);

@@ -1,17 +1,21 @@
-#include "tools/cli/simulator_factory.h"
+#include "tools/app/simulator_factory.h"
+
+#include <memory>
 
 #include "harness/simulator/process_simulator.h"
-#include "tools/cli/signals.h"
 
 namespace parallax::tools {
 
-harness::SimulatorFactory simulator_factory(const ScenarioModel& loaded) {
+harness::SimulatorFactory simulator_factory(const ScenarioModel& loaded,
+                                            const std::vector<std::string>& worker,
+                                            const std::atomic<bool>& stop) {
   const auto& spec = loaded.scenario.simulator;
   harness::ProcessOptions options;
   options.command = spec.command;
   if (options.command.empty()) {
-    options.command = {"/proc/self/exe", "worker", loaded.scenario.file.string(), "--scenario-hash",
-                       loaded.scenario_hash};
+    options.command = worker;
+    options.command.insert(options.command.end(), {loaded.scenario.file.string(), "--scenario-hash",
+                                                   loaded.scenario_hash});
   }
   options.hello_timeout_s = spec.hello_timeout_s;
   options.reset_timeout_s = spec.reset_timeout_s;
@@ -20,7 +24,7 @@ harness::SimulatorFactory simulator_factory(const ScenarioModel& loaded) {
   options.close_timeout_s = spec.close_timeout_s;
   options.min_real_time_factor = spec.min_real_time_factor;
   options.recycle_after = spec.recycle_after;
-  options.stop = &stop_flag();
+  options.stop = &stop;
   return [options] { return std::make_unique<harness::ProcessSimulator>(options); };
 }
 
