@@ -9,8 +9,8 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/compare.h"
 #include "harness/campaign/judge.h"
-#include "harness/confidence/claim.h"
-#include "harness/confidence/regression_frame.h"
+#include "harness/confidence/criterion.h"
+#include "harness/confidence/regression.h"
 
 namespace parallax::harness {
 namespace {

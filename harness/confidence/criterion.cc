@@ -1,6 +1,7 @@
 #include "harness/confidence/criterion.h"
 
 #include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,32 @@
 #include "harness/confidence/criterion_spec.h"
 
 namespace parallax::harness {
+namespace {
+
+/// Rounds to six digits, which shows 99 and 99.9 as they were typed.
+std::string level_text(double level) { return fmt::format("{:.6g} %", 100.0 * level); }
+
+std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string runs_text(const Tally& tally) {
+  const auto clean = counted(tally.clean(), "clean run", "clean runs");
+  if (tally.lost() == 0) return fmt::format("{} of {}", clean, tally.runs());
+  return fmt::format("{} of {}, {} counted as {}", clean, tally.runs(),
+                     counted(tally.lost(), "lost run", "lost runs"),
+                     tally.lost() == 1 ? "a failure" : "failures");
+}
+
+std::string rejected_text(const Tally& tally) {
+  const std::int64_t drawn = tally.rejected() + tally.runs();
+  const double share = static_cast<double>(tally.rejected()) / static_cast<double>(drawn);
+  return fmt::format(
+      "the claim is about start states that are valid: {} of {} drawn were rejected ({:.1f} %)",
+      tally.rejected(), drawn, 100.0 * share);
+}
+
+}  // namespace
 
 CertifiedBound certified_bound(const Tally& tally, double confidence_level) {
   const std::int64_t failures = tally.lost() + tally.mismatch();
@@ -89,6 +116,61 @@ PaperRuleSpec paper_repaired() {
   spec.tolerance_m = 0.01;
   spec.preset = "paper-repaired";
   return spec;
+}
+
+std::string percent_up(double probability) {
+  const double value = 100.0 * probability;
+  if (!(value > 0.0)) return "0 %";
+  constexpr int kDigits = 3;
+  // A bound that was typed, like 0.05, must not be rounded up for its last binary digit.
+  constexpr double kNoise = 1e-12;
+  const int decimals = kDigits - 1 - static_cast<int>(std::floor(std::log10(value)));
+  const double scale = std::pow(10.0, decimals);
+  return fmt::format("{:.{}g} %", std::ceil(value * scale * (1.0 - kNoise)) / scale, kDigits + 1);
+}
+
+std::string claim(const Tally& tally, const CriterionSpec& spec) {
+  if (tally.mismatch() > 0) {
+    return fmt::format("{} of {} gave a discrepancy", tally.mismatch(),
+                       counted(tally.runs(), "run", "runs"));
+  }
+  const auto bound = certified_bound(tally, spec.confidence_level);
+  if (tally.clean() == 0 || bound.epsilon >= 1.0 || bound.confidence_level <= 0.0) {
+    return fmt::format("nothing is claimed ({})", runs_text(tally));
+  }
+  // Runs that were planned for an epsilon support that one; the bound itself is a little smaller.
+  const bool as_planned = spec.kind == CriterionKind::kCleanRuns && bound.epsilon <= spec.epsilon;
+  return fmt::format(
+      "with {} confidence, fewer than {} of {}start states drawn uniformly from the start region "
+      "give a discrepancy ({})",
+      level_text(bound.confidence_level), percent_up(as_planned ? spec.epsilon : bound.epsilon),
+      tally.rejected() > 0 ? "valid " : "", runs_text(tally));
+}
+
+std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec,
+                                 std::optional<std::int64_t> paper_stopped_at) {
+  std::vector<std::string> result;
+  if (tally.rejected() > 0) result.push_back(rejected_text(tally));
+  if (tally.lost() > 0) {
+    const auto bound = certified_bound(tally, spec.confidence_level);
+    result.push_back(fmt::format(
+        "{} (crash, hang or invalid numbers), counted as discrepancies; the stated confidence is "
+        "{} instead of {}, as the runs may end with either of two bounds",
+        counted(tally.lost(), "run was lost", "runs were lost"), level_text(bound.confidence_level),
+        level_text(spec.confidence_level)));
+  }
+  if (paper_stopped_at && !tally.frame().not_covered.empty()) {
+    result.push_back(
+        fmt::format("no regression evidence for: {}", fmt::join(tally.frame().not_covered, ", ")));
+  }
+  return result;
+}
+
+std::string paper_variant(const Tally& tally, const PaperRuleSpec& spec) {
+  const auto& ranges = tally.frame().x_range;
+  const auto varying = std::count_if(ranges.begin(), ranges.end(),
+                                     [](const Interval& range) { return range.width() > 0.0; });
+  return fmt::format("{}, n = {}", spec.preset, varying);
 }
 
 }  // namespace parallax::harness

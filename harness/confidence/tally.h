@@ -4,8 +4,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "compiler/base/contract.h"
 #include "harness/region/region.h"
 
 namespace parallax::harness {
@@ -24,11 +26,21 @@ struct RegressionFrame {
 /// completion order would stop before they come back.
 class Tally {
  public:
-  explicit Tally(RegressionFrame frame);
+  explicit Tally(RegressionFrame frame) : frame_(std::move(frame)) {
+    PARALLAX_REQUIRE(frame_.x_names.size() == frame_.x_range.size(),
+                     "a range per initial parameter");
+    PARALLAX_REQUIRE(frame_.y_names.size() == frame_.y_cell.size(), "a cell per final parameter");
+  }
 
   /// A uniform run whose final state was the expected one. `initial` (n) and `final_values` (m)
   /// follow the frame; a value that was not observed is NaN.
-  void add_clean(std::span<const double> initial, std::span<const double> final_values);
+  void add_clean(std::span<const double> initial, std::span<const double> final_values) {
+    PARALLAX_REQUIRE(initial.size() == frame_.x_names.size(), "a value per initial parameter");
+    PARALLAX_REQUIRE(final_values.size() == frame_.y_names.size(), "a value per final parameter");
+    x_.emplace_back(initial.begin(), initial.end());
+    y_.emplace_back(final_values.begin(), final_values.end());
+    ++clean_;
+  }
   /// A run that ended in another state which the model admits, too. It is clean and has no row: the
   /// regression is about one expected final state.
   void add_clean_elsewhere() { ++clean_, ++elsewhere_; }

@@ -4,14 +4,122 @@
 #include <array>
 #include <map>
 
+#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
 #include "harness/world/structure_check.h"
 
 namespace parallax::harness {
-namespace {
 
 using base::DiagnosticCode;
+
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+/// The axes under their own names.
+std::vector<std::string_view> axis_keys() {
+  std::vector<std::string_view> keys;
+  for (const auto axis : kRegionAxes) keys.push_back(to_string(axis));
+  return keys;
+}
+
+/// Bounds of a region, each a list of two numbers.
+void read_bounds(const YamlFields& fields, Region& region) {
+  for (const auto axis : kRegionAxes) {
+    const auto* bounds = fields.find(to_string(axis));
+    if (bounds == nullptr) continue;
+    const auto name = fmt::format("`{}` of the region `{}`", to_string(axis), region.name);
+    if (!bounds->is_list()) {
+      fields.sink().error(DiagnosticCode::kWrongYamlKind, bounds->range, name, describe(*bounds),
+                          "a list of a lower and an upper bound");
+    } else if (const auto interval = read_interval(*bounds, name, fields.sink())) {
+      region.on(axis) = *interval;
+    }
+  }
+}
+
+/// Where starts are drawn: numbers or lists of two, within the bounds.
+void read_start(const YamlNode& node, Region& region, base::DiagnosticSink& sink) {
+  YamlFields fields(node, fmt::format("`{}` of the region `{}`", Key::kStart, region.name), sink);
+  fields.only(axis_keys());
+  for (const auto axis : kRegionAxes) {
+    const auto* range = fields.find(to_string(axis));
+    if (range == nullptr) continue;
+    const auto name = fmt::format("`{}` of the start in `{}`", to_string(axis), region.name);
+    const auto interval = read_interval(*range, name, sink);
+    if (!interval) continue;
+    if (interval->lower > interval->upper) {
+      sink.error(DiagnosticCode::kReversedSampling, range->range, name, interval->lower,
+                 interval->upper);
+      continue;
+    }
+    const auto& bound = region.on(axis);
+    if (bound && bound->lower > bound->upper) continue;  // reported with the regions
+    if (bound && (interval->lower < bound->lower || interval->upper > bound->upper)) {
+      sink.error(DiagnosticCode::kYamlOutOfBounds, range->range, name,
+                 fmt::format("from {} to {}", interval->lower, interval->upper),
+                 fmt::format("within the region, {} to {}", bound->lower, bound->upper));
+    }
+    region.start[static_cast<std::size_t>(axis)] = *interval;
+  }
+}
+
+void read_frame(const YamlFields& fields, const WorldSpec& world, Region& region) {
+  fields.text(Key::kFrame, region.frame);
+  if (region.frame.empty()) return;
+  const auto body = std::find_if(world.bodies.begin(), world.bodies.end(),
+                                 [&](const BodySpec& b) { return b.name == region.frame; });
+  if (body == world.bodies.end()) {
+    std::vector<std::string> known;
+    for (const auto& each : world.bodies) known.push_back(each.name);
+    auto error = fields.sink().error(DiagnosticCode::kYamlUnknownChoice,
+                                     fields.find(Key::kFrame)->range, region.frame, Key::kBody);
+    add_suggestion(error, region.frame, known, "bodies");
+    return;
+  }
+  if (body->yaw_rad != 0.0) {
+    fields.sink().error(DiagnosticCode::kYamlOutOfBounds, fields.find(Key::kFrame)->range,
+                        key_text(Key::kFrame), "a body that is turned at the start",
+                        "one with yaw_rad 0");
+  }
+  region.frame_start = {body->p_WB.x(), body->p_WB.y(), body->p_WB.z()};
+}
+
+Region read_region(const YamlEntry& entry, const WorldSpec& world, base::DiagnosticSink& sink) {
+  Region region;
+  region.name = entry.key;
+  region.source = entry.key_range;
+  YamlFields fields(entry.value, fmt::format("the region `{}`", entry.key), sink);
+  auto keys = axis_keys();
+  keys.insert(keys.end(), {Key::kFrame, Key::kStart});
+  fields.only(keys);
+  read_bounds(fields, region);
+  read_frame(fields, world, region);
+  if (const auto* start = fields.find(Key::kStart)) read_start(*start, region, sink);
+  return region;
+}
+
+RegionSection read_section(YamlFields& fields, std::string name, const WorldSpec& world,
+                           base::DiagnosticSink& sink) {
+  static constexpr std::array<std::string_view, 2> kGaps = {"error", "allowed"};
+  RegionSection section;
+  section.name = std::move(name);
+  section.gaps_allowed =
+      fields.choice(Key::kGaps, "value of " + key_text(Key::kGaps), kGaps) == std::size_t{1};
+  fields.texts(Key::kFor, section.functions);
+  const auto* cells = fields.require(Key::kCells);
+  if (cells == nullptr) return section;
+  const YamlFields all(*cells, key_text(Key::kCells), sink);
+  for (const auto& entry : cells->entries) {
+    section.regions.push_back(read_region(entry, world, sink));
+  }
+  return section;
+}
 
 void read_flag_name(const YamlFields& fields, std::string_view key, const SymbolPattern& pattern,
                     std::optional<std::string>& out) {
@@ -144,6 +252,71 @@ void refuse_repeated(Bindings& bindings, Name name, base::DiagnosticSink& sink) 
 }
 
 }  // namespace
+
+std::optional<SymbolPattern> parse_pattern(std::string_view text) {
+  SymbolPattern pattern;
+  const auto open = text.find('(');
+  const auto symbol = trimmed(text.substr(0, open));
+  if (!base::is_identifier(symbol)) return std::nullopt;
+  pattern.symbol = std::string(symbol);
+  if (open == std::string_view::npos) return pattern;
+  text = trimmed(text.substr(open));
+  if (text.size() < 2 || text.back() != ')') return std::nullopt;
+  auto rest = trimmed(text.substr(1, text.size() - 2));
+  while (!rest.empty()) {
+    const auto comma = rest.find(',');
+    const auto word = trimmed(rest.substr(0, comma));
+    if (!base::is_identifier(word)) return std::nullopt;
+    const auto& known = pattern.parameters;
+    if (std::find(known.begin(), known.end(), word) != known.end()) return std::nullopt;
+    pattern.parameters.emplace_back(word);
+    if (comma == std::string_view::npos) return pattern;
+    rest = trimmed(rest.substr(comma + 1));
+    if (rest.empty()) return std::nullopt;  // a comma at the end
+  }
+  return pattern;
+}
+
+std::string with_positions(const std::string& text, const SymbolPattern& pattern,
+                           base::SourceRange range, base::DiagnosticSink& sink) {
+  std::string out;
+  std::size_t at = 0;
+  for (;;) {
+    const auto open = text.find('{', at);
+    const auto close = open == std::string::npos ? open : text.find('}', open);
+    if (close == std::string::npos) return out + text.substr(at);
+    const auto name = text.substr(open + 1, close - open - 1);
+    const auto& names = pattern.parameters;
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+      auto error =
+          sink.error(base::DiagnosticCode::kUnknownPatternParameter, range, name, pattern.symbol);
+      add_suggestion(error, name, names, "parameters");
+    }
+    out += text.substr(at, open - at) + '{' + std::to_string(found - names.begin()) + '}';
+    at = close + 1;
+  }
+}
+
+std::vector<RegionSection> read_regions(const YamlNode& node, const WorldSpec& world,
+                                        base::DiagnosticSink& sink) {
+  std::vector<RegionSection> sections;
+  YamlFields fields(node, key_text(Key::kRegions), sink);
+  const auto* sets = fields.find(Key::kSets);
+  if (sets == nullptr) {
+    fields.only({Key::kCells, Key::kGaps, Key::kFor});
+    sections.push_back(read_section(fields, {}, world, sink));
+    return sections;
+  }
+  fields.only({Key::kSets});
+  const YamlFields all(*sets, key_text(Key::kSets), sink);
+  for (const auto& entry : sets->entries) {
+    YamlFields inner(entry.value, fmt::format("the set `{}`", entry.key), sink);
+    inner.only({Key::kCells, Key::kGaps, Key::kFor});
+    sections.push_back(read_section(inner, entry.key, world, sink));
+  }
+  return sections;
+}
 
 std::vector<FluentBinding> read_mapping(const YamlNode& node, base::DiagnosticSink& sink) {
   std::vector<FluentBinding> bindings;

@@ -10,7 +10,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
-#include "harness/engine/placement_check.h"
+#include "harness/engine/world_check.h"
 #include "harness/world/variables.h"
 
 namespace parallax::harness {

@@ -1,6 +1,5 @@
-#pragma once
-
 // Only harness/config/*.cc include this header.
+#pragma once
 
 #include <cstdint>
 #include <optional>
@@ -10,6 +9,7 @@
 
 #include "harness/config/scenario.h"
 #include "harness/config/yaml_fields.h"
+#include "harness/world/world_spec.h"
 
 namespace parallax::harness {
 
@@ -75,5 +75,14 @@ std::optional<SymbolPattern> parse_pattern(std::string_view text);
 /// "{region}.x" -> "{0}.x"; reports a name in braces that is no parameter of the pattern.
 std::string with_positions(const std::string& text, const SymbolPattern& pattern,
                            base::SourceRange range, base::DiagnosticSink& sink);
+
+/// Parts of the section `world`, each reporting at its keys.
+
+void read_vector(const YamlFields& fields, std::string_view key, Eigen::Vector3d& out);
+BodySpec read_body(const YamlEntry& entry, base::DiagnosticSink& sink);
+HandleSpec read_handle(const YamlNode& node, base::DiagnosticSink& sink);
+PlaceSpec read_place(const YamlEntry& entry, base::DiagnosticSink& sink);
+/// A robot on a line, or, with `arms`, a mobile one.
+void read_robot(const YamlNode& node, WorldSpec& world, base::DiagnosticSink& sink);
 
 }  // namespace parallax::harness

@@ -5,7 +5,6 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
-#include "harness/config/world_sections.h"
 #include "harness/engine/world_check.h"
 
 namespace parallax::harness {

@@ -1,20 +1,51 @@
 #include "harness/engine/ode_world.h"
 
 #include <ode/ode.h>
+#include <ode/version.h>
 
 #include <Eigen/Geometry>
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <cstdarg>
+#include <mutex>
 
 #include "compiler/base/contract.h"
 #include "compiler/base/hash.h"
 #include "harness/engine/ode_engine.h"
-#include "harness/engine/ode_process.h"
 #include "harness/world/angles.h"
 
 namespace parallax::harness {
 namespace {
+
+// The engine's message hook carries no context, so the thread that steps names the counter.
+thread_local std::int64_t* t_message_count = nullptr;
+
+void count_message(int /*number*/, const char* /*text*/, va_list /*arguments*/) {
+  if (t_message_count != nullptr) ++*t_message_count;
+}
+
+/// While one exists, messages that the engine prints on this thread are counted into `count`
+/// instead. They come from the solver of contact forces and are harmless when rare.
+class MessageCounter {
+ public:
+  explicit MessageCounter(std::int64_t& count) : previous_(t_message_count) {
+    t_message_count = &count;
+  }
+  ~MessageCounter() { t_message_count = previous_; }
+  MessageCounter(const MessageCounter&) = delete;
+  MessageCounter& operator=(const MessageCounter&) = delete;
+
+ private:
+  std::int64_t* previous_;
+};
+
+struct ThreadData {
+  ThreadData() { dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll)); }
+  ~ThreadData() { dCleanupODEAllDataForThread(); }
+  ThreadData(const ThreadData&) = delete;
+  ThreadData& operator=(const ThreadData&) = delete;
+};
 
 void mix(std::uint64_t& hash, double value) {
   hash = base::fnv1a64_word(hash, std::bit_cast<std::uint64_t>(value));
@@ -95,6 +126,19 @@ class Stopwatch {
 
 }  // namespace
 
+void enter_ode() {
+  // A second initialisation would trip an assertion inside the engine; it is never closed, because
+  // worlds of other threads may outlive any place where that could be done.
+  static std::once_flag once;
+  std::call_once(once, [] {
+    dInitODE2(0);
+    dSetMessageHandler(&count_message);
+  });
+  thread_local const ThreadData data;
+}
+
+std::string ode_version() { return dODE_VERSION; }
+
 OdeWorld::OdeWorld(const WorldSpec& spec) : engine_(std::make_unique<Engine>()) {
   enter_ode();
   OdeBuilder(spec, *engine_).build();
@@ -147,7 +191,7 @@ std::optional<Overlap> OdeWorld::reset(std::span<const Placement> placements, st
     set_gantry(engine_->layout.gantries.id_at(i), Eigen::Vector3d::Zero(), 0.0);
   }
   std::fill(engine_->touches.begin(), engine_->touches.end(), Touch{});
-  seed_ode(seed);
+  dRandSetSeed(static_cast<unsigned long>(seed));  // one generator per process
   engine_->digest = base::kFnvStart;
   fold_state(*engine_);
 

@@ -13,6 +13,13 @@
 
 namespace parallax::harness {
 
+/// Brings the engine up once per process and gives the calling thread its data. Cheap when done
+/// already; call it at the start of everything that touches the engine.
+void enter_ode();
+
+/// "0.16.2"
+std::string ode_version();
+
 /// What touched a free body in the last step.
 struct Touch {
   std::uint32_t near_pads = 0, far_pads = 0;  // bit g: a pad of gripper g

@@ -1,5 +1,3 @@
-#include "harness/engine/placement_check.h"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -8,6 +6,7 @@
 
 #include "harness/engine/ode_world.h"
 #include "harness/engine/sweep.h"
+#include "harness/engine/world_check.h"
 
 namespace parallax::harness {
 namespace {

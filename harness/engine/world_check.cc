@@ -8,8 +8,8 @@
 
 #include "harness/engine/jaws.h"
 #include "harness/engine/ode_world.h"
-#include "harness/engine/placement_check.h"
 #include "harness/engine/sweep.h"
+#include "harness/engine/world_check.h"
 
 namespace parallax::harness {
 namespace {

@@ -66,6 +66,173 @@ std::string needs_flag(const std::string& pattern, const GroundFluent& fluent) {
                      with_arguments(pattern, fluent));
 }
 
+// What the kinds of conditions answer about a ground fluent of their symbol. FluentBinding, whose
+// declarations say what is asked, passes each question on to the kind that it has.
+
+std::optional<Reading> read(const InsideBinding& kind, const GroundFluent& fluent,
+                            const State& state, const RegionMap& regions,
+                            std::set<std::string>* missing) {
+  const Region* region = kind.region_of(fluent, regions);
+  PARALLAX_REQUIRE(region != nullptr, "the mapping was checked against the regions");
+  const std::string name = with_arguments(kind.body, fluent);
+  Point point{};
+  bool complete = true;
+  for (const RegionAxis axis : kRegionAxes) {
+    // A point in a turned frame takes both x and y.
+    const bool needed =
+        region->on(axis).has_value() ||
+        (!region->frame.empty() && (axis == RegionAxis::kX || axis == RegionAxis::kY));
+    if (!needed) continue;
+    const auto value = number(state, fmt::format("{}.{}", name, to_string(axis)), missing);
+    complete = complete && value.has_value();
+    point[static_cast<std::size_t>(axis)] = value.value_or(0.0);
+  }
+  if (!region->frame.empty()) into_frame(region->frame, state, missing, point);
+  return reading(kind.flags_allow(fluent, state, missing) && complete &&
+                 regions.contains(*region, point));
+}
+
+std::optional<Reading> read(const FlagBinding& kind, const GroundFluent& fluent, const State& state,
+                            const RegionMap& /*regions*/, std::set<std::string>* missing) {
+  return reading(flag(state, with_arguments(kind.variable, fluent), missing).value_or(false));
+}
+
+std::optional<Reading> read(const RangeBinding& kind, const GroundFluent& fluent,
+                            const State& state, const RegionMap& /*regions*/,
+                            std::set<std::string>* missing) {
+  const auto value = number(state, with_arguments(kind.variable, fluent), missing);
+  if (!value) return Reading::kFails;
+  const auto within = [&](const Interval& i) { return *value >= i.lower && *value <= i.upper; };
+  if (within(kind.holds)) return Reading::kHolds;
+  return within(kind.fails) ? Reading::kFails : Reading::kNeither;
+}
+
+std::optional<Reading> read(const EqualsBinding& kind, const GroundFluent& fluent,
+                            const State& state, const RegionMap& /*regions*/,
+                            std::set<std::string>* missing) {
+  const std::string name = with_arguments(kind.variable, fluent);
+  const Value* value = look_up(state, name, missing);
+  if (value == nullptr) return Reading::kFails;
+  if (const auto* word = std::get_if<std::string>(value)) {
+    return reading(*word == with_arguments(kind.text, fluent));
+  }
+  if (missing != nullptr) missing->insert(name);
+  return Reading::kFails;
+}
+
+std::optional<Reading> read(const IgnoredBinding&, const GroundFluent&, const State&,
+                            const RegionMap&, std::set<std::string>*) {
+  return std::nullopt;
+}
+
+/// Of the kinds that are about one variable.
+template <typename Kind>
+std::vector<std::string> variables(const Kind& kind, const GroundFluent& fluent,
+                                   const RegionMap& /*regions*/) {
+  return {with_arguments(kind.variable, fluent)};
+}
+
+std::vector<std::string> variables(const InsideBinding& kind, const GroundFluent& fluent,
+                                   const RegionMap& regions) {
+  std::vector<std::string> out;
+  const Region* region = kind.region_of(fluent, regions);
+  for (const RegionAxis axis : kRegionAxes) {
+    if (region == nullptr || !region->on(axis)) continue;
+    out.push_back(fmt::format("{}.{}", with_arguments(kind.body, fluent), to_string(axis)));
+  }
+  for (const auto& variable : {kind.unless, kind.only_if}) {
+    if (variable) out.push_back(with_arguments(*variable, fluent));
+  }
+  return out;
+}
+
+std::vector<std::string> variables(const IgnoredBinding&, const GroundFluent&, const RegionMap&) {
+  return {};
+}
+
+/// Those that every fluent of the symbol is read from, as patterns.
+template <typename Kind>
+std::vector<std::string> constant_variables(const Kind& kind, const RegionMap& /*regions*/) {
+  return {kind.variable};
+}
+
+std::vector<std::string> constant_variables(const InsideBinding& kind, const RegionMap& regions) {
+  std::vector<std::string> out;
+  const auto& all = regions.regions();
+  for (const RegionAxis axis : kRegionAxes) {
+    const bool bounded = !all.empty() && std::all_of(all.begin(), all.end(), [&](const Region& r) {
+      return r.on(axis).has_value();
+    });
+    if (bounded) out.push_back(fmt::format("{}.{}", kind.body, to_string(axis)));
+  }
+  if (kind.unless) out.push_back(*kind.unless);
+  if (kind.only_if) out.push_back(*kind.only_if);
+  return out;
+}
+
+std::vector<std::string> constant_variables(const IgnoredBinding&, const RegionMap&) { return {}; }
+
+std::optional<std::string> reset_conflict(const InsideBinding& kind, const GroundFluent& fluent,
+                                          bool wanted) {
+  if (!wanted || !kind.only_if) return std::nullopt;
+  return needs_flag(*kind.only_if, fluent);
+}
+
+std::optional<std::string> reset_conflict(const FlagBinding& kind, const GroundFluent& fluent,
+                                          bool wanted) {
+  if (wanted == kind.at_start) return std::nullopt;
+  if (wanted) return needs_flag(kind.variable, fluent);
+  return fmt::format("`{}` does not hold, but a reset makes `{}` true", fluent.text,
+                     with_arguments(kind.variable, fluent));
+}
+
+std::optional<std::string> reset_conflict(const RangeBinding& kind, const GroundFluent& fluent,
+                                          bool wanted) {
+  const auto& interval = wanted ? kind.holds : kind.fails;
+  if (kind.at_start >= interval.lower && kind.at_start <= interval.upper) return std::nullopt;
+  return fmt::format("`{}` {}, but a reset makes `{}` {}", fluent.text,
+                     wanted ? "holds" : "does not hold", with_arguments(kind.variable, fluent),
+                     kind.at_start);
+}
+
+std::optional<std::string> reset_conflict(const EqualsBinding& kind, const GroundFluent& fluent,
+                                          bool wanted) {
+  if (!wanted) return std::nullopt;
+  return needs_flag(kind.variable, fluent);
+}
+
+std::optional<std::string> reset_conflict(const IgnoredBinding&, const GroundFluent&, bool) {
+  return std::nullopt;
+}
+
+/// Of the kinds whose variable has a value of its own after a reset.
+template <typename Kind>
+void add_reset_values(const Kind& kind, const GroundFluent& fluent, const RegionMap& /*regions*/,
+                      State& state) {
+  state.emplace(with_arguments(kind.variable, fluent), kind.at_start);
+}
+
+void add_reset_values(const InsideBinding& kind, const GroundFluent& fluent,
+                      const RegionMap& regions, State& state) {
+  for (const auto& variable : {kind.unless, kind.only_if}) {
+    if (variable) state.emplace(with_arguments(*variable, fluent), false);
+  }
+  const Region* region = kind.region_of(fluent, regions);
+  if (!kind.drawn || region == nullptr || region->frame.empty()) return;
+  static constexpr std::array<const char*, 3> kItems = {".x", ".y", ".z"};
+  for (std::size_t i = 0; i < kItems.size(); ++i) {
+    state.emplace(region->frame + kItems[i], region->frame_start[i]);
+  }
+  state.emplace(region->frame + ".yaw", 0.0);
+}
+
+void add_reset_values(const EqualsBinding& kind, const GroundFluent& fluent,
+                      const RegionMap& /*regions*/, State& state) {
+  state.emplace(with_arguments(kind.variable, fluent), std::string());
+}
+
+void add_reset_values(const IgnoredBinding&, const GroundFluent&, const RegionMap&, State&) {}
+
 }  // namespace
 
 GroundFluent ground_fluent(std::string_view text) {
@@ -120,199 +287,37 @@ bool InsideBinding::flags_allow(const GroundFluent& fluent, const State& state,
   return not_excluded && enabled;
 }
 
-std::optional<Reading> InsideBinding::read(const GroundFluent& fluent, const State& state,
-                                           const RegionMap& regions,
-                                           std::set<std::string>* missing) const {
-  const Region* region = region_of(fluent, regions);
-  PARALLAX_REQUIRE(region != nullptr, "the mapping was checked against the regions");
-  const std::string name = with_arguments(body, fluent);
-  Point point{};
-  bool complete = true;
-  for (const RegionAxis axis : kRegionAxes) {
-    // A point in a turned frame takes both x and y.
-    const bool needed =
-        region->on(axis).has_value() ||
-        (!region->frame.empty() && (axis == RegionAxis::kX || axis == RegionAxis::kY));
-    if (!needed) continue;
-    const auto value = number(state, fmt::format("{}.{}", name, to_string(axis)), missing);
-    complete = complete && value.has_value();
-    point[static_cast<std::size_t>(axis)] = value.value_or(0.0);
-  }
-  if (!region->frame.empty()) into_frame(region->frame, state, missing, point);
-  return reading(flags_allow(fluent, state, missing) && complete &&
-                 regions.contains(*region, point));
-}
-
-std::vector<std::string> InsideBinding::variables(const GroundFluent& fluent,
-                                                  const RegionMap& regions) const {
-  std::vector<std::string> out;
-  const Region* region = region_of(fluent, regions);
-  for (const RegionAxis axis : kRegionAxes) {
-    if (region == nullptr || !region->on(axis)) continue;
-    out.push_back(fmt::format("{}.{}", with_arguments(body, fluent), to_string(axis)));
-  }
-  for (const auto& variable : {unless, only_if}) {
-    if (variable) out.push_back(with_arguments(*variable, fluent));
-  }
-  return out;
-}
-
-std::vector<std::string> InsideBinding::constant_variables(const RegionMap& regions) const {
-  std::vector<std::string> out;
-  const auto& all = regions.regions();
-  for (const RegionAxis axis : kRegionAxes) {
-    const bool bounded = !all.empty() && std::all_of(all.begin(), all.end(), [&](const Region& r) {
-      return r.on(axis).has_value();
-    });
-    if (bounded) out.push_back(fmt::format("{}.{}", body, to_string(axis)));
-  }
-  if (unless) out.push_back(*unless);
-  if (only_if) out.push_back(*only_if);
-  return out;
-}
-
-std::optional<std::string> InsideBinding::reset_conflict(const GroundFluent& fluent,
-                                                         bool wanted) const {
-  if (!wanted || !only_if) return std::nullopt;
-  return needs_flag(*only_if, fluent);
-}
-
-void InsideBinding::add_reset_values(const GroundFluent& fluent, const RegionMap& regions,
-                                     State& state) const {
-  for (const auto& variable : {unless, only_if}) {
-    if (variable) state.emplace(with_arguments(*variable, fluent), false);
-  }
-  const Region* region = region_of(fluent, regions);
-  if (!drawn || region == nullptr || region->frame.empty()) return;
-  static constexpr std::array<const char*, 3> kItems = {".x", ".y", ".z"};
-  for (std::size_t i = 0; i < kItems.size(); ++i) {
-    state.emplace(region->frame + kItems[i], region->frame_start[i]);
-  }
-  state.emplace(region->frame + ".yaw", 0.0);
-}
-
-std::optional<Reading> FlagBinding::read(const GroundFluent& fluent, const State& state,
-                                         const RegionMap& /*regions*/,
-                                         std::set<std::string>* missing) const {
-  return reading(flag(state, with_arguments(variable, fluent), missing).value_or(false));
-}
-
-std::vector<std::string> FlagBinding::variables(const GroundFluent& fluent,
-                                                const RegionMap& /*regions*/) const {
-  return {with_arguments(variable, fluent)};
-}
-
-std::vector<std::string> FlagBinding::constant_variables(const RegionMap& /*regions*/) const {
-  return {variable};
-}
-
-std::optional<std::string> FlagBinding::reset_conflict(const GroundFluent& fluent,
-                                                       bool wanted) const {
-  if (wanted == at_start) return std::nullopt;
-  if (wanted) return needs_flag(variable, fluent);
-  return fmt::format("`{}` does not hold, but a reset makes `{}` true", fluent.text,
-                     with_arguments(variable, fluent));
-}
-
-void FlagBinding::add_reset_values(const GroundFluent& fluent, const RegionMap& /*regions*/,
-                                   State& state) const {
-  state.emplace(with_arguments(variable, fluent), at_start);
-}
-
-std::optional<Reading> RangeBinding::read(const GroundFluent& fluent, const State& state,
-                                          const RegionMap& /*regions*/,
-                                          std::set<std::string>* missing) const {
-  const auto value = number(state, with_arguments(variable, fluent), missing);
-  if (!value) return Reading::kFails;
-  const auto within = [&](const Interval& i) { return *value >= i.lower && *value <= i.upper; };
-  if (within(holds)) return Reading::kHolds;
-  return within(fails) ? Reading::kFails : Reading::kNeither;
-}
-
-std::vector<std::string> RangeBinding::variables(const GroundFluent& fluent,
-                                                 const RegionMap& /*regions*/) const {
-  return {with_arguments(variable, fluent)};
-}
-
-std::vector<std::string> RangeBinding::constant_variables(const RegionMap& /*regions*/) const {
-  return {variable};
-}
-
-std::optional<std::string> RangeBinding::reset_conflict(const GroundFluent& fluent,
-                                                        bool wanted) const {
-  const auto& interval = wanted ? holds : fails;
-  if (at_start >= interval.lower && at_start <= interval.upper) return std::nullopt;
-  return fmt::format("`{}` {}, but a reset makes `{}` {}", fluent.text,
-                     wanted ? "holds" : "does not hold", with_arguments(variable, fluent),
-                     at_start);
-}
-
-void RangeBinding::add_reset_values(const GroundFluent& fluent, const RegionMap& /*regions*/,
-                                    State& state) const {
-  state.emplace(with_arguments(variable, fluent), at_start);
-}
-
-std::optional<Reading> EqualsBinding::read(const GroundFluent& fluent, const State& state,
-                                           const RegionMap& /*regions*/,
-                                           std::set<std::string>* missing) const {
-  const std::string name = with_arguments(variable, fluent);
-  const Value* value = look_up(state, name, missing);
-  if (value == nullptr) return Reading::kFails;
-  if (const auto* word = std::get_if<std::string>(value)) {
-    return reading(*word == with_arguments(text, fluent));
-  }
-  if (missing != nullptr) missing->insert(name);
-  return Reading::kFails;
-}
-
-std::vector<std::string> EqualsBinding::variables(const GroundFluent& fluent,
-                                                  const RegionMap& /*regions*/) const {
-  return {with_arguments(variable, fluent)};
-}
-
-std::vector<std::string> EqualsBinding::constant_variables(const RegionMap& /*regions*/) const {
-  return {variable};
-}
-
-std::optional<std::string> EqualsBinding::reset_conflict(const GroundFluent& fluent,
-                                                         bool wanted) const {
-  if (!wanted) return std::nullopt;
-  return needs_flag(variable, fluent);
-}
-
-void EqualsBinding::add_reset_values(const GroundFluent& fluent, const RegionMap& /*regions*/,
-                                     State& state) const {
-  state.emplace(with_arguments(variable, fluent), std::string());
-}
-
 std::optional<Reading> FluentBinding::read(const GroundFluent& ground, const State& state,
                                            const RegionMap& regions,
                                            std::set<std::string>* missing) const {
-  return std::visit([&](const auto& kind) { return kind.read(ground, state, regions, missing); },
-                    condition);
+  return std::visit(
+      [&](const auto& kind) { return harness::read(kind, ground, state, regions, missing); },
+      condition);
 }
 
 std::vector<std::string> FluentBinding::variables(const GroundFluent& ground,
                                                   const RegionMap& regions) const {
-  return std::visit([&](const auto& kind) { return kind.variables(ground, regions); }, condition);
+  return std::visit([&](const auto& kind) { return harness::variables(kind, ground, regions); },
+                    condition);
 }
 
 std::vector<std::string> FluentBinding::constant_variables(const RegionMap& regions) const {
-  auto out =
-      std::visit([&](const auto& kind) { return kind.constant_variables(regions); }, condition);
+  auto out = std::visit(
+      [&](const auto& kind) { return harness::constant_variables(kind, regions); }, condition);
   std::erase_if(out, [](const std::string& v) { return v.find('{') != std::string::npos; });
   return out;
 }
 
 std::optional<std::string> FluentBinding::reset_conflict(const GroundFluent& ground,
                                                          bool wanted) const {
-  return std::visit([&](const auto& kind) { return kind.reset_conflict(ground, wanted); },
+  return std::visit([&](const auto& kind) { return harness::reset_conflict(kind, ground, wanted); },
                     condition);
 }
 
 void FluentBinding::add_reset_values(const GroundFluent& ground, const RegionMap& regions,
                                      State& state) const {
-  std::visit([&](const auto& kind) { kind.add_reset_values(ground, regions, state); }, condition);
+  std::visit([&](const auto& kind) { harness::add_reset_values(kind, ground, regions, state); },
+             condition);
 }
 
 }  // namespace parallax::harness

@@ -28,17 +28,6 @@ std::string with_arguments(std::string_view pattern, const GroundFluent& fluent)
 /// What a continuous state says of a fluent.
 enum class Reading : std::uint8_t { kFails, kHolds, kNeither };
 
-// Kinds of conditions. Each answers the same four questions about a ground fluent of its symbol;
-// FluentBinding asks them of whichever kind it has:
-//
-//   read              what does the state say? A variable that the state lacks makes the fluent
-//                     false and is added to `missing`, if that is given
-//   variables         which variables is that read from, bodies of frames aside?
-//   reset_conflict    why can no reset make the fluent hold (not hold)?
-//   add_reset_values  sets the variables that a reset gives a value, where `state` has none
-//
-// and constant_variables: those that every fluent of the symbol is read from, as patterns.
-
 /// Fluent F(.., r, ..) holds iff `body` lies in region r: argument number `region_argument` names
 /// the region. `unless` / `only_if` are boolean variables that must be false / true besides.
 struct InsideBinding {
@@ -47,13 +36,6 @@ struct InsideBinding {
   std::optional<std::string> unless;  // "box.held"
   std::optional<std::string> only_if;
   bool drawn = true;  // false: a reset puts the body there by itself, nothing is drawn
-
-  std::optional<Reading> read(const GroundFluent& fluent, const State& state,
-                              const RegionMap& regions, std::set<std::string>* missing) const;
-  std::vector<std::string> variables(const GroundFluent& fluent, const RegionMap& regions) const;
-  std::vector<std::string> constant_variables(const RegionMap& regions) const;
-  std::optional<std::string> reset_conflict(const GroundFluent& fluent, bool wanted) const;
-  void add_reset_values(const GroundFluent& fluent, const RegionMap& regions, State& state) const;
 
   /// The region that the fluent names; null if there is none of this name.
   const Region* region_of(const GroundFluent& fluent, const RegionMap& regions) const;
@@ -66,13 +48,6 @@ struct InsideBinding {
 struct FlagBinding {
   std::string variable;
   bool at_start = false;  // its value after a reset
-
-  std::optional<Reading> read(const GroundFluent& fluent, const State& state,
-                              const RegionMap& regions, std::set<std::string>* missing) const;
-  std::vector<std::string> variables(const GroundFluent& fluent, const RegionMap& regions) const;
-  std::vector<std::string> constant_variables(const RegionMap& regions) const;
-  std::optional<std::string> reset_conflict(const GroundFluent& fluent, bool wanted) const;
-  void add_reset_values(const GroundFluent& fluent, const RegionMap& regions, State& state) const;
 };
 
 /// Fluent holds iff a variable lies in one interval, and does not iff it lies in the other one:
@@ -81,41 +56,16 @@ struct RangeBinding {
   std::string variable;
   Interval holds, fails;
   double at_start = 0.0;
-
-  std::optional<Reading> read(const GroundFluent& fluent, const State& state,
-                              const RegionMap& regions, std::set<std::string>* missing) const;
-  std::vector<std::string> variables(const GroundFluent& fluent, const RegionMap& regions) const;
-  std::vector<std::string> constant_variables(const RegionMap& regions) const;
-  std::optional<std::string> reset_conflict(const GroundFluent& fluent, bool wanted) const;
-  void add_reset_values(const GroundFluent& fluent, const RegionMap& regions, State& state) const;
 };
 
 /// Fluent holds iff a variable has this text; "{0}" stands for argument 0. Empty after a reset.
 struct EqualsBinding {
   std::string variable;
   std::string text;
-
-  std::optional<Reading> read(const GroundFluent& fluent, const State& state,
-                              const RegionMap& regions, std::set<std::string>* missing) const;
-  std::vector<std::string> variables(const GroundFluent& fluent, const RegionMap& regions) const;
-  std::vector<std::string> constant_variables(const RegionMap& regions) const;
-  std::optional<std::string> reset_conflict(const GroundFluent& fluent, bool wanted) const;
-  void add_reset_values(const GroundFluent& fluent, const RegionMap& regions, State& state) const;
 };
 
 /// Said on purpose: this fluent has no continuous meaning and is not compared.
-struct IgnoredBinding {
-  std::optional<Reading> read(const GroundFluent&, const State&, const RegionMap&,
-                              std::set<std::string>*) const {
-    return std::nullopt;
-  }
-  std::vector<std::string> variables(const GroundFluent&, const RegionMap&) const { return {}; }
-  std::vector<std::string> constant_variables(const RegionMap&) const { return {}; }
-  std::optional<std::string> reset_conflict(const GroundFluent&, bool) const {
-    return std::nullopt;
-  }
-  void add_reset_values(const GroundFluent&, const RegionMap&, State&) const {}
-};
+struct IgnoredBinding {};
 
 /// What a fluent symbol means in the continuous world. Regions are those of the mapping, which was
 /// checked against the model's fluents.

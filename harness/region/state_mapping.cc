@@ -97,7 +97,7 @@ std::vector<std::string> StateMapping::outside(const std::vector<GroundFluent>& 
     const auto* inside = binding->inside();
     if (inside == nullptr || !inside->flags_allow(fluent, state, nullptr)) continue;
     const std::string text = outside_text(fluent);
-    const auto reading = inside->read(fluent, state, regions_, nullptr);
+    const auto reading = binding->read(fluent, state, regions_, nullptr);
     found[text] = found[text] || reading == Reading::kHolds;
   }
   std::vector<std::string> bodies;

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "compiler/base/diagnostic_printer.h"
 #include "harness/campaign/compare.h"
-#include "harness/confidence/claim.h"
+#include "harness/campaign/state_json.h"
 #include "harness/confidence/clean_runs.h"
+#include "harness/confidence/criterion.h"
 #include "harness/report/report.h"
 #include "harness/report/text_layout.h"
 
@@ -260,6 +262,25 @@ class TextReport {
   std::string out_;
 };
 
+using Json = nlohmann::ordered_json;
+
+Json rate_object(const CauseRate& rate) {
+  Json object = {{"cause", rate.cause},
+                 {"count", rate.count},
+                 {"rate", rate.rate},
+                 {"lower", rate.lower},
+                 {"upper", rate.upper}};
+  if (rate.example > 0) object["example"] = rate.example;
+  if (!rate.reason.empty()) object["reason"] = rate.reason;
+  if (!rate.start.empty()) object["start"] = state_json<Json>(rate.start);
+  return object;
+}
+
+std::string percent(const CauseRate& rate) {
+  return fmt::format("{:5.1f} %  [{:.1f}, {:.1f}]", 100.0 * rate.rate, 100.0 * rate.lower,
+                     100.0 * rate.upper);
+}
+
 }  // namespace
 
 std::string replay_command(const std::string& run_dir, const Discrepancy& found) {
@@ -299,6 +320,47 @@ std::string replay_text(const ReplayResult& result, const ReportStyle& style) {
   return head + paint("differs", "1;31") +
          fmt::format(" first at timepoint {} in {}\n", difference.timepoint, difference.variable) +
          table({{"recorded", difference.recorded}, {"repeated", difference.repeated}}, 2);
+}
+
+std::string rates_text(const RatesResult& result) {
+  std::string out = fmt::format("{}, seed {}; intervals with {:g} % confidence (Clopper-Pearson)\n",
+                                result.scenario, result.seed, 100.0 * result.confidence);
+  for (const TraceRates& trace : result.traces) {
+    out += fmt::format("\ntrace {}: {} runs, {} starts rejected, {} lost\n  {}\n", trace.number,
+                       trace.runs, trace.rejected, trace.lost, trace.trace);
+    out += fmt::format("  {:>6} of {:<6} {:<26} any discrepancy\n", trace.any.count, trace.runs,
+                       percent(trace.any));
+    for (const CauseRate& rate : trace.causes) {
+      out += fmt::format("  {:>6} of {:<6} {:<26} {}\n", rate.count, trace.runs, percent(rate),
+                         rate.cause);
+      out += fmt::format("{:46}first in sample {}{}{}\n", "", rate.example,
+                         rate.reason.empty() ? "" : ": ", rate.reason);
+    }
+  }
+  if (result.complete && result.traces.empty()) out += "\nno trace, so nothing was simulated\n";
+  if (!result.complete) out += "\nstopped before all runs were made\n";
+  return out;
+}
+
+std::string rates_json(const RatesResult& result) {
+  Json document = {{"status", "ok"},
+                   {"scenario", result.scenario},
+                   {"seed", result.seed},
+                   {"confidence", result.confidence},
+                   {"complete", result.complete},
+                   {"traces", Json::array()}};
+  for (const TraceRates& trace : result.traces) {
+    Json causes = Json::array();
+    for (const CauseRate& rate : trace.causes) causes.push_back(rate_object(rate));
+    document["traces"].push_back({{"trace", trace.number},
+                                  {"events", trace.trace},
+                                  {"runs", trace.runs},
+                                  {"rejected", trace.rejected},
+                                  {"lost", trace.lost},
+                                  {"any", rate_object(trace.any)},
+                                  {"causes", std::move(causes)}});
+  }
+  return document.dump() + "\n";
 }
 
 }  // namespace parallax::harness

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "harness/robot/line_controller.h"
 #include "harness/robot/mobile_controller.h"
 
 namespace parallax::harness {

@@ -40,6 +40,12 @@ using ControllerFactory = std::unique_ptr<Controller> (*)(const ControlContext&,
 /// The factory of a name in controllers(), or null.
 ControllerFactory find_factory(std::string_view name);
 
+// Of the robot on a line; those of the mobile one stand in mobile_controller.h.
+std::unique_ptr<Controller> make_going(const ControlContext& context, const Arguments& arguments);
+std::unique_ptr<Controller> make_picking_up(const ControlContext& context,
+                                            const Arguments& arguments);
+std::unique_ptr<Controller> make_placing(const ControlContext& context, const Arguments& arguments);
+
 /// A stretch of an action: begins, and lasts until `done` or for the limit that `begin` gave.
 struct ActionPhase {
   std::string_view name;          // "lowering"

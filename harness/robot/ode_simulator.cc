@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "compiler/base/contract.h"
-#include "harness/engine/ode_process.h"
+#include "harness/engine/ode_world.h"
 #include "harness/engine/world_check.h"
 #include "harness/robot/controller.h"
 #include "harness/world/angles.h"

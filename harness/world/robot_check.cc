@@ -1,11 +1,10 @@
-#include "harness/world/robot_check.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "harness/world/structure_check.h"
 #include "harness/world/world_layout.h"
 
 namespace parallax::harness {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "compiler/base/suggest.h"
-#include "harness/world/robot_check.h"
+#include "harness/world/structure_check.h"
 #include "harness/world/world_layout.h"
 
 namespace parallax::harness {

@@ -53,4 +53,9 @@ std::vector<std::string> names_of(const List& list) {
 /// can be said without building it. Empty: `lay_out` takes it.
 std::vector<WorldProblem> check_structure(const WorldSpec& spec);
 
+/// What is wrong with the robot on a line, or with the mobile one, if there is one: the roles that
+/// its parts play. Bodies and joints are right.
+void check_line_robot(const WorldSpec& spec, ProblemList& problems);
+void check_mobile_robot(const WorldSpec& spec, ProblemList& problems);
+
 }  // namespace parallax::harness

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -47,7 +48,9 @@ struct BodySpec {
   std::string kind;  // what a camera recognises it as; empty: its name
   std::optional<GraspSpec> grasp;
 
-  bool can_set(std::string_view item) const;
+  bool can_set(std::string_view item) const {
+    return std::find(settable.begin(), settable.end(), item) != settable.end();
+  }
   const std::string& kind_name() const { return kind.empty() ? name : kind; }
 };
 
@@ -174,9 +177,21 @@ struct WorldSpec {
 struct GripperSpec {
   std::string near_pad_body, far_pad_body;
 };
-std::vector<GripperSpec> grippers(const WorldSpec& spec);
+inline std::vector<GripperSpec> grippers(const WorldSpec& spec) {
+  std::vector<GripperSpec> all;
+  if (spec.mobile) {
+    for (const ArmSpec& arm : spec.mobile->arms) {
+      all.push_back({arm.near_pad_body, arm.far_pad_body});
+    }
+  } else if (!spec.robot.near_pad_body.empty()) {
+    all.push_back({spec.robot.near_pad_body, spec.robot.far_pad_body});
+  }
+  return all;
+}
 
 /// The body that "robot" stands for; empty without a robot.
-std::string base_body(const WorldSpec& spec);
+inline std::string base_body(const WorldSpec& spec) {
+  return spec.mobile ? spec.mobile->base_body : spec.robot.base_body;
+}
 
 }  // namespace parallax::harness

@@ -1,7 +1,6 @@
-#include "harness/confidence/claim.h"
-
 #include <doctest/doctest.h>
 
+#include "harness/confidence/criterion.h"
 #include "harness/confidence/paper_rule.h"
 #include "harness/sampling/rng.h"
 

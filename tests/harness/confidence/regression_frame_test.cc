@@ -1,9 +1,9 @@
-#include "harness/confidence/regression_frame.h"
-
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "harness/confidence/regression.h"
 
 namespace parallax::harness {
 namespace {

@@ -1,7 +1,6 @@
-#include "harness/draw/label_layout.h"
-
 #include <doctest/doctest.h>
 
+#include "harness/draw/scene_view.h"
 #include "tests/support/xml.h"
 
 namespace parallax::harness {

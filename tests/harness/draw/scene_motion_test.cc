@@ -1,8 +1,8 @@
-#include "harness/draw/scene_motion.h"
-
 #include <doctest/doctest.h>
 
 #include <cmath>
+
+#include "harness/draw/action_recorder.h"
 
 namespace parallax::harness {
 namespace {

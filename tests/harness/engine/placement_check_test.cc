@@ -1,7 +1,6 @@
-#include "harness/engine/placement_check.h"
-
 #include <doctest/doctest.h>
 
+#include "harness/engine/world_check.h"
 #include "tests/harness/world/hand_made.h"
 
 namespace parallax::harness {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "harness/engine/placement_check.h"
 #include "harness/engine/world_check.h"
 #include "tests/harness/kitchen/kitchen_world.h"
 

@@ -1,7 +1,6 @@
-#include "harness/robot/tool_path.h"
-
 #include <doctest/doctest.h>
 
+#include "harness/robot/mobile_controller.h"
 #include "tests/harness/world/hand_made.h"
 
 namespace parallax::harness {
