@@ -123,8 +123,10 @@ bool FunctionTable::add(TypedFormulaId id, SortDomains& domains) {
   append_key(before.value, old_value);
   append_key(value, new_value);
   if (old_value != new_value) {
-    sink_.error(DiagnosticCode::kFunctionValueTwice, formula.source, function.name)
-        .note(before.source, "the other value is given here");
+    sink_
+        .error(DiagnosticCode::kFunctionValueTwice, formula.source,
+               printed(model_, formula.terms[0]), printed(model_, before.value))
+        .note(before.source, "that value is given here");
   }
   return true;
 }

@@ -272,9 +272,9 @@ base::Result<CampaignResult> run_campaign(const Scenario& scenario, TraceFeed& t
       .run();
 }
 
-std::string hash_of_sources(const base::SourceFiles& files) {
+std::string hash_of_sources(const base::SourceFiles& files, std::size_t first) {
   std::uint64_t low = base::kFnvStart, high = base::fnv1a64("high");
-  for (std::size_t i = 0; i < files.size(); ++i) {
+  for (std::size_t i = first; i < files.size(); ++i) {
     const auto text = files[base::FileId(static_cast<std::uint32_t>(i))].text();
     // The size separates the texts: moving a line from one file to the next must show.
     const auto size = std::to_string(text.size());

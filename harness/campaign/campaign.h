@@ -27,6 +27,7 @@ struct CampaignOptions {
   bool keep_going = false;  // do not stop at the first discrepancy
   bool resume = false;
   std::filesystem::path run_dir;  // made if missing; holds journal.ndjson
+  std::string start_folder;       // where the paths of the scenario start; empty: not recorded
   std::string scenario_hash;      // over every text that was read (hash_of_sources)
   std::string tool_version;
   const std::atomic<bool>* stop = nullptr;                // raised by SIGINT and SIGTERM
@@ -63,7 +64,8 @@ base::Result<CampaignResult> run_campaign(const Scenario& scenario, TraceFeed& t
                                           const CampaignOptions& options, base::SourceFiles& files,
                                           base::DiagnosticSink& sink);
 
-/// A stable hash over the texts of all files read so far, in order of loading; names do not count.
-std::string hash_of_sources(const base::SourceFiles& files);
+/// A stable hash over the texts of the files read so far, from the one of number `first` on, in
+/// order of loading; names do not count.
+std::string hash_of_sources(const base::SourceFiles& files, std::size_t first = 0);
 
 }  // namespace parallax::harness

@@ -81,9 +81,22 @@ Json json_of(const ActionCall& call) {
           {"time_limit_s", call.time_limit_s}};
 }
 
+/// A number of things, from `least` on.
+std::int64_t count_of(const Json& object, const char* name, std::int64_t least) {
+  const auto count = get<std::int64_t>(object, name);
+  if (count < least) throw Foreign{fmt::format("`{}` is {}, less than {}", name, count, least)};
+  return count;
+}
+
+double duration_of(const Json& object, const char* name) {
+  const auto seconds = get<double>(object, name);
+  if (!(seconds >= 0.0)) throw Foreign{fmt::format("`{}` is {}, less than 0", name, seconds)};
+  return seconds;
+}
+
 TraceLine trace_line_of(const Json& object) {
   TraceLine line;
-  line.trace = get<std::int64_t>(object, "trace");
+  line.trace = count_of(object, "trace", 1);
   line.key = get<std::string>(object, "key");
   for (const auto& fluents : list(object, "holds")) {
     line.holds.push_back(strings(fluents, "holds"));
@@ -93,23 +106,26 @@ TraceLine trace_line_of(const Json& object) {
     line.places.push_back(get<std::string>(event, "source"));
     line.calls.push_back({get<std::string>(event, "controller"),
                           state_of(field(event, "arguments"), "arguments"),
-                          get<double>(event, "time_limit_s")});
+                          duration_of(event, "time_limit_s")});
+  }
+  if (line.holds.size() != line.events.size() + 1) {
+    throw Foreign{"`holds` has not one list for every timepoint of its events"};
   }
   return line;
 }
 
 SampleRecord record_of(const Json& object) {
   SampleRecord record;
-  record.trace = get<std::int64_t>(object, "trace");
-  record.sample = get<std::int64_t>(object, "sample");
-  record.attempt = get<std::int64_t>(object, "attempt");
+  record.trace = count_of(object, "trace", 1);
+  record.sample = count_of(object, "sample", 1);
+  record.attempt = count_of(object, "attempt", 0);
   const auto phase = get<std::string>(object, "phase");
   if (phase != "certify" && phase != "confirm") throw Foreign{"`phase` is `" + phase + "`"};
   record.phase = phase == "confirm" ? DrawPhase::kConfirm : DrawPhase::kCertify;
   record.seed = get<std::uint64_t>(object, "seed");
   record.status = word_of(object, "status", {SampleStatus::kOk, SampleStatus::kLost});
-  record.rejected = get<std::int64_t>(object, "rejected");
-  record.retries = get<std::int64_t>(object, "retries");
+  record.rejected = count_of(object, "rejected", 0);
+  record.retries = count_of(object, "retries", 0);
   record.reason = get<std::string>(object, "reason");
   record.initial = state_of(field(object, "initial"), "initial");
   for (const auto& state : list(object, "observations")) {
@@ -118,10 +134,9 @@ SampleRecord record_of(const Json& object) {
   for (const auto& outcome : list(object, "outcomes")) {
     record.outcomes.push_back(
         {word_of(outcome, "status", {SimStatus::kOk, SimStatus::kFailed, SimStatus::kTruncated}),
-         get<std::string>(outcome, "reason"), get<double>(outcome, "sim_time_s")});
+         get<std::string>(outcome, "reason"), duration_of(outcome, "sim_time_s")});
   }
   record.digest = get<std::string>(object, "digest");
-  if (record.trace < 1 || record.sample < 1) throw Foreign{"traces and samples count from 1"};
   return record;
 }
 
@@ -135,6 +150,7 @@ Json parse(std::string_view line) {
 Json json_of(const JournalHeader& header) {
   return {{"journal", kJournalFormat},
           {"scenario", header.scenario},
+          {"start_folder", header.start_folder},
           {"scenario_hash", header.scenario_hash},
           {"seed", header.seed},
           {"tool_version", header.tool_version},
@@ -152,17 +168,17 @@ std::optional<HeaderDifference> differing(const Json& a, const Json& b, const st
     for (const auto& [name, value] : a.items()) {
       const auto other = b.find(name);
       const auto inner = path.empty() ? name : path + "." + name;
-      if (other == b.end()) return HeaderDifference{inner, value.dump(), "absent"};
+      if (other == b.end()) return HeaderDifference{inner, base::json_text(value), "absent"};
       if (auto found = differing(value, *other, inner)) return found;
     }
     for (const auto& [name, value] : b.items()) {
       const auto inner = path.empty() ? name : path + "." + name;
-      if (!a.contains(name)) return HeaderDifference{inner, "absent", value.dump()};
+      if (!a.contains(name)) return HeaderDifference{inner, "absent", base::json_text(value)};
     }
     return std::nullopt;
   }
   if (a == b) return std::nullopt;
-  return HeaderDifference{path, a.dump(), b.dump()};
+  return HeaderDifference{path, base::json_text(a), base::json_text(b)};
 }
 
 }  // namespace
@@ -171,6 +187,7 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
                              const SimulatorInfo& simulator) {
   JournalHeader header;
   header.scenario = scenario.name;
+  header.start_folder = options.start_folder;
   header.scenario_hash = options.scenario_hash;
   header.seed = options.seed;
   header.tool_version = options.tool_version;
@@ -187,7 +204,7 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
   return header;
 }
 
-std::string encode(const JournalHeader& header) { return json_of(header).dump(); }
+std::string encode(const JournalHeader& header) { return base::json_text(json_of(header)); }
 
 std::string encode(const TraceLine& trace) {
   Json out = {{"trace", trace.trace}, {"key", trace.key}, {"holds", trace.holds}};
@@ -232,6 +249,9 @@ std::variant<JournalHeader, ForeignLine> decode_header(std::string_view line) tr
   if (format != kJournalFormat) return ForeignLine{fmt::format("`journal` is {}", format)};
   JournalHeader header;
   header.scenario = get<std::string>(object, "scenario");
+  if (object.contains("start_folder")) {
+    header.start_folder = get<std::string>(object, "start_folder");
+  }
   header.scenario_hash = get<std::string>(object, "scenario_hash");
   header.seed = get<std::uint64_t>(object, "seed");
   header.tool_version = get<std::string>(object, "tool_version");
@@ -260,8 +280,10 @@ std::optional<HeaderDifference> header_difference(const JournalHeader& recorded,
   auto before = json_of(recorded);
   auto after = json_of(now);
   // The same file may be named from elsewhere; the hash over its text is what counts.
-  before.erase("scenario");
-  after.erase("scenario");
+  for (const auto* name : {"scenario", "start_folder"}) {
+    before.erase(name);
+    after.erase(name);
+  }
   return differing(before, after, {});
 }
 

@@ -15,9 +15,11 @@
 
 namespace parallax::harness {
 
-/// What must be equal for a run to be continued or repeated, but for the name of the scenario.
+/// What must be equal for a run to be continued or repeated, but for the name of the scenario and
+/// the folder it was started in.
 struct JournalHeader {
-  std::string scenario;  // as the user wrote it
+  std::string scenario;      // as the user wrote it
+  std::string start_folder;  // where that path starts; empty in older journals
   std::string scenario_hash;
   std::uint64_t seed = 0;
   std::string tool_version;

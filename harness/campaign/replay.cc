@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/whole_number.h"
@@ -20,6 +22,27 @@ std::optional<std::int64_t> positive(std::string_view text) {
   return value && *value >= 1 ? value : std::nullopt;
 }
 
+/// Which simulations there are instead.
+void note_samples(const JournalText& journal, base::DiagnosticBuilder& report) {
+  constexpr std::size_t kMaxTraces = 5;
+  std::map<std::int64_t, std::pair<std::int64_t, std::int64_t>> first_and_last;  // by trace
+  for (const auto& [key, record] : journal.samples) {
+    const auto [at, fresh] =
+        first_and_last.emplace(record.trace, std::pair(record.sample, record.sample));
+    if (!fresh) at->second.second = std::max(at->second.second, record.sample);
+  }
+  std::size_t noted = 0;
+  for (const auto& [trace, samples] : first_and_last) {
+    if (++noted > kMaxTraces) {
+      report.note(fmt::format("and {} further traces", first_and_last.size() - kMaxTraces));
+      break;
+    }
+    report.note(fmt::format("trace {} has simulations from {}.{} to {}.{}", trace, trace,
+                            samples.first, trace, samples.second));
+  }
+  if (first_and_last.empty()) report.note("its journal holds no simulation yet");
+}
+
 }  // namespace
 
 std::optional<SampleId> parse_sample_id(std::string_view text) {
@@ -31,40 +54,26 @@ std::optional<SampleId> parse_sample_id(std::string_view text) {
   return SampleId{*trace, *sample};
 }
 
-base::Result<RunHeader> read_run_header(const std::filesystem::path& run_dir,
-                                        base::SourceFiles& files, base::DiagnosticSink& sink) {
-  const auto journal = read_journal(run_dir, files, sink);
-  if (!journal) return sink.already_reported();
-  if (!journal->header) return sink.error_about(DiagnosticCode::kNoJournal, run_dir.string());
-  const auto& header = *journal->header;
-  return RunHeader{header.scenario, header.scenario_hash, header.seed, header.tool_version};
-}
-
-base::Result<ReplayResult> replay_sample(const std::filesystem::path& run_dir,
-                                         std::optional<SampleId> id,
-                                         const std::string& scenario_hash,
-                                         const SimulatorFactory& make_simulator,
-                                         base::SourceFiles& files, base::DiagnosticSink& sink) {
-  const auto run = read_recorded_run(run_dir, id, files, sink);
-  if (!run) return sink.already_reported();
-  const auto& record = run->record;
+ReplayResult replay_sample(const RecordedRun& run, const std::string& scenario_hash,
+                           const SimulatorFactory& make_simulator) {
+  const auto& record = run.record;
   ReplayResult result;
-  result.id = run->id;
+  result.id = run.id;
   result.seed = record.seed;
   result.digest = record.digest;
   result.timepoints = record.observations.size();
   result.outcome = ReplayOutcome::kCannot;
-  result.reason = scenario_change(run->header, scenario_hash);
+  result.reason = scenario_change(run.header, scenario_hash);
   if (result.reason.empty() && record.status == SampleStatus::kLost) {
     result.reason = "the simulator was lost in this simulation, so there is nothing to compare";
   }
   if (!result.reason.empty()) return result;
   const auto simulator = make_simulator();
   const auto info = simulator->info();
-  result.reason = simulator_change(run->header, info);
+  result.reason = simulator_change(run.header, info);
   if (!result.reason.empty()) return result;
   const auto again =
-      repeat_sample(run->calls, may_repeat_losses(info), record, *simulator, [] { return false; });
+      repeat_sample(run.calls, may_repeat_losses(info), record, *simulator, [] { return false; });
   if (again->status != SampleStatus::kOk) {
     result.reason =
         fmt::format("the simulator was {}: {}", to_string(again->status), again->reason);
@@ -92,7 +101,6 @@ std::optional<SampleId> default_sample(const JournalText& journal) {
 base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir,
                                             std::optional<SampleId> id, base::SourceFiles& files,
                                             base::DiagnosticSink& sink) {
-  using base::DiagnosticCode;
   const auto journal = read_journal(run_dir, files, sink);
   if (!journal) return sink.already_reported();
   if (!journal->header) return sink.error_about(DiagnosticCode::kNoJournal, run_dir.string());
@@ -101,7 +109,9 @@ base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir
                         : journal->samples.end();
   if (found == journal->samples.end()) {
     const auto name = id ? fmt::format("{}.{}", id->trace, id->sample) : std::string("at all");
-    return sink.error_about(DiagnosticCode::kNoSuchSample, run_dir.string(), name);
+    auto report = sink.error_about(DiagnosticCode::kNoSuchSample, run_dir.string(), name);
+    note_samples(*journal, report);
+    return report;
   }
   const auto& trace = journal->traces.at(found->second.trace);
   return RecordedRun{*journal->header, *id, found->second, trace.calls, trace.events};

@@ -57,7 +57,8 @@ struct RecordedRun {
 std::optional<SampleId> default_sample(const JournalText& journal);
 
 /// Reads it from the journal of a run folder. Without `id`: the first discrepancy, else the first
-/// sample. Reports what replay_sample reports.
+/// sample. Reports what read_journal reports, kNoJournal where no header was written, and
+/// kNoSuchSample with what is there.
 base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir,
                                             std::optional<SampleId> id, base::SourceFiles& files,
                                             base::DiagnosticSink& sink);
@@ -69,24 +70,10 @@ std::string scenario_change(const JournalHeader& header, const std::string& scen
 /// Why `simulator` is not the one of the run, or did not start; empty: it is.
 std::string simulator_change(const JournalHeader& header, const SimulatorInfo& simulator);
 
-/// What a run folder says of itself, for finding the scenario again.
-struct RunHeader {
-  std::string scenario;  // as the user wrote it at the time
-  std::string scenario_hash;
-  std::uint64_t seed = 0;
-  std::string tool_version;
-};
-base::Result<RunHeader> read_run_header(const std::filesystem::path& run_dir,
-                                        base::SourceFiles& files, base::DiagnosticSink& sink);
-
 /// Repeats one recorded simulation and compares every observation, every outcome and the digest
-/// bit for bit. Without `id`: the first discrepancy of the run, else its first sample. A simulator
-/// is made only if nothing that is on disk forbids the repetition, above all a changed scenario.
-/// Fails, having reported, when the journal cannot be read or has no such sample.
-base::Result<ReplayResult> replay_sample(const std::filesystem::path& run_dir,
-                                         std::optional<SampleId> id,
-                                         const std::string& scenario_hash,
-                                         const SimulatorFactory& make_simulator,
-                                         base::SourceFiles& files, base::DiagnosticSink& sink);
+/// bit for bit. A simulator is made only if nothing that is on record forbids the repetition, above
+/// all a changed scenario.
+ReplayResult replay_sample(const RecordedRun& run, const std::string& scenario_hash,
+                           const SimulatorFactory& make_simulator);
 
 }  // namespace parallax::harness

@@ -189,8 +189,7 @@ base::Result<std::optional<TrialSample>> Trial::next() {
       return report_rejected(scenario, plan_->trace, record->rejected, record->sample,
                              record->reason, bench_->sink_);
     case SampleStatus::kRefused:
-      return bench_->sink_.error(DiagnosticCode::kSimulatorRefused, scenario.actions_source,
-                                 "a request", record->reason);
+      return report_refused(*record);
     case SampleStatus::kLost:
       return std::optional(lost(*std::move(record)));
     case SampleStatus::kOk:
@@ -220,9 +219,7 @@ base::Result<std::optional<TrialSample>> Trial::observed(SampleRecord record) {
   sample.judgement = judge(*scenario.mapping, bench_->fluents_, plan_->trace, record.observations);
   const auto& judgement = sample.judgement;
   if (!judgement.missing.empty()) {
-    return bench_->sink_.error(DiagnosticCode::kSimulatorRefused, scenario.mapping_source,
-                               "an observation",
-                               fmt::format("it lacks `{}`", *judgement.missing.begin()));
+    return report_missing(record, *judgement.missing.begin());
   }
   if (judgement.first_divergence == 0) return report_other_start(record, judgement.first.front());
   bench_->lost_in_a_row_ = 0;
@@ -239,6 +236,52 @@ base::Result<std::optional<TrialSample>> Trial::observed(SampleRecord record) {
         admitted == base::Known::kYes ? SampleVerdict::kAdmitted : SampleVerdict::kDiscrepancy;
   }
   return std::optional(std::move(sample));
+}
+
+/// Up to the refusal there is one observation for the reset and one for each action.
+base::DiagnosticBuilder Trial::report_refused(const SampleRecord& record) const {
+  const auto& scenario = bench_->scenario_;
+  const auto in = fmt::format("in simulation {} of trace {}", record.sample, record.trace);
+  const auto code = DiagnosticCode::kSimulatorRefused;
+  if (record.observations.empty()) {
+    return bench_->sink_.error(code, scenario.sampling_source,
+                               fmt::format("refused the start {}", in), record.reason);
+  }
+  const auto& event = plan_->trace.events.at(record.outcomes.size());
+
+  const auto action =
+      std::find_if(scenario.actions.begin(), scenario.actions.end(),
+                   [&](const auto& binding) { return binding.event == event.symbol; });
+  return bench_->sink_.error(
+      code, action != scenario.actions.end() ? action->source : scenario.actions_source,
+      fmt::format("refused `{}` {}", event.text, in), record.reason);
+}
+
+/// A record of the journal is at fault itself: what the simulator shows by now is not known.
+base::DiagnosticBuilder Trial::report_missing(const SampleRecord& record,
+                                              const std::string& variable) const {
+  const auto& scenario = bench_->scenario_;
+  if (journal_ != nullptr && recorded(record.sample, record.phase) != nullptr) {
+    const auto& places = journal_->recorded().places;
+    return bench_->sink_.error(DiagnosticCode::kForeignJournalLine,
+                               places.at({record.trace, record.sample, record.phase}),
+                               fmt::format("its observations lack `{}`", variable));
+  }
+  const auto& mapping = *scenario.mapping;
+  auto place = scenario.mapping_source;
+  for (const auto& fluent : bench_->fluents_) {
+    const auto* binding = mapping.find(fluent.symbol);
+    if (binding == nullptr) continue;
+    const auto read = binding->variables(fluent, mapping.regions());
+    if (std::find(read.begin(), read.end(), variable) == read.end()) continue;
+    place = binding->source;
+    break;
+  }
+  return bench_->sink_.error(
+      DiagnosticCode::kSimulatorRefused, place,
+      fmt::format("does not show what is compared in simulation {} of trace {}", record.sample,
+                  record.trace),
+      fmt::format("its observations lack `{}`", variable));
 }
 
 base::DiagnosticBuilder Trial::report_other_start(const SampleRecord& record,

@@ -123,6 +123,9 @@ class Trial {
   std::optional<SampleRecord> result_of(std::int64_t sample, DrawPhase phase);
   TrialSample lost(SampleRecord record);
   base::Result<std::optional<TrialSample>> observed(SampleRecord record);
+  base::DiagnosticBuilder report_refused(const SampleRecord& record) const;
+  base::DiagnosticBuilder report_missing(const SampleRecord& record,
+                                         const std::string& variable) const;
   base::DiagnosticBuilder report_other_start(const SampleRecord& record,
                                              const DivergingFluent& fluent) const;
 

@@ -12,6 +12,7 @@
 #include "runtime/explain/minimal_sets.h"
 #include "runtime/explain/why.h"
 #include "tools/app/context.h"
+#include "tools/app/recorded_scenario.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_fact.h"
 
@@ -76,7 +77,7 @@ struct ObservedDiscrepancy {
 
 /// `sample`: TRACE.SAMPLE, or empty for the first discrepancy. None if the run found none. Reports
 /// what is wrong with the run folder, and a scenario that has changed since.
-base::Result<std::optional<ObservedDiscrepancy>> load_discrepancy(const std::string& run_dir,
+base::Result<std::optional<ObservedDiscrepancy>> load_discrepancy(const RunFolderOptions& folder,
                                                                   const std::string& sample,
                                                                   Context& context);
 

@@ -136,9 +136,10 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
                                  const Switches& switches,
                                  const std::optional<std::string>& property = std::nullopt) {
   auto& sink = context.sink();
+  const auto first = context.files().size();  // what was read before is no part of it
   auto scenario = harness::load_scenario(path, context.files(), sink);
   if (!scenario) return sink.already_reported();
-  auto scenario_hash = harness::hash_of_sources(context.files());
+  auto scenario_hash = harness::hash_of_sources(context.files(), first);
   const RegionLocator locator(scenario->mapping->regions());
   auto input = compile_input(*scenario, locator, context);
   if (!input) return sink.already_reported();
@@ -154,7 +155,7 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
     return sink.already_reported();
   }
   return ScenarioModel{*std::move(scenario), *std::move(compilation),
-                       harness::hash_of_sources(context.files()), std::move(scenario_hash)};
+                       harness::hash_of_sources(context.files(), first), std::move(scenario_hash)};
 }
 
 /// Reads plan, binding table and regions; without --regions no pose lies anywhere. `regions` holds

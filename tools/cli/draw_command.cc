@@ -9,7 +9,7 @@
 #include "harness/draw/action_recorder.h"
 #include "harness/draw/scene_svg.h"
 #include "harness/robot/ode_simulator.h"
-#include "tools/app/scenario_model.h"
+#include "tools/app/recorded_scenario.h"
 #include "tools/cli/command.h"
 #include "tools/cli/shared_options.h"
 #include "tools/cli/signals.h"
@@ -23,7 +23,7 @@ using base::DiagnosticCode;
 struct DrawOptions {
   std::string what;  // scenario file or run folder
   std::string out;
-  std::string sample;
+  std::string sample, scenario;
   bool no_regions = false;
 };
 
@@ -78,8 +78,8 @@ class Writer {
 /// The world as it stands at a reset without a drawn start.
 int draw_start(const DrawOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
-  if (!options.sample.empty()) {
-    sink.error_about(DiagnosticCode::kUsage, "", "--sample is for folders of runs");
+  if (!options.sample.empty() || !options.scenario.empty()) {
+    sink.error_about(DiagnosticCode::kUsage, "", "--sample and --scenario are for folders of runs");
     return 0;
   }
   const auto scenario = harness::load_scenario(options.what, invocation.files(), sink);
@@ -143,24 +143,11 @@ int draw_run(const DrawOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto id = parse_sample_option(options.sample, sink);
   if (!id) return 0;
-  // The journal is no source of the scenario: it is read into a set of its own.
-  base::SourceFiles journal_files;
-  base::DiagnosticSink journal_sink;
-  const auto run = harness::read_recorded_run(options.what, *id, journal_files, journal_sink);
-  if (!run) {
-    (void)harness::read_recorded_run(options.what, *id, invocation.files(), sink);
-    return 0;
-  }
-  const auto loaded = load_scenario_model(run->header.scenario, invocation);
+  const auto run = harness::read_recorded_run(options.what, *id, invocation.files(), sink);
+  if (!run) return 0;
+  const auto loaded = load_recorded_scenario({options.what, options.scenario}, run->header,
+                                             ScenarioUse::kRun, invocation);
   if (!loaded) return 0;
-  if (journal_sink.warning_count() > 0) {  // now they can be located
-    (void)harness::read_recorded_run(options.what, *id, invocation.files(), sink);
-  }
-  auto obstacle = harness::scenario_change(run->header, loaded->sources_hash);
-  if (!obstacle.empty()) {
-    sink.error_about(DiagnosticCode::kReplayImpossible, options.what, obstacle);
-    return 0;
-  }
   const auto& scenario = loaded->scenario;
   if (!scenario.simulator.command.empty()) {
     sink.error_about(DiagnosticCode::kUsage, options.what,
@@ -168,7 +155,7 @@ int draw_run(const DrawOptions& options, Invocation& invocation) {
     return 0;
   }
   harness::OdeSimulator simulator(scenario.world);
-  obstacle = harness::simulator_change(run->header, simulator.info());
+  const auto obstacle = harness::simulator_change(run->header, simulator.info());
   if (!obstacle.empty()) {
     sink.error_about(DiagnosticCode::kReplayImpossible, options.what, obstacle);
     return 0;
@@ -214,6 +201,7 @@ Command draw_command() {
                  "pictures in its folder)");
   command.option("--sample", options->sample,
                  "TRACE.SAMPLE of a run; default: the first discrepancy");
+  add_recorded_scenario_option(command, options->scenario);
   command.flag("--no-regions", options->no_regions, "Leave the regions out");
   return {std::move(command),
           [options](Invocation& invocation) { return draw(*options, invocation); }};

@@ -18,7 +18,7 @@ struct ExplainOptions {
   SetOptions sets;
   WhyQuery why;
   bool asks_why = false;
-  std::string sample;  // of a run folder
+  std::string sample, scenario;  // of a run folder
 };
 
 /// The model with every axiom's clauses as it says them, whatever other axioms settle; if it is too
@@ -67,7 +67,8 @@ int explain_contradiction(const compiler::CompiledModel& model,
 }
 
 int explain_run(const ExplainOptions& options, Invocation& invocation) {
-  const auto found = load_discrepancy(options.model.models.front(), options.sample, invocation);
+  const auto found = load_discrepancy({options.model.models.front(), options.scenario},
+                                      options.sample, invocation);
   if (!found) return 0;
   if (!*found) {
     invocation.options().json
@@ -81,8 +82,12 @@ int explain_run(const ExplainOptions& options, Invocation& invocation) {
 
 int explain(const ExplainOptions& options, Invocation& invocation) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(options.model.models.front(), ignored)) {
-    return explain_run(options, invocation);
+  const auto& first = options.model.models.front();
+  if (std::filesystem::is_directory(first, ignored)) return explain_run(options, invocation);
+  if (!options.sample.empty() || !options.scenario.empty()) {
+    invocation.sink().error_about(base::DiagnosticCode::kUsage, first,
+                                  "--sample and --scenario are for folders of runs");
+    return 0;
   }
   const auto model = compile(options, invocation);
   if (!model) return 0;
@@ -127,6 +132,7 @@ Command explain_command() {
       .show_default();
   command.option("--sample", options->sample,
                  "Of a run folder: TRACE.SAMPLE; default: the first discrepancy");
+  add_recorded_scenario_option(command, options->scenario);
   return {std::move(command),
           [options](Invocation& invocation) { return explain(*options, invocation); }};
 }

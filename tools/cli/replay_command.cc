@@ -5,7 +5,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/replay.h"
 #include "harness/report/report.h"
-#include "tools/app/scenario_model.h"
+#include "tools/app/recorded_scenario.h"
 #include "tools/app/simulator_factory.h"
 #include "tools/cli/command.h"
 #include "tools/cli/shared_options.h"
@@ -15,7 +15,7 @@ namespace parallax::tools {
 namespace {
 
 struct ReplayOptions {
-  std::string run_dir;
+  RunFolderOptions run;
   std::string sample;
 };
 
@@ -23,35 +23,23 @@ int replay(const ReplayOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto id = parse_sample_option(options.sample, sink);
   if (!id) return 0;
-  // The journal is no source of the scenario: it is read into a set of its own.
-  base::SourceFiles journal_files;
-  base::DiagnosticSink journal_sink;
-  const auto header = harness::read_run_header(options.run_dir, journal_files, journal_sink);
-  std::optional<ScenarioModel> loaded;
-  if (header) {
-    auto result = load_scenario_model(header->scenario, invocation);
-    if (!result) return 0;
-    loaded = *std::move(result);
-  }
-  // Without a header the same call reports what is wrong with the journal.
-  if (!loaded) {
-    (void)harness::read_run_header(options.run_dir, invocation.files(), sink);
-    return 0;
-  }
-  const auto result = harness::replay_sample(options.run_dir, *id, loaded->sources_hash,
-                                             simulator_factory(*loaded, own_worker(), stop_flag()),
-                                             invocation.files(), sink);
-  if (!result) return 0;
-  if (result->outcome == harness::ReplayOutcome::kCannot) {
-    sink.error_about(base::DiagnosticCode::kReplayImpossible, options.run_dir, result->reason);
+  const auto run = harness::read_recorded_run(options.run.folder, *id, invocation.files(), sink);
+  if (!run) return 0;
+  const auto loaded =
+      load_recorded_scenario(options.run, run->header, ScenarioUse::kRun, invocation);
+  if (!loaded) return 0;
+  const auto result = harness::replay_sample(*run, loaded->sources_hash,
+                                             simulator_factory(*loaded, own_worker(), stop_flag()));
+  if (result.outcome == harness::ReplayOutcome::kCannot) {
+    sink.error_about(base::DiagnosticCode::kReplayImpossible, options.run.folder, result.reason);
     return 0;
   }
   if (invocation.options().json) {
-    invocation.document(harness::replay_json(*result));
+    invocation.document(harness::replay_json(result));
   } else {
-    invocation.result(harness::replay_text(*result, {invocation.color_on(STDOUT_FILENO)}));
+    invocation.result(harness::replay_text(result, {invocation.color_on(STDOUT_FILENO)}));
   }
-  return result->outcome == harness::ReplayOutcome::kIdentical ? 0 : 1;
+  return result.outcome == harness::ReplayOutcome::kIdentical ? 0 : 1;
 }
 
 }  // namespace
@@ -64,8 +52,9 @@ Command replay_command() {
       "  parallax replay out/edge                the run's first discrepancy\n"
       "  parallax replay out/edge --sample 1.4   simulation 4 of trace 1\n"
       "Exit codes: 0 identical, 1 differs, 3 the scenario has changed since.");
-  command.option("run_dir", options->run_dir, "Folder of a run").required();
+  command.option("run_dir", options->run.folder, "Folder of a run").required();
   command.option("--sample", options->sample, "TRACE.SAMPLE; default: the first discrepancy");
+  add_recorded_scenario_option(command, options->run.scenario);
   return {std::move(command),
           [options](Invocation& invocation) { return replay(*options, invocation); }};
 }

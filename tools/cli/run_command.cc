@@ -97,6 +97,8 @@ harness::CampaignOptions campaign_options(const RunOptions& options, const Scena
     campaign.run_dir =
         options.resume ? newest_run_folder(options.scenario) : default_run_folder(options.scenario);
   }
+  std::error_code error;
+  campaign.start_folder = std::filesystem::current_path(error).string();
   campaign.scenario_hash = loaded.sources_hash;
   campaign.tool_version = kVersion;
   campaign.stop = &stop_flag();

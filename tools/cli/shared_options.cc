@@ -124,6 +124,11 @@ void add_replay_options(OptionTable& command, ReplayTracesOptions& options) {
 
 std::vector<std::string> own_worker() { return {"/proc/self/exe", "worker"}; }
 
+void add_recorded_scenario_option(OptionTable& command, std::string& scenario) {
+  command.option("--scenario", scenario,
+                 "Of a run folder: where its scenario lies; default: as its journal says");
+}
+
 base::Result<std::optional<harness::SampleId>> parse_sample_option(const std::string& text,
                                                                    base::DiagnosticSink& sink) {
   if (text.empty()) return std::optional<harness::SampleId>();

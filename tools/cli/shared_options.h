@@ -28,6 +28,9 @@ void add_replay_options(OptionTable& command, ReplayTracesOptions& options);
 /// What serves as the built-in simulator: this very program.
 std::vector<std::string> own_worker();
 
+/// `--scenario` of commands that take a run folder.
+void add_recorded_scenario_option(OptionTable& command, std::string& scenario);
+
 /// The value of `--sample` of commands that take a recorded run: none if it was not given. Reports
 /// kUsage if it is no `TRACE.SAMPLE`.
 base::Result<std::optional<harness::SampleId>> parse_sample_option(const std::string& text,

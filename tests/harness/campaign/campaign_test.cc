@@ -307,10 +307,21 @@ TEST_CASE("an external simulator that does not start where it was put is at faul
 
 TEST_CASE("what the simulator refuses or does not report is the scenario's error") {
   Bench bench;
-  SUBCASE("an action") { bench.script.refuses = "placing"; }
-  SUBCASE("a variable") { bench.script.hides_box = true; }
+  std::string place, what;
+  SUBCASE("an action") {
+    bench.script.refuses = "placing", place = "Place(region)";
+    what = "refused `Place(r1)` in simulation 1 of trace 1: no such action";
+  }
+  SUBCASE("a variable") {
+    bench.script.hides_box = true, place = "BoxIn(region)";
+    what = "does not show what is compared in simulation 1 of trace 1: its observations lack";
+  }
   CHECK_FALSE(bench.run().has_value());
-  CHECK(codes(bench.sink) == std::vector<std::string>{"E7109"});
+  REQUIRE(codes(bench.sink) == std::vector<std::string>{"E7109"});
+  const auto diagnostic = first_error(bench.sink);
+  CHECK(diagnostic.message.find(what) != std::string::npos);
+  REQUIRE(diagnostic.range.has_value());
+  CHECK(bench.files.text(*diagnostic.range) == place);
   CHECK(bench.sink.exit_code() == 3);
 }
 

@@ -22,7 +22,9 @@ struct Recorded : Bench {
       ++simulators;
       return std::make_unique<ScriptedSimulator>(script);
     };
-    return replay_sample(options.run_dir, id, hash, factory, files, sink);
+    const auto recorded = read_recorded_run(options.run_dir, id, files, sink);
+    if (!recorded) return sink.already_reported();
+    return replay_sample(*recorded, hash, factory);
   }
   SampleId found;
 };
@@ -84,13 +86,13 @@ TEST_CASE("a simulation or a run that is not there is a usage error") {
   CHECK(bench.sink.exit_code() == 2);
   CHECK(bench.simulators == 0);
   base::DiagnosticSink sink;
-  CHECK_FALSE(read_run_header(bench.folder.path(), bench.files, sink).has_value());
+  CHECK_FALSE(read_recorded_run(bench.folder.path(), {}, bench.files, sink).has_value());
   CHECK(codes(sink) == std::vector<std::string>{"E7111"});
   base::DiagnosticSink none;
-  const auto header = read_run_header(bench.options.run_dir, bench.files, none);
-  REQUIRE(header.has_value());
-  CHECK(header->scenario == "scenario.yaml");
-  CHECK(header->seed == 1);
+  const auto run = read_recorded_run(bench.options.run_dir, {}, bench.files, none);
+  REQUIRE(run.has_value());
+  CHECK(run->header.scenario == "scenario.yaml");
+  CHECK(run->header.seed == 1);
 }
 
 TEST_CASE("a sample is named by two whole numbers") {

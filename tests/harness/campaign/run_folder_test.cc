@@ -184,6 +184,24 @@ TEST_CASE("a record whose number is not what it was drawn from is refused with i
   CHECK(slurp(bench.journal()) == text);
 }
 
+TEST_CASE("an observation that the journal lacks is the journal's fault, not the simulator's") {
+  Bench bench;
+  bench.scenario.limits.max_runs = 3;
+  REQUIRE(bench.run().has_value());
+  auto text = slurp(bench.journal());
+  const auto at =
+      text.find("\"box.x\":", text.find("\"observations\"", text.find("\"sample\":2")));
+  text.erase(at, text.find(',', at) + 1 - at);
+  std::ofstream(bench.journal(), std::ios::binary) << text;
+  bench.options.resume = true;
+  CHECK_FALSE(bench.run().has_value());
+  REQUIRE(codes(bench.sink, kLowLimit) == std::vector<std::string>{"E7103"});
+  const auto diagnostic = first_error(bench.sink);
+  CHECK(diagnostic.message.find("its observations lack `box.x`") != std::string::npos);
+  REQUIRE(diagnostic.range.has_value());
+  CHECK(bench.files[diagnostic.range->file].position(diagnostic.range->begin).line == 4);
+}
+
 TEST_CASE("a run may be continued with another limit and from another folder") {
   Bench bench;
   bench.scenario.limits.max_runs = 20;
