@@ -7,9 +7,7 @@
 #include <set>
 
 #include "compiler/artifact/artifact_text.h"
-#include "compiler/artifact/clause_reader.h"
-#include "compiler/artifact/provenance_reader.h"
-#include "compiler/artifact/symbol_reader.h"
+#include "compiler/artifact/section_readers.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/whole_number.h"

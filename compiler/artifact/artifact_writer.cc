@@ -8,7 +8,6 @@
 #include "compiler/artifact/artifact_text.h"
 #include "compiler/artifact/clause_runs.h"
 #include "compiler/artifact/derived.h"
-#include "compiler/artifact/places.h"
 
 namespace parallax::compiler {
 namespace {

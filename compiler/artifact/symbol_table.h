@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "compiler/artifact/compiled_model.h"
+#include "compiler/base/contract.h"
 #include "compiler/base/id.h"
 
 namespace parallax::compiler {
@@ -17,7 +18,12 @@ namespace parallax::compiler {
 class SymbolTable {
  public:
   SymbolTable() = default;
-  explicit SymbolTable(const CompiledModel& model);
+  explicit SymbolTable(const CompiledModel& model) {
+    for (const auto& fluent : model.fluents) add_fluent(fluent.name);
+    for (const auto& event : model.events) add_event(event.name);
+    PARALLAX_REQUIRE(fluent_count() == model.fluents.size() && event_count() == model.events.size(),
+                     "a model declares no name twice");
+  }
 
   /// The id that the name has, or a new one.
   FluentId add_fluent(std::string_view name) { return fluents_.add(name); }

@@ -6,7 +6,6 @@
 
 #include "compiler/asp/completion_rules.h"
 #include "compiler/asp/formula_writer.h"
-#include "compiler/asp/names.h"
 #include "compiler/asp/term_writer.h"
 #include "compiler/sema/typed_model.h"
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "compiler/asp/names.h"
+#include "compiler/asp/term_writer.h"
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/result.h"
 #include "compiler/base/source_file.h"

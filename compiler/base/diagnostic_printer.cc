@@ -1,8 +1,14 @@
 #include "compiler/base/diagnostic_printer.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
+#include "compiler/base/ascii.h"
+#include "compiler/base/hash.h"
 #include "compiler/base/utf8.h"
 
 namespace parallax::base {
@@ -84,6 +90,112 @@ nlohmann::ordered_json place_json(const std::optional<SourceRange>& range,
   return out;
 }
 
+using Json = nlohmann::ordered_json;
+
+/// RFC 3986: what is neither unreserved nor a slash is percent-encoded.
+std::string encoded(std::string_view path) {
+  std::string out;
+  for (const char c : path) {
+    const bool plain =
+        is_letter(c) || is_digit(c) || std::string_view("-._~/").find(c) != std::string_view::npos;
+    out += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return out;
+}
+
+std::string uri(const std::string& name) {
+  namespace fs = std::filesystem;
+  const fs::path path(name);
+  if (!path.is_absolute()) return encoded(path.lexically_normal().generic_string());
+  std::error_code error;
+  const auto below = path.lexically_normal().lexically_relative(fs::current_path(error));
+  const bool inside = !error && !below.empty() && *below.begin() != "..";
+  return inside ? encoded(below.generic_string()) : "file://" + encoded(path.generic_string());
+}
+
+Json message(const std::string& text) { return Json{{"text", printable(text)}}; }
+
+Json physical_location(const SourceRange& range, const SourceFiles& files) {
+  const auto& file = files[range.file];
+  const auto begin = file.position(range.begin);
+  const auto end = file.position(range.end);
+  Json region;
+  region["startLine"] = begin.line;
+  region["startColumn"] = begin.column;
+  region["endLine"] = end.line;
+  region["endColumn"] = end.column;  // one past the last
+  return {{"artifactLocation", {{"uri", uri(file.name())}}}, {"region", std::move(region)}};
+}
+
+Json locations(const Diagnostic& d, const SourceFiles& files) {
+  auto out = Json::array();
+  if (d.range) {
+    out.push_back({{"physicalLocation", physical_location(*d.range, files)}});
+  } else if (!d.subject.empty()) {
+    out.push_back({{"physicalLocation", {{"artifactLocation", {{"uri", uri(d.subject)}}}}}});
+  }
+  return out;
+}
+
+Json related_locations(const Diagnostic& d, const SourceFiles& files) {
+  auto out = Json::array();
+  for (const auto& note : d.notes) {
+    Json location;
+    location["id"] = out.size();
+    if (note.range) location["physicalLocation"] = physical_location(*note.range, files);
+    location["message"] = message(note.text);
+    out.push_back(std::move(location));
+  }
+  return out;
+}
+
+/// What identifies a result wherever its line has moved to.
+std::string identity(const Diagnostic& d, const SourceFiles& files) {
+  std::string text = std::string(info(d.code).id) + '\n' + d.message + '\n';
+  if (!d.range) return text + d.subject;
+  const auto& file = files[d.range->file];
+  text += uri(file.name());
+  // Blanks are layout.
+  for (const char c : file.line(file.position(d.range->begin).line)) {
+    if (c != ' ' && c != '\t' && c != '\r') text += c;
+  }
+  return text;
+}
+
+Json rule(const DiagnosticInfo& code) {
+  Json out;
+  out["id"] = code.id;
+  out["name"] = code.name.substr(1);  // without the k
+  out["shortDescription"] = message(std::string(code.format));
+  out["help"] = message(std::string(code.help));
+  out["defaultConfiguration"] = {
+      {"level", code.severity == Severity::kError ? "error" : "warning"}};
+  return out;
+}
+
+/// The codes that occur, in the order of the registry, with their rules.
+std::map<DiagnosticCode, std::size_t> collect_rules(const std::vector<Diagnostic>& diagnostics,
+                                                    Json& rules) {
+  std::map<DiagnosticCode, std::size_t> index;
+  for (const auto& d : diagnostics) index.emplace(d.code, 0);
+  for (auto& [code, position] : index) {
+    position = rules.size();
+    rules.push_back(rule(info(code)));
+  }
+  return index;
+}
+
+Json result(const Diagnostic& d, const SourceFiles& files, std::size_t rule_index) {
+  Json out;
+  out["ruleId"] = info(d.code).id;
+  out["ruleIndex"] = rule_index;
+  out["level"] = info(d.code).severity == Severity::kError ? "error" : "warning";
+  out["message"] = message(d.fix.empty() ? d.message : d.message + "; " + d.fix);
+  out["locations"] = locations(d, files);
+  if (!d.notes.empty()) out["relatedLocations"] = related_locations(d, files);
+  return out;
+}
+
 }  // namespace
 
 std::string printable(std::string_view text) {
@@ -147,6 +259,34 @@ std::string to_json(const std::vector<Diagnostic>& diagnostics, const SourceFile
     out.push_back(std::move(entry));
   }
   return out.dump();
+}
+
+std::string to_sarif(const std::vector<Diagnostic>& diagnostics, const SourceFiles& files,
+                     std::string_view tool_version) {
+  auto rules = Json::array();
+  const auto index = collect_rules(diagnostics, rules);
+  auto results = Json::array();
+  std::map<std::uint64_t, int> seen;
+  for (const auto& d : diagnostics) {
+    auto entry = result(d, files, index.at(d.code));
+    const auto hash = fnv1a64(identity(d, files));
+    entry["partialFingerprints"] = {
+        {"parallaxLine/v1", fmt::format("{:016x}:{}", hash, ++seen[hash])}};
+    results.push_back(std::move(entry));
+  }
+  Json driver;
+  driver["name"] = "parallax";
+  driver["version"] = tool_version;
+  driver["rules"] = std::move(rules);
+  Json run;
+  run["tool"] = {{"driver", std::move(driver)}};
+  run["columnKind"] = "unicodeCodePoints";
+  run["results"] = std::move(results);
+  Json log;
+  log["$schema"] = "https://json.schemastore.org/sarif-2.1.0.json";
+  log["version"] = "2.1.0";
+  log["runs"] = Json::array({std::move(run)});
+  return log.dump();
 }
 
 }  // namespace parallax::base

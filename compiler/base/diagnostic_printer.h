@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
@@ -22,5 +23,15 @@ std::string to_json(const std::vector<Diagnostic>& diagnostics, const SourceFile
 
 /// Replaces control, invalid and bidirectional-control bytes by visible escapes.
 std::string printable(std::string_view text);
+
+/// The diagnostics as a SARIF 2.1.0 log of one run (OASIS, 2020): one rule for each code that
+/// occurs, one result for each diagnostic with its region, its notes as related locations and its
+/// fix in the message. Paths below the current folder are relative, columns count code points.
+///
+/// `partialFingerprints` identify a result by code, path, message and the text of its line, so they
+/// stay when other lines are added or removed; equal ones are told apart by a running number.
+/// One line, no final newline.
+std::string to_sarif(const std::vector<Diagnostic>& diagnostics, const SourceFiles& files,
+                     std::string_view tool_version);
 
 }  // namespace parallax::base

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "compiler/cnf/clause_builder.h"
-#include "compiler/cnf/clause_text.h"
 #include "compiler/cnf/slot_table.h"
 #include "compiler/formula/formula.h"
 #include "compiler/ground/ground_text.h"

@@ -3,7 +3,6 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/ground/effect_rows.h"
 #include "compiler/ground/formula_grounder.h"
 #include "compiler/ground/ground_model.h"
 

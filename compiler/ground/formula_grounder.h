@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
-#include "compiler/ground/effect_rows.h"
+#include "compiler/ground/ground_model.h"
 #include "compiler/ground/instance_search.h"
 #include "compiler/ground/term_grounder.h"
 

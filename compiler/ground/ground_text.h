@@ -3,8 +3,7 @@
 #include <span>
 #include <string>
 
-#include "compiler/formula/formula_text.h"
-#include "compiler/ground/effect_rows.h"
+#include "compiler/formula/formula.h"
 #include "compiler/ground/ground_model.h"
 
 namespace parallax::compiler {

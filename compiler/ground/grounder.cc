@@ -15,7 +15,6 @@
 #include "compiler/ground/invariants.h"
 #include "compiler/ground/narrative.h"
 #include "compiler/ground/possible_atoms.h"
-#include "compiler/ground/rigid.h"
 #include "compiler/ground/time_profile.h"
 
 namespace parallax::compiler {

@@ -1,8 +1,8 @@
-#include "compiler/ground/instance_plan.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include "compiler/ground/instance_search.h"
 
 namespace parallax::compiler {
 namespace {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "compiler/formula/formula.h"
-#include "compiler/ground/effect_rows.h"
 #include "compiler/ground/ground_model.h"
 #include "compiler/ground/possible_atoms.h"
 

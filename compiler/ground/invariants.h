@@ -1,6 +1,5 @@
 #pragma once
 
-#include "compiler/ground/effect_rows.h"
 #include "compiler/ground/ground_model.h"
 
 namespace parallax::compiler {

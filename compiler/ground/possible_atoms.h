@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "compiler/formula/formula.h"
-#include "compiler/ground/effect_rows.h"
+#include "compiler/ground/completion.h"
 #include "compiler/ground/ground_model.h"
-#include "compiler/ground/ground_term.h"
+#include "compiler/ground/universe.h"
 
 namespace parallax::compiler {
 
@@ -109,5 +109,12 @@ bool is_worth_leaving_out(const GroundModel& model, std::size_t keep);
 /// need them: a fixpoint over the rows, linear in their number for every round.
 void drop_unreachable(GroundModel& model, PossibleAtoms& possible, EffectRows& rows,
                       std::size_t keep);
+
+/// Makes tables of the user predicates that the constraints so far settle, wholly or in part: an
+/// atom is left out if unit propagation, or the completion of its predicate, makes it false.
+/// A predicate that axioms about time speak of is completed later, and gets no table by completion.
+/// Predicates over more than 200,000 argument tuples get no table.
+void tabulate_predicates(GroundModel& model, const CompletionWriter& completion,
+                         PossibleAtoms& possible);
 
 }  // namespace parallax::compiler

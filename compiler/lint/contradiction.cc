@@ -1,5 +1,3 @@
-#include "compiler/lint/contradiction.h"
-
 #include <algorithm>
 #include <cstdint>
 #include <limits>

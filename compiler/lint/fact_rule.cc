@@ -7,7 +7,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/lint/rules.h"
-#include "compiler/sema/sort_domains.h"
+#include "compiler/sema/typed_model.h"
 
 namespace parallax::compiler {
 

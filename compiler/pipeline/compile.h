@@ -10,7 +10,7 @@
 #include "compiler/base/diagnostic.h"
 #include "compiler/ground/pass.h"
 #include "compiler/ground/universe.h"
-#include "compiler/pipeline/axiom_cost.h"
+#include "compiler/pipeline/compile_report.h"
 #include "compiler/plan/plan_graph.h"
 #include "compiler/plan/pose_locator.h"
 #include "compiler/sema/typed_model.h"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/plan/plan_code.h"
+#include "compiler/plan/plan_compiler.h"
 
 namespace parallax::compiler {
 

@@ -1,15 +1,103 @@
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/result.h"
+#include "compiler/plan/failure_classes.h"
+#include "compiler/plan/lisp_data.h"
 #include "compiler/plan/lisp_reader.h"
-#include "compiler/plan/plan_code.h"
 #include "compiler/plan/plan_value.h"
 
 namespace parallax::compiler {
+
+/// A plan as code for a small stack machine. The compiler resolves variables, blocks and handlers;
+/// what is left at run time is a state of plain numbers, and two equal states behave alike: that is
+/// what lets the unroller merge paths. A variable is a place on its frame's part of the stack.
+enum class PlanOp : std::uint8_t {
+  kConstant,      // push value a
+  kLoad,          // push variable b of the frame a static links out
+  kStore,         // variable b of the frame a links out := top, which stays
+  kLoadGlobal,    // push global a
+  kStoreGlobal,   // global a := pop
+  kPop,           // drop the top
+  kSqueeze,       // drop a values below the top
+  kJump,          // to a
+  kJumpIfNil,     // pop; to a if it was nil
+  kBuiltin,       // pop b arguments, push the result of built-in a
+  kHolds,         // pop a fluent (a = 1: a query); push t or nil: the model decides
+  kDesignator,    // push an empty designator of kind a
+  kAddKey,        // pop a value; add it under key (string) a to the designator on top
+  kPerform,       // pop a designator; push the result: the model decides
+  kCall,          // pop the arguments of unit a, run it, push its result
+  kCallLocal,     // the same for a unit whose parent frame is b static links out
+  kApply,         // pop a list; call with its elements what the next instruction calls
+  kReturn,        // leave the unit with the top as its result
+  kPushHandlers,  // failures look into table a from here on
+  kPushCleanup,   // leaving runs unit a from here on
+  kPopGuard,      // the last of those two ends
+  kRunCleanup,    // run unit a as a clean-up, push nothing
+  kEndHandler,    // the handler fell through: the failure goes outward
+  kEndCleanup,    // go on with what the clean-up interrupted
+  kExit,          // pop; leave to target b in the frame a static links out, with that value
+  kFail,          // fail with class (string) a
+  kFailValue,     // pop a failure or a class name and fail with it
+  kExpectList,    // the top must be a list that is known (CPL021, CPL008)
+  kPar,           // start the branches of table a, each by turns
+  kEndBranch,     // a branch is over, with the top as its value
+  kTick,          // count variable a up; cut here beyond the loop limit
+  kDone,          // the plan is over
+};
+
+struct PlanInstruction {
+  PlanOp op = PlanOp::kDone;
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  DatumId source;
+};
+
+/// A function, a handler, a clean-up or a local function.
+struct PlanUnit {
+  std::string name;
+  std::uint32_t parameters = 0;
+  bool recursive_limit = false;  // named functions count their own recursion
+  DatumId source;
+  std::vector<PlanInstruction> code;
+};
+
+/// Where a kExit goes: the frame keeps `height` values and `guards` guards of its own.
+struct ExitTarget {
+  std::uint32_t pc = 0;
+  std::uint32_t height = 0;
+  std::uint32_t guards = 0;
+};
+
+struct HandlerClause {
+  std::string failure_class;
+  std::uint32_t unit = 0;
+};
+
+struct PlanGlobal {
+  std::string name;
+  DatumId source;
+};
+
+struct PlanCode {
+  std::vector<PlanUnit> units;
+  std::uint32_t definitions = 0;  // the unit that sets the globals
+  std::uint32_t main = 0;
+  std::vector<ExitTarget> exits;
+  std::vector<std::vector<HandlerClause>> handlers;
+  std::vector<std::vector<std::uint32_t>> pars;  // the units of the branches
+  std::vector<PlanGlobal> globals;
+  std::vector<std::string> strings;
+  FailureClasses classes;
+  std::map<std::string, std::uint32_t, std::less<>> functions;  // the plan's own: their units
+};
 
 /// Turns a plan into code for the unroller's machine. `entry` names the function to run; without it
 /// the bare top-level forms run, or else the last function defined; CPL006 if there is nothing to

@@ -15,7 +15,6 @@
 #include "compiler/sema/elaborator.h"
 #include "compiler/sema/exclusion.h"
 #include "compiler/sema/name_advice.h"
-#include "compiler/sema/sort_domains.h"
 #include "compiler/sema/typed_model.h"
 #include "compiler/syntax/lexer.h"
 

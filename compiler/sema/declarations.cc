@@ -6,10 +6,9 @@
 
 #include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/sema/declarations.h"
 #include "compiler/sema/elaborator.h"
-#include "compiler/sema/model_options.h"
 #include "compiler/sema/name_advice.h"
-#include "compiler/sema/sort_declarations.h"
 #include "compiler/syntax/lexer.h"
 
 namespace parallax::compiler {

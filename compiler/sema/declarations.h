@@ -9,9 +9,25 @@
 #include "compiler/base/diagnostic.h"
 #include "compiler/sema/check.h"
 #include "compiler/sema/typed_model.h"
+#include "compiler/syntax/ast.h"
 #include "compiler/syntax/loader.h"
 
 namespace parallax::compiler {
+
+/// All `sort` and `reified sort` statements: names, then parents, then what parents imply. A sort
+/// below itself (E2003) loses the parent that closes the circle.
+void declare_sorts(const ModelAst& ast, TypedModel& model, base::DiagnosticSink& sink);
+
+/// E2010 for reified sorts whose terms could be nested without end. Needs all symbols.
+void check_finite_sorts(const TypedModel& model, base::DiagnosticSink& sink);
+
+/// The sort `word` names, or nothing after an E2001 with a suggestion.
+std::optional<SortId> resolve_sort(const Ast& ast, Word word, const TypedModel& model,
+                                   base::DiagnosticSink& sink);
+
+/// One `option NAME VALUE`. E2011 for unknown names, E2012 for values the option cannot have.
+void apply_option(const Ast& ast, const Statement& statement, ModelOptions& options,
+                  base::DiagnosticSink& sink);
 
 /// The names that `ignore` statements put out of force. A declaration or list entry is left out if
 /// it comes after the statement; a formula wherever it stands.

@@ -10,7 +10,6 @@
 
 #include "compiler/base/diagnostic.h"
 #include "compiler/sema/name_advice.h"
-#include "compiler/sema/sort_domains.h"
 #include "compiler/sema/typed_model.h"
 #include "compiler/syntax/ast.h"
 

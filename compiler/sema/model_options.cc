@@ -1,5 +1,3 @@
-#include "compiler/sema/model_options.h"
-
 #include <array>
 #include <string>
 #include <string_view>
@@ -7,6 +5,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
+#include "compiler/sema/declarations.h"
 #include "compiler/sema/name_advice.h"
 #include "compiler/syntax/lexer.h"
 

@@ -1,5 +1,3 @@
-#include "compiler/sema/sort_declarations.h"
-
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -12,6 +10,7 @@
 #include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
+#include "compiler/sema/declarations.h"
 #include "compiler/sema/name_advice.h"
 #include "compiler/syntax/lexer.h"
 

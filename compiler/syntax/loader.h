@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
@@ -11,6 +13,15 @@
 #include "compiler/syntax/ast.h"
 
 namespace parallax::compiler {
+
+struct Foundation {
+  std::string_view path;  // "foundations/EC.e"
+  std::string_view text;
+};
+
+/// The texts inside the program, by path.
+std::span<const Foundation> foundations();
+std::optional<Foundation> find_foundation(std::string_view path);
 
 struct LoadOptions {
   std::vector<std::filesystem::path> include_dirs = {};  // -I, in order

@@ -9,7 +9,6 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
-#include "compiler/base/sarif.h"
 #include "tools/app/version.h"
 #include "tools/cli/signals.h"
 

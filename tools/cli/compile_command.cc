@@ -4,7 +4,7 @@
 #include "compiler/artifact/artifact_writer.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
-#include "compiler/pipeline/pass_report.h"
+#include "compiler/pipeline/compile_report.h"
 #include "tools/app/emit_stage.h"
 #include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"

@@ -1,5 +1,4 @@
-#include "compiler/asp/names.h"
-
+#include "compiler/asp/term_writer.h"
 #include "tests/compiler/front_end.h"
 
 namespace parallax::test {

@@ -1,7 +1,5 @@
 // The log has the shape that readers of SARIF 2.1.0 rely on.
 
-#include "compiler/base/sarif.h"
-
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -10,6 +8,7 @@
 #include <string>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/diagnostic_printer.h"
 
 namespace parallax::base {
 namespace {

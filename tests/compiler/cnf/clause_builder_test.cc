@@ -1,6 +1,5 @@
 #include "compiler/cnf/clause_builder.h"
 
-#include "compiler/cnf/clause_text.h"
 #include "compiler/ground/grounder.h"
 #include "tests/compiler/front_end.h"
 

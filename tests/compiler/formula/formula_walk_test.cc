@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "compiler/formula/formula.h"
-#include "compiler/formula/formula_text.h"
 #include "tests/support/random.h"
 
 namespace parallax::test {

@@ -1,11 +1,10 @@
 // A condition that is called impossible is impossible.
 
-#include "compiler/lint/contradiction.h"
-
 #include <doctest/doctest.h>
 
 #include <cstdint>
 
+#include "compiler/lint/rules.h"
 #include "tests/compiler/lint/lint_text.h"
 #include "tests/support/random.h"
 

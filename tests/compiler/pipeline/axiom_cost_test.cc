@@ -1,10 +1,9 @@
-#include "compiler/pipeline/axiom_cost.h"
-
 #include <limits>
 
 #include "compiler/cnf/encoder.h"
 #include "compiler/ground/expansion_size.h"
 #include "compiler/ground/grounder.h"
+#include "compiler/pipeline/compile_report.h"
 #include "tests/compiler/front_end.h"
 
 namespace parallax::test {

@@ -7,7 +7,7 @@
 #include "compiler/cnf/encoder.h"
 #include "compiler/ground/grounder.h"
 #include "compiler/pipeline/compile.h"
-#include "compiler/pipeline/pass_report.h"
+#include "compiler/pipeline/compile_report.h"
 #include "tests/compiler/front_end.h"
 
 namespace parallax::test {

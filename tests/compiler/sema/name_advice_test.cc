@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "compiler/sema/sort_domains.h"
+#include "compiler/sema/typed_model.h"
 #include "tests/compiler/front_end.h"
 
 namespace parallax::test {

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "compiler/syntax/formula_layout.h"
-#include "compiler/syntax/foundations.h"
+#include "compiler/syntax/loader.h"
 #include "tests/compiler/front_end.h"
 #include "tests/support/peer_examples.h"
 #include "tests/support/random.h"

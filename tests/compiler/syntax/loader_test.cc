@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "compiler/syntax/foundations.h"
+#include "compiler/syntax/loader.h"
 #include "compiler/syntax/printer.h"
 #include "tests/compiler/front_end.h"
 

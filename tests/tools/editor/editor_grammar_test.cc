@@ -12,8 +12,8 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
-#include "compiler/syntax/foundations.h"
 #include "compiler/syntax/lexer.h"
+#include "compiler/syntax/loader.h"
 
 namespace parallax::test {
 namespace {

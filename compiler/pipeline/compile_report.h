@@ -8,6 +8,7 @@
 #include "compiler/artifact/compiled_model.h"
 #include "compiler/base/source_file.h"
 #include "compiler/ground/ground_model.h"
+#include "compiler/ground/pass.h"
 
 namespace parallax::compiler {
 
@@ -31,5 +32,10 @@ std::vector<AxiomCost> axiom_costs(const GroundModel& ground, const CompiledMode
 std::string cost_table(const std::vector<AxiomCost>& costs, const base::SourceFiles& files);
 /// The same as a JSON array.
 std::string cost_json(const std::vector<AxiomCost>& costs, const base::SourceFiles& files);
+
+/// A line for each pass: wall-clock seconds and the size of the value afterwards.
+std::string pass_table(const PassLog& log);
+/// The same as a JSON array; the clock's values stand in fields named `timing`.
+std::string pass_json(const PassLog& log);
 
 }  // namespace parallax::compiler
