@@ -10,10 +10,9 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/hash.h"
 #include "harness/campaign/journal.h"
-#include "harness/campaign/run_folder.h"
 #include "harness/campaign/trace_campaign.h"
 #include "harness/confidence/clean_runs.h"
-#include "harness/sampling/rng.h"
+#include "harness/sampling/sampler.h"
 
 namespace parallax::harness {
 namespace {

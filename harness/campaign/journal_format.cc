@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 
 #include "compiler/base/json.h"
-#include "harness/campaign/criterion_json.h"
-#include "harness/campaign/state_json.h"
+#include "harness/campaign/result_json.h"
 
 namespace parallax::harness {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/whole_number.h"
-#include "harness/campaign/compare.h"
 #include "harness/campaign/journal.h"
+#include "harness/campaign/sample_record.h"
 #include "harness/campaign/sample_runner.h"
 
 namespace parallax::harness {

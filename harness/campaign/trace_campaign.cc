@@ -7,8 +7,8 @@
 #include <set>
 
 #include "compiler/base/diagnostic_codes.h"
-#include "harness/campaign/compare.h"
 #include "harness/campaign/judge.h"
+#include "harness/campaign/sample_record.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/regression.h"
 

@@ -11,7 +11,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
 #include "harness/engine/world_check.h"
-#include "harness/world/variables.h"
+#include "harness/world/world_layout.h"
 
 namespace parallax::harness {
 namespace {

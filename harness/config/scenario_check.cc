@@ -7,7 +7,6 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
 #include "harness/world/arguments.h"
-#include "harness/world/controller_table.h"
 
 namespace parallax::harness {
 

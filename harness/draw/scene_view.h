@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "harness/draw/projection.h"
 #include "harness/draw/scene.h"
 #include "harness/region/region.h"
 

@@ -2,8 +2,7 @@
 
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
-#include "harness/campaign/criterion_json.h"
-#include "harness/campaign/state_json.h"
+#include "harness/campaign/result_json.h"
 #include "harness/report/report.h"
 #include "harness/report/text_layout.h"
 

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "compiler/base/diagnostic_printer.h"
-#include "harness/campaign/compare.h"
-#include "harness/campaign/state_json.h"
+#include "harness/campaign/result_json.h"
+#include "harness/campaign/sample_record.h"
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/criterion.h"
 #include "harness/report/report.h"

@@ -11,7 +11,7 @@
 #include "harness/robot/controller.h"
 #include "harness/world/angles.h"
 #include "harness/world/arguments.h"
-#include "harness/world/variables.h"
+#include "harness/world/world_layout.h"
 
 namespace parallax::harness {
 namespace {

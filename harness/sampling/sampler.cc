@@ -7,6 +7,48 @@
 #include "compiler/base/diagnostic_codes.h"
 
 namespace parallax::harness {
+namespace {
+
+/// 2^64 divided by the golden ratio, the increment of splitmix64 (Steele, Lea, Flood 2014).
+constexpr std::uint64_t kGoldenGamma = 0x9e3779b97f4a7c15ULL;
+/// Keeps the engine's seeds apart from the coordinates of the same draw.
+constexpr std::uint64_t kSimulatorStream = 0x73696d756c61746fULL;  // "simulato"
+
+constexpr int kSeedBits = 53;
+
+std::uint64_t absorb(std::uint64_t state, std::uint64_t word) {
+  return mix64((state + kGoldenGamma) ^ word);
+}
+
+std::uint64_t key_state(const DrawKey& key) {
+  std::uint64_t state = absorb(0, key.campaign_seed);
+  state = absorb(state, key.trace_key);
+  state = absorb(state, static_cast<std::uint64_t>(key.phase));
+  state = absorb(state, key.sample);
+  return absorb(state, key.attempt);
+}
+
+}  // namespace
+
+std::uint64_t mix64(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+  return x ^ (x >> 31);
+}
+
+CounterRng::CounterRng(const DrawKey& key) : state_(key_state(key)) {}
+
+std::uint64_t CounterRng::bits(std::uint64_t dimension) const {
+  return mix64(state_ + (dimension + 1) * kGoldenGamma);
+}
+
+double CounterRng::uniform(std::uint64_t dimension) const {
+  return static_cast<double>(bits(dimension) >> 11) * 0x1.0p-53;
+}
+
+std::uint64_t simulator_seed(const DrawKey& key) {
+  return absorb(key_state(key), kSimulatorStream) >> (64 - kSeedBits);
+}
 
 Sampler::Sampler(StartCuboid cuboid, double inset) : cuboid_(std::move(cuboid)), inset_(inset) {}
 

@@ -10,7 +10,7 @@
 
 #include "compiler/base/diagnostic.h"
 #include "runtime/certify/completeness_claim.h"
-#include "runtime/proof/check_proof.h"
+#include "runtime/proof/drat_checker.h"
 #include "runtime/solver/sat_solver.h"
 
 namespace parallax::runtime {

@@ -4,9 +4,17 @@
 #include <span>
 #include <vector>
 
+#include "runtime/enumerate/trace_source.h"
 #include "runtime/session/solver_session.h"
 
 namespace parallax::runtime {
+
+using compiler::Literal;
+
+/// The atoms that tell traces apart, in blocks: the state at 0; then for every timepoint t the
+/// events at t and the state at t + 1; at last, if they count, the user predicates. One after the
+/// other the blocks are in canonical order.
+std::vector<std::vector<Literal>> projection_blocks(const CompiledModel& model, Distinct distinct);
 
 /// Moves the session's valuation to the first one in lexicographic order: `order` lists literals
 /// by weight, each in its preferred polarity. The session must hold a valuation found with horizon

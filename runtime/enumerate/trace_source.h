@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "compiler/artifact/literal.h"
 #include "runtime/trace/trace.h"
 #include "runtime/trace/trace_format.h"
 
@@ -45,12 +44,5 @@ class TraceSource {
   virtual bool exhausted() const = 0;
   virtual SourceStats stats() const = 0;
 };
-
-using compiler::Literal;
-
-/// The atoms that tell traces apart, in blocks: the state at 0; then for every timepoint t the
-/// events at t and the state at t + 1; at last, if they count, the user predicates. One after the
-/// other the blocks are in canonical order.
-std::vector<std::vector<Literal>> projection_blocks(const CompiledModel& model, Distinct distinct);
 
 }  // namespace parallax::runtime

@@ -1,13 +1,41 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "compiler/artifact/compiled_model.h"
-#include "runtime/explain/minimal_sets.h"
-#include "runtime/proof/check_proof.h"
+#include "runtime/explain/group_solver.h"
+#include "runtime/proof/drat_checker.h"
 
 namespace parallax::runtime {
+
+/// A minimal set: its groups contradict each other, and without any one of them the rest do not.
+struct MinimalSets {
+  std::vector<IndexSet> sets;  // by size, then by their elements; empty: there is no contradiction
+  /// Of smallest_set: no contradiction has fewer groups. Of all_minimal_sets: there are no others.
+  bool proven = false;
+  /// Every contradiction has at least so many groups.
+  std::size_t lower_bound = 0;
+  /// The solver was stopped before there was a set, or a proof that there is none.
+  bool unknown = false;
+};
+
+/// Makes a contradictory set minimal by leaving out one member after the other; what the solver did
+/// not use goes as well. False if the solver was stopped, or the effort (null: any) did not
+/// suffice; the set is then contradictory, and as small as it came.
+bool shrink(GroupSolver& solver, IndexSet& contradiction, Effort* effort = nullptr);
+
+/// A contradiction with as few groups as possible, by the duality of minimal contradictions and
+/// minimal corrections (Ignatiev, Previti, Liffiton and Marques-Silva 2015). If the solver is
+/// stopped, the best found so far.
+MinimalSets smallest_set(GroupSolver& solver, const std::atomic<bool>* stop);
+
+/// All minimal contradictions, at most `limit` (0: no limit), by exploring the subsets that no set
+/// found before decides (Liffiton, Previti, Malik and Marques-Silva 2016). There can be
+/// exponentially many.
+MinimalSets all_minimal_sets(GroupSolver& solver, std::size_t limit, const std::atomic<bool>* stop);
 
 /// The clauses behind one set of groups.
 struct GroundContradiction {

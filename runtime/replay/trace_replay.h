@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "runtime/session/solver_session.h"
-#include "runtime/session/unsat_core.h"
 #include "runtime/trace/trace.h"
 #include "runtime/trace/trace_claims.h"
 

@@ -1,15 +1,79 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_set>
+#include <vector>
 
 #include "compiler/base/diagnostic.h"
-#include "runtime/trace/located_json.h"
+#include "runtime/trace/trace.h"
 #include "runtime/trace/trace_claims.h"
-#include "runtime/trace/vocabulary.h"
 
 namespace parallax::runtime {
+
+enum class JsonKind : std::uint8_t { kNull, kBoolean, kNumber, kString, kArray, kObject };
+
+class JsonDocument;
+
+/// A value of a document, which outlives it. Cheap to copy.
+class JsonValue {
+ public:
+  JsonKind kind() const;
+  base::SourceRange source() const;
+  bool is(JsonKind wanted) const { return kind() == wanted; }
+  bool boolean() const;                         // of kBoolean
+  std::string_view text() const;                // of kString, decoded; of kNumber, as it is written
+  std::optional<std::int64_t> integer() const;  // of a kNumber that is a whole one in 64 bits
+  std::vector<JsonValue> items() const;         // of kArray
+  /// Of kObject: the value of a member, if there is one. Linear in the members.
+  std::optional<JsonValue> find(std::string_view name) const;
+  /// Of kObject: names and values in turn.
+  std::vector<JsonValue> members() const;
+
+ private:
+  friend class JsonDocument;
+  JsonValue(const JsonDocument* document, std::uint32_t index)
+      : document_(document), index_(index) {}
+  const JsonDocument* document_;
+  std::uint32_t index_;
+};
+
+/// A JSON text whose every value knows its place. For texts of unknown origin: at most kMaxDepth
+/// levels and kMaxValues values of 28 bytes, no recursion; a name must not stand twice in an
+/// object.
+class JsonDocument {
+ public:
+  static constexpr std::size_t kMaxDepth = 100;
+  static constexpr std::size_t kMaxValues = 4'000'000;
+
+  /// Parses one value and nothing else. E6101 at the first place that is wrong. `files` outlives
+  /// the document.
+  static base::Result<JsonDocument> parse(base::SourceRange text, const base::SourceFiles& files,
+                                          base::DiagnosticSink& sink);
+  JsonValue root() const { return {this, 0}; }
+
+ private:
+  friend class JsonValue;
+  friend class JsonBuilder;
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  struct Node {
+    JsonKind kind = JsonKind::kNull;
+    bool truth = false;
+    std::uint32_t begin = 0, end = 0;  // in the file
+    std::uint32_t child = kNone, next = kNone;
+    std::uint32_t text = 0, size = 0;  // of a string, in the pool
+  };
+  explicit JsonDocument(std::string_view file_text, base::FileId file)
+      : file_text_(file_text), file_(file) {}
+  bool has_duplicate(std::uint32_t object, std::uint32_t& place) const;
+
+  std::string_view file_text_;
+  base::FileId file_;
+  std::vector<Node> nodes_;
+  std::string pool_;  // decoded strings
+};
 
 /// What the readers of both formats share: the names of the model, and how a shape is complained
 /// of.

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "runtime/trace/trace.h"
 #include "runtime/trace/trace_format.h"
-#include "runtime/trace/vocabulary.h"
 
 namespace parallax::runtime {
 

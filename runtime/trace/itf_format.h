@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/trace/trace.h"
 #include "runtime/trace/trace_format.h"
-#include "runtime/trace/vocabulary.h"
 
 namespace parallax::runtime {
 

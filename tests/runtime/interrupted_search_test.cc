@@ -8,7 +8,7 @@
 #include "runtime/enumerate/dead_steps.h"
 #include "runtime/enumerate/model_enumerator.h"
 #include "runtime/enumerate/plan_enumerator.h"
-#include "runtime/explain/minimal_sets.h"
+#include "runtime/explain/contradiction.h"
 #include "runtime/explain/why.h"
 #include "runtime/replay/trace_replay.h"
 #include "tests/support/planned_model.h"

@@ -9,7 +9,6 @@
 #include "runtime/explain/clause_text.h"
 #include "runtime/explain/contradiction.h"
 #include "runtime/explain/group_solver.h"
-#include "runtime/explain/minimal_sets.h"
 #include "runtime/explain/why.h"
 #include "tools/app/context.h"
 #include "tools/app/recorded_scenario.h"

@@ -10,7 +10,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/region/state_mapping.h"
 #include "runtime/explain/contradiction.h"
-#include "runtime/session/unsat_core.h"
+#include "runtime/session/solver_session.h"
 #include "tools/app/open_ends.h"
 
 namespace parallax::tools {

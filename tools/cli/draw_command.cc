@@ -4,8 +4,8 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
-#include "harness/campaign/compare.h"
 #include "harness/campaign/replay.h"
+#include "harness/campaign/sample_record.h"
 #include "harness/draw/action_recorder.h"
 #include "harness/draw/scene_svg.h"
 #include "harness/robot/ode_simulator.h"

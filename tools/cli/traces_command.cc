@@ -4,7 +4,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/json.h"
-#include "runtime/trace/vocabulary.h"
+#include "runtime/trace/trace.h"
 #include "tools/app/certify.h"
 #include "tools/app/open_ends.h"
 #include "tools/app/scenario_model.h"

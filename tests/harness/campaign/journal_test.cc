@@ -1,6 +1,6 @@
 #include "harness/campaign/journal.h"
 
-#include "harness/campaign/compare.h"
+#include "harness/campaign/sample_record.h"
 #include "harness/report/report.h"
 #include "tests/harness/campaign/two_regions.h"
 

@@ -15,7 +15,7 @@
 #include <set>
 #include <thread>
 
-#include "harness/simulator/child_process.h"
+#include "harness/simulator/process_simulator.h"
 
 namespace parallax::harness {
 namespace {

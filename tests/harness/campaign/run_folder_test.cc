@@ -1,5 +1,3 @@
-#include "harness/campaign/run_folder.h"
-
 #include "harness/campaign/journal.h"
 #include "harness/campaign/worker_pool.h"
 #include "harness/report/report.h"

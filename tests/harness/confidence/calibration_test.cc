@@ -8,7 +8,7 @@
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/quantiles.h"
-#include "harness/sampling/rng.h"
+#include "harness/sampling/sampler.h"
 
 namespace parallax::harness {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/paper_rule.h"
-#include "harness/sampling/rng.h"
+#include "harness/sampling/sampler.h"
 
 namespace parallax::harness {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "compiler/base/contract.h"
-#include "harness/sampling/rng.h"
+#include "harness/sampling/sampler.h"
 
 namespace parallax::harness {
 namespace {

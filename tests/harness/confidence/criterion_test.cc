@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "harness/confidence/clean_runs.h"
-#include "harness/sampling/rng.h"
+#include "harness/sampling/sampler.h"
 
 namespace parallax::harness {
 namespace {

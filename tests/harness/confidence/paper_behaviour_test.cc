@@ -5,7 +5,7 @@
 
 #include "harness/confidence/paper_rule.h"
 #include "harness/confidence/quantiles.h"
-#include "harness/sampling/rng.h"
+#include "harness/sampling/sampler.h"
 
 namespace parallax::harness {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "harness/confidence/quantiles.h"
-#include "harness/sampling/rng.h"
+#include "harness/sampling/sampler.h"
 
 namespace parallax::harness {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "compiler/base/diagnostic_codes.h"
-#include "harness/sampling/rng.h"
+#include "harness/sampling/sampler.h"
 
 namespace parallax::harness {
 namespace {

@@ -1,11 +1,11 @@
-#include "harness/sampling/rng.h"
-
 #include <doctest/doctest.h>
 
 #include <array>
 #include <cmath>
 #include <set>
 #include <vector>
+
+#include "harness/sampling/sampler.h"
 
 namespace parallax::harness {
 namespace {

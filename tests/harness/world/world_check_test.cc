@@ -7,8 +7,7 @@
 #include <string>
 
 #include "harness/robot/servo.h"
-#include "harness/world/controller_table.h"
-#include "harness/world/variables.h"
+#include "harness/world/arguments.h"
 #include "harness/world/world_layout.h"
 #include "tests/harness/world/fetch_world.h"
 

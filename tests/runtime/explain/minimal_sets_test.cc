@@ -1,5 +1,3 @@
-#include "runtime/explain/minimal_sets.h"
-
 #include <doctest/doctest.h>
 
 #include <algorithm>

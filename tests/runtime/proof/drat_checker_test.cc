@@ -1,10 +1,11 @@
+#include "runtime/proof/drat_checker.h"
+
 #include <doctest/doctest.h>
 
 #include <cstdio>
 #include <random>
 #include <sstream>
 
-#include "runtime/proof/check_proof.h"
 #include "runtime/solver/sat_solver.h"
 #include "tests/runtime/proof/naive_drat.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/session/unsat_core.h"
+#include "runtime/session/solver_session.h"
 #include "tests/support/text_model.h"
 
 namespace parallax::test {

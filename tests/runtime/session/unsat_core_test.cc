@@ -1,9 +1,8 @@
-#include "runtime/session/unsat_core.h"
-
 #include <doctest/doctest.h>
 
 #include <set>
 
+#include "runtime/session/solver_session.h"
 #include "tests/support/text_model.h"
 
 namespace parallax::test {

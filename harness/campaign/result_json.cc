@@ -1,4 +1,4 @@
-#include "harness/campaign/criterion_json.h"
+#include "harness/campaign/result_json.h"
 
 #include <nlohmann/json.hpp>
 

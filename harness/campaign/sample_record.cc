@@ -1,4 +1,4 @@
-#include "harness/campaign/compare.h"
+#include "harness/campaign/sample_record.h"
 
 #include <fmt/format.h>
 
