@@ -60,6 +60,11 @@ DiagnosticBuilder& DiagnosticBuilder::fix(std::string text) {
   return *this;
 }
 
+DiagnosticBuilder& DiagnosticBuilder::help(std::string text) {
+  entry()->help = shortened(std::move(text));
+  return *this;
+}
+
 DiagnosticBuilder DiagnosticSink::add(DiagnosticCode code, std::optional<SourceRange> range,
                                       std::string subject, std::string message) {
   const bool is_error = info(code).severity == Severity::kError;
@@ -69,7 +74,7 @@ DiagnosticBuilder DiagnosticSink::add(DiagnosticCode code, std::optional<SourceR
     dropped_ = Diagnostic{};
     return DiagnosticBuilder(*this, kDropped);
   }
-  entries_.push_back({code, range, std::move(subject), shortened(std::move(message)), {}, {}});
+  entries_.push_back({code, range, std::move(subject), shortened(std::move(message)), {}, {}, {}});
   return DiagnosticBuilder(*this, entries_.size() - 1);
 }
 
@@ -79,6 +84,7 @@ void DiagnosticSink::adopt(const DiagnosticSink& other, SourceRange place,
     auto builder = add(entry.code, place, {}, entry.message);
     builder.note("this is about `" + made + "`, made from the text here");
     if (!entry.fix.empty()) builder.fix(entry.fix);
+    if (!entry.help.empty()) builder.help(entry.help);
   }
 }
 

@@ -34,7 +34,7 @@ struct DiagnosticInfo {
   Severity severity;
   DiagnosticClass klass;
   std::string_view format;  // fmt format string of the message
-  std::string_view help;    // one sentence for docs/diagnostics.md: how to mend it
+  std::string_view help;    // how to mend it, in a sentence
 };
 const DiagnosticInfo& info(DiagnosticCode code);
 /// All codes, in the order of the registry.
@@ -52,6 +52,7 @@ struct Diagnostic {
   std::string message;
   std::vector<DiagnosticNote> notes;
   std::string fix;
+  std::string help;  // what to do here; empty: what the registry says
 };
 
 class DiagnosticSink;
@@ -62,6 +63,7 @@ class DiagnosticBuilder {
   DiagnosticBuilder& note(SourceRange range, std::string text);
   DiagnosticBuilder& note(std::string text);
   DiagnosticBuilder& fix(std::string text);
+  DiagnosticBuilder& help(std::string text);
   operator Reported() const { return Reported(); }  // NOLINT: the point of the type
   template <typename T>
   operator Result<T>() const {  // NOLINT: `return sink.error(...)` from any fallible function

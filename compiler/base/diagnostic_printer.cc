@@ -214,6 +214,10 @@ std::string printable(std::string_view text) {
   return out;
 }
 
+std::string_view help_of(const Diagnostic& d) {
+  return d.help.empty() ? info(d.code).help : std::string_view(d.help);
+}
+
 std::string to_text(const Diagnostic& d, const SourceFiles& files, const DiagnosticStyle& style) {
   const auto& code = info(d.code);
   const bool is_error = code.severity == Severity::kError;
@@ -225,7 +229,7 @@ std::string to_text(const Diagnostic& d, const SourceFiles& files, const Diagnos
   if (d.range) out += source_excerpt(*d.range, files);
   for (const auto& note : d.notes) {
     if (note.range) {
-      const Diagnostic at{d.code, note.range, {}, {}, {}, {}};
+      const Diagnostic at{d.code, note.range, {}, {}, {}, {}, {}};
       out += fmt::format("{}: note: {}\n", location(at, files), printable(note.text));
     } else {
       out += fmt::format("note: {}\n", printable(note.text));
@@ -233,9 +237,8 @@ std::string to_text(const Diagnostic& d, const SourceFiles& files, const Diagnos
   }
   if (!d.fix.empty()) {
     out += fmt::format("fix: {}\n", printable(d.fix));
-  } else if (!d.range && !code.help.empty()) {
-    // No source line shows what is meant, so say what to do.
-    out += fmt::format("help: {}\n", code.help);
+  } else if (const auto help = help_of(d); style.help && !help.empty()) {
+    out += fmt::format("help: {}\n", printable(help));
   }
   return out;
 }
@@ -256,6 +259,7 @@ std::string to_json(const std::vector<Diagnostic>& diagnostics, const SourceFile
     }
     entry["notes"] = std::move(notes);
     if (!d.fix.empty()) entry["fix"] = printable(d.fix);
+    if (const auto help = help_of(d); !help.empty()) entry["help"] = printable(help);
     out.push_back(std::move(entry));
   }
   return out.dump();

@@ -10,15 +10,19 @@ namespace parallax::base {
 
 struct DiagnosticStyle {
   bool color = false;
+  bool help = true;  // what to do, where no fix says it
 };
 
+/// What to do about it: its own advice, else that of the registry. A view of either.
+std::string_view help_of(const Diagnostic& diagnostic);
+
 /// One diagnostic as text: `path:line:col-col: error[E2104]: text`, the source line with a caret,
-/// notes, fix. Ends with a newline.
+/// notes, fix or help. Ends with a newline.
 std::string to_text(const Diagnostic& diagnostic, const SourceFiles& files,
                     const DiagnosticStyle& style);
 
 /// A JSON array of objects with the same fields: path, line, column, end_line, end_column,
-/// severity, code, message, notes, fix. One line, no trailing newline.
+/// severity, code, message, notes, fix, help. One line, no trailing newline.
 std::string to_json(const std::vector<Diagnostic>& diagnostics, const SourceFiles& files);
 
 /// Replaces control, invalid and bidirectional-control bytes by visible escapes.

@@ -197,7 +197,14 @@ class Grounder {
     } else if (*formula == falsity && !standard_) {
       sink_.warning(DiagnosticCode::kFalseFormulaDropped, axiom.source);
     } else if (*formula == falsity && is_false_whatever_happens(axiom)) {
-      sink_.error(DiagnosticCode::kFormulaIsFalse, axiom.source);
+      auto error = sink_.error(DiagnosticCode::kFormulaIsFalse, axiom.source);
+      if (has_event_at(axiom.formula, model_.horizon())) {
+        const auto last = model_.horizon();
+        error.help(fmt::format(
+            "No event happens at the last timepoint, {0}, because nothing follows it: let time go "
+            "on with `range time 0 {1}` or --horizon {1}, or let the event happen earlier.",
+            last, last + 1));
+      }
     } else {
       const auto origin = model_.add_origin(axiom.source, OriginKind::kAxiom);
       if (always) {
@@ -209,6 +216,19 @@ class Grounder {
       if (axiom.mentions_effects) return;
       completion_.note(axiom.label, *formula, always ? profile.width : Constraint::kOnce);
     }
+  }
+
+  bool has_event_at(TypedFormulaId root, Timepoint timepoint) const {
+    std::vector<TypedFormulaId> visit = {root};
+    while (!visit.empty()) {
+      const auto& formula = typed_.formulas[visit.back()];
+      visit.pop_back();
+      visit.insert(visit.end(), formula.children.begin(), formula.children.end());
+      if (formula.kind != FormulaKind::kAtom || formula.predicate != typed_.core.happens) continue;
+      const auto& time = typed_.terms[formula.terms[1]];
+      if (time.kind == TermKind::kInteger && time.integer == timepoint) return true;
+    }
+    return false;
   }
 
   /// False in itself, or only with what is already known of the model?

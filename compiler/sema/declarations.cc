@@ -24,6 +24,12 @@ bool is_constant_name(std::string_view name) {
   return is_symbol_name(name) || (name[0] >= 'a' && name[0] <= 'z');
 }
 
+std::string capitalized(std::string_view name) {
+  std::string out(name);
+  out[0] = base::to_upper(out[0]);
+  return out;
+}
+
 class Declarer {
  public:
   Declarer(const ModelAst& model_ast, const IgnoredNames& ignored, const CheckOptions& options,
@@ -92,11 +98,12 @@ class Declarer {
     const auto& sort = model_.sorts[sort_id];
     const auto like = model_.find_sort(sort_of_variable(name));
     if (!is_constant_name(name)) {
-      sink_.error(DiagnosticCode::kNameSpelling, ast.source(word), shortened(name), "constant");
+      sink_.error(DiagnosticCode::kNameSpelling, ast.source(word), shortened(name), "a constant");
     } else if (like) {
-      sink_.error(DiagnosticCode::kNameSpelling, ast.source(word), shortened(name), "constant")
+      sink_.error(DiagnosticCode::kNameSpelling, ast.source(word), shortened(name), "a constant")
           .note(model_.sorts[*like].declared,
-                "it would read as a variable of the sort `" + model_.sorts[*like].name + "`");
+                "it would read as a variable of the sort `" + model_.sorts[*like].name + "`")
+          .fix(NameAdvice::replace(name, capitalized(name)));
     } else if (sort.reified) {
       sink_.error(DiagnosticCode::kReifiedConstant, ast.source(word), shortened(name), sort.name)
           .note(sort.declared, "sort `" + sort.name + "` declared here")
@@ -184,9 +191,10 @@ class Declarer {
     const auto name = ast.text(statement.name);
     const auto& sort = model_.sorts[sort_id];
     if (!is_symbol_name(name)) {
-      sink_.error(DiagnosticCode::kNameSpelling, ast.source(statement.name), shortened(name),
-                  sort.name);
-      return false;
+      // Declared all the same, so that its uses are understood.
+      auto error = sink_.error(DiagnosticCode::kNameSpelling, ast.source(statement.name),
+                               shortened(name), with_article(sort.name));
+      if (base::is_lower(name[0])) error.fix(NameAdvice::replace(name, capitalized(name)));
     }
     if (!sort.reified) {
       sink_
@@ -309,7 +317,7 @@ class Declarer {
     if (std::find(kinds.begin(), kinds.end(), symbol.kind) != kinds.end()) return found;
     sink_
         .error(DiagnosticCode::kWrongKind, ast.source(word), shortened(name),
-               kind_word(symbol.kind), std::string("a ") + std::string(wanted))
+               with_article(kind_word(symbol.kind)), with_article(wanted))
         .note(symbol.declared, "`" + signature(model_, symbol) + "` declared here");
     return std::nullopt;
   }

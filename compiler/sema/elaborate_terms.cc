@@ -1,5 +1,7 @@
 // The leaves and atoms of formulas: everything that needs names and sorts.
 
+#include <fmt/format.h>
+
 #include <array>
 #include <charconv>
 #include <utility>
@@ -50,7 +52,8 @@ std::optional<ArithmeticOp> arithmetic_op(Operator op) {
 
 // --- names and numbers -----------------------------------------------------------------------
 
-Elaborator::Value Elaborator::name(const Node& node, Position position) {
+Elaborator::Value Elaborator::name(const Node& node, Position position,
+                                   std::optional<SortId> expected) {
   const auto text = ast_->name(node);
   if (position == Position::kFormula) {
     const bool variable = is_variable_name(text);
@@ -63,10 +66,13 @@ Elaborator::Value Elaborator::name(const Node& node, Position position) {
     }
     return failure();
   }
-  return is_variable_name(text) ? variable(node) : constant(node);
+  if (reported_free_.contains(text)) return failure();
+  const auto bound = scope_.find(text);
+  const bool is_bound = bound != scope_.end() && !bound->second.empty();
+  return is_bound || is_variable_name(text) ? variable(node, expected) : constant(node, expected);
 }
 
-Elaborator::Value Elaborator::variable(const Node& node) {
+Elaborator::Value Elaborator::variable(const Node& node, std::optional<SortId> expected) {
   const auto text = ast_->name(node);
   Term term;
   term.kind = TermKind::kVariable;
@@ -80,18 +86,18 @@ Elaborator::Value Elaborator::variable(const Node& node) {
     return {time_term(source(node)).index(), false};
   }
   // Constants may be spelled like variables (`r1`); a quantifier around the name goes first.
-  if (model_.find_object(text)) return constant(node);
-  if (reported_free_.insert(text).second) report_free(node);
+  if (model_.find_object(text)) return constant(node, expected);
+  if (reported_free_.insert(text).second) report_free(node, expected);
   return failure();
 }
 
-void Elaborator::report_free(const Node& node) {
+void Elaborator::report_free(const Node& node, std::optional<SortId> expected) {
   const auto text = ast_->name(node);
   const std::vector<std::string> names(bound_names_.begin(), bound_names_.end());
   const auto near = base::nearest_name(text, names);
   // `r3` beside the constants `r1` and `r2` is no forgotten quantifier.
   if (!near && !model_.find_sort(sort_of_variable(text)) && advice_.object(text)) {
-    return report_constant(node);
+    return report_constant(node, expected);
   }
   auto report = sink_.error(DiagnosticCode::kFreeVariable, source(node), quoted(node));
   if (near) report.fix(NameAdvice::replace(text, *near));
@@ -106,10 +112,10 @@ TermId Elaborator::time_term(const base::SourceRange& at) {
   return model_.terms.add(std::move(term));
 }
 
-Elaborator::Value Elaborator::constant(const Node& node) {
+Elaborator::Value Elaborator::constant(const Node& node, std::optional<SortId> expected) {
   const auto object = model_.find_object(ast_->name(node));
   if (!object) {
-    report_constant(node);
+    report_constant(node, expected);
     return failure();
   }
   Term term;
@@ -119,7 +125,7 @@ Elaborator::Value Elaborator::constant(const Node& node) {
   return add(std::move(term));
 }
 
-void Elaborator::report_constant(const Node& node) {
+void Elaborator::report_constant(const Node& node, std::optional<SortId> expected) {
   const auto text = ast_->name(node);
   auto report =
       sink_.error(DiagnosticCode::kUnknownName, source(node), "constant", shortened(text), "");
@@ -133,6 +139,10 @@ void Elaborator::report_constant(const Node& node) {
     report.note(found.declared, "`" + shortened(found.name) + "` declared here");
     report.fix(NameAdvice::replace(text, found.name));
   }
+  if (!expected) return;
+  const auto& sort = model_.sorts[*expected];
+  const auto constants = sort.reified || sort.integer ? "" : advice_.constants_of(*expected);
+  if (!constants.empty()) report.note(sort.declared, constants);
 }
 
 Elaborator::Value Elaborator::number(const Node& node) {
@@ -216,10 +226,16 @@ bool Elaborator::check_argument(const Symbol& symbol, std::size_t position, Term
   if (term.kind == TermKind::kInteger && integer) {
     // Where a range is missing, that is reported instead.
     if (domains_.ranges(expected).empty() || domains_.contains(expected, term.integer)) return true;
-    sink_
-        .error(DiagnosticCode::kOutsideRange, term.source, term.integer,
-               model_.sorts[expected].name)
-        .note(domains_.ranges(expected).front().declared, "its range is given here");
+    auto report = sink_.error(DiagnosticCode::kOutsideRange, term.source, term.integer,
+                              model_.sorts[expected].name);
+    const auto& range = domains_.ranges(expected).front();
+    if (model_.core.time == expected && range.declared == model_.sorts[expected].declared) {
+      report.note(fmt::format("the timepoints are {} to {}, as the horizon says", range.lower,
+                              range.upper));
+      report.fix("use an earlier timepoint, or a greater horizon");
+    } else {
+      report.note(range.declared, "its range is given here");
+    }
     return false;
   }
   if (term.kind == TermKind::kArithmetic || term.kind == TermKind::kInteger) {

@@ -81,7 +81,7 @@ std::optional<TypedFormulaId> Elaborator::elaborate(const Ast& ast, NodeId root)
 void Elaborator::visit(NodeId id, Position position, std::optional<SortId> expected) {
   const Node& node = (*ast_)[id];
   if (node.kind == NodeKind::kName) {
-    values_.push_back(name(node, position));
+    values_.push_back(name(node, position, expected));
     return;
   }
   if (node.kind == NodeKind::kNumber) {
@@ -111,6 +111,8 @@ void Elaborator::advance() {
     std::optional<SortId> expected;
     if (top.symbol && index < model_.symbols[*top.symbol].arguments.size()) {
       expected = model_.symbols[*top.symbol].arguments[index];
+    } else if (node.kind == NodeKind::kBinary && is_comparison(node.op)) {
+      expected = sort_beside(node, index);
     }
     visit(ast_->child(node, index), top.child_position, expected);
     return;
@@ -125,6 +127,19 @@ void Elaborator::advance() {
   const Value value = frame.failed ? failure() : leave(frame, node);
   values_.resize(frame.values);
   values_.push_back(value);
+}
+
+/// What the other side of a comparison says about the sort of this one, for messages.
+std::optional<SortId> Elaborator::sort_beside(const Node& comparison, std::uint32_t index) const {
+  const Node& other = (*ast_)[ast_->child(comparison, 1 - index)];
+  if (other.kind == NodeKind::kApply) {
+    const auto symbol = model_.find_symbol(ast_->name(other));
+    return symbol ? model_.symbols[*symbol].result : std::nullopt;
+  }
+  if (other.kind != NodeKind::kName) return std::nullopt;
+  const auto bound = scope_.find(ast_->name(other));
+  if (bound == scope_.end() || bound->second.empty()) return std::nullopt;
+  return model_.variables[bound->second.back()].sort;
 }
 
 void Elaborator::enter(Frame& frame, const Node& node) {
@@ -229,12 +244,17 @@ void Elaborator::enter_quantifier(Frame& frame, const Node& node) {
     const auto sort = model_.find_sort(sort_name);
     if (!sort) {
       frame.failed = true;
+      const auto used_as = sort_of_use(node, name);
       auto report = sink_.error(DiagnosticCode::kVariableWithoutSort, source(variable),
                                 shortened(sort_name), shortened(name));
       if (const auto near = advice_.sort(sort_name)) {
         const auto& found = model_.sorts[*near];
         report.note(found.declared, "sort `" + found.name + "` declared here");
         report.fix(NameAdvice::replace(sort_name, found.name));
+      } else if (used_as) {
+        const auto& found = model_.sorts[*used_as].name;
+        report.fix("write `" + found + "` or `" + found + "1` for `" + shortened(name) +
+                   "`: a variable gets its sort from its name, here `" + found + "`");
       }
       reported_free_.insert(name);  // once is enough
       continue;
@@ -249,6 +269,30 @@ void Elaborator::enter_quantifier(Frame& frame, const Node& node) {
     scope_[name].push_back(frame.variables.back());
     bound_names_.push_back(name);
   }
+}
+
+/// The sort of the first argument place at which a formula names something so.
+std::optional<SortId> Elaborator::sort_of_use(const Node& formula, std::string_view name) const {
+  constexpr std::size_t kMostNodes = 10'000;  // it is for a message only
+  std::vector<NodeId> stack;
+  const auto push = [&](const Node& node) {
+    for (auto i = node.child_count; i > 0; --i) stack.push_back(ast_->child(node, i - 1));
+  };
+  push(formula);
+  for (std::size_t seen = 0; !stack.empty() && seen < kMostNodes; ++seen) {
+    const Node& node = (*ast_)[stack.back()];
+    stack.pop_back();
+    push(node);
+    if (node.kind != NodeKind::kApply) continue;
+    const auto symbol = model_.find_symbol(ast_->name(node));
+    if (!symbol) continue;
+    const auto& sorts = model_.symbols[*symbol].arguments;
+    for (std::uint32_t i = 0; i < node.child_count && i < sorts.size(); ++i) {
+      const Node& argument = (*ast_)[ast_->child(node, i)];
+      if (argument.kind == NodeKind::kName && ast_->name(argument) == name) return sorts[i];
+    }
+  }
+  return std::nullopt;
 }
 
 void Elaborator::unbind(const Frame& frame) {
@@ -338,7 +382,8 @@ void Elaborator::require_range(SortId sort, const base::SourceRange& use) {
       options_.complete_model ? DiagnosticCode::kMissingRange : DiagnosticCode::kMissingRangeInPart;
   sink_.error(code, use, found.name)
       .note(found.declared, "sort `" + found.name + "` declared here")
-      .fix("add a statement such as `range " + found.name + " 0 10`");
+      .fix("add a statement such as `range " + found.name + " 0 10`" +
+           (model_.core.time == sort ? ", or give the last timepoint with --horizon 10" : ""));
 }
 
 }  // namespace parallax::compiler

@@ -84,9 +84,10 @@ class Elaborator {
   Value leave(const Frame& frame, const Node& node);
 
   // elaborate_terms.cc
-  Value name(const Node& node, Position position);
-  Value variable(const Node& node);
-  Value constant(const Node& node);
+  /// `expected`: the sort of the place, if it is known, for messages.
+  Value name(const Node& node, Position position, std::optional<SortId> expected);
+  Value variable(const Node& node, std::optional<SortId> expected);
+  Value constant(const Node& node, std::optional<SortId> expected);
   Value number(const Node& node);
   Value apply(const Frame& frame, const Node& node);
   Value arithmetic(const Node& node, TermId left, TermId right);
@@ -99,8 +100,10 @@ class Elaborator {
   bool is_integer(TermId term) const;
   std::vector<SortId> sorts_of(TermId term) const;
   void report_unknown_symbol(const Node& node, Position position, std::optional<SortId> expected);
-  void report_constant(const Node& node);
-  void report_free(const Node& node);
+  void report_constant(const Node& node, std::optional<SortId> expected);
+  void report_free(const Node& node, std::optional<SortId> expected);
+  std::optional<SortId> sort_beside(const Node& comparison, std::uint32_t index) const;
+  std::optional<SortId> sort_of_use(const Node& formula, std::string_view name) const;
   TermId time_term(const base::SourceRange& source);
 
   Value connective(const Frame& frame, const Node& node);

@@ -67,7 +67,7 @@ class Expansion {
     if (std::find(kKinds.begin(), kKinds.end(), symbol.kind) == kKinds.end()) {
       sink_
           .error(DiagnosticCode::kWrongKind, ast_.source(word), shortened(name),
-                 kind_word(symbol.kind), "an event, a fluent or a predicate")
+                 with_article(kind_word(symbol.kind)), "an event, a fluent or a predicate")
           .note(symbol.declared, "`" + signature(model_, symbol) + "` declared here");
       failed_ = true;
       return;

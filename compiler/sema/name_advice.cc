@@ -1,6 +1,6 @@
 #include "compiler/sema/name_advice.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <vector>
@@ -30,6 +30,11 @@ std::string_view kind_word(SymbolKind kind) {
       return "term constructor";
   }
   return {};
+}
+
+std::string with_article(std::string_view noun) {
+  const bool vowel = !noun.empty() && std::string_view("aeiou").find(noun[0]) != noun.npos;
+  return fmt::format("{} {}", vowel ? "an" : "a", noun);
 }
 
 std::string signature(const TypedModel& model, const Symbol& symbol) {
@@ -92,6 +97,23 @@ std::optional<SortId> NameAdvice::sort(std::string_view name) const {
   for (const auto& sort : model_.sorts) names.push_back(sort.name);
   const auto near = base::nearest_name(name, names);
   return near ? model_.find_sort(*near) : std::nullopt;
+}
+
+std::string NameAdvice::constants_of(SortId sort) const {
+  constexpr std::size_t kMostShown = 10;
+  std::vector<std::string> shown;
+  std::size_t count = 0;
+  for (const auto& object : model_.objects) {
+    if (!worthwhile(model_.objects.size())) break;
+    const bool belongs = std::any_of(object.sorts.begin(), object.sorts.end(),
+                                     [&](SortId own) { return model_.is_subsort(own, sort); });
+    if (!belongs) continue;
+    if (++count <= kMostShown) shown.push_back("`" + shortened(object.name) + "`");
+  }
+  const auto& name = model_.sorts[sort].name;
+  if (count == 0) return {};
+  return fmt::format("the constants of `{}`: {}{}", name, fmt::join(shown, ", "),
+                     count > kMostShown ? fmt::format(" and {} more", count - kMostShown) : "");
 }
 
 std::string NameAdvice::replace(std::string_view wrong, std::string_view right) {

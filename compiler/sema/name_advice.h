@@ -12,6 +12,8 @@ namespace parallax::compiler {
 
 /// "predicate", "fluent", ... for messages.
 std::string_view kind_word(SymbolKind kind);
+/// "an event", "a fluent".
+std::string with_article(std::string_view noun);
 /// "Filled(cup)" as it was declared.
 std::string signature(const TypedModel& model, const Symbol& symbol);
 /// The sort of a term for messages: of a constant the first one, "integer" for numbers.
@@ -27,6 +29,8 @@ class NameAdvice {
   std::optional<SymbolId> symbol(std::string_view name, std::span<const SymbolKind> kinds) const;
   std::optional<ObjectId> object(std::string_view name) const;
   std::optional<SortId> sort(std::string_view name) const;
+  /// The constants of a sort and of those below it, in words; long lists are cut.
+  std::string constants_of(SortId sort) const;
 
   static std::string replace(std::string_view wrong, std::string_view right);
 

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 #include "compiler/sema/declarations.h"
@@ -106,10 +105,6 @@ DepthFirst search_depth_first(const Graph& graph, std::size_t circle_limit) {
 
 constexpr std::size_t kMostCircles = 20;
 
-bool is_sort_name(std::string_view name) {
-  return std::all_of(name.begin(), name.end(), base::is_lower);
-}
-
 class SortDeclarer {
  public:
   SortDeclarer(const ModelAst& model_ast, TypedModel& model, base::DiagnosticSink& sink)
@@ -143,10 +138,6 @@ class SortDeclarer {
 
   void declare(const Ast& ast, const Statement& statement, const Item& item) {
     const auto name = ast.text(item.name);
-    if (!is_sort_name(name)) {
-      sink_.error(DiagnosticCode::kSortSpelling, ast.source(item.name), shortened(name));
-      return;
-    }
     if (const auto before = model_.find_sort(name)) {
       // A second statement may add a second parent, and nothing else.
       const bool reified = statement.kind == StatementKind::kReifiedSort;

@@ -117,19 +117,18 @@ class Layout {
 
   /// `[x] {y} f`: the quantifiers on a line of their own.
   bool place_prefix(Range range, std::size_t indent, std::size_t tail, int depth) {
+    // A `!` in front of a quantifier belongs to it, one behind the last to the body.
     auto body = range.begin;
-    bool quantified = false;
-    while (body < range.end) {
-      if (tokens_[body].prefix) {
-        ++body;
-      } else if (tokens_[body].quantifier) {
-        body = tokens_[body].partner + 1;
-        quantified = true;
+    for (auto i = range.begin; i < range.end;) {
+      if (tokens_[i].prefix) {
+        ++i;
+      } else if (tokens_[i].quantifier) {
+        body = i = tokens_[i].partner + 1;
       } else {
         break;
       }
     }
-    if (!quantified || body >= range.end) return false;
+    if (body == range.begin || body >= range.end) return false;
     emit(range.begin, body);
     new_line(indent);
     place({body, range.end}, indent, tail, depth + 1);

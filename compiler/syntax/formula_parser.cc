@@ -14,6 +14,7 @@ std::optional<NodeId> FormulaParser::parse(Period period) {
   entries_.clear();
   operands_.clear();
   extents_.clear();
+  brackets_.clear();
   wants_operand_ = true;
   skip_to_period_ = true;
   last_ = lexer_.peek();
@@ -33,6 +34,7 @@ FormulaParser::Step FormulaParser::operand() {
   switch (token.kind) {
     case TokenKind::kName:
       last_ = lexer_.next();
+      if (const auto step = foreign_prefix(token)) return *step;
       if (lexer_.peek().kind == TokenKind::kOpenParen) return open_call(token);
       if (is_word_quantifier(token)) return word_quantifier(token);
       leaf(NodeKind::kName, token);
@@ -54,6 +56,9 @@ FormulaParser::Step FormulaParser::operand() {
         entry.op = Operator::kNegate;
       } else if (token.op == Operator::kAdd) {
         entry.op = Operator::kPlus;
+      } else if (token.op == Operator::kModulo) {
+        lexer_.skip_percent_comment();
+        return Step::kMore;
       } else if (token.op != Operator::kNot) {
         return fail_here(DiagnosticCode::kExpectedOperand, token);
       }
@@ -126,6 +131,26 @@ bool FormulaParser::is_word_quantifier(const Token& name) const {
   return lexer_.mode() == Lexer::Mode::kBinding && (word == "exists" || word == "forall");
 }
 
+/// `not` and `forall` in front of something that could not follow a name.
+std::optional<FormulaParser::Step> FormulaParser::foreign_prefix(const Token& word) {
+  const auto* foreign = foreign_word(lexer_.text(word));
+  if (foreign == nullptr || is_word_quantifier(word)) return std::nullopt;
+  const auto& next = lexer_.peek();
+  const bool begins_operand = next.kind == TokenKind::kName || next.kind == TokenKind::kOpenParen ||
+                              next.kind == TokenKind::kOpenBracket ||
+                              next.kind == TokenKind::kOpenBrace ||
+                              (next.kind == TokenKind::kOperator && next.op == Operator::kNot);
+  if (!begins_operand) return std::nullopt;
+  if (foreign->kind == ForeignSpelling::Kind::kQuantifier) {
+    report_foreign(*foreign, lexer_.range(word), sink_);
+    return Step::kFailed;
+  }
+  if (foreign->kind != ForeignSpelling::Kind::kPrefix) return std::nullopt;
+  report_foreign(*foreign, lexer_.range(word), sink_);
+  const bool pushed = push({.kind = Pending::kPrefix, .op = foreign->op, .token = word});
+  return pushed ? Step::kMore : Step::kFailed;
+}
+
 /// `exists i, j.`; commas may be missing.
 FormulaParser::Step FormulaParser::word_quantifier(const Token& word) {
   Entry entry{.kind = Pending::kQuantifier,
@@ -166,7 +191,13 @@ FormulaParser::Step FormulaParser::after_operand(Period period) {
     case TokenKind::kStatementLine:
     case TokenKind::kEnd:
       return end_of_formula(token, period);
-    case TokenKind::kName:
+    case TokenKind::kName: {
+      const auto* foreign = foreign_word(lexer_.text(token));
+      if (foreign == nullptr || foreign->kind != ForeignSpelling::Kind::kOperator) {
+        return juxtaposed(token, period);
+      }
+      return foreign_binary(*foreign, token);
+    }
     case TokenKind::kNumber:
     case TokenKind::kOpenParen:
     case TokenKind::kOpenBracket:
@@ -209,11 +240,18 @@ FormulaParser::Step FormulaParser::binary(const Token& token) {
              : Step::kFailed;
 }
 
+FormulaParser::Step FormulaParser::foreign_binary(const ForeignSpelling& spelling, Token token) {
+  report_foreign(spelling, lexer_.range(token), sink_);
+  token.kind = TokenKind::kOperator;
+  token.op = spelling.op;
+  return binary(token);
+}
+
 FormulaParser::Step FormulaParser::comma(const Token& token) {
-  if (!reduce_to_bracket()) return Step::kFailed;
-  if (entries_.empty() || entries_.back().kind != Pending::kCall) {
-    return fail_here(DiagnosticCode::kExpectedOperator, token);
+  if (brackets_.empty() || brackets_.back() != Pending::kCall) {
+    return foreign_binary(foreign_comma(), token);
   }
+  if (!reduce_to_bracket()) return Step::kFailed;
   last_ = lexer_.next();
   wants_operand_ = true;
   return Step::kMore;
@@ -228,6 +266,7 @@ FormulaParser::Step FormulaParser::close(const Token& token) {
   last_ = lexer_.next();
   const Entry entry = entries_.back();
   entries_.pop_back();
+  brackets_.pop_back();
   if (entry.kind == Pending::kParen) {
     const auto operand = operands_.size() - 1;
     if (!extents_.empty() && extents_.back().operand == operand) extents_.pop_back();
@@ -271,6 +310,9 @@ bool FormulaParser::push(const Entry& entry) {
     return false;
   }
   entries_.push_back(entry);
+  if (entry.kind == Pending::kParen || entry.kind == Pending::kCall) {
+    brackets_.push_back(entry.kind);
+  }
   return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include "compiler/base/diagnostic.h"
 #include "compiler/syntax/ast.h"
+#include "compiler/syntax/foreign_spelling.h"
 #include "compiler/syntax/lexer.h"
 
 namespace parallax::compiler {
@@ -49,8 +50,10 @@ class FormulaParser {
   Step quantifier(const Token& open);
   bool is_word_quantifier(const Token& name) const;
   Step word_quantifier(const Token& word);
+  std::optional<Step> foreign_prefix(const Token& word);
   Step after_operand(Period period);
   Step binary(const Token& token);
+  Step foreign_binary(const ForeignSpelling& spelling, Token token);
   Step comma(const Token& token);
   Step close(const Token& token);
   Step end_of_formula(const Token& token, Period period);
@@ -72,8 +75,9 @@ class FormulaParser {
   base::DiagnosticSink& sink_;
   std::vector<Entry> entries_;
   std::vector<Operand> operands_;
-  std::vector<Extent> extents_;  // of operands in parentheses alone, by operand
-  Token last_;                   // the token consumed last
+  std::vector<Pending> brackets_;  // those of entries_ that are brackets
+  std::vector<Extent> extents_;    // of operands in parentheses alone, by operand
+  Token last_;                     // the token consumed last
   bool wants_operand_ = true;
   bool skip_to_period_ = true;  // after a failure
 };

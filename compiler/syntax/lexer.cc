@@ -6,6 +6,7 @@
 #include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/utf8.h"
+#include "compiler/syntax/foreign_spelling.h"
 
 namespace parallax::compiler {
 namespace {
@@ -77,6 +78,7 @@ LineKind classify_line(std::string_view line) {
   if (nothing_follows) return keyword ? LineKind::kStatement : LineKind::kFormulaText;
   if (next == end) return LineKind::kFormulaText;
   if (keyword) return LineKind::kStatement;
+  if (foreign_word(word) != nullptr && is_foreign_formula(line)) return LineKind::kFormulaText;
   // Two names side by side are no formula; anything else after the first can only be one.
   return base::is_name_character(line[next]) ? LineKind::kStatement
                                              : LineKind::kFormulaTextOnlyHere;
@@ -112,6 +114,12 @@ bool Lexer::colon_follows() const {
   return i < text_.size() && text_[i] == ':';
 }
 
+bool Lexer::name_follows() const {
+  std::size_t i = token_.end;
+  while (i < text_.size() && is_blank(text_[i])) ++i;
+  return i < text_.size() && i != token_.end && is_name_start(text_[i]);
+}
+
 std::uint32_t Lexer::statement_end() const {
   const auto end = text_.find_first_of(";\n", token_.begin);
   return static_cast<std::uint32_t>(end == std::string_view::npos ? text_.size() : end);
@@ -132,8 +140,7 @@ void Lexer::skip_blanks() {
   while (position_ < text_.size()) {
     const char c = text_[position_];
     if (c == ';') {
-      const auto end = text_.find('\n', position_);
-      position_ = static_cast<std::uint32_t>(end == std::string_view::npos ? text_.size() : end);
+      position_ = line_end();
     } else if (c == '\n') {
       line_start_ = true;
       ++position_;
@@ -204,6 +211,38 @@ bool Lexer::scan_operator() {
   return false;
 }
 
+void Lexer::skip_percent_comment() {
+  report_foreign(foreign_percent(), range(token_), sink_);
+  position_ = line_end();
+  scan();
+}
+
+std::uint32_t Lexer::line_end() const {
+  const auto end = text_.find('\n', position_);
+  return static_cast<std::uint32_t>(end == std::string_view::npos ? text_.size() : end);
+}
+
+bool Lexer::skip_foreign_comment() {
+  const auto* foreign = foreign_sign(text_.substr(position_, 3));
+  if (foreign == nullptr || foreign->kind != ForeignSpelling::Kind::kComment) return false;
+  const auto end = position_ + static_cast<std::uint32_t>(foreign->text.size());
+  report_foreign(*foreign, {file_, position_, end}, sink_);
+  position_ = line_end();
+  return true;
+}
+
+/// `=>` and the like are reported, and become the operators that they are meant for.
+bool Lexer::scan_foreign() {
+  const auto* foreign = foreign_sign(text_.substr(position_, 3));
+  if (foreign == nullptr) return false;
+  const auto end = position_ + static_cast<std::uint32_t>(foreign->text.size());
+  report_foreign(*foreign, {file_, position_, end}, sink_);
+  token_.kind = TokenKind::kOperator;
+  token_.op = foreign->op;
+  position_ = end;
+  return true;
+}
+
 void Lexer::scan() {
   for (;;) {
     skip_blanks();
@@ -230,7 +269,8 @@ void Lexer::scan() {
       }
     }
     line_start_ = false;
-    if (scan_word() || scan_operator()) {
+    if (skip_foreign_comment()) continue;
+    if (scan_word() || scan_foreign() || scan_operator()) {
       token_.end = position_;
       return;
     }

@@ -68,9 +68,13 @@ class Lexer {
   Token next();
   /// Is the token after peek(), on the same line, a colon? (peek() is then a label.)
   bool colon_follows() const;
-  /// Where the line of a kStatementLine token ends: at its comment or line break.
+  /// Where the line of peek() ends: at its comment or line break.
   std::uint32_t statement_end() const;
-  /// Leaves the statement that peek() announced.
+  /// Is the token after peek(), on the same line, a name?
+  bool name_follows() const;
+  /// Leaves the rest of the line, which `%` begins as if it were a comment.
+  void skip_percent_comment();
+  /// Leaves the statement that peek() announced, or the rest of its line.
   void skip_statement();
 
   std::string_view text(const Token& token) const {
@@ -85,8 +89,11 @@ class Lexer {
   void skip_blanks();
   void skip_illegal();
   std::uint32_t parameter_end() const;
+  std::uint32_t line_end() const;
   bool scan_word();
   bool scan_operator();
+  bool scan_foreign();
+  bool skip_foreign_comment();
 
   base::FileId file_;
   std::string_view text_;  // of the file, cut at the end of the range

@@ -1,12 +1,15 @@
 #include "compiler/syntax/parser.h"
 
+#include <algorithm>
 #include <charconv>
 #include <string>
+#include <unordered_set>
 
 #include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/syntax/ast.h"
+#include "compiler/syntax/foreign_spelling.h"
 #include "compiler/syntax/formula_parser.h"
 #include "compiler/syntax/lexer.h"
 
@@ -19,8 +22,14 @@ using base::DiagnosticCode;
 /// the file. What is malformed is reported (E1010, E1011) and left out.
 class StatementParser {
  public:
-  StatementParser(Ast& ast, std::string_view text, Word line, base::DiagnosticSink& sink)
-      : ast_(ast), text_(text.substr(0, line.end)), sink_(sink), position_(line.begin) {
+  /// `misspelt` collects the names of sorts that no sort can have.
+  StatementParser(Ast& ast, std::string_view text, Word line,
+                  std::unordered_set<std::string_view>& misspelt, base::DiagnosticSink& sink)
+      : ast_(ast),
+        text_(text.substr(0, line.end)),
+        misspelt_(misspelt),
+        sink_(sink),
+        position_(line.begin) {
     trim(line.begin);
     statement_.source = {line.begin, end()};
   }
@@ -95,8 +104,11 @@ class StatementParser {
     const auto what =
         found.empty() ? std::string("the end of the line") : "`" + shortened(ast_text(found)) + "`";
     const auto place = found.empty() ? keyword_ : found;
-    sink_.error(DiagnosticCode::kMalformedStatement, ast_.source(place),
-                shortened(ast_text(keyword_)), expected, what);
+    auto error = sink_.error(DiagnosticCode::kMalformedStatement, ast_.source(place),
+                             shortened(ast_text(keyword_)), expected, what);
+    const auto* foreign = foreign_sign(ast_text(found));
+    const bool comment = foreign != nullptr && foreign->kind == ForeignSpelling::Kind::kComment;
+    if (comment || ast_text(found).starts_with('%')) error.fix("begin the comment with `;`");
   }
 
   /// Nothing but a period, which is reported, may follow. True if that is so.
@@ -182,6 +194,7 @@ class StatementParser {
       Item item;
       item.name = name();
       if (item.name.empty()) return malformed("the name of a sort");
+      check_spelling(item.name);
       if (accept(':')) {
         item.parent = name();
         if (item.parent.empty()) return malformed("the sort above");
@@ -189,6 +202,19 @@ class StatementParser {
       add_item(item);
     } while (accept(','));
     finish("`,`, `:` or the end of the line");
+  }
+
+  /// Reported once, here; the sort is declared all the same, so that its uses are understood.
+  void check_spelling(Word sort) {
+    const auto name = ast_text(sort);
+    if (std::all_of(name.begin(), name.end(), base::is_lower)) return;
+    misspelt_.insert(name);
+    auto error = sink_.error(DiagnosticCode::kSortSpelling, ast_.source(sort), shortened(name));
+    std::string right;
+    for (const char c : name) {
+      if (base::is_lower(base::to_lower(c))) right += base::to_lower(c);
+    }
+    if (!right.empty()) error.fix("write `" + shortened(right) + "` wherever the sort is named");
   }
 
   void names(StatementKind kind) {
@@ -249,6 +275,7 @@ class StatementParser {
 
   Ast& ast_;
   std::string_view text_;  // of the file, cut at the end of the line
+  std::unordered_set<std::string_view>& misspelt_;
   base::DiagnosticSink& sink_;
   std::uint32_t position_;
   Word keyword_;
@@ -305,10 +332,16 @@ Ast parse_file(base::FileId file, const base::SourceFiles& files, base::Diagnost
   Ast ast(file, text);
   Lexer lexer(whole(file, files), text, Lexer::Mode::kFile, sink);
   FormulaParser parser(ast, lexer, sink);
+  std::unordered_set<std::string_view> misspelt;  // sorts
   while (lexer.peek().kind != TokenKind::kEnd) {
-    if (lexer.peek().kind == TokenKind::kStatementLine) {
-      StatementParser(ast, text, {lexer.peek().begin, lexer.statement_end()}, sink).parse();
+    const Token& first = lexer.peek();
+    const bool declares = first.kind == TokenKind::kName && first.first_on_line &&
+                          misspelt.contains(lexer.text(first)) && lexer.name_follows();
+    if (first.kind == TokenKind::kStatementLine || declares) {
+      StatementParser(ast, text, {first.begin, lexer.statement_end()}, misspelt, sink).parse();
       lexer.skip_statement();
+    } else if (first.kind == TokenKind::kOperator && first.op == Operator::kModulo) {
+      lexer.skip_percent_comment();
     } else {
       parse_labelled(ast, lexer, parser);
     }

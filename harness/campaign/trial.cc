@@ -111,6 +111,21 @@ base::DiagnosticBuilder report_rejected(const Scenario& scenario, const Campaign
 
 }  // namespace
 
+base::Result<PreparedTrace> prepare_trace(const Scenario& scenario,
+                                          const std::vector<GroundFluent>& fluents,
+                                          const SimulatorInfo& simulator,
+                                          const CampaignTrace& trace, base::DiagnosticSink& sink) {
+  const auto& true_at_start = trace.holds.front();
+  auto start = scenario.mapping->start_cuboid(
+      fluents, std::set<std::string>(true_at_start.begin(), true_at_start.end()), scenario.sampling,
+      scenario.sampling_source, sink);
+  if (!start || !check_settable(scenario, *start, simulator, sink)) return sink.already_reported();
+  auto calls = action_calls(scenario, trace, sink);
+  auto sampler = Sampler::make(*start, scenario.sampling_inset_m, scenario.sampling_source, sink);
+  if (!calls || !sampler) return sink.already_reported();
+  return PreparedTrace{std::move(*start), std::move(*calls), std::move(*sampler)};
+}
+
 TrialBench::TrialBench(const Scenario& scenario, TraceFeed& feed,
                        const SimulatorFactory& make_simulator, const TrialOptions& options,
                        std::function<void(const SampleRecord&)> finished,
@@ -132,7 +147,8 @@ base::Result<bool> TrialBench::start() {
                        info->version);
   }
   simulator_ = *std::move(info);
-  if (!check_against_simulator(scenario_, simulator_, sink_)) return sink_.already_reported();
+  if (!check_against_simulator(scenario_, fluents_, simulator_, sink_))
+    return sink_.already_reported();
   return true;
 }
 
@@ -140,22 +156,13 @@ base::Result<Trial> Trial::prepare(TrialBench& bench, CampaignTrace trace) {
   PARALLAX_REQUIRE(trace.holds.size() == trace.events.size() + 1,
                    "a trace has one state more than it has events");
   const auto& scenario = bench.scenario_;
-  auto& sink = bench.sink_;
-  const auto& true_at_start = trace.holds.front();
-  auto start = scenario.mapping->start_cuboid(
-      bench.fluents_, std::set<std::string>(true_at_start.begin(), true_at_start.end()),
-      scenario.sampling, scenario.sampling_source, sink);
-  if (!start || !check_settable(scenario, *start, bench.simulator_, sink)) {
-    return sink.already_reported();
-  }
-  auto calls = action_calls(scenario, trace, sink);
-  auto sampler = Sampler::make(*start, scenario.sampling_inset_m, scenario.sampling_source, sink);
-  if (!calls || !sampler) return sink.already_reported();
+  auto parts = prepare_trace(scenario, bench.fluents_, bench.simulator_, trace, bench.sink_);
+  if (!parts) return bench.sink_.already_reported();
   const auto key = base::fnv1a64(trace.key);
-  auto plan = std::make_shared<const TracePlan>(
-      TracePlan{std::move(trace), std::move(*calls), std::move(*sampler), bench.options_.seed, key,
-                scenario.limits.max_rejected_starts, may_repeat_losses(bench.simulator_)});
-  return Trial(bench, std::move(plan), std::move(*start));
+  auto plan = std::make_shared<const TracePlan>(TracePlan{
+      std::move(trace), std::move(parts->calls), std::move(parts->sampler), bench.options_.seed,
+      key, scenario.limits.max_rejected_starts, may_repeat_losses(bench.simulator_)});
+  return Trial(bench, std::move(plan), std::move(parts->start));
 }
 
 void Trial::submit_to(std::int64_t last) {

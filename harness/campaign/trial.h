@@ -24,6 +24,19 @@ struct TrialOptions {
   const std::atomic<bool>* stop = nullptr;
 };
 
+/// What a trace is simulated with.
+struct PreparedTrace {
+  StartCuboid start;
+  std::vector<ActionCall> calls;
+  Sampler sampler;
+};
+/// Derives it. Reports what the parts report, and kVariableNotSettable for a start that the
+/// simulator cannot be put into.
+base::Result<PreparedTrace> prepare_trace(const Scenario& scenario,
+                                          const std::vector<GroundFluent>& fluents,
+                                          const SimulatorInfo& simulator,
+                                          const CampaignTrace& trace, base::DiagnosticSink& sink);
+
 /// What the trials of one command share: workers with a simulator each, what that says of itself,
 /// the model's fluents, and the count of losses in a row, which goes on from trace to trace.
 class TrialBench {
@@ -90,8 +103,7 @@ struct TrialSample {
 /// asked for.
 class Trial {
  public:
-  /// Derives start region, sampler and calls from the trace. Reports what these report, and
-  /// kVariableNotSettable for a start that the simulator cannot be put into.
+  /// Reports what prepare_trace reports.
   static base::Result<Trial> prepare(TrialBench& bench, CampaignTrace trace);
 
   /// Samples on record in `journal`, which must outlive the trial, are taken from there instead of

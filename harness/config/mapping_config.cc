@@ -283,8 +283,13 @@ std::string with_positions(const std::string& text, const SymbolPattern& pattern
   std::size_t at = 0;
   for (;;) {
     const auto open = text.find('{', at);
-    const auto close = open == std::string::npos ? open : text.find('}', open);
-    if (close == std::string::npos) return out + text.substr(at);
+    const auto close = text.find('}', at);
+    if (open == std::string::npos && close == std::string::npos) return out + text.substr(at);
+    const auto inner = open == std::string::npos ? open : text.find('{', open + 1);
+    if (open == std::string::npos || close < open || close == std::string::npos || inner < close) {
+      sink.error(base::DiagnosticCode::kUnbalancedBrace, range, open < close ? '{' : '}', text);
+      return out + text.substr(at);
+    }
     const auto name = text.substr(open + 1, close - open - 1);
     const auto& names = pattern.parameters;
     const auto found = std::find(names.begin(), names.end(), name);

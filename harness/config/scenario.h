@@ -113,7 +113,8 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
                                      base::DiagnosticSink& sink);
 
 /// Holds the scenario against the compiled model, before anything is simulated: every ground fluent
-/// needs a mapping of its arity whose region exists and whose range its joint reaches, every ground
+/// needs a mapping of its arity whose region exists, whose range its joint reaches and which
+/// the built-in simulator observes, every ground
 /// event an action whose arguments the world knows. Reports each offending symbol or argument once,
 /// at its value or the `mapping:` or `actions:` key, with the near name as a fix; warns of a
 /// mapping or an action that the model has no use for. A mapping that ignores every fluent is an
@@ -122,9 +123,11 @@ base::Status check_against_model(const Scenario& scenario, const std::vector<std
                                  const std::vector<std::string>& events,
                                  base::DiagnosticSink& sink);
 
-/// The same against what the simulator says of itself: sampled variables must be settable, mapped
-/// variables observable, controllers known. What the simulator does not list is not checked.
-base::Status check_against_simulator(const Scenario& scenario, const SimulatorInfo& info,
-                                     base::DiagnosticSink& sink);
+/// The same against what the simulator says of itself: sampled variables must be settable, the
+/// variables that these fluents are read from observable, controllers known. What the simulator
+/// does not list is not checked.
+base::Status check_against_simulator(const Scenario& scenario,
+                                     const std::vector<GroundFluent>& fluents,
+                                     const SimulatorInfo& info, base::DiagnosticSink& sink);
 
 }  // namespace parallax::harness

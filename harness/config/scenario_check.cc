@@ -7,6 +7,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
 #include "harness/world/arguments.h"
+#include "harness/world/world_layout.h"
 
 namespace parallax::harness {
 
@@ -18,6 +19,20 @@ std::vector<std::string> names_of(const std::vector<Parameter>& parameters) {
   std::vector<std::string> names;
   for (const auto& parameter : parameters) names.push_back(parameter.name);
   return names;
+}
+
+/// The nearest of the variables of the same owner, else of those of the same item, else of all.
+void add_variable_suggestion(base::DiagnosticBuilder& error, const std::string& variable,
+                             const std::vector<std::string>& known) {
+  const auto dot = std::min(variable.find('.'), variable.size());
+  const auto owner = variable.substr(0, dot) + '.', item = variable.substr(dot);
+  std::vector<std::string> same_owner, same_item;
+  for (const auto& name : known) {
+    if (name.starts_with(owner)) same_owner.push_back(name);
+    if (name.ends_with(item)) same_item.push_back(name);
+  }
+  const auto& near = !same_owner.empty() ? same_owner : !same_item.empty() ? same_item : known;
+  add_suggestion(error, variable, near, "variables");
 }
 
 void check_event(const Scenario& scenario, const GroundFluent& event, base::DiagnosticSink& sink) {
@@ -130,6 +145,27 @@ class NameChecker {
   std::set<std::pair<std::string, std::string_view>> reported_;
 };
 
+/// The variables that depend on a fluent's arguments, `{item}.held_by.{arm}`: one message for an
+/// entry, about its first fluent that cannot be read.
+void check_fluent_variables(const Scenario& scenario, const std::vector<GroundFluent>& fluents,
+                            const std::vector<Parameter>& parameters, base::DiagnosticSink& sink) {
+  const auto known = names_of(parameters);
+  const std::set<std::string> index(known.begin(), known.end());
+  std::set<std::string> reported;
+  for (const auto& fluent : fluents) {
+    const auto* binding = scenario.mapping->find(fluent.symbol);
+    if (binding == nullptr || binding->is_ignored() || reported.contains(fluent.symbol)) continue;
+    for (const auto& variable : binding->variables(fluent, scenario.mapping->regions())) {
+      if (index.contains(variable)) continue;
+      reported.insert(fluent.symbol);
+      auto error = sink.error(DiagnosticCode::kUnknownSimVariable, binding->source, variable);
+      error.note(fmt::format("`{}` is read from it", fluent.text));
+      add_variable_suggestion(error, variable, known);
+      break;
+    }
+  }
+}
+
 }  // namespace
 
 base::Status check_variables(const Scenario& scenario, const std::vector<Parameter>& parameters,
@@ -184,6 +220,7 @@ base::Status check_against_model(const Scenario& scenario, const std::vector<std
   }
   if (mapped) check_expected_fluents(scenario, ground, sink);
   if (scenario.simulator.command.empty() && sink.error_count() == errors_before) {
+    check_fluent_variables(scenario, ground, observables(scenario.world), sink);
     check_action_names(scenario, ground_events, sink);
     check_ranges(scenario, ground, sink);
   }
@@ -192,11 +229,13 @@ base::Status check_against_model(const Scenario& scenario, const std::vector<std
   return base::Unit{};
 }
 
-base::Status check_against_simulator(const Scenario& scenario, const SimulatorInfo& info,
-                                     base::DiagnosticSink& sink) {
+base::Status check_against_simulator(const Scenario& scenario,
+                                     const std::vector<GroundFluent>& fluents,
+                                     const SimulatorInfo& info, base::DiagnosticSink& sink) {
   const auto errors_before = sink.error_count();
-  if (!info.parameters.empty() && !check_variables(scenario, info.parameters, sink)) {
-    return sink.already_reported();
+  if (!info.parameters.empty()) {
+    if (!check_variables(scenario, info.parameters, sink)) return sink.already_reported();
+    check_fluent_variables(scenario, fluents, info.parameters, sink);
   }
   const auto& known = info.actions;
   for (const auto& action : scenario.actions) {

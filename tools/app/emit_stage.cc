@@ -11,6 +11,8 @@
 #include "compiler/syntax/lexer.h"
 #include "compiler/syntax/loader.h"
 #include "compiler/syntax/printer.h"
+#include "harness/config/scenario.h"
+#include "tools/app/file_kind.h"
 
 namespace parallax::tools {
 namespace {
@@ -111,6 +113,14 @@ std::string logic_program(const compiler::ModelAst& ast, const compiler::CheckOp
   return program ? std::move(program->text) : std::string();
 }
 
+/// The options as if the model of the scenario had been named.
+ModelOptions model_of(const harness::Scenario& scenario, ModelOptions options) {
+  options.models.clear();
+  for (const auto& model : scenario.models) options.models.push_back(model.text);
+  if (options.horizon < 0) options.horizon = scenario.horizon;
+  return options;
+}
+
 }  // namespace
 
 std::vector<compiler::PassInfo> emit_stages() {
@@ -142,6 +152,19 @@ bool is_front_end_stage(std::string_view stage) {
 base::Result<std::string> front_end_text(std::string_view stage, const ModelOptions& options,
                                          Context& context) {
   auto& sink = context.sink();
+  if (file_kind(options.models.front()) == FileKind::kScenario && options.models.size() == 1) {
+    const auto scenario = harness::load_scenario(options.models.front(), context.files(), sink);
+    if (!scenario) return sink.already_reported();
+    if (scenario->plan || !scenario->constraints.empty()) {
+      context.remark(
+          fmt::format("--emit={} shows the model alone, without plan and constraints", stage));
+    }
+    return front_end_text(stage, model_of(*scenario, options), context);
+  }
+  for (const auto& path : options.models) {
+    (void)expect_kind(path, {FileKind::kModel}, "a model", context);
+  }
+  if (sink.has_errors()) return sink.already_reported();
   std::string text;
   if (stage == "tokens") {
     text = tokens(options, context);

@@ -5,6 +5,7 @@
 
 #include "compiler/base/file_io.h"
 #include "harness/campaign/campaign.h"
+#include "tools/app/file_kind.h"
 #include "tools/app/formula_argument.h"
 #include "tools/app/version.h"
 
@@ -136,6 +137,9 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
                                  const Switches& switches,
                                  const std::optional<std::string>& property = std::nullopt) {
   auto& sink = context.sink();
+  if (!expect_kind(path.string(), {FileKind::kScenario}, "a scenario", context)) {
+    return sink.already_reported();
+  }
   const auto first = context.files().size();  // what was read before is no part of it
   auto scenario = harness::load_scenario(path, context.files(), sink);
   if (!scenario) return sink.already_reported();
@@ -187,6 +191,24 @@ base::Status add_plan(const ModelOptions& options, std::optional<harness::Scenar
   return base::Unit{};
 }
 
+/// Is every file what its place on the command line asks for?
+base::Status expect_kinds(const ModelOptions& options, Context& context) {
+  auto& sink = context.sink();
+  const auto errors_before = sink.error_count();
+  for (const auto& path : options.models) {
+    (void)expect_kind(path, {FileKind::kModel}, "a model", context);
+  }
+  if (!options.plan.empty()) {
+    (void)expect_kind(options.plan, {FileKind::kPlan}, "a plan", context);
+    (void)expect_kind(options.bind, {FileKind::kBinding}, "a binding table", context);
+  }
+  if (!options.regions.empty()) {
+    (void)expect_kind(options.regions, {FileKind::kScenario}, "a scenario", context);
+  }
+  if (sink.error_count() != errors_before) return sink.already_reported();
+  return base::Unit{};
+}
+
 base::Result<compiler::Compilation> compile(const ModelOptions& options, Context& context,
                                             const Switches& switches) {
   const auto& first = options.models.front();
@@ -202,6 +224,7 @@ base::Result<compiler::Compilation> compile(const ModelOptions& options, Context
     if (!loaded) return context.sink().already_reported();
     return std::move(loaded->compilation);
   }
+  if (!expect_kinds(options, context)) return context.sink().already_reported();
   auto input = compile_input(options, context);
   switches.apply(input);
   for (const auto& formula : options.until) {

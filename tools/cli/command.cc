@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <set>
+#include <string_view>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
@@ -67,10 +69,12 @@ void Invocation::print_diagnostics(const std::vector<base::Diagnostic>& diagnost
     if (!diagnostics.empty()) write_error(base::to_json(diagnostics, files()) + '\n');
     return;
   }
+  std::set<std::string_view> said;  // the same advice once
   for (const auto& diagnostic : diagnostics) {
     const bool is_error = base::info(diagnostic.code).severity == base::Severity::kError;
     if (options_.quiet && !is_error) continue;
-    write_error(base::to_text(diagnostic, files(), {color_on(STDERR_FILENO)}));
+    const bool help = diagnostic.fix.empty() && said.insert(base::help_of(diagnostic)).second;
+    write_error(base::to_text(diagnostic, files(), {color_on(STDERR_FILENO), help}));
   }
   const auto rest = [](std::size_t count, const char* what) {
     if (count <= base::DiagnosticSink::kUsualLimit) return;

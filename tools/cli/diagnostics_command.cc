@@ -7,8 +7,9 @@ namespace {
 std::string registry_page() {
   std::string out =
       "# Diagnostics\n\n"
-      "Every error and warning has a code that is never reused. This page is made by "
-      "`tools/update_docs`.\n\n"
+      "Every error and warning has a code that is never reused. What to do is printed behind the "
+      "message as `help:`, once\nfor several messages, unless a `fix:` says it for the place. This "
+      "page is made by `tools/update_docs`.\n\n"
       "| code | severity | text | what to do |\n|---|---|---|---|\n";
   const auto cell = [](std::string_view text) {
     std::string escaped;

@@ -9,6 +9,7 @@
 #include "harness/draw/action_recorder.h"
 #include "harness/draw/scene_svg.h"
 #include "harness/robot/ode_simulator.h"
+#include "tools/app/file_kind.h"
 #include "tools/app/recorded_scenario.h"
 #include "tools/cli/command.h"
 #include "tools/cli/shared_options.h"
@@ -82,6 +83,7 @@ int draw_start(const DrawOptions& options, Invocation& invocation) {
     sink.error_about(DiagnosticCode::kUsage, "", "--sample and --scenario are for folders of runs");
     return 0;
   }
+  if (!expect_kind(options.what, {FileKind::kScenario}, "a scenario", invocation)) return 0;
   const auto scenario = harness::load_scenario(options.what, invocation.files(), sink);
   if (!scenario) return 0;
   if (scenario->world.bodies.empty()) {

@@ -11,6 +11,7 @@
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "compiler/syntax/formatter.h"
+#include "tools/app/file_kind.h"
 #include "tools/cli/command.h"
 
 namespace parallax::tools {
@@ -58,6 +59,7 @@ void write_back(const std::string& path, const std::string& text, Invocation& in
 /// True if the file was, or would be, changed.
 bool format_one(const std::string& path, const FmtOptions& options, Invocation& invocation) {
   const bool standard = path == "-";
+  if (!standard && !expect_kind(path, {FileKind::kModel}, "a model", invocation)) return false;
   const auto file = standard ? read_standard_input(invocation)
                              : base::load_text(path, invocation.files(), invocation.sink());
   if (!file) return false;

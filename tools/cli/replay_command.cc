@@ -5,6 +5,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/replay.h"
 #include "harness/report/report.h"
+#include "tools/app/file_kind.h"
 #include "tools/app/recorded_scenario.h"
 #include "tools/app/simulator_factory.h"
 #include "tools/cli/command.h"
@@ -23,6 +24,9 @@ int replay(const ReplayOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto id = parse_sample_option(options.sample, sink);
   if (!id) return 0;
+  if (!expect_kind(options.run.folder, {FileKind::kRun}, "the folder of a run", invocation)) {
+    return 0;
+  }
   const auto run = harness::read_recorded_run(options.run.folder, *id, invocation.files(), sink);
   if (!run) return 0;
   const auto loaded =

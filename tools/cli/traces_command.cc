@@ -32,6 +32,16 @@ struct TracesOptions {
   CertifyOption certify;
 };
 
+/// Where a list that is complete and empty leads to.
+void point_to_explanation(const TracesOptions& options, const Invocation& invocation) {
+  std::string command = "parallax explain";
+  for (const auto& model : options.model.models) command += " " + model;
+  if (options.model.horizon >= 0) command += fmt::format(" --horizon {}", options.model.horizon);
+  for (const auto& formula : options.model.until)
+    command += fmt::format(" --until \"{}\"", formula);
+  invocation.remark(fmt::format("no trace: `{}` says which axioms exclude each other", command));
+}
+
 /// Says what is known of the rest: complete, up to the bound, or stopped by the limit.
 void close_list(const TracesOptions& options, const compiler::CompiledModel& model,
                 const TraceWriter& writer, runtime::ListFormat* listing, const Ending& ending,
@@ -44,6 +54,9 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
   for (const auto& bound : ending.bounds) invocation.remark(bound);
   const auto fields = certifier.fields();
   const bool complete = ending.complete && !certifier.refuted();
+  if (complete && writer.count() == 0 && options.search.from == 1) {
+    point_to_explanation(options, invocation);
+  }
   const auto timing = fmt::format("\"timing\":{{\"wall_s\":{:.3f}}}", wall_s);
   if (invocation.options().json) {
     const auto list = options.count ? "" : fmt::format("\"list\":[{}],", writer.list());
@@ -84,6 +97,7 @@ int count_only(const TracesOptions& options, const compiler::CompiledModel& mode
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   if (!ending.complete) invocation.remark("stopped before the end: there may be more traces");
+  if (ending.complete && counted->number == "0") point_to_explanation(options, invocation);
   if (invocation.options().json) {
     invocation.document(
         fmt::format("{{\"status\":\"ok\",\"traces\":{},\"complete\":{},\"exploration\":\"{}\","

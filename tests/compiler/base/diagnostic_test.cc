@@ -138,7 +138,24 @@ TEST_CASE("printer: columns count code points and a tab is one column") {
   CHECK(to_text(sink.sorted()[0], text.files, {}) ==
         "dir/a.e:2:6: error[E2001]: no sort `X`\n"
         "    2 |  f\xC3\xA4r X\n"
-        "      |      ^\n");
+        "      |      ^\n"
+        "help: Declare it with `sort`, or correct the name.\n");
+}
+
+TEST_CASE(
+    "printer: the advice of the registry, unless there is better, and only if it is asked for") {
+  Text text;
+  DiagnosticSink sink;
+  sink.error(DiagnosticCode::kUnknownSort, text.at(17, 18), "X").help("Ask somebody.");
+  const auto diagnostic = sink.sorted()[0];
+  const auto ending = [&](const DiagnosticStyle& style) {
+    const auto out = to_text(diagnostic, text.files, style);
+    return out.substr(out.find("^\n") + 2);
+  };
+  CHECK(ending({}) == "help: Ask somebody.\n");
+  CHECK(ending({.help = false}).empty());
+  const auto parsed = nlohmann::json::parse(to_json(sink.sorted(), text.files));
+  CHECK(parsed[0]["help"] == "Ask somebody.");
 }
 
 TEST_CASE("printer: control bytes, invalid bytes and direction marks are made visible") {

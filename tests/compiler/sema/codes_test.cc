@@ -30,7 +30,7 @@ std::vector<Case> cases() {
   const std::string world =
       "range time 0 2\nrange offset 1 1\nsort a\na A\nfluent F(a)\nevent E()\npredicate P(a)\n";
   return {
-      {"E1001", "P(A) # Q(A).\n"},
+      {"E1001", "P(A) $ Q(A).\n"},
       {"E1002", "range time 0 99999999999999999999\n"},
       {"E1003", "P(A) & .\n"},
       {"E1004", "P(A) P(A).\n"},
@@ -42,6 +42,7 @@ std::vector<Case> cases() {
       {"E1010", "range time\n"},
       {"E1011", "sort a.\n"},
       {"E1012", "sort Agent\n"},
+      {"E1020", "P(A) => P(A).\n"},
       {"E1013", "[] P().\n"},
       {"E1014", "load nowhere/nothing.e\n"},
       {"E1017", "sort a\na 3\n"},

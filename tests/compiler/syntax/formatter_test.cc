@@ -102,6 +102,11 @@ TEST_CASE("formatter: long formulas are broken at their connectives") {
   const std::string atom = "HoldsAt(VeryLongFluentName(agent1,object2),time)";
   CHECK(formatted("[agent1,object2,time] " + atom + " & " + atom + " -> " + atom + ".") ==
         "[agent1,object2,time]\n  " + atom + " &\n  " + atom + " ->\n    " + atom + ".\n");
+  // A negation stays with what it denies, and in front of a quantifier with that.
+  CHECK(formatted("[time] !" + atom + " & " + atom + " -> " + atom + ".") ==
+        "[time]\n  !" + atom + " &\n  " + atom + " ->\n    " + atom + ".\n");
+  CHECK(formatted("[time] !{agent1} " + atom + " & " + atom + ".") ==
+        "[time] !{agent1}\n  " + atom + " &\n  " + atom + ".\n");
   CHECK(formatted(atom + " | " + atom + " & " + atom + ".") ==
         atom + " |\n  " + atom + " &\n    " + atom + ".\n");
   const auto nested = formatted("L: [time] (" + atom + " | " + atom + ") & {x} (" + atom + " | (" +

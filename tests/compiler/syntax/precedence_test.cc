@@ -98,8 +98,8 @@ TEST_CASE("every malformed formula has its own message") {
   CHECK(shape("A() &") == "E1003");
   CHECK(shape("A() & . ") == "E1003");
   CHECK(shape("A() B()") == "E1004");
-  CHECK(shape("(A(), B())") == "E1004");
-  CHECK(shape("A(), B()") == "E1004");
+  CHECK(shape("(A(), B())") == "E1020");
+  CHECK(shape("A(), B()") == "E1020");
   CHECK(shape("a : b") == "E1004");
   CHECK(shape("(A()") == "E1005");
   CHECK(shape("F(a") == "E1005");

@@ -158,6 +158,44 @@ TEST_CASE("the scenario is held against the ground model") {
   }
 }
 
+TEST_CASE("variables that depend on a fluent's arguments must be observed, each of them") {
+  Workspace workspace;
+  const auto text = replaced(kScenario, "Holding(): {flag: box.held}",
+                             "\"Holding(item)\": {flag: \"{item}.hold\"}");
+  const auto scenario = workspace.load(text);
+  REQUIRE(scenario.has_value());
+  const std::vector<std::string> events = {"Go(r1)", "PickUp()", "Place(r1)"};
+  const std::vector<std::string> fluents = {"BoxIn(r1)", "Holding(box)", "Holding(cup)",
+                                            "RobotIn(r1)"};
+  SUBCASE("by the built-in simulator") {
+    CHECK_FALSE(check_against_model(*scenario, fluents, events, workspace.sink).has_value());
+    const auto reports = workspace.reports();
+    REQUIRE(reports.size() == 1);  // of several fluents of an entry the first
+    CHECK(reports[0] ==
+          "E5115 at 13:4: the simulator has no variable `box.hold` fix: replace "
+          "`box.hold` with `box.held`");
+  }
+  SUBCASE("a body that does not exist") {
+    const auto right = workspace.load(replaced(text, "{item}.hold", "{item}.held"));
+    REQUIRE(right.has_value());
+    CHECK_FALSE(check_against_model(*right, fluents, events, workspace.sink).has_value());
+    const auto reports = workspace.reports();
+    REQUIRE(reports.size() == 1);
+    CHECK(reports[0].find("E5115 at 13:4: the simulator has no variable `cup.held`") == 0);
+  }
+  SUBCASE("by another simulator, as far as it says what it observes") {
+    SimulatorInfo info{"other", "1", "bitwise", true, {}, {}, 0.01};
+    std::vector<GroundFluent> ground;
+    for (const auto& fluent : fluents) ground.push_back(ground_fluent(fluent));
+    CHECK(check_against_simulator(*scenario, ground, info, workspace.sink).has_value());
+    for (const auto* name : {"box.held", "box.x", "box.y", "box.yaw", "robot.x"}) {
+      info.parameters.push_back({name, "1", true});
+    }
+    CHECK_FALSE(check_against_simulator(*scenario, ground, info, workspace.sink).has_value());
+    CHECK(workspace.reports().size() == 1);
+  }
+}
+
 TEST_CASE("a scenario in which no fluent of the model is compared is refused at its mapping") {
   Workspace workspace;
   auto text = replaced(kScenario, "Holding(): {flag: box.held}", "Holding(): ignored");
@@ -177,20 +215,20 @@ TEST_CASE("the scenario is held against what the simulator says of itself") {
   const auto scenario = workspace.load(std::string(kScenario) + "simulator: {command: [other]}\n");
   REQUIRE(scenario.has_value());
   SimulatorInfo info{"other", "1", "bitwise", true, {}, {}, 0.01};
-  CHECK(check_against_simulator(*scenario, info, workspace.sink).has_value());  // says nothing
+  CHECK(check_against_simulator(*scenario, {}, info, workspace.sink).has_value());  // says nothing
   info.parameters = {{"box.x", "m", true},
                      {"box.held", "1", false},
                      {"robot.x", "m", true},
                      {"box.y", "m", true},
                      {"box.yaw", "rad", false}};
   info.actions = {"going", "pickingup", "placing"};
-  CHECK_FALSE(check_against_simulator(*scenario, info, workspace.sink).has_value());
+  CHECK_FALSE(check_against_simulator(*scenario, {}, info, workspace.sink).has_value());
   const auto first = workspace.reports();
   REQUIRE(first.size() == 1);
   CHECK(first[0] == "E5116 at 18:1: the simulator cannot start with a chosen `box.yaw`");
   info.parameters.back().settable = true;
   workspace.sink = base::DiagnosticSink();
-  CHECK_FALSE(check_against_simulator(*scenario, info, workspace.sink).has_value());
+  CHECK_FALSE(check_against_simulator(*scenario, {}, info, workspace.sink).has_value());
   const auto second = workspace.reports();
   REQUIRE(second.size() == 1);
   CHECK(second[0].find("E5120 at 16:3: there is no controller `picking-up`") == 0);

@@ -1,0 +1,134 @@
+#include "tools/app/file_kind.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "harness/campaign/journal.h"
+
+namespace parallax::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Ending {
+  std::string_view text;
+  FileKind kind;
+};
+constexpr std::array<Ending, 10> kEndings = {{{".e", FileKind::kModel},
+                                              {".yaml", FileKind::kScenario},
+                                              {".yml", FileKind::kScenario},
+                                              {".lisp", FileKind::kPlan},
+                                              {".bind", FileKind::kBinding},
+                                              {".cnf", FileKind::kCompiled},
+                                              {".jsonl", FileKind::kTraces},
+                                              {".ndjson", FileKind::kTraces},
+                                              {".itf.json", FileKind::kTraces},
+                                              {".drat", FileKind::kProof}}};
+
+/// The first bytes of a regular file; a FIFO would wait for somebody to write.
+std::string beginning_of(const std::string& path) {
+  constexpr std::streamsize kBytes = 8192;
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return {};
+  std::string text(kBytes, '\0');
+  std::ifstream in(path, std::ios::binary);
+  in.read(text.data(), kBytes);
+  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
+  return text;
+}
+
+std::string_view what_it_is(FileKind kind) {
+  switch (kind) {
+    case FileKind::kUnknown:
+      return "a file";
+    case FileKind::kModel:
+      return "a model";
+    case FileKind::kScenario:
+      return "a scenario";
+    case FileKind::kManifest:
+      return "a manifest of cases";
+    case FileKind::kPlan:
+      return "a plan";
+    case FileKind::kBinding:
+      return "a binding table";
+    case FileKind::kCompiled:
+      return "a compiled model";
+    case FileKind::kTraces:
+      return "a list of traces";
+    case FileKind::kProof:
+      return "a proof";
+    case FileKind::kRun:
+      return "the folder of a run";
+    case FileKind::kBinary:
+      return "binary data";
+  }
+  return "";
+}
+
+/// Which command takes it.
+std::string what_takes(FileKind kind, const std::string& path) {
+  const auto with = [&](const char* pattern) {
+    return "Try " + fmt::format(fmt::runtime(pattern), path) + '.';
+  };
+  switch (kind) {
+    case FileKind::kModel:
+      return with("`parallax traces {0}` or `parallax check {0}`");
+    case FileKind::kScenario:
+      return with("`parallax run {0}`, `parallax traces {0}` or `parallax check {0}`") +
+             " A scenario stands alone.";
+    case FileKind::kManifest:
+      return with("`parallax suite {}`");
+    case FileKind::kPlan:
+      return with("`parallax traces MODEL.e --plan {} --bind TABLE.bind`") +
+             " A scenario names its plan with `plan:`.";
+    case FileKind::kBinding:
+      return with("`parallax traces MODEL.e --plan PLAN.lisp --bind {}`") +
+             " A scenario names its table with `bind:`.";
+    case FileKind::kCompiled:
+      return with("`parallax traces {0}` or `parallax explain {0}`");
+    case FileKind::kTraces:
+      return with("`parallax traces MODEL.e --replay {}`");
+    case FileKind::kProof:
+      return "It belongs to the list of traces that `parallax traces --certify` printed with it.";
+    case FileKind::kRun:
+      return with("`parallax replay {0}`, `parallax explain {0}` or `parallax draw {0}`");
+    case FileKind::kUnknown:
+    case FileKind::kBinary:
+      break;
+  }
+  return "No command reads it; name the text that it was made from.";
+}
+
+}  // namespace
+
+FileKind file_kind(const std::string& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    const bool has_journal = fs::exists(fs::path(path) / harness::kJournalName, error);
+    return has_journal ? FileKind::kRun : FileKind::kUnknown;
+  }
+  const auto begin = beginning_of(path);
+  if (begin.find('\0') != std::string::npos) return FileKind::kBinary;
+  const auto found = std::find_if(kEndings.begin(), kEndings.end(), [&](const Ending& ending) {
+    return path.ends_with(ending.text);
+  });
+  if (found == kEndings.end()) return FileKind::kUnknown;
+  const bool has_cases = begin.starts_with("cases:") || begin.find("\ncases:") != std::string::npos;
+  return found->kind == FileKind::kScenario && has_cases ? FileKind::kManifest : found->kind;
+}
+
+base::Status expect_kind(const std::string& path, std::initializer_list<FileKind> kinds,
+                         std::string_view wanted, Context& context) {
+  const auto kind = file_kind(path);
+  const bool fits =
+      kind == FileKind::kUnknown || std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+  if (fits) return base::Unit{};
+  return context.sink()
+      .error_about(base::DiagnosticCode::kWrongKindOfFile, path, what_it_is(kind), wanted)
+      .help(what_takes(kind, path));
+}
+
+}  // namespace parallax::tools
