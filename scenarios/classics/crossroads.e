@@ -26,10 +26,9 @@ event Turn(road)
 [road,time] HoldsAt(Go(road),time) -> Initiates(Turn(road),Stop(road),time).
 [road,time] HoldsAt(Go(road),time) -> Terminates(Turn(road),Go(road),time).
 
-[road1,road2,time]
-HoldsAt(Go(road1),time) & HoldsAt(Go(road2),time) -> road1=road2.
+[road1,road2,time] HoldsAt(Go(road1),time) & HoldsAt(Go(road2),time) -> road1=road2.
 
 [road,time1,time2]
-Happens(Turn(road),time1) & Happens(Turn(road),time2) & time1<time2 -> time2-time1>=2.
+  Happens(Turn(road),time1) & Happens(Turn(road),time2) & time1<time2 -> time2-time1>=2.
 
 [road] HoldsAt(Stop(road),0).

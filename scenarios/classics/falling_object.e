@@ -21,13 +21,13 @@ event Land()
 
 [time] {height} HoldsAt(Height(height),time).
 [time,height1,height2]
-HoldsAt(Height(height1),time) & HoldsAt(Height(height2),time) -> height1=height2.
+  HoldsAt(Height(height1),time) & HoldsAt(Height(height2),time) -> height1=height2.
 
 [time] Initiates(Push(),Falling(),time).
 [time,height] Releases(Push(),Height(height),time).
 [time,offset,height1,height2]
-HoldsAt(Height(height1),time) & height2=height1-offset*offset ->
-Trajectory(Falling(),time,Height(height2),offset).
+  HoldsAt(Height(height1),time) & height2=height1-offset*offset ->
+    Trajectory(Falling(),time,Height(height2),offset).
 
 [time] HoldsAt(Falling(),time) & HoldsAt(Height(0),time) -> Happens(Land(),time).
 [time] Terminates(Land(),Falling(),time).

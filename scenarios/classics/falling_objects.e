@@ -30,24 +30,25 @@ event Land(fruit)
 
 [time,fruit] {height} HoldsAt(Height(fruit,height),time).
 [time,fruit,height1,height2]
-HoldsAt(Height(fruit,height1),time) & HoldsAt(Height(fruit,height2),time) -> height1=height2.
+  HoldsAt(Height(fruit,height1),time) & HoldsAt(Height(fruit,height2),time) -> height1=height2.
 
 ; What does not fall stays where it is, also in the moment in which it is let go or lands.
 [time,fruit,height]
-!HoldsAt(Falling(fruit),time) & HoldsAt(Height(fruit,height),time) &
-!Happens(LetGo(fruit),time) ->
-HoldsAt(Height(fruit,height),time+1).
+  !HoldsAt(Falling(fruit),time) &
+  HoldsAt(Height(fruit,height),time) &
+  !Happens(LetGo(fruit),time) ->
+    HoldsAt(Height(fruit,height),time+1).
 [time,fruit,height]
-Happens(Land(fruit),time) & HoldsAt(Height(fruit,height),time) ->
-HoldsAt(Height(fruit,height),time+1).
+  Happens(Land(fruit),time) & HoldsAt(Height(fruit,height),time) ->
+    HoldsAt(Height(fruit,height),time+1).
 
 [time,fruit] Initiates(LetGo(fruit),Falling(fruit),time).
 [time,fruit,offset,height1,height2]
-HoldsAt(Height(fruit,height1),time) & height2=height1-offset*offset ->
-Trajectory(Falling(fruit),time,Height(fruit,height2),offset).
+  HoldsAt(Height(fruit,height1),time) & height2=height1-offset*offset ->
+    Trajectory(Falling(fruit),time,Height(fruit,height2),offset).
 
 [time,fruit]
-HoldsAt(Falling(fruit),time) & HoldsAt(Height(fruit,0),time) -> Happens(Land(fruit),time).
+  HoldsAt(Falling(fruit),time) & HoldsAt(Height(fruit,0),time) -> Happens(Land(fruit),time).
 [time,fruit] Terminates(Land(fruit),Falling(fruit),time).
 
 [fruit,height] HoldsAt(Height(fruit,height),0) <-> height=Start(fruit).

@@ -51,48 +51,51 @@ predicate Plan(agent,thing,place,time)
 ; The world: a stowed thing is where it was put.
 [agent,thing,place,time] Initiates(Stow(agent,thing,place),In(thing,place),time).
 [agent,thing,place1,place2,time]
-place1!=place2 -> Terminates(Stow(agent,thing,place1),In(thing,place2),time).
+  place1!=place2 -> Terminates(Stow(agent,thing,place1),In(thing,place2),time).
 
 ; Who is present sees where a thing is put, and sees who else sees it.
 [agent1,agent2,thing,place,belief,time]
-belief=Located(thing,place) & HoldsAt(Present(agent2),time) ->
-Initiates(Stow(agent1,thing,place),Believes(agent2,belief),time).
+  belief=Located(thing,place) & HoldsAt(Present(agent2),time) ->
+    Initiates(Stow(agent1,thing,place),Believes(agent2,belief),time).
 [agent1,agent2,thing,place1,place2,belief,time]
-belief=Located(thing,place2) & place1!=place2 & HoldsAt(Present(agent2),time) ->
-Terminates(Stow(agent1,thing,place1),Believes(agent2,belief),time).
+  belief=Located(thing,place2) & place1!=place2 & HoldsAt(Present(agent2),time) ->
+    Terminates(Stow(agent1,thing,place1),Believes(agent2,belief),time).
 [agent,agent1,agent2,thing,place,attitude,time]
-attitude=Thinks(agent2,Located(thing,place)) &
-HoldsAt(Present(agent1),time) & HoldsAt(Present(agent2),time) ->
-Initiates(Stow(agent,thing,place),Knows(agent1,attitude),time).
+  attitude=Thinks(agent2,Located(thing,place)) &
+  HoldsAt(Present(agent1),time) &
+  HoldsAt(Present(agent2),time) ->
+    Initiates(Stow(agent,thing,place),Knows(agent1,attitude),time).
 [agent,agent1,agent2,thing,place1,place2,attitude,time]
-attitude=Thinks(agent2,Located(thing,place2)) & place1!=place2 &
-HoldsAt(Present(agent1),time) & HoldsAt(Present(agent2),time) ->
-Terminates(Stow(agent,thing,place1),Knows(agent1,attitude),time).
+  attitude=Thinks(agent2,Located(thing,place2)) &
+  place1!=place2 &
+  HoldsAt(Present(agent1),time) &
+  HoldsAt(Present(agent2),time) ->
+    Terminates(Stow(agent,thing,place1),Knows(agent1,attitude),time).
 
 ; Looking in the right place ends the wish; looking in a wrong one changes the mind.
 [agent,thing,place,time]
-HoldsAt(In(thing,place),time) -> Initiates(Look(agent,thing,place),Has(agent,thing),time).
+  HoldsAt(In(thing,place),time) -> Initiates(Look(agent,thing,place),Has(agent,thing),time).
 [agent,thing,place,time]
-HoldsAt(In(thing,place),time) -> Terminates(Look(agent,thing,place),In(thing,place),time).
+  HoldsAt(In(thing,place),time) -> Terminates(Look(agent,thing,place),In(thing,place),time).
 [agent,thing,place,time]
-HoldsAt(In(thing,place),time) -> Terminates(Look(agent,thing,place),Wants(agent,thing),time).
+  HoldsAt(In(thing,place),time) -> Terminates(Look(agent,thing,place),Wants(agent,thing),time).
 [agent,thing,place,belief,time]
-belief=Located(thing,place) ->
-Terminates(Look(agent,thing,place),Believes(agent,belief),time).
+  belief=Located(thing,place) -> Terminates(Look(agent,thing,place),Believes(agent,belief),time).
 [agent,thing,place1,place2,belief,time]
-belief=Located(thing,place2) & place1!=place2 & !HoldsAt(In(thing,place1),time) ->
-Initiates(Look(agent,thing,place1),Believes(agent,belief),time).
+  belief=Located(thing,place2) & place1!=place2 & !HoldsAt(In(thing,place1),time) ->
+    Initiates(Look(agent,thing,place1),Believes(agent,belief),time).
 
 ; A plan has one reason only: a wish and a belief, in the room.
 Theta: [agent,thing,place,time]
-HoldsAt(Present(agent),time) & HoldsAt(Wants(agent,thing),time) &
-HoldsAt(Believes(agent,Located(thing,place)),time) ->
-Plan(agent,thing,place,time).
+  HoldsAt(Present(agent),time) &
+  HoldsAt(Wants(agent,thing),time) &
+  HoldsAt(Believes(agent,Located(thing,place)),time) ->
+    Plan(agent,thing,place,time).
 completion Theta Plan
 
 ; What is planned is done.
 Delta: [agent,thing,place,time]
-Plan(agent,thing,place,time) -> Happens(Look(agent,thing,place),time).
+  Plan(agent,thing,place,time) -> Happens(Look(agent,thing,place),time).
 Delta: Happens(Leave(Ann),0).
 Delta: Happens(Stow(Bo,Key,Drawer),1).
 Delta: Happens(Return(Ann),2).
@@ -106,5 +109,4 @@ completion Delta Happens
 [agent,thing] !HoldsAt(Wants(agent,thing),0).
 [agent,belief] HoldsAt(Believes(agent,belief),0) <-> belief=Located(Key,Shelf).
 [agent1,attitude]
-HoldsAt(Knows(agent1,attitude),0) <->
-({agent2} attitude=Thinks(agent2,Located(Key,Shelf))).
+  HoldsAt(Knows(agent1,attitude),0) <-> ({agent2} attitude=Thinks(agent2,Located(Key,Shelf))).

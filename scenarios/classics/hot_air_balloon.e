@@ -24,17 +24,17 @@ event Douse()
 
 [time] {height} HoldsAt(Height(height),time).
 [time,height1,height2]
-HoldsAt(Height(height1),time) & HoldsAt(Height(height2),time) -> height1=height2.
+  HoldsAt(Height(height1),time) & HoldsAt(Height(height2),time) -> height1=height2.
 
 [time] Initiates(Light(),Burning(),time).
 [time] Terminates(Douse(),Burning(),time).
 
 [time,offset,height1,height2]
-HoldsAt(Height(height1),time) & height2=height1+offset ->
-Trajectory(Burning(),time,Height(height2),offset).
+  HoldsAt(Height(height1),time) & height2=height1+offset ->
+    Trajectory(Burning(),time,Height(height2),offset).
 [time,offset,height1,height2]
-HoldsAt(Height(height1),time) & height2=height1-offset ->
-AntiTrajectory(Burning(),time,Height(height2),offset).
+  HoldsAt(Height(height1),time) & height2=height1-offset ->
+    AntiTrajectory(Burning(),time,Height(height2),offset).
 
 !HoldsAt(Burning(),0).
 HoldsAt(Height(0),0).

@@ -23,15 +23,14 @@ event Overflow()
 
 ; The sink has one level at a time.
 [time] {level} HoldsAt(Level(level),time).
-[time,level1,level2]
-HoldsAt(Level(level1),time) & HoldsAt(Level(level2),time) -> level1=level2.
+[time,level1,level2] HoldsAt(Level(level1),time) & HoldsAt(Level(level2),time) -> level1=level2.
 
 ; With the tap open the level is no longer inert: the trajectory says what it is.
 [time] Initiates(Open(),Filling(),time).
 [time,level] Releases(Open(),Level(level),time).
 [time,offset,level1,level2]
-HoldsAt(Level(level1),time) & level2=level1+offset ->
-Trajectory(Filling(),time,Level(level2),offset).
+  HoldsAt(Level(level1),time) & level2=level1+offset ->
+    Trajectory(Filling(),time,Level(level2),offset).
 
 ; At the rim the water runs over, and the level is inert again.
 [time] HoldsAt(Filling(),time) & HoldsAt(Level(3),time) -> Happens(Overflow(),time).

@@ -35,7 +35,7 @@ event Bring(book)
 [book,time] Happens(Bring(book),time) -> !HoldsAt(OnShelf(book),time).
 
 [book,time1]
-Happens(Borrow(book),time1) ->
-({time2} time1<time2 & time2<=time1+Due(book) & Happens(Bring(book),time2)).
+  Happens(Borrow(book),time1) ->
+    ({time2} time1<time2 & time2<=time1+Due(book) & Happens(Bring(book),time2)).
 
 [book] HoldsAt(OnShelf(book),0).

@@ -33,12 +33,12 @@ event Lose(item)
 
 ; The network: one of the two, as neither has another reason.
 Delta: [item,time]
-HoldsAt(Underway(item),time) -> Happens(Deliver(item),time) | Happens(Lose(item),time).
+  HoldsAt(Underway(item),time) -> Happens(Deliver(item),time) | Happens(Lose(item),time).
 
 ; The two ends.
 Delta: [time] Happens(Deliver(Letter),time) -> Happens(Send(Receipt),time+1).
 Delta: [time]
-Happens(Send(Letter),time) & !HoldsAt(Arrived(Receipt),time+4) -> Happens(Send(Letter),time+4).
+  Happens(Send(Letter),time) & !HoldsAt(Arrived(Receipt),time+4) -> Happens(Send(Letter),time+4).
 
 Delta: Happens(Send(Letter),0).
 

@@ -32,13 +32,12 @@ event Light()
 
 ; Causal constraints: what is made to be so brings about the next event at the same timepoint.
 [time]
-Stopped(Pulled(),time) & Initiated(Closed(Feed),time) & Initiated(Closed(Coil),time) ->
-Happens(Pull(),time).
+  Stopped(Pulled(),time) & Initiated(Closed(Feed),time) & Initiated(Closed(Coil),time) ->
+    Happens(Pull(),time).
+[time] Started(Closed(Branch),time) & Initiated(Pulled(),time) -> Happens(Open(Branch),time).
 [time]
-Started(Closed(Branch),time) & Initiated(Pulled(),time) -> Happens(Open(Branch),time).
-[time]
-Stopped(Lit(),time) & Initiated(Closed(Feed),time) & Initiated(Closed(Branch),time) ->
-Happens(Light(),time).
+  Stopped(Lit(),time) & Initiated(Closed(Feed),time) & Initiated(Closed(Branch),time) ->
+    Happens(Light(),time).
 
 [switch] HoldsAt(Closed(switch),0) <-> switch!=Feed.
 !HoldsAt(Pulled(),0).

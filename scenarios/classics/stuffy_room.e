@@ -29,9 +29,9 @@ event Put(box,place)
 ; A box stands in one place, and a place other than the floor bears one box.
 [time,box] {place} HoldsAt(On(box,place),time).
 [time,box,place1,place2]
-HoldsAt(On(box,place1),time) & HoldsAt(On(box,place2),time) -> place1=place2.
+  HoldsAt(On(box,place1),time) & HoldsAt(On(box,place2),time) -> place1=place2.
 [time,box1,box2,place]
-HoldsAt(On(box1,place),time) & HoldsAt(On(box2,place),time) & place!=Floor -> box1=box2.
+  HoldsAt(On(box1,place),time) & HoldsAt(On(box2,place),time) & place!=Floor -> box1=box2.
 
 ; The indirect effects.
 [time,vent] HoldsAt(Blocked(vent),time) <-> ({box} HoldsAt(On(box,vent),time)).

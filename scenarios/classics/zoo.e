@@ -48,29 +48,29 @@ mutex Open, Shut
 ; Every animal is in one yard, and no yard has two large ones.
 [time,animal] {yard} HoldsAt(In(animal,yard),time).
 [time,animal,yard1,yard2]
-HoldsAt(In(animal,yard1),time) & HoldsAt(In(animal,yard2),time) -> yard1=yard2.
+  HoldsAt(In(animal,yard1),time) & HoldsAt(In(animal,yard2),time) -> yard1=yard2.
 [time,large1,large2,yard]
-HoldsAt(In(large1,yard),time) & HoldsAt(In(large2,yard),time) -> large1=large2.
+  HoldsAt(In(large1,yard),time) & HoldsAt(In(large2,yard),time) -> large1=large2.
 
 ; Walking leads to the other side of the gate.
 [animal,gate,yard,time]
-yard=East(gate) & HoldsAt(In(animal,West(gate)),time) ->
-Initiates(Walk(animal,gate),In(animal,yard),time).
+  yard=East(gate) & HoldsAt(In(animal,West(gate)),time) ->
+    Initiates(Walk(animal,gate),In(animal,yard),time).
 [animal,gate,yard,time]
-yard=West(gate) & HoldsAt(In(animal,East(gate)),time) ->
-Initiates(Walk(animal,gate),In(animal,yard),time).
+  yard=West(gate) & HoldsAt(In(animal,East(gate)),time) ->
+    Initiates(Walk(animal,gate),In(animal,yard),time).
 [animal,gate,yard,time]
-HoldsAt(In(animal,yard),time) -> Terminates(Walk(animal,gate),In(animal,yard),time).
+  HoldsAt(In(animal,yard),time) -> Terminates(Walk(animal,gate),In(animal,yard),time).
 
 ; An animal walks through an open gate beside it, alone, and through one gate at a time.
 [animal,gate,time]
-Happens(Walk(animal,gate),time) ->
-HoldsAt(Ajar(gate),time) &
-(HoldsAt(In(animal,West(gate)),time) | HoldsAt(In(animal,East(gate)),time)).
+  Happens(Walk(animal,gate),time) ->
+    HoldsAt(Ajar(gate),time) &
+    (HoldsAt(In(animal,West(gate)),time) | HoldsAt(In(animal,East(gate)),time)).
 [animal1,animal2,gate,time]
-Happens(Walk(animal1,gate),time) & Happens(Walk(animal2,gate),time) -> animal1=animal2.
+  Happens(Walk(animal1,gate),time) & Happens(Walk(animal2,gate),time) -> animal1=animal2.
 [animal,gate1,gate2,time]
-Happens(Walk(animal,gate1),time) & Happens(Walk(animal,gate2),time) -> gate1=gate2.
+  Happens(Walk(animal,gate1),time) & Happens(Walk(animal,gate2),time) -> gate1=gate2.
 
 [gate,time] Initiates(Open(gate),Ajar(gate),time).
 [gate,time] Terminates(Shut(gate),Ajar(gate),time).

@@ -31,47 +31,46 @@ event Put(arm,part,spot)
 
 ; One place for the robot, one for its gaze, one for each part.
 [time] {base} HoldsAt(RobotAt(base),time).
-[base1,base2,time]
-HoldsAt(RobotAt(base1),time) & HoldsAt(RobotAt(base2),time) -> base1=base2.
-[spot1,spot2,time]
-HoldsAt(LookingAt(spot1),time) & HoldsAt(LookingAt(spot2),time) -> spot1=spot2.
-[part,time]
-{spot} HoldsAt(PartAt(part,spot),time) | {arm} HoldsAt(Holding(arm,part),time).
+[base1,base2,time] HoldsAt(RobotAt(base1),time) & HoldsAt(RobotAt(base2),time) -> base1=base2.
+[spot1,spot2,time] HoldsAt(LookingAt(spot1),time) & HoldsAt(LookingAt(spot2),time) -> spot1=spot2.
+[part,time] {spot} HoldsAt(PartAt(part,spot),time) | {arm} HoldsAt(Holding(arm,part),time).
 [part,spot1,spot2,time]
-HoldsAt(PartAt(part,spot1),time) & HoldsAt(PartAt(part,spot2),time) -> spot1=spot2.
-[arm,part,spot,time]
-HoldsAt(Holding(arm,part),time) -> !HoldsAt(PartAt(part,spot),time).
+  HoldsAt(PartAt(part,spot1),time) & HoldsAt(PartAt(part,spot2),time) -> spot1=spot2.
+[arm,part,spot,time] HoldsAt(Holding(arm,part),time) -> !HoldsAt(PartAt(part,spot),time).
 
 [base,time] Initiates(Go(base),RobotAt(base),time).
 [base1,base2,time] base1!=base2 -> Terminates(Go(base1),RobotAt(base2),time).
 [base,spot,time] !HoldsAt(RobotAt(base),time) -> Terminates(Go(base),LookingAt(spot),time).
 
 [base,spot,time]
-HoldsAt(RobotAt(base),time) & Serves(base,spot) ->
-Initiates(LookAt(spot),LookingAt(spot),time).
+  HoldsAt(RobotAt(base),time) & Serves(base,spot) -> Initiates(LookAt(spot),LookingAt(spot),time).
 [base,spot1,spot2,time]
-HoldsAt(RobotAt(base),time) & Serves(base,spot1) & spot1!=spot2 ->
-Terminates(LookAt(spot1),LookingAt(spot2),time).
+  HoldsAt(RobotAt(base),time) & Serves(base,spot1) & spot1!=spot2 ->
+    Terminates(LookAt(spot1),LookingAt(spot2),time).
 
 [part,spot,time]
-HoldsAt(PartAt(part,spot),time) & HoldsAt(LookingAt(spot),time) ->
-Initiates(Detect(part),Perceived(part),time).
+  HoldsAt(PartAt(part,spot),time) & HoldsAt(LookingAt(spot),time) ->
+    Initiates(Detect(part),Perceived(part),time).
 
 [arm,part,base,spot,time]
-HoldsAt(Perceived(part),time) & HoldsAt(PartAt(part,spot),time) &
-HoldsAt(RobotAt(base),time) & Serves(base,spot) ->
-Initiates(PickUp(arm,part),Holding(arm,part),time).
+  HoldsAt(Perceived(part),time) &
+  HoldsAt(PartAt(part,spot),time) &
+  HoldsAt(RobotAt(base),time) &
+  Serves(base,spot) ->
+    Initiates(PickUp(arm,part),Holding(arm,part),time).
 [arm,part,base,spot,time]
-HoldsAt(Perceived(part),time) & HoldsAt(PartAt(part,spot),time) &
-HoldsAt(RobotAt(base),time) & Serves(base,spot) ->
-Terminates(PickUp(arm,part),PartAt(part,spot),time).
+  HoldsAt(Perceived(part),time) &
+  HoldsAt(PartAt(part,spot),time) &
+  HoldsAt(RobotAt(base),time) &
+  Serves(base,spot) ->
+    Terminates(PickUp(arm,part),PartAt(part,spot),time).
 
 [arm,part,spot,base,time]
-HoldsAt(Holding(arm,part),time) & HoldsAt(RobotAt(base),time) & Serves(base,spot) ->
-Initiates(Put(arm,part,spot),PartAt(part,spot),time).
+  HoldsAt(Holding(arm,part),time) & HoldsAt(RobotAt(base),time) & Serves(base,spot) ->
+    Initiates(Put(arm,part,spot),PartAt(part,spot),time).
 [arm,part,spot,base,time]
-HoldsAt(Holding(arm,part),time) & HoldsAt(RobotAt(base),time) & Serves(base,spot) ->
-Terminates(Put(arm,part,spot),Holding(arm,part),time).
+  HoldsAt(Holding(arm,part),time) & HoldsAt(RobotAt(base),time) & Serves(base,spot) ->
+    Terminates(Put(arm,part,spot),Holding(arm,part),time).
 
 [arm,time] Initiates(ParkArm(arm),Parked(arm),time).
 [arm,part,time] Terminates(PickUp(arm,part),Parked(arm),time).

@@ -21,16 +21,17 @@ event Wait()
 noninertial Level
 mutex Press, Wait
 Limit(James)=7.
-Limit(r2) = 0.
+Limit(r2)=0.
 
 [agent,time]
-HoldsAt(On(),time) & !Ab1(agent,time) | level1!=2 <-> {level} level<=Limit( agent )*2-1 &
-  (level % 3 > 0 | -level >= +1/2). ; a comment behind
+  HoldsAt(On(),time) & !Ab1(agent,time) | level1!=2 <->
+    {level} level<=Limit(agent)*2-1 & (level%3>0 | -level>=+1/2). ; a comment behind
 Theta: [time] Ab1(James,time).
-Theta :Ab1(r2,3). Delta: Happens(Press(James),0).
+Theta: Ab1(r2,3).
+Delta: Happens(Press(James),0).
 [agent,time] Initiates(Press(agent),On(),time).
-[level,time,offset] HoldsAt(Level(level),time)&level<9->
-Trajectory(On(),time,Level(level),offset).
+[level,time,offset]
+  HoldsAt(Level(level),time) & level<9 -> Trajectory(On(),time,Level(level),offset).
 3: HoldsAt(On(),2).
 [time] time=0.5 -> 1<2.
 completion Theta Ab1
