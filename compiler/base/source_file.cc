@@ -8,6 +8,11 @@
 #include "compiler/base/utf8.h"
 
 namespace parallax::base {
+namespace {
+
+constexpr std::size_t kBlock = 4096;  // bytes; as many are looked through for one position
+
+}  // namespace
 
 SourceFile::SourceFile(std::string name, std::string text)
     : name_(std::move(name)), text_(std::move(text)) {
@@ -15,6 +20,19 @@ SourceFile::SourceFile(std::string name, std::string text)
   for (std::size_t i = 0; i < text_.size(); ++i) {
     if (text_[i] == '\n') line_starts_.push_back(static_cast<std::uint32_t>(i + 1));
   }
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < text_.size(); i += kBlock) {
+    code_points_before_.push_back(count);
+    count += static_cast<std::uint32_t>(
+        count_code_points(std::string_view(text_).substr(i, kBlock)));
+  }
+  code_points_before_.push_back(count);
+}
+
+std::uint32_t SourceFile::code_points_before(std::uint32_t byte_offset) const {
+  const auto block = byte_offset / kBlock;
+  const auto rest = std::string_view(text_).substr(block * kBlock, byte_offset - block * kBlock);
+  return code_points_before_[block] + static_cast<std::uint32_t>(count_code_points(rest));
 }
 
 std::string_view SourceFile::text(const SourceRange& range) const {
@@ -28,8 +46,8 @@ LineColumn SourceFile::position(std::uint32_t byte_offset) const {
   const auto after = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
   const auto line = static_cast<std::uint32_t>(after - line_starts_.begin());
   const auto begin = line_starts_[line - 1];
-  const auto before = std::string_view(text_).substr(begin, offset - begin);
-  return {line, static_cast<std::uint32_t>(1 + count_code_points(before))};
+  const auto column = 1 + code_points_before(offset) - code_points_before(begin);
+  return {line, column};
 }
 
 std::uint32_t SourceFile::line_begin(std::uint32_t number) const {

@@ -43,9 +43,12 @@ class SourceFile {
   std::uint32_t line_begin(std::uint32_t number) const;
 
  private:
+  std::uint32_t code_points_before(std::uint32_t byte_offset) const;
+
   std::string name_;
   std::string text_;
   std::vector<std::uint32_t> line_starts_;
+  std::vector<std::uint32_t> code_points_before_;  // each block, so that long lines cost nothing
 };
 
 /// All texts of one run. Files stay where they are: a view into a text lives as long as the set.

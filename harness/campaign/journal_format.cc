@@ -4,11 +4,13 @@
 
 #include "compiler/base/json.h"
 #include "harness/campaign/result_json.h"
+#include "harness/simulator/state_json.h"
 
 namespace parallax::harness {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;  // what is read: the library reads ordered objects in quadratic time
+using OrderedJson = nlohmann::ordered_json;  // what is written
 
 constexpr int kJournalFormat = 1;
 
@@ -74,9 +76,9 @@ Enum word_of(const Json& object, const char* name, std::initializer_list<Enum> k
   throw Foreign{fmt::format("`{}` is `{}`", name, word)};
 }
 
-Json json_of(const ActionCall& call) {
+OrderedJson json_of(const ActionCall& call) {
   return {{"controller", call.controller},
-          {"arguments", state_json<Json>(call.arguments)},
+          {"arguments", state_json<OrderedJson>(call.arguments)},
           {"time_limit_s", call.time_limit_s}};
 }
 
@@ -146,7 +148,7 @@ Json parse(std::string_view line) {
   return object;
 }
 
-Json json_of(const JournalHeader& header) {
+OrderedJson json_of(const JournalHeader& header) {
   return {{"journal", kJournalFormat},
           {"scenario", header.scenario},
           {"start_folder", header.start_folder},
@@ -158,11 +160,12 @@ Json json_of(const JournalHeader& header) {
             {"version", header.simulator.version},
             {"determinism", header.simulator.determinism},
             {"seeds", header.simulator.seeds},
-            {"timestep_s", header.simulator.timestep_s}}},
-          {"options", Json::parse(header.options)}};
+            {"timestep_s", header.simulator.timestep_s}}}};
 }
 
-std::optional<HeaderDifference> differing(const Json& a, const Json& b, const std::string& path) {
+template <typename AnyJson>
+std::optional<HeaderDifference> differing(const AnyJson& a, const AnyJson& b,
+                                          const std::string& path) {
   if (a.is_object() && b.is_object()) {
     for (const auto& [name, value] : a.items()) {
       const auto other = b.find(name);
@@ -193,23 +196,27 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
   header.simulator = simulator;
   header.simulator.parameters.clear();
   header.simulator.actions.clear();
-  const Json json = {{"criterion", Json::parse(criterion_json(scenario.criterion))},
-                     {"limits",
-                      {{"max_traces", scenario.limits.max_traces},
-                       {"max_rejected_starts", scenario.limits.max_rejected_starts},
-                       {"max_lost_in_a_row", scenario.limits.max_lost_in_a_row}}},
-                     {"keep_going", options.keep_going}};
+  const OrderedJson json = {{"criterion", OrderedJson::parse(criterion_json(scenario.criterion))},
+                            {"limits",
+                             {{"max_traces", scenario.limits.max_traces},
+                              {"max_rejected_starts", scenario.limits.max_rejected_starts},
+                              {"max_lost_in_a_row", scenario.limits.max_lost_in_a_row}}},
+                            {"keep_going", options.keep_going}};
   header.options = json.dump();
   return header;
 }
 
-std::string encode(const JournalHeader& header) { return base::json_text(json_of(header)); }
+std::string encode(const JournalHeader& header) {
+  auto out = json_of(header);
+  out["options"] = OrderedJson::parse(header.options);
+  return base::json_text(out);
+}
 
 std::string encode(const TraceLine& trace) {
-  Json out = {{"trace", trace.trace}, {"key", trace.key}, {"holds", trace.holds}};
-  auto events = Json::array();
+  OrderedJson out = {{"trace", trace.trace}, {"key", trace.key}, {"holds", trace.holds}};
+  auto events = OrderedJson::array();
   for (std::size_t i = 0; i < trace.events.size(); ++i) {
-    Json event = {{"event", trace.events[i]}, {"source", trace.places[i]}};
+    OrderedJson event = {{"event", trace.events[i]}, {"source", trace.places[i]}};
     event.update(json_of(trace.calls[i]));
     events.push_back(std::move(event));
   }
@@ -218,20 +225,22 @@ std::string encode(const TraceLine& trace) {
 }
 
 std::string encode(const SampleRecord& record) {
-  Json out = {{"trace", record.trace},
-              {"sample", record.sample},
-              {"attempt", record.attempt},
-              {"phase", record.phase == DrawPhase::kConfirm ? "confirm" : "certify"},
-              {"seed", record.seed},
-              {"status", to_string(record.status)},
-              {"rejected", record.rejected},
-              {"retries", record.retries},
-              {"reason", record.reason},
-              {"initial", state_json<Json>(record.initial)}};
-  auto observations = Json::array();
-  for (const auto& state : record.observations) observations.push_back(state_json<Json>(state));
+  OrderedJson out = {{"trace", record.trace},
+                     {"sample", record.sample},
+                     {"attempt", record.attempt},
+                     {"phase", record.phase == DrawPhase::kConfirm ? "confirm" : "certify"},
+                     {"seed", record.seed},
+                     {"status", to_string(record.status)},
+                     {"rejected", record.rejected},
+                     {"retries", record.retries},
+                     {"reason", record.reason},
+                     {"initial", state_json<OrderedJson>(record.initial)}};
+  auto observations = OrderedJson::array();
+  for (const auto& state : record.observations) {
+    observations.push_back(state_json<OrderedJson>(state));
+  }
   out["observations"] = std::move(observations);
-  auto outcomes = Json::array();
+  auto outcomes = OrderedJson::array();
   for (const auto& outcome : record.outcomes) {
     outcomes.push_back({{"status", to_string(outcome.status)},
                         {"reason", outcome.reason},
@@ -283,7 +292,8 @@ std::optional<HeaderDifference> header_difference(const JournalHeader& recorded,
     before.erase(name);
     after.erase(name);
   }
-  return differing(before, after, {});
+  if (auto found = differing(before, after, {})) return found;
+  return differing(Json::parse(recorded.options), Json::parse(now.options), "options");
 }
 
 }  // namespace parallax::harness

@@ -5,6 +5,7 @@
 #include "harness/campaign/result_json.h"
 #include "harness/report/report.h"
 #include "harness/report/text_layout.h"
+#include "harness/simulator/state_json.h"
 
 namespace parallax::harness {
 namespace {

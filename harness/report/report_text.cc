@@ -10,6 +10,7 @@
 #include "harness/confidence/criterion.h"
 #include "harness/report/report.h"
 #include "harness/report/text_layout.h"
+#include "harness/simulator/state_json.h"
 
 namespace parallax::harness {
 namespace {

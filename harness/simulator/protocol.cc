@@ -5,21 +5,12 @@
 #include <utility>
 
 #include "compiler/base/json.h"
+#include "harness/simulator/state_json.h"
 
 namespace parallax::harness {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
-
-OrderedJson value_to_json(const Value& value) {
-  return std::visit([](const auto& plain) { return OrderedJson(plain); }, value);
-}
-
-OrderedJson state_to_json(const State& state) {
-  OrderedJson object = OrderedJson::object();
-  for (const auto& [name, value] : state) object[name] = value_to_json(value);
-  return object;
-}
 
 /// One line. A name that is not UTF-8 becomes one that is, rather than an exception.
 std::string line_of(const OrderedJson& json) { return base::json_text(json); }
@@ -49,7 +40,7 @@ OrderedJson outcome_to_json(const Outcome& outcome) {
   OrderedJson json{{"status", to_string(outcome.status)}};
   if (!outcome.reason.empty()) json["reason"] = outcome.reason;
   json["sim_time"] = outcome.sim_time_s;
-  if (!outcome.margins.empty()) json["margins"] = state_to_json(outcome.margins);
+  if (!outcome.margins.empty()) json["margins"] = state_json<OrderedJson>(outcome.margins);
   return json;
 }
 
@@ -61,12 +52,12 @@ struct RequestEncoder {
   }
   void operator()(const ResetRequest& reset) const {
     json["method"] = "reset";
-    json["params"] = OrderedJson{{"state", state_to_json(reset.state)}, {"seed", reset.seed}};
+    json["params"] = OrderedJson{{"state", state_json<OrderedJson>(reset.state)}, {"seed", reset.seed}};
   }
   void operator()(const ActRequest& act) const {
     json["method"] = "act";
     json["params"] = OrderedJson{{"action", act.action},
-                                 {"args", state_to_json(act.arguments)},
+                                 {"args", state_json<OrderedJson>(act.arguments)},
                                  {"sim_time_limit", act.sim_time_limit_s}};
   }
   void operator()(const ObserveRequest&) const { json["method"] = "observe"; }
@@ -84,7 +75,7 @@ struct ReplyEncoder {
     json["result"] = outcome_to_json(reply.outcome);
   }
   void operator()(const ObserveReply& reply) const {
-    json["result"] = OrderedJson{{"state", state_to_json(reply.state)}};
+    json["result"] = OrderedJson{{"state", state_json<OrderedJson>(reply.state)}};
   }
   void operator()(const CloseReply&) const { json["result"] = OrderedJson{{"status", "ok"}}; }
 };
@@ -335,7 +326,7 @@ std::string first_not_finite(const State& state) {
   return {};
 }
 
-std::string encode_state(const State& state) { return line_of(state_to_json(state)); }
+std::string encode_state(const State& state) { return line_of(state_json<OrderedJson>(state)); }
 
 std::variant<Request, Malformed> decode_request(std::string_view line) {
   if (line.size() > kMaxLineBytes) return malformed("line_too_long", "line longer than 1 MiB");

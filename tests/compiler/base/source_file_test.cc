@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "compiler/base/contract.h"
 #include "compiler/base/id.h"
 
@@ -17,6 +19,23 @@ TEST_CASE("positions: lines and columns are 1-based, columns count code points")
   CHECK(file.position(8) == LineColumn{3, 1});
   CHECK(file.position(9) == LineColumn{4, 1});
   CHECK(file.position(1000) == LineColumn{4, 2});
+}
+
+TEST_CASE("positions on lines of any length count every code point before them") {
+  const std::string pieces[] = {"a", "\xC3\xA4", "\xE2\x82\xAC", "\xF0\x9F\xA4\x96", "\n"};
+  std::string text;
+  std::vector<std::pair<std::uint32_t, LineColumn>> begins;
+  LineColumn here;
+  for (std::uint32_t i = 0; i < 12000; ++i) {
+    begins.emplace_back(static_cast<std::uint32_t>(text.size()), here);
+    const auto& piece = pieces[i % 5000 == 4999 ? 4 : (i * 2654435761U >> 20U) % 4];
+    text += piece;
+    here = piece == "\n" ? LineColumn{here.line + 1, 1} : LineColumn{here.line, here.column + 1};
+  }
+  const SourceFile file("f", text);
+  CHECK(std::all_of(begins.begin(), begins.end(),
+                    [&](const auto& begin) { return file.position(begin.first) == begin.second; }));
+  CHECK(file.position(static_cast<std::uint32_t>(text.size())) == here);
 }
 
 TEST_CASE("lines come without their end, also CRLF, and beyond the last one empty") {

@@ -1,6 +1,7 @@
 #include "harness/simulator/protocol.h"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <array>
 #include <cmath>
@@ -45,6 +46,14 @@ TEST_CASE("a state survives the round trip bit for bit, types included") {
   REQUIRE(std::holds_alternative<State>(back));
   CHECK(std::get<State>(back) == kMixed);
   CHECK(std::signbit(std::get<double>(std::get<State>(back).at("g"))));
+}
+
+TEST_CASE("a state of many variables is written and read in their order") {
+  State wide;
+  for (int i = 0; i < 30000; ++i) wide[fmt::format("v{:05}", 29999 - i)] = 0.5 * i;
+  const auto line = encode_state(wide);
+  CHECK(line.rfind(R"({"v00000":14999.5,"v00001":14999.0,)", 0) == 0);
+  CHECK(std::get<State>(decode_state(line)) == wide);
 }
 
 TEST_CASE("requests survive the round trip on one line") {
