@@ -6,7 +6,7 @@
 #include "compiler/sema/check.h"
 #include "compiler/syntax/loader.h"
 #include "runtime/enumerate/model_enumerator.h"
-#include "tools/app/trace_valuation.h"
+#include "tools/app/trace_check.h"
 
 namespace parallax::test {
 

@@ -8,7 +8,7 @@
 
 #include "compiler/reference/reference_evaluator.h"
 #include "runtime/enumerate/model_enumerator.h"
-#include "tools/app/trace_valuation.h"
+#include "tools/app/trace_check.h"
 
 namespace parallax::test {
 

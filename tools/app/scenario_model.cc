@@ -1,15 +1,24 @@
 #include "tools/app/scenario_model.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
+#include <system_error>
 
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
+#include "compiler/syntax/lexer.h"
 #include "harness/campaign/campaign.h"
+#include "harness/campaign/replay.h"
 #include "tools/app/file_kind.h"
-#include "tools/app/formula_argument.h"
 #include "tools/app/version.h"
 
 namespace parallax::tools {
+
+using base::DiagnosticCode;
+
 namespace {
 
 /// The plan's poses are located with the regions that the simulation is mapped with.
@@ -243,6 +252,13 @@ base::Result<compiler::Compilation> compile(const ModelOptions& options, Context
   return compiler::compile_model(input, context.files(), context.sink());
 }
 
+namespace fs = std::filesystem;
+
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
 }  // namespace
 
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path, Context& context,
@@ -262,6 +278,56 @@ base::Result<compiler::Compilation> compile_models(const ModelOptions& options, 
 base::Result<compiler::Compilation> compile_plain_models(const ModelOptions& options,
                                                          Context& context) {
   return compile(options, context, {false, true});
+}
+
+fs::path scenario_path(const harness::JournalHeader& header) {
+  const fs::path named(header.scenario);
+  if (header.start_folder.empty() || named.is_absolute()) return named;
+  std::error_code error;
+  const fs::path start(header.start_folder);
+  // Where the run was started it is called as it was then.
+  if (fs::equivalent(start, fs::current_path(error), error)) return named;
+  return is_file(start / named) || !is_file(named) ? start / named : named;
+}
+
+base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& options,
+                                                   const harness::JournalHeader& header,
+                                                   ScenarioUse use, Context& context) {
+  auto& sink = context.sink();
+  const bool is_recorded = options.scenario.empty();
+  const auto path = is_recorded ? scenario_path(header) : fs::path(options.scenario);
+  const auto refuse = [&](const std::string& why) {
+    return sink.error_about(DiagnosticCode::kReplayImpossible, options.folder, why);
+  };
+  if (is_recorded && !is_file(path)) {
+    return refuse(fmt::format("there is no scenario `{}`", base::printable(path.string())));
+  }
+  const auto before = sink;
+  auto loaded = use == ScenarioUse::kRun ? load_scenario_model(path, context)
+                                         : load_plain_scenario(path, context);
+  const auto change =
+      loaded ? harness::scenario_change(header, loaded->sources_hash) : std::string();
+  if (loaded && change.empty()) return loaded;
+  if (is_recorded) sink = before;
+  if (!loaded && !is_recorded) return sink.already_reported();
+  if (loaded) return refuse(change);
+  const auto name = base::printable(path.string());
+  return refuse(fmt::format(
+      "the scenario `{}` cannot be loaded any more; `parallax check {}` says why", name, name));
+}
+
+base::Result<base::SourceRange> formula_argument(const std::string& option, const std::string& text,
+                                                 Context& context) {
+  using compiler::Lexer;
+  auto& files = context.files();
+  const auto file = files.add(option, text);
+  const base::SourceRange range{file, 0, static_cast<std::uint32_t>(text.size())};
+  base::DiagnosticSink unread;  // whoever parses the formula reports what is wrong with it
+  const Lexer lexer(range, files[file].text(), Lexer::Mode::kFormulaOnly, unread);
+  if (lexer.peek().kind == compiler::TokenKind::kEnd && unread.error_count() == 0) {
+    return context.sink().error_about(base::DiagnosticCode::kUsage, option, "the formula is empty");
+  }
+  return range;
 }
 
 }  // namespace parallax::tools

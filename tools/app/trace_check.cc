@@ -1,7 +1,7 @@
 #include "tools/app/trace_check.h"
 
 #include "compiler/base/diagnostic_codes.h"
-#include "tools/app/trace_valuation.h"
+#include "tools/app/trace_check.h"
 
 namespace parallax::tools {
 namespace {

@@ -12,7 +12,7 @@
 #include "compiler/syntax/lexer.h"
 #include "compiler/syntax/parser.h"
 #include "compiler/syntax/printer.h"
-#include "tools/app/formula_argument.h"
+#include "tools/app/scenario_model.h"
 
 namespace parallax::tools {
 namespace {

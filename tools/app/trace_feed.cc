@@ -11,7 +11,7 @@
 #include "harness/region/state_mapping.h"
 #include "runtime/explain/contradiction.h"
 #include "runtime/session/solver_session.h"
-#include "tools/app/open_ends.h"
+#include "tools/app/trace_writer.h"
 
 namespace parallax::tools {
 

@@ -7,7 +7,7 @@
 #include "compiler/base/file_io.h"
 #include "runtime/trace/csv_format.h"
 #include "runtime/trace/itf_format.h"
-#include "tools/app/decreasoner_options.h"
+#include "tools/app/trace_listing.h"
 #include "tools/app/version.h"
 
 namespace parallax::tools {

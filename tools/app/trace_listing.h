@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
 #include "compiler/pipeline/compile.h"
+#include "compiler/sema/typed_model.h"
+#include "runtime/trace/decreasoner_format.h"
 #include "runtime/trace/trace_format.h"
 #include "tools/app/model_options.h"
 
@@ -28,5 +31,17 @@ std::unique_ptr<runtime::ListFormat> make_listing(const ModelOptions& model,
 
 /// What standard output gets if a limit ends the process in the middle of the list.
 std::string stopped_text(const std::string& format);
+
+/// What the model's `option` lines and completions say of the old printed form.
+inline runtime::DecreasonerOptions decreasoner_options(const compiler::TypedModel& typed) {
+  runtime::DecreasonerOptions options;
+  options.time_diff = typed.options.time_diff;
+  options.model_diff = typed.options.model_diff;
+  options.show_predicates = typed.options.show_predicates;
+  options.events_completed = std::any_of(
+      typed.completions.begin(), typed.completions.end(),
+      [&](const compiler::Completion& one) { return one.predicate == typed.core.happens; });
+  return options;
+}
 
 }  // namespace parallax::tools

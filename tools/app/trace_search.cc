@@ -6,7 +6,7 @@
 #include "runtime/enumerate/model_enumerator.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/graph/model_traces.h"
-#include "tools/app/open_ends.h"
+#include "tools/app/trace_writer.h"
 
 namespace parallax::tools {
 namespace {

@@ -18,7 +18,7 @@
 #include "runtime/replay/trace_replay.h"
 #include "runtime/trace/trace_reader.h"
 #include "tools/app/scenario_model.h"
-#include "tools/app/trace_valuation.h"
+#include "tools/app/trace_check.h"
 
 namespace parallax::tools {
 namespace {

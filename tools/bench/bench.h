@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -7,7 +8,6 @@
 
 #include "tools/bench/contestants.h"
 #include "tools/bench/measure.h"
-#include "tools/bench/row.h"
 
 namespace parallax::tools {
 
@@ -89,5 +89,20 @@ int print_stages(const std::string& file);
 /// The exit code of a SAT competition program: 10 satisfiable, 20 unsatisfiable; 1 if the file
 /// cannot be read.
 int solve_plainly(const std::string& file);
+
+/// Processor time of this process: other work on the machine does not count.
+class Stopwatch {
+ public:
+  /// Since the last call, or since it was made [ms].
+  double lap_ms() {
+    const auto now = std::clock();
+    const auto lap = now - begin_;
+    begin_ = now;
+    return 1e3 * static_cast<double>(lap) / CLOCKS_PER_SEC;
+  }
+
+ private:
+  std::clock_t begin_ = std::clock();
+};
 
 }  // namespace parallax::tools

@@ -1,7 +1,7 @@
 #include "tools/bench/contestants.h"
 
-#include "tools/bench/answers.h"
 #include "tools/bench/bench.h"
+#include "tools/bench/child_run.h"
 
 namespace parallax::tools {
 namespace {

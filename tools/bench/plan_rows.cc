@@ -12,7 +12,6 @@
 #include "compiler/pipeline/compile.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/bench/bench.h"
-#include "tools/bench/stopwatch.h"
 
 namespace parallax::tools {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "tools/bench/answers.h"
 #include "tools/bench/bench.h"
+#include "tools/bench/child_run.h"
 #include "tools/bench/contestants.h"
 
 namespace parallax::tools {

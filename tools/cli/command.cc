@@ -12,7 +12,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "tools/app/version.h"
-#include "tools/cli/signals.h"
+#include "tools/cli/limits.h"
 
 namespace parallax::tools {
 

@@ -10,10 +10,10 @@
 #include "harness/draw/scene_svg.h"
 #include "harness/robot/ode_simulator.h"
 #include "tools/app/file_kind.h"
-#include "tools/app/recorded_scenario.h"
+#include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
+#include "tools/cli/limits.h"
 #include "tools/cli/shared_options.h"
-#include "tools/cli/signals.h"
 
 namespace parallax::tools {
 namespace {

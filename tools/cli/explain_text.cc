@@ -25,7 +25,7 @@ std::string counted(std::size_t count, const char* what) {
 }
 
 /// `domain.e:14`; empty for what no text says.
-std::string place_text(const compiler::Origin& origin) {
+std::string origin_place(const compiler::Origin& origin) {
   if (origin.place.file.empty()) return {};
   return origin.place.file + ':' + std::to_string(origin.place.begin.line);
 }
@@ -216,7 +216,7 @@ std::string WhyText::line(const WhyStep& step) const {
   const auto head = time ? fmt::format("{:>4}  ", *time) : std::string("      ");
   auto out = fmt::format("{}{}: {}\n", head, state(step.fact), reason(step));
   const auto note = [&](const compiler::Origin& origin, const char* word) {
-    const auto place = place_text(origin);
+    const auto place = origin_place(origin);
     out += fmt::format("          {}{}{}\n", word, place.empty() ? "" : place + "  ",
                        axiom_text(origin));
   };
@@ -291,7 +291,7 @@ std::string contradiction_text(const compiler::CompiledModel& model, std::size_t
                          set.instances_minimal ? "" : "; instances not minimal: stopped");
   for (const auto& axiom : set.axioms) {
     const auto& origin = model.origins[axiom.origin];
-    const auto place = place_text(origin);
+    const auto place = origin_place(origin);
     out += fmt::format("  {}{}\n", place.empty() ? "" : place + "  ", axiom_text(origin));
     const auto& instances = axiom.instances;
     for (std::size_t i = 0; i < instances.size() && i < kShownInstances; ++i) {

@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <new>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
-#include "tools/cli/signals.h"
 
 namespace parallax::tools {
 namespace {
@@ -33,6 +33,14 @@ void write_stopped_text() {
 void on_out_of_memory() {
   std::set_new_handler(nullptr);
   end_for_limit(*g_options, fmt::format("--memory-limit {}", g_options->memory_limit_mb));
+}
+
+std::atomic<bool> g_stop{false};
+std::atomic<int> g_signal{0};
+
+void on_signal(int signal) {
+  if (g_signal.exchange(signal) != 0) _exit(128 + signal);
+  g_stop.store(true);
 }
 
 }  // namespace
@@ -95,6 +103,24 @@ void LimitGuard::watch(const CommonOptions& options) {
   stop_flag().store(true);
   if (done_changed_.wait_for(lock, kGrace, [this] { return done_; })) return;
   end_for_limit(options, fmt::format("--time-limit {}", options.time_limit_s));
+}
+
+std::atomic<bool>& stop_flag() { return g_stop; }
+
+void install_signal_handlers() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  // A simulator that has gone is noticed by its reply, not by a signal.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit is a failed write
+}
+
+int signal_exit_code() {
+  const int signal = g_signal.load();
+  return signal == 0 ? 0 : 128 + signal;
 }
 
 }  // namespace parallax::tools

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <string>
@@ -41,5 +42,12 @@ class StoppedText {
 
 /// Reports the limit in the form that the options ask for and ends the process with 4.
 [[noreturn]] void end_for_limit(const CommonOptions& options, const std::string& limit);
+
+/// Raised by SIGINT, SIGTERM and the time limit; whoever works in a loop looks at it.
+std::atomic<bool>& stop_flag();
+/// Installs the handlers. A second signal ends the program at once.
+void install_signal_handlers();
+/// 130 or 143 after a signal, else 0.
+int signal_exit_code();
 
 }  // namespace parallax::tools

@@ -12,7 +12,6 @@
 #include "tools/cli/command.h"
 #include "tools/cli/command_line.h"
 #include "tools/cli/limits.h"
-#include "tools/cli/signals.h"
 
 namespace parallax::tools {
 namespace {

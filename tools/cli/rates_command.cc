@@ -7,8 +7,8 @@
 #include "tools/app/simulator_factory.h"
 #include "tools/app/trace_feed.h"
 #include "tools/cli/command.h"
+#include "tools/cli/limits.h"
 #include "tools/cli/shared_options.h"
-#include "tools/cli/signals.h"
 
 namespace parallax::tools {
 namespace {
@@ -63,10 +63,7 @@ Command rates_command() {
   command.option("--runs", options->rates.runs, "Simulations of each trace")
       .check(WholeNumber{1, 1'000'000})
       .show_default();
-  command
-      .option("--match", options->match,
-              "What an end state is held against: the trace, or all ends the model admits")
-      .check(OneOf{{"trace", "model"}});
+  add_match_option(command, options->match);
   command.option("--confidence", options->rates.confidence, "Confidence of each interval")
       .check(FiniteNumber{0.5, 0.999999})
       .show_default();

@@ -12,8 +12,8 @@
 #include "tools/app/trace_feed.h"
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
+#include "tools/cli/limits.h"
 #include "tools/cli/shared_options.h"
-#include "tools/cli/signals.h"
 
 namespace parallax::tools {
 namespace {
@@ -172,21 +172,14 @@ Command run_command() {
                "Go on with the next trace after a discrepancy");
   command.option("--criterion", options->criterion, "When a trace has been tried enough")
       .check(OneOf{{"clean-runs", "paper"}});
-  command
-      .option("--match", options->match,
-              "What an end state is held against: the trace, or all ends the model admits")
-      .check(OneOf{{"trace", "model"}});
+  add_match_option(command, options->match);
   command.option("--confidence", options->confidence, "Confidence level C of the claim")
       .check(FiniteNumber{0.5, 0.999999});
   command.option("--epsilon", options->epsilon, "Discrepancy probability to exclude")
       .check(FiniteNumber{1e-6, 0.5});
   command.option("--max-runs", options->max_runs, "Simulations per trace before giving up")
       .check(WholeNumber{1, 1'000'000});
-  command
-      .option("--hits", options->hits,
-              "Where traces end: first (at the first hit of the constraints) or all (at each)")
-      .check(OneOf{{"first", "all"}})
-      .show_default();
+  add_hits_option(command, options->hits);
   command.flag("--split-initial", options->split_initial,
                "Try every initial state, not only every sequence of events");
   return {std::move(command),

@@ -68,6 +68,21 @@ void add_plan_options(OptionTable& command, ModelOptions& options) {
       .show_default();
 }
 
+void add_hits_option(OptionTable& command, std::string& hits) {
+  command
+      .option("--hits", hits,
+              "Where traces end: first (at the first hit of the constraints) or all (at each)")
+      .check(OneOf{{"first", "all"}})
+      .show_default();
+}
+
+void add_match_option(OptionTable& command, std::string& match) {
+  command
+      .option("--match", match,
+              "What an end state is held against: the trace, or all ends the model admits")
+      .check(OneOf{{"trace", "model"}});
+}
+
 void add_search_options(OptionTable& command, SearchOptions& options) {
   command.option("--limit", options.limit, "Stop after this many traces; 0: all")
       .check(NonNegative{})
@@ -86,11 +101,7 @@ void add_search_options(OptionTable& command, SearchOptions& options) {
               "the same, the time is not")
       .check(OneOf{strategy_names()})
       .show_default();
-  command
-      .option("--hits", options.hits,
-              "Where traces end: first (at the first hit of the constraints) or all (at each)")
-      .check(OneOf{{"first", "all"}})
-      .show_default();
+  add_hits_option(command, options.hits);
   command.flag("--split-initial", options.split_initial,
                "List every initial state, not only every sequence of events");
 }

@@ -8,8 +8,8 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/json.h"
 #include "tools/cli/command.h"
-#include "tools/cli/signals.h"
-#include "tools/suite/shard.h"
+#include "tools/cli/limits.h"
+#include "tools/suite/suite_case.h"
 #include "tools/suite/suite_record.h"
 #include "tools/suite/suite_runner.h"
 

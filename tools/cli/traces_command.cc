@@ -6,7 +6,6 @@
 #include "compiler/base/json.h"
 #include "runtime/trace/trace.h"
 #include "tools/app/certify.h"
-#include "tools/app/open_ends.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_listing.h"
 #include "tools/app/trace_search.h"
@@ -15,7 +14,6 @@
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/shared_options.h"
-#include "tools/cli/signals.h"
 
 namespace parallax::tools {
 namespace {

@@ -9,13 +9,13 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/app/certify.h"
-#include "tools/app/open_ends.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_check.h"
 #include "tools/app/trace_feed.h"
+#include "tools/app/trace_writer.h"
 #include "tools/cli/command.h"
+#include "tools/cli/limits.h"
 #include "tools/cli/shared_options.h"
-#include "tools/cli/signals.h"
 
 namespace parallax::tools {
 namespace {

@@ -4,12 +4,53 @@
 #include <string>
 #include <vector>
 
+#include "compiler/compare/fact.h"
 #include "runtime/compare/trace_difference.h"
-#include "tools/diff/attribution.h"
-#include "tools/diff/fact_report.h"
+#include "tools/app/model_options.h"
 #include "tools/diff/revision.h"
 
 namespace parallax::tools {
+
+/// A fact that one revision has and another has not, or one that stands for another.
+struct Edit {
+  std::optional<std::size_t> kept;     // of the revision that has the trace
+  std::optional<std::size_t> refused;  // of the revision that has it not
+};
+
+/// Of all edits the most that are tried out; each costs a compilation.
+inline constexpr std::size_t kMaxTriedEdits = 24;
+
+/// A minimal set of edits such that the revision without the trace has it when these are undone and
+/// all others stay ("sufficient" in the sense of Maoz and Ringert 2018: and no smaller part of the
+/// set is). Found by undoing all and making them again one by one; a variant that is no right
+/// model counts as one without the trace. None if there are more than kMaxTriedEdits.
+std::optional<std::vector<Edit>> responsible_edits(const std::vector<compiler::Fact>& kept,
+                                                   const std::vector<compiler::Fact>& refused,
+                                                   const std::vector<Edit>& edits,
+                                                   const runtime::Trace& trace,
+                                                   const runtime::SharedVocabulary& vocabulary,
+                                                   const ModelOptions& options, Context& context);
+
+/// Two lists of facts and what they have not in common; outlived by the lists.
+struct FactReport {
+  const std::vector<compiler::Fact>& old_facts;
+  const std::vector<compiler::Fact>& new_facts;
+  compiler::FactDifference difference;
+};
+FactReport compare(const std::vector<compiler::Fact>& old_facts,
+                   const std::vector<compiler::Fact>& new_facts);
+
+/// The part of the difference that is of one kind.
+compiler::FactDifference of_kind(const FactReport& report, compiler::FactKind kind);
+
+/// "TITLE: 1 removed, 2 added" and a line for each, in the order of the texts; with `stat` the
+/// first line alone. Empty if there is no difference of the kind.
+std::string to_text(const FactReport& report, compiler::FactKind kind, const std::string& title,
+                    bool stat);
+
+/// {"removed": [{"text", "file", "line"}], "added": [...], "changed": [{"old": {...}, "new":
+/// {...}}]}
+std::string to_json(const FactReport& report, compiler::FactKind kind);
 
 struct ModelDiffOptions {
   LoadRevision load;

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include "compiler/base/json.h"
-#include "tools/diff/fact_report.h"
 #include "tools/diff/model_difference.h"
 
 namespace parallax::tools {

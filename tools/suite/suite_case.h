@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -44,5 +46,20 @@ struct CaseResult {
 base::Result<std::vector<SuiteCase>> find_cases(const std::vector<std::string>& paths,
                                                 base::SourceFiles& files,
                                                 base::DiagnosticSink& sink);
+
+/// The part `index` of `count`, counted from 1.
+struct Shard {
+  std::uint32_t index = 1;
+  std::uint32_t count = 1;
+};
+
+inline constexpr std::uint32_t kMaxShards = 10'000;
+
+/// "2/5"; nothing for anything else than 1 <= i <= n <= kMaxShards.
+std::optional<Shard> parse_shard(std::string_view text);
+
+/// Whether the case belongs to the shard. It depends on the case's id and on the count alone
+/// (FNV-1a of the id, 64 bits, folded), so that new cases move no other.
+bool in_shard(std::string_view id, const Shard& shard);
 
 }  // namespace parallax::tools

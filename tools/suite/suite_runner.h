@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "tools/suite/suite_case.h"
 
@@ -21,5 +22,10 @@ struct RunnerOptions {
 /// else is as expected.
 CaseResult run_case(const SuiteCase& one, const RunnerOptions& options,
                     const std::atomic<bool>& stop);
+
+/// How `actual` differs from `expected`, by lines: expected ones with `-`, found ones with `+`, two
+/// common lines before and after, line numbers of `expected` at each stretch, the rest counted when
+/// it is long. Empty if the texts are the same. Compared as `base::line_changes` does.
+std::string text_difference(std::string_view expected, std::string_view actual);
 
 }  // namespace parallax::tools

@@ -12,7 +12,7 @@
 #include "runtime/session/solver_session.h"
 #include "tests/support/peer_examples.h"
 #include "tests/support/recorded_answer.h"
-#include "tools/app/decreasoner_options.h"
+#include "tools/app/trace_listing.h"
 
 namespace parallax::test {
 namespace {

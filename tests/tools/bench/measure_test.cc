@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tools/bench/answers.h"
-#include "tools/bench/row.h"
+#include "tools/bench/child_run.h"
+#include "tools/bench/measure.h"
 
 namespace parallax::test {
 namespace {

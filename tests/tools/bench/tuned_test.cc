@@ -10,7 +10,7 @@
 
 #include "tests/support/process.h"
 #include "tests/tools/bench/path_count.h"
-#include "tools/bench/answers.h"
+#include "tools/bench/child_run.h"
 #include "tools/bench/families/families.h"
 
 namespace parallax::test {

@@ -1,8 +1,8 @@
-#include "tools/suite/junit.h"
-
 #include <doctest/doctest.h>
 
 #include <string>
+
+#include "tools/suite/suite_record.h"
 
 namespace parallax::tools {
 namespace {

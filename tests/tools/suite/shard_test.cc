@@ -1,9 +1,9 @@
-#include "tools/suite/shard.h"
-
 #include <doctest/doctest.h>
 
 #include <string>
 #include <vector>
+
+#include "tools/suite/suite_case.h"
 
 namespace parallax::tools {
 namespace {

@@ -1,9 +1,9 @@
-#include "tools/suite/text_difference.h"
-
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <string>
+
+#include "tools/suite/suite_runner.h"
 
 namespace parallax::tools {
 namespace {

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "tools/bench/families/families.h"
-#include "tools/bench/families/object_names.h"
 #include "tools/bench/families/tuned.h"
 
 namespace parallax::tools {

@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include "tools/bench/families/families.h"
-#include "tools/bench/families/object_names.h"
 #include "tools/bench/families/tuned.h"
 
 namespace parallax::tools {

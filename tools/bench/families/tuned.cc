@@ -1,8 +1,16 @@
-#include <fmt/core.h>
-
 #include "tools/bench/families/tuned.h"
 
+#include <fmt/core.h>
+
 namespace parallax::tools {
+
+std::string numbered_names(std::string_view prefix, int count) {
+  std::string names;
+  for (int i = 1; i <= count; ++i) {
+    names += fmt::format("{}{}{}", i == 1 ? "" : ", ", prefix, i);
+  }
+  return names;
+}
 
 std::string tuned_calculus(int horizon) {
   constexpr const char* kText = R"(% The calculus.
