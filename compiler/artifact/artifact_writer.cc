@@ -7,7 +7,6 @@
 
 #include "compiler/artifact/artifact_text.h"
 #include "compiler/artifact/clause_runs.h"
-#include "compiler/artifact/derived.h"
 
 namespace parallax::compiler {
 namespace {

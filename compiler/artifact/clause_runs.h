@@ -2,14 +2,40 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "compiler/artifact/artifact_text.h"
 #include "compiler/artifact/compiled_model.h"
 
 namespace parallax::compiler {
+
+// What a file need not say because the clauses tell it.
+
+/// The least horizon at which every variable of the clause exists.
+Timepoint derived_timepoint(const CompiledModel& model, std::span<const Literal> clause);
+
+/// The timepoint that a clause of the section's first copy has unless the file says otherwise: the
+/// width of a repeated section, in which all clauses appear together; else the derived one, which
+/// is too early only where auxiliaries of a later timepoint are among the fixed variables.
+Timepoint usual_timepoint(const CompiledModel& model, const Section& section,
+                          std::span<const Literal> clause);
+
+/// Which nameless variables occur: by fixed variable - 1, and by slot at any timepoint. One that
+/// occurs is an auxiliary, one that does not is unused.
+struct Occurrences {
+  std::vector<bool> fixed;
+  std::vector<bool> slots;
+};
+Occurrences occurrences(const CompiledModel& model);
+
+/// The variables of HoldsAt and Happens, ascending: two models that agree on them are one trace.
+std::vector<std::int32_t> observable_variables(const CompiledModel& model);
+
+/// Is `later` the clause `first` moved by `steps` timepoints?
+bool is_shifted(const CompiledModel& model, std::span<const Literal> first,
+                std::span<const Literal> later, std::int64_t steps);
 
 /// `plain` clauses, then `definitions` clauses that define auxiliaries, all that `repeat` times.
 /// Written `3`, `1+2`, `0+4`, `1+2x50`.

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "compiler/artifact/derived.h"
+#include "compiler/artifact/clause_runs.h"
 #include "compiler/base/ascii.h"
 #include "compiler/base/hash.h"
 

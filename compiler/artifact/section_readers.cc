@@ -6,7 +6,7 @@
 #include <charconv>
 #include <limits>
 
-#include "compiler/artifact/derived.h"
+#include "compiler/artifact/clause_runs.h"
 #include "compiler/base/diagnostic_codes.h"
 
 namespace parallax::compiler {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "compiler/artifact/atom.h"
-#include "compiler/ground/ground_text.h"
+#include "compiler/ground/ground_model.h"
 
 namespace parallax::compiler {
 namespace {

@@ -12,7 +12,7 @@
 #include "compiler/cnf/clause_builder.h"
 #include "compiler/cnf/slot_table.h"
 #include "compiler/formula/formula.h"
-#include "compiler/ground/ground_text.h"
+#include "compiler/ground/ground_model.h"
 
 namespace parallax::compiler {
 namespace {

@@ -11,7 +11,7 @@
 #include "compiler/ground/effects.h"
 #include "compiler/ground/expansion_size.h"
 #include "compiler/ground/formula_grounder.h"
-#include "compiler/ground/ground_text.h"
+#include "compiler/ground/ground_model.h"
 #include "compiler/ground/invariants.h"
 #include "compiler/ground/narrative.h"
 #include "compiler/ground/possible_atoms.h"

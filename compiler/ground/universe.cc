@@ -1,7 +1,6 @@
 #include "compiler/ground/universe.h"
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 #include "compiler/base/diagnostic_codes.h"

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <atomic>
-#include <compare>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>

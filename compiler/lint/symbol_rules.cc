@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <vector>
 
 #include "compiler/base/diagnostic_codes.h"

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"

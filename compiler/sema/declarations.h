@@ -1,10 +1,8 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <string_view>
 #include <unordered_map>
-#include <vector>
 
 #include "compiler/base/diagnostic.h"
 #include "compiler/sema/check.h"

@@ -1,6 +1,5 @@
 #include "harness/confidence/criterion.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// Only harness/config/*.cc include this header.
 #pragma once
+
+// Only harness/config/*.cc include this header.
 
 #include <cstdint>
 #include <optional>
@@ -76,7 +77,7 @@ std::optional<SymbolPattern> parse_pattern(std::string_view text);
 std::string with_positions(const std::string& text, const SymbolPattern& pattern,
                            base::SourceRange range, base::DiagnosticSink& sink);
 
-/// Parts of the section `world`, each reporting at its keys.
+// Parts of the section `world`, each reporting at its keys.
 
 void read_vector(const YamlFields& fields, std::string_view key, Eigen::Vector3d& out);
 BodySpec read_body(const YamlEntry& entry, base::DiagnosticSink& sink);

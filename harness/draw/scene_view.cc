@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "compiler/base/utf8.h"
 #include "compiler/base/xml_text.h"

@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "harness/world/world_layout.h"
 #include "harness/world/world_spec.h"

@@ -1,6 +1,5 @@
 #include "harness/region/state_mapping.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <algorithm>

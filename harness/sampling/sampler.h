@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
 
 #include "compiler/base/diagnostic.h"
 #include "harness/region/state_mapping.h"

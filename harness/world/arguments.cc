@@ -7,8 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "compiler/base/contract.h"
-
 namespace parallax::harness {
 namespace {
 

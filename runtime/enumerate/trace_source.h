@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "runtime/trace/trace.h"
 #include "runtime/trace/trace_format.h"

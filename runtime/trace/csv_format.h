@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "runtime/trace/trace.h"
 #include "runtime/trace/trace_format.h"

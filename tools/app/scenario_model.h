@@ -1,12 +1,15 @@
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "compiler/base/result.h"
 #include "compiler/base/source_file.h"
 #include "compiler/pipeline/compile.h"
 #include "harness/campaign/journal_format.h"
+#include "harness/campaign/sample_runner.h"
 #include "harness/config/scenario.h"
 #include "tools/app/context.h"
 #include "tools/app/model_options.h"
@@ -62,5 +65,13 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
 /// itself and messages point into it. kUsage if it says nothing: blanks and comments at most.
 base::Result<base::SourceRange> formula_argument(const std::string& option, const std::string& text,
                                                  Context& context);
+
+/// Makes the simulator that the scenario asks for, in a process of its own: the command of the
+/// scenario, or else the built-in one, which is the program `worker` (with its first arguments, as
+/// in {"parallax", "worker"}) started for the scenario. Raising `stop`, which outlives the factory,
+/// ends what a simulator is at.
+harness::SimulatorFactory simulator_factory(const ScenarioModel& loaded,
+                                            const std::vector<std::string>& worker,
+                                            const std::atomic<bool>& stop);
 
 }  // namespace parallax::tools

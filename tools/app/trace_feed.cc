@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
-#include <tuple>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/region/state_mapping.h"

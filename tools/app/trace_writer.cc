@@ -1,6 +1,5 @@
 #include "tools/app/trace_writer.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

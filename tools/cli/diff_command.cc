@@ -9,7 +9,6 @@
 #include "tools/cli/command.h"
 #include "tools/diff/model_difference.h"
 #include "tools/diff/revision.h"
-#include "tools/diff/run_facts.h"
 #include "tools/diff/textconv.h"
 #include "tools/diff/trace_set.h"
 

@@ -1,8 +1,6 @@
 #include <cstdio>
 #include <exception>
 #include <new>
-#include <optional>
-#include <system_error>
 #include <vector>
 
 #include "compiler/base/diagnostic_codes.h"

@@ -4,7 +4,6 @@
 #include "harness/campaign/rates.h"
 #include "harness/report/report.h"
 #include "tools/app/scenario_model.h"
-#include "tools/app/simulator_factory.h"
 #include "tools/app/trace_feed.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"

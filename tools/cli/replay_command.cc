@@ -7,7 +7,6 @@
 #include "harness/report/report.h"
 #include "tools/app/file_kind.h"
 #include "tools/app/scenario_model.h"
-#include "tools/app/simulator_factory.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/shared_options.h"

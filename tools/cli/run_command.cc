@@ -8,7 +8,6 @@
 #include "harness/campaign/campaign.h"
 #include "harness/report/report.h"
 #include "tools/app/scenario_model.h"
-#include "tools/app/simulator_factory.h"
 #include "tools/app/trace_feed.h"
 #include "tools/app/version.h"
 #include "tools/cli/command.h"

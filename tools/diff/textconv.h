@@ -1,10 +1,17 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "compiler/compare/fact.h"
 #include "tools/app/context.h"
 
 namespace parallax::tools {
+
+/// What the report of a run says: its settings as declarations; its verdict, and for every trace
+/// its verdict and its discrepancies, as axioms. A trace is known by its events and its initial
+/// state. `path` is a run folder or a report.json (E7111).
+base::Result<std::vector<compiler::Fact>> load_run_facts(const std::string& path, Context& context);
 
 /// The canonical text of one file: one fact a line, sorted, for goldens and `git diff`. Models (.e)
 /// are read alone: what they load need not exist. A usage error for other kinds of files.

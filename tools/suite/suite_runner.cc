@@ -1,6 +1,5 @@
 #include "tools/suite/suite_runner.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -16,7 +16,7 @@
 #include "harness/robot/ode_simulator.h"
 #include "harness/simulator/process_simulator.h"
 #include "harness/simulator/simulator.h"
-#include "tools/app/simulator_factory.h"
+#include "tools/app/scenario_model.h"
 
 namespace parallax {
 
