@@ -13,6 +13,9 @@
 namespace parallax::harness {
 namespace {
 
+// The prediction intervals are taken over a whole cuboid of starts. Both ends of them are extreme
+// at corners: the mean is linear and the half-width convex in x.
+
 /// Beyond this many parameters the 2^n corners are bounded instead of visited.
 constexpr std::size_t kMaxCornerParameters = 16;
 

@@ -10,8 +10,8 @@
 
 namespace parallax::harness {
 
-/// A WorldSpec run by the Open Dynamics Engine with the controllers of arguments.h.
-/// Observes what world_check.h calls `observables`; takes at reset those that are settable.
+/// A WorldSpec run by the Open Dynamics Engine with the controllers that arguments.h lists.
+/// Observes what world_layout.h calls `observables`; takes at reset those that are settable.
 /// Bitwise deterministic on one machine: every run after a reset with the same state and seed
 /// gives the same digest, in this simulator or in another one of the same spec.
 ///
