@@ -13,20 +13,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Ending {
+struct NameEnding {
   std::string_view text;
   FileKind kind;
 };
-constexpr std::array<Ending, 10> kEndings = {{{".e", FileKind::kModel},
-                                              {".yaml", FileKind::kScenario},
-                                              {".yml", FileKind::kScenario},
-                                              {".lisp", FileKind::kPlan},
-                                              {".bind", FileKind::kBinding},
-                                              {".cnf", FileKind::kCompiled},
-                                              {".jsonl", FileKind::kTraces},
-                                              {".ndjson", FileKind::kTraces},
-                                              {".itf.json", FileKind::kTraces},
-                                              {".drat", FileKind::kProof}}};
+constexpr std::array<NameEnding, 10> kEndings = {{{".e", FileKind::kModel},
+                                                  {".yaml", FileKind::kScenario},
+                                                  {".yml", FileKind::kScenario},
+                                                  {".lisp", FileKind::kPlan},
+                                                  {".bind", FileKind::kBinding},
+                                                  {".cnf", FileKind::kCompiled},
+                                                  {".jsonl", FileKind::kTraces},
+                                                  {".ndjson", FileKind::kTraces},
+                                                  {".itf.json", FileKind::kTraces},
+                                                  {".drat", FileKind::kProof}}};
 
 /// The first bytes of a regular file; a FIFO would wait for somebody to write.
 std::string beginning_of(const std::string& path) {
@@ -112,7 +112,7 @@ FileKind file_kind(const std::string& path) {
   }
   const auto begin = beginning_of(path);
   if (begin.find('\0') != std::string::npos) return FileKind::kBinary;
-  const auto found = std::find_if(kEndings.begin(), kEndings.end(), [&](const Ending& ending) {
+  const auto found = std::find_if(kEndings.begin(), kEndings.end(), [&](const NameEnding& ending) {
     return path.ends_with(ending.text);
   });
   if (found == kEndings.end()) return FileKind::kUnknown;
