@@ -87,7 +87,7 @@ SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink) {
   YamlFields fields(node, key_text(Key::kSimulator), sink);
   fields.only({Key::kCommand, Key::kHelloTimeoutS, Key::kResetTimeoutS, Key::kActTimeoutS,
                Key::kObserveTimeoutS, Key::kCloseTimeoutS, Key::kMinRealTimeFactor,
-               Key::kRecycleAfter});
+               Key::kRecycleAfter, Key::kMemoryMb});
   fields.texts(Key::kCommand, simulator.command);
   const auto* command = fields.find(Key::kCommand);
   if (command != nullptr && command->is_list() && command->items.empty()) {
@@ -101,6 +101,7 @@ SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink) {
   fields.number(Key::kCloseTimeoutS, kTimeout, simulator.close_timeout_s);
   fields.number(Key::kMinRealTimeFactor, kPositive, simulator.min_real_time_factor);
   fields.integer(Key::kRecycleAfter, 0, kMaxRuns, simulator.recycle_after);
+  fields.integer(Key::kMemoryMb, 0, 10'000'000, simulator.memory_mb);
   return simulator;
 }
 

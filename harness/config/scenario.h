@@ -46,6 +46,7 @@ struct SimulatorSpec {
   double observe_timeout_s = 2.0;
   double close_timeout_s = 2.0;
   double min_real_time_factor = 1.0;
+  std::int64_t memory_mb = 4096;   // of all its processes; 0: no bound
   std::int64_t recycle_after = 0;  // resets after which the process is replaced; 0: never
   base::SourceRange source;
 };

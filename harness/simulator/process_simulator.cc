@@ -16,6 +16,7 @@
 
 #include "compiler/base/contract.h"
 #include "compiler/base/subprocess.h"
+#include "harness/simulator/process_memory.h"
 #include "harness/simulator/protocol.h"
 
 namespace parallax::harness {
@@ -24,7 +25,8 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr auto kTermGrace = std::chrono::seconds(2);
-constexpr auto kPollSlice = milliseconds(100);  // how late the stop flag may be seen
+constexpr auto kPollSlice = milliseconds(100);    // how late the stop flag may be seen
+constexpr auto kMemorySlice = milliseconds(250);  // how late too much memory may be seen
 constexpr auto kReapSlice = milliseconds(5);
 constexpr std::size_t kErrorBytes = std::size_t{1} << 14U;
 constexpr std::size_t kErrorLines = 50;
@@ -61,8 +63,9 @@ bool is_refusal(const ErrorReply& error) {
 
 }  // namespace
 
-ChildProcess::ChildProcess(const std::vector<std::string>& command, const std::atomic<bool>* stop)
-    : stop_(stop) {
+ChildProcess::ChildProcess(const std::vector<std::string>& command, std::int64_t memory_mb,
+                           const std::atomic<bool>* stop)
+    : memory_mb_(memory_mb), stop_(stop) {
   ignore_sigpipe();
   start(command);
 }
@@ -117,6 +120,12 @@ bool ChildProcess::poll_once(short output_events, Clock::time_point deadline) {
   return ready > 0 && fds[0].revents != 0;
 }
 
+bool ChildProcess::holds_too_much() {
+  if (memory_mb_ == 0 || Clock::now() < memory_seen_ + kMemorySlice) return false;
+  memory_seen_ = Clock::now();
+  return memory_of_session(pid_) > static_cast<std::uint64_t>(memory_mb_) << 20U;
+}
+
 bool ChildProcess::write_line(std::string_view line, Clock::time_point deadline) {
   std::string text(line);
   text += '\n';
@@ -148,6 +157,7 @@ ChildProcess::Wait ChildProcess::read_line(std::string& line, Clock::time_point 
     if (buffer_.size() > max_bytes) return Wait::kTooLong;
     scanned = buffer_.size();
     if (stopped()) return Wait::kStopped;
+    if (holds_too_much()) return Wait::kTooMuchMemory;
     if (Clock::now() >= deadline) return Wait::kTimeout;
     if (!poll_once(POLLIN, deadline)) continue;
     char chunk[1 << 14];
@@ -206,7 +216,8 @@ std::string ChildProcess::error_tail() const {
 /// The link to one child, from its start to its loss.
 class ProcessSimulator::Link {
  public:
-  explicit Link(const ProcessOptions& options) : child_(options.command, options.stop) {}
+  explicit Link(const ProcessOptions& options)
+      : memory_mb_(options.memory_mb), child_(options.command, options.memory_mb, options.stop) {}
 
   const std::string& start_error() const { return child_.start_error(); }
 
@@ -228,6 +239,8 @@ class ProcessSimulator::Link {
         return fmt::format("it ended during `{}`", name);
       case ChildProcess::Wait::kTooLong:
         return fmt::format("its reply to `{}` is longer than {} bytes", name, kMaxLineBytes);
+      case ChildProcess::Wait::kTooMuchMemory:
+        return fmt::format("more than {} MiB of memory during `{}`", memory_mb_, name);
       case ChildProcess::Wait::kStopped:
         return std::string("interrupted");
     }
@@ -255,6 +268,7 @@ class ProcessSimulator::Link {
   }
 
  private:
+  std::int64_t memory_mb_;
   ChildProcess child_;
   std::int64_t next_id_ = 1;
 };

@@ -27,15 +27,17 @@ class ChildProcess {
   using Clock = std::chrono::steady_clock;
 
   /// Starts `command` (first word looked up in PATH, no shell). When that fails `start_error` says
-  /// why and nothing else may be called.
-  ChildProcess(const std::vector<std::string>& command, const std::atomic<bool>* stop);
+  /// why and nothing else may be called. `memory_mb` bounds what its session holds; 0: nothing
+  /// does.
+  ChildProcess(const std::vector<std::string>& command, std::int64_t memory_mb,
+               const std::atomic<bool>* stop);
   ~ChildProcess();  // ends the process group
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   const std::string& start_error() const { return start_error_; }
 
-  enum class Wait { kLine, kTimeout, kEnd, kTooLong, kStopped };
+  enum class Wait { kLine, kTimeout, kEnd, kTooLong, kTooMuchMemory, kStopped };
   /// Writes `line` and a newline. False when the child does not take it before `deadline`.
   bool write_line(std::string_view line, Clock::time_point deadline);
   /// Waits for one line of standard output; `line` is set for kLine only, without its newline.
@@ -53,10 +55,13 @@ class ChildProcess {
   bool wait_until_ended(Clock::time_point deadline);
   void drain_errors();
   bool poll_once(short output_events, Clock::time_point deadline);
+  bool holds_too_much();
   bool stopped() const { return stop_ != nullptr && stop_->load(); }
 
   pid_t pid_ = -1;  // also the process group
   base::Descriptor input_, output_, errors_;
+  std::int64_t memory_mb_;
+  Clock::time_point memory_seen_ = Clock::now();
   const std::atomic<bool>* stop_;
   std::string start_error_;
   std::string buffer_;      // read from standard output, not yet returned
@@ -72,6 +77,7 @@ struct ProcessOptions {
   double observe_timeout_s = 2.0;
   double close_timeout_s = 2.0;
   double min_real_time_factor = 1.0;
+  std::int64_t memory_mb = 4096;            // of all processes of the child's session; 0: no bound
   std::int64_t recycle_after = 0;           // resets after which the child is replaced; 0: never
   const std::atomic<bool>* stop = nullptr;  // waiting ends early, as a loss, when it is raised
 };

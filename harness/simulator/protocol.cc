@@ -52,7 +52,8 @@ struct RequestEncoder {
   }
   void operator()(const ResetRequest& reset) const {
     json["method"] = "reset";
-    json["params"] = OrderedJson{{"state", state_json<OrderedJson>(reset.state)}, {"seed", reset.seed}};
+    json["params"] =
+        OrderedJson{{"state", state_json<OrderedJson>(reset.state)}, {"seed", reset.seed}};
   }
   void operator()(const ActRequest& act) const {
     json["method"] = "act";

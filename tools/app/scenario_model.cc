@@ -348,6 +348,7 @@ harness::SimulatorFactory simulator_factory(const ScenarioModel& loaded,
   options.observe_timeout_s = spec.observe_timeout_s;
   options.close_timeout_s = spec.close_timeout_s;
   options.min_real_time_factor = spec.min_real_time_factor;
+  options.memory_mb = spec.memory_mb;
   options.recycle_after = spec.recycle_after;
   options.stop = &stop;
   return [options] { return std::make_unique<harness::ProcessSimulator>(options); };

@@ -15,8 +15,6 @@
 #include <set>
 #include <thread>
 
-#include "harness/simulator/process_simulator.h"
-
 namespace parallax::harness {
 namespace {
 
@@ -118,6 +116,20 @@ TEST_CASE("a child that ignores TERM is killed") {
   CHECK(errno == ESRCH);
 }
 
+TEST_CASE("a child that takes too much memory, by itself or by what it starts, is lost") {
+  for (const std::string mode : {"act-hog", "act-hog-child"}) {
+    CAPTURE(mode);
+    auto options = options_for(mode);
+    options.act_timeout_s = 60.0;
+    options.memory_mb = 64;
+    ProcessSimulator simulator(options);
+    REQUIRE(simulator.reset({}, 1).status == SimStatus::kOk);
+    const auto outcome = simulator.act("going", {}, 1.0);
+    CHECK(outcome.status == SimStatus::kLost);
+    CHECK(contains(outcome.reason, "more than 64 MiB of memory during `act`"));
+  }
+}
+
 TEST_CASE("lines that are not the protocol lose the child") {
   for (const std::string mode : {"act-garbage", "act-wrong-id", "act-endless"}) {
     CAPTURE(mode);
@@ -216,7 +228,7 @@ TEST_CASE("a child inherits nothing but its three standard descriptors") {
 /// In a process of its own: starts a child that will never look at its input again, tells its
 /// number, and is killed. None of its destructors run.
 [[noreturn]] void leave_child_behind(int report) {
-  ChildProcess child({PARALLAX_SCRIPTED_WORKER, "act-hang"}, nullptr);
+  ChildProcess child({PARALLAX_SCRIPTED_WORKER, "act-hang"}, 0, nullptr);
   const auto deadline = Clock::now() + std::chrono::seconds(30);
   constexpr std::size_t kMaxBytes = 4096;
   std::string line;

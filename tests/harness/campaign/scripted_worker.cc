@@ -7,6 +7,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -26,6 +27,15 @@ void misbehave(const std::string& mode, const std::string& method, int count) {
   if (mode == method + "-hang") hang();
   if (mode == method + "-stubborn") {
     ::signal(SIGTERM, SIG_IGN);
+    hang();
+  }
+  if (mode == method + "-hog") {
+    std::vector<std::vector<char>> held;
+    for (int mebibytes = 0; mebibytes < 512; ++mebibytes) held.emplace_back(1U << 20U, 'x');
+    hang();
+  }
+  if (mode == method + "-hog-child") {
+    if (::fork() == 0) misbehave(method + "-hog", method, count);
     hang();
   }
   if (mode == method + "-garbage") std::cout << "Loading plugin...\n" << std::flush;

@@ -100,7 +100,7 @@ TEST_CASE("criterion, simulator, limits and expectations are read in full") {
   Workspace workspace;
   const auto scenario = workspace.load(std::string(kScenario) + R"(name: all of it
 criterion: {kind: paper, confidence: 0.95, preset: paper-repaired, sigma: rmse, bonferroni: true}
-simulator: {command: [python3, sim.py], act_timeout_s: 4, recycle_after: 200}
+simulator: {command: [python3, sim.py], act_timeout_s: 4, recycle_after: 200, memory_mb: 512}
 limits: {max_runs: 7, max_traces: 2, max_rejected_starts: 3, max_lost_in_a_row: 4}
 expect: {verdict: discrepancy, iterations: 1, max_simulations: 20, fluents: [BoxIn(r1)]}
 )");
@@ -114,6 +114,7 @@ expect: {verdict: discrepancy, iterations: 1, max_simulations: 20, fluents: [Box
   CHECK(scenario->criterion.paper.preset == "custom, from paper-repaired");
   CHECK(scenario->simulator.command == std::vector<std::string>{"python3", "sim.py"});
   CHECK(scenario->simulator.act_timeout_s == 4.0);
+  CHECK(scenario->simulator.memory_mb == 512);
   CHECK(scenario->limits.max_lost_in_a_row == 4);
   REQUIRE(scenario->expect.has_value());
   CHECK(scenario->expect->verdict == "discrepancy");
