@@ -42,9 +42,9 @@ struct PlanDefinitions {
 
 /// What the compilers of the single forms share: the data, the code being written, the names, and
 /// the way back to `compile` for the forms inside. Each form is a function of its own; they stand
-/// by subject in <subject>_forms.cc. Every one of them writes code that leaves one more value on
-/// the stack. Errors are reported wherever they are met, also on paths that no execution takes, and
-/// the compiler goes on.
+/// by subject in <subject>_forms.cc, calls in function_calls.cc. Every one of them writes code that
+/// leaves one more value on the stack. Errors are reported wherever they are met, also on paths
+/// that no execution takes, and the compiler goes on.
 class FormCompiler {
  public:
   FormCompiler(const LispText& text, ValueStore& store, base::DiagnosticSink& sink,
