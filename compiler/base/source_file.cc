@@ -23,8 +23,8 @@ SourceFile::SourceFile(std::string name, std::string text)
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < text_.size(); i += kBlock) {
     code_points_before_.push_back(count);
-    count += static_cast<std::uint32_t>(
-        count_code_points(std::string_view(text_).substr(i, kBlock)));
+    count +=
+        static_cast<std::uint32_t>(count_code_points(std::string_view(text_).substr(i, kBlock)));
   }
   code_points_before_.push_back(count);
 }

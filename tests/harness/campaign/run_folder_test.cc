@@ -187,8 +187,7 @@ TEST_CASE("an observation that the journal lacks is the journal's fault, not the
   bench.scenario.limits.max_runs = 3;
   REQUIRE(bench.run().has_value());
   auto text = slurp(bench.journal());
-  const auto at =
-      text.find("\"box.x\":", text.find("\"observations\"", text.find("\"sample\":2")));
+  const auto at = text.find("\"box.x\":", text.find("\"observations\"", text.find("\"sample\":2")));
   text.erase(at, text.find(',', at) + 1 - at);
   std::ofstream(bench.journal(), std::ios::binary) << text;
   bench.options.resume = true;
