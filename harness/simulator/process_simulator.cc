@@ -24,7 +24,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr auto kTermGrace = std::chrono::seconds(2);
+constexpr auto kTermGrace = milliseconds(2000);
+constexpr auto kStoppedGrace = milliseconds(500);  // when everything is to end soon
 constexpr auto kPollSlice = milliseconds(100);    // how late the stop flag may be seen
 constexpr auto kMemorySlice = milliseconds(250);  // how late too much memory may be seen
 constexpr auto kReapSlice = milliseconds(5);
@@ -188,7 +189,7 @@ std::string ChildProcess::end(Clock::time_point deadline) {
   input_.close();
   if (!wait_until_ended(deadline)) {
     ::kill(-pid_, SIGTERM);
-    wait_until_ended(Clock::now() + kTermGrace);
+    wait_until_ended(Clock::now() + (stopped() ? kStoppedGrace : kTermGrace));
   }
   // Also when the leader has ended: what it has started may still run.
   ::kill(-pid_, SIGKILL);

@@ -1,7 +1,6 @@
 #include "runtime/enumerate/model_enumerator.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "runtime/enumerate/canonical.h"
@@ -166,8 +165,7 @@ std::unique_ptr<TraceTree> make_guarded_blocking(SolverSession& session, Distinc
     auto& half = halves[2 * i < blocks.size() ? 0 : 1];
     half.insert(half.end(), blocks[i].begin(), blocks[i].end());
   }
-  return std::make_unique<TraceTree>(session, std::move(halves), "guarded",
-                                     std::numeric_limits<std::size_t>::max());
+  return std::make_unique<TraceTree>(session, std::move(halves), "guarded", kMostChildren);
 }
 
 namespace {

@@ -74,7 +74,7 @@ class TraceTree final : public TraceSource {
 
 /// Begins with one level, which is halved until no node has more than about a thousand children.
 std::unique_ptr<TraceTree> make_trace_tree(SolverSession& session, Distinct distinct);
-/// Two levels only: blocking clauses that are retired with the first half of the horizon.
+/// Begins with two levels, the halves of the horizon, which are halved in the same way.
 std::unique_ptr<TraceTree> make_guarded_blocking(SolverSession& session, Distinct distinct);
 
 /// The traces by search alone: the next one is where the search goes on. Nothing is kept of those

@@ -13,7 +13,7 @@
 namespace parallax::tools {
 namespace {
 
-constexpr std::chrono::seconds kGrace{6};
+constexpr std::chrono::milliseconds kGrace{1500};
 
 const CommonOptions* g_options = nullptr;  // for the handler of failed allocations
 

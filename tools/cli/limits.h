@@ -11,7 +11,7 @@
 namespace parallax::tools {
 
 /// Holds --time-limit and --memory-limit over all phases of a command. When the time is over the
-/// stop flag is raised; a phase that does not look at it within some seconds is ended with exit
+/// stop flag is raised; a phase that does not look at it within 1.5 s is ended with exit
 /// code 4 and a message. What was finished is on disk by then.
 class LimitGuard {
  public:

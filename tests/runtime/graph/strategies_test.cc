@@ -211,4 +211,22 @@ TEST_CASE("a model whose clauses look far has no graph, and the tree lists it") 
   CHECK(lines(model.compiled, query(Strategy::kAuto), true).size() == 12);
 }
 
+/// A million states a timepoint: nobody may look at all first halves before the first trace.
+TEST_CASE("a few traces of a wide model take a few solver calls, whatever the levels") {
+  const TextModel model(
+      "sort thing\n"
+      "thing A, B, C, D, E, F, G, H, I, J, K, L, M, N, O, P, Q, R, S, T\n"
+      "fluent On(thing)\n"
+      "event Flip(thing)\n"
+      "[thing,time] !HoldsAt(On(thing),time) -> Initiates(Flip(thing),On(thing),time).\n"
+      "[thing,time] HoldsAt(On(thing),time) -> Terminates(Flip(thing),On(thing),time).\n"
+      "range time 0 4\n");
+  REQUIRE(model.ground != nullptr);
+  for (const auto strategy : {Strategy::kTree, Strategy::kGuarded}) {
+    ModelTraces traces(model.compiled, query(strategy));
+    CHECK(lines(traces, false).size() == kLimit);
+    CHECK(traces.stats().solve_calls < 20'000);
+  }
+}
+
 }  // namespace parallax::test
