@@ -27,7 +27,9 @@ int main(int argc, char** argv) {
     if (!trace) return fail();
     if (!*trace) break;
     std::printf("trace %d:", static_cast<int>((*trace)->number));
-    for (const auto& event : (*trace)->events) std::printf(" %s", event.text.c_str());
+    for (std::size_t t = 0; t < (*trace)->event_count(); ++t) {
+      std::printf(" %s", (*trace)->event(t).c_str());
+    }
 
     auto trial = parallax::Trial::prepare(bench, **trace);
     if (!trial) return fail();

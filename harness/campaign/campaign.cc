@@ -53,15 +53,6 @@ void warn_of_low_limit(const Scenario& scenario, const base::SourceFiles& files,
                limit.needed);
 }
 
-TraceLine trace_line(const TracePlan& plan) {
-  TraceLine line{plan.trace.number, plan.trace.key, plan.trace.holds, {}, {}, plan.calls};
-  for (const auto& event : plan.trace.events) {
-    line.events.push_back(event.text);
-    line.places.push_back(event.source);
-  }
-  return line;
-}
-
 class Campaign {
  public:
   Campaign(const Scenario& scenario, RunFolder folder, JournalText recorded, TraceFeed& traces,
@@ -163,15 +154,13 @@ class Campaign {
 
   /// Writes the trace down before its first sample, or finds it as it was written down.
   base::Status announce(const TracePlan& plan) {
-    auto line = trace_line(plan);
-    if (const auto* recorded = journal_->find(line.trace)) {
+    TraceLine line{plan.trace, plan.calls};
+    if (const auto* recorded = journal_->find(plan.trace->number)) {
       // The plan may be named from elsewhere, as the scenario may.
-      auto before = *recorded;
-      before.places = line.places;
-      if (before != line) {
-        return sink_.error_about(DiagnosticCode::kJournalMismatch,
-                                 (options_.run_dir / kJournalName).string(),
-                                 fmt::format("trace {}", line.trace), recorded->key, line.key);
+      if (!same_but_for_places(*recorded, line)) {
+        return sink_.error_about(
+            DiagnosticCode::kJournalMismatch, (options_.run_dir / kJournalName).string(),
+            fmt::format("trace {}", plan.trace->number), recorded->trace->key, plan.trace->key);
       }
       if (!check_recorded(plan)) return sink_.already_reported();
     } else {
@@ -184,10 +173,10 @@ class Campaign {
   /// A record counts as a sample only if its number is what its start and seed were drawn from.
   base::Status check_recorded(const TracePlan& plan) {
     const auto& recorded = journal_->recorded();
-    const SampleKey first(plan.trace.number, 0, DrawPhase::kCertify);
+    const SampleKey first(plan.trace->number, 0, DrawPhase::kCertify);
     for (auto at = recorded.samples.lower_bound(first); at != recorded.samples.end(); ++at) {
       const auto& record = at->second;
-      if (record.trace != plan.trace.number) break;
+      if (record.trace != plan.trace->number) break;
       const DrawKey key{plan.campaign_seed, plan.trace_key, DrawPhase::kCertify,
                         static_cast<std::uint64_t>(record.sample),
                         static_cast<std::uint64_t>(record.attempt)};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,10 +50,8 @@ struct Discrepancy {
 };
 
 struct TraceResult {
-  std::int64_t number = 0;
+  std::shared_ptr<const CampaignTrace> trace;
   CampaignVerdict verdict = CampaignVerdict::kInconclusive;
-  std::vector<TraceEvent> events;
-  std::vector<std::string> initial_state;      // true fluents at the start
   std::vector<SampledDimension> start_region;  // the continuous states that it stands for
   std::vector<std::string> not_compared;       // "LookingAt(..)": ignored by the mapping
   std::int64_t simulations = 0;  // run and not rejected before they began; lost ones included

@@ -61,10 +61,10 @@ class JournalReader {
       journal_.header = std::get<JournalHeader>(std::move(decoded));
       return std::nullopt;
     }
-    auto decoded = decode_line(line);
+    auto decoded = decode_line(line, symbols_);
     if (const auto* foreign = std::get_if<ForeignLine>(&decoded)) return foreign->why;
     if (auto* trace = std::get_if<TraceLine>(&decoded)) {
-      const auto number = trace->trace;
+      const auto number = trace->trace->number;
       const bool fresh = journal_.traces.emplace(number, std::move(*trace)).second;
       if (!fresh) return "trace " + std::to_string(number) + " stands there twice";
       return std::nullopt;
@@ -91,6 +91,7 @@ class JournalReader {
   std::string_view text_;
   base::DiagnosticSink& sink_;
   SourceRange line_;  // the one that is read
+  std::shared_ptr<compiler::SymbolTable> symbols_ = std::make_shared<compiler::SymbolTable>();
   JournalText journal_;
 };
 
@@ -287,7 +288,7 @@ base::Status Journal::rewrite(const std::vector<TraceLine>& traces,
   auto record = consumed.begin();
   for (const auto& trace : traces) {
     text += encode(trace) + '\n';
-    for (; record != consumed.end() && record->trace == trace.trace; ++record) {
+    for (; record != consumed.end() && record->trace == trace.trace->number; ++record) {
       text += encode(*record) + '\n';
     }
   }

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <span>
+
 #include "compiler/base/json.h"
 #include "harness/campaign/result_json.h"
 #include "harness/simulator/state_json.h"
@@ -95,23 +98,30 @@ double duration_of(const Json& object, const char* name) {
   return seconds;
 }
 
-TraceLine trace_line_of(const Json& object) {
+TraceLine trace_line_of(const Json& object, const std::shared_ptr<compiler::SymbolTable>& symbols) {
+  auto trace = std::make_shared<CampaignTrace>();
   TraceLine line;
-  line.trace = count_of(object, "trace", 1);
-  line.key = get<std::string>(object, "key");
-  for (const auto& fluents : list(object, "holds")) {
-    line.holds.push_back(strings(fluents, "holds"));
-  }
+  trace->number = count_of(object, "trace", 1);
+  trace->key = get<std::string>(object, "key");
+  trace->symbols = symbols;
+  std::vector<std::vector<std::string>> holds;
+  for (const auto& fluents : list(object, "holds")) holds.push_back(strings(fluents, "holds"));
+  std::vector<std::string> events;
   for (const auto& event : list(object, "events")) {
-    line.events.push_back(get<std::string>(event, "event"));
-    line.places.push_back(get<std::string>(event, "source"));
+    events.push_back(get<std::string>(event, "event"));
+    trace->plan.push_back({get<std::string>(event, "source"), {}});
     line.calls.push_back({get<std::string>(event, "controller"),
                           state_of(field(event, "arguments"), "arguments"),
                           duration_of(event, "time_limit_s")});
   }
-  if (line.holds.size() != line.events.size() + 1) {
+  if (holds.size() != events.size() + 1) {
     throw Foreign{"`holds` has not one list for every timepoint of its events"};
   }
+  for (std::size_t t = 0; t < holds.size(); ++t) {
+    const auto happens = std::span(events).subspan(t, t < events.size() ? 1 : 0);
+    trace->points.push_back(runtime::point_of_names(holds[t], happens, *symbols));
+  }
+  line.trace = std::move(trace);
   return line;
 }
 
@@ -212,12 +222,34 @@ std::string encode(const JournalHeader& header) {
   return base::json_text(out);
 }
 
-std::string encode(const TraceLine& trace) {
-  OrderedJson out = {{"trace", trace.trace}, {"key", trace.key}, {"holds", trace.holds}};
+bool same_but_for_places(const TraceLine& a, const TraceLine& b) {
+  const auto &one = *a.trace, &other = *b.trace;
+  if (one.number != other.number || one.key != other.key || a.calls != b.calls) return false;
+  if (one.points.size() != other.points.size()) return false;
+  for (std::size_t t = 0; t < one.points.size(); ++t) {
+    if (one.holds(t) != other.holds(t) || one.happens(t) != other.happens(t)) return false;
+  }
+  return true;
+}
+
+bool operator==(const TraceLine& a, const TraceLine& b) {
+  return same_but_for_places(a, b) &&
+         std::equal(a.trace->plan.begin(), a.trace->plan.end(), b.trace->plan.begin(),
+                    b.trace->plan.end(),
+                    [](const auto& x, const auto& y) { return x.source == y.source; });
+}
+
+std::string encode(const TraceLine& line) {
+  const auto& trace = *line.trace;
+  OrderedJson out = {{"trace", trace.number}, {"key", trace.key}};
+  auto holds = OrderedJson::array();
+  for (std::size_t t = 0; t < trace.points.size(); ++t)
+    holds.push_back(holds_json<OrderedJson>(trace, t));
+  out["holds"] = std::move(holds);
   auto events = OrderedJson::array();
-  for (std::size_t i = 0; i < trace.events.size(); ++i) {
-    OrderedJson event = {{"event", trace.events[i]}, {"source", trace.places[i]}};
-    event.update(json_of(trace.calls[i]));
+  for (std::size_t t = 0; t < trace.event_count(); ++t) {
+    auto event = event_json<OrderedJson>(trace, t);
+    event.update(json_of(line.calls[t]));
     events.push_back(std::move(event));
   }
   out["events"] = std::move(events);
@@ -275,9 +307,10 @@ std::variant<JournalHeader, ForeignLine> decode_header(std::string_view line) tr
   return ForeignLine{foreign.why};
 }
 
-std::variant<TraceLine, SampleRecord, ForeignLine> decode_line(std::string_view line) try {
+std::variant<TraceLine, SampleRecord, ForeignLine> decode_line(
+    std::string_view line, const std::shared_ptr<compiler::SymbolTable>& symbols) try {
   const auto object = parse(line);
-  if (object.contains("events")) return trace_line_of(object);
+  if (object.contains("events")) return trace_line_of(object, symbols);
   return record_of(object);
 } catch (const Foreign& foreign) {
   return ForeignLine{foreign.why};

@@ -4,6 +4,7 @@
 // per trace before its first sample, one per finished simulation, in order of completion.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,15 +30,15 @@ struct JournalHeader {
 JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& options,
                              const SimulatorInfo& simulator);
 
-/// A trace that was handed to the simulator.
+/// A trace that was handed to the simulator. Of one that was read the symbols are those that the
+/// journal names, and the plan's arguments are in the calls only.
 struct TraceLine {
-  std::int64_t trace = 0;
-  std::string key;
-  std::vector<std::vector<std::string>> holds;
-  std::vector<std::string> events, places;  // "Go(r2)", "fetch.lisp:4"
-  std::vector<ActionCall> calls;
-  friend bool operator==(const TraceLine&, const TraceLine&) = default;
+  std::shared_ptr<const CampaignTrace> trace;
+  std::vector<ActionCall> calls;  // by event
+  friend bool operator==(const TraceLine& a, const TraceLine& b);
 };
+/// The same trace with the same calls, by names, wherever the plan's events stand.
+bool same_but_for_places(const TraceLine& a, const TraceLine& b);
 
 std::string encode(const JournalHeader& header);
 std::string encode(const TraceLine& trace);
@@ -47,7 +48,9 @@ struct ForeignLine {
   std::string why;  // "`seed` is missing"
 };
 std::variant<JournalHeader, ForeignLine> decode_header(std::string_view line);
-std::variant<TraceLine, SampleRecord, ForeignLine> decode_line(std::string_view line);
+/// `symbols`: of all traces of the journal; the names of the line are added.
+std::variant<TraceLine, SampleRecord, ForeignLine> decode_line(
+    std::string_view line, const std::shared_ptr<compiler::SymbolTable>& symbols);
 
 /// The first field in which two headers differ and must not, with both values.
 struct HeaderDifference {

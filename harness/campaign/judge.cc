@@ -10,39 +10,41 @@ namespace parallax::harness {
 namespace {
 
 /// Does the trace put the body of `outside` somewhere? Then that fluent differs already.
-bool predicts_inside(const std::vector<std::string>& holds, const StateMapping& mapping,
-                     const std::string& outside) {
-  return std::any_of(holds.begin(), holds.end(), [&](const std::string& text) {
-    return mapping.outside_text(ground_fluent(text)) == outside;
-  });
+bool predicts_inside(const runtime::TracePoint& point, const ModelFluents& fluents,
+                     const StateMapping& mapping, const std::string& outside) {
+  for (std::size_t i = 0; i < fluents.ground().size(); ++i) {
+    if (!runtime::contains(point.holds, fluents.id(i))) continue;
+    if (mapping.outside_text(fluents.ground()[i]) == outside) return true;
+  }
+  return false;
 }
 
 }  // namespace
 
-Judgement judge(const StateMapping& mapping, const std::vector<GroundFluent>& fluents,
+Judgement judge(const StateMapping& mapping, const ModelFluents& fluents,
                 const CampaignTrace& trace, const std::vector<State>& observations) {
-  PARALLAX_REQUIRE(observations.size() == trace.holds.size(), "one observation per timepoint");
+  PARALLAX_REQUIRE(observations.size() == trace.points.size(), "one observation per timepoint");
   Judgement out;
   for (std::size_t t = 0; t < observations.size(); ++t) {
     std::vector<DivergingFluent> differing;
-    for (const auto& fluent : fluents) {
+    for (std::size_t i = 0; i < fluents.ground().size(); ++i) {
+      const auto& fluent = fluents.ground()[i];
       const auto reading = mapping.read(fluent, observations[t], &out.missing);
       if (!reading) continue;  // ignored on purpose
-      const bool predicted =
-          std::binary_search(trace.holds[t].begin(), trace.holds[t].end(), fluent.text);
+      const bool predicted = runtime::contains(trace.points[t].holds, fluents.id(i));
       // What is neither so nor so differs from both.
       const bool neither = *reading == Reading::kNeither;
       const bool observed = neither ? !predicted : *reading == Reading::kHolds;
       if (t + 1 == observations.size()) {
-        out.last_state[fluent.text] = observed;
+        out.last_state[fluents.id(i)] = observed;
         out.in_no_state = out.in_no_state || neither;
       }
       if (observed != predicted) {
         differing.push_back({fluent.text, static_cast<std::int64_t>(t), predicted, observed});
       }
     }
-    for (const auto& text : mapping.outside(fluents, observations[t])) {
-      if (predicts_inside(trace.holds[t], mapping, text)) continue;  // differs above
+    for (const auto& text : mapping.outside(fluents.ground(), observations[t])) {
+      if (predicts_inside(trace.points[t], fluents, mapping, text)) continue;  // differs above
       differing.push_back({text, static_cast<std::int64_t>(t), false, true});
       if (t + 1 == observations.size()) out.in_no_state = true;
     }
@@ -66,9 +68,9 @@ Cause cause_of(const CampaignTrace& trace, const Judgement& judgement,
   PARALLAX_REQUIRE(judgement.parted.has_value(), "a simulation that left its trace");
   const DivergingFluent& fluent = judgement.at_parting.front();
   const std::string changed = fmt::format("{}{}", fluent.observed ? "" : "not ", fluent.fluent);
-  if (trace.events.empty()) return {fmt::format("start: {}", changed), {}};
+  if (trace.event_count() == 0) return {fmt::format("start: {}", changed), {}};
   const auto step = static_cast<std::size_t>(std::max<std::int64_t>(1, *judgement.parted)) - 1;
-  const std::string& event = trace.events[step].text;
+  const std::string& event = trace.event(step);
   if (outcomes[step].status == SimStatus::kOk) return {fmt::format("{}: {}", event, changed), {}};
   const std::string& reason = outcomes[step].reason;
   const std::string condition = reason.empty() ? std::string(to_string(outcomes[step].status))

@@ -21,14 +21,15 @@ struct Judgement {
   std::optional<std::int64_t> parted;
   std::vector<DivergingFluent> at_parting;  // what differs there
   std::vector<DivergingFluent> last;        // what differs at the last timepoint
-  std::map<std::string, bool> last_state;   // every compared fluent at the last timepoint
+  /// Every compared fluent at the last timepoint.
+  std::map<compiler::FluentId, bool> last_state;
   bool in_no_state = false;       // the last state is one that no state of a model stands for
   std::set<std::string> missing;  // variables that the mapping asks for in vain
   bool matches() const { return last.empty(); }
 };
 
-/// `observations` has one state per timepoint of the trace.
-Judgement judge(const StateMapping& mapping, const std::vector<GroundFluent>& fluents,
+/// `fluents` of the trace's symbols; `observations` has one state per timepoint of the trace.
+Judgement judge(const StateMapping& mapping, const ModelFluents& fluents,
                 const CampaignTrace& trace, const std::vector<State>& observations);
 
 /// Why the last state of a judged simulation differs from that of the trace; it has to differ.

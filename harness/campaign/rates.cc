@@ -66,13 +66,14 @@ class Estimator {
   }
 
  private:
-  base::Result<TraceRates> one_trace(CampaignTrace trace, bool& complete) {
-    auto trial = Trial::prepare(bench_, std::move(trace));
+  base::Result<TraceRates> one_trace(CampaignTrace found, bool& complete) {
+    auto trial = Trial::prepare(bench_, std::move(found));
     if (!trial) return sink_.already_reported();
     TraceRates rates;
-    rates.number = trial->plan().trace.number;
-    for (const auto& event : trial->plan().trace.events) {
-      rates.trace += (rates.trace.empty() ? "" : " ") + event.text;
+    const auto& trace = *trial->plan().trace;
+    rates.number = trace.number;
+    for (std::size_t t = 0; t < trace.event_count(); ++t) {
+      rates.trace += (t == 0 ? "" : " ") + trace.event(t);
     }
     std::map<std::string, CauseRate> causes;
     trial->submit_to(options_.runs);
@@ -80,7 +81,7 @@ class Estimator {
       const auto sample = trial->next();
       if (!sample) return sink_.already_reported();
       complete = *sample && (*sample)->verdict != SampleVerdict::kLostTooOften;
-      if (*sample) count(trial->plan().trace, **sample, rates, causes);
+      if (*sample) count(trace, **sample, rates, causes);
     }
     trial->end();
     finish(rates, causes);

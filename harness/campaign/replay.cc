@@ -72,8 +72,8 @@ ReplayResult replay_sample(const RecordedRun& run, const std::string& scenario_h
   const auto info = simulator->info();
   result.reason = simulator_change(run.header, info);
   if (!result.reason.empty()) return result;
-  const auto again =
-      repeat_sample(run.calls, may_repeat_losses(info), record, *simulator, [] { return false; });
+  const auto again = repeat_sample(run.line.calls, may_repeat_losses(info), record, *simulator,
+                                   [] { return false; });
   if (again->status != SampleStatus::kOk) {
     result.reason =
         fmt::format("the simulator was {}: {}", to_string(again->status), again->reason);
@@ -113,8 +113,7 @@ base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir
     note_samples(*journal, report);
     return report;
   }
-  const auto& trace = journal->traces.at(found->second.trace);
-  return RecordedRun{*journal->header, *id, found->second, trace.calls, trace.events};
+  return RecordedRun{*journal->header, *id, found->second, journal->traces.at(found->second.trace)};
 }
 
 std::string scenario_change(const JournalHeader& header, const std::string& scenario_hash) {

@@ -49,8 +49,7 @@ struct RecordedRun {
   JournalHeader header;  // of the journal
   SampleId id;
   SampleRecord record;
-  std::vector<ActionCall> calls;    // per event
-  std::vector<std::string> events;  // as the trace has them
+  TraceLine line;  // its trace and the calls for that
 };
 
 /// The first discrepancy of a run (a repetition in the journal marks it), else its first sample.

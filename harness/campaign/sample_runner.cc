@@ -123,26 +123,31 @@ std::optional<std::string> taken_as(const ActionBinding& binding, const std::str
   return std::nullopt;
 }
 
-ActionCall call_for(const ActionBinding& binding, const TraceEvent& event) {
-  const GroundFluent ground{event.text, event.symbol, event.arguments};
+/// An event of the trace, taken apart, and what the plan says of it.
+struct Occurrence {
+  GroundFluent event;
+  const PlannedEvent& planned;
+};
+
+ActionCall call_for(const ActionBinding& binding, const Occurrence& at) {
   ActionCall call{binding.controller, binding.arguments, binding.time_limit_s};
   for (auto& [name, value] : call.arguments) {
-    if (auto* text = std::get_if<std::string>(&value)) *text = with_arguments(*text, ground);
+    if (auto* text = std::get_if<std::string>(&value)) *text = with_arguments(*text, at.event);
   }
-  for (const auto& [name, value] : event.plan_arguments) {
+  for (const auto& [name, value] : at.planned.arguments) {
     if (const auto taken = taken_as(binding, name)) call.arguments[*taken] = value;
   }
   return call;
 }
 
 /// What the built-in simulator's controller would refuse. False if it was reported.
-bool check_required(const ActionBinding& binding, const TraceEvent& event, const ActionCall& call,
+bool check_required(const ActionBinding& binding, const Occurrence& at, const ActionCall& call,
                     const ControllerSpec& controller, base::DiagnosticSink& sink) {
   const auto errors_before = sink.error_count();
   for (const auto& argument : controller.arguments) {
     if (!argument.required || call.arguments.contains(std::string(argument.name))) continue;
-    sink.error(base::DiagnosticCode::kMissingArgument, binding.source, event.text, call.controller,
-               argument.name);
+    sink.error(base::DiagnosticCode::kMissingArgument, binding.source, at.event.text,
+               call.controller, argument.name);
   }
   return sink.error_count() == errors_before;
 }
@@ -152,16 +157,16 @@ class ValueChecker {
  public:
   explicit ValueChecker(const WorldSpec& world) : world_(world), layout_(lay_out(world)) {}
 
-  void check(const ActionBinding& binding, const TraceEvent& event, const ActionCall& call,
+  void check(const ActionBinding& binding, const Occurrence& at, const ActionCall& call,
              const ControllerSpec& controller, base::DiagnosticSink& sink) const {
     const auto report = [&](const std::string& name, const std::string& fault) {
       const auto own = binding.argument_sources.find(name);
       const auto place = own == binding.argument_sources.end() ? binding.source : own->second;
       auto error = sink.error(base::DiagnosticCode::kBadWorld, place,
                               fmt::format("actions/{}/{}", binding.event, name), fault);
-      error.note(event.source.empty()
-                     ? fmt::format("for the event `{}`", event.text)
-                     : fmt::format("for the event `{}` of {}", event.text, event.source));
+      const auto& source = at.planned.source;
+      error.note(source.empty() ? fmt::format("for the event `{}`", at.event.text)
+                                : fmt::format("for the event `{}` of {}", at.event.text, source));
     };
     for (const auto& [name, value] : call.arguments) {
       const auto* argument = find_argument(controller, name);
@@ -212,7 +217,7 @@ std::optional<SampleRecord> run_sample(const TracePlan& plan, std::int64_t sampl
                                        Simulator& simulator,
                                        const std::function<bool()>& abandoned) {
   SampleRecord record;
-  record.trace = plan.trace.number;
+  record.trace = plan.trace->number;
   record.sample = sample;
   DrawKey key{plan.campaign_seed, plan.trace_key, DrawPhase::kCertify,
               static_cast<std::uint64_t>(sample), 0};
@@ -248,21 +253,23 @@ base::Result<std::vector<ActionCall>> action_calls(const Scenario& scenario,
   const bool built_in = scenario.simulator.command.empty();
   const ValueChecker values(scenario.world);
   std::vector<ActionCall> calls;
-  for (const auto& event : trace.events) {
+  for (std::size_t t = 0; t < trace.event_count(); ++t) {
+    const Occurrence at{ground_fluent(trace.event(t)), trace.plan[t]};
     const auto binding =
         std::find_if(scenario.actions.begin(), scenario.actions.end(),
-                     [&](const ActionBinding& a) { return a.event == event.symbol; });
+                     [&](const ActionBinding& a) { return a.event == at.event.symbol; });
     if (binding == scenario.actions.end()) {
-      sink.error(base::DiagnosticCode::kEventWithoutAction, scenario.actions_source, event.symbol);
+      sink.error(base::DiagnosticCode::kEventWithoutAction, scenario.actions_source,
+                 at.event.symbol);
       continue;
     }
-    calls.push_back(call_for(*binding, event));
+    calls.push_back(call_for(*binding, at));
     const auto& call = calls.back();
     // Another one was reported when the scenario was held against the simulator.
     const auto* controller = built_in ? find_controller(call.controller) : nullptr;
     if (controller == nullptr) continue;
-    if (check_required(*binding, event, call, *controller, sink)) {
-      values.check(*binding, event, call, *controller, sink);
+    if (check_required(*binding, at, call, *controller, sink)) {
+      values.check(*binding, at, call, *controller, sink);
     }
   }
   if (sink.error_count() != errors_before) return sink.already_reported();

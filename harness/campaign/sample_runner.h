@@ -19,11 +19,11 @@ using SimulatorFactory = std::function<std::unique_ptr<Simulator>()>;
 
 /// What a worker needs of a trace to simulate any sample of it; shared and never changed.
 struct TracePlan {
-  CampaignTrace trace;
+  std::shared_ptr<const CampaignTrace> trace;
   std::vector<ActionCall> calls;  // per event
   Sampler sampler;
   std::uint64_t campaign_seed = 0;
-  std::uint64_t trace_key = 0;  // hash of trace.key
+  std::uint64_t trace_key = 0;  // hash of the trace's key
   std::int64_t max_rejected_starts = 100;
   bool repeats_losses = false;  // see may_repeat_losses
 };

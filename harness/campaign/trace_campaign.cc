@@ -18,23 +18,21 @@ namespace {
 using base::DiagnosticCode;
 using Clock = std::chrono::steady_clock;
 
-std::set<std::string> as_set(const std::vector<std::string>& names) {
-  return {names.begin(), names.end()};
-}
+std::set<std::string> as_set(const runtime::Names& names) { return {names.begin(), names.end()}; }
 
 class TraceCampaign {
  public:
   TraceCampaign(const TraceContext& context, Trial trial)
       : context_(context),
         trial_(std::move(trial)),
-        tally_(regression_frame(*context.scenario.mapping, trial_.start(), context.bench.fluents(),
-                                as_set(trace().holds.back()))) {
+        tally_(regression_frame(*context.scenario.mapping, trial_.start(),
+                                context.bench.fluents().ground(),
+                                as_set(trace().holds(trace().event_count())))) {
     auto& result = outcome_.result;
-    result.number = trace().number;
-    result.events = trace().events;
-    result.initial_state = trace().holds.front();
+    result.trace = trial_.plan().trace;
     result.start_region = trial_.start().dimensions;
-    result.not_compared = ignored_fluents(*context.scenario.mapping, context.bench.fluents());
+    result.not_compared =
+        ignored_fluents(*context.scenario.mapping, context.bench.fluents().ground());
   }
 
   base::Result<TraceOutcome> run() {
@@ -52,7 +50,7 @@ class TraceCampaign {
   }
 
  private:
-  const CampaignTrace& trace() const { return trial_.plan().trace; }
+  const CampaignTrace& trace() const { return *trial_.plan().trace; }
 
   /// Workers run ahead of what is consumed, but not beyond what the criterion still asks for.
   std::int64_t last_wanted() const {
@@ -123,7 +121,7 @@ class TraceCampaign {
       found.confirmation = Confirmation::kDiffers;
     }
     found.record = record;
-    found.end = mapped_part(*context_.scenario.mapping, context_.bench.fluents(),
+    found.end = mapped_part(*context_.scenario.mapping, context_.bench.fluents().ground(),
                             record.observations.back());
     outcome_.discrepancy = std::move(found);
     outcome_.consumed.push_back(std::move(record));
@@ -166,12 +164,12 @@ class TraceCampaign {
   }
 
   void add_own_caveats(TraceResult& result) const {
-    if (trace().other_outcomes && context_.scenario.match_model) {
+    if (trace().other_outcomes == base::Known::kYes && context_.scenario.match_model) {
       result.caveats.push_back(
           "the model leaves the outcome of these events open; an end state counts as predicted if "
           "the model admits it");
     }
-    if (trace().other_initial_states) {
+    if (trace().other_initial_states == base::Known::kYes) {
       result.caveats.push_back(
           "other initial states lead to the same events; only the first, in the model's order, was "
           "sampled");

@@ -6,29 +6,42 @@
 #include <string>
 #include <vector>
 
+#include "compiler/base/contract.h"
 #include "compiler/base/known.h"
 #include "compiler/base/result.h"
+#include "harness/region/fluent_binding.h"
 #include "harness/simulator/simulator.h"
+#include "runtime/trace/trace.h"
 
 namespace parallax::harness {
 
-/// One event of a trace and the step of the plan that it came from.
-struct TraceEvent {
-  std::string text;                    // "Go(r2)", printed without blanks
-  std::string symbol;                  // "Go"
-  std::vector<std::string> arguments;  // "r2"
-  std::string source;                  // "fetch.lisp:4"; empty without a plan
-  State plan_arguments;                // laid over the action's own: target.x, target.y, ...
+/// What the plan says of one event of a trace.
+struct PlannedEvent {
+  std::string source;  // "fetch.lisp:4"; empty without a plan
+  State arguments;     // laid over the action's own: target.x, target.y, ...
 };
 
-/// A trace as the campaign needs it. `holds` has one entry more than `events`.
-struct CampaignTrace {
-  std::int64_t number = 0;  // from 1, in order of enumeration
-  std::string key;          // stable text that names the trace, part of every draw's key
-  std::vector<std::vector<std::string>> holds;  // true ground fluents per timepoint, sorted
-  std::vector<TraceEvent> events;               // event t leads from timepoint t to t + 1
-  bool other_initial_states = false;            // others lead to the same events
-  bool other_outcomes = false;  // the same start and events may end otherwise: see `admits`
+/// A trace as the campaign simulates, records and reports it: exactly one event leads from each
+/// timepoint to the next.
+struct CampaignTrace : runtime::Trace {
+  std::string key;                 // stable text that names the trace, part of every draw's key
+  std::vector<PlannedEvent> plan;  // by event
+
+  std::size_t event_count() const { return plan.size(); }
+  /// Printed without blanks: "Go(r2)".
+  const std::string& event(std::size_t t) const { return symbols->name(points[t].happens.front()); }
+};
+
+/// The ground fluents of a model in order of their names, and their ids in traces.
+class ModelFluents {
+ public:
+  explicit ModelFluents(const compiler::SymbolTable& symbols);
+  const std::vector<GroundFluent>& ground() const { return ground_; }
+  compiler::FluentId id(std::size_t index) const { return ids_[index]; }
+
+ private:
+  std::vector<GroundFluent> ground_;
+  std::vector<compiler::FluentId> ids_;  // likewise
 };
 
 /// Where traces come from: an enumeration, a file, a list in a test.
@@ -42,13 +55,13 @@ class TraceFeed {
   virtual std::string exploration() const = 0;
   /// Why it is complete up to a bound only, one sentence each: the forms of the plan that were cut.
   virtual std::vector<std::string> bounds() const { return {}; }
-  /// All ground fluents of the model, sorted.
-  virtual const std::vector<std::string>& fluents() const = 0;
+  /// Of all its traces: the ground fluents and events of the model.
+  virtual runtime::Symbols symbols() const = 0;
   /// Does the model let the events of `trace`, from its initial state, end in a state in which each
   /// of these fluents has this value? Asked about the trace that was given last, and only if it has
   /// `other_outcomes`. Undecided where the stop flag is raised meanwhile.
   virtual base::Known admits(const CampaignTrace& trace,
-                             const std::map<std::string, bool>& last_state) {
+                             const std::map<compiler::FluentId, bool>& last_state) {
     (void)trace, (void)last_state;
     return base::Known::kNo;
   }

@@ -61,7 +61,7 @@ std::string name_in_mapping(const WorldSpec& world, const std::string& body) {
 /// The region that the start of the trace puts the body into.
 const Region* region_of(const Scenario& scenario, const CampaignTrace& trace,
                         const std::string& body) {
-  for (const auto& text : trace.holds.front()) {
+  for (const auto text : trace.holds(0)) {
     const auto fluent = ground_fluent(text);
     const auto* binding = scenario.mapping->find(fluent.symbol);
     if (binding == nullptr) continue;
@@ -115,7 +115,7 @@ base::Result<PreparedTrace> prepare_trace(const Scenario& scenario,
                                           const std::vector<GroundFluent>& fluents,
                                           const SimulatorInfo& simulator,
                                           const CampaignTrace& trace, base::DiagnosticSink& sink) {
-  const auto& true_at_start = trace.holds.front();
+  const auto true_at_start = trace.holds(0);
   auto start = scenario.mapping->start_cuboid(
       fluents, std::set<std::string>(true_at_start.begin(), true_at_start.end()), scenario.sampling,
       scenario.sampling_source, sink);
@@ -134,9 +134,9 @@ TrialBench::TrialBench(const Scenario& scenario, TraceFeed& feed,
       feed_(feed),
       options_(options),
       sink_(sink),
+      fluents_(*feed.symbols()),
       pool_(options.jobs, make_simulator, std::move(finished), options.stop) {
   PARALLAX_REQUIRE(scenario.mapping.has_value(), "a scenario that was loaded without errors");
-  for (const auto& fluent : feed.fluents()) fluents_.push_back(ground_fluent(fluent));
 }
 
 base::Result<bool> TrialBench::start() {
@@ -147,21 +147,23 @@ base::Result<bool> TrialBench::start() {
                        info->version);
   }
   simulator_ = *std::move(info);
-  if (!check_against_simulator(scenario_, fluents_, simulator_, sink_))
+  if (!check_against_simulator(scenario_, fluents_.ground(), simulator_, sink_))
     return sink_.already_reported();
   return true;
 }
 
 base::Result<Trial> Trial::prepare(TrialBench& bench, CampaignTrace trace) {
-  PARALLAX_REQUIRE(trace.holds.size() == trace.events.size() + 1,
+  PARALLAX_REQUIRE(trace.points.size() == trace.event_count() + 1,
                    "a trace has one state more than it has events");
   const auto& scenario = bench.scenario_;
-  auto parts = prepare_trace(scenario, bench.fluents_, bench.simulator_, trace, bench.sink_);
+  auto parts =
+      prepare_trace(scenario, bench.fluents_.ground(), bench.simulator_, trace, bench.sink_);
   if (!parts) return bench.sink_.already_reported();
   const auto key = base::fnv1a64(trace.key);
-  auto plan = std::make_shared<const TracePlan>(TracePlan{
-      std::move(trace), std::move(parts->calls), std::move(parts->sampler), bench.options_.seed,
-      key, scenario.limits.max_rejected_starts, may_repeat_losses(bench.simulator_)});
+  auto plan = std::make_shared<const TracePlan>(
+      TracePlan{std::make_shared<const CampaignTrace>(std::move(trace)), std::move(parts->calls),
+                std::move(parts->sampler), bench.options_.seed, key,
+                scenario.limits.max_rejected_starts, may_repeat_losses(bench.simulator_)});
   return Trial(bench, std::move(plan), std::move(parts->start));
 }
 
@@ -174,7 +176,7 @@ void Trial::submit_to(std::int64_t last) {
 }
 
 const SampleRecord* Trial::recorded(std::int64_t sample, DrawPhase phase) const {
-  return journal_ == nullptr ? nullptr : journal_->find(plan_->trace.number, sample, phase);
+  return journal_ == nullptr ? nullptr : journal_->find(plan_->trace->number, sample, phase);
 }
 
 std::optional<SampleRecord> Trial::result_of(std::int64_t sample, DrawPhase phase) {
@@ -193,7 +195,7 @@ base::Result<std::optional<TrialSample>> Trial::next() {
   const auto& scenario = bench_->scenario_;
   switch (record->status) {
     case SampleStatus::kRejected:
-      return report_rejected(scenario, plan_->trace, record->rejected, record->sample,
+      return report_rejected(scenario, *plan_->trace, record->rejected, record->sample,
                              record->reason, bench_->sink_);
     case SampleStatus::kRefused:
       return report_refused(*record);
@@ -223,7 +225,7 @@ TrialSample Trial::lost(SampleRecord record) {
 base::Result<std::optional<TrialSample>> Trial::observed(SampleRecord record) {
   const auto& scenario = bench_->scenario_;
   TrialSample sample;
-  sample.judgement = judge(*scenario.mapping, bench_->fluents_, plan_->trace, record.observations);
+  sample.judgement = judge(*scenario.mapping, bench_->fluents_, *plan_->trace, record.observations);
   const auto& judgement = sample.judgement;
   if (!judgement.missing.empty()) {
     return report_missing(record, *judgement.missing.begin());
@@ -233,9 +235,10 @@ base::Result<std::optional<TrialSample>> Trial::observed(SampleRecord record) {
   sample.record = std::move(record);
   sample.verdict = SampleVerdict::kAsPredicted;
   if (!judgement.matches()) {
-    const bool open = scenario.match_model && !judgement.in_no_state && plan_->trace.other_outcomes;
+    const bool open = scenario.match_model && !judgement.in_no_state &&
+                      plan_->trace->other_outcomes == base::Known::kYes;
     const auto admitted =
-        open ? bench_->feed_.admits(plan_->trace, judgement.last_state) : base::Known::kNo;
+        open ? bench_->feed_.admits(*plan_->trace, judgement.last_state) : base::Known::kNo;
     if (admitted == base::Known::kUndecided || bench_->stopped()) {
       return std::optional<TrialSample>();
     }
@@ -254,8 +257,7 @@ base::DiagnosticBuilder Trial::report_refused(const SampleRecord& record) const 
     return bench_->sink_.error(code, scenario.sampling_source,
                                fmt::format("refused the start {}", in), record.reason);
   }
-  const auto& event = plan_->trace.events.at(record.outcomes.size());
-
+  const auto event = ground_fluent(plan_->trace->event(record.outcomes.size()));
   const auto action =
       std::find_if(scenario.actions.begin(), scenario.actions.end(),
                    [&](const auto& binding) { return binding.event == event.symbol; });
@@ -276,7 +278,7 @@ base::DiagnosticBuilder Trial::report_missing(const SampleRecord& record,
   }
   const auto& mapping = *scenario.mapping;
   auto place = scenario.mapping_source;
-  for (const auto& fluent : bench_->fluents_) {
+  for (const auto& fluent : bench_->fluents_.ground()) {
     const auto* binding = mapping.find(fluent.symbol);
     if (binding == nullptr) continue;
     const auto read = binding->variables(fluent, mapping.regions());

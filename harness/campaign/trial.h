@@ -52,7 +52,7 @@ class TrialBench {
   base::Result<bool> start();
 
   const SimulatorInfo& simulator() const { return simulator_; }
-  const std::vector<GroundFluent>& fluents() const { return fluents_; }
+  const ModelFluents& fluents() const { return fluents_; }
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
   /// Ends the workers. Nothing may be simulated afterwards.
@@ -67,7 +67,7 @@ class TrialBench {
   TraceFeed& feed_;
   TrialOptions options_;
   base::DiagnosticSink& sink_;
-  std::vector<GroundFluent> fluents_;
+  ModelFluents fluents_;
   SimulatorInfo simulator_;
   std::int64_t lost_in_a_row_ = 0;
   WorkerPool pool_;

@@ -38,34 +38,37 @@ Json json_of(const std::vector<DivergingFluent>& fluents) {
   return out;
 }
 
-Json json_of(const TraceResult& trace) {
+Json json_of(const TraceResult& result) {
+  const auto& trace = *result.trace;
   auto events = Json::array();
   auto sources = Json::array();
-  for (const auto& event : trace.events) {
-    events.push_back(event.text);
-    sources.push_back(event.source);
+  for (std::size_t t = 0; t < trace.event_count(); ++t) {
+    auto event = event_json<Json>(trace, t);
+    events.push_back(std::move(event["event"]));
+    sources.push_back(std::move(event["source"]));
   }
   Json out = {{"trace", trace.number},
-              {"verdict", to_string(trace.verdict)},
+              {"verdict", to_string(result.verdict)},
               {"events", std::move(events)},
               {"sources", std::move(sources)},
-              {"initial_state", trace.initial_state},
-              {"start_region", json_of(trace.start_region)},
-              {"not_compared", trace.not_compared},
-              {"simulations", trace.simulations},
+              {"initial_state", holds_json<Json>(trace, 0)},
+              {"start_region", json_of(result.start_region)},
+              {"not_compared", result.not_compared},
+              {"simulations", result.simulations},
               {"guided", 0},
-              {"clean", trace.clean},
-              {"admitted", trace.admitted},
-              {"lost", trace.lost},
-              {"retried", trace.retried},
-              {"rejected", trace.rejected},
-              {"strayed", trace.strayed}};
-  out["certified"] = {{"confidence", trace.certified_level}, {"epsilon", trace.certified_epsilon}};
-  out["paper"] = {{"stopped_at", nullptr}, {"variant", trace.paper_variant}};
-  if (trace.paper_stopped_at) out["paper"]["stopped_at"] = *trace.paper_stopped_at;
-  out["not_covered"] = trace.not_covered;
-  out["claim"] = trace.claim;
-  out["caveats"] = trace.caveats;
+              {"clean", result.clean},
+              {"admitted", result.admitted},
+              {"lost", result.lost},
+              {"retried", result.retried},
+              {"rejected", result.rejected},
+              {"strayed", result.strayed}};
+  out["certified"] = {{"confidence", result.certified_level},
+                      {"epsilon", result.certified_epsilon}};
+  out["paper"] = {{"stopped_at", nullptr}, {"variant", result.paper_variant}};
+  if (result.paper_stopped_at) out["paper"]["stopped_at"] = *result.paper_stopped_at;
+  out["not_covered"] = result.not_covered;
+  out["claim"] = result.claim;
+  out["caveats"] = result.caveats;
   return out;
 }
 

@@ -82,7 +82,7 @@ class TextReport {
   }
 
   void one_trace(const TraceResult& trace) {
-    out_ += fmt::format("\ntrace {}: {}\n", trace.number, verdict_word(trace.verdict));
+    out_ += fmt::format("\ntrace {}: {}\n", trace.trace->number, verdict_word(trace.verdict));
     events(trace);
     start(trace);
     auto runs = fmt::format("{} ({} clean", trace.simulations, trace.clean);
@@ -103,15 +103,16 @@ class TextReport {
     }
     for (const auto& caveat : trace.caveats) line("note", caveat);
     for (const auto& found : result_.discrepancies) {
-      if (found.trace == trace.number) discrepancy(found, trace);
+      if (found.trace == trace.trace->number) discrepancy(found, trace);
     }
   }
 
   void events(const TraceResult& trace) {
-    if (trace.events.empty()) return line("events", "none: the start itself is compared");
+    if (trace.trace->event_count() == 0)
+      return line("events", "none: the start itself is compared");
     std::vector<std::vector<std::string>> rows;
-    for (std::size_t i = 0; i < trace.events.size(); ++i) {
-      rows.push_back({fmt::format("{}", i), trace.events[i].text, trace.events[i].source});
+    for (std::size_t i = 0; i < trace.trace->event_count(); ++i) {
+      rows.push_back({fmt::format("{}", i), trace.trace->event(i), trace.trace->plan[i].source});
     }
     auto text = table(rows, kLabelEnd);
     text.replace(0, 8, "  events");
@@ -120,8 +121,8 @@ class TextReport {
 
   /// What the claim is about: the discrete start and the continuous states that it stands for.
   void start(const TraceResult& trace) {
-    if (!trace.initial_state.empty()) {
-      line("start state", fmt::format("{}", fmt::join(trace.initial_state, ", ")));
+    if (const auto holds = trace.trace->holds(0); !holds.empty()) {
+      line("start state", fmt::format("{}", fmt::join(holds, ", ")));
     }
     std::vector<std::vector<std::string>> rows;
     for (const auto& [variable, interval] : trace.start_region) {
@@ -162,7 +163,7 @@ class TextReport {
     std::vector<std::vector<std::string>> rows = {{"fluent", "timepoint", "predicted", "observed"}};
     for (const auto& fluent : found.fluents) rows.push_back(row(fluent));
     out_ += table(rows, 4);
-    if (found.first_divergence < static_cast<std::int64_t>(trace.events.size())) {
+    if (found.first_divergence < static_cast<std::int64_t>(trace.trace->event_count())) {
       parting(found, trace);
     }
     unusual_outcomes(found, trace);
@@ -215,8 +216,8 @@ class TextReport {
           fmt::format("{} is {} instead of {}", fluent.fluent, fluent.observed, fluent.predicted));
     }
     line("first seen",
-         fmt::format("at timepoint {}, after {}: {}", t, t > 0 ? trace.events[t - 1].text : "reset",
-                     fmt::join(parts, ", ")),
+         fmt::format("at timepoint {}, after {}: {}", t,
+                     t > 0 ? trace.trace->event(t - 1) : "reset", fmt::join(parts, ", ")),
          4);
   }
 
@@ -225,7 +226,7 @@ class TextReport {
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
       if (outcomes[i].status == SimStatus::kOk) continue;
       line("action",
-           fmt::format("event {}, {}, {} after {:.3f} s: {}", i, trace.events[i].text,
+           fmt::format("event {}, {}, {} after {:.3f} s: {}", i, trace.trace->event(i),
                        to_string(outcomes[i].status), outcomes[i].sim_time_s,
                        outcomes[i].reason.empty() ? "no reason given" : outcomes[i].reason),
            4);

@@ -53,6 +53,16 @@ Names sorted_names(const compiler::SymbolTable& symbols, std::span<const compile
   return sorted(symbols, ids);
 }
 
+TracePoint point_of_names(std::span<const std::string> holds, std::span<const std::string> happens,
+                          compiler::SymbolTable& symbols) {
+  TracePoint point;
+  for (const auto& name : holds) point.holds.push_back(symbols.add_fluent(name));
+  for (const auto& name : happens) point.happens.push_back(symbols.add_event(name));
+  std::sort(point.holds.begin(), point.holds.end());
+  std::sort(point.happens.begin(), point.happens.end());
+  return point;
+}
+
 Trace decode_trace(const CompiledModel& model, Symbols symbols, Timepoint length,
                    const std::function<bool(Literal)>& value) {
   Trace trace;

@@ -50,6 +50,10 @@ struct TracePoint {
   std::map<std::string, std::string> registers;
 };
 
+/// A point that comes from elsewhere, by names: those that the table lacks are added to it.
+TracePoint point_of_names(std::span<const std::string> holds, std::span<const std::string> happens,
+                          compiler::SymbolTable& symbols);
+
 /// One execution trace: timepoints 0 .. length, events at 0 .. length - 1.
 struct Trace {
   std::int64_t number = 0;  // from 1, in the order of enumeration

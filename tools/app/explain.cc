@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "compiler/artifact/symbol_table.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
@@ -106,32 +108,41 @@ base::Result<std::optional<ReportedDiscrepancy>> find_discrepancy(const std::str
 class Observation {
  public:
   Observation(const compiler::CompiledModel& model, const harness::TraceLine& trace)
-      : model_(model), trace_(trace), index_(model) {}
+      : model_(model), trace_(*trace.trace), index_(model) {}
 
   ObservedRun make(const ReportedDiscrepancy& discrepancy) {
     run_.observed.length = static_cast<Timepoint>(
         std::min(discrepancy.first_divergence, std::int64_t{model_.horizon}));
+    read_trace();
+    for (std::size_t t = 0; t < events_.size(); ++t) {
+      run_.lines.push_back(fmt::format("{} happens at {}", trace_.event(t), t));
+    }
     model_.for_each_atom([&](const compiler::AtomRef& atom) {
       if (!atom.time || *atom.time >= run_.observed.length) return;
       const auto t = static_cast<std::size_t>(*atom.time);
-      if (atom.kind == AtomKind::kHappens && t < trace_.events.size()) {
-        state(atom.variable, trace_.events[t] == atom.name);
+      if (atom.kind == AtomKind::kHappens && t < events_.size()) {
+        state(atom.variable, events_[t] == atom.event());
       }
-      if (atom.kind == AtomKind::kHoldsAt && t == 0 && !trace_.holds.empty()) {
-        const auto& holds = trace_.holds.front();
-        state(atom.variable, std::find(holds.begin(), holds.end(), atom.name) != holds.end());
+      if (atom.kind == AtomKind::kHoldsAt && t == 0) {
+        state(atom.variable, holds_.contains(atom.fluent()));
       }
     });
-    for (Timepoint t = 0; t < run_.observed.length; ++t) {
-      if (static_cast<std::size_t>(t) >= trace_.events.size()) break;
-      run_.lines.push_back(
-          fmt::format("{} happens at {}", trace_.events[static_cast<std::size_t>(t)], t));
-    }
     for (const auto& fluent : discrepancy.first) see(fluent);
     return std::move(run_);
   }
 
  private:
+  /// Its start and events as far as the divergence, in the model's ids: the journal has its own.
+  void read_trace() {
+    const compiler::SymbolTable symbols(model_);
+    for (const auto name : trace_.holds(0)) {
+      if (const auto fluent = symbols.fluent(name)) holds_.insert(*fluent);
+    }
+    const auto length = static_cast<std::size_t>(run_.observed.length);
+    for (std::size_t t = 0; t < std::min(length, trace_.event_count()); ++t) {
+      events_.push_back(symbols.event(trace_.event(t)));
+    }
+  }
   void state(std::int32_t variable, bool value) {
     const auto literal = Literal::positive(variable);
     run_.observed.facts.push_back(value ? literal : ~literal);
@@ -146,8 +157,10 @@ class Observation {
   }
 
   const compiler::CompiledModel& model_;
-  const harness::TraceLine& trace_;
+  const harness::CampaignTrace& trace_;
   compiler::AtomIndex index_;
+  std::set<compiler::FluentId> holds_;                    // at the start
+  std::vector<std::optional<compiler::EventId>> events_;  // by timepoint
   ObservedRun run_;
 };
 

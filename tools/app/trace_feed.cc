@@ -58,15 +58,12 @@ EnumeratedTraces::EnumeratedTraces(const compiler::CompiledModel& model, Context
     : model_(&model),
       context_(&context),
       split_initial_(options.split_initial),
-      fluents_(compiler::names_of(model.fluents)),
       session_(std::make_unique<runtime::SolverSession>(
           model, runtime::make_cadical_solver(&context.stop()))),
-      enumerator_(std::make_unique<runtime::PlanEnumerator>(*session_, options)) {
-  std::sort(fluents_.begin(), fluents_.end());
-}
+      enumerator_(std::make_unique<runtime::PlanEnumerator>(*session_, options)) {}
 
 base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next() {
-  const auto trace = enumerator_->next();
+  auto trace = enumerator_->next();
   const bool is_stopped = enumerator_->exploration() == runtime::Exploration::kStopped;
   if (trace && (trace->other_initial_states == base::Known::kUndecided ||
                 trace->other_outcomes == base::Known::kUndecided)) {
@@ -78,9 +75,8 @@ base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next() {
       return context_->sink().already_reported();
     return std::optional<harness::CampaignTrace>();
   }
-  ++given_;
-  current_ = *trace;
-  auto converted = convert(*trace);
+  given_ = trace->number;
+  auto converted = convert(*std::move(trace));
   if (!converted) return context_->sink().already_reported();
   return std::optional<harness::CampaignTrace>(*std::move(converted));
 }
@@ -94,13 +90,9 @@ std::vector<std::string> EnumeratedTraces::bounds() const {
 }
 
 base::Known EnumeratedTraces::admits(const harness::CampaignTrace& trace,
-                                     const std::map<std::string, bool>& last_state) {
-  PARALLAX_REQUIRE(trace.number == current_.number, "only the trace given last is asked about");
-  std::map<compiler::FluentId, bool> ids;
-  for (const auto& [name, holds] : last_state) {
-    if (const auto fluent = enumerator_->symbols()->fluent(name)) ids.emplace(*fluent, holds);
-  }
-  return enumerator_->admits(current_, ids);
+                                     const std::map<compiler::FluentId, bool>& last_state) {
+  PARALLAX_REQUIRE(trace.number == given_, "only the trace given last is asked about");
+  return enumerator_->admits(trace, last_state);
 }
 
 /// Of a search that came to its end: that nothing meets the constraints is proved.
@@ -116,43 +108,30 @@ base::Status EnumeratedTraces::explain_absence() const {
   return base::Unit{};
 }
 
-base::Result<harness::CampaignTrace> EnumeratedTraces::convert(const runtime::Trace& trace) const {
-  harness::CampaignTrace out;
-  out.number = trace.number;
-  out.key = runtime::event_key(trace);
+base::Result<harness::CampaignTrace> EnumeratedTraces::convert(runtime::Trace trace) const {
+  harness::CampaignTrace out{std::move(trace), {}, {}};
+  out.key = runtime::event_key(out);
   // Traces of the same events are told apart by where they start.
-  if (split_initial_) out.key += fmt::format(" from {}", fmt::join(trace.holds(0), ";"));
-  out.other_initial_states = trace.other_initial_states == base::Known::kYes;
-  out.other_outcomes = trace.other_outcomes == base::Known::kYes;
-  for (std::size_t t = 0; t < trace.points.size(); ++t) {
-    const auto names = trace.holds(t);
-    out.holds.emplace_back(names.begin(), names.end());
-  }
-  for (std::size_t t = 0; t + 1 < trace.points.size(); ++t) {
-    const auto& point = trace.points[t];
+  if (split_initial_) out.key += fmt::format(" from {}", fmt::join(out.holds(0), ";"));
+  for (std::size_t t = 0; t + 1 < out.points.size(); ++t) {
+    const auto& point = out.points[t];
     if (point.happens.size() != 1) {
       const auto where = model_->origins.front().source;
       return context_->sink().error(base::DiagnosticCode::kSeveralEventsAtOnce, where,
                                     point.happens.size(), t);
     }
-    harness::TraceEvent event;
-    const auto term = harness::ground_fluent(trace.symbols->name(point.happens.front()));
-    event.text = term.text;
-    event.symbol = term.symbol;
-    event.arguments = term.arguments;
-    if (point.plan_step) {
-      const auto& step = model_->plan[*point.plan_step];
-      event.source = context_->files().place(step.source);
-      for (const auto& [name, value] : step.arguments) {
-        std::visit([&, key = name](const auto& v) { event.plan_arguments[key] = v; }, value);
-        // An object that the plan knows from the model is named by its register.
-        if (const auto* text = std::get_if<std::string>(&value)) {
-          const auto known = point.registers.find(*text);
-          if (known != point.registers.end()) event.plan_arguments[name] = known->second;
-        }
+    auto& planned = out.plan.emplace_back();
+    if (!point.plan_step) continue;
+    const auto& step = model_->plan[*point.plan_step];
+    planned.source = context_->files().place(step.source);
+    for (const auto& [name, value] : step.arguments) {
+      std::visit([&, key = name](const auto& v) { planned.arguments[key] = v; }, value);
+      // An object that the plan knows from the model is named by its register.
+      if (const auto* text = std::get_if<std::string>(&value)) {
+        const auto known = point.registers.find(*text);
+        if (known != point.registers.end()) planned.arguments[name] = known->second;
       }
     }
-    out.events.push_back(std::move(event));
   }
   return out;
 }

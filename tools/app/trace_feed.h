@@ -22,23 +22,21 @@ class EnumeratedTraces final : public harness::TraceFeed {
   base::Result<std::optional<harness::CampaignTrace>> next() override;
   std::string exploration() const override;
   std::vector<std::string> bounds() const override;
-  const std::vector<std::string>& fluents() const override { return fluents_; }
+  runtime::Symbols symbols() const override { return enumerator_->symbols(); }
   base::Known admits(const harness::CampaignTrace& trace,
-                     const std::map<std::string, bool>& last_state) override;
+                     const std::map<compiler::FluentId, bool>& last_state) override;
   std::int64_t solve_calls() const { return session_->solve_calls(); }
 
  private:
-  base::Result<harness::CampaignTrace> convert(const runtime::Trace& trace) const;
+  base::Result<harness::CampaignTrace> convert(runtime::Trace trace) const;
   base::Status explain_absence() const;
 
   const compiler::CompiledModel* model_;
   Context* context_;
   bool split_initial_;
-  std::vector<std::string> fluents_;
   std::unique_ptr<runtime::SolverSession> session_;
   std::unique_ptr<runtime::PlanEnumerator> enumerator_;
-  runtime::Trace current_;  // the one given last
-  std::int64_t given_ = 0;
+  std::int64_t given_ = 0;  // the number of the last trace
 };
 
 /// Has the model an execution of `steps` steps? If it has none, reports why: the axioms of a

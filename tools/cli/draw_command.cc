@@ -122,18 +122,19 @@ base::Result<Album> simulate(const harness::RecordedRun& run, const harness::Sce
       {"start", fmt::format("simulation {}.{}, at 0.00 s", run.id.trace, run.id.sample)});
   album.pictures.push_back({recorder.scene(), {}});
   double time_s = 0.0;
-  for (std::size_t i = 0; i < run.calls.size() && !stop_flag().load(); ++i) {
-    const auto& call = run.calls[i];
+  for (std::size_t i = 0; i < run.line.calls.size() && !stop_flag().load(); ++i) {
+    const auto& call = run.line.calls[i];
     const auto outcome = recorder.act(call.controller, call.arguments, call.time_limit_s);
     if (outcome.status == harness::SimStatus::kLost) break;  // there is no state to draw
     const auto& recorded = run.record.outcomes;
     if (i < recorded.size() && (recorded[i].status != outcome.status ||
                                 !harness::bit_equal(recorded[i].sim_time_s, outcome.sim_time_s))) {
-      return sink.error_about(
-          DiagnosticCode::kReplayImpossible, folder,
-          fmt::format("action {}, {}, ended otherwise than recorded", i + 1, run.events.at(i)));
+      return sink.error_about(DiagnosticCode::kReplayImpossible, folder,
+                              fmt::format("action {}, {}, ended otherwise than recorded", i + 1,
+                                          run.line.trace->event(i)));
     }
-    album.captions.push_back(caption_of(i + 1, run.events.at(i), call.controller, outcome, time_s));
+    album.captions.push_back(
+        caption_of(i + 1, run.line.trace->event(i), call.controller, outcome, time_s));
     album.pictures.push_back({recorder.scene(), recorder.action()});
     time_s += outcome.sim_time_s;
   }

@@ -49,11 +49,7 @@ class LineReader {
           return fmt::format("`{}` of timepoint {} is no list of names", key, trace.points.size());
         }
       }
-      auto& read = trace.points.emplace_back();
-      for (const auto& name : holds) read.holds.push_back(symbols_->add_fluent(name));
-      for (const auto& name : happens) read.happens.push_back(symbols_->add_event(name));
-      std::sort(read.holds.begin(), read.holds.end());
-      std::sort(read.happens.begin(), read.happens.end());
+      trace.points.push_back(runtime::point_of_names(holds, happens, *symbols_));
     }
     out_.traces.push_back(std::move(trace));
     return {};

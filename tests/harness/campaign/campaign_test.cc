@@ -169,7 +169,7 @@ TEST_CASE("the result says where starts were drawn from and where a discrepancy 
   const auto result = bench.run();
   REQUIRE(result.has_value());
   const auto& trace = result->traces[0];
-  CHECK(trace.initial_state == std::vector<std::string>{"BoxIn(r2)", "RobotIn(r1)"});
+  CHECK(trace.trace->holds(0) == runtime::Names{"BoxIn(r2)", "RobotIn(r1)"});
   REQUIRE(trace.start_region.size() == 2);
   CHECK(trace.start_region[0].variable == "box.x");
   CHECK(trace.start_region[0].interval.lower == 1.0);

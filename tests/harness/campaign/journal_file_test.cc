@@ -18,8 +18,10 @@ JournalHeader header() {
 }
 
 TraceLine line(std::int64_t number) {
-  return {number,          "key " + std::to_string(number),        {{"A()"}, {"B()"}}, {"Go(r2)"},
-          {"plan.lisp:4"}, {{"going", {{"target.x", 1.25}}, 30.0}}};
+  auto trace = named_trace(number, "key " + std::to_string(number), {{"A()"}, {"B()"}},
+                           {{"Go(r2)", {"plan.lisp:4", {}}}});
+  return {std::make_shared<const CampaignTrace>(std::move(trace)),
+          {{"going", {{"target.x", 1.25}}, 30.0}}};
 }
 
 SampleRecord record(std::int64_t trace, std::int64_t sample,

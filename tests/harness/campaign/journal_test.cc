@@ -190,7 +190,7 @@ TEST_CASE("records come back from their line to the last bit") {
       {{"n", std::int64_t{-7}}, {"f", true}, {"x", 3.0}, {"t", std::string("w")}}, {}};
   record.outcomes = {{SimStatus::kTruncated, "late", 0.30000000000000004}};
   record.digest = "00ff";
-  const auto decoded = decode_line(encode(record));
+  const auto decoded = decode_line(encode(record), table_of({}));
   const auto* back = std::get_if<SampleRecord>(&decoded);
   REQUIRE(back != nullptr);
   CHECK(*back == record);

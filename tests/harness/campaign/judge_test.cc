@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include "tests/harness/campaign/named_trace.h"
+
 namespace parallax::harness {
 namespace {
 
@@ -28,22 +30,16 @@ StateMapping mapping() {
                        {"LookingAt", 1, IgnoredBinding{}, {}}});
 }
 
-std::vector<GroundFluent> fluents() {
-  std::vector<GroundFluent> out;
-  for (const auto* text : {"BoxIn(r1)", "BoxIn(r2)", "Held()", "LookingAt(r1)", "LookingAt(r2)",
-                           "On(red)", "Open()", "Tired()"}) {
-    out.push_back(ground_fluent(text));
-  }
-  return out;
+test::Table table() {
+  return test::table_of({"Tired()", "BoxIn(r2)", "BoxIn(r1)", "Held()", "LookingAt(r1)",
+                         "LookingAt(r2)", "On(red)", "Open()"});
 }
+ModelFluents fluents() { return ModelFluents(*table()); }
 
 /// From r2 over the gripper to r1.
 CampaignTrace trace() {
-  CampaignTrace out;
-  out.number = 1;
-  out.holds = {{"BoxIn(r2)", "Tired()"}, {"Held()"}, {"BoxIn(r1)"}};
-  out.events = {{"PickUp(box)", "PickUp", {"box"}, {}, {}}, {"Place(r1)", "Place", {"r1"}, {}, {}}};
-  return out;
+  return test::named_trace(1, {}, {{"BoxIn(r2)", "Tired()"}, {"Held()"}, {"BoxIn(r1)"}},
+                           {{"PickUp(box)"}, {"Place(r1)"}}, table());
 }
 
 State state(double box_m, bool held, double drawer_m = 0.0) {
@@ -67,11 +63,13 @@ TEST_CASE("observations that say what the trace says match, whatever is ignored"
   CHECK_FALSE(judgement.parted.has_value());
   CHECK(judgement.missing.empty());
   CHECK_FALSE(judgement.in_no_state);
-  CHECK(judgement.last_state == std::map<std::string, bool>{{"BoxIn(r1)", true},
-                                                            {"BoxIn(r2)", false},
-                                                            {"Held()", false},
-                                                            {"On(red)", false},
-                                                            {"Open()", false}});
+  std::map<std::string, bool> last;
+  for (const auto& [id, holds] : judgement.last_state) last[table()->name(id)] = holds;
+  CHECK(last == std::map<std::string, bool>{{"BoxIn(r1)", true},
+                                            {"BoxIn(r2)", false},
+                                            {"Held()", false},
+                                            {"On(red)", false},
+                                            {"Open()", false}});
 }
 
 TEST_CASE("a start that is another one diverges at timepoint 0, even if the end is right") {
@@ -146,17 +144,15 @@ TEST_CASE("variables that are not there are named") {
 }
 
 TEST_CASE("without events the cause is the start") {
-  auto only = trace();
-  only.events.clear();
-  only.holds.resize(1);
+  const auto only = test::named_trace(1, {}, {{"BoxIn(r2)", "Tired()"}}, {}, table());
   const auto judgement = judge(mapping(), fluents(), only, {state(0.5, false)});
   CHECK(cause_of(only, judgement, {}).text == "start: BoxIn(r1)");
 }
 
 TEST_CASE("ignored symbols are listed once, and the rest of a state is what is compared") {
-  CHECK(ignored_fluents(mapping(), fluents()) ==
+  CHECK(ignored_fluents(mapping(), fluents().ground()) ==
         std::vector<std::string>{"LookingAt(..)", "Tired()"});
-  CHECK(mapped_part(mapping(), fluents(), state(0.5, true)) ==
+  CHECK(mapped_part(mapping(), fluents().ground(), state(0.5, true)) ==
         State{{"box.held", true}, {"box.x", 0.5}, {"drawer.q", 0.0}, {"lamp", std::string("off")}});
 }
 

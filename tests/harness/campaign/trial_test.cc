@@ -56,7 +56,7 @@ TEST_CASE("a trial is prepared with the region, the calls and the draws of its t
   CHECK(trial.start().dimensions[0].interval.lower == 1.0);
   CHECK(trial.start().dimensions[1].variable == "robot.x");
   const auto& plan = trial.plan();
-  CHECK(plan.trace.number == 1);
+  CHECK(plan.trace->number == 1);
   REQUIRE(plan.calls.size() == 4);
   CHECK(plan.calls[0].controller == "going");
   CHECK(plan.calls[0].arguments == State{{"target.x", 1.25}});

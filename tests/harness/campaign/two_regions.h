@@ -21,6 +21,7 @@
 #include "compiler/base/hash.h"
 #include "harness/campaign/campaign.h"
 #include "harness/sampling/sampler.h"
+#include "tests/harness/campaign/named_trace.h"
 
 namespace parallax::harness::test {
 
@@ -203,43 +204,45 @@ class ListFeed final : public TraceFeed {
   base::Result<std::optional<CampaignTrace>> next() override {
     if (given_ == count_) return std::optional<CampaignTrace>();
     auto out = trace(++given_);
-    out.other_initial_states = openness_.initial_states;
-    out.other_outcomes = openness_.outcomes;
+    if (openness_.initial_states) out.other_initial_states = base::Known::kYes;
+    if (openness_.outcomes) out.other_outcomes = base::Known::kYes;
     return std::optional<CampaignTrace>(std::move(out));
   }
   base::Known admits(const CampaignTrace& trace,
-                     const std::map<std::string, bool>& last_state) override {
+                     const std::map<compiler::FluentId, bool>& last_state) override {
     CHECK(trace.number == given_);
     if (openness_.is_stopped) return base::Known::kUndecided;
-    return openness_.admits(last_state) ? base::Known::kYes : base::Known::kNo;
+    std::map<std::string, bool> by_name;
+    for (const auto& [id, holds] : last_state) by_name[trace.symbols->name(id)] = holds;
+    return openness_.admits(by_name) ? base::Known::kYes : base::Known::kNo;
   }
   std::string exploration() const override {
     return openness_.is_stopped ? "stopped" : "all traces explored";
   }
-  const std::vector<std::string>& fluents() const override { return fluents_; }
+  runtime::Symbols symbols() const override { return table(); }
 
   static CampaignTrace trace(std::int64_t number) {
-    CampaignTrace out;
-    out.number = number;
-    out.key = "fetch " + std::to_string(number);
-    out.holds = {{"BoxIn(r2)", "RobotIn(r1)"},
-                 {"BoxIn(r2)", "RobotIn(r2)"},
-                 {"Holding()", "RobotIn(r2)"},
-                 {"Holding()", "RobotIn(r1)"},
-                 {"BoxIn(r1)", "RobotIn(r1)"}};
-    out.events = {{"Go(r2)", "Go", {"r2"}, "fetch.lisp:2", {{"target.x", 1.25}}},
-                  {"PickUp()", "PickUp", {}, "fetch.lisp:3", {}},
-                  {"Go(r1)", "Go", {"r1"}, "fetch.lisp:4", {{"target.x", 0.5}}},
-                  {"Place()", "Place", {}, "fetch.lisp:5", {}}};
-    return out;
+    return named_trace(number, "fetch " + std::to_string(number),
+                       {{"BoxIn(r2)", "RobotIn(r1)"},
+                        {"BoxIn(r2)", "RobotIn(r2)"},
+                        {"Holding()", "RobotIn(r2)"},
+                        {"Holding()", "RobotIn(r1)"},
+                        {"BoxIn(r1)", "RobotIn(r1)"}},
+                       {{"Go(r2)", {"fetch.lisp:2", {{"target.x", 1.25}}}},
+                        {"PickUp()", {"fetch.lisp:3", {}}},
+                        {"Go(r1)", {"fetch.lisp:4", {{"target.x", 0.5}}}},
+                        {"Place()", {"fetch.lisp:5", {}}}},
+                       table());
   }
 
  private:
   std::int64_t count_;
   Openness openness_;
   std::int64_t given_ = 0;
-  std::vector<std::string> fluents_ = {"BoxIn(r1)", "BoxIn(r2)", "Holding()", "RobotIn(r1)",
-                                       "RobotIn(r2)"};
+  /// Not in order of the names, as models need not be.
+  static Table table() {
+    return table_of({"RobotIn(r1)", "RobotIn(r2)", "BoxIn(r1)", "BoxIn(r2)", "Holding()"});
+  }
 };
 
 /// One campaign in a folder of its own, with everything that it needs.

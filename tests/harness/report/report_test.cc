@@ -8,6 +8,7 @@
 
 #include "compiler/base/utf8.h"
 #include "harness/report/text_layout.h"
+#include "tests/harness/campaign/named_trace.h"
 
 namespace parallax::harness {
 namespace {
@@ -26,11 +27,13 @@ CampaignResult sample_result() {
   result.replay_folder = "out/two";
   result.simulations = 11;
   TraceResult clean;
-  clean.number = 1;
+  const auto trace = [](std::int64_t number) {
+    return std::make_shared<const CampaignTrace>(
+        test::named_trace(number, {}, {{"RobotIn(r1)", "BoxIn(r2)"}, {"BoxIn(r2)"}, {}},
+                          {{"Go(r2)", {"fetch.lisp:4", {}}}, {"PickUp()", {"fetch.lisp:10", {}}}}));
+  };
+  clean.trace = trace(1);
   clean.verdict = CampaignVerdict::kNoDiscrepancy;
-  clean.events = {{"Go(r2)", "Go", {"r2"}, "fetch.lisp:4", {}},
-                  {"PickUp()", "PickUp", {}, "fetch.lisp:10", {}}};
-  clean.initial_state = {"BoxIn(r2)", "RobotIn(r1)"};
   clean.start_region = {{"box.x", {1.0, 2.0, false}}, {"robot.yaw", {0.5, 0.5, true}}};
   clean.not_compared = {"LookingAt(..)", "Tired()"};
   clean.simulations = clean.clean = 7;
@@ -43,7 +46,7 @@ CampaignResult sample_result() {
       "start region give a discrepancy (7 clean runs of 7)";
   clean.caveats = {"no regression evidence for: Holding()"};
   auto diverging = clean;
-  diverging.number = 2;
+  diverging.trace = trace(2);
   diverging.verdict = CampaignVerdict::kDiscrepancy;
   diverging.simulations = 4;
   diverging.clean = 3;
