@@ -278,7 +278,7 @@ std::optional<JsonValue> JsonValue::find(std::string_view name) const {
 }
 
 ClaimReader::ClaimReader(const Vocabulary& vocabulary, base::DiagnosticSink& sink)
-    : vocabulary_(vocabulary), sink_(sink) {
+    : vocabulary_(&vocabulary), sink_(sink) {
   collect(vocabulary.fluents, fluents_);
   collect(vocabulary.events, events_);
   collect(vocabulary.predicates, predicates_);
@@ -288,7 +288,20 @@ base::Reported ClaimReader::unexpected(std::string_view what, const JsonValue& f
   return sink_.error(DiagnosticCode::kTraceFileShape, found.source(), what, quoted(found));
 }
 
+const std::vector<SymbolInstances>& ClaimReader::symbols_of(AtomKind kind) const {
+  if (kind == AtomKind::kHappens) return vocabulary_->events;
+  return kind == AtomKind::kPredicate ? vocabulary_->predicates : vocabulary_->fluents;
+}
+
+bool ClaimReader::has_symbol(AtomKind kind, const std::string& symbol) const {
+  if (vocabulary_ == nullptr) return true;
+  const auto& symbols = symbols_of(kind);
+  return std::any_of(symbols.begin(), symbols.end(),
+                     [&](const auto& one) { return one.symbol == symbol; });
+}
+
 bool ClaimReader::has(AtomKind kind, const std::string& name) const {
+  if (vocabulary_ == nullptr) return true;
   if (kind == AtomKind::kHappens) return events_.contains(name);
   if (kind == AtomKind::kPredicate) return predicates_.contains(name);
   return fluents_.contains(name);
@@ -298,11 +311,8 @@ bool ClaimReader::claim(AtomKind kind, std::string name, const AtomClaim& claim,
                         AtomClaims& claims) {
   if (!has(kind, name)) {
     auto built = sink_.error(DiagnosticCode::kTraceUnknownAtom, claim.source, word_of(kind), name);
-    const auto& symbols = kind == AtomKind::kHappens     ? vocabulary_.events
-                          : kind == AtomKind::kPredicate ? vocabulary_.predicates
-                                                         : vocabulary_.fluents;
     std::vector<std::string> names;
-    for (const auto& symbol : symbols) {
+    for (const auto& symbol : symbols_of(kind)) {
       names.insert(names.end(), symbol.atoms.begin(), symbol.atoms.end());
     }
     if (names.size() > kMaxSuggested) return false;

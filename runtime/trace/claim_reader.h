@@ -80,18 +80,22 @@ class JsonDocument {
 class ClaimReader {
  public:
   ClaimReader(const Vocabulary& vocabulary, base::DiagnosticSink& sink);
+  /// For files that no model is known of: takes any name.
+  explicit ClaimReader(base::DiagnosticSink& sink) : sink_(sink) {}
 
   /// E6102: expected `what`, found the value.
   base::Reported unexpected(std::string_view what, const JsonValue& found);
   /// Adds a claim; E6103 unless the model has the atom, E6102 if it was claimed otherwise before.
   bool claim(compiler::AtomKind kind, std::string name, const AtomClaim& claim, AtomClaims& claims);
   base::DiagnosticSink& sink() { return sink_; }
-  const Vocabulary& vocabulary() const { return vocabulary_; }
+  /// Has the model such a symbol?
+  bool has_symbol(compiler::AtomKind kind, const std::string& symbol) const;
 
  private:
   bool has(compiler::AtomKind kind, const std::string& name) const;
+  const std::vector<SymbolInstances>& symbols_of(compiler::AtomKind kind) const;
 
-  const Vocabulary& vocabulary_;
+  const Vocabulary* vocabulary_ = nullptr;
   base::DiagnosticSink& sink_;
   std::unordered_set<std::string> fluents_, events_, predicates_;  // for look-up only
 };

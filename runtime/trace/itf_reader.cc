@@ -75,7 +75,7 @@ class ItfReader {
         variable.kind = AtomKind::kPredicate;
         variable.symbol = name.substr(kItfPredicate.size());
       }
-      if (!has_symbol(*variable.kind, variable.symbol)) {
+      if (!reader_.has_symbol(*variable.kind, variable.symbol)) {
         reader_.sink().error(
             base::DiagnosticCode::kTraceUnknownAtom, var.source(),
             variable.kind == AtomKind::kPredicate ? "formula with the predicate" : "fluent",
@@ -84,13 +84,6 @@ class ItfReader {
       }
     }
     return true;
-  }
-
-  bool has_symbol(AtomKind kind, const std::string& symbol) const {
-    const auto& vocabulary = reader_.vocabulary();
-    const auto& symbols = kind == AtomKind::kPredicate ? vocabulary.predicates : vocabulary.fluents;
-    return std::any_of(symbols.begin(), symbols.end(),
-                       [&](const auto& one) { return one.symbol == symbol; });
   }
 
   bool read_state(const JsonValue& state, std::size_t t) {

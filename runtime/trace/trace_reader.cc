@@ -126,6 +126,8 @@ bool take_summary(TraceFileHead& head, const base::SourceFiles& files, base::Dia
   if (!last->root().find("summary")) return true;
   head.traces.pop_back();
   head.closed = true;
+  const auto complete = last->root().find("complete");
+  head.complete = complete && complete->is(JsonKind::kBoolean) && complete->boolean();
   const auto count = last->root().find("traces");
   if (count && count->integer() != std::ssize(head.traces)) {
     sink.error(DiagnosticCode::kTraceFileShape, count->source(),

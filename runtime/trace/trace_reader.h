@@ -22,7 +22,8 @@ struct TraceFileHead {
   /// The model that the traces were made from (`model_hash`), and where the file says so.
   std::optional<std::string> model;
   base::SourceRange model_source;
-  bool closed = false;  // there is a line that says how the list ended, or none is needed
+  bool closed = false;    // there is a line that says how the list ended, or none is needed
+  bool complete = false;  // and that these are all traces
 };
 
 /// Finds the traces of a file: lines of `--format jsonl`, or ITF, as one document or as lines. The

@@ -4,75 +4,37 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <memory>
 #include <set>
 
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
+#include "runtime/trace/trace_reader.h"
 
 namespace parallax::tools {
 namespace {
 
-using SortedJson = nlohmann::json;
-using Names = std::vector<std::string>;
 /// What happens before a timepoint, what holds at it: by name, because two files are compared.
 using Step = std::pair<runtime::Names, runtime::Names>;
 
-/// What one line of a file says, or why it is no line of ours.
-class LineReader {
- public:
-  explicit LineReader(TraceSet& out) : out_(out) {}
-
-  /// Empty if all is well.
-  std::string read(std::string_view line) {
-    const auto json = SortedJson::parse(line, nullptr, false);
-    if (json.is_discarded()) return "it is no JSON";
-    if (!json.is_object()) return "it is no object";
-    if (json.contains("summary")) {
-      out_.closed = true;
-      const auto complete = json.find("complete");
-      out_.complete = complete != json.end() && complete->is_boolean() && complete->get<bool>();
-      return {};
+/// A trace as it was told, with ids of `symbols`. What it does not list is false.
+runtime::Trace trace_of(const runtime::ClaimedTrace& claimed, std::int64_t number,
+                        const std::shared_ptr<compiler::SymbolTable>& symbols) {
+  runtime::Trace trace;
+  trace.number = number;
+  trace.symbols = symbols;
+  const auto names = [](const runtime::AtomClaims& claims) {
+    std::vector<std::string> out;
+    for (const auto& [name, claim] : claims.listed) {
+      if (claim.value) out.push_back(name);
     }
-    const auto points = json.find("timepoints");
-    if (points == json.end() || !points->is_array() || points->empty()) {
-      return "it has no `timepoints`";
-    }
-    runtime::Trace trace;
-    trace.number = static_cast<std::int64_t>(out_.traces.size()) + 1;
-    trace.symbols = symbols_;
-    for (const auto& point : *points) {
-      Names holds, happens;
-      for (const auto& [key, names] :
-           {std::pair("holds", &holds), std::pair("happens", &happens)}) {
-        if (!read_names(point, key, *names)) {
-          return fmt::format("`{}` of timepoint {} is no list of names", key, trace.points.size());
-        }
-      }
-      trace.points.push_back(runtime::point_of_names(holds, happens, *symbols_));
-    }
-    out_.traces.push_back(std::move(trace));
-    return {};
+    return out;
+  };
+  for (const auto& point : claimed.points) {
+    trace.points.push_back(
+        runtime::point_of_names(names(point.holds), names(point.happens), *symbols));
   }
-
- private:
-  static bool read_names(const SortedJson& point, const char* key, Names& names) {
-    if (!point.is_object()) return false;
-    const auto list = point.find(key);
-    if (list == point.end()) return true;
-    if (!list->is_array()) return false;
-    for (const auto& name : *list) {
-      if (!name.is_string()) return false;
-      names.push_back(name.get<std::string>());
-    }
-    std::sort(names.begin(), names.end());
-    names.erase(std::unique(names.begin(), names.end()), names.end());
-    return true;
-  }
-
-  TraceSet& out_;
-  std::shared_ptr<compiler::SymbolTable> symbols_ = std::make_shared<compiler::SymbolTable>();
-};
+  return trace;
+}
 
 std::vector<Step> steps_of(const runtime::Trace& trace) {
   std::vector<Step> steps;
@@ -134,21 +96,19 @@ std::size_t events_before(const runtime::Trace& trace, std::int64_t t) {
 }  // namespace
 
 base::Result<TraceSet> load_trace_set(const std::string& path, Context& context) {
-  const auto file = base::load_text(path, context.files(), context.sink());
-  if (!file) return context.sink().already_reported();
-  TraceSet out;
-  out.name = path;
-  LineReader reader(out);
-  const auto text = context.files()[*file].text();
-  for (std::size_t at = 0; at < text.size();) {
-    const auto end = std::min(text.find('\n', at), text.size());
-    const auto why = end == at ? std::string() : reader.read(text.substr(at, end - at));
-    if (!why.empty()) {
-      const base::SourceRange place{*file, static_cast<std::uint32_t>(at),
-                                    static_cast<std::uint32_t>(end)};
-      return context.sink().error(base::DiagnosticCode::kTraceFileSyntax, place, why);
-    }
-    at = end + 1;
+  auto& sink = context.sink();
+  const auto file = base::load_text(path, context.files(), sink);
+  if (!file) return sink.already_reported();
+  const auto head = runtime::open_trace_file(*file, context.files(), sink);
+  if (!head) return sink.already_reported();
+  TraceSet out{path, {}, head->closed, head->complete};
+  const auto symbols = std::make_shared<compiler::SymbolTable>();
+  runtime::ClaimReader reader(sink);
+  for (const auto& place : head->traces) {
+    const auto number = std::ssize(out.traces) + 1;
+    const auto claimed = runtime::read_trace(place, number, context.files(), reader);
+    if (!claimed) return sink.already_reported();
+    out.traces.push_back(trace_of(*claimed, number, symbols));
   }
   std::set<std::vector<Step>> seen;
   std::erase_if(out.traces,

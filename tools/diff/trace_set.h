@@ -17,7 +17,8 @@ struct TraceSet {
   bool complete = false;               // and that these are all traces
 };
 
-/// Reads lines of `parallax traces --format jsonl` (E6101). Linear in the file.
+/// Reads lines of `parallax traces --format jsonl`, or ITF, as `traces --replay` does (E6101,
+/// E6102), but for the names, which no model says. Linear in the file.
 base::Result<TraceSet> load_trace_set(const std::string& path, Context& context);
 
 /// The traces with changes only, sorted, and what is known of the list.

@@ -243,13 +243,46 @@ TEST_CASE_FIXTURE(DiffFixture, "trace files are sets") {
   CHECK(result.code == 1);
   CHECK(result.out.find("b.jsonl: 1 trace, not known to be all\nlost: 1\n") != std::string::npos);
   CHECK(result.out.find("leaves all of b.jsonl at timepoint 1") != std::string::npos);
-  for (const auto* bad : {"{", "[]", "{\"timepoints\":[]}", "{\"timepoints\":[{\"holds\":3}]}"}) {
-    write("b.jsonl", std::string(two) + "\n" + bad + "\n");
+}
+
+TEST_CASE_FIXTURE(DiffFixture, "trace files are read as strictly as traces --replay reads them") {
+  write("m.e", "range time 0 1\nfluent F()\nevent E()\n");
+  const std::string good =
+      R"x({"trace":1,"timepoints":[{"time":0,"happens":[],"holds":["F()"],"released":[]},)x"
+      R"x({"time":1,"happens":[],"holds":["F()"],"released":[]}],"predicates":[]})x";
+  write("a.jsonl", good + "\n");
+  REQUIRE(parallax({"diff", "a.jsonl", "a.jsonl"}).code == 0);
+  REQUIRE(parallax({"traces", "m.e", "--replay", "a.jsonl"}).code == 0);
+  const auto spoilt = [&](const std::string& from, const std::string& to) {
+    auto text = good;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  const std::vector<std::string> bad = {
+      "{",
+      "[]",
+      "{\"timepoints\":[]}",
+      "{\"timepoints\":[{\"time\":0,\"holds\":3}]}",
+      "{\"timepoints\":[{\"holds\":[]}]}",               // without its time
+      spoilt("\"time\":1", "\"time\":2"),                // a gap
+      spoilt("\"trace\":1", "\"trace\":-1"),             // a negative number
+      spoilt("\"holds\":[\"F()\"]", "\"holds\":[1]"),    // no text
+      spoilt("\"trace\":1", "\"trace\":1,\"trace\":1"),  // a name twice
+      spoilt("\"time\":1,\"happens\":[]", "\"time\":1,\"happens\":[\"E()\"]"),
+      "{\"summary\":true,\"traces\":7,\"complete\":true}",  // another number of traces
+  };
+  for (const auto& line : bad) {
+    CAPTURE(line);
+    write("b.jsonl", good + "\n" + line + "\n");
     const auto refused = parallax({"diff", "a.jsonl", "b.jsonl"});
+    const auto replayed = parallax({"traces", "m.e", "--replay", "b.jsonl"});
     CHECK(refused.code == 3);
-    CHECK(refused.err.find("b.jsonl:2:1") != std::string::npos);
-    CHECK(refused.err.find("E6101") != std::string::npos);
+    CHECK(replayed.code == 3);
+    const auto first = refused.err.substr(0, refused.err.find('\n'));
+    CHECK(first.find("b.jsonl:2:") == 0);
+    CHECK(first == replayed.err.substr(0, replayed.err.find('\n')));
   }
+  write("b.jsonl", "");
+  CHECK(parallax({"diff", "a.jsonl", "b.jsonl"}).code == 3);
 }
 
 TEST_CASE_FIXTURE(DiffFixture, "what cannot be compared is refused with what can") {
