@@ -282,6 +282,7 @@ base::Result<CompiledModel> load_artifact(const std::filesystem::path& path,
                                           base::SourceFiles& files, base::DiagnosticSink& sink) {
   auto text = base::read_file(path, sink, kMaxArtifactBytes);
   if (!text) return sink.already_reported();
+  files.note_input(path.string());
   return read_artifact(files.add(path.string(), *std::move(text)), files, sink);
 }
 

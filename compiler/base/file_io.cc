@@ -10,6 +10,7 @@
 
 #include "compiler/base/descriptor.h"
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/path_gate.h"
 #include "compiler/base/utf8.h"
 
 namespace parallax::base {
@@ -61,6 +62,7 @@ Result<FileId> load_text(const std::filesystem::path& path, SourceFiles& files,
                          DiagnosticSink& sink) {
   auto text = read_file(path, sink);
   if (!text) return sink.already_reported();
+  files.note_input(path.string());
   return register_text(path.string(), std::move(*text), files, sink);
 }
 
@@ -84,19 +86,56 @@ Status write_file_atomically(const std::filesystem::path& path, std::string_view
   if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
     return sink.error_about(DiagnosticCode::kNotARegularFile, path.string());
   }
-  auto temporary = path;
-  temporary += ".tmp";
+  // A name that nothing has: what stands there may be another's file, or a link to one.
+  std::filesystem::path temporary;
+  int opened = -1;
+  for (int attempt = 0; opened < 0 && attempt < 100; ++attempt) {
+    temporary = path;
+    temporary += "." + std::to_string(::getpid()) + "-" + std::to_string(attempt) + ".tmp";
+    constexpr int kNew = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+    opened = ::open(temporary.c_str(), kNew, 0644);
+    if (opened < 0 && errno != EEXIST) break;
+  }
+  if (opened < 0) {
+    return sink.error_about(DiagnosticCode::kFileNotWritable, path.string(), std::strerror(errno));
+  }
   const auto fail = [&]() -> Status {
     const int reason = errno;
     ::unlink(temporary.c_str());
     return sink.error_about(DiagnosticCode::kFileNotWritable, path.string(), std::strerror(reason));
   };
   {
-    const Descriptor fd(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
-    if (!fd.valid() || !write_all(fd.get(), text) || ::fsync(fd.get()) != 0) return fail();
+    const Descriptor fd(opened);
+    if (!write_all(fd.get(), text) || ::fsync(fd.get()) != 0) return fail();
   }
   if (::rename(temporary.c_str(), path.c_str()) != 0) return fail();
   return Unit{};
+}
+
+Status check_output(const std::filesystem::path& path, const SourceFiles& files,
+                    DiagnosticSink& sink) {
+  const auto& inputs = files.inputs();
+  const bool is_input = std::any_of(inputs.begin(), inputs.end(), [&](const std::string& input) {
+    std::error_code error;  // of a path that does not exist
+    return std::filesystem::equivalent(path, input, error);
+  });
+  if (is_input) return sink.error_about(DiagnosticCode::kOutputIsInput, path.string());
+  return Unit{};
+}
+
+Status write_output(const std::filesystem::path& path, std::string_view text,
+                    const SourceFiles& files, DiagnosticSink& sink) {
+  if (!check_output(path, files, sink)) return sink.already_reported();
+  return write_file_atomically(path, text, sink);
+}
+
+Result<std::string> read_file_of(const std::filesystem::path& folder, std::string_view name,
+                                 DiagnosticSink& sink, std::size_t limit) {
+  const auto path = folder / name;
+  if (!lies_below(path, folder)) {
+    return sink.error_about(DiagnosticCode::kLoadOutside, path.string(), real_path(path).string());
+  }
+  return read_file(path, sink, limit);
 }
 
 }  // namespace parallax::base

@@ -22,10 +22,22 @@ Result<FileId> load_text(const std::filesystem::path& path, SourceFiles& files,
 Result<FileId> register_text(std::string name, std::string text, SourceFiles& files,
                              DiagnosticSink& sink);
 
-/// Writes to a temporary neighbour, syncs, renames. Reports kFileNotWritable, and kNotARegularFile
-/// for an existing folder, device or pipe.
+/// Writes to a temporary neighbour of a new name, syncs, renames. Reports kFileNotWritable, and
+/// kNotARegularFile for an existing folder, device or pipe.
 Status write_file_atomically(const std::filesystem::path& path, std::string_view text,
                              DiagnosticSink& sink);
+
+/// Reports kOutputIsInput if writing `path` would replace a file that was read into `files`.
+Status check_output(const std::filesystem::path& path, const SourceFiles& files,
+                    DiagnosticSink& sink);
+
+/// write_file_atomically for what a command was asked to write, after check_output.
+Status write_output(const std::filesystem::path& path, std::string_view text,
+                    const SourceFiles& files, DiagnosticSink& sink);
+
+/// Reads FOLDER/NAME, which must really lie there: a link that leads out is refused (kLoadOutside).
+Result<std::string> read_file_of(const std::filesystem::path& folder, std::string_view name,
+                                 DiagnosticSink& sink, std::size_t limit = std::size_t{64} << 20U);
 
 /// Writes the whole text to an open descriptor, going on after signals. False, with `errno`, if it
 /// cannot be written.

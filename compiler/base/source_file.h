@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/base/id.h"
@@ -55,6 +56,9 @@ class SourceFile {
 class SourceFiles {
  public:
   FileId add(std::string name, std::string text);
+  /// Remembers a file that was read, so that no output replaces it (check_output).
+  void note_input(std::string path) { inputs_.push_back(std::move(path)); }
+  const std::vector<std::string>& inputs() const { return inputs_; }
   const SourceFile& operator[](FileId id) const;
   std::size_t size() const { return files_.size(); }
   std::string_view text(const SourceRange& range) const { return (*this)[range.file].text(range); }
@@ -63,6 +67,7 @@ class SourceFiles {
 
  private:
   std::vector<std::vector<SourceFile>> files_;  // one inner element each: stable addresses
+  std::vector<std::string> inputs_;             // paths
 };
 
 }  // namespace parallax::base

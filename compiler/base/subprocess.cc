@@ -15,6 +15,7 @@
 #include <cstdlib>
 
 #include "compiler/base/descriptor.h"
+#include "compiler/base/diagnostic_printer.h"
 
 namespace parallax::base {
 namespace {
@@ -59,12 +60,12 @@ bool redirect(int from, int to) {
 /// In the child. Comes back, with errno, only when the program could not be started.
 void become(const ChildPlan& plan) {
   const auto& options = plan.options;
-  if (options.own_session) {
+  if (options.own_session || options.ends_with_us) {
     // No spawn attribute offers this. The parent may have gone before it was asked for.
     if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return;
     if (::getppid() != plan.parent) ::_exit(EXIT_FAILURE);
-    if (::setsid() < 0) return;
   }
+  if (options.own_session && ::setsid() < 0) return;
   if (options.cpu_limit_s) {
     const rlimit no_core{0, 0}, cpu{*options.cpu_limit_s, *options.cpu_limit_s + 1};
     if (::setrlimit(RLIMIT_CORE, &no_core) != 0 || ::setrlimit(RLIMIT_CPU, &cpu) != 0) return;
@@ -136,6 +137,16 @@ Spawned spawn(const std::vector<std::string>& command, const SpawnOptions& optio
   return {-1, failure};
 }
 
+std::string command_text(const std::vector<std::string>& command) {
+  std::string text;
+  for (const auto& word : command) {
+    const bool plain = !word.empty() && word.find_first_of(" \t\n\"'") == std::string::npos;
+    if (!text.empty()) text += ' ';
+    text += plain ? printable(word) : '"' + printable(word) + '"';
+  }
+  return text;
+}
+
 int exit_code(int status) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
@@ -159,6 +170,7 @@ Captured capture(const std::vector<std::string>& command, const CaptureOptions& 
   spawning.input = null.get();
   spawning.output = out.write.get();
   spawning.errors = err.write.get();
+  spawning.ends_with_us = options.ends_with_us;
   const auto child = spawn(command, spawning);
   out.write.close();
   err.write.close();

@@ -18,8 +18,10 @@ struct SpawnOptions {
   int output = -1;
   int errors = -1;
   /// In a session of its own, so that it can be ended together with everything it has started, and
-  /// with default signals. The system kills it when the thread that started it ends.
+  /// with default signals.
   bool own_session = false;
+  /// The system kills it when the thread that started it ends; implied by `own_session`.
+  bool ends_with_us = false;
   std::optional<std::uint64_t> cpu_limit_s = {};  // then SIGXCPU, a second later SIGKILL; no core
 };
 
@@ -32,6 +34,9 @@ struct Spawned {
 /// end. Other descriptors of ours are closed in it. Safe from several threads.
 Spawned spawn(const std::vector<std::string>& command, const SpawnOptions& options);
 
+/// A command for people to read: words with blanks stand in quotes.
+std::string command_text(const std::vector<std::string>& command);
+
 /// Of a status that wait() has given: the exit code, or 128 + signal.
 int exit_code(int status);
 
@@ -41,6 +46,7 @@ int wait_for(pid_t child);
 struct CaptureOptions {
   std::string program = {};  // as in SpawnOptions
   std::string folder = {};
+  bool ends_with_us = false;                   // as in SpawnOptions
   bool without_input = false;                  // reads /dev/null instead of our standard input
   std::size_t max_errors = std::string::npos;  // bytes of standard error that are kept: the first
   /// Asked many times a second while the program runs; a signal that it names is sent.

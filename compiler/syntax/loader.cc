@@ -8,6 +8,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/path_gate.h"
 #include "compiler/base/suggest.h"
 #include "compiler/syntax/lexer.h"
 #include "compiler/syntax/parser.h"
@@ -93,23 +94,16 @@ fs::path canonical_or_empty(const fs::path& path) {
   return error ? fs::path() : real;
 }
 
-bool lies_below(const fs::path& file, const fs::path& folder) {
-  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first ==
-         folder.end();
-}
-
 class ModelLoader {
  public:
   ModelLoader(const LoadOptions& options, base::SourceFiles& files, base::DiagnosticSink& sink)
-      : options_(options), files_(files), sink_(sink) {
-    for (const auto& folder : options.include_dirs) add_root(folder);
-    add_root(".");
+      : options_(options), files_(files), sink_(sink), gate_(options.allow_outside) {
+    for (const auto& folder : options.include_dirs) gate_.admit_folder(folder);
+    for (const auto& file : options.named_by) gate_.admit_beside(file);
+    gate_.admit_current_folder();
   }
 
-  void add_root(const fs::path& folder) {
-    auto real = canonical_or_empty(folder);
-    if (!real.empty()) roots_.push_back(std::move(real));
-  }
+  base::PathGate& gate() { return gate_; }
 
   /// A file that the user named on the command line.
   void load_main(const fs::path& path) {
@@ -214,13 +208,7 @@ class ModelLoader {
 
   void load_found(const fs::path& candidate, const base::SourceRange& range) {
     const auto real = canonical_or_empty(candidate);
-    const bool inside = std::any_of(roots_.begin(), roots_.end(),
-                                    [&](const fs::path& root) { return lies_below(real, root); });
-    if (!inside && !options_.allow_outside) {
-      auto report =
-          sink_.error(DiagnosticCode::kLoadOutside, range, candidate.lexically_normal().string());
-      if (real != candidate) report.note("its real path is `" + real.string() + "`");
-      report.fix("name its folder with -I, or permit it with --allow-outside");
+    if (!gate_.check(candidate, range, sink_)) {
       unreadable_ = true;
       return;
     }
@@ -289,9 +277,9 @@ class ModelLoader {
   const LoadOptions& options_;
   base::SourceFiles& files_;
   base::DiagnosticSink& sink_;
+  base::PathGate gate_;
   ModelAst model_;
   std::vector<fs::path> folders_;  // where each file of the model stands
-  std::vector<fs::path> roots_;    // real paths
   std::vector<Open> stack_;
   std::unordered_map<std::string, std::size_t> index_of_;  // by real path; look-up only
   bool encoding3_ = false;
@@ -315,7 +303,7 @@ base::Result<ModelAst> load_model(std::span<const std::filesystem::path> paths,
                                   const LoadOptions& options, base::SourceFiles& files,
                                   base::DiagnosticSink& sink) {
   ModelLoader loader(options, files, sink);
-  for (const auto& path : paths) loader.add_root(path.parent_path());
+  for (const auto& path : paths) loader.gate().admit_beside(path);
   for (const auto& path : paths) loader.load_main(path);
   return loader.finish();
 }
@@ -324,7 +312,7 @@ base::Result<ModelAst> load_model_text(base::FileId main, const std::filesystem:
                                        const LoadOptions& options, base::SourceFiles& files,
                                        base::DiagnosticSink& sink) {
   ModelLoader loader(options, files, sink);
-  loader.add_root(folder);
+  loader.gate().admit_from(folder);
   loader.load_main_text(main, folder);
   return loader.finish();
 }

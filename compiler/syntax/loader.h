@@ -24,7 +24,8 @@ std::optional<Foundation> find_foundation(std::string_view path);
 
 struct LoadOptions {
   std::vector<std::filesystem::path> include_dirs = {};  // -I, in order
-  bool allow_outside = false;                            // load from outside the roots too
+  std::vector<std::filesystem::path> named_by = {};      // files that name the models: a scenario
+  bool allow_outside = false;                            // load from anywhere
   bool implicit_foundations = true;  // Root.e and EC.e where the model loads no foundation itself
 };
 
@@ -52,10 +53,10 @@ struct ModelAst {
 /// Reads the model files and what they load. `load PATH` is looked up beside the loading file, in
 /// the include folders, in the current folder, among the built-in foundations. Each file is read
 /// once (by its real path), so cycles are harmless (W1019 says so). Folders, FIFOs and devices are
-/// refused (E1015), and files outside the folders of the model files, the include folders and the
-/// current folder (E1016) unless `allow_outside`. Fails only if a text could not be read; syntax
-/// errors are reported and what is left is returned, so that the checker can go on. Ask the sink
-/// before using the model.
+/// refused (E1015), and so is what a PathGate with the model files, the files that name them, the
+/// include folders and the current folder does not admit (E1016), unless `allow_outside`. Fails
+/// only if a text could not be read; syntax errors are reported and what is left is returned, so
+/// that the checker can go on. Ask the sink before using the model.
 base::Result<ModelAst> load_model(std::span<const std::filesystem::path> paths,
                                   const LoadOptions& options, base::SourceFiles& files,
                                   base::DiagnosticSink& sink);

@@ -192,8 +192,9 @@ base::Result<JournalText> read_journal(const std::filesystem::path& run_dir,
   if (!std::filesystem::exists(path, error)) {
     return sink.error_about(DiagnosticCode::kNoJournal, run_dir.string());
   }
-  auto text = base::read_file(path, sink, kMaxJournalBytes);
+  auto text = base::read_file_of(run_dir, kJournalName, sink, kMaxJournalBytes);
   if (!text) return sink.already_reported();
+  files.note_input(path.string());
   const auto file = files.add(path.string(), std::move(*text));
   return JournalReader(file, files, sink).read();
 }
@@ -209,7 +210,7 @@ Journal::~Journal() {
 }
 
 bool Journal::open_file(std::size_t keep_bytes) {
-  fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+  fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
   return fd_ >= 0 && ::ftruncate(fd_, static_cast<off_t>(keep_bytes)) == 0 &&
          ::lseek(fd_, 0, SEEK_END) >= 0;
 }

@@ -97,8 +97,9 @@ void check_free_regions(const Scenario& scenario, base::DiagnosticSink& sink) {
 
 class ScenarioReader {
  public:
-  ScenarioReader(const YamlNode& root, const base::SourceFiles& files, base::DiagnosticSink& sink)
-      : fields_(root, "the scenario", sink), files_(files), sink_(sink) {}
+  ScenarioReader(const YamlNode& root, const base::PathGate& gate, const base::SourceFiles& files,
+                 base::DiagnosticSink& sink)
+      : fields_(root, "the scenario", sink), gate_(gate), files_(files), sink_(sink) {}
 
   void read(Scenario& scenario) {
     fields_.only({Key::kInclude, Key::kName, Key::kModel, Key::kPlan, Key::kBind, Key::kConstraints,
@@ -231,7 +232,9 @@ class ScenarioReader {
   void resolve(LocatedText& path) {
     const auto resolved = path_beside(path.source, path.text, files_);
     std::error_code error;
-    if (!std::filesystem::exists(resolved, error)) {
+    if (!gate_.check(resolved, path.source, sink_)) {
+      // Whether anything lies there is not told either.
+    } else if (!std::filesystem::exists(resolved, error)) {
       sink_.error(DiagnosticCode::kFileNotFound, path.source,
                   fmt::format("no file `{}`", resolved.string()));
     }
@@ -239,6 +242,7 @@ class ScenarioReader {
   }
 
   YamlFields fields_;
+  const base::PathGate& gate_;
   const base::SourceFiles& files_;
   base::DiagnosticSink& sink_;
 };
@@ -260,17 +264,34 @@ std::vector<LocatedText> located_texts(const YamlNode& node, std::string_view ke
   return out;
 }
 
+bool may_include_expectation(const std::filesystem::path& path, bool allow_outside) {
+  base::SourceFiles files;
+  base::DiagnosticSink unread;
+  base::PathGate gate(allow_outside);
+  gate.admit_beside(path);
+  if (const auto root = load_yaml(path, gate, files, unread)) {
+    const auto* expect = root->find(Key::kExpect);
+    return expect != nullptr && expect->value.kind != YamlNode::Kind::kNull;
+  }
+  if (files.size() == 0) return false;
+  const auto text = files[base::FileId(0)].text();
+  const auto key = std::string(Key::kInclude) + ":";
+  return text.starts_with(key) || text.find("\n" + key) != std::string_view::npos;
+}
+
 base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,
-                                     base::DiagnosticSink& sink) {
+                                     base::DiagnosticSink& sink, bool allow_outside) {
   const auto errors_before = sink.error_count();
+  base::PathGate gate(allow_outside);
+  gate.admit_beside(path);
   Scenario scenario;
   scenario.file = path;
   scenario.name = path.string();
   // Files are registered in order of loading, so the next one is the scenario itself.
   scenario.source = base::FileId(static_cast<std::uint32_t>(files.size()));
-  const auto root = load_yaml(path, files, sink);
+  const auto root = load_yaml(path, gate, files, sink);
   if (!root) return sink.already_reported();
-  ScenarioReader(*root, files, sink).read(scenario);
+  ScenarioReader(*root, gate, files, sink).read(scenario);
   // Of another simulator it is known when it has been started.
   const bool built_in = scenario.simulator.command.empty();
   if (built_in && scenario.mapping && sink.error_count() == errors_before) {

@@ -14,6 +14,9 @@
 
 namespace parallax::harness {
 
+/// Of a scenario or a manifest, and of each file that it includes.
+inline constexpr std::size_t kMaxScenarioBytes = std::size_t{1} << 20U;
+
 /// A text of the scenario with its place, for messages and for parsing elsewhere.
 struct LocatedText {
   std::string text;
@@ -109,9 +112,14 @@ struct Scenario {
 };
 
 /// Reads and checks a scenario; several errors per run, each at its key. Unknown keys get a
-/// suggestion; duplicate keys, aliases and tags are refused.
+/// suggestion; duplicate keys, aliases and tags are refused, and so are paths that lead out of the
+/// scenario's folder (PathGate), unless `allow_outside`.
 base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,
-                                     base::DiagnosticSink& sink);
+                                     base::DiagnosticSink& sink, bool allow_outside = false);
+
+/// Is a scenario that does not load meant as a case of a suite by what it includes? Also where that
+/// cannot be read.
+bool may_include_expectation(const std::filesystem::path& path, bool allow_outside);
 
 /// Holds the scenario against the compiled model, before anything is simulated: every ground fluent
 /// needs a mapping of its arity whose region exists, whose range its joint reaches and which

@@ -33,8 +33,9 @@ std::string id_problem(std::string_view id) {
 
 class ManifestReader {
  public:
-  ManifestReader(const base::SourceFiles& files, base::DiagnosticSink& sink)
-      : files_(files), sink_(sink) {}
+  ManifestReader(const base::PathGate& gate, const base::SourceFiles& files,
+                 base::DiagnosticSink& sink)
+      : gate_(gate), files_(files), sink_(sink) {}
 
   void read(const YamlNode& root, SuiteManifest& manifest) {
     YamlFields fields(root, "the manifest", sink_);
@@ -122,8 +123,9 @@ class ManifestReader {
     fields.boolean(Key::kComplete, out.complete);
     if (const auto* golden = fields.find(Key::kGolden)) {
       if (auto text = read_text(*golden, key_text(Key::kGolden), sink_)) {
-        out.golden = LocatedText{
-            path_beside(golden->range, *text, files_).lexically_normal().string(), golden->range};
+        const auto path = path_beside(golden->range, *text, files_).lexically_normal();
+        out.golden = LocatedText{path.string(), golden->range};
+        if (!gate_.check(path, golden->range, sink_)) return;
       }
     }
     if (!out.complete && out.traces.value_or(0) < 1 && sink_.error_count() == errors_before) {
@@ -137,13 +139,16 @@ class ManifestReader {
   void resolve_model(LocatedText& model) {
     const auto resolved = path_beside(model.source, model.text, files_).lexically_normal();
     std::error_code error;
-    if (!std::filesystem::exists(resolved, error)) {
+    if (!gate_.check(resolved, model.source, sink_)) {
+      // Whether anything lies there is not told either.
+    } else if (!std::filesystem::exists(resolved, error)) {
       sink_.error(DiagnosticCode::kFileNotFound, model.source,
                   fmt::format("no file `{}`", resolved.string()));
     }
     model.text = resolved.string();
   }
 
+  const base::PathGate& gate_;
   const base::SourceFiles& files_;
   base::DiagnosticSink& sink_;
   std::map<std::string, base::SourceRange> ids_;  // the first use of each
@@ -156,12 +161,15 @@ bool looks_like_manifest(std::string_view text) {
 }
 
 base::Result<SuiteManifest> load_manifest(const std::filesystem::path& path,
-                                          base::SourceFiles& files, base::DiagnosticSink& sink) {
+                                          base::SourceFiles& files, base::DiagnosticSink& sink,
+                                          bool allow_outside) {
   const auto errors_before = sink.error_count();
-  const auto root = load_yaml(path, files, sink);
+  base::PathGate gate(allow_outside);
+  gate.admit_beside(path);
+  const auto root = load_yaml(path, gate, files, sink);
   if (!root) return sink.already_reported();
   SuiteManifest manifest{path, {}};
-  ManifestReader(files, sink).read(*root, manifest);
+  ManifestReader(gate, files, sink).read(*root, manifest);
   if (sink.error_count() != errors_before) return sink.already_reported();
   return manifest;
 }

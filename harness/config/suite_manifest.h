@@ -44,8 +44,10 @@ bool looks_like_manifest(std::string_view text);
 
 /// Reads and checks a manifest; several errors per run, each at its key. `defaults` are laid under
 /// every case. Unknown keys, unsafe and repeated ids, missing models (kFileNotFound) and cases that
-/// expect nothing are refused.
+/// expect nothing are refused, and so are paths that lead out of the manifest's folder (PathGate),
+/// unless `allow_outside`.
 base::Result<SuiteManifest> load_manifest(const std::filesystem::path& path,
-                                          base::SourceFiles& files, base::DiagnosticSink& sink);
+                                          base::SourceFiles& files, base::DiagnosticSink& sink,
+                                          bool allow_outside = false);
 
 }  // namespace parallax::harness

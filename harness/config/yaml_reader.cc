@@ -173,7 +173,8 @@ constexpr int kMaxIncludes = 64;
 
 class Includer {
  public:
-  Includer(base::SourceFiles& files, base::DiagnosticSink& sink) : files_(files), sink_(sink) {}
+  Includer(const base::PathGate& gate, base::SourceFiles& files, base::DiagnosticSink& sink)
+      : gate_(gate), files_(files), sink_(sink) {}
 
   base::Result<YamlNode> load(const std::filesystem::path& path) {
     // The size is checked first: the parser's time grows faster than a hostile text.
@@ -247,6 +248,7 @@ class Includer {
                          describe(name), "a file name");
     }
     const auto path = path_beside(name.range, name.text, files_);
+    if (!gate_.check(path, name.range, sink_)) return sink_.already_reported();
     if (++includes_ > kMaxIncludes) {
       return sink_.error(DiagnosticCode::kTooManyIncludes, name.range, kMaxIncludes);
     }
@@ -264,6 +266,7 @@ class Includer {
     return root;
   }
 
+  const base::PathGate& gate_;
   base::SourceFiles& files_;
   base::DiagnosticSink& sink_;
   std::vector<std::filesystem::path> open_;
@@ -335,9 +338,9 @@ YamlNode merged(YamlNode under, YamlNode over) {
   return under;
 }
 
-base::Result<YamlNode> load_yaml(const std::filesystem::path& path, base::SourceFiles& files,
-                                 base::DiagnosticSink& sink) {
-  return Includer(files, sink).load(path);
+base::Result<YamlNode> load_yaml(const std::filesystem::path& path, const base::PathGate& gate,
+                                 base::SourceFiles& files, base::DiagnosticSink& sink) {
+  return Includer(gate, files, sink).load(path);
 }
 
 std::filesystem::path path_beside(const base::SourceRange& range, std::string_view text,

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
+#include "compiler/base/path_gate.h"
 #include "compiler/base/source_file.h"
+#include "harness/config/scenario.h"
 
 namespace parallax::harness {
 
@@ -42,7 +44,7 @@ struct YamlEntry {
 std::string describe(const YamlNode& node);
 
 inline constexpr int kMaxYamlDepth = 64;
-inline constexpr std::size_t kMaxYamlBytes = std::size_t{1} << 20U;
+inline constexpr std::size_t kMaxYamlBytes = kMaxScenarioBytes;
 
 /// Reads one YAML document as a tree. Duplicate keys, anchors, aliases, tags, merge keys, further
 /// documents, keys that are no scalars and texts deeper than kMaxYamlDepth are refused; what the
@@ -53,8 +55,9 @@ base::Result<YamlNode> parse_yaml(base::FileId file, const base::SourceFiles& fi
 /// Loads and parses `path`; then a map with the key `include: FILE`, or `include: [FILE, ...]`, is
 /// laid over the documents of these files (maps merge key by key, everything else is replaced),
 /// at any level of maps. Paths start at the folder of the file that names them.
-base::Result<YamlNode> load_yaml(const std::filesystem::path& path, base::SourceFiles& files,
-                                 base::DiagnosticSink& sink);
+/// What `gate` does not admit is refused.
+base::Result<YamlNode> load_yaml(const std::filesystem::path& path, const base::PathGate& gate,
+                                 base::SourceFiles& files, base::DiagnosticSink& sink);
 
 /// `over` on top of `under`: maps merge key by key, anything else in `over` replaces.
 YamlNode merged(YamlNode under, YamlNode over);

@@ -305,6 +305,10 @@ base::Result<ProofFiles> ProofFiles::create(const fs::path& proof, base::Diagnos
     }
   }
   files.present_ = true;
+  for (const auto& part : {files.proof_part(), files.formula_part()}) {
+    std::error_code ignored;  // a link would be written through
+    fs::remove(part, ignored);
+  }
   files.proof_ = std::fopen(files.proof_part().c_str(), "wb");
   if (files.proof_ == nullptr) return not_writable(proof, errno, sink);
   errno = 0;

@@ -103,7 +103,8 @@ TEST_CASE("a case that cannot be run or runs too long is an error, and the other
 TEST_CASE("a simulator that does not start is an error with its reason, no failure") {
   const CliFixture cli;
   cli.write("case.yaml", "include: wrong_model.yaml\nsimulator: {command: [/bin/false]}\n");
-  const auto document = json_of(cli, {"suite", "case.yaml", "--junit", "junit.xml"}, 1);
+  const auto document =
+      json_of(cli, {"suite", "case.yaml", "--junit", "junit.xml", "--allow-commands"}, 1);
   CHECK(document["errors"] == 1);
   CHECK(document["failed"] == 0);
   CHECK(holds(document["cases"][0]["problems"][1], "E7108: the simulator did not start"));

@@ -130,6 +130,49 @@ TEST_CASE("a model that is refused is an error of its case, not of the suite") {
   CHECK(holds(cli.read("report.xml"), R"(errors="2")"));
 }
 
+TEST_CASE("a suite removes nothing but earlier runs and replaces nothing but earlier reports") {
+  const SuiteFixture cli;
+  const auto kept = [&](const std::vector<std::string>& arguments, const std::string& file,
+                        int code) {
+    CAPTURE(arguments.back());
+    const auto before = cli.read(file);
+    CHECK(cli.parallax(arguments).code == code);
+    CHECK(cli.read(file) == before);
+  };
+  // The run folder of wrong_model.yaml would be the file itself.
+  kept({"suite", "wrong_model.yaml", "--out", "."}, "wrong_model.yaml", 1);
+  fs::create_directories(cli.folder() / "o/wrong_model.yaml");
+  cli.write("o/wrong_model.yaml/letter", "mine");
+  kept({"suite", "wrong_model.yaml", "--out", "o"}, "o/wrong_model.yaml/letter", 1);
+  for (const auto* file : {"s/suite.yaml", "s/lamp.e", "edge.yaml"}) {
+    kept({"suite", "s", "--only", "lit", "--junit", file}, file, 2);
+  }
+  cli.write("empty", "");
+  CHECK(cli.parallax({"suite", "s", "--only", "lit", "--junit", "empty"}).code == 0);
+  CHECK(cli.parallax({"suite", "s", "--only", "lit", "--junit", "empty"}).code == 0);
+}
+
+TEST_CASE("golden files are written below the manifest's folder only, and told by their path") {
+  const SuiteFixture cli;
+  const auto told = cli.suite({"--update-goldens"});
+  CHECK(told.code == 0);
+  CHECK(holds(told.err, "golden file written: s/expected/both.txt"));
+  cli.replace("s/suite.yaml", "expected/both.txt", "../both.txt");
+  const auto outside = cli.suite({"--update-goldens"});
+  CHECK(outside.code == 3);
+  CHECK(holds(outside.err, "E1016"));
+  const auto permitted = cli.suite({"--update-goldens", "--allow-outside"});
+  CHECK(permitted.code == 1);
+  CHECK(holds(permitted.err, "does not lie below the manifest's folder"));
+  CHECK_FALSE(fs::exists(cli.folder() / "both.txt"));
+  // A folder of goldens that is a link leads out as well.
+  cli.replace("s/suite.yaml", "../both.txt", "elsewhere/both.txt");
+  fs::create_directory(cli.folder() / "victim");
+  fs::create_symlink("../victim", cli.folder() / "s/elsewhere");
+  CHECK(cli.suite({"--update-goldens"}).code == 3);
+  CHECK(fs::is_empty(cli.folder() / "victim"));
+}
+
 TEST_CASE("a limit that ends a case is an error of that case") {
   const SuiteFixture cli;
   // A million and more traces, which cannot be listed in a hundredth of a second.

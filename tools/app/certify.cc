@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "runtime/certify/certificate.h"
 #include "runtime/enumerate/plan_enumerator.h"
@@ -29,6 +30,9 @@ TraceCertifier::TraceCertifier(const CertifyOption& option, const std::vector<st
     : option_(option), context_(context) {
   if (option.file.empty()) return;
   const auto path = option.file == kUsualFile ? usual_file(models.front()) : option.file;
+  for (const auto* suffix : {"", ".cnf", ".part", ".cnf.part"}) {
+    if (!base::check_output(path + suffix, context.files(), context.sink())) return;
+  }
   auto files = runtime::ProofFiles::create(path, context.sink());
   if (!files) return;
   files_.emplace(*std::move(files));

@@ -82,7 +82,7 @@ base::Result<std::optional<ReportedDiscrepancy>> find_discrepancy(const std::str
                                                                   const std::string& sample,
                                                                   base::DiagnosticSink& sink) {
   const auto path = (std::filesystem::path(run_dir) / "report.json").string();
-  const auto text = base::read_file(path, sink);
+  const auto text = base::read_file_of(run_dir, "report.json", sink);
   if (!text) return sink.already_reported();
   const auto report = json::parse(*text, nullptr, false);
   const auto refuse = [&] {

@@ -14,7 +14,7 @@ compiler::CompileInput compile_input(const ModelOptions& options, const Context&
   compiler::CompileInput input;
   for (const auto& model : options.models) input.models.emplace_back(model);
   for (const auto& folder : options.include_dirs) input.load.include_dirs.emplace_back(folder);
-  input.load.allow_outside = options.allow_outside;
+  input.load.allow_outside = context.form().allow_outside;
   if (options.horizon >= 0) input.horizon = options.horizon;
   if (!options.compat.empty()) input.ground.meaning = compiler::Meaning::kDecreasoner;
   input.ground.stop = &context.stop();

@@ -14,7 +14,6 @@ namespace parallax::tools {
 struct ModelOptions {
   std::vector<std::string> models;
   std::vector<std::string> include_dirs;
-  bool allow_outside = false;
   std::string compat;              // "decreasoner", or empty for the standard meaning
   std::int64_t horizon = -1;       // -1: as the model says
   std::vector<std::string> until;  // state constraints

@@ -114,6 +114,8 @@ base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scen
   auto& sink = context.sink();
   compiler::CompileInput input;
   for (const auto& model : scenario.models) input.models.emplace_back(model.text);
+  input.load.named_by = {scenario.file};
+  input.load.allow_outside = context.form().allow_outside;
   input.horizon = scenario.horizon;
   input.ground.stop = &context.stop();
   input.producer = fmt::format("parallax {}", kVersion);
@@ -151,7 +153,7 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
     return sink.already_reported();
   }
   const auto first = context.files().size();  // what was read before is no part of it
-  auto scenario = harness::load_scenario(path, context.files(), sink);
+  auto scenario = harness::load_scenario(path, context.files(), sink, context.form().allow_outside);
   if (!scenario) return sink.already_reported();
   auto scenario_hash = harness::hash_of_sources(context.files(), first);
   const RegionLocator locator(scenario->mapping->regions());
@@ -180,7 +182,8 @@ base::Status add_plan(const ModelOptions& options, std::optional<harness::Scenar
   auto& sink = context.sink();
   static const harness::RegionMap kNowhere{harness::RegionSet()};
   if (!options.regions.empty()) {
-    auto scenario = harness::load_scenario(options.regions, context.files(), sink);
+    auto scenario = harness::load_scenario(options.regions, context.files(), sink,
+                                           context.form().allow_outside);
     if (!scenario) return sink.already_reported();
     regions = *std::move(scenario);
   }
@@ -333,7 +336,8 @@ base::Result<base::SourceRange> formula_argument(const std::string& option, cons
 
 harness::SimulatorFactory simulator_factory(const ScenarioModel& loaded,
                                             const std::vector<std::string>& worker,
-                                            const std::atomic<bool>& stop) {
+                                            const std::atomic<bool>& stop,
+                                            const std::vector<std::string>& supervisor) {
   const auto& spec = loaded.scenario.simulator;
   harness::ProcessOptions options;
   options.command = spec.command;
@@ -341,6 +345,8 @@ harness::SimulatorFactory simulator_factory(const ScenarioModel& loaded,
     options.command = worker;
     options.command.insert(options.command.end(), {loaded.scenario.file.string(), "--scenario-hash",
                                                    loaded.scenario_hash});
+  } else {
+    options.command.insert(options.command.begin(), supervisor.begin(), supervisor.end());
   }
   options.hello_timeout_s = spec.hello_timeout_s;
   options.reset_timeout_s = spec.reset_timeout_s;

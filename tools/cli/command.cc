@@ -17,7 +17,8 @@
 namespace parallax::tools {
 
 Invocation::Invocation(const CommonOptions& options)
-    : Context({options.json, options.time_limit_s, options.memory_limit_mb}, stop_flag()),
+    : Context({options.json, options.time_limit_s, options.memory_limit_mb, options.allow_outside},
+              stop_flag()),
       options_(options) {}
 
 bool Invocation::color_on(int descriptor) const {
@@ -124,6 +125,8 @@ void add_common_options(OptionTable& table, CommonOptions& options) {
       .check(FiniteNumber{1e-3, 1e7});
   table.option("--memory-limit", options.memory_limit_mb, "End the run above this many MB")
       .check(WholeNumber{16, 10'000'000});
+  table.flag("--allow-outside", options.allow_outside,
+             "Let files name files outside their folder (docs/trust.md)");
 }
 
 }  // namespace parallax::tools

@@ -25,6 +25,7 @@ struct CommonOptions {
   std::string diagnostics = "text";  // text, json, sarif
   double time_limit_s = 0.0;         // 0: none
   std::int64_t memory_limit_mb = 0;  // 0: none
+  bool allow_outside = false;
 };
 
 /// One run of one command: where results go, and what ends it.
@@ -87,6 +88,7 @@ Command draw_command();
 Command explain_command();
 Command diff_command();
 Command worker_command();
+Command supervise_command();
 
 /// {"status": "error", "diagnostics": [...]} and a newline.
 std::string error_document(const std::vector<base::Diagnostic>& diagnostics,

@@ -37,7 +37,7 @@ int write_front_end_stage(const CompileOptions& options, Invocation& invocation)
                                   "--json needs --output: the text is no JSON");
   } else if (options.out.empty()) {
     invocation.result(*text);
-  } else if (base::write_file_atomically(options.out, *text, invocation.sink()) &&
+  } else if (base::write_output(options.out, *text, invocation.files(), invocation.sink()) &&
              invocation.options().json) {
     invocation.document("{\"status\":\"ok\"}\n");
   }
@@ -91,7 +91,7 @@ int compile_and_write(CompileOptions& options, Invocation& invocation) {
                      "--json needs --output: the text is no JSON");
   } else if (options.out.empty()) {
     invocation.result(text);
-  } else if (base::write_file_atomically(options.out, text, sink)) {
+  } else if (base::write_output(options.out, text, invocation.files(), sink)) {
     invocation.remark(fmt::format("{}: {} variables, {} clauses, horizon {}", options.out,
                                   compilation->model.variable_count(),
                                   compilation->model.clauses.size(), compilation->model.horizon));

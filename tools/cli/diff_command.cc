@@ -271,8 +271,6 @@ void add_model_diff_options(OptionTable& command, DiffOptions& options) {
       .list(ListForm::kOneEachTime);
   command.option("-I,--include", model.include_dirs, "Folder in which `load` looks")
       .list(ListForm::kOneEachTime);
-  command.flag("--allow-outside", model.allow_outside,
-               "Let `load` leave the folders of the models");
   command.option("--compat", model.compat, "Meaning of the 2005 reasoner where it differs")
       .check(OneOf{{"decreasoner"}});
   command.option("--horizon", model.horizon, "Compare traces up to this timepoint")

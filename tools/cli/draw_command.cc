@@ -4,6 +4,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/path_gate.h"
 #include "harness/campaign/replay.h"
 #include "harness/campaign/sample_record.h"
 #include "harness/draw/action_recorder.h"
@@ -56,7 +57,7 @@ class Writer {
     std::error_code error;
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
     const auto text = harness::scene_svg(picture, frame_, svg_);
-    if (!base::write_file_atomically(path, text, invocation_.sink())) return false;
+    if (!base::write_output(path, text, invocation_.files(), invocation_.sink())) return false;
     written_.push_back(path.string());
     return true;
   }
@@ -84,7 +85,8 @@ int draw_start(const DrawOptions& options, Invocation& invocation) {
     return 0;
   }
   if (!expect_kind(options.what, {FileKind::kScenario}, "a scenario", invocation)) return 0;
-  const auto scenario = harness::load_scenario(options.what, invocation.files(), sink);
+  const auto scenario = harness::load_scenario(options.what, invocation.files(), sink,
+                                               invocation.form().allow_outside);
   if (!scenario) return 0;
   if (scenario->world.bodies.empty()) {
     sink.error_about(DiagnosticCode::kUsage, options.what, "the scenario has no `world` to draw");
@@ -168,6 +170,11 @@ int draw_run(const DrawOptions& options, Invocation& invocation) {
   Writer writer(options, scenario, album->pictures, invocation);
   const fs::path folder =
       options.out.empty() ? fs::path(options.what) / "pictures" : fs::path(options.out);
+  if (options.out.empty() && !base::lies_below(folder, options.what)) {  // by a link
+    sink.error_about(DiagnosticCode::kLoadOutside, folder.string(),
+                     base::real_path(folder).string());
+    return 0;
+  }
   for (std::size_t i = 0; i < album->pictures.size(); ++i) {
     const auto path = folder / fmt::format("{:02}.svg", i);
     if (!writer.write(path, album->captions[i], album->pictures[i])) return 0;

@@ -67,7 +67,7 @@ int run(int argc, char** argv) {
                                    check_command(),  traces_command(),      compile_command(),
                                    verify_command(), diagnostics_command(), explain_command(),
                                    fmt_command(),    diff_command(),        worker_command(),
-                                   rates_command(),  draw_command()};
+                                   rates_command(),  draw_command(),        supervise_command()};
   Program program{
       table, fmt::format("parallax {} (CaDiCaL {})", kVersion, kCadicalVersion), true, {}};
   for (auto& command : commands) {

@@ -16,6 +16,7 @@ struct RateOptions {
   std::string scenario;
   std::string match;
   harness::RatesOptions rates;
+  CommandPermission commands;
 };
 
 int run_rates(const RateOptions& options, Invocation& invocation) {
@@ -28,12 +29,14 @@ int run_rates(const RateOptions& options, Invocation& invocation) {
                             base::SourceRange{loaded->scenario.source, 0, 0});
     return 0;
   }
+  const auto simulator =
+      permitted_simulator(*loaded, options.commands.allow || !options.commands.refuse, invocation);
+  if (!simulator) return 0;
   EnumeratedTraces traces(model, invocation);
   auto rates = options.rates;
   rates.stop = &stop_flag();
-  const auto result = harness::estimate_rates(loaded->scenario, traces,
-                                              simulator_factory(*loaded, own_worker(), stop_flag()),
-                                              rates, invocation.sink());
+  const auto result =
+      harness::estimate_rates(loaded->scenario, traces, *simulator, rates, invocation.sink());
   if (!result) return 0;
   if (invocation.options().json) {
     invocation.document(harness::rates_json(*result));
@@ -72,6 +75,7 @@ Command rates_command() {
   command.option("-j,--jobs", options->rates.jobs, "Simulations at the same time")
       .check(WholeNumber{1, 256})
       .show_default();
+  add_command_options(command, options->commands, true);
   return {std::move(command),
           [options](Invocation& invocation) { return run_rates(*options, invocation); }};
 }

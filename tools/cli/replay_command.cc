@@ -17,6 +17,7 @@ namespace {
 struct ReplayOptions {
   RunFolderOptions run;
   std::string sample;
+  CommandPermission commands;
 };
 
 int replay(const ReplayOptions& options, Invocation& invocation) {
@@ -31,8 +32,9 @@ int replay(const ReplayOptions& options, Invocation& invocation) {
   const auto loaded =
       load_recorded_scenario(options.run, run->header, ScenarioUse::kRun, invocation);
   if (!loaded) return 0;
-  const auto result = harness::replay_sample(*run, loaded->sources_hash,
-                                             simulator_factory(*loaded, own_worker(), stop_flag()));
+  const auto simulator = permitted_simulator(*loaded, options.commands.allow, invocation);
+  if (!simulator) return 0;
+  const auto result = harness::replay_sample(*run, loaded->sources_hash, *simulator);
   if (result.outcome == harness::ReplayOutcome::kCannot) {
     sink.error_about(base::DiagnosticCode::kReplayImpossible, options.run.folder, result.reason);
     return 0;
@@ -58,6 +60,7 @@ Command replay_command() {
   command.option("run_dir", options->run.folder, "Folder of a run").required();
   command.option("--sample", options->sample, "TRACE.SAMPLE; default: the first discrepancy");
   add_recorded_scenario_option(command, options->run.scenario);
+  add_command_options(command, options->commands, false);
   return {std::move(command),
           [options](Invocation& invocation) { return replay(*options, invocation); }};
 }

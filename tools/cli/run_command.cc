@@ -5,6 +5,7 @@
 #include <string>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
 #include "harness/campaign/campaign.h"
 #include "harness/report/report.h"
 #include "tools/app/scenario_model.h"
@@ -60,6 +61,7 @@ struct RunOptions {
   std::int64_t max_runs = 0;
   std::string hits = "first";
   bool split_initial = false;
+  CommandPermission commands;
 };
 
 /// The command line has the last word over the scenario.
@@ -116,13 +118,18 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
                base::SourceRange{loaded->scenario.source, 0, 0});
     return 0;
   }
+  const auto simulator =
+      permitted_simulator(*loaded, options.commands.allow || !options.commands.refuse, invocation);
+  if (!simulator) return 0;
   EnumeratedTraces traces(
       model, invocation,
       {.all_hits = options.hits == "all", .split_initial = options.split_initial});
   const auto campaign = campaign_options(options, *loaded, invocation);
-  const auto result = harness::run_campaign(loaded->scenario, traces,
-                                            simulator_factory(*loaded, own_worker(), stop_flag()),
-                                            campaign, invocation.files(), sink);
+  for (const auto* name : {"report.txt", "report.json"}) {
+    if (!base::check_output(campaign.run_dir / name, invocation.files(), sink)) return 0;
+  }
+  const auto result = harness::run_campaign(loaded->scenario, traces, *simulator, campaign,
+                                            invocation.files(), sink);
   if (campaign.progress) write_error("\r\x1b[K");
   if (!result) return 0;
   if (result->journal_open && !harness::write_report(*result, campaign.run_dir, sink)) return 0;
@@ -181,6 +188,7 @@ Command run_command() {
   add_hits_option(command, options->hits);
   command.flag("--split-initial", options->split_initial,
                "Try every initial state, not only every sequence of events");
+  add_command_options(command, options->commands, true);
   return {std::move(command),
           [options](Invocation& invocation) { return run_scenario(*options, invocation); }};
 }

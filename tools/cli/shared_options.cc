@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <memory>
+#include <mutex>
+
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/subprocess.h"
 #include "runtime/graph/model_traces.h"
 #include "tools/cli/command.h"
+#include "tools/cli/limits.h"
 
 namespace parallax::tools {
 namespace {
@@ -25,8 +30,6 @@ Option& add_model_options(OptionTable& command, ModelOptions& options) {
   // One value each time, so that a model may follow.
   command.option("-I,--include", options.include_dirs, "Folder in which `load` looks")
       .list(ListForm::kOneEachTime);
-  command.flag("--allow-outside", options.allow_outside,
-               "Let `load` leave the folders of the models");
   command.option("--compat", options.compat, "Meaning of the 2005 reasoner where it differs")
       .check(OneOf{{"decreasoner"}});
   command.option("--horizon", options.horizon, "Last timepoint; replaces the range of `time`")
@@ -133,7 +136,36 @@ void add_replay_options(OptionTable& command, ReplayTracesOptions& options) {
                "Replay traces of another model that has the same names");
 }
 
-std::vector<std::string> own_worker() { return {"/proc/self/exe", "worker"}; }
+void add_command_options(OptionTable& command, CommandPermission& permission, bool named) {
+  command.flag("--allow-commands", permission.allow,
+               named ? "Start the simulator's command even with --no-commands"
+                     : "Start the command that a scenario names as its simulator");
+  if (!named) return;
+  command.flag("--no-commands", permission.refuse,
+               "Do not start a command that the scenario names as its simulator");
+}
+
+base::Result<harness::SimulatorFactory> permitted_simulator(const ScenarioModel& loaded,
+                                                            bool permitted,
+                                                            Invocation& invocation) {
+  const auto& spec = loaded.scenario.simulator;
+  std::vector<std::string> worker = {"/proc/self/exe", "worker"};
+  if (invocation.form().allow_outside) worker.emplace_back("--allow-outside");
+  auto make = simulator_factory(loaded, worker, stop_flag(), {"/proc/self/exe", "supervise", "--"});
+  if (spec.command.empty()) return make;
+  const auto text = base::command_text(spec.command);
+  if (!permitted) {
+    return invocation.sink().error(base::DiagnosticCode::kCommandNotPermitted, spec.source, text);
+  }
+  const auto words =
+      fmt::format("starting `{}`, as {} says", text, invocation.files().place(spec.source));
+  // Told when it is done, which may be in a worker's thread; what is checked before may refuse it.
+  return harness::SimulatorFactory(
+      [make, words, &invocation, told = std::make_shared<std::once_flag>()] {
+        std::call_once(*told, [&] { invocation.remark(words); });
+        return make();
+      });
+}
 
 void add_recorded_scenario_option(OptionTable& command, std::string& scenario) {
   command.option("--scenario", scenario,

@@ -8,12 +8,15 @@
 #include "harness/campaign/replay.h"
 #include "tools/app/certify.h"
 #include "tools/app/model_options.h"
+#include "tools/app/scenario_model.h"
 #include "tools/app/trace_listing.h"
 #include "tools/app/trace_search.h"
 #include "tools/app/traces_replay.h"
 #include "tools/cli/option_table.h"
 
 namespace parallax::tools {
+
+class Invocation;
 
 /// Options that several commands have. Returns the one of the models themselves, which is required.
 Option& add_model_options(OptionTable& command, ModelOptions& options);
@@ -27,8 +30,20 @@ void add_listing_options(OptionTable& command, ListingOptions& options);
 void add_certify_option(OptionTable& command, CertifyOption& option);
 void add_replay_options(OptionTable& command, ReplayTracesOptions& options);
 
-/// What serves as the built-in simulator: this very program.
-std::vector<std::string> own_worker();
+/// May a command that a scenario names be started? docs/trust.md.
+struct CommandPermission {
+  bool allow = false;   // --allow-commands
+  bool refuse = false;  // --no-commands
+};
+/// `named`: the command takes a scenario on its command line and starts its simulator unless told
+/// not to.
+void add_command_options(OptionTable& command, CommandPermission& permission, bool named);
+
+/// Makes the simulator that the scenario asks for, and says which command is started when the first
+/// one is. Reports kCommandNotPermitted for one that is not `permitted`. `invocation` outlives the
+/// factory.
+base::Result<harness::SimulatorFactory> permitted_simulator(const ScenarioModel& loaded,
+                                                            bool permitted, Invocation& invocation);
 
 /// `--scenario` of commands that take a run folder.
 void add_recorded_scenario_option(OptionTable& command, std::string& scenario);

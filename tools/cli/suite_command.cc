@@ -6,9 +6,12 @@
 #include <thread>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
+#include "compiler/base/subprocess.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
+#include "tools/cli/shared_options.h"
 #include "tools/suite/suite_case.h"
 #include "tools/suite/suite_record.h"
 #include "tools/suite/suite_runner.h"
@@ -28,6 +31,7 @@ struct SuiteOptions {
   bool force = false;
   bool rerun_failed = false;
   bool fast = false;
+  CommandPermission commands;
 };
 
 std::string environment(const char* name) {
@@ -57,7 +61,8 @@ bool is_fast(const SuiteCase& one) {
 base::Result<std::vector<SuiteCase>> wanted_cases(const SuiteOptions& options,
                                                   const EarlierResults& earlier,
                                                   Invocation& invocation) {
-  auto cases = find_cases(options.paths, invocation.files(), invocation.sink());
+  auto cases = find_cases(options.paths, invocation.form().allow_outside, invocation.files(),
+                          invocation.sink());
   if (!cases) return invocation.sink().already_reported();
   std::erase_if(*cases, [&](const SuiteCase& one) {
     return one.name().find(options.only) == std::string::npos || (options.fast && !is_fast(one));
@@ -79,7 +84,9 @@ std::string line_of(const SuiteCase& one, const CaseResult& result) {
                      : result.outcome == Outcome::kFailed ? "FAIL "
                                                           : "ERROR";
   auto line = fmt::format("{} {} ({:.1f} s)", mark, one.name(), result.wall_s);
-  if (result.golden_written) line += "\n       golden file written";
+  if (!result.golden_written.empty()) {
+    line += "\n       golden file written: " + result.golden_written;
+  }
   std::string details;
   for (const auto& problem : result.problems) details += problem + '\n';
   // Of a case without an answer, what the program said of it is the answer.
@@ -92,7 +99,8 @@ std::string line_of(const SuiteCase& one, const CaseResult& result) {
 }
 
 void run_all(SuiteRecord& record, const SuiteOptions& options, Invocation& invocation) {
-  const RunnerOptions runner{options.out, options.seed, options.update_goldens};
+  const RunnerOptions runner{options.out, options.seed, options.update_goldens,
+                             options.commands.allow, invocation.form().allow_outside};
   std::vector<std::size_t> queue;
   for (std::size_t i = 0; i < record.cases().size(); ++i) {
     if (record.results()[i].outcome != Outcome::kSkipped) queue.push_back(i);
@@ -102,6 +110,11 @@ void run_all(SuiteRecord& record, const SuiteOptions& options, Invocation& invoc
   const auto work = [&] {
     for (std::size_t i = next++; i < queue.size() && !stop_flag().load(); i = next++) {
       const auto& one = record.cases()[queue[i]];
+      if (!one.command.empty() && options.commands.allow) {
+        const std::lock_guard lock(printing);
+        invocation.remark(
+            fmt::format("{} starts `{}`", one.name(), base::command_text(one.command)));
+      }
       auto result = run_case(one, runner, stop_flag());
       if (result.outcome != Outcome::kNotFinished) {
         const std::lock_guard lock(printing);
@@ -136,6 +149,7 @@ std::string summary_document(const SuiteRecord& record) {
                     {"outcome", to_string(result.outcome)},
                     {"problems", result.problems},
                     {"timing", {{"wall_s", result.wall_s}}}});
+    if (!result.golden_written.empty()) list.back()["golden_written"] = result.golden_written;
   }
   const nlohmann::json document = {{"status", "ok"},
                                    {"passed", record.count(Outcome::kPassed)},
@@ -145,6 +159,23 @@ std::string summary_document(const SuiteRecord& record) {
                                    {"skipped", record.count(Outcome::kSkipped)},
                                    {"cases", list}};
   return base::json_text(document) + '\n';
+}
+
+/// A report replaces an earlier report, or an empty file, and no file that the suite reads.
+bool may_write(const SuiteOptions& options, Invocation& invocation) {
+  auto& sink = invocation.sink();
+  const auto results = std::filesystem::path(options.out) / kResultsFile;
+  if (!base::check_output(results, invocation.files(), sink)) return false;
+  if (options.junit.empty()) return true;
+  if (!base::check_output(options.junit, invocation.files(), sink)) return false;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(options.junit, error)) return true;
+  const auto text = base::read_file(options.junit, sink);
+  if (!text) return false;
+  if (text->empty() || text->starts_with("<?xml")) return true;
+  sink.error_about(base::DiagnosticCode::kUsage, options.junit,
+                   "this file is there already and is no report that --junit could replace");
+  return false;
 }
 
 int run_suite(const SuiteOptions& options, Invocation& invocation) {
@@ -161,7 +192,7 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
     earlier = *std::move(read);
   }
   auto cases = wanted_cases(options, earlier, invocation);
-  if (!shard || !cases) return 0;
+  if (!shard || !cases || !may_write(options, invocation)) return 0;
   std::vector<bool> skipped;
   for (const auto& one : *cases) skipped.push_back(!in_shard(one.id, *shard));
   SuiteRecord record(*std::move(cases), skipped, options.out, options.junit, std::move(earlier));
@@ -204,6 +235,7 @@ Command suite_command() {
   command.flag("--update-goldens", options->update_goldens,
                "Write the golden files of cases that are otherwise as expected");
   command.flag("--force", options->force, "Write golden files even where `CI` is set");
+  add_command_options(command, options->commands, false);
   command.option("--seed", options->seed, "Seed of every run")
       .check(WholeNumber{0, kMaxSeed})
       .show_default();

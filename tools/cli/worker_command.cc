@@ -24,7 +24,8 @@ Command worker_command() {
   command.option("--scenario-hash", options->hash);
   return {std::move(command), [options](Invocation& invocation) {
             const auto scenario =
-                harness::load_scenario(options->scenario, invocation.files(), invocation.sink());
+                harness::load_scenario(options->scenario, invocation.files(), invocation.sink(),
+                                       invocation.form().allow_outside);
             if (!scenario) return 0;
             // The parent read the same file a moment ago; an edit in between must not go unseen.
             if (!options->hash.empty() &&

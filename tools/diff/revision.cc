@@ -70,7 +70,10 @@ base::Result<ModelRevision> load_scenario_revision(const std::string& path, Cont
   const auto& scenario = loaded->scenario;
   std::vector<std::string> models;
   for (const auto& model : scenario.models) models.push_back(model.text);
-  add_text_facts(models, {}, out.facts);
+  compiler::LoadOptions load;
+  load.named_by = {path};
+  load.allow_outside = context.form().allow_outside;
+  add_text_facts(models, load, out.facts);
   for (const auto* part : {&scenario.plan, &scenario.bind}) {
     if (!*part) continue;
     const auto kind = part == &scenario.plan ? RevisionKind::kPlan : RevisionKind::kBinding;

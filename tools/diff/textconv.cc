@@ -134,7 +134,9 @@ base::Result<std::vector<Fact>> load_run_facts(const std::string& path, Context&
     return built;
   };
   if (!fs::exists(file, error)) return refuse("there is no such file");
-  const auto text = base::read_file(file, context.sink());
+  const auto text = file == fs::path(path)
+                        ? base::read_file(file, context.sink())
+                        : base::read_file_of(path, "report.json", context.sink());
   if (!text) return context.sink().already_reported();
   const auto report = SortedJson::parse(*text, nullptr, false);
   if (report.is_discarded() || !report.is_object()) return refuse("it is no JSON object");

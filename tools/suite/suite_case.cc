@@ -1,5 +1,7 @@
 #include "tools/suite/suite_case.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <tuple>
@@ -7,6 +9,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/hash.h"
+#include "compiler/base/path_gate.h"
 #include "compiler/base/whole_number.h"
 
 namespace parallax::tools {
@@ -19,48 +22,128 @@ bool is_yaml(const fs::path& path) {
   return path.extension() == ".yaml" || path.extension() == ".yml";
 }
 
-/// The YAML files below the paths, sorted, each once.
-std::vector<std::string> yaml_files(const std::vector<std::string>& paths,
-                                    base::DiagnosticSink& sink) {
-  std::vector<std::string> files;
-  for (const auto& path : paths) {
+/// The YAML files below the paths. Links to files are followed, unless they lead out of the folder
+/// that was named; links to folders are not.
+class YamlFinder {
+ public:
+  YamlFinder(bool allow_outside, base::DiagnosticSink& sink)
+      : allow_outside_(allow_outside), sink_(sink) {}
+
+  /// Sorted, each once.
+  std::vector<std::string> find(const std::vector<std::string>& paths) {
+    for (const auto& path : paths) look_at(path);
+    std::sort(files_.begin(), files_.end());
+    files_.erase(std::unique(files_.begin(), files_.end()), files_.end());
+    return std::move(files_);
+  }
+
+ private:
+  /// A path of the command line.
+  void look_at(const std::string& path) {
     std::error_code error;
-    if (fs::is_regular_file(path, error)) {
-      files.push_back(fs::path(path).lexically_normal().string());
-      continue;
-    }
-    fs::recursive_directory_iterator walk(path, error);
-    if (error) {
-      sink.error_about(base::DiagnosticCode::kFileNotFound, path, error.message());
-      continue;
-    }
-    for (const auto& entry : walk) {
-      if (entry.is_regular_file(error) && is_yaml(entry.path())) {
-        files.push_back(entry.path().lexically_normal().string());
-      }
+    const auto status = fs::status(path, error);
+    if (fs::is_directory(status)) {
+      gate_ = base::PathGate(allow_outside_);
+      gate_.admit_from(path);
+      search(path);
+    } else if (fs::is_regular_file(status)) {
+      add(path);
+    } else {
+      sink_.error_about(base::DiagnosticCode::kFileNotFound, path,
+                        error ? error.message() : "it is neither a file nor a folder");
     }
   }
-  std::sort(files.begin(), files.end());
-  files.erase(std::unique(files.begin(), files.end()), files.end());
-  return files;
-}
+
+  void search(const fs::path& top) {
+    std::vector<fs::path> open = {top};
+    while (!open.empty()) {
+      const auto folder = std::move(open.back());
+      open.pop_back();
+      std::error_code error;
+      fs::directory_iterator entry(folder, error);
+      for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+        if (entry->symlink_status(error).type() == fs::file_type::directory) {
+          open.push_back(entry->path());
+        } else if (is_yaml(entry->path())) {
+          look_at_entry(entry->path());
+        }
+        error.clear();
+      }
+      if (error) unreadable(folder, error.message());
+    }
+  }
+
+  void look_at_entry(const fs::path& path) {
+    std::error_code error;
+    const auto status = fs::status(path, error);
+    if (fs::is_directory(status)) return;  // by a link
+    if (!fs::exists(status)) return unreadable(path, error ? error.message() : "it leads nowhere");
+    if (!fs::is_regular_file(status)) return unreadable(path, "it is no regular file");
+    if (!gate_.admits(path)) {
+      sink_.error_about(base::DiagnosticCode::kLoadOutside, path.string(),
+                        base::real_path(path).string());
+      return;
+    }
+    add(path);
+  }
+
+  void add(const fs::path& path) { files_.push_back(path.lexically_normal().string()); }
+  void unreadable(const fs::path& path, const std::string& why) {
+    sink_.error_about(base::DiagnosticCode::kCaseUnreadable, path.lexically_normal().string(), why);
+  }
+
+  bool allow_outside_;
+  base::DiagnosticSink& sink_;
+  base::PathGate gate_;
+  std::vector<std::string> files_;
+};
 
 /// Has the text a key `expect` at its outermost level?
 bool says_what_it_expects(std::string_view text) {
   return text.starts_with("expect:") || text.find("\nexpect:") != std::string_view::npos;
 }
 
-void add_scenario(const std::string& file, std::string_view text, std::vector<SuiteCase>& cases) {
-  base::SourceFiles files;
+/// Says what was read, or will be by the processes of the cases.
+void note_inputs(const std::vector<std::string>& inputs, base::SourceFiles& files) {
+  for (const auto& input : inputs) files.note_input(input);
+}
+
+void add_scenario(const std::string& file, std::string_view text, bool allow_outside,
+                  std::vector<SuiteCase>& cases, base::SourceFiles& files) {
+  base::SourceFiles own;
   base::DiagnosticSink unread;  // the run of the case will say it
-  const auto scenario = harness::load_scenario(file, files, unread);
+  const auto scenario = harness::load_scenario(file, own, unread, allow_outside);
+  note_inputs(own.inputs(), files);
   const auto folder = fs::path(file).parent_path();
   const auto group = folder.empty() ? std::string(".") : folder.generic_string();
   if (scenario && scenario->expect) {
-    cases.push_back({file, file, group, *scenario->expect});
-  } else if (!scenario && says_what_it_expects(text)) {
+    for (const auto& model : scenario->models) files.note_input(model.text);
+    for (const auto* part : {&scenario->plan, &scenario->bind}) {
+      if (*part) files.note_input((*part)->text);
+    }
+    cases.push_back({file, file, group, *scenario->expect, scenario->simulator.command});
+  } else if (!scenario && (says_what_it_expects(text) ||
+                           harness::may_include_expectation(file, allow_outside))) {
     cases.push_back({file, file, group, harness::Expectation{}});
   }
+}
+
+void add_manifest(const std::string& file, bool allow_outside, std::vector<SuiteCase>& cases,
+                  base::SourceFiles& files, base::DiagnosticSink& sink) {
+  auto manifest = harness::load_manifest(file, files, sink, allow_outside);
+  if (!manifest) return;
+  for (auto& one : manifest->cases) {
+    for (const auto& model : one.models) files.note_input(model.text);
+    if (one.expect.golden) files.note_input(one.expect.golden->text);
+    auto id = one.id;
+    cases.push_back({file, std::move(id), file, std::move(one)});
+  }
+}
+
+/// Why the text of a file could not be read.
+std::string first_message(const base::DiagnosticSink& sink) {
+  const auto reports = sink.sorted();
+  return reports.empty() ? std::string() : reports.front().message;
 }
 
 }  // namespace
@@ -82,23 +165,25 @@ std::string_view to_string(Outcome outcome) {
 }
 
 base::Result<std::vector<SuiteCase>> find_cases(const std::vector<std::string>& paths,
-                                                base::SourceFiles& files,
+                                                bool allow_outside, base::SourceFiles& files,
                                                 base::DiagnosticSink& sink) {
   const auto errors_before = sink.error_count();
+  const auto unreadable = [&](const std::string& file, const std::string& why) {
+    sink.error_about(base::DiagnosticCode::kCaseUnreadable, file, why);
+  };
   std::vector<SuiteCase> cases;
-  for (const auto& file : yaml_files(paths, sink)) {
+  for (const auto& file : YamlFinder(allow_outside, sink).find(paths)) {
     base::DiagnosticSink unread;
     const auto text = base::read_file(file, unread);
-    if (!text) continue;
-    if (!harness::looks_like_manifest(*text)) {
-      add_scenario(file, *text, cases);
-      continue;
-    }
-    auto manifest = harness::load_manifest(file, files, sink);
-    if (!manifest) continue;
-    for (auto& one : manifest->cases) {
-      auto id = one.id;
-      cases.push_back({file, std::move(id), file, std::move(one)});
+    if (!text) {
+      unreadable(file, first_message(unread));
+    } else if (text->size() > harness::kMaxScenarioBytes) {
+      if (!harness::looks_like_manifest(*text) && !says_what_it_expects(*text)) continue;
+      unreadable(file, fmt::format("it is larger than {} bytes", harness::kMaxScenarioBytes));
+    } else if (harness::looks_like_manifest(*text)) {
+      add_manifest(file, allow_outside, cases, files, sink);
+    } else {
+      add_scenario(file, *text, allow_outside, cases, files);
     }
   }
   if (sink.error_count() != errors_before) return sink.already_reported();

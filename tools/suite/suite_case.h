@@ -18,6 +18,7 @@ struct SuiteCase {
   std::string id;     // of the case; of a scenario its file
   std::string group;  // what JUnit calls the class: the manifest, or the scenario's folder
   std::variant<harness::Expectation, harness::ManifestCase> check;
+  std::vector<std::string> command = {};  // that the scenario names as its simulator
 
   /// Unique in a suite, and what --only looks at: `FILE`, or `FILE:ID`.
   std::string name() const { return id == file ? file : file + ':' + id; }
@@ -36,15 +37,17 @@ struct CaseResult {
   Outcome outcome = Outcome::kNotFinished;
   std::vector<std::string> problems;  // a sentence each; further lines are details
   std::string messages;               // what the program wrote to standard error
-  bool golden_written = false;
+  std::string golden_written;         // the file, if one was
   double wall_s = 0.0;
 };
 
 /// The cases below the paths, sorted by group and id: manifests (a key `cases` at the outermost
 /// level), scenarios with `expect`, and scenarios that are broken but meant as a case, which must
-/// not pass by being skipped. A broken manifest and a missing path are reported.
+/// not pass by being skipped. Reported are a broken manifest, a missing path, and folders and YAML
+/// files that cannot be read or lie elsewhere. What is read, or will be, becomes an input of
+/// `files`.
 base::Result<std::vector<SuiteCase>> find_cases(const std::vector<std::string>& paths,
-                                                base::SourceFiles& files,
+                                                bool allow_outside, base::SourceFiles& files,
                                                 base::DiagnosticSink& sink);
 
 /// The part `index` of `count`, counted from 1.

@@ -15,6 +15,7 @@
 
 #include "compiler/base/file_io.h"
 #include "compiler/base/line_diff.h"
+#include "compiler/base/path_gate.h"
 #include "compiler/base/subprocess.h"
 #include "harness/config/scenario.h"
 
@@ -168,6 +169,7 @@ base::Captured run_this_program(const std::vector<std::string>& arguments,
   base::CaptureOptions options;
   options.program = "/proc/self/exe";
   options.max_errors = kMaxMessageBytes;
+  options.ends_with_us = true;
   options.signal_when = [&stop, told = false]() mutable {
     if (told || !stop.load()) return 0;
     told = true;
@@ -190,6 +192,13 @@ bool has_failed(const std::string& document) {
   return !json.is_object() || json.value("status", "") != "ok";
 }
 
+/// What the process of a case may do is what the suite may.
+void add_permissions(const RunnerOptions& options, bool simulates,
+                     std::vector<std::string>& words) {
+  if (simulates) words.emplace_back(options.allow_commands ? "--allow-commands" : "--no-commands");
+  if (options.allow_outside) words.emplace_back("--allow-outside");
+}
+
 void add_limit(const harness::Expectation& expect, std::vector<std::string>& words) {
   if (!expect.time_limit_s) return;
   words.insert(words.end(), {"--time-limit", fmt::format("{}", *expect.time_limit_s)});
@@ -209,11 +218,24 @@ void run_rates(const SuiteCase& one, const harness::Expectation& expect,
                                     std::to_string(rate.runs),
                                     "--quiet",
                                     "--color=never"};
+  add_permissions(options, true, words);
   add_limit(expect, words);
   const auto child = run_this_program(words, stop);
   result.messages += child.err;
   if (child.code != 0) return report_no_answer(child, result);
   for (auto& problem : unmet(rate, child.out)) result.problems.push_back(std::move(problem));
+}
+
+/// Makes room for a new run. Removes nothing but what a run has left there.
+bool clear_run_folder(const fs::path& folder) {
+  std::error_code error;
+  const auto status = fs::symlink_status(folder, error);
+  if (!fs::exists(status)) return true;
+  if (!fs::is_directory(status)) return false;
+  if (fs::is_empty(folder, error)) return true;
+  if (!fs::exists(fs::symlink_status(folder / "journal.ndjson", error))) return false;
+  fs::remove_all(folder, error);
+  return !error;
 }
 
 void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
@@ -223,11 +245,17 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
   auto name = one.file;
   std::replace(name.begin(), name.end(), '/', '_');
   const auto folder = options.out / name;
-  std::error_code ignored;
-  fs::remove_all(folder, ignored);
+  if (!clear_run_folder(folder)) {
+    result.outcome = Outcome::kError;
+    result.problems = {
+        fmt::format("{} holds something else than an earlier run; name another folder with --out",
+                    folder.string())};
+    return;
+  }
   std::vector<std::string> words = {
       "run",   one.file,        "--json",  "--seed",       std::to_string(options.seed),
       "--out", folder.string(), "--quiet", "--color=never"};
+  add_permissions(options, true, words);
   add_limit(expect, words);
   const auto child = run_this_program(words, stop);
   result.messages += child.err;
@@ -237,7 +265,8 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
   for (auto& problem : unmet(expect, child.out)) result.problems.push_back(std::move(problem));
 }
 
-std::vector<std::string> traces_command(const harness::ManifestCase& one) {
+std::vector<std::string> traces_command(const harness::ManifestCase& one,
+                                        const RunnerOptions& options) {
   std::vector<std::string> words = {"traces"};
   for (const auto& model : one.models) words.push_back(model.text);
   for (const auto& constraint : one.constraints) {
@@ -251,6 +280,7 @@ std::vector<std::string> traces_command(const harness::ManifestCase& one) {
     words.insert(words.end(), {"--memory-limit", std::to_string(*one.memory_limit_mb)});
   }
   words.insert(words.end(), {"--quiet", "--color=never"});
+  add_permissions(options, false, words);
   return words;
 }
 
@@ -273,17 +303,25 @@ void compare_count(const harness::TraceExpectation& expect, const std::string& d
                                         phrase(*expect.traces, expect.complete)));
 }
 
-void compare_golden(const std::string& path, const std::string& text, bool update,
-                    CaseResult& result) {
+void compare_golden(const std::string& path, const std::string& text, const fs::path& manifest,
+                    bool update, CaseResult& result) {
   base::DiagnosticSink sink;
   std::error_code error;
   const bool exists = fs::exists(path, error);
   const auto expected = exists ? base::read_file(path, sink) : base::Result<std::string>("");
   if (exists && expected && *expected == text) return;
   if (update && result.problems.empty()) {
+    if (!base::lies_below(path, manifest.parent_path())) {
+      result.problems.push_back(
+          fmt::format("{} does not lie below the manifest's folder, so it is not written", path));
+      return;
+    }
     fs::create_directories(fs::path(path).parent_path(), error);
-    result.golden_written = static_cast<bool>(base::write_file_atomically(path, text, sink));
-    if (!result.golden_written) result.problems.push_back(fmt::format("cannot write {}", path));
+    if (base::write_file_atomically(path, text, sink)) {
+      result.golden_written = path;
+    } else {
+      result.problems.push_back(fmt::format("cannot write {}", path));
+    }
     return;
   }
   if (!exists) {
@@ -297,9 +335,9 @@ void compare_golden(const std::string& path, const std::string& text, bool updat
   }
 }
 
-void run_traces(const harness::ManifestCase& one, const RunnerOptions& options,
-                const std::atomic<bool>& stop, CaseResult& result) {
-  const auto command = traces_command(one);
+void run_traces(const harness::ManifestCase& one, const fs::path& manifest,
+                const RunnerOptions& options, const std::atomic<bool>& stop, CaseResult& result) {
+  const auto command = traces_command(one, options);
   if (one.expect.traces) {
     auto words = command;
     words.emplace_back("--json");
@@ -314,7 +352,7 @@ void run_traces(const harness::ManifestCase& one, const RunnerOptions& options,
     const auto child = run_this_program(command, stop);
     result.messages = child.err;
     if (child.code != 0) return report_no_answer(child, result);
-    compare_golden(one.expect.golden->text, child.out, options.update_goldens, result);
+    compare_golden(one.expect.golden->text, child.out, manifest, options.update_goldens, result);
   }
 }
 
@@ -350,7 +388,7 @@ CaseResult run_case(const SuiteCase& one, const RunnerOptions& options,
   if (const auto* scenario = std::get_if<harness::Expectation>(&one.check)) {
     run_scenario(one, *scenario, options, stop, result);
   } else {
-    run_traces(std::get<harness::ManifestCase>(one.check), options, stop, result);
+    run_traces(std::get<harness::ManifestCase>(one.check), one.file, options, stop, result);
   }
   if (result.outcome == Outcome::kPassed && !result.problems.empty()) {
     result.outcome = Outcome::kFailed;

@@ -309,8 +309,8 @@ TEST_CASE("what the simulator refuses or does not report is the scenario's error
   Bench bench;
   std::string place, what;
   SUBCASE("an action") {
-    bench.script.refuses = "placing", place = "Place(region)";
-    what = "refused `Place(r1)` in simulation 1 of trace 1: no such action";
+    bench.script.refuses = "placing", place = "Place()";
+    what = "refused `Place()` in simulation 1 of trace 1: no such action";
   }
   SUBCASE("a variable") {
     bench.script.hides_box = true, place = "BoxIn(region)";

@@ -1,0 +1,123 @@
+#include "compiler/base/path_gate.h"
+
+#include <pwd.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <optional>
+#include <system_error>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/diagnostic_printer.h"
+
+namespace parallax::base {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool begins_with(const fs::path& real, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), real.begin(), real.end()).first ==
+         folder.end();
+}
+
+/// The home folder of whoever runs the program, by the environment and by the system.
+std::vector<fs::path> own_homes() {
+  std::vector<fs::path> homes;
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') {
+    homes.push_back(real_path(home));
+  }
+  passwd entry{};
+  passwd* found = nullptr;
+  std::array<char, 1 << 14> buffer;
+  if (::getpwuid_r(::geteuid(), &entry, buffer.data(), buffer.size(), &found) == 0 &&
+      found != nullptr) {
+    homes.push_back(real_path(found->pw_dir));
+  }
+  return homes;
+}
+
+/// `real` is `/`, a home folder, or the folder of all of them.
+bool is_too_wide(const fs::path& real) {
+  if (real == real.root_path() || real == "/home" || real == "/root" ||
+      real.parent_path() == "/home") {
+    return true;
+  }
+  const auto homes = own_homes();
+  return std::find(homes.begin(), homes.end(), real) != homes.end();
+}
+
+/// Whoever else can write to a folder could plant a marker there.
+bool is_marked(const fs::path& folder) {
+  struct ::stat status {};
+  if (::stat(folder.c_str(), &status) != 0 || (status.st_mode & S_IWOTH) != 0) return false;
+  std::error_code error;
+  return fs::is_regular_file(fs::symlink_status(folder / kRootMarker, error));
+}
+
+/// The nearest folder above `real`, or itself, that is marked and no home.
+std::optional<fs::path> marked_root(fs::path real) {
+  for (; !is_too_wide(real); real = real.parent_path()) {
+    if (is_marked(real)) return real;
+    if (!real.has_relative_path()) break;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+fs::path real_path(const fs::path& path) {
+  std::error_code error;
+  const auto whole = fs::absolute(path.empty() ? fs::path(".") : path, error);
+  auto real = fs::weakly_canonical(whole, error);
+  if (error) real = whole.lexically_normal();
+  // A folder that is named with a final slash is the same folder.
+  if (!real.has_filename() && real.has_relative_path()) real = real.parent_path();
+  return real;
+}
+
+bool lies_below(const fs::path& path, const fs::path& folder) {
+  return begins_with(real_path(path), real_path(folder));
+}
+
+void PathGate::admit(fs::path folder) {
+  const bool whole = !is_too_wide(folder);
+  roots_.push_back({std::move(folder), whole});
+}
+
+void PathGate::admit_from(const fs::path& folder) {
+  auto real = real_path(folder);
+  auto root = marked_root(real);
+  admit(root ? *std::move(root) : std::move(real));
+}
+
+void PathGate::admit_folder(const fs::path& folder) { roots_.push_back({real_path(folder), true}); }
+
+void PathGate::admit_current_folder() {
+  auto real = real_path(".");
+  if (!is_too_wide(real)) roots_.push_back({std::move(real), true});
+}
+
+bool PathGate::admits(const fs::path& path) const {
+  if (is_open_) return true;
+  const auto real = real_path(path);
+  return std::any_of(roots_.begin(), roots_.end(), [&](const Root& root) {
+    if (root.whole) return begins_with(real, root.folder);
+    return real.parent_path() == root.folder && !real.filename().string().starts_with('.');
+  });
+}
+
+Status PathGate::check(const fs::path& path, const SourceRange& place, DiagnosticSink& sink) const {
+  if (admits(path)) return Unit{};
+  const auto shown = path.lexically_normal();
+  auto report = sink.error(DiagnosticCode::kLoadOutside, place, printable(shown.string()));
+  const auto real = real_path(path);
+  if (real != shown) report.note("its real path is `" + printable(real.string()) + "`");
+  report.fix("make an empty file `" + std::string(kRootMarker) +
+             "` in the folder that both share, or permit it with --allow-outside");
+  return report;
+}
+
+}  // namespace parallax::base

@@ -1,0 +1,139 @@
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "compiler/base/descriptor.h"
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/subprocess.h"
+#include "tools/cli/command.h"
+#include "tools/cli/limits.h"
+
+namespace parallax::tools {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Less than what ChildProcess waits between asking and killing, so that there is time to clean up.
+constexpr auto kEndGrace = std::chrono::milliseconds(1500);
+constexpr auto kCleaning = std::chrono::seconds(5);  // against programs that never stop forking
+constexpr int kCannotStart = 127;                    // as shells have it
+
+/// The processes whose parent this one is, also those that it has taken over.
+std::vector<pid_t> own_children() {
+  std::vector<pid_t> children;
+  const auto self = ::getpid();
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", error)) {
+    const auto name = entry.path().filename().string();
+    if (std::isdigit(static_cast<unsigned char>(name.front())) == 0) continue;
+    std::ifstream file(entry.path() / "stat");
+    std::string text;
+    std::getline(file, text, '\0');
+    // "pid (name) state parent ...", where the name may hold anything.
+    const auto end = text.rfind(") ");
+    if (end == std::string::npos || text.size() < end + 4) continue;
+    if (std::atoi(text.c_str() + end + 4) == self) children.push_back(std::atoi(name.c_str()));
+  }
+  return children;
+}
+
+/// Kills what is left below this process: the children of a killed child come to us in turn.
+void end_descendants() {
+  const auto deadline = Clock::now() + kCleaning;
+  while (Clock::now() < deadline) {
+    for (const auto child : own_children()) ::kill(child, SIGKILL);
+    pid_t ended = 0;
+    while ((ended = ::waitpid(-1, nullptr, WNOHANG)) > 0) {
+    }
+    if (ended < 0 && errno == ECHILD) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
+
+/// Ends as the program has ended, so that its end can be told from ours.
+int end_like(int status) {
+  if (WIFEXITED(status)) return WEXITSTATUS(status);
+  const int number = WTERMSIG(status);
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  ::signal(number, SIG_DFL);
+  sigset_t one;
+  sigemptyset(&one);
+  sigaddset(&one, number);
+  ::sigprocmask(SIG_UNBLOCK, &one, nullptr);
+  ::raise(number);
+  return 128 + number;
+}
+
+/// Waits for the program; ends earlier when whoever started us is gone or has asked for the end,
+/// and the program, which gets the same signal, does not follow. The status of the program.
+int wait_for_end(pid_t program, pid_t parent) {
+  sigset_t waited;
+  sigemptyset(&waited);
+  for (const int number : {SIGCHLD, SIGTERM, SIGINT, SIGHUP}) sigaddset(&waited, number);
+  ::sigprocmask(SIG_BLOCK, &waited, nullptr);
+  bool asked = stop_flag().load();
+  auto deadline = Clock::now() + kEndGrace;
+  for (;;) {
+    int status = 0;
+    pid_t ended = 0;
+    while ((ended = ::waitpid(-1, &status, WNOHANG)) > 0) {
+      if (ended == program) return status;
+    }
+    if (::getppid() != parent || (asked && Clock::now() >= deadline)) return SIGKILL;
+    const timespec slice{0, 100'000'000};
+    const int number = ::sigtimedwait(&waited, nullptr, &slice);
+    if (asked || number <= 0 || number == SIGCHLD) continue;
+    asked = true;
+    deadline = Clock::now() + kEndGrace;
+  }
+}
+
+int supervise(const std::vector<std::string>& command) {
+  const auto parent = ::getppid();
+  // What the program starts and leaves behind comes to us, and the end of our parent, who had us
+  // killed by it, is a signal that we can clean up after.
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  base::SpawnOptions options;
+  options.ends_with_us = true;
+  const auto program = base::spawn(command, options);
+  if (program.pid < 0) {
+    write_error(fmt::format("cannot start `{}`: {}\n", base::command_text(command),
+                            std::strerror(program.error)));
+    return kCannotStart;
+  }
+  // The ends of the pipes are the program's alone: that it closes them has to be seen.
+  const base::Descriptor null(::open("/dev/null", O_RDWR | O_CLOEXEC));
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    ::dup2(null.get(), stream);
+  }
+  const int status = wait_for_end(program.pid, parent);
+  end_descendants();
+  return end_like(status);
+}
+
+}  // namespace
+
+Command supervise_command() {
+  auto command = std::make_shared<std::vector<std::string>>();
+  OptionTable table("supervise", "Run a command and end with it everything that it has started");
+  table.hide();  // put before the commands of scenarios; not meant to be typed
+  table.option("command", *command).required();
+  return {std::move(table), [command](Invocation&) { return supervise(*command); }};
+}
+
+}  // namespace parallax::tools
