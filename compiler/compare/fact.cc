@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "compiler/base/ascii.h"
+#include "compiler/base/utf8.h"
 
 namespace parallax::compiler {
 namespace {
@@ -133,6 +134,31 @@ std::vector<std::string_view> words_of(std::string_view text) {
     i = end;
   }
   return words;
+}
+
+std::pair<std::string, std::string> changed_parts(const std::string& old_text,
+                                                  const std::string& new_text) {
+  constexpr std::size_t kMaxShown = 200, kContext = 40;
+  if (old_text.size() <= kMaxShown && new_text.size() <= kMaxShown) return {old_text, new_text};
+  const auto shorter = std::min(old_text.size(), new_text.size());
+  std::size_t before = 0, behind = 0;
+  while (before < shorter && old_text[before] == new_text[before]) ++before;
+  while (behind < shorter - before &&
+         old_text[old_text.size() - 1 - behind] == new_text[new_text.size() - 1 - behind]) {
+    ++behind;
+  }
+  const auto part = [&](const std::string& text) {
+    auto begin = before > kContext ? text.find_last_of(' ', before - kContext) : 0;
+    begin = begin == std::string::npos || begin == 0 ? 0 : begin + 1;
+    auto end = std::min(text.size() - behind + kContext, text.size());
+    end = std::min(text.find(' ', end), text.size());
+    end = std::min(end, begin + 2 * kMaxShown);
+    while (begin > 0 && base::continues_code_point(text[begin])) --begin;
+    while (end < text.size() && base::continues_code_point(text[end])) --end;
+    return (begin > 0 ? "... " : "") + text.substr(begin, end - begin) +
+           (end < text.size() ? " ..." : "");
+  };
+  return {part(old_text), part(new_text)};
 }
 
 FactDifference compare_facts(std::span<const Fact> old_facts, std::span<const Fact> new_facts) {

@@ -37,6 +37,11 @@ struct FactDifference {
   bool empty() const { return removed.empty() && added.empty() && changed.empty(); }
 };
 
+/// Two texts that differ, for people: what they begin and end with in common is left out (`...`)
+/// but for some words, where they are too long to be shown whole.
+std::pair<std::string, std::string> changed_parts(const std::string& old_text,
+                                                  const std::string& new_text);
+
 /// Order and repetition say nothing. A removed and an added fact of one kind are a changed one if
 /// they have the same key, or else if more than half of their words agree; the most similar pairs
 /// are matched first. With more than kMaxMatched pairs to look at only equal keys are matched.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "compiler/plan/binding_text.h"
@@ -76,14 +77,16 @@ class EditFinder {
       : a_(a), b_(b), files_(files) {}
 
   std::vector<DatumEdit> run(DatumId left, DatumId right) {
-    open_.emplace_back(left, right);
+    compare_rest({&left, 1}, {&right, 1});
     while (!open_.empty()) {
-      const auto [x, y] = open_.back();
+      const auto next = std::move(open_.back());
       open_.pop_back();
-      if (x && y) {
-        compare(*x, *y);
+      if (next.found) {
+        edits_.push_back(*next.found);
+      } else if (next.x && next.y) {
+        compare(*next.x, *next.y);
       } else {
-        report(x, y);
+        report(next.x, next.y);
       }
     }
     return std::move(edits_);
@@ -91,18 +94,136 @@ class EditFinder {
 
  private:
   using MaybeDatum = std::optional<DatumId>;
+  /// A pair to be compared, or what has been found out about it already.
+  struct Pair {
+    MaybeDatum x, y;
+    std::optional<DatumEdit> found;
+  };
 
   void report(MaybeDatum x, MaybeDatum y) {
     DatumEdit edit;
     if (x) {
-      edit.removed = shortened(print_datum(a_.data, *x));
+      edit.removed = print_datum(a_.data, *x);
       edit.old_place = place_of(a_.data.source(*x), files_);
     }
     if (y) {
-      edit.added = shortened(print_datum(b_.data, *y));
+      edit.added = print_datum(b_.data, *y);
       edit.new_place = place_of(b_.data.source(*y), files_);
     }
+    if (x && y) {
+      std::tie(edit.removed, edit.added) = changed_parts(edit.removed, edit.added);
+    } else {
+      edit.removed = shortened(std::move(edit.removed));
+      edit.added = shortened(std::move(edit.added));
+    }
     edits_.push_back(std::move(edit));
+  }
+
+  /// The outer datum with `...` for the first `length` of some data that stand in it side by side.
+  struct Wrap {
+    std::string text;
+    std::size_t length = 0;
+  };
+
+  /// Does the first of the inner data stand, as it is, somewhere inside the outer one? With those
+  /// behind it that follow there as well.
+  std::optional<Wrap> find_wrap(const LispData& inner_data, std::span<const DatumId> inner,
+                                const LispData& outer_data, DatumId outer) {
+    // A name or a number may stand anywhere.
+    if (++wrap_steps_ > kMaxAligned || inner_data.children(inner.front()).empty()) {
+      return std::nullopt;
+    }
+    struct Place {
+      DatumId list;
+      std::size_t parent = 0;    // in `places`
+      std::size_t position = 0;  // among its children
+    };
+    std::vector<Place> places = {{outer, 0, 0}};
+    for (std::size_t at = 0; at < places.size(); ++at) {
+      const auto items = outer_data.children(places[at].list);
+      for (std::size_t i = 0; i < items.size(); ++i) {
+        if (wrap_steps_++ > kMaxAligned) return std::nullopt;
+        std::size_t length = 0;
+        while (length < inner.size() && i + length < items.size() &&
+               equal_data(inner_data, inner[length], outer_data, items[i + length])) {
+          ++length;
+        }
+        if (length > 0) {
+          return Wrap{around(outer_data, places, at, i, length), length};
+        }
+        if (!outer_data.children(items[i]).empty()) places.push_back({items[i], at, i});
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// What is around those children of a place, up to the first place.
+  template <typename Places>
+  static std::string around(const LispData& data, const Places& places, std::size_t at,
+                            std::size_t position, std::size_t length) {
+    std::string front, back;
+    for (;;) {
+      std::string before, after;
+      const auto siblings = data.children(places[at].list);
+      for (std::size_t k = 0; k < siblings.size(); ++k) {
+        if (k < position) before += print_datum(data, siblings[k]) + ' ';
+        if (k >= position + length) after += ' ' + print_datum(data, siblings[k]);
+      }
+      front = "(" + before + front;
+      back += after + ")";
+      if (at == 0) return front + "..." + back;
+      position = places[at].position;
+      length = 1;
+      at = places[at].parent;
+    }
+  }
+
+  DatumEdit wrap_edit(const Wrap& wrap, DatumId first, DatumId outer, bool added) const {
+    DatumEdit edit;
+    edit.around = shortened(print_datum((added ? a_ : b_).data, first));
+    if (wrap.length > 1) edit.around += " and what follows it";
+    (added ? edit.added : edit.removed) = shortened(wrap.text);
+    edit.old_place = place_of(a_.data.source(added ? first : outer), files_);
+    edit.new_place = place_of(b_.data.source(added ? outer : first), files_);
+    return edit;
+  }
+
+  /// Data that have no equal on the other side: what one of them wraps is found, the rest is
+  /// compared in pairs or stands alone.
+  void compare_rest(std::span<const DatumId> xs, std::span<const DatumId> ys) {
+    while (next_wrap(xs, ys)) {
+    }
+    pair_up(xs, ys);
+  }
+
+  /// Takes the first wrap and what stands before it off both sides. False if there is none, or if
+  /// looking for it takes too long.
+  bool next_wrap(std::span<const DatumId>& xs, std::span<const DatumId>& ys) {
+    for (std::size_t i = 0; i < xs.size(); ++i) {
+      for (std::size_t j = 0; j < ys.size(); ++j) {
+        if (wrap_steps_ > kMaxAligned) return false;
+        auto wrap = find_wrap(a_.data, xs.subspan(i), b_.data, ys[j]);
+        const bool added = wrap.has_value();
+        if (!wrap) wrap = find_wrap(b_.data, ys.subspan(j), a_.data, xs[i]);
+        if (!wrap) continue;
+        pair_up(xs.first(i), ys.first(j));
+        const auto edit =
+            added ? wrap_edit(*wrap, xs[i], ys[j], true) : wrap_edit(*wrap, ys[j], xs[i], false);
+        open_.push_back({{}, {}, edit});
+        xs = xs.subspan(i + (added ? wrap->length : 1));
+        ys = ys.subspan(j + (added ? 1 : wrap->length));
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void pair_up(std::span<const DatumId> xs, std::span<const DatumId> ys) {
+    const bool paired = xs.size() == ys.size();
+    for (std::size_t i = 0; i < xs.size(); ++i) {
+      open_.push_back({xs[i], paired ? MaybeDatum(ys[i]) : std::nullopt, {}});
+    }
+    for (std::size_t j = 0; !paired && j < ys.size(); ++j) open_.push_back({{}, ys[j], {}});
   }
 
   void compare(DatumId x, DatumId y) {
@@ -116,14 +237,7 @@ class EditFinder {
     auto stays = aligned(texts(a_.data, xs), texts(b_.data, ys));
     stays.emplace_back(xs.size(), ys.size());
     for (const auto& [next_i, next_j] : stays) {
-      const bool paired = next_i - i == next_j - j;
-      while (i < next_i || j < next_j) {
-        const auto left = i < next_i ? MaybeDatum(xs[i]) : std::nullopt;
-        const auto right = j < next_j && (paired || !left) ? MaybeDatum(ys[j]) : std::nullopt;
-        if (left) ++i;
-        if (right) ++j;
-        open_.emplace_back(left, right);
-      }
+      compare_rest(xs.subspan(i, next_i - i), ys.subspan(j, next_j - j));
       i = next_i + 1;
       j = next_j + 1;
     }
@@ -140,8 +254,9 @@ class EditFinder {
   const LispText& a_;
   const LispText& b_;
   const base::SourceFiles& files_;
-  std::vector<std::pair<MaybeDatum, MaybeDatum>> open_;
+  std::vector<Pair> open_;
   std::vector<DatumEdit> edits_;
+  std::size_t wrap_steps_ = 0;
 };
 
 }  // namespace

@@ -29,6 +29,9 @@ std::string canonical_plan(const LispText& plan);
 struct DatumEdit {
   std::string removed, added;  // on one line; empty: there is none
   FactPlace old_place, new_place;
+  /// What stays the same inside of what was put around it, or taken away from around it: there
+  /// stands `...` in its place. Empty if the edit is no such wrap.
+  std::string around;
 };
 
 /// The smallest pieces in which two forms differ, in the order of the text.

@@ -195,6 +195,33 @@ std::string dump_dot(const PlanGraph& graph, const base::SourceFiles& files) {
   return out + "}\n";
 }
 
+std::optional<std::int64_t> shortest_path(const PlanGraph& graph) {
+  const auto count = graph.locations.size() + graph.branches.size() + graph.terminals.size();
+  std::vector<bool> seen(count, false);
+  // Branches cost nothing: what they lead to joins the present layer.
+  std::vector<std::size_t> layer = {node_of(graph, graph.entry)}, next;
+  for (std::int64_t performs = 0; !layer.empty(); ++performs) {
+    next.clear();
+    while (!layer.empty()) {
+      const auto node = layer.back();
+      layer.pop_back();
+      if (seen[node]) continue;
+      seen[node] = true;
+      const auto first_terminal = graph.locations.size() + graph.branches.size();
+      if (node >= first_terminal) {
+        const TerminalId terminal(static_cast<std::uint32_t>(node - first_terminal));
+        if (graph.terminals[terminal].kind == TerminalKind::kDone) return performs;
+      }
+      for (const auto& target : successors(graph, node)) {
+        auto& where = node < graph.locations.size() ? next : layer;
+        where.push_back(node_of(graph, target));
+      }
+    }
+    std::swap(layer, next);
+  }
+  return std::nullopt;
+}
+
 std::optional<std::int64_t> longest_path(const PlanGraph& graph) {
   constexpr std::int64_t kUnseen = -2;
   constexpr std::int64_t kOpen = -1;

@@ -100,12 +100,21 @@ struct PlanBranch {
   const std::string& text() const { return free ? choice : guard.text; }
 };
 
+/// A clause of `with-failure-handling` that some way through the plan has around it.
+struct PlanHandler {
+  std::vector<std::string> failure_classes;
+  base::SourceRange source;
+  std::vector<LocationId> failures;  // what it takes up: these performs, failing; sorted
+  bool otherwise = false;            // failures that the plan itself signals or hands on as well
+};
+
 struct PlanGraph {
   PlanTarget entry = TerminalId(0);  // an empty plan goes straight to a terminal
   base::Store<LocationId, PlanLocation> locations;
   base::Store<TerminalId, PlanTerminal> terminals;
   base::Store<BranchId, PlanBranch> branches;
   base::Store<ModelValueId, ModelValue> values;
+  std::vector<PlanHandler> handlers;  // in the order of the text
 };
 
 /// "L3", "B1", "DONE", "FAILED(navigation-pose-unreachable)", "BOUND(loop at plan.lisp:12)".
@@ -117,6 +126,10 @@ std::string dump_text(const PlanGraph& graph, const base::SourceFiles& files);
 
 /// A picture for Graphviz: solid edges for success, dashed ones for failure.
 std::string dump_dot(const PlanGraph& graph, const base::SourceFiles& files);
+
+/// The number of performs on the shortest way from the entry to the plan's end; none if no way
+/// leads there. Linear in the graph's size.
+std::optional<std::int64_t> shortest_path(const PlanGraph& graph);
 
 /// The number of performs on the longest way from the entry to a terminal; none if a cycle makes
 /// it unlimited. Linear in the graph's size.

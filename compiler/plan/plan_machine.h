@@ -134,7 +134,12 @@ class PlanMachine {
  public:
   PlanMachine(const PlanCode& code, const LispData& data, const MachineLimits& limits,
               ValueStore& values, base::DiagnosticSink& sink)
-      : code_(code), data_(data), limits_(limits), values_(values), sink_(sink) {}
+      : code_(code),
+        data_(data),
+        limits_(limits),
+        values_(values),
+        sink_(sink),
+        handlers_met_(code.handlers.size()) {}
 
   /// Sets the global constants; false if that reported an error.
   bool run_definitions();
@@ -142,6 +147,10 @@ class PlanMachine {
   PlanStop run(PlanState& state);
   /// Lets the current step fail instead of answering; run goes on from there.
   std::optional<PlanStop> raise(PlanState& state, ValueId failure);
+  /// The units of the handlers that began to run since this was asked last.
+  std::vector<std::uint32_t> take_handlers_run() { return std::exchange(handlers_run_, {}); }
+  /// By handler table: has any state had it around itself?
+  const std::vector<bool>& handlers_met() const { return handlers_met_; }
   /// Inside a `par`: the running branch waits at this perform, others run up to theirs. None: run
   /// goes on with another branch.
   std::optional<PlanStop> wait(PlanState& state, const StopPerform& perform);
@@ -188,6 +197,8 @@ class PlanMachine {
   base::DiagnosticSink& sink_;
   std::vector<std::optional<ValueId>> globals_;
   std::int64_t steps_ = 0;
+  std::vector<std::uint32_t> handlers_run_;
+  std::vector<bool> handlers_met_;
 };
 
 }  // namespace parallax::compiler

@@ -54,6 +54,7 @@ void PlanMachine::push_guard(PlanState& state, const PlanInstruction& instructio
   const auto height = static_cast<std::uint32_t>(state.stack.size());
   const bool cleanup = instruction.op == PlanOp::kPushCleanup;
   state.guards.push_back({cleanup, instruction.a, frame, height});
+  if (!cleanup) handlers_met_[instruction.a] = true;
 }
 
 void PlanMachine::run_cleanup(PlanState& state, const PlanInstruction& instruction) {
@@ -105,6 +106,7 @@ PlanMachine::Step PlanMachine::search(PlanState& state, ValueId failure, std::si
         auto handler = frame_on_top(state, clause.unit, guard.frame, FrameKind::kHandler);
         handler.skip_to = static_cast<std::uint32_t>(g);
         handler.failure = failure;
+        handlers_run_.push_back(clause.unit);
         state.frames.push_back(handler);
         state.stack.push_back(failure);
         return {};

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <iterator>
 #include <map>
@@ -57,6 +58,8 @@ class Explorer {
  private:
   using StateKey = std::vector<std::uint32_t>;
   void set(const Job& job, PlanTarget target);
+  void note_handlers(std::optional<LocationId> failed);
+  void write_handlers();
   std::optional<PlanTarget> advance(Job& job);
   std::optional<PlanTarget> stopped(PlanState& state, const PlanStop& stop);
   bool has_room(const StateKey& key, DatumId form);
@@ -94,6 +97,7 @@ class Explorer {
   std::map<StateKey, BranchId> turns_;
   std::map<std::string, TerminalId> terminals_;
   std::map<std::pair<std::uint32_t, std::string>, std::vector<ModelValueId>> registers_;
+  std::map<std::uint32_t, PlanHandler> handlers_;  // by unit: what they take up
   bool failed_ = false;
   std::size_t key_words_ = 0;
   bool full_ = false;  // the limit of locations was reached and reported
@@ -254,7 +258,9 @@ std::optional<PlanTarget> Explorer::stopped(PlanState& state, const PlanStop& st
 
 std::optional<PlanTarget> Explorer::advance(Job& job) {
   if (job.failure) {
-    if (auto stop = machine_.raise(job.state, *job.failure)) return stopped(job.state, *stop);
+    auto stop = machine_.raise(job.state, *job.failure);
+    if (job.edge == Job::Edge::kFailure) note_handlers(LocationId(job.owner));
+    if (stop) return stopped(job.state, *stop);
   }
   if (job.act) return perform(job.state, *job.act);
   for (;;) {
@@ -272,19 +278,53 @@ std::optional<PlanTarget> Explorer::advance(Job& job) {
   }
 }
 
+/// Whose failure the handlers took up that began to run just now.
+void Explorer::note_handlers(std::optional<LocationId> failed) {
+  for (const auto unit : machine_.take_handlers_run()) {
+    auto& handler = handlers_[unit];
+    if (failed) {
+      handler.failures.push_back(*failed);
+    } else {
+      handler.otherwise = true;
+    }
+  }
+}
+
+void Explorer::write_handlers() {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, PlanHandler> in_order;  // by unit's place
+  for (std::size_t table = 0; table < code_.handlers.size(); ++table) {
+    if (!machine_.handlers_met()[table]) continue;
+    for (const auto& clause : code_.handlers[table]) {
+      const auto source = data_.source(code_.units[clause.unit].source);
+      const auto [entry, fresh] = in_order.try_emplace({source.begin, clause.unit});
+      auto& handler = entry->second;
+      if (fresh) {
+        handler = handlers_[clause.unit];
+        handler.source = source;
+        std::sort(handler.failures.begin(), handler.failures.end());
+      }
+      handler.failure_classes.push_back(clause.failure_class);
+    }
+  }
+  for (auto& [place, handler] : in_order) graph_.handlers.push_back(std::move(handler));
+}
+
 base::Result<PlanGraph> Explorer::explore() {
   if (!machine_.run_definitions()) return sink_.already_reported();
   jobs_.push_back({machine_.start(), {}, {}, Job::Edge::kEntry, 0});
   while (!jobs_.empty() && !full_) {
     auto job = std::move(jobs_.back());
     jobs_.pop_back();
-    if (const auto target = advance(job)) {
+    const auto target = advance(job);
+    note_handlers(std::nullopt);
+    if (target) {
       set(job, *target);
     } else {
       failed_ = true;
     }
   }
   if (failed_) return sink_.already_reported();
+  write_handlers();
   return std::move(graph_);
 }
 

@@ -40,19 +40,6 @@ RunLimit run_limit(const Scenario& scenario) {
   return limit;
 }
 
-/// Reports kRunLimitTooLow where the criterion can never be met, at the scenario's number unless
-/// another one took its place.
-void warn_of_low_limit(const Scenario& scenario, const base::SourceFiles& files,
-                       base::DiagnosticSink& sink) {
-  const auto limit = run_limit(scenario);
-  if (limit.max_runs >= limit.needed) return;
-  const auto& source = scenario.limits.max_runs_source;
-  const bool written = source && files.text(*source) == std::to_string(limit.max_runs);
-  sink.warning(DiagnosticCode::kRunLimitTooLow,
-               written ? *source : base::SourceRange{scenario.source, 0, 0}, limit.max_runs,
-               limit.needed);
-}
-
 class Campaign {
  public:
   Campaign(const Scenario& scenario, RunFolder folder, JournalText recorded, TraceFeed& traces,
@@ -240,6 +227,17 @@ std::string_view to_string(CampaignVerdict verdict) {
       break;
   }
   return "inconclusive";
+}
+
+void warn_of_low_limit(const Scenario& scenario, const base::SourceFiles& files,
+                       base::DiagnosticSink& sink) {
+  const auto limit = run_limit(scenario);
+  if (limit.max_runs >= limit.needed) return;
+  const auto& source = scenario.limits.max_runs_source;
+  const bool written = source && files.text(*source) == std::to_string(limit.max_runs);
+  sink.warning(DiagnosticCode::kRunLimitTooLow,
+               written ? *source : base::SourceRange{scenario.source, 0, 0}, limit.max_runs,
+               limit.needed);
 }
 
 base::Result<CampaignResult> run_campaign(const Scenario& scenario, TraceFeed& traces,

@@ -64,6 +64,11 @@ base::Result<CampaignResult> run_campaign(const Scenario& scenario, TraceFeed& t
                                           const CampaignOptions& options, base::SourceFiles& files,
                                           base::DiagnosticSink& sink);
 
+/// Reports kRunLimitTooLow where the criterion can never be met, at the scenario's number unless
+/// another one took its place.
+void warn_of_low_limit(const Scenario& scenario, const base::SourceFiles& files,
+                       base::DiagnosticSink& sink);
+
 /// A stable hash over the texts of the files read so far, from the one of number `first` on, in
 /// order of loading; names do not count.
 std::string hash_of_sources(const base::SourceFiles& files, std::size_t first = 0);

@@ -221,14 +221,25 @@ class TextReport {
          4);
   }
 
+  /// Actions that ended otherwise than the model says: a failure that it predicts is none of them.
   void unusual_outcomes(const Discrepancy& found, const TraceResult& trace) {
     const auto& outcomes = found.record.outcomes;
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
-      if (outcomes[i].status == SimStatus::kOk) continue;
+      const auto& outcome = outcomes[i];
+      const auto& point = trace.trace->points[i];
+      const bool fails = point.plan_step && !point.succeeded;  // as the model has it
+      const bool went_well = outcome.status == SimStatus::kOk;
+      const bool as_predicted = fails ? outcome.status == SimStatus::kFailed : went_well;
+      if (as_predicted) continue;
+      const auto reason = went_well                ? "though the model lets it fail"
+                          : outcome.reason.empty() ? "no reason given"
+                                                   : outcome.reason;
+      // The event of that timepoint was the first to begin in a state that is not the trace's.
+      const bool follows = static_cast<std::int64_t>(i) >= found.first_divergence;
       line("action",
-           fmt::format("event {}, {}, {} after {:.3f} s: {}", i, trace.trace->event(i),
-                       to_string(outcomes[i].status), outcomes[i].sim_time_s,
-                       outcomes[i].reason.empty() ? "no reason given" : outcomes[i].reason),
+           fmt::format("event {}, {}, {} after {:.3f} s{} {}{}", i, trace.trace->event(i),
+                       to_string(outcome.status), outcome.sim_time_s, went_well ? "," : ":", reason,
+                       follows ? " (follows from what differed before)" : ""),
            4);
     }
   }

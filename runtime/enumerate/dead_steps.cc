@@ -96,4 +96,36 @@ std::vector<std::size_t> dead_steps(SolverSession& session,
   return dead;
 }
 
+bool can_fail(SolverSession& session, const std::vector<std::size_t>& steps) {
+  const compiler::AtomIndex index(session.model());
+  const auto horizon = session.model().horizon;
+  std::vector<std::vector<Literal>> failures(static_cast<std::size_t>(horizon) + 1);
+  for (const auto step : steps) {
+    const compiler::PlanStepId id(static_cast<std::uint32_t>(step));
+    for (Timepoint t = 0; t < horizon; ++t) {
+      const auto tried = index.plan(AtomKind::kLocation, id, t);
+      if (!tried) continue;
+      const auto succeeded = index.plan(AtomKind::kSucceeded, id, t + 1);
+      const auto failed = session.new_variable();
+      session.add_clause(std::vector{~failed, *tried});
+      if (succeeded) session.add_clause(std::vector{~failed, ~*succeeded});
+      failures[static_cast<std::size_t>(t) + 1].push_back(failed);
+    }
+  }
+  // An execution need not have a continuation up to the horizon.
+  for (Timepoint n = horizon; n >= 1; --n) {
+    std::vector<Literal> ways;
+    for (Timepoint t = n == horizon ? 1 : n; t <= n; ++t) {
+      const auto& here = failures[static_cast<std::size_t>(t)];
+      ways.insert(ways.end(), here.begin(), here.end());
+    }
+    if (ways.empty()) continue;
+    const auto any = session.new_variable();
+    ways.push_back(~any);
+    session.add_clause(ways);
+    if (session.solve(n, std::span(&any, 1)) != SolveStatus::kUnsatisfiable) return true;
+  }
+  return false;
+}
+
 }  // namespace parallax::runtime

@@ -15,4 +15,8 @@ namespace parallax::runtime {
 std::vector<std::size_t> dead_steps(SolverSession& session,
                                     const std::vector<std::vector<std::size_t>>& earlier);
 
+/// Can one of these steps be reached within the horizon and fail? A solver that gives up says yes.
+/// At most one solver call for every timepoint.
+bool can_fail(SolverSession& session, const std::vector<std::size_t>& steps);
+
 }  // namespace parallax::runtime

@@ -179,8 +179,9 @@ TEST_CASE("each action of a recorded simulation has its picture, which shows wha
     if (read.contains("observations") && read["sample"] == 2) sample = read;
   }
   REQUIRE(sample.contains("observations"));
-  const std::vector<std::string> titles = {"start", "1: Go(r2) (going)", "2: PickUp() (picking-up)",
-                                           "3: Go(r1) (going)", "4: Place(r1) (placing)"};
+  const std::vector<std::string> titles = {
+      "start", "event 0: Go(r2) (going)", "event 1: PickUp() (picking-up)",
+      "event 2: Go(r1) (going)", "event 3: Place(r1) (placing)"};
   std::string views;
   for (std::size_t i = 0; i < titles.size(); ++i) {
     CAPTURE(i);

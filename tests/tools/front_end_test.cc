@@ -52,6 +52,21 @@ TEST_CASE("fmt rewrites in place, keeps permissions and links, and is content wi
   CHECK(json_of(cli, {"fmt", "--check", "m.e"})["changed"] == json::array());
 }
 
+TEST_CASE("the models of this repository are in the standard layout") {
+  const fs::path root = PARALLAX_SOURCE_DIR;
+  std::vector<std::string> arguments = {"fmt", "--check"};
+  for (const auto* folder : {"docs", "scenarios", "tests", "tools"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      if (entry.path().extension() == ".e") arguments.push_back(entry.path().string());
+    }
+  }
+  CHECK(arguments.size() > 30);
+  const CliFixture cli;
+  const auto result = cli.parallax(arguments);
+  CHECK(result.code == 0);
+  CHECK(result.out == "");
+}
+
 TEST_CASE("fmt leaves a file with a syntax error as it is and goes on with the others") {
   const CliFixture cli;
   cli.write("bad.e", "P(  & .\n");

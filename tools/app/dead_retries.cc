@@ -1,5 +1,7 @@
 #include "tools/app/dead_retries.h"
 
+#include <fmt/format.h>
+
 #include <map>
 #include <string>
 #include <utility>
@@ -30,6 +32,20 @@ void report_dead_retries(const compiler::Compilation& compilation, Context& cont
   }
   for (const auto& [key, entry] : found) {
     context.sink().warning(base::DiagnosticCode::kDeadRetry, entry.first, key.second, entry.second);
+  }
+}
+
+void report_dead_handlers(const compiler::Compilation& compilation, Context& context) {
+  if (!compilation.plan || compilation.plan->handlers.empty()) return;
+  runtime::SolverSession session(compilation.model, runtime::make_cadical_solver(&context.stop()));
+  for (const auto& handler : compilation.plan->handlers) {
+    if (handler.otherwise) continue;
+    std::vector<std::size_t> steps;
+    for (const auto location : handler.failures) steps.push_back(location.index());
+    if (!steps.empty() && runtime::can_fail(session, steps)) continue;
+    context.sink().warning(base::DiagnosticCode::kDeadHandler, handler.source,
+                           fmt::format("{}", fmt::join(handler.failure_classes, "`, `")),
+                           steps.empty() ? "" : " in the model");
   }
 }
 

@@ -9,4 +9,8 @@ namespace parallax::tools {
 /// failed: a sign that the model is too coarse. Does nothing without a plan.
 void report_dead_retries(const compiler::Compilation& compilation, Context& context);
 
+/// Reports failure handlers (W-HANDLER) that no execution of the model comes to, because no perform
+/// in their body can fail with their class, or none does in the model.
+void report_dead_handlers(const compiler::Compilation& compilation, Context& context);
+
 }  // namespace parallax::tools

@@ -136,9 +136,13 @@ struct Switches {
   bool costs = false;
   bool plain = false;  // plain_models.h
   std::string emit_pass = {};
+  std::optional<std::int64_t> horizon = std::nullopt;
+  bool with_plan = true;
   void apply(compiler::CompileInput& input) const {
     input.costs = costs;
     input.emit_pass = emit_pass;
+    if (horizon) input.horizon = *horizon;
+    if (!with_plan) input.plan.reset();
     if (!plain) return;
     input.ground.relevance = false;
     input.ground.invariants = false;
@@ -268,6 +272,15 @@ bool is_file(const fs::path& path) {
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path, Context& context,
                                                 bool costs) {
   return load(path, context, {costs, false});
+}
+
+std::optional<compiler::CompiledModel> compile_variant(const harness::Scenario& scenario,
+                                                       std::int64_t horizon, bool with_plan,
+                                                       Context& context) {
+  Context own(context.form(), context.stop());
+  auto loaded = load(scenario.file, own, {.horizon = horizon, .with_plan = with_plan});
+  if (!loaded) return std::nullopt;
+  return std::move(loaded->compilation.model);
 }
 
 base::Result<ScenarioModel> load_plain_scenario(const std::filesystem::path& path,

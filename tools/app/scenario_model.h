@@ -1,7 +1,9 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,12 @@ struct ScenarioModel {
 /// against the model. `costs`: also count what each axiom costs.
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path, Context& context,
                                                 bool costs = false);
+
+/// The scenario's model once more, for another horizon, with its plan or for any events. None where
+/// that fails; nothing is reported.
+std::optional<compiler::CompiledModel> compile_variant(const harness::Scenario& scenario,
+                                                       std::int64_t horizon, bool with_plan,
+                                                       Context& context);
 
 /// What the models on the command line compile to; a single .yaml is a scenario, a single .cnf has
 /// been compiled before and brings neither the checked model nor the plan's graph.

@@ -101,9 +101,12 @@ base::Status EnumeratedTraces::explain_absence() const {
   if (report_if_unsatisfiable(*model_, model_->horizon, *context_) == base::Known::kNo) {
     return sink.already_reported();
   }
+  const auto reasons = reasons_ ? reasons_() : std::vector<std::string>();
   for (const auto& origin : model_->origins) {
     if (origin.kind != compiler::OriginKind::kStateConstraint) continue;
-    sink.warning(base::DiagnosticCode::kNoTraceReachesConstraint, origin.source, model_->horizon);
+    auto warning = sink.warning(base::DiagnosticCode::kNoTraceReachesConstraint, origin.source,
+                                model_->horizon);
+    for (const auto& reason : reasons) warning.note(reason);
   }
   return base::Unit{};
 }

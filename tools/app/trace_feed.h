@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -25,6 +26,10 @@ class EnumeratedTraces final : public harness::TraceFeed {
   runtime::Symbols symbols() const override { return enumerator_->symbols(); }
   base::Known admits(const harness::CampaignTrace& trace,
                      const std::map<compiler::FluentId, bool>& last_state) override;
+  /// What is said beside the message that no execution meets the constraints.
+  void explain_absence_by(std::function<std::vector<std::string>()> reasons) {
+    reasons_ = std::move(reasons);
+  }
   std::int64_t solve_calls() const { return session_->solve_calls(); }
 
  private:
@@ -34,6 +39,7 @@ class EnumeratedTraces final : public harness::TraceFeed {
   const compiler::CompiledModel* model_;
   Context* context_;
   bool split_initial_;
+  std::function<std::vector<std::string>()> reasons_;
   std::unique_ptr<runtime::SolverSession> session_;
   std::unique_ptr<runtime::PlanEnumerator> enumerator_;
   std::int64_t given_ = 0;  // the number of the last trace

@@ -5,6 +5,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "tools/app/dead_retries.h"
 #include "tools/app/model_options.h"
+#include "tools/app/scenario_check.h"
 #include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
 #include "tools/cli/shared_options.h"
@@ -46,7 +47,10 @@ int check(const CheckOptions& check_options, Invocation& invocation) {
     // Reports into the sink; a result says only that there was nothing to report.
     if (is_scenario(path)) {
       const auto loaded = load_scenario_model(path, invocation);
-      if (loaded) report_dead_retries(loaded->compilation, invocation);
+      if (!loaded) continue;
+      report_dead_retries(loaded->compilation, invocation);
+      report_dead_handlers(loaded->compilation, invocation);
+      check_before_run(*loaded, invocation);
     } else if (compiler::is_artifact_name(path)) {
       (void)compiler::load_artifact(path, invocation.files(), invocation.sink());
     } else {
@@ -58,7 +62,10 @@ int check(const CheckOptions& check_options, Invocation& invocation) {
     input_options.models = models;
     input_options.lint = !check_options.no_lint;
     const auto compilation = compile_models(input_options, invocation);
-    if (compilation) report_dead_retries(*compilation, invocation);
+    if (compilation) {
+      report_dead_retries(*compilation, invocation);
+      report_dead_handlers(*compilation, invocation);
+    }
   }
   if (invocation.sink().has_errors()) return 0;
   if (invocation.options().json) {

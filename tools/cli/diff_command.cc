@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <tuple>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
@@ -110,26 +111,68 @@ int diff_models(const DiffOptions& options, RevisionKind old_kind, RevisionKind 
   return print(options, out, invocation);
 }
 
-/// The smallest pieces in which a changed form differs.
-std::string edits_text(const FactReport& report, const PlanRevision& before,
-                       const PlanRevision& after, const base::SourceFiles& files) {
-  std::string out;
+/// A changed form and the smallest pieces in which it differs.
+struct FormEdits {
+  std::string form;
+  std::vector<compiler::DatumEdit> edits;
+};
+
+std::vector<FormEdits> form_edits(const FactReport& report, const PlanRevision& before,
+                                  const PlanRevision& after, const base::SourceFiles& files) {
+  std::vector<FormEdits> out;
+  if (!before.lisp || !after.lisp) return out;
   for (const auto& [i, j] : report.difference.changed) {
-    if (report.old_facts[i].kind != FactKind::kAxiom) continue;
-    out += fmt::format("in {}\n", report.new_facts[j].key.empty() ? report.new_facts[j].shown
-                                                                  : report.new_facts[j].key + ")");
-    const auto edits =
-        datum_edits(*before.lisp, before.lisp->forms[i], *after.lisp, after.lisp->forms[j], files);
+    const auto& fact = report.new_facts[j];
+    if (fact.kind != FactKind::kAxiom) continue;
+    out.push_back({fact.key.empty() ? fact.shown : fact.key + ")",
+                   datum_edits(*before.lisp, before.lisp->forms[i], *after.lisp,
+                               after.lisp->forms[j], files)});
+  }
+  return out;
+}
+
+std::string edits_text(const std::vector<FormEdits>& forms) {
+  std::string out;
+  for (const auto& [form, edits] : forms) {
+    out += fmt::format("in {}\n", form);
     for (const auto& edit : edits) {
+      const auto around = edit.around.empty() ? "" : "  around  " + edit.around;
       if (!edit.removed.empty()) {
-        out += fmt::format("  - {}  {}\n", to_string(edit.old_place), edit.removed);
+        out += fmt::format("  - {}  {}{}\n", to_string(edit.old_place), edit.removed, around);
       }
       if (!edit.added.empty()) {
-        out += fmt::format("  + {}  {}\n", to_string(edit.new_place), edit.added);
+        out += fmt::format("  + {}  {}{}\n", to_string(edit.new_place), edit.added, around);
       }
     }
   }
   return out;
+}
+
+Json edits_json(const std::vector<FormEdits>& forms) {
+  Json out = Json::array();
+  const auto side = [](const std::string& text, const compiler::FactPlace& place) {
+    return text.empty() ? Json(nullptr)
+                        : Json{{"text", text}, {"file", place.file}, {"line", place.line}};
+  };
+  for (const auto& [form, edits] : forms) {
+    for (const auto& edit : edits) {
+      out.push_back({{"form", form},
+                     {"old", side(edit.removed, edit.old_place)},
+                     {"new", side(edit.added, edit.new_place)},
+                     {"around", edit.around.empty() ? Json(nullptr) : Json(edit.around)}});
+    }
+  }
+  return out;
+}
+
+/// Of long forms that changed the part is shown that did.
+void show_changes(const FactReport& report, PlanRevision& before, PlanRevision& after) {
+  if (!before.lisp) return;  // entries of binding tables are shown whole
+  for (const auto& [i, j] : report.difference.changed) {
+    auto& x = before.facts[i];
+    auto& y = after.facts[j];
+    std::tie(x.shown, y.shown) = compiler::changed_parts(x.text, y.text);
+  }
 }
 
 int diff_plans(const DiffOptions& options, RevisionKind kind, Invocation& invocation) {
@@ -141,11 +184,12 @@ int diff_plans(const DiffOptions& options, RevisionKind kind, Invocation& invoca
   Comparison out;
   out.kind = "plan";
   out.differs = !report.difference.empty();
-  out.fields = facts_fields(report, "order", "forms");
+  show_changes(report, *before, *after);
+  const auto edits = form_edits(report, *before, *after, invocation.files());
+  out.fields =
+      facts_fields(report, "order", "forms") + ",\"edits\":" + base::json_text(edits_json(edits));
   out.text = facts_text(report, "order", "forms", options.stat);
-  if (before->lisp && !options.stat) {
-    out.text += edits_text(report, *before, *after, invocation.files());
-  }
+  if (!options.stat) out.text += edits_text(edits);
   return print(options, out, invocation);
 }
 

@@ -103,7 +103,7 @@ int draw_start(const DrawOptions& options, Invocation& invocation) {
 
 Caption caption_of(std::size_t number, const std::string& event, const std::string& controller,
                    const harness::Outcome& outcome, double begin_s) {
-  return {fmt::format("{}: {} ({})", number, event, controller),
+  return {fmt::format("event {}: {} ({})", number, event, controller),
           fmt::format("{} after {:.2f} s, at {:.2f} s{}{}", to_string(outcome.status),
                       outcome.sim_time_s, begin_s + outcome.sim_time_s,
                       outcome.reason.empty() ? "" : ": ", outcome.reason),
@@ -131,12 +131,12 @@ base::Result<Album> simulate(const harness::RecordedRun& run, const harness::Sce
     const auto& recorded = run.record.outcomes;
     if (i < recorded.size() && (recorded[i].status != outcome.status ||
                                 !harness::bit_equal(recorded[i].sim_time_s, outcome.sim_time_s))) {
-      return sink.error_about(DiagnosticCode::kReplayImpossible, folder,
-                              fmt::format("action {}, {}, ended otherwise than recorded", i + 1,
-                                          run.line.trace->event(i)));
+      return sink.error_about(
+          DiagnosticCode::kReplayImpossible, folder,
+          fmt::format("event {}, {}, ended otherwise than recorded", i, run.line.trace->event(i)));
     }
     album.captions.push_back(
-        caption_of(i + 1, run.line.trace->event(i), call.controller, outcome, time_s));
+        caption_of(i, run.line.trace->event(i), call.controller, outcome, time_s));
     album.pictures.push_back({recorder.scene(), recorder.action()});
     time_s += outcome.sim_time_s;
   }

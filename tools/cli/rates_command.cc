@@ -3,6 +3,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/rates.h"
 #include "harness/report/report.h"
+#include "tools/app/scenario_check.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_feed.h"
 #include "tools/cli/command.h"
@@ -33,6 +34,7 @@ int run_rates(const RateOptions& options, Invocation& invocation) {
       permitted_simulator(*loaded, options.commands.allow || !options.commands.refuse, invocation);
   if (!simulator) return 0;
   EnumeratedTraces traces(model, invocation);
+  traces.explain_absence_by([&] { return reasons_for_absence(*loaded, invocation); });
   auto rates = options.rates;
   rates.stop = &stop_flag();
   const auto result =

@@ -8,6 +8,7 @@
 #include "compiler/base/file_io.h"
 #include "harness/campaign/campaign.h"
 #include "harness/report/report.h"
+#include "tools/app/scenario_check.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_feed.h"
 #include "tools/app/version.h"
@@ -124,6 +125,7 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
   EnumeratedTraces traces(
       model, invocation,
       {.all_hits = options.hits == "all", .split_initial = options.split_initial});
+  traces.explain_absence_by([&] { return reasons_for_absence(*loaded, invocation); });
   const auto campaign = campaign_options(options, *loaded, invocation);
   for (const auto* name : {"report.txt", "report.json"}) {
     if (!base::check_output(campaign.run_dir / name, invocation.files(), sink)) return 0;

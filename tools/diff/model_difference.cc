@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <functional>
 #include <set>
 
 #include "compiler/base/diagnostic_codes.h"
@@ -208,6 +210,24 @@ class ModelComparison {
   ModelDifference out_;
 };
 
+constexpr std::size_t kMaxEditsForSubsets = 6;
+
+/// The first of the smallest proper parts that are not empty and suffice.
+std::optional<std::vector<Edit>> smallest_part(
+    const std::vector<Edit>& edits, const std::function<bool(const std::vector<Edit>&)>& suffices) {
+  for (std::size_t size = 1; size + 1 < edits.size(); ++size) {  // one less was tried before
+    for (std::uint32_t mask = 0; mask < (1U << edits.size()); ++mask) {
+      if (static_cast<std::size_t>(std::popcount(mask)) != size) continue;
+      std::vector<Edit> part;
+      for (std::size_t i = 0; i < edits.size(); ++i) {
+        if ((mask >> i & 1U) != 0) part.push_back(edits[i]);
+      }
+      if (suffices(part)) return part;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<std::vector<Edit>> responsible_edits(const std::vector<Fact>& kept,
@@ -217,21 +237,35 @@ std::optional<std::vector<Edit>> responsible_edits(const std::vector<Fact>& kept
                                                    const runtime::SharedVocabulary& vocabulary,
                                                    const ModelOptions& options, Context& context) {
   if (edits.size() > kMaxTriedEdits) return std::nullopt;
-  auto undone = edits;
-  // One edit alone is responsible for what it brings.
-  for (std::size_t i = 0; i < undone.size() && undone.size() > 1;) {
-    auto fewer = undone;
-    fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+  bool stopped = false;
+  const auto suffices = [&](const std::vector<Edit>& undone) {
     const auto model =
-        compile_text(variant(kept, refused, fewer), trace.length(), options, context);
+        compile_text(variant(kept, refused, undone), trace.length(), options, context);
     const auto admitted = model ? admits(*model, trace, vocabulary, context) : base::Known::kNo;
-    if (admitted == base::Known::kUndecided || context.stopped()) return std::nullopt;
-    if (admitted == base::Known::kYes) {
-      undone = std::move(fewer);
-    } else {
-      ++i;
+    stopped = stopped || admitted == base::Known::kUndecided || context.stopped();
+    return admitted == base::Known::kYes;
+  };
+  auto undone = edits;
+  // What is needed only by an edit that is not (the declaration of a name) is not needed either, so
+  // that an edit that had to stay may go later. One edit alone is responsible for what it brings.
+  for (bool again = true; again && undone.size() > 1 && !stopped;) {
+    again = false;
+    for (std::size_t i = 0; i < undone.size() && undone.size() > 1 && !stopped;) {
+      auto fewer = undone;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+      if (suffices(fewer)) {
+        undone = std::move(fewer);
+        again = true;
+      } else {
+        ++i;
+      }
     }
   }
+  // Several edits may be needless together though none is alone.
+  if (undone.size() <= kMaxEditsForSubsets && !stopped) {
+    if (auto smaller = smallest_part(undone, suffices)) undone = *std::move(smaller);
+  }
+  if (stopped) return std::nullopt;
   return undone;
 }
 

@@ -22,8 +22,9 @@ inline constexpr std::size_t kMaxTriedEdits = 24;
 
 /// A minimal set of edits such that the revision without the trace has it when these are undone and
 /// all others stay ("sufficient" in the sense of Maoz and Ringert 2018: and no smaller part of the
-/// set is). Found by undoing all and making them again one by one; a variant that is no right
-/// model counts as one without the trace. None if there are more than kMaxTriedEdits.
+/// set is). Found by undoing all and making them again one by one, as long as that takes any away;
+/// parts of a small set are tried all. A variant that is no right model counts as one without the
+/// trace. None if there are more than kMaxTriedEdits.
 std::optional<std::vector<Edit>> responsible_edits(const std::vector<compiler::Fact>& kept,
                                                    const std::vector<compiler::Fact>& refused,
                                                    const std::vector<Edit>& edits,

@@ -89,6 +89,52 @@ TEST_CASE("edits are the smallest pieces in which two forms differ") {
   CHECK(edits[1].new_place.line == 1);
 }
 
+TEST_CASE("what is put around a form, or taken away, is an edit of its own") {
+  base::SourceFiles files;
+  base::DiagnosticSink sink;
+  const auto read = [&](const std::string& text) {
+    auto lisp = compiler::read_lisp(files, files.add("p.lisp", text), sink);
+    REQUIRE(lisp);
+    return *std::move(lisp);
+  };
+  const auto edits = [&](const std::string& old_text, const std::string& new_text) {
+    const auto before = read(old_text), after = read(new_text);
+    return compiler::datum_edits(before, before.forms[0], after, after.forms[0], files);
+  };
+  const auto one = edits("(def f () (go a) (take b))", "(def f () (go a) (try (x) (take b) (y)))");
+  REQUIRE(one.size() == 1);
+  CHECK(one[0].removed.empty());
+  CHECK(one[0].added == "(try (x) ... (y))");
+  CHECK(one[0].around == "(take b)");
+  // Several forms, deeper inside, and other edits before and behind, in the order of the text.
+  const auto many = edits("(def f () (go a) (take b) (put c) (leave d))",
+                          "(def f () (go z) (try (let () (take b) (put c)) (y)) (leave q))");
+  REQUIRE(many.size() == 3);
+  CHECK(many[0].added == "z");
+  CHECK(many[1].added == "(try (let () ...) (y))");
+  CHECK(many[1].around == "(take b) and what follows it");
+  CHECK(many[2].added == "q");
+  const auto gone = edits("(def f () (try (take b)))", "(def f () (take b))");
+  REQUIRE(gone.size() == 1);
+  CHECK(gone[0].removed == "(try ...)");
+  CHECK(gone[0].added.empty());
+  // A number inside something is no wrapped number.
+  CHECK(edits("(def f () 1)", "(def f () (g 2 1))")[0].around.empty());
+}
+
+TEST_CASE("of long texts the part is shown in which they differ") {
+  std::string common;
+  for (int i = 0; i < 100; ++i) common += "word" + std::to_string(i) + " ";
+  const auto [before, after] = compiler::changed_parts(common + "old tail " + common,
+                                                       common + "new and longer tail " + common);
+  CHECK(before.size() < 200);
+  CHECK(before.starts_with("... "));
+  CHECK(before.ends_with(" ..."));
+  CHECK(before.find("word99 old tail word0 ") != std::string::npos);
+  CHECK(after.find("word99 new and longer tail word0 ") != std::string::npos);
+  CHECK(compiler::changed_parts("a b", "a c") == std::pair<std::string, std::string>("a b", "a c"));
+}
+
 TEST_CASE("entries of a binding table are facts without comments and layout") {
   base::SourceFiles files;
   const auto one = files.add(

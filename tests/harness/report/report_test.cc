@@ -131,6 +131,37 @@ TEST_CASE("a discrepancy begins with its cause") {
         std::string::npos);
 }
 
+TEST_CASE("actions that ended otherwise than predicted are listed, and what follows is marked") {
+  auto result = sample_result();
+  const std::string failure = "event 1, PickUp(), failed after 1.500 s: nothing between the pads";
+  const std::string mark = "(follows from what differed before)";
+  const auto text = [&] {
+    std::string joined;  // wrapped lines as one
+    for (const auto& line : lines_of(campaign_text(result, {}))) {
+      joined += " " + line.substr(std::min(line.find_first_not_of(' '), line.size()));
+    }
+    return joined;
+  };
+  CHECK(text().find(failure) != std::string::npos);
+  CHECK(text().find(mark) != std::string::npos);
+  result.discrepancies[0].first_divergence = 2;  // it is what led away
+  CHECK(text().find(failure) != std::string::npos);
+  CHECK(text().find(mark) == std::string::npos);
+  for (auto& trace : result.traces) {  // the model says so
+    auto predicted = *trace.trace;
+    predicted.points[1].plan_step = 1;
+    predicted.points[1].succeeded = false;
+    trace.trace = std::make_shared<const CampaignTrace>(std::move(predicted));
+  }
+  CHECK(text().find(failure) == std::string::npos);
+  result.discrepancies[0].record.outcomes[1] = {SimStatus::kOk, "", 1.5};
+  CHECK(text().find("event 1, PickUp(), ok after 1.500 s, though the model lets it fail") !=
+        std::string::npos);
+  // No model predicts that an action takes too long.
+  result.discrepancies[0].record.outcomes[1] = {SimStatus::kTruncated, "", 9.0};
+  CHECK(text().find("event 1, PickUp(), truncated after") != std::string::npos);
+}
+
 TEST_CASE("a divergence at the last timepoint is told once") {
   auto result = sample_result();
   auto& found = result.discrepancies[0];

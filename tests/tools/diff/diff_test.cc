@@ -103,6 +103,20 @@ TEST_CASE_FIXTURE(DiffFixture, "of several edits those are named on which a witn
   }
 }
 
+TEST_CASE_FIXTURE(DiffFixture, "an edit that only a needless one needs is not named") {
+  // The old text declares a fluent and speaks of it; the new one does neither, and forbids to
+  // shoot.
+  const auto before = std::string(kYale) +
+                      "fluent Tired()\nHoldsAt(Tired(),0) | !HoldsAt(Tired(),0).\n"
+                      "[time] Initiates(Shoot(),Tired(),time).\n";
+  const auto after = std::string(kYale) + "!Happens(Shoot(),0).\n";
+  const auto document = diff(before, after);
+  const auto& edits = document["traces"]["lost"]["witness"]["edits"];
+  REQUIRE(edits.size() == 1);
+  CHECK(edits[0]["old"].is_null());
+  CHECK(edits[0]["new"]["text"] == "!Happens(Shoot(),0).");
+}
+
 TEST_CASE_FIXTURE(DiffFixture, "numbers are those of the full lists") {
   const auto document =
       diff(kYale, changed(kYale, "HoldsAt(Loaded(),time) -> Terminates", "Terminates"),
@@ -186,6 +200,27 @@ TEST_CASE_FIXTURE(DiffFixture, "plans are compared as data, to the smallest piec
   CHECK(result.out.find("?here") != std::string::npos);
   CHECK(result.out.find("  - fetch.lisp:13  ?here\n  + other.lisp:14  ?there\n") !=
         std::string::npos);
+  CHECK(result.out.find("  ~ fetch.lisp:") != std::string::npos);
+  // Long forms: the part that changed is shown, not what they begin with in common.
+  std::string body;
+  for (int i = 0; i < 30; ++i) body += "  (perform (a motion (type going) (pose ?here)))\n";
+  write("long.lisp", "(def-cram-function long (?here)\n" + body + "  (leave early))\n");
+  write("longer.lisp", "(def-cram-function long (?here)\n" + body + "  (leave late))\n");
+  const auto last = parallax({"diff", "long.lisp", "longer.lisp"}).out;
+  CHECK(last.find("?here))) (leave early))\n") != std::string::npos);
+  CHECK(last.find("?here))) (leave late))\n") != std::string::npos);
+  CHECK(last.find("  - long.lisp:32  early\n  + longer.lisp:32  late\n") != std::string::npos);
+  // What is put around a form is the edit, not the form.
+  const std::string retry = "(with-failure-handling ((plan-failure (e) (retry)))\n";
+  write("wrapped.lisp", "(def-cram-function long (?here)\n" + retry + body + ") (leave early))\n");
+  const auto wrapped = parallax({"diff", "long.lisp", "wrapped.lisp"}).out;
+  CHECK(wrapped.find("  + wrapped.lisp:2  (with-failure-handling ((plan-failure (e) (retry))) ...)"
+                     "  around  (perform ") != std::string::npos);
+  CHECK(wrapped.find("\n  - ") == std::string::npos);
+  const auto unwrapped = json_of(*this, {"diff", "wrapped.lisp", "long.lisp"}, 1);
+  REQUIRE(unwrapped["edits"].size() == 1);
+  CHECK(unwrapped["edits"][0]["new"].is_null());
+  CHECK(unwrapped["edits"][0]["old"]["line"] == 2);
   // A form more moves no other; two that changed places are another order.
   const auto plan = read("fetch.lisp");
   write("more.lisp", "(defparameter *extra* 1)\n" + plan);

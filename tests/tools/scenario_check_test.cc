@@ -1,0 +1,147 @@
+// `parallax check SCENARIO` finds what `parallax run` would find before its first simulation.
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/tools/cli_fixture.h"
+
+namespace parallax::test {
+namespace {
+
+/// Both commands; what `check` says.
+std::string check(const CliFixture& cli, int code) {
+  const auto result = cli.parallax({"check", "scenario.yaml"});
+  CAPTURE(result.err);
+  CHECK(result.code == code);
+  CHECK_FALSE(std::filesystem::exists(cli.folder() / "out"));
+  return result.err;
+}
+
+bool has(const std::string& text, const std::string& part) {
+  CAPTURE(text);
+  return text.find(part) != std::string::npos;
+}
+
+TEST_CASE("check of a sound scenario says nothing but its handlers that cannot run") {
+  const CliFixture cli;
+  CHECK(check(cli, 0) == "no errors\n");
+}
+
+TEST_CASE("check finds mappings that cannot be read, before anything is compiled twice") {
+  const CliFixture cli;
+  SUBCASE("a brace without a partner") {
+    cli.replace("common.yaml", "Holding(): {flag: box.held}", "Holding(): {flag: \"{box.held\"}");
+    CHECK(has(check(cli, 3), "error[E5133]: a `{` in `{box.held` has no partner"));
+  }
+  SUBCASE("a body that does not exist") {
+    cli.replace("common.yaml", "RobotIn(region): {inside: region, body: robot}",
+                "RobotIn(region): {inside: region, body: robt}");
+    CHECK(has(check(cli, 3), "error[E5115]: the simulator has no variable `robt.x`"));
+  }
+}
+
+TEST_CASE("check says which horizon would do where the plan needs a longer one") {
+  const CliFixture cli;
+  cli.replace("scenario.yaml", "horizon: 6", "horizon: 3");
+  const auto said = check(cli, 0);
+  CHECK(has(said, "warning[W7002]: no execution within 3 steps meets the state constraints"));
+  CHECK(has(said, "note: the shortest way through the plan takes 4 performs"));
+  CHECK(has(said, "note: a horizon of 4 is long enough"));
+  const auto run = cli.parallax({"run", "scenario.yaml"});
+  CHECK(has(run.err, "note: a horizon of 4 is long enough"));
+}
+
+TEST_CASE("check finds contradictory starts and constraints that nothing meets") {
+  const CliFixture cli;
+  SUBCASE("a model without an execution") {
+    cli.write("start.e", cli.read("start.e") + "HoldsAt(RobotIn(r2),0).\n");
+    CHECK(has(check(cli, 3), "error[E7001]"));
+  }
+  SUBCASE("a start that no continuous state stands for") {
+    cli.write("start.e", cli.read("start.e") + "\nHoldsAt(Holding(),0).\n");
+    const auto checked = cli.parallax({"check", "scenario.yaml"});
+    const auto run = cli.parallax({"run", "scenario.yaml"});
+    CHECK(checked.code == run.code);
+    CHECK(checked.code == 3);
+  }
+  SUBCASE("constraints about what no event changes") {
+    cli.write("domain.e", cli.read("domain.e") + "fluent Lit()\n!HoldsAt(Lit(),0).\n");
+    cli.replace("common.yaml", "Holding(): {flag", "Lit(): ignored\n  Holding(): {flag");
+    cli.replace("scenario.yaml", "HoldsAt(BoxIn(region),time))", "HoldsAt(Lit(),time))");
+    const auto said = check(cli, 0);
+    CHECK(has(said, "warning[W7002]"));
+    CHECK(has(said, "note: no event that the plan performs has an effect on `Lit`"));
+    CHECK(has(said, "note: no state that 6 timepoints of any events lead to meets them"));
+  }
+  SUBCASE("constraints that the plan does not come to, though events could") {
+    cli.replace("scenario.yaml", "Happens(Place(region),time-1) & HoldsAt(BoxIn(region),time)",
+                "region=r1 & HoldsAt(BoxIn(r2),time) & HoldsAt(Holding(),time-1)");
+    const auto said = check(cli, 0);
+    CHECK(has(said, "warning[W7002]"));
+    CHECK_FALSE(has(said, "has an effect on"));
+    CHECK_FALSE(has(said, "no state that"));
+  }
+  SUBCASE("no constraints") {
+    const auto common = cli.read("common.yaml");
+    const auto scenario = cli.read("scenario.yaml");
+    const auto& file =
+        common.find("constraints:") != std::string::npos ? "common.yaml" : "scenario.yaml";
+    const auto text = cli.read(file);
+    const auto begin = text.find("constraints:");
+    REQUIRE(begin != std::string::npos);
+    auto end = text.find('\n', begin) + 1;
+    while (end < text.size() && (text[end] == ' ' || text[end] == '-'))
+      end = text.find('\n', end) + 1;
+    cli.write(file, text.substr(0, begin) + text.substr(end));
+    CHECK(has(check(cli, 3), "error[E7004]: a run needs `constraints`"));
+  }
+}
+
+TEST_CASE("a handler that no failure of its body comes to is reported where it stands") {
+  const CliFixture cli;
+  const auto plan = cli.read("fetch.lisp");
+  const auto call = plan.rfind("(fetch");
+  CAPTURE(plan);
+  REQUIRE(call != std::string::npos);
+  SUBCASE("because no perform has that class") {
+    auto text = plan;
+    text.insert(call, "(with-failure-handling ((perception-object-not-found (e) (return)))\n  ");
+    text.insert(text.rfind(')') + 1, ")");
+    cli.write("fetch.lisp", text);
+    const auto said = check(cli, 0);
+    CHECK(has(said,
+              "warning[W-HANDLER]: the handler of `perception-object-not-found` can never run"));
+    CHECK(has(said, "no perform in its body fails that way\n"));
+  }
+  SUBCASE("because the model never lets it fail") {
+    auto text = plan;
+    text.insert(call, "(with-failure-handling ((plan-failure (e) (return)))\n  ");
+    text.insert(text.rfind(')') + 1, ")");
+    cli.write("fetch.lisp", text);
+    CHECK(has(check(cli, 0), "no perform in its body fails that way in the model\n"));
+  }
+  SUBCASE("not if the plan itself fails so") {
+    auto text = plan;
+    text.insert(call,
+                "(with-failure-handling ((perception-object-not-found (e) (return)))\n"
+                "  (fail 'perception-object-not-found)\n  ");
+    text.insert(text.rfind(')') + 1, ")");
+    cli.write("fetch.lisp", text);
+    CHECK_FALSE(has(cli.parallax({"check", "scenario.yaml"}).err, "W-HANDLER"));
+  }
+}
+
+TEST_CASE("check does not start the commands of other simulators, and says so") {
+  const CliFixture cli;
+  cli.write("scenario.yaml",
+            cli.read("scenario.yaml") + "\nsimulator: {command: [touch, started]}\n");
+  const auto result = cli.parallax({"check", "scenario.yaml"});
+  CAPTURE(result.err);
+  CHECK(has(result.err, "the simulator was not started"));
+  CHECK_FALSE(std::filesystem::exists(cli.folder() / "started"));
+}
+
+}  // namespace
+}  // namespace parallax::test

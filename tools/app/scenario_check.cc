@@ -1,0 +1,150 @@
+#include "tools/app/scenario_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "compiler/base/ascii.h"
+#include "compiler/base/diagnostic_codes.h"
+#include "harness/campaign/campaign.h"
+#include "harness/campaign/trial.h"
+#include "harness/robot/ode_simulator.h"
+#include "runtime/enumerate/plan_enumerator.h"
+#include "tools/app/trace_feed.h"
+
+namespace parallax::tools {
+namespace {
+
+using compiler::SymbolId;
+using compiler::TermKind;
+
+/// The fluents that a formula names.
+std::set<SymbolId> fluents_named(const std::string& formula, const compiler::TypedModel& model) {
+  std::set<SymbolId> found;
+  for (std::size_t i = 0; i < formula.size();) {
+    if (!base::is_name_character(formula[i])) {
+      ++i;
+      continue;
+    }
+    const auto begin = i;
+    while (i < formula.size() && base::is_name_character(formula[i])) ++i;
+    const auto symbol = model.find_symbol(std::string_view(formula).substr(begin, i - begin));
+    if (symbol && model.symbols[*symbol].kind == compiler::SymbolKind::kFluent) {
+      found.insert(*symbol);
+    }
+  }
+  return found;
+}
+
+/// Can one of these events change the fluent, by an effect or by what a trajectory says?
+bool is_changed(const compiler::TypedModel& model, SymbolId fluent,
+                const std::set<std::string>& events) {
+  if (model.symbols[fluent].noninertial) return true;
+  const auto names = [&](compiler::TermId id, const auto& fits) {
+    const auto& term = model.terms[id];
+    return term.kind != TermKind::kApply || fits(term.symbol);
+  };
+  const auto is_fluent = [&](SymbolId symbol) { return symbol == fluent; };
+  const auto is_event = [&](SymbolId symbol) {
+    return events.contains(model.symbols[symbol].name);
+  };
+  const bool by_effect = std::any_of(
+      model.effects.begin(), model.effects.end(), [&](const compiler::EffectAxiom& effect) {
+        return names(effect.fluent, is_fluent) && names(effect.event, is_event);
+      });
+  return by_effect ||
+         std::any_of(model.trajectories.begin(), model.trajectories.end(),
+                     [&](const auto& trajectory) { return names(trajectory.target, is_fluent); });
+}
+
+/// The number of events of a shortest trace within the horizon, if there is one.
+std::optional<std::size_t> shortest_trace(const compiler::CompiledModel& model, Context& context) {
+  runtime::SolverSession session(model, runtime::make_cadical_solver(&context.stop()));
+  runtime::PlanEnumerator enumerator(session);
+  const auto trace = enumerator.next();
+  if (!trace) return std::nullopt;
+  return trace->points.size() - 1;
+}
+
+/// How far to look for a trace that the horizon cuts off.
+std::int64_t far_horizon(std::int64_t horizon, const std::optional<compiler::PlanGraph>& plan) {
+  constexpr std::int64_t kFarthest = 100, kFurther = 20;
+  const auto far = std::min(std::max(3 * horizon, horizon + kFurther), kFarthest);
+  const auto longest = plan ? compiler::longest_path(*plan) : std::nullopt;
+  return longest ? std::min(far, *longest) : far;
+}
+
+}  // namespace
+
+std::vector<std::string> reasons_for_absence(const ScenarioModel& loaded, Context& context) {
+  const auto& scenario = loaded.scenario;
+  const auto& plan = loaded.compilation.plan;
+  const auto& typed = *loaded.compilation.typed;
+  std::vector<std::string> reasons;
+  std::set<std::string> events;
+  if (plan) {
+    for (const auto& location : plan->locations) events.insert(location.event_symbol);
+    std::set<SymbolId> needed;
+    for (const auto& constraint : scenario.constraints) {
+      needed.merge(fluents_named(constraint.text, typed));
+    }
+    for (const auto fluent : needed) {
+      if (is_changed(typed, fluent, events)) continue;
+      reasons.push_back(
+          fmt::format("no event that the plan performs has an effect on `{}`, which they speak of",
+                      typed.symbols[fluent].name));
+    }
+    const auto shortest = compiler::shortest_path(*plan);
+    if (shortest && *shortest > scenario.horizon) {
+      reasons.push_back(
+          fmt::format("the shortest way through the plan takes {} performs", *shortest));
+    }
+  }
+  const auto far = far_horizon(scenario.horizon, plan);
+  if (far > scenario.horizon) {
+    const auto longer = compile_variant(scenario, far, true, context);
+    const auto length = longer ? shortest_trace(*longer, context) : std::nullopt;
+    if (length) {
+      reasons.push_back(fmt::format("a horizon of {} is long enough", *length));
+      return reasons;
+    }
+    if (longer && !context.stopped()) {
+      reasons.push_back(fmt::format("a horizon of {} is not long enough either", far));
+    }
+  }
+  if (!plan || context.stopped()) return reasons;
+  const auto unplanned = compile_variant(scenario, scenario.horizon, false, context);
+  if (unplanned && !shortest_trace(*unplanned, context) && !context.stopped()) {
+    reasons.push_back(fmt::format(
+        "no state that {} timepoints of any events lead to meets them, whatever the plan does",
+        scenario.horizon));
+  }
+  return reasons;
+}
+
+void check_before_run(const ScenarioModel& loaded, Context& context) {
+  auto& sink = context.sink();
+  const auto& scenario = loaded.scenario;
+  const auto& model = loaded.compilation.model;
+  if (!model.has_constraints) {
+    sink.error(base::DiagnosticCode::kNothingToSimulate, base::SourceRange{scenario.source, 0, 0});
+    return;
+  }
+  harness::warn_of_low_limit(scenario, context.files(), sink);
+  EnumeratedTraces traces(model, context);
+  traces.explain_absence_by([&] { return reasons_for_absence(loaded, context); });
+  const auto trace = traces.next();
+  if (!trace || !*trace) return;
+  const harness::ModelFluents fluents(*traces.symbols());
+  harness::SimulatorInfo simulator;
+  if (scenario.simulator.command.empty()) {
+    simulator = harness::OdeSimulator(scenario.world).info();
+  } else {
+    context.remark("the simulator was not started: what it observes and takes is not checked");
+  }
+  (void)harness::prepare_trace(scenario, fluents.ground(), simulator, **trace, sink);
+}
+
+}  // namespace parallax::tools
