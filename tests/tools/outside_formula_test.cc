@@ -84,7 +84,7 @@ std::vector<Refused> refused() {
       {"F()", ":1:1-3: error[E2106]"},
       {"1", ":1:1: error[E2106]"},
       {"HoldsAt(Fé(),time)", ":1:10: error[E1001]"},
-      {"HoldsAt(F(),time) ∧ HoldsAt(G(),time)", ":1:19: error[E1001]"},
+      {"HoldsAt(F(),time) ∧ HoldsAt(G(),time)", ":1:19: error[E1020]"},
       {"“HoldsAt(F(),time)”", ":1:1: error[E1001]"},
   };
 }
@@ -97,7 +97,8 @@ TEST_CASE("a property that closes the bracket around it is refused, not proved")
   CHECK(result.err ==
         "--property:1:18: error[E1006]: `)` closes nothing\n"
         "    1 | HoldsAt(F(),time)) & (HoldsAt(F(),time)\n"
-        "      |                  ^\n");
+        "      |                  ^\n"
+        "help: Remove it or add the opening bracket.\n");
 }
 
 TEST_CASE("what is no formula is refused in its own text, wherever it comes from") {

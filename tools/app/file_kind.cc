@@ -28,6 +28,13 @@ constexpr std::array<NameEnding, 10> kEndings = {{{".e", FileKind::kModel},
                                                   {".itf.json", FileKind::kTraces},
                                                   {".drat", FileKind::kProof}}};
 
+/// Formats that are no text begin with a signature and zeros. A zero farther behind is an accident
+/// in a text, which its reader locates.
+bool is_binary(std::string_view begin) {
+  constexpr std::size_t kSignature = 32;
+  return begin.substr(0, kSignature).find('\0') != std::string_view::npos;
+}
+
 /// The first bytes of a regular file; a FIFO would wait for somebody to write.
 std::string beginning_of(const std::string& path) {
   constexpr std::streamsize kBytes = 8192;
@@ -111,7 +118,7 @@ FileKind file_kind(const std::string& path) {
     return has_journal ? FileKind::kRun : FileKind::kUnknown;
   }
   const auto begin = beginning_of(path);
-  if (begin.find('\0') != std::string::npos) return FileKind::kBinary;
+  if (is_binary(begin)) return FileKind::kBinary;
   const auto found = std::find_if(kEndings.begin(), kEndings.end(), [&](const NameEnding& ending) {
     return path.ends_with(ending.text);
   });
