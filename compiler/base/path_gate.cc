@@ -40,12 +40,11 @@ std::vector<fs::path> own_homes() {
 }
 
 /// `real` is `/`, a home folder, or the folder of all of them.
-bool is_too_wide(const fs::path& real) {
+bool is_too_wide(const fs::path& real, const std::vector<fs::path>& homes) {
   if (real == real.root_path() || real == "/home" || real == "/root" ||
       real.parent_path() == "/home") {
     return true;
   }
-  const auto homes = own_homes();
   return std::find(homes.begin(), homes.end(), real) != homes.end();
 }
 
@@ -58,10 +57,9 @@ bool is_marked(const fs::path& folder) {
 }
 
 /// The nearest folder above `real`, or itself, that is marked and no home.
-std::optional<fs::path> marked_root(fs::path real) {
-  for (; !is_too_wide(real); real = real.parent_path()) {
+std::optional<fs::path> marked_root(fs::path real, const std::vector<fs::path>& homes) {
+  for (; !is_too_wide(real, homes); real = real.parent_path()) {
     if (is_marked(real)) return real;
-    if (!real.has_relative_path()) break;
   }
   return std::nullopt;
 }
@@ -82,22 +80,19 @@ bool lies_below(const fs::path& path, const fs::path& folder) {
   return begins_with(real_path(path), real_path(folder));
 }
 
-void PathGate::admit(fs::path folder) {
-  const bool whole = !is_too_wide(folder);
-  roots_.push_back({std::move(folder), whole});
-}
-
 void PathGate::admit_from(const fs::path& folder) {
+  const auto homes = own_homes();
   auto real = real_path(folder);
-  auto root = marked_root(real);
-  admit(root ? *std::move(root) : std::move(real));
+  if (auto root = marked_root(real, homes)) real = *std::move(root);
+  const bool whole = !is_too_wide(real, homes);
+  roots_.push_back({std::move(real), whole});
 }
 
 void PathGate::admit_folder(const fs::path& folder) { roots_.push_back({real_path(folder), true}); }
 
 void PathGate::admit_current_folder() {
   auto real = real_path(".");
-  if (!is_too_wide(real)) roots_.push_back({std::move(real), true});
+  if (!is_too_wide(real, own_homes())) roots_.push_back({std::move(real), true});
 }
 
 bool PathGate::admits(const fs::path& path) const {

@@ -38,7 +38,6 @@ class PathGate {
     std::filesystem::path folder;  // its real path
     bool whole = true;             // false: only the visible files directly in it
   };
-  void admit(std::filesystem::path folder);
 
   bool is_open_;
   std::vector<Root> roots_;

@@ -292,6 +292,10 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
   const auto root = load_yaml(path, gate, files, sink);
   if (!root) return sink.already_reported();
   ScenarioReader(*root, gate, files, sink).read(scenario);
+  for (const auto& model : scenario.models) files.note_input(model.text);
+  for (const auto* part : {&scenario.plan, &scenario.bind}) {
+    if (*part) files.note_input((*part)->text);
+  }
   // Of another simulator it is known when it has been started.
   const bool built_in = scenario.simulator.command.empty();
   if (built_in && scenario.mapping && sink.error_count() == errors_before) {

@@ -113,7 +113,8 @@ struct Scenario {
 
 /// Reads and checks a scenario; several errors per run, each at its key. Unknown keys get a
 /// suggestion; duplicate keys, aliases and tags are refused, and so are paths that lead out of the
-/// scenario's folder (PathGate), unless `allow_outside`.
+/// scenario's folder (PathGate), unless `allow_outside`. What it names becomes an input of `files`,
+/// whether or not the caller reads it.
 base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,
                                      base::DiagnosticSink& sink, bool allow_outside = false);
 

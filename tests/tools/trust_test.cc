@@ -37,9 +37,6 @@ class Stranger : public CliFixture {
     CHECK(result.code == 3);
     CHECK(holds(result.err, "E1016"));
     CHECK_FALSE(holds(result.err, "hunter2"));
-    auto allowed = command;
-    allowed.emplace_back("--allow-outside");
-    CHECK_FALSE(holds(parallax(allowed).err, "E1016"));
   }
 };
 
@@ -61,6 +58,7 @@ TEST_CASE("no path of a scenario leaves its folder") {
   }
   for (const auto* command : {"check", "run", "rates", "draw", "traces", "compile"}) {
     cli.check_refused({command, "inner/s.yaml"});
+    CHECK_FALSE(holds(cli.parallax({command, "inner/s.yaml", "--allow-outside"}).err, "E1016"));
   }
 }
 
@@ -176,8 +174,12 @@ TEST_CASE("no output replaces a file that the command reads") {
 
 TEST_CASE("a scenario that is called like a report is not replaced by one") {
   const CliFixture cli;
-  fs::copy(cli.folder(), cli.folder() / "run", fs::copy_options::none);
-  fs::rename(cli.folder() / "run/edge.yaml", cli.folder() / "run/report.txt");
+  fs::create_directory(cli.folder() / "run");
+  for (const auto& entry : fs::directory_iterator(cli.folder())) {
+    const auto name = entry.path().filename();
+    if (!entry.is_regular_file()) continue;
+    fs::copy(entry.path(), cli.folder() / "run" / (name == "edge.yaml" ? "report.txt" : name));
+  }
   const auto before = cli.read("run/report.txt");
   const auto result = cli.parallax({"run", "run/report.txt", "--out", "run"});
   CHECK(result.code == 2);

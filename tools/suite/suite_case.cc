@@ -117,10 +117,6 @@ void add_scenario(const std::string& file, std::string_view text, bool allow_out
   const auto folder = fs::path(file).parent_path();
   const auto group = folder.empty() ? std::string(".") : folder.generic_string();
   if (scenario && scenario->expect) {
-    for (const auto& model : scenario->models) files.note_input(model.text);
-    for (const auto* part : {&scenario->plan, &scenario->bind}) {
-      if (*part) files.note_input((*part)->text);
-    }
     cases.push_back({file, file, group, *scenario->expect, scenario->simulator.command});
   } else if (!scenario && (says_what_it_expects(text) ||
                            harness::may_include_expectation(file, allow_outside))) {
