@@ -162,7 +162,7 @@ TEST_CASE("a discrepancy of a run is laid to the axioms that exclude what was se
   CHECK(holds(result.out, "observed: Holding() does not hold at 1\n"));
   CHECK(holds(result.out, "set 1: 1 axiom (proof checked)\n"));
   // It forgets that the box must be in the robot's region.
-  CHECK(holds(result.out, "wrong_domain.e:33  [time] Initiates(PickUp(),Holding(),time)\n"));
+  CHECK(holds(result.out, "wrong_domain.e:32  [time] Initiates(PickUp(),Holding(),time)\n"));
   CHECK(cli.parallax({"explain", "r", "--sample", "9.9"}).code == 2);
   CHECK(cli.parallax({"explain", "."}).code == 2);
 }
