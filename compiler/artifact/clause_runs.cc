@@ -29,7 +29,8 @@ Timepoint derived_timepoint(const CompiledModel& model, std::span<const Literal>
   for (const auto literal : clause) {
     const auto v = literal.var();
     if (v <= base) {
-      needed = std::max(needed, needed_horizon(model.fixed[static_cast<std::size_t>(v) - 1]));
+      const auto& atom = model.fixed[static_cast<std::size_t>(v) - 1];
+      needed = std::max(needed, std::min(needed_horizon(atom), model.horizon));
       continue;
     }
     const auto place = v - base - 1;

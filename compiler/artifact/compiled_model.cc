@@ -1,5 +1,7 @@
 #include "compiler/artifact/compiled_model.h"
 
+#include <algorithm>
+
 namespace parallax::compiler {
 namespace {
 
@@ -42,8 +44,15 @@ void CompiledModel::for_each_atom(const std::function<void(const AtomRef&)>& vis
   for (std::size_t i = 0; i < fixed.size(); ++i) {
     const auto& atom = fixed[i];
     if (is_nameless(atom.kind)) continue;
+    auto number = i;
+    if (atom.kind == AtomKind::kHappens) {
+      const auto event = std::find_if(events.begin(), events.end(),
+                                      [&](const GroundName& one) { return one.name == atom.name; });
+      if (event == events.end()) continue;
+      number = static_cast<std::size_t>(event - events.begin());
+    }
     visit({static_cast<std::int32_t>(i) + 1, atom.kind, atom.time, atom.name, atom.plan,
-           static_cast<std::uint32_t>(i)});
+           static_cast<std::uint32_t>(number)});
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -144,6 +145,11 @@ struct AtomRef {
     return EventId(number);
   }
   Literal literal() const { return Literal::positive(variable); }
+  /// The horizon from which on it exists in a model of the horizon `last`: an event needs the step
+  /// that follows it, but for one at the last timepoint (--compat decreasoner).
+  Timepoint needed_horizon(Timepoint last) const {
+    return std::min(time.value_or(0) + (kind == AtomKind::kHappens ? 1 : 0), last);
+  }
 };
 
 /// The compiled model as data: symbols, clauses, provenance. It says nothing of how it was made

@@ -112,8 +112,7 @@ bool SymbolReader::read_atom() {
   std::string name;
   if (!read_kind(atom.kind) || !cursor_.word("a name", name)) return false;
   if (!cursor_.at_line_end()) {
-    const auto last = model_.horizon - (atom.kind == AtomKind::kHappens ? 1 : 0);
-    if (!cursor_.number("a timepoint", 0, last, time)) return false;
+    if (!cursor_.number("a timepoint", 0, model_.horizon, time)) return false;
     atom.time = static_cast<Timepoint>(time);
   }
   const bool timeless = atom.kind == AtomKind::kHoldsAt || atom.kind == AtomKind::kHappens ||

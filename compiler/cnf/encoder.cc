@@ -105,14 +105,14 @@ class Encoder {
     note(builder_->once());
     for (const auto& [width, clauses] : builder_->repeated()) note(clauses);
     for (std::size_t i = 1; i < mentioned.size(); ++i) {
-      if (mentioned[i] && !is_slot_kind(model_.atom(static_cast<std::int32_t>(i)).kind)) {
+      if (mentioned[i] && !has_slot(model_.atom(static_cast<std::int32_t>(i)))) {
         fixed_atoms_.push_back(static_cast<std::int32_t>(i));
       }
     }
   }
-  static bool is_slot_kind(AtomKind kind) {
-    return kind == AtomKind::kHoldsAt || kind == AtomKind::kReleasedAt ||
-           kind == AtomKind::kHappens;
+  static bool has_slot(const GroundAtom& atom) {
+    return atom.kind == AtomKind::kHoldsAt || atom.kind == AtomKind::kReleasedAt ||
+           (atom.kind == AtomKind::kHappens && !atom.last);
   }
 
   void number_slots() {
@@ -123,13 +123,14 @@ class Encoder {
     // First the slots of states: fluents, releases, auxiliaries of state axioms.
     std::vector<std::uint64_t> state, step;
     for (std::uint32_t f = 0; f < fluents; ++f) {
-      if (model_.may_hold(f)) state.push_back(symbol_hash({AtomKind::kHoldsAt, f, 0}));
+      if (model_.may_hold(f)) state.push_back(symbol_hash({AtomKind::kHoldsAt, f, 0, false}));
     }
     for (std::uint32_t f = 0; f < fluents; ++f) {
-      if (model_.can_be_released(f)) state.push_back(symbol_hash({AtomKind::kReleasedAt, f, 0}));
+      if (model_.can_be_released(f))
+        state.push_back(symbol_hash({AtomKind::kReleasedAt, f, 0, false}));
     }
     for (std::uint32_t e = 0; e < events; ++e) {
-      if (model_.may_happen(e)) step.push_back(symbol_hash({AtomKind::kHappens, e, 0}));
+      if (model_.may_happen(e)) step.push_back(symbol_hash({AtomKind::kHappens, e, 0, false}));
     }
     for (const auto& auxiliary : builder.auxiliaries()) {
       if (!auxiliary.moves) continue;
@@ -212,14 +213,14 @@ class Encoder {
           moves_[open.index] ? out_.variable(place, 0) : static_cast<std::int32_t>(place) + 1;
     } else {
       const auto& atom = model_.atom(static_cast<std::int32_t>(open.index));
-      if (atom.kind == AtomKind::kHoldsAt) {
+      if (!has_slot(atom)) {
+        variable = static_cast<std::int32_t>(fixed_places_[open.index]) + 1;
+      } else if (atom.kind == AtomKind::kHoldsAt) {
         variable = out_.variable(*out_.fluents[atom.index].slot, atom.time);
       } else if (atom.kind == AtomKind::kReleasedAt) {
         variable = out_.variable(*out_.release_slots[atom.index], atom.time);
-      } else if (atom.kind == AtomKind::kHappens) {
-        variable = out_.variable(*out_.events[atom.index].slot, atom.time);
       } else {
-        variable = static_cast<std::int32_t>(fixed_places_[open.index]) + 1;
+        variable = out_.variable(*out_.events[atom.index].slot, atom.time);
       }
     }
     const auto literal = Literal::positive(variable);

@@ -61,7 +61,7 @@ FormulaId FormulaStore::conjunction(std::vector<FormulaId> parts) {
   // The constants have the smallest ids; a formula and its complement are neighbours.
   if (!flat.empty() && flat.front() == truth()) flat.erase(flat.begin());
   if (!flat.empty() && flat.front() == falsity()) return falsity();
-  for (std::size_t i = 1; i < flat.size(); ++i) {
+  for (std::size_t i = 1; i < flat.size() && !keeps_complements_; ++i) {
     if (flat[i] == ~flat[i - 1]) return falsity();
   }
   if (flat.empty()) return truth();
@@ -75,8 +75,8 @@ FormulaId FormulaStore::disjunction(std::vector<FormulaId> parts) {
 }
 
 FormulaId FormulaStore::equivalence(FormulaId a, FormulaId b) {
-  if (a == b) return truth();
-  if (a == ~b) return falsity();
+  if (!keeps_complements_ && a == b) return truth();
+  if (!keeps_complements_ && a == ~b) return falsity();
   return conjunction(disjunction(~a, b), disjunction(a, ~b));
 }
 

@@ -37,6 +37,9 @@ enum class FormulaNodeKind : std::uint8_t { kTrue, kAtom, kAnd };
 class FormulaStore {
  public:
   FormulaStore();
+  /// From now on `F & !F` and `F | !F` stay as they are written: where it matters which atoms a
+  /// formula mentions, only its constants may decide it.
+  void keep_complements() { keeps_complements_ = true; }
   FormulaId truth() const { return FormulaId(0); }
   FormulaId falsity() const { return FormulaId(1); }
   FormulaId constant(bool value) const { return value ? truth() : falsity(); }
@@ -71,6 +74,7 @@ class FormulaStore {
   std::vector<std::uint32_t> atom_nodes_;  // by variable; 0 means none
   std::vector<std::uint32_t> table_;       // open addressing over And nodes; 0 means empty
   std::size_t and_count_ = 0;
+  bool keeps_complements_ = false;
 };
 
 /// The variables that occur in any of the formulas, ascending. Linear in their common graph.

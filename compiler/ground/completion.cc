@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "compiler/formula/formula.h"
+#include "compiler/ground/old_clauses.h"
 
 namespace parallax::compiler {
 namespace {
@@ -43,27 +44,59 @@ bool CompletionWriter::completes(const Entry& entry, const GroundAtom& atom) con
          model_.terms()[GroundTermId(atom.index)].symbol == entry.completion->predicate;
 }
 
-void CompletionWriter::note(const std::string& label, FormulaId formula, Timepoint width) {
-  if (entries_.empty()) return;
+bool CompletionWriter::note(const std::string& label, FormulaId formula, Timepoint width) {
+  if (entries_.empty()) return true;
+  const bool old = meaning_ == Meaning::kDecreasoner;
+  if (old && note_old_clauses(label, formula)) return true;
   const auto& formulas = model_.formulas();
+  bool any_reason = false;
   if (formulas.kind(formula) == FormulaNodeKind::kAnd && !formula.negated()) {
     const auto children = formulas.children(formula);
     const std::vector<FormulaId> parts(children.begin(), children.end());
-    for (const auto part : parts) note_conjunct(label, part, width);
+    for (const auto part : parts) any_reason = note_conjunct(label, part, width) || any_reason;
   } else {
-    note_conjunct(label, formula, width);
+    any_reason = note_conjunct(label, formula, width);
   }
+  return !old || !any_reason;
 }
 
-void CompletionWriter::note_conjunct(const std::string& label, FormulaId formula, Timepoint width) {
+/// The 2005 reasoner asks of each clause with the atom what its other literals leave as a reason;
+/// a clause of the atom alone is a fact. False: it would name parts of the formula.
+bool CompletionWriter::note_old_clauses(const std::string& label, FormulaId formula) {
+  if (model_.formulas().kind(formula) == FormulaNodeKind::kTrue) return true;
+  const auto form = old_clause_form(model_.formulas(), formula);
+  if (form.named) return false;
+  for (const auto& clause : form.clauses) {
+    for (const auto literal : clause) {
+      if (literal.negated()) continue;
+      const auto atom = model_.atom(model_.formulas().variable(literal));
+      for (auto& entry : entries_) {
+        const auto& wanted = entry.completion->label;
+        if (!completes(entry, atom) || (wanted && *wanted != label)) continue;
+        std::vector<FormulaId> others;
+        for (const auto other : clause) {
+          if (other != literal) others.push_back(~other);
+        }
+        const auto reason = model_.formulas().conjunction(std::move(others));
+        note_reason(atom, reason, Constraint::kOnce, entry);
+      }
+    }
+  }
+  return true;
+}
+
+bool CompletionWriter::note_conjunct(const std::string& label, FormulaId formula, Timepoint width) {
+  bool any_reason = false;
   for (const auto variable : positive_atoms(model_.formulas(), formula)) {
     const auto atom = model_.atom(variable);
     for (auto& entry : entries_) {
       const auto& wanted = entry.completion->label;
       if (!completes(entry, atom) || (wanted && *wanted != label)) continue;
       note_reason(atom, ~substitute(model_.formulas(), formula, variable, false), width, entry);
+      any_reason = true;
     }
   }
+  return any_reason;
 }
 
 void CompletionWriter::note_reason(const GroundAtom& atom, FormulaId reason, Timepoint width,
@@ -148,7 +181,7 @@ void CompletionWriter::write_timed(Entry& entry) {
     return entry.kind == AtomKind::kHoldsAt ? model_.may_hold(index)
                                             : model_.can_be_released(index);
   };
-  if (width > model_.horizon()) return;
+  if (width > model_.horizon() && meaning_ == Meaning::kStandard) return;
   const auto count = is_event ? model_.events().size() : model_.fluents().size();
   for (std::uint32_t index = 0; index < count; ++index) {
     if (!may_be_true(index)) continue;
@@ -161,6 +194,10 @@ void CompletionWriter::write_timed(Entry& entry) {
       auto here = reasons.single[t];
       for (const auto reason : reasons.always) here.push_back(model_.shifted(reason, t));
       assert_completed(atom(index, t), std::move(here), entry.origin, Constraint::kOnce);
+    }
+    if (!is_event || meaning_ == Meaning::kStandard) continue;
+    if (const auto last = model_.find_happens_last(index)) {
+      assert_completed(*last, reasons.single[model_.horizon()], entry.origin, Constraint::kOnce);
     }
   }
 }

@@ -16,12 +16,14 @@ namespace parallax::compiler {
 /// (pointwise circumscription, Lifschitz 1986; for axioms of the form `body -> P(..)` this is the
 /// predicate completion of Mueller 2006, Theorem 2.1, and for a disjunction of two completed
 /// events it makes them exclusive). A predicate with several completions needs a reason for each.
+/// In the 2005 reasoner's meaning the formulas are the clauses that it makes of them.
 class CompletionWriter {
  public:
   CompletionWriter(GroundModel& model, Meaning meaning);
   /// Notes an axiom with this label (empty without one): a formula that holds once, or, with a
-  /// width, at every timepoint as GroundModel::require_always has it. Call for every axiom.
-  void note(const std::string& label, FormulaId formula, Timepoint width);
+  /// width, at every timepoint as GroundModel::require_always has it. Call for every axiom. False:
+  /// the 2005 reasoner completes over clauses that are not made here, and with less effect.
+  bool note(const std::string& label, FormulaId formula, Timepoint width);
   /// The first completion of a predicate, if it has one.
   const Completion* completion_of(SymbolId predicate) const;
   /// The occurrences (event, timepoint) that the axioms noted so far give a reason for under the
@@ -55,7 +57,8 @@ class CompletionWriter {
 
   bool completes(const Entry& entry, const GroundAtom& atom) const;
   const Entry* first_entry(SymbolId predicate) const;
-  void note_conjunct(const std::string& label, FormulaId formula, Timepoint width);
+  bool note_conjunct(const std::string& label, FormulaId formula, Timepoint width);
+  bool note_old_clauses(const std::string& label, FormulaId formula);
   void note_reason(const GroundAtom& atom, FormulaId reason, Timepoint width, Entry& entry);
   void write_timed(Entry& entry);
   void mention_all_instances(SymbolId predicate);

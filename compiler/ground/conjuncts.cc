@@ -61,4 +61,19 @@ std::vector<VariableId> variables_of(const TypedModel& model, TermId root) {
   return found;
 }
 
+std::vector<VariableId> variables_of(const TypedModel& model, TypedFormulaId root) {
+  std::vector<VariableId> found;
+  std::vector<TypedFormulaId> todo = {root};
+  while (!todo.empty()) {
+    const auto& formula = model.formulas[todo.back()];
+    todo.pop_back();
+    for (const auto term : formula.terms) {
+      const auto own = variables_of(model, term);
+      found.insert(found.end(), own.begin(), own.end());
+    }
+    todo.insert(todo.end(), formula.children.begin(), formula.children.end());
+  }
+  return found;
+}
+
 }  // namespace parallax::compiler

@@ -29,4 +29,7 @@ std::vector<Conjunct> conjuncts_of(const TypedModel& model, TypedFormulaId formu
 /// Variables of a term, in order of occurrence, with repetitions.
 std::vector<VariableId> variables_of(const TypedModel& model, TermId term);
 
+/// Variables of all terms in a formula, with repetitions.
+std::vector<VariableId> variables_of(const TypedModel& model, TypedFormulaId formula);
+
 }  // namespace parallax::compiler

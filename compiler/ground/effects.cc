@@ -1,9 +1,11 @@
 #include "compiler/ground/effects.h"
 
+#include <algorithm>
 #include <map>
 #include <tuple>
 #include <vector>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/ground/time_profile.h"
 
 namespace parallax::compiler {
@@ -13,9 +15,18 @@ namespace {
 /// event changes it at single timepoints only.
 class InertiaWriter {
  public:
-  InertiaWriter(GroundModel& model, const EffectRows& rows, bool templates)
-      : model_(model), rows_(rows), templates_(templates) {
+  InertiaWriter(GroundModel& model, const EffectRows& rows, const GroundOptions& options)
+      : model_(model),
+        rows_(rows),
+        templates_(options.meaning == Meaning::kStandard && options.templates) {
     const auto& symbols = model.typed().symbols;
+    // With encoding 3 the 2005 reasoner writes the axioms for inertial fluents, or for all if there
+    // are none.
+    frames_of_noninertial_ = options.meaning == Meaning::kDecreasoner &&
+                             model.typed().options.encoding == 3 &&
+                             std::all_of(symbols.begin(), symbols.end(), [](const Symbol& symbol) {
+                               return symbol.kind != SymbolKind::kFluent || symbol.noninertial;
+                             });
     for (std::size_t i = 0; i < symbols.size(); ++i) {
       const auto& symbol = symbols[symbols.id_at(i)];
       origins_.push_back(symbol.kind == SymbolKind::kFluent
@@ -34,7 +45,8 @@ class InertiaWriter {
     for (std::uint32_t f = 0; f < model_.fluents().size(); ++f) {
       if (!model_.may_hold(f) && !model_.can_be_released(f)) continue;
       assert_start(f);
-      if (model_.fluent_symbol(f).noninertial || model_.horizon() == 0) continue;
+      const bool framed = !model_.fluent_symbol(f).noninertial || frames_of_noninertial_;
+      if (!framed || model_.horizon() == 0) continue;
       if (templates_ && rows_.is_uniform(f)) {
         assert_frame(f, 0, true);
         continue;
@@ -98,23 +110,38 @@ class InertiaWriter {
     const auto after = model_.holds(f, t + 1);
     const auto released_before = model_.released(f, t);
     const auto released_after = model_.released(f, t + 1);
-    require(formulas.disjunction({~before, after, released_after, terminated}), origin, always);
-    require(formulas.disjunction({before, ~after, released_after, initiated}), origin, always);
-    require(formulas.disjunction({~released_before, released_after, initiated, terminated}), origin,
-            always);
-    require(formulas.disjunction({released_before, ~released_after, releases}), origin, always);
+    const bool begins = !rows_.is_lost(EffectKind::kInitiates, f, t);
+    const bool ends = !rows_.is_lost(EffectKind::kTerminates, f, t);
+    if (ends) {
+      require(formulas.disjunction({~before, after, released_after, terminated}), origin, always);
+    }
+    if (begins) {
+      require(formulas.disjunction({before, ~after, released_after, initiated}), origin, always);
+    }
+    if (begins && ends) {
+      require(formulas.disjunction({~released_before, released_after, initiated, terminated}),
+              origin, always);
+    }
+    if (!rows_.is_lost(EffectKind::kReleases, f, t)) {
+      require(formulas.disjunction({released_before, ~released_after, releases}), origin, always);
+    }
   }
 
   GroundModel& model_;
   const EffectRows& rows_;
   bool templates_;
+  bool frames_of_noninertial_ = false;
   std::vector<std::uint32_t> origins_;  // by symbol
 };
 
 class TrajectoryWriter {
  public:
   TrajectoryWriter(GroundModel& model, const EffectRows& rows, FormulaGrounder& grounder)
-      : model_(model), rows_(rows), grounder_(grounder) {}
+      : model_(model),
+        rows_(rows),
+        grounder_(grounder),
+        encoding2_(grounder.terms().options().meaning == Meaning::kDecreasoner &&
+                   model.typed().options.encoding != 3) {}
 
   void write(const TrajectoryAxiom& axiom) {
     origin_ = model_.add_origin(axiom.source, OriginKind::kTrajectoryAxiom);
@@ -146,7 +173,11 @@ class TrajectoryWriter {
     if (!f1 || !f2) return;
     const auto t = terms[*time].integer;
     const auto d = terms[*offset].integer;
-    if (t < 0 || d <= 0 || d > model_.horizon() || t + d > model_.horizon()) return;
+    // Encoding 2 of the 2005 reasoner lets a trajectory begin with the event or before it.
+    if (t < 0 || t >= model_.horizon() || (d <= 0 && !encoding2_) || d > model_.horizon() ||
+        d < -model_.horizon() || t + d > model_.horizon() || t + d < 0) {
+      return;
+    }
     const auto condition = grounder_.ground(axiom.condition);
     if (!condition) return;
     const auto end = static_cast<Timepoint>(t + d);
@@ -163,6 +194,7 @@ class TrajectoryWriter {
     const bool forward = kind == TrajectoryKind::kTrajectory;
     const auto starts = forward ? EffectKind::kInitiates : EffectKind::kTerminates;
     const auto stops = forward ? EffectKind::kTerminates : EffectKind::kInitiates;
+    if (rows_.is_lost(starts, fluent, begin)) return model_.formulas().falsity();
     auto& chain = chains_[{kind, fluent, begin}];
     auto& formulas = model_.formulas();
     if (chain.empty()) chain.push_back(rows_.changed(starts, fluent, begin, model_));
@@ -170,8 +202,10 @@ class TrajectoryWriter {
     while (static_cast<Timepoint>(chain.size()) < end - begin) {
       const auto last = begin + static_cast<Timepoint>(chain.size());
       if (chain.back() == formulas.falsity()) return formulas.falsity();
-      const auto goes_on =
-          formulas.conjunction(chain.back(), ~rows_.changed(stops, fluent, last, model_));
+      const auto stopped = rows_.is_lost(stops, fluent, last)
+                               ? formulas.falsity()
+                               : rows_.changed(stops, fluent, last, model_);
+      const auto goes_on = formulas.conjunction(chain.back(), ~stopped);
       if (formulas.kind(goes_on) == FormulaNodeKind::kAnd && !goes_on.negated()) {
         const auto next = model_.auxiliary_atom(last + 1);
         model_.require(formulas.implication(goes_on, next), origin_);
@@ -180,12 +214,13 @@ class TrajectoryWriter {
         chain.push_back(goes_on);
       }
     }
-    return chain[static_cast<std::size_t>(end - begin) - 1];
+    return chain[static_cast<std::size_t>(std::max(end - begin, 1)) - 1];
   }
 
   GroundModel& model_;
   const EffectRows& rows_;
   FormulaGrounder& grounder_;
+  bool encoding2_;
   std::uint32_t origin_ = 0;
   std::map<std::tuple<TrajectoryKind, std::uint32_t, Timepoint>, std::vector<FormulaId>> chains_;
 };
@@ -218,6 +253,7 @@ void EffectGrounder::ground(const EffectAxiom& effect) {
   const auto& options = grounder_.terms().options();
   const bool always = profile.shape == TimeShape::kUniform && options.templates &&
                       options.meaning == Meaning::kStandard && !is_scheduled(effect);
+  if (options.meaning == Meaning::kDecreasoner) find_lost(effect);
   if (!always) return run(effect, false);
   auto* possible = grounder_.possible();
   if (possible != nullptr) possible->set_timeless(true);
@@ -270,12 +306,7 @@ void EffectGrounder::instance(const EffectAxiom& effect, bool always) {
   const auto e = model_.event_number(*event);
   const auto f = model_.fluent_number(*fluent);
   if (!e || !f || !model_.may_happen(*e)) return;
-  // Encoding 3 of the 2005 reasoner has no axioms for a noninertial fluent but those of releases.
-  if (grounder_.terms().options().meaning == Meaning::kDecreasoner &&
-      model_.typed().options.encoding == 3 && effect.kind != EffectKind::kReleases &&
-      model_.fluent_symbol(*f).noninertial) {
-    return;
-  }
+  if (is_ignored(*f)) return;
   const auto condition = grounder_.ground(effect.condition);
   if (!condition || *condition == model_.formulas().falsity()) return;
   const EffectRow row{effect.kind, *e, *f, *condition, origin_of(effect)};
@@ -286,13 +317,93 @@ void EffectGrounder::instance(const EffectAxiom& effect, bool always) {
   }
 }
 
-void assert_inertia(GroundModel& model, const EffectRows& rows, bool templates) {
-  InertiaWriter(model, rows, templates).write();
+/// Encoding 3 of the 2005 reasoner knows no effects on noninertial fluents.
+bool EffectGrounder::is_ignored(std::uint32_t fluent) const {
+  return grounder_.terms().options().meaning == Meaning::kDecreasoner &&
+         model_.typed().options.encoding == 3 && model_.fluent_symbol(fluent).noninertial;
 }
 
-void assert_trajectories(GroundModel& model, const EffectRows& rows, FormulaGrounder& grounder) {
+/// The 2005 reasoner writes an axiom whose variables are all those of the fluent and the time into
+/// the fluent's frame axiom without a quantifier around it: an instance that names something that
+/// does not exist takes the frame axiom with it.
+void EffectGrounder::find_lost(const EffectAxiom& effect) {
+  const auto& typed = model_.typed();
+  const auto& time = typed.terms[effect.time];
+  const auto& fluent = typed.terms[effect.fluent];
+  const auto& event = typed.terms[effect.event];
+  if (time.kind != TermKind::kVariable || fluent.kind != TermKind::kApply ||
+      event.kind != TermKind::kApply) {
+    return;
+  }
+  std::vector<VariableId> own;
+  for (const auto argument : fluent.arguments) {
+    if (typed.terms[argument].kind != TermKind::kVariable) return;
+    own.push_back(typed.terms[argument].variable);
+  }
+  const auto known = [&](VariableId variable) {
+    return variable == time.variable || std::find(own.begin(), own.end(), variable) != own.end();
+  };
+  auto used = variables_of(typed, effect.event);
+  const auto of_condition = variables_of(typed, effect.condition);
+  used.insert(used.end(), of_condition.begin(), of_condition.end());
+  const bool all_known = std::all_of(effect.variables.begin(), effect.variables.end(), [&](auto v) {
+    return known(v) || std::find(used.begin(), used.end(), v) == used.end();
+  });
+  if (!all_known) return;
+  std::vector<std::size_t> odometer(own.size(), 0);
+  const auto domain = [&](std::size_t i) -> const std::vector<GroundTermId>& {
+    return model_.universe().domain(typed.variables[own[i]].sort);
+  };
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (domain(i).empty()) return;
+  }
+  for (bool more = true; more && grounder_.spend(1);) {
+    for (std::size_t i = 0; i < own.size(); ++i) grounder_.bind(own[i], domain(i)[odometer[i]]);
+    for (Timepoint t = 0; t < model_.horizon() && !grounder_.failed(); ++t) {
+      grounder_.bind(time.variable, model_.terms().integer(t));
+      check_lost(effect, t);
+    }
+    more = false;
+    for (std::size_t i = own.size(); i-- > 0 && !more;) {
+      more = ++odometer[i] < domain(i).size();
+      if (!more) odometer[i] = 0;
+    }
+  }
+  for (const auto variable : own) grounder_.unbind(variable);
+  grounder_.unbind(time.variable);
+}
+
+void EffectGrounder::check_lost(const EffectAxiom& effect, Timepoint t) {
+  const auto fluent = grounder_.term(effect.fluent);
+  const auto number = fluent ? model_.fluent_number(*fluent) : std::nullopt;
+  if (!number) return;
+  const auto condition = grounder_.ground(effect.condition);
+  if (condition && *condition == model_.formulas().falsity()) return;
+  const auto event = grounder_.term(effect.event);
+  if (condition && event && model_.event_number(*event)) return;
+  rows_.lose(effect.kind, *number, t);
+}
+
+void assert_inertia(GroundModel& model, const EffectRows& rows, const GroundOptions& options) {
+  InertiaWriter(model, rows, options).write();
+}
+
+void assert_trajectories(GroundModel& model, const EffectRows& rows, FormulaGrounder& grounder,
+                         base::DiagnosticSink& sink) {
   TrajectoryWriter writer(model, rows, grounder);
+  const auto& options = model.typed().options;
+  const bool old = grounder.terms().options().meaning == Meaning::kDecreasoner;
   for (const auto& axiom : model.typed().trajectories) {
+    if (old && options.encoding == 3 && !options.trajectory) {
+      sink.warning(base::DiagnosticCode::kAxiomDropped, axiom.source,
+                   "encoding 3 knows trajectories with `option trajectory on`");
+      continue;
+    }
+    if (old && options.encoding != 3 && axiom.kind == TrajectoryKind::kAntiTrajectory) {
+      sink.warning(base::DiagnosticCode::kAxiomDropped, axiom.source,
+                   "encoding 2 knows no antitrajectories");
+      continue;
+    }
     writer.write(axiom);
     if (grounder.failed()) return;
   }

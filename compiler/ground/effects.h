@@ -23,6 +23,9 @@ class EffectGrounder {
  private:
   void run(const EffectAxiom& effect, bool always);
   void instance(const EffectAxiom& effect, bool always);
+  bool is_ignored(std::uint32_t fluent) const;
+  void find_lost(const EffectAxiom& effect);
+  void check_lost(const EffectAxiom& effect, Timepoint t);
   std::uint32_t origin_of(const EffectAxiom& effect);
 
   GroundModel& model_;
@@ -35,10 +38,11 @@ class EffectGrounder {
 /// Asserts DEC5 to DEC12 of Mueller 2006 over the rows. Initiates, Terminates and Releases never
 /// become atoms: circumscription makes them the disjunction of their rows, so a fluent's frame
 /// axioms mention only the events that can touch it.
-void assert_inertia(GroundModel& model, const EffectRows& rows, bool templates);
+void assert_inertia(GroundModel& model, const EffectRows& rows, const GroundOptions& options);
 
 /// Asserts DEC3 and DEC4: what a trajectory axiom says of the time between the event that starts
 /// its fluent and the first one that stops it. Quadratic in the horizon.
-void assert_trajectories(GroundModel& model, const EffectRows& rows, FormulaGrounder& grounder);
+void assert_trajectories(GroundModel& model, const EffectRows& rows, FormulaGrounder& grounder,
+                         base::DiagnosticSink& sink);
 
 }  // namespace parallax::compiler

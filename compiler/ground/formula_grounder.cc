@@ -53,6 +53,7 @@ std::optional<FormulaId> FormulaGrounder::ground(TypedFormulaId root) {
   std::vector<Frame> stack;
   std::optional<FormulaId> result;
   bool have_result = false;
+  depth_ = 0;
   const auto push = [&](TypedFormulaId id) {
     const auto& formula = typed_->formulas[id];
     if (is_leaf(formula.kind)) {
@@ -63,7 +64,9 @@ std::optional<FormulaId> FormulaGrounder::ground(TypedFormulaId root) {
     stack.emplace_back();
     stack.back().formula = &formula;
     have_result = false;
-    if (is_quantifier(formula.kind)) begin_instances(stack.back(), id);
+    if (!is_quantifier(formula.kind)) return;
+    ++depth_;
+    begin_instances(stack.back(), id);
   };
   push(root);
   while (!stack.empty() && !failed()) {
@@ -88,6 +91,7 @@ std::optional<FormulaId> FormulaGrounder::ground(TypedFormulaId root) {
       result = combine(frame);
       have_result = true;
       for (const auto variable : frame.open) unbind(variable);
+      if (is_quantifier(kind)) --depth_;
       stack.pop_back();
     }
   }
@@ -188,20 +192,28 @@ std::optional<FormulaId> FormulaGrounder::atom(const TypedFormula& formula) {
     return is_holds ? model_->holds(*number, t) : model_->released(*number, t);
   }
   if (formula.predicate == core.happens) {
-    const auto number = model_->event_number(arguments[0]);
-    const auto t = static_cast<Timepoint>(terms[arguments[1]].integer);
-    if (!number) return std::nullopt;
-    if (t < model_->horizon()) return model_->happens(*number, t);
-    // Said of the last timepoint itself, an event does not happen there; reached by a variable, the
-    // instance is beyond the horizon.
-    const bool named = typed_->terms[formula.terms[1]].kind == TermKind::kInteger;
-    if (named) return model_->formulas().falsity();
-    return std::nullopt;
+    return occurrence(formula, arguments[0], static_cast<Timepoint>(terms[arguments[1]].integer));
   }
   if (formula.predicate == core.initiates) return effect_atom(EffectKind::kInitiates, arguments);
   if (formula.predicate == core.terminates) return effect_atom(EffectKind::kTerminates, arguments);
   if (formula.predicate == core.releases) return effect_atom(EffectKind::kReleases, arguments);
   return model_->predicate(model_->terms().apply(formula.predicate, arguments));
+}
+
+std::optional<FormulaId> FormulaGrounder::occurrence(const TypedFormula& atom, GroundTermId event,
+                                                     Timepoint t) const {
+  const auto number = model_->event_number(event);
+  if (!number) return std::nullopt;
+  if (t < model_->horizon()) return model_->happens(*number, t);
+  if (meaning_ == Meaning::kDecreasoner) {
+    if (!whole_axiom_ || depth_ > 0) return std::nullopt;
+    return model_->happens_last(*number);
+  }
+  // Said of the last timepoint itself, an event does not happen there; reached by a variable, the
+  // instance is beyond the horizon.
+  const bool named = typed_->terms[atom.terms[1]].kind == TermKind::kInteger;
+  if (named) return model_->formulas().falsity();
+  return std::nullopt;
 }
 
 /// Like the events they speak of, effects exist before the last timepoint only.
@@ -211,7 +223,23 @@ std::optional<FormulaId> FormulaGrounder::effect_atom(EffectKind kind,
   const auto fluent = model_->fluent_number(arguments[1]);
   const auto t = static_cast<Timepoint>(model_->terms()[arguments[2]].integer);
   if (!event || !fluent || t >= model_->horizon() || rows_ == nullptr) return std::nullopt;
+  if (meaning_ == Meaning::kDecreasoner && typed_->options.encoding != 3) {
+    return effect_in_place(kind, *event, *fluent, t);
+  }
   return rows_->holds(kind, *event, *fluent, t, *model_);
+}
+
+/// With encoding 2 the 2005 reasoner puts in the place of an effect atom what the effect brings:
+/// if the event happens, the fluent holds next (no longer holds, is released).
+FormulaId FormulaGrounder::effect_in_place(EffectKind kind, std::uint32_t event,
+                                           std::uint32_t fluent, Timepoint t) const {
+  auto& formulas = model_->formulas();
+  const auto happens = model_->happens(event, t);
+  const auto released = model_->released(fluent, t + 1);
+  if (kind == EffectKind::kReleases) return formulas.implication(happens, released);
+  const auto after = model_->holds(fluent, t + 1);
+  const bool up = kind == EffectKind::kInitiates;
+  return formulas.implication(happens, formulas.conjunction(up ? after : ~after, ~released));
 }
 
 // --- quantifiers ---

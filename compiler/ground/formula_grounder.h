@@ -16,8 +16,9 @@ namespace parallax::compiler {
 ///
 /// The horizon is finite, so an instance can name a timepoint, an event occurrence or an integer
 /// that does not exist. Such an instance says nothing: it leaves the innermost quantifier around
-/// it; a quantifier none of whose instances exists passes this on. In the 2005 reasoner's meaning a
-/// conjunction with a false part is false all the same, a disjunction with a true part true.
+/// it; a quantifier none of whose instances exists passes this on. In the 2005 reasoner's meaning
+/// such a quantifier is empty, a conjunction with a false part is false all the same, a disjunction
+/// with a true part true.
 ///
 /// Quantifiers do not run through the product of their sorts: a plan of equations and table
 /// look-ups finds the instances that can say anything.
@@ -28,6 +29,9 @@ class FormulaGrounder {
   /// From now on Initiates, Terminates and Releases in formulas mean these rows; before, they name
   /// nothing. `rows` outlives the grounder.
   void use_effects(EffectRows& rows) { rows_ = &rows; }
+  /// Is what is grounded next a whole axiom? To the 2005 reasoner Happens at the last timepoint is
+  /// an atom where no quantifier stands around it.
+  void read_whole_axiom(bool whole) { whole_axiom_ = whole; }
   /// From now on instances are looked up among the atoms that may be true (null: in whole sorts).
   /// `possible` outlives the grounder.
   void use_possible(PossibleAtoms* possible);
@@ -67,7 +71,11 @@ class FormulaGrounder {
   std::vector<TypedFormulaId> outer_atoms(const TypedFormula& quantifier) const;
   bool beyond_horizon(const TypedFormula& atom);
   bool runnable(const InstancePlan& plan, const std::vector<VariableId>& variables);
+  std::optional<FormulaId> occurrence(const TypedFormula& atom, GroundTermId event,
+                                      Timepoint t) const;
   std::optional<FormulaId> effect_atom(EffectKind kind, const std::vector<GroundTermId>& arguments);
+  FormulaId effect_in_place(EffectKind kind, std::uint32_t event, std::uint32_t fluent,
+                            Timepoint t) const;
 
   GroundModel* model_;
   const TypedModel* typed_;
@@ -75,6 +83,8 @@ class FormulaGrounder {
   Meaning meaning_;
   EffectRows* rows_ = nullptr;
   PossibleAtoms* possible_ = nullptr;
+  bool whole_axiom_ = false;
+  std::size_t depth_ = 0;  // quantifiers around what is being grounded
   /// By formula; made for the set of variables that are bound when it is first met.
   std::map<std::uint32_t, Quantifier> quantifiers_;
 };

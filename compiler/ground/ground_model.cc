@@ -69,9 +69,9 @@ std::vector<bool> GroundModel::releasable_symbols() const {
     if (effect.kind == EffectKind::kReleases) mark(effect.fluent);
   }
   for (const auto& formula : typed_->formulas) {
-    if (formula.kind == FormulaKind::kAtom && formula.predicate == typed_->core.released_at) {
-      mark(formula.terms[0]);
-    }
+    if (formula.kind != FormulaKind::kAtom) continue;
+    if (formula.predicate == typed_->core.released_at) mark(formula.terms[0]);
+    if (formula.predicate == typed_->core.releases) mark(formula.terms[1]);
   }
   if (all) result.assign(result.size(), true);
   return result;
@@ -89,11 +89,15 @@ std::optional<std::uint32_t> GroundModel::event_number(GroundTermId term) const 
   return found->second;
 }
 
+std::uint64_t GroundModel::timed_key(AtomKind kind, std::uint32_t index, Timepoint t) {
+  return (static_cast<std::uint64_t>(kind) << 62U) ^
+         (static_cast<std::uint64_t>(static_cast<std::uint32_t>(t)) << 30U) ^ index;
+}
+
 FormulaId GroundModel::timed(AtomKind kind, std::uint32_t index, Timepoint t) {
-  const auto key = (static_cast<std::uint64_t>(kind) << 62U) ^
-                   (static_cast<std::uint64_t>(static_cast<std::uint32_t>(t)) << 30U) ^ index;
-  const auto [entry, added] = timed_.try_emplace(key, static_cast<std::int32_t>(atoms_.size() + 1));
-  if (added) atoms_.push_back({kind, index, t});
+  const auto [entry, added] =
+      timed_.try_emplace(timed_key(kind, index, t), static_cast<std::int32_t>(atoms_.size() + 1));
+  if (added) atoms_.push_back({kind, index, t, kind == AtomKind::kHappens && t == horizon()});
   return formulas_.atom(entry->second);
 }
 
@@ -111,13 +115,23 @@ FormulaId GroundModel::happens(std::uint32_t event, Timepoint t) {
   return timed(AtomKind::kHappens, event, t);
 }
 
+FormulaId GroundModel::happens_last(std::uint32_t event) {
+  return timed(AtomKind::kHappens, event, horizon());
+}
+
+std::optional<FormulaId> GroundModel::find_happens_last(std::uint32_t event) {
+  const auto found = timed_.find(timed_key(AtomKind::kHappens, event, horizon()));
+  if (found == timed_.end()) return std::nullopt;
+  return formulas_.atom(found->second);
+}
+
 FormulaId GroundModel::predicate(GroundTermId term) {
   if (closed_.contains(terms_[term].symbol) && !predicates_.contains(term)) {
     return formulas_.falsity();
   }
   const auto [entry, added] =
       predicates_.try_emplace(term, static_cast<std::int32_t>(atoms_.size() + 1));
-  if (added) atoms_.push_back({AtomKind::kPredicate, term.index(), GroundAtom::kUntimed});
+  if (added) atoms_.push_back({AtomKind::kPredicate, term.index(), GroundAtom::kUntimed, false});
   return formulas_.atom(entry->second);
 }
 
@@ -125,14 +139,14 @@ FormulaId GroundModel::plan_atom(AtomKind kind, PlanAtom plan, Timepoint t) {
   const auto [entry, added] = plan_variables_.try_emplace(
       std::tuple(kind, plan, t), static_cast<std::int32_t>(atoms_.size() + 1));
   if (added) {
-    atoms_.push_back({kind, static_cast<std::uint32_t>(plan_atoms_.size()), t});
+    atoms_.push_back({kind, static_cast<std::uint32_t>(plan_atoms_.size()), t, false});
     plan_atoms_.push_back(std::move(plan));
   }
   return formulas_.atom(entry->second);
 }
 
 FormulaId GroundModel::auxiliary_atom(Timepoint time) {
-  atoms_.push_back({AtomKind::kAuxiliary, 0, time});
+  atoms_.push_back({AtomKind::kAuxiliary, 0, time, false});
   return formulas_.atom(static_cast<std::int32_t>(atoms_.size()));
 }
 

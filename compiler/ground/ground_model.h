@@ -24,9 +24,11 @@ struct GroundAtom {
   AtomKind kind = AtomKind::kHoldsAt;
   std::uint32_t index = 0;
   Timepoint time = kUntimed;
+  /// Happens at the last timepoint of all, which only the 2005 reasoner knows.
+  bool last = false;
   /// The horizon from which on it exists: an event at t needs the step to t + 1.
   Timepoint needed_horizon() const {
-    return (time == kUntimed ? 0 : time) + (kind == AtomKind::kHappens ? 1 : 0);
+    return (time == kUntimed ? 0 : time) + (kind == AtomKind::kHappens && !last ? 1 : 0);
   }
 };
 
@@ -65,6 +67,10 @@ class GroundModel {
   FormulaId holds(std::uint32_t fluent, Timepoint t);
   /// Happens for 0 <= t < horizon: events at the last timepoint have no effect and do not exist.
   FormulaId happens(std::uint32_t event, Timepoint t);
+  /// Happens at the last timepoint: to the 2005 reasoner an atom that nothing follows from.
+  FormulaId happens_last(std::uint32_t event);
+  /// The same if some formula has mentioned it.
+  std::optional<FormulaId> find_happens_last(std::uint32_t event);
   /// False for fluents that nothing ever releases.
   FormulaId released(std::uint32_t fluent, Timepoint t);
   bool can_be_released(std::uint32_t fluent) const { return releasable_[fluent]; }
@@ -123,6 +129,7 @@ class GroundModel {
 
  private:
   std::vector<bool> releasable_symbols() const;
+  static std::uint64_t timed_key(AtomKind kind, std::uint32_t index, Timepoint t);
   FormulaId timed(AtomKind kind, std::uint32_t index, Timepoint t);
 
   const TypedModel* typed_;  // outlives the ground model
@@ -175,6 +182,12 @@ class EffectRows {
 
   const std::vector<EffectRow>& always() const { return always_; }
   const std::map<Timepoint, std::vector<EffectRow>>& single() const { return single_; }
+  /// To the 2005 reasoner an axiom of this kind names something at t that does not exist: what else
+  /// could change the fluent at t is lost with it.
+  void lose(EffectKind kind, std::uint32_t fluent, Timepoint t) { lost_.emplace(kind, fluent, t); }
+  bool is_lost(EffectKind kind, std::uint32_t fluent, Timepoint t) const {
+    return lost_.contains({kind, fluent, t});
+  }
   /// Do all rows of the fluent hold at every timepoint?
   bool is_uniform(std::uint32_t fluent) const { return !irregular_.contains(fluent); }
 
@@ -190,6 +203,7 @@ class EffectRows {
   std::map<Timepoint, std::vector<EffectRow>> single_;
   std::map<std::pair<Timepoint, std::uint32_t>, std::vector<std::uint32_t>> single_by_fluent_;
   std::set<std::uint32_t> irregular_;
+  std::set<std::tuple<EffectKind, std::uint32_t, Timepoint>> lost_;
 };
 
 /// `HoldsAt(Alive(),0)`; `aux7` for an atom without a name, by its variable.

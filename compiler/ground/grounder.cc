@@ -47,6 +47,7 @@ class Grounder {
       if (axiom.mentions_effects) profiles_.back().shape = TimeShape::kMixed;
     }
     bounds_have_changed();
+    if (!standard_) model_.formulas().keep_complements();
   }
 
   static std::span<const Pass<Grounder>> passes();
@@ -96,8 +97,8 @@ class Grounder {
   }
 
   void completion() { completion_.write(); }
-  void trajectories() { assert_trajectories(model_, rows_, grounder_); }
-  void inertia() { assert_inertia(model_, rows_, standard_ && options_.templates); }
+  void trajectories() { assert_trajectories(model_, rows_, grounder_, sink_); }
+  void inertia() { assert_inertia(model_, rows_, options_); }
   void invariants() { add_invariants(model_, rows_); }
 
   /// In the 2005 reasoner's meaning an atom that stands in no formula is false.
@@ -182,7 +183,9 @@ class Grounder {
                         !has_empty_quantifier(typed_, model_.universe(), axiom.formula);
     std::optional<FormulaId> formula;
     if (!always) {
+      grounder_.read_whole_axiom(true);
       formula = grounder_.ground(axiom.formula);
+      grounder_.read_whole_axiom(false);
     } else if (profile.width <= model_.horizon()) {
       possible_.set_timeless(true);
       grounder_.bind(profile.variable, model_.terms().integer(profile.back));
@@ -214,7 +217,10 @@ class Grounder {
       }
       // A definition over effects (ECCausal, Clipped) says what happens, it is no reason for it.
       if (axiom.mentions_effects) return;
-      completion_.note(axiom.label, *formula, always ? profile.width : Constraint::kOnce);
+      const auto width = always ? profile.width : Constraint::kOnce;
+      if (!completion_.note(axiom.label, *formula, width)) {
+        sink_.warning(DiagnosticCode::kNamedCompletion, axiom.source);
+      }
     }
   }
 

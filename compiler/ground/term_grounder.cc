@@ -168,7 +168,10 @@ std::optional<GroundTermId> TermGrounder::arithmetic(const Term& node, GroundTer
 std::optional<GroundTermId> TermGrounder::apply(const Term& node,
                                                 std::span<const GroundTermId> arguments) {
   const auto& symbol = typed_->symbols[node.symbol];
-  if (!arguments_fit(symbol, arguments)) return std::nullopt;
+  // The 2005 reasoner looks at sorts in atoms alone: compared with something, any term denotes.
+  const bool checks =
+      options_.meaning == Meaning::kStandard || symbol.kind == SymbolKind::kFunction;
+  if (checks && !arguments_fit(symbol, arguments)) return std::nullopt;
   if (symbol.kind == SymbolKind::kFunction) {
     const auto application = model_->terms().apply(node.symbol, arguments);
     const auto value = function_values_.find(application);

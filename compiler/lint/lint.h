@@ -28,8 +28,8 @@ std::span<const LintRule> lint_rules();
 /// W1101 by the lexer, W2001, W2007 and W2008 by the checker.
 std::span<const LintRule> difference_rules();
 
-/// The codes of all those differences: to be muted where the old meaning is asked for.
-std::vector<base::DiagnosticCode> difference_codes();
+/// The codes of those differences that the old meaning follows: to be muted where it is asked for.
+std::span<const base::DiagnosticCode> reproduced_differences();
 
 /// Applies `rules` to a model that the checker accepted. At most one warning an axiom and rule.
 /// Statements of the built-in foundations are not looked at. The time of every rule is at most

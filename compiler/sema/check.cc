@@ -26,10 +26,11 @@ using base::DiagnosticCode;
 /// Recognises `F(C1,...,Cn)=V.` and keeps the model's table of function values.
 class FunctionTable {
  public:
-  FunctionTable(TypedModel& model, base::DiagnosticSink& sink) : model_(model), sink_(sink) {}
+  FunctionTable(TypedModel& model, bool last_counts, base::DiagnosticSink& sink)
+      : model_(model), last_counts_(last_counts), sink_(sink) {}
 
-  /// True if `formula` is an entry of the table; it is then no axiom. E2304 if the same arguments
-  /// have another value already.
+  /// True if `formula` is an entry of the table; it is then no axiom. If the same arguments have
+  /// another value already: E2304, or W2009 where the last one counts.
   bool add(TypedFormulaId formula, SortDomains& domains);
 
  private:
@@ -38,6 +39,7 @@ class FunctionTable {
   bool lies_in(TermId value, SortId sort, SortDomains& domains) const;
 
   TypedModel& model_;
+  bool last_counts_;
   base::DiagnosticSink& sink_;
   std::unordered_map<std::string, std::size_t> entries_;  // key of F(C1..Cn) to position
 };
@@ -117,16 +119,24 @@ bool FunctionTable::add(TypedFormulaId id, SortDomains& domains) {
     model_.function_values.push_back({left.symbol, left.arguments, value, formula.source});
     return true;
   }
-  const auto& before = model_.function_values[entry->second];
+  auto& before = model_.function_values[entry->second];
   std::string old_value, new_value;
   append_key(before.value, old_value);
   append_key(value, new_value);
-  if (old_value != new_value) {
+  if (old_value == new_value) return true;
+  if (!last_counts_) {
     sink_
         .error(DiagnosticCode::kFunctionValueTwice, formula.source,
                printed(model_, formula.terms[0]), printed(model_, before.value))
         .note(before.source, "that value is given here");
+    return true;
   }
+  sink_
+      .warning(DiagnosticCode::kFunctionValueReplaced, formula.source,
+               printed(model_, formula.terms[0]), printed(model_, before.value))
+      .note(before.source, "that value is given here");
+  before.value = value;
+  before.source = formula.source;
   return true;
 }
 
@@ -139,11 +149,11 @@ class ModelChecker {
       : ast_(ast),
         files_(files),
         ignored_(ignored),
-        keep_causal_(options.keep_causal_definitions),
+        old_reasoner_(options.old_reasoner),
         model_(model),
         sink_(sink),
         elaborator_(model, {.complete_model = options.complete_model}, sink),
-        functions_(model, sink) {}
+        functions_(model, options.old_reasoner, sink) {}
 
   void run() {
     for (std::size_t i = 0; i < ast_.order.size(); ++i) {
@@ -209,7 +219,7 @@ class ModelChecker {
   bool is_used(const ModelAst::Place& place) const {
     const Ast& ast = ast_.ast(place);
     const auto& file = files_[ast.source(ast_.statement(place).source).file];
-    if (keep_causal_ && file.name() == kCausalDefinitions) return true;
+    if (old_reasoner_ && file.name() == kCausalDefinitions) return true;
     NodeId id = ast_.statement(place).formula;
     while (ast[id].kind == NodeKind::kForall) id = ast.child(ast[id], ast[id].child_count - 1);
     if (ast[id].kind == NodeKind::kBinary) id = ast.child(ast[id], 0);
@@ -237,7 +247,7 @@ class ModelChecker {
   const ModelAst& ast_;
   const base::SourceFiles& files_;
   const IgnoredNames& ignored_;
-  bool keep_causal_;
+  bool old_reasoner_;
   TypedModel& model_;
   base::DiagnosticSink& sink_;
   Elaborator elaborator_;

@@ -89,7 +89,9 @@ class Declarer {
     if (!sort) return;
     for (std::uint32_t i = 0; i < statement.item_count; ++i) {
       const auto word = ast.items(statement)[i].name;
-      if (!is_ignored(ast.text(word))) constant(ast, word, *sort, statement.additional);
+      // To the 2005 reasoner an ignored constant is a constant all the same.
+      if (options_.old_reasoner || !is_ignored(ast.text(word)))
+        constant(ast, word, *sort, statement.additional);
     }
   }
 

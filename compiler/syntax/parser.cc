@@ -221,6 +221,8 @@ class StatementParser {
     statement_.kind = kind;
     do {
       const auto word = name();
+      // Old models end a list of ignored names with a comma.
+      if (word.empty() && kind == StatementKind::kIgnore && statement_.item_count > 0) break;
       if (word.empty()) return malformed("a name");
       add_item({word, {}});
     } while (accept(','));

@@ -36,8 +36,8 @@ std::string replay_json(const ReplayResult& result);
 std::string rates_text(const RatesResult& result);
 std::string rates_json(const RatesResult& result);
 
-/// 0 no discrepancy, 1 discrepancy or no trace at all, 4 inconclusive; an interruption's 130 or 143
-/// is the caller's.
+/// 0 no discrepancy, 1 discrepancy, 4 inconclusive, also without a trace; an interruption's 130 or
+/// 143 is the caller's.
 int exit_code(const CampaignResult& result);
 
 }  // namespace parallax::harness

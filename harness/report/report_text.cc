@@ -307,9 +307,7 @@ std::string campaign_text(const CampaignResult& result, const ReportStyle& style
 
 int exit_code(const CampaignResult& result) {
   if (result.verdict == CampaignVerdict::kNoDiscrepancy) return 0;
-  if (result.verdict == CampaignVerdict::kDiscrepancy) return 1;
-  // A run that expected traces and had none is a finding; a run that was cut short is open.
-  return result.traces.empty() && !result.interrupted ? 1 : 4;
+  return result.verdict == CampaignVerdict::kDiscrepancy ? 1 : 4;
 }
 
 std::string replay_text(const ReplayResult& result, const ReportStyle& style) {

@@ -90,7 +90,8 @@ std::vector<std::vector<Literal>> projection_blocks(const CompiledModel& model, 
         (atom.kind == AtomKind::kReleasedAt && distinct == Distinct::kAll)) {
       blocks[block].push_back(atom.literal());
     } else if (atom.kind == AtomKind::kHappens) {
-      blocks[block + 1].push_back(atom.literal());
+      blocks[static_cast<std::size_t>(atom.needed_horizon(model.horizon))].push_back(
+          atom.literal());
     } else if (atom.kind == AtomKind::kPredicate && distinct == Distinct::kAll) {
       predicates.push_back(atom.literal());
     }

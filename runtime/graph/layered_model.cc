@@ -97,6 +97,10 @@ class Splitter {
     for (std::int32_t v = 1; v <= model_.base(); ++v) {
       const auto& atom = model_.fixed[static_cast<std::size_t>(v) - 1];
       const auto value = values_[static_cast<std::size_t>(v) - 1];
+      if (atom.kind == AtomKind::kHappens && value >= 0) {
+        reason_ = fmt::format("`{}` happens at the last timepoint", atom.name);
+        return false;
+      }
       if (value > 0) out_.true_fixed.push_back(v);
       if (value != 0 || atom.kind == AtomKind::kUnused) continue;
       out_.open_fixed.push_back(v);

@@ -35,15 +35,16 @@ TraceReplay::TraceReplay(const CompiledModel& model, MakeSolver make_solver)
   }
 }
 
-/// With state constraints a trace ends where they hold first, after at least one step.
+/// With state constraints a trace ends where they hold first: at 0 only if the model asks there.
 std::pair<Timepoint, Timepoint> TraceReplay::lengths() const {
-  return {model_->has_constraints ? 1 : model_->horizon, model_->horizon};
+  if (!model_->has_constraints) return {model_->horizon, model_->horizon};
+  return {index_.hit(0) ? 0 : 1, model_->horizon};
 }
 
 TraceReplay::Units TraceReplay::units_of(const ClaimedTrace& trace) const {
   Units units;
   model_->for_each_atom([&](const compiler::AtomRef& atom) {
-    const auto needed = atom.time.value_or(0) + (atom.kind == AtomKind::kHappens ? 1 : 0);
+    const auto needed = atom.needed_horizon(model_->horizon);
     if (needed > trace.length()) return;
     const auto* claims = claims_of(trace, atom.kind, atom.time);
     if (claims == nullptr) return;
@@ -107,9 +108,9 @@ ReplayVerdict TraceReplay::replay(const ClaimedTrace& trace) {
   }
   std::vector<Literal> hits;
   if (model_->has_constraints) {
-    for (Timepoint t = 1; t <= length; ++t) {
+    for (Timepoint t = lengths().first; t <= length; ++t) {
       const auto hit = index_.hit(t);
-      PARALLAX_REQUIRE(hit.has_value(), "every timepoint from 1 has its hit atom");
+      PARALLAX_REQUIRE(hit.has_value(), "every timepoint from the first has its hit atom");
       hits.push_back(t < length ? ~*hit : *hit);
     }
   }
@@ -146,7 +147,7 @@ ReplayVerdict TraceReplay::find_failure(const Units& units, Timepoint length) {
 ReplayVerdict TraceReplay::find_end(const Units& units, Timepoint length) {
   ReplayVerdict verdict;
   std::vector<Literal> no_hits;
-  for (Timepoint t = 1; t < length; ++t) {
+  for (Timepoint t = lengths().first; t < length; ++t) {
     no_hits.push_back(~*index_.hit(t));
     const auto status = solve(units, length, no_hits);
     if (status == SolveStatus::kSatisfiable) continue;

@@ -71,6 +71,7 @@ DecreasonerFormat::DecreasonerFormat(const CompiledModel& model, const Decreason
 
 void DecreasonerFormat::collect(const CompiledModel& model) {
   const auto silent = unmentioned(model);
+  std::vector<bool> said_last(model.events.size(), false);
   const auto add = [&](AtomKind kind, const std::string& name, std::size_t number,
                        std::optional<Timepoint> time) {
     propositions_.push_back(
@@ -84,6 +85,9 @@ void DecreasonerFormat::collect(const CompiledModel& model) {
         add(atom.kind, atom.name, atom.number, atom.time);
         break;
       case AtomKind::kHappens:
+        if (atom.time == model.horizon) said_last[atom.number] = true;
+        add(atom.kind, atom.name, atom.number, atom.time);
+        break;
       case AtomKind::kReleasedAt:
       case AtomKind::kPredicate:
         add(atom.kind, atom.name, atom.number, atom.time);
@@ -107,6 +111,7 @@ void DecreasonerFormat::collect(const CompiledModel& model) {
   }
   if (!options_.events_completed) return;
   for (std::size_t e = 0; e < model.events.size(); ++e) {
+    if (said_last[e]) continue;
     add(AtomKind::kHappens, model.events[e].name, e, model.horizon);
   }
 }

@@ -69,7 +69,7 @@ Trace decode_trace(const CompiledModel& model, Symbols symbols, Timepoint length
   trace.symbols = std::move(symbols);
   trace.points.resize(static_cast<std::size_t>(length) + 1);
   model.for_each_atom([&](const compiler::AtomRef& atom) {
-    if (atom.time.value_or(0) + (atom.kind == AtomKind::kHappens ? 1 : 0) > length) return;
+    if (atom.needed_horizon(model.horizon) > length) return;
     if (!value(atom.literal())) return;
     if (!atom.time) {
       if (atom.kind == AtomKind::kPredicate) trace.predicates.push_back(atom.name);

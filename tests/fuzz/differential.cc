@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <tuple>
 
+#include "compiler/base/diagnostic_codes.h"
+#include "tests/fuzz/old_encoder.h"
 #include "tests/fuzz/oracles.h"
 
 namespace parallax::test {
@@ -212,7 +215,64 @@ class Comparer {
 
 }  // namespace
 
+namespace {
+
+Keys full_keys(const TraceList& list) {
+  Keys all;
+  for (const auto& trace : list.traces) {
+    auto key = trace_key(trace, true);
+    for (const auto& name : trace.predicates) key += " " + name;
+    all.insert(std::move(key));
+  }
+  return all;
+}
+
+Comparison compare_with_old_encoder(const std::string& text, const DifferentialOptions& options) {
+  compiler::GroundOptions ground;
+  ground.meaning = compiler::Meaning::kDecreasoner;
+  const FuzzCompilation made(text, ground);
+  Comparison result;
+  if (!made.compiled) {
+    return {Comparison::Kind::kRefused, made.codes(), {}, 0, made.error_lines()};
+  }
+  const auto old = old_encoder_traces(*made.typed, options.max_traces + 1);
+  result.code = old.beyond;
+  for (const auto& diagnostic : made.sink.sorted()) {
+    if (diagnostic.code == base::DiagnosticCode::kNamedCompletion) {
+      result.code = "completion over named parts";
+    }
+  }
+  if (!result.code.empty()) {
+    result.kind = Comparison::Kind::kLeftOut;
+    return result;
+  }
+  const auto all = solver_valuations(*made.compiled, options.max_traces + 1);
+  result.traces = all.traces.size();
+  if (all.complete != old.found.complete) {
+    return difference("number of traces",
+                      all.complete ? "the encoder of 2005 has more" : "parallax has more");
+  }
+  if (!all.complete) {
+    result.kind = Comparison::Kind::kPart;
+    return result;
+  }
+  const auto ours = full_keys(all), theirs = full_keys(old.found);
+  for (const auto& [mine, other, name] : {std::tuple(&ours, &theirs, "parallax"),
+                                          std::tuple(&theirs, &ours, "the encoder of 2005")}) {
+    for (const auto& key : *mine) {
+      if (other->contains(key)) continue;
+      return difference(std::string("only ") + name, std::to_string(ours.size()) + " against " +
+                                                         std::to_string(theirs.size()) +
+                                                         " traces: " + key);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
 Comparison compare_oracles(const std::string& text, const DifferentialOptions& options) {
+  if (options.compat) return compare_with_old_encoder(text, options);
   return Comparer(text, options).run();
 }
 

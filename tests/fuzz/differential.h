@@ -12,6 +12,7 @@ namespace parallax::test {
 struct DifferentialOptions {
   bool brute_force = true;
   bool clingo = false;
+  bool compat = false;            // against the encoder of 2005, and against nothing else
   std::size_t max_traces = 1500;  // beyond, only a part is compared
   std::size_t max_atoms = 18;     // of brute force
 };
@@ -22,6 +23,7 @@ struct Comparison {
     kAgree,    // all oracles have the same traces
     kPart,     // too many traces: those found were checked, not all compared
     kRefused,  // parallax rejects the model with `code`, and the oracles confirm the reason
+    kLeftOut,  // the rules of the encoder of 2005 give no answer, `code` says why
     kDiffer    // `detail` tells what differs
   };
   Kind kind = Kind::kAgree;
@@ -34,7 +36,8 @@ struct Comparison {
 };
 
 /// Compiles the text and compares its traces with those of brute force over all assignments and
-/// of clingo; the ways of grounding (`ground_variants`) with each other.
+/// of clingo; the ways of grounding (`ground_variants`) with each other. With `compat` the old
+/// meaning is compared, over all atoms, with what `old_encoder_traces` finds.
 Comparison compare_oracles(const std::string& text, const DifferentialOptions& options);
 
 /// The smallest model found, by dropping statements and parts of formulas, on which the same two

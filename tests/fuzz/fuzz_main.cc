@@ -18,11 +18,13 @@ struct FuzzOptions {
   std::uint64_t large_every = 10;  // every n-th model is of the larger class
   std::size_t max_differences = 5;
   bool clingo = false;
+  bool compat = false;
   bool print = false;
   bool no_shrink = false;
 };
 
 struct FuzzFigures {
+  std::uint64_t left_out = 0;
   std::uint64_t agree = 0, part = 0, refused = 0, mended = 0, differ = 0;
   std::uint64_t with_brute_force = 0, with_clingo = 0, with_traces = 0;
   std::size_t traces = 0;
@@ -45,6 +47,10 @@ void count(const Comparison& comparison, FuzzFigures& figures) {
       break;
     case Comparison::Kind::kRefused:
       ++figures.refused;
+      ++figures.codes[comparison.code];
+      return;
+    case Comparison::Kind::kLeftOut:
+      ++figures.left_out;
       ++figures.codes[comparison.code];
       return;
     case Comparison::Kind::kDiffer:
@@ -114,11 +120,13 @@ void fuzz_one(const RandomModel& model, const DifferentialOptions& comparing, bo
 void print(const FuzzFigures& figures) {
   fmt::print("{} models agree ({} with traces, {} traces), {} compared in part\n", figures.agree,
              figures.with_traces, figures.traces, figures.part);
-  fmt::print("brute force took part in {}, clingo in {}\n", figures.with_brute_force,
-             figures.with_clingo);
-  for (const auto& [code, number] : figures.codes) fmt::print("refused {}: {}\n", code, number);
-  fmt::print("{} refused ({} compared without the refused formulas), {} differences\n",
-             figures.refused, figures.mended, figures.differ);
+  if (figures.with_brute_force + figures.with_clingo > 0) {
+    fmt::print("brute force took part in {}, clingo in {}\n", figures.with_brute_force,
+               figures.with_clingo);
+  }
+  for (const auto& [code, number] : figures.codes) fmt::print("{}: {}\n", code, number);
+  fmt::print("{} refused ({} compared without the refused formulas), {} left out, {} differences\n",
+             figures.refused, figures.mended, figures.left_out, figures.differ);
 }
 
 int fuzz(const FuzzOptions& options) {
@@ -134,6 +142,7 @@ int fuzz(const FuzzOptions& options) {
     DifferentialOptions comparing;
     comparing.clingo = options.clingo;
     comparing.brute_force = !large;
+    comparing.compat = options.compat;
     fuzz_one(model, comparing, !options.no_shrink, figures);
     if (figures.differ >= options.max_differences) break;
   }
@@ -153,6 +162,8 @@ int run(int argc, char** argv) {
       .show_default();
   table.option("--max-differences", options.max_differences, "Stop after so many").show_default();
   table.flag("--clingo", options.clingo, "Compare with clingo as well, where it is installed");
+  table.flag("--compat", options.compat,
+             "Compare --compat decreasoner with a second implementation of its rules");
   table.flag("--print", options.print, "Print the models instead of comparing");
   table.flag("--no-shrink", options.no_shrink, "Print differing models as they are");
   const auto line = tools::parse_and_print({table, "", false, {}}, argc, argv);

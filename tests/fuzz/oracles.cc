@@ -18,7 +18,9 @@ FuzzCompilation::FuzzCompilation(const std::string& text, const compiler::Ground
   const auto file = files.add("random.e", text);
   const auto ast = compiler::load_model_text(file, ".", {}, files, sink);
   if (!ast) return;
-  auto checked = compiler::check_model(*ast, files, sink);
+  compiler::CheckOptions check;
+  check.old_reasoner = options.meaning == compiler::Meaning::kDecreasoner;
+  auto checked = compiler::check_model(*ast, files, sink, check);
   if (!checked) return;
   typed = std::make_unique<compiler::TypedModel>(*std::move(checked));
   auto ground = compiler::ground_model(*typed, options, sink);

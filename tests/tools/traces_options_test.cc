@@ -93,4 +93,46 @@ TEST_CASE("options that do not go together, and a strategy that cannot be had, a
   CHECK(cli.parallax({"traces", "far.e", "--count"}).out == "192\n");
 }
 
+TEST_CASE("a goal that holds at timepoint 0 is reached by a trace of length 0") {
+  const CliFixture cli;
+  cli.write("m.e", kSwitches);
+  const std::vector<std::string> until = {"traces", "m.e", "--until", "!HoldsAt(On(A),time)"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), until.begin(), until.end());
+    return cli.parallax(more);
+  };
+  const auto list = with({"--limit", "0", "--format", "jsonl"}).out;
+  CHECK(list.find("\"timepoints\":[{\"time\":0,\"happens\":[],\"holds\":[],\"released\":[]}]") !=
+        std::string::npos);
+  CHECK(list.find("\"traces\":1,\"complete\":true") != std::string::npos);
+  cli.write("list.jsonl", list);
+  CHECK(with({"--replay", "list.jsonl"}).code == 0);
+  CHECK(with({"--limit", "0", "--certify=list.proof"}).out.find("proof checked") !=
+        std::string::npos);
+  // Elsewhere it is the first time all the same.
+  CHECK(cli.parallax({"traces", "m.e", "--until", "HoldsAt(On(A),time)", "--limit", "1"})
+            .out.find("  1\n") != std::string::npos);
+}
+
+TEST_CASE(
+    "with --compat decreasoner an event of the last timepoint is listed, counted and proved") {
+  const CliFixture cli;
+  cli.write("m.e",
+            "range time 0 1\nfluent F()\nevent E()\nHoldsAt(F(),0) | Happens(E(),1).\n"
+            "!HoldsAt(F(),0) | !Happens(E(),1).\n");
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"traces", "m.e", "--compat", "decreasoner"});
+    return cli.parallax(more).out;
+  };
+  const auto listed = with({"--limit", "0"});
+  CHECK(listed.find("trace 1\n  0\n  1\n      > E()\n") == 0);
+  CHECK(listed.find("2 traces, complete") != std::string::npos);
+  CHECK(with({"--count"}) == "2\n");
+  CHECK(with({"--limit", "0", "--certify=m.proof"}).find("2 traces, complete (proof checked)") !=
+        std::string::npos);
+  CHECK(with({"--format", "decreasoner"}).find("1\nHappens(E(), 1).\nP\n") != std::string::npos);
+  CHECK(cli.parallax({"compile", "m.e", "--compat", "decreasoner", "-o", "m.dec.cnf"}).code == 0);
+  CHECK(cli.parallax({"traces", "m.dec.cnf", "--limit", "0"}).out == listed);
+}
+
 }  // namespace parallax::test

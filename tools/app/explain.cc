@@ -212,8 +212,7 @@ std::optional<ValuedTrace> value(const compiler::CompiledModel& model, const run
   std::vector<Literal> assumptions;
   model.for_each_atom([&](const compiler::AtomRef& atom) {
     const auto& [kind, time] = std::tie(atom.kind, atom.time);
-    const auto t = time.value_or(0) + (kind == AtomKind::kHappens ? 1 : 0);
-    if (t > trace.length()) return;
+    if (atom.needed_horizon(model.horizon) > trace.length()) return;
     const auto say = [&](bool is_true) {
       assumptions.push_back(is_true ? atom.literal() : ~atom.literal());
     };

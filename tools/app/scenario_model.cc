@@ -248,6 +248,7 @@ base::Result<compiler::Compilation> compile(const ModelOptions& options, Context
     const auto range = formula_argument("--until", formula, context);
     if (!range) return context.sink().already_reported();
     input.constraints.push_back({*range, *range, false});
+    input.hits_at_start = true;
   }
   std::optional<harness::Scenario> regions;
   std::optional<RegionLocator> locator;

@@ -166,7 +166,7 @@ Command run_command() {
       "  parallax run scenarios/two_regions/scenario.yaml\n"
       "  parallax run edge.yaml --jobs 2 --seed 7 --out out/edge7\n"
       "  parallax run edge.yaml --seed 7 --out out/edge7 --resume\n"
-      "Exit codes: 0 no discrepancy, 1 discrepancy or no trace, 4 inconclusive.");
+      "Exit codes: 0 no discrepancy, 1 discrepancy, 4 inconclusive, as without a trace.");
   command.option("scenario", options->scenario, "Scenario file (YAML)").required();
   command.option("--out", options->out, "Run folder; default out/NAME, numbered if taken");
   command.option("--seed", options->seed, "Seed of every random choice")

@@ -251,7 +251,7 @@ TEST_CASE("without a trace nothing is compared, and the exit code says so") {
   REQUIRE(result.has_value());
   CHECK(result->simulations == 0);
   CHECK(result->verdict == CampaignVerdict::kInconclusive);
-  CHECK(exit_code(*result) == 1);
+  CHECK(exit_code(*result) == 4);
 }
 
 TEST_CASE("invalid starts are drawn again and counted, and are no simulations") {
