@@ -50,11 +50,19 @@ struct FormulaWriter::Frame {
 
 FormulaWriter::FormulaWriter(const TypedModel& model, AspNames& names, TermWriter& terms,
                              std::string& rules)
-    : model_(model),
-      names_(names),
-      terms_(terms),
-      rules_(rules),
-      mentioned_(model.symbols.size()) {}
+    : model_(model), names_(names), terms_(terms), rules_(rules), mentioned_(model.symbols.size()) {
+  // A part is added to the store before the formula around it.
+  const auto& core = model.core;
+  for (const auto& formula : model.formulas) {
+    const bool is_effect =
+        formula.kind == FormulaKind::kAtom &&
+        (formula.predicate == core.initiates || formula.predicate == core.terminates ||
+         formula.predicate == core.releases);
+    has_effect_.push_back(is_effect ||
+                          std::any_of(formula.children.begin(), formula.children.end(),
+                                      [&](auto child) { return has_effect_[child.index()]; }));
+  }
+}
 
 const std::string& FormulaWriter::mentioned(SymbolId predicate) {
   auto& name = mentioned_[predicate.index()];
@@ -74,7 +82,8 @@ AspFormula FormulaWriter::write(TypedFormulaId root, bool wanted, const AspPoint
       return;
     }
     // A quantifier is read for the value of its instances that decides it.
-    if (formula.kind == FormulaKind::kForall || formula.kind == FormulaKind::kExists) {
+    if ((formula.kind == FormulaKind::kForall || formula.kind == FormulaKind::kExists) &&
+        !mentions_effect(formula)) {
       want_true = formula.kind == FormulaKind::kExists;
       want_false = !want_true;
     }
@@ -214,7 +223,14 @@ FormulaWriter::Part FormulaWriter::quantified(Frame& frame) {
   append(domain, terms_.domains(variables));
   append(domain, body.exists);
   auto& deciding = body.when(exists);
-  if (deciding.empty()) {
+  if (mentions_effect(*frame.formula)) {
+    if (exists ? frame.want_false : frame.want_true) {
+      whole.when(!exists) = {AspBody{all_instances(whole, body, !exists, variables, domain)}};
+    }
+    if ((exists ? frame.want_true : frame.want_false) && !deciding.empty()) {
+      whole.when(exists) = {AspBody{auxiliary("some", whole, domain, deciding)}};
+    }
+  } else if (deciding.empty()) {
     whole.when_true = constant(!exists);
     whole.when_false = constant(exists);
   } else {
@@ -232,6 +248,32 @@ FormulaWriter::Part FormulaWriter::quantified(Frame& frame) {
     whole.exists.push_back(auxiliary("exists", fixed, domain, constant(true)));
   }
   return whole;
+}
+
+bool FormulaWriter::mentions_effect(const TypedFormula& formula) const {
+  return std::any_of(formula.children.begin(), formula.children.end(),
+                     [&](auto child) { return has_effect_[child.index()]; });
+}
+
+/// `all_N(free variables)`: every instance that exists has the value. A conditional literal asks
+/// for each, where `not fails_N` would be a negation.
+AspLiteral FormulaWriter::all_instances(const Part& whole, Part& body, bool value,
+                                        const std::vector<VariableId>& variables,
+                                        const AspBody& domain) {
+  Part instance;  // with the quantifier's variables
+  instance.free = whole.free;
+  instance.completed = whole.completed;
+  for (const auto variable : variables) {
+    if (std::find(instance.free.begin(), instance.free.end(), variable) == instance.free.end()) {
+      instance.free.push_back(variable);
+    }
+  }
+  Part nothing;
+  nothing.free = instance.free;
+  const auto exists = auxiliary("instance", nothing, domain, constant(true));
+  const auto holds = auxiliary("each", instance, domain, body.when(value));
+  const auto conditional = plain_literal(holds.text + " : " + exists.text);
+  return auxiliary("all", whole, terms_.domains(whole.free), {AspBody{conditional}});
 }
 
 FormulaWriter::Part FormulaWriter::leaf(const TypedFormula& formula, bool want_true,

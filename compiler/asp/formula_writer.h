@@ -27,7 +27,9 @@ struct AspPoint {
 
 /// Formulas of one axiom after another. Connectives become alternatives and conjunctions; where
 /// these would multiply, and for quantifiers, auxiliary rules are written (`part_N`, `some_N`,
-/// `fails_N`, `exists_N`). Size and time are linear in the formula.
+/// `fails_N`, `all_N`, `exists_N`). Size and time are linear in the formula. No negation stands
+/// between a rule and an effect that the formula does not deny, so that effects that follow from
+/// one another are the least ones.
 class FormulaWriter {
  public:
   FormulaWriter(const TypedModel& model, AspNames& names, TermWriter& terms, std::string& rules);
@@ -57,6 +59,9 @@ class FormulaWriter {
   AspBody needs_of_atom(const TypedFormula& formula, std::vector<AspTerm>& arguments);
   Part combine(Frame& frame);
   Part quantified(Frame& frame);
+  bool mentions_effect(const TypedFormula& formula) const;
+  AspLiteral all_instances(const Part& whole, Part& body, bool value,
+                           const std::vector<VariableId>& variables, const AspBody& domain);
   AspAlternatives conjunction(std::vector<Part>& parts, bool value);
   AspAlternatives disjunction(std::vector<Part>& parts, bool value) const;
   AspAlternatives equivalence(std::vector<Part>& parts, bool value);
@@ -72,6 +77,7 @@ class FormulaWriter {
   const AspPoint* point_ = nullptr;
   std::set<SymbolId> hidden_;
   std::vector<std::string> mentioned_;  // by symbol; empty: not asked for
+  std::vector<bool> has_effect_;        // by formula: is there an effect in it?
   std::int64_t auxiliaries_ = 0;
 };
 

@@ -228,7 +228,7 @@ class TrajectoryWriter {
 }  // namespace
 
 EffectGrounder::EffectGrounder(GroundModel& model, FormulaGrounder& grounder, EffectRows& rows)
-    : model_(model), grounder_(grounder), rows_(rows) {
+    : model_(model), grounder_(grounder), rows_(&rows) {
   for (const auto& effect : model.typed().effects) {
     origins_.push_back(model.add_origin(effect.source, OriginKind::kEffectAxiom));
   }
@@ -311,9 +311,9 @@ void EffectGrounder::instance(const EffectAxiom& effect, bool always) {
   if (!condition || *condition == model_.formulas().falsity()) return;
   const EffectRow row{effect.kind, *e, *f, *condition, origin_of(effect)};
   if (always) {
-    rows_.add_always(row);
+    rows_->add_always(row);
   } else {
-    rows_.add(static_cast<Timepoint>(t), row);
+    rows_->add(static_cast<Timepoint>(t), row);
   }
 }
 
@@ -381,7 +381,7 @@ void EffectGrounder::check_lost(const EffectAxiom& effect, Timepoint t) {
   if (condition && *condition == model_.formulas().falsity()) return;
   const auto event = grounder_.term(effect.event);
   if (condition && event && model_.event_number(*event)) return;
-  rows_.lose(effect.kind, *number, t);
+  rows_->lose(effect.kind, *number, t);
 }
 
 void assert_inertia(GroundModel& model, const EffectRows& rows, const GroundOptions& options) {

@@ -13,6 +13,8 @@ namespace parallax::compiler {
 class EffectGrounder {
  public:
   EffectGrounder(GroundModel& model, FormulaGrounder& grounder, EffectRows& rows);
+  /// From now on rows go there; it outlives the grounder or the next call.
+  void write_to(EffectRows& rows) { rows_ = &rows; }
   /// Can the axiom's events happen at fixed timepoints only?
   bool is_scheduled(const EffectAxiom& effect) const;
   /// Every timepoint.
@@ -30,7 +32,7 @@ class EffectGrounder {
 
   GroundModel& model_;
   FormulaGrounder& grounder_;
-  EffectRows& rows_;
+  EffectRows* rows_;
   std::vector<std::uint32_t> origins_;  // by axiom
   std::optional<Timepoint> only_;       // no rows of other timepoints
 };

@@ -222,7 +222,9 @@ std::optional<FormulaId> FormulaGrounder::effect_atom(EffectKind kind,
   const auto event = model_->event_number(arguments[0]);
   const auto fluent = model_->fluent_number(arguments[1]);
   const auto t = static_cast<Timepoint>(model_->terms()[arguments[2]].integer);
-  if (!event || !fluent || t >= model_->horizon() || rows_ == nullptr) return std::nullopt;
+  if (!event || !fluent || t >= model_->horizon()) return std::nullopt;
+  if (effect_atoms_) return effect_atoms_(kind, *event, *fluent, t);
+  if (rows_ == nullptr) return std::nullopt;
   if (meaning_ == Meaning::kDecreasoner && typed_->options.encoding != 3) {
     return effect_in_place(kind, *event, *fluent, t);
   }

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
@@ -32,6 +34,10 @@ class FormulaGrounder {
   /// Is what is grounded next a whole axiom? To the 2005 reasoner Happens at the last timepoint is
   /// an atom where no quantifier stands around it.
   void read_whole_axiom(bool whole) { whole_axiom_ = whole; }
+  /// From now on an effect in a formula is the atom that the function gives; null: as before.
+  using EffectAtoms =
+      std::function<FormulaId(EffectKind, std::uint32_t event, std::uint32_t fluent, Timepoint)>;
+  void use_effect_atoms(EffectAtoms atoms) { effect_atoms_ = std::move(atoms); }
   /// From now on instances are looked up among the atoms that may be true (null: in whole sorts).
   /// `possible` outlives the grounder.
   void use_possible(PossibleAtoms* possible);
@@ -82,6 +88,7 @@ class FormulaGrounder {
   TermGrounder terms_;
   Meaning meaning_;
   EffectRows* rows_ = nullptr;
+  EffectAtoms effect_atoms_;
   PossibleAtoms* possible_ = nullptr;
   bool whole_axiom_ = false;
   std::size_t depth_ = 0;  // quantifiers around what is being grounded

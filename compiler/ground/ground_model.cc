@@ -10,24 +10,12 @@
 namespace parallax::compiler {
 namespace {
 
-std::string_view word(EffectKind kind) {
-  switch (kind) {
-    case EffectKind::kInitiates:
-      return "Initiates";
-    case EffectKind::kTerminates:
-      return "Terminates";
-    case EffectKind::kReleases:
-      return "Releases";
-  }
-  return "?";
-}
-
 std::string row_line(const GroundModel& model, const EffectRow& row, const std::string& time,
                      FormulaText& formulas, const base::SourceFiles* files) {
   const auto name = [&](GroundTermId term) { return model.terms().text(term, model.typed()); };
-  auto line = origin_text(model.origins()[row.origin], files) + ": " + std::string(word(row.kind)) +
-              '(' + name(model.events()[row.event]) + ',' + name(model.fluents()[row.fluent]) +
-              ',' + time + ')';
+  auto line = origin_text(model.origins()[row.origin], files) + ": " +
+              std::string(effect_word(row.kind)) + '(' + name(model.events()[row.event]) + ',' +
+              name(model.fluents()[row.fluent]) + ',' + time + ')';
   if (row.condition != model.formulas().truth()) line += " if " + formulas.text(row.condition);
   return line + '\n';
 }
@@ -219,6 +207,18 @@ Timepoint GroundModel::needed_horizon_of(FormulaId root) const {
     latest = std::max(latest, atom(variable).needed_horizon());
   }
   return latest;
+}
+
+std::string_view effect_word(EffectKind kind) {
+  switch (kind) {
+    case EffectKind::kInitiates:
+      return "Initiates";
+    case EffectKind::kTerminates:
+      return "Terminates";
+    case EffectKind::kReleases:
+      return "Releases";
+  }
+  return "?";
 }
 
 void EffectRows::add_always(const EffectRow& row) {

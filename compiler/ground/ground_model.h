@@ -6,6 +6,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -159,6 +160,9 @@ struct EffectRow {
   FormulaId condition;
   std::uint32_t origin = 0;
 };
+
+/// "Initiates", "Terminates" or "Releases".
+std::string_view effect_word(EffectKind kind);
 
 /// The completed effect predicates: Initiates(e,f,t) holds iff some row of t for e and f has a
 /// true condition. Rows are kept in order of axioms and instances: some hold at every timepoint

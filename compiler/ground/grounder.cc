@@ -8,6 +8,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/formula/formula.h"
 #include "compiler/ground/completion.h"
+#include "compiler/ground/effect_constraints.h"
 #include "compiler/ground/effects.h"
 #include "compiler/ground/expansion_size.h"
 #include "compiler/ground/formula_grounder.h"
@@ -16,6 +17,7 @@
 #include "compiler/ground/narrative.h"
 #include "compiler/ground/possible_atoms.h"
 #include "compiler/ground/time_profile.h"
+#include "compiler/sema/axiom_shapes.h"
 
 namespace parallax::compiler {
 
@@ -75,15 +77,23 @@ class Grounder {
   void narrative() {
     Narrative narrative(model_, possible_, rows_, effects_, options_.keep_unreachable);
     // A formula may ask for the effects of an event that never happens.
-    if (!some_axiom_mentions_effects()) narrative.schedule(completion_);
+    if (!something_mentions_effects()) narrative.schedule(completion_);
     bounds_have_changed();
     narrative.walk();
   }
 
   void effects() {
+    std::vector<const EffectAxiom*> constraints;
     for (const auto& effect : typed_.effects) {
-      if (!effects_.is_scheduled(effect)) effects_.ground(effect);
+      if (mentions_effects(typed_, effect.condition)) {
+        constraints.push_back(&effect);
+      } else if (!effects_.is_scheduled(effect)) {
+        effects_.ground(effect);
+      }
     }
+    if (constraints.empty()) return;
+    EffectConstraints(model_, grounder_, effects_, rows_, grounder_.possible(), sink_)
+        .ground(constraints);
   }
 
   void reachability() {
@@ -144,9 +154,14 @@ class Grounder {
     if (relevance_) grounder_.use_possible(&possible_);
   }
 
-  bool some_axiom_mentions_effects() const {
+  bool something_mentions_effects() const {
+    const auto in_condition = [&](const auto& axiom) {
+      return mentions_effects(typed_, axiom.condition);
+    };
     return std::any_of(typed_.axioms.begin(), typed_.axioms.end(),
-                       [](const Axiom& axiom) { return axiom.mentions_effects; });
+                       [](const Axiom& axiom) { return axiom.mentions_effects; }) ||
+           std::any_of(typed_.effects.begin(), typed_.effects.end(), in_condition) ||
+           std::any_of(typed_.trajectories.begin(), typed_.trajectories.end(), in_condition);
   }
 
   /// The axioms of this shape; without one, all that are left.

@@ -161,10 +161,16 @@ class Planner {
     const auto& formula = typed_.formulas[conjuncts_[i].formula];
     auto* table = possible_->predicates(formula.predicate);
     if (table == nullptr) return std::nullopt;
-    for (const auto term : formula.terms) {
+    const std::vector<TermId> columns(
+        formula.terms.begin(),
+        formula.terms.begin() + static_cast<std::ptrdiff_t>(table->columns()));
+    bool open = false;
+    for (const auto term : columns) {
       if (!matchable(term)) return std::nullopt;
+      open = open || !bound(term);
     }
-    return Candidate{i, {}, fan_out(*table, formula.terms)};
+    if (!open) return std::nullopt;
+    return Candidate{i, {}, fan_out(*table, columns)};
   }
 
   /// Rows per look-up, as if the values of a column were spread evenly over its sort.
@@ -226,7 +232,7 @@ class Planner {
     if (formula.predicate == typed_.core.happens) {
       return possible_->is_scheduled(typed_.terms[formula.terms[0]].symbol);
     }
-    return true;
+    return possible_->predicates(formula.predicate)->columns() == formula.terms.size();
   }
 
   const std::vector<VariableId>& variables_;

@@ -123,7 +123,9 @@ bool InstanceSearch::may_be_true(const TypedFormula& atom) {
     const auto t = static_cast<Timepoint>(model.terms()[*time].integer);
     return is_holds ? possible_->may_hold(*number, t) : possible_->may_happen(*number, t);
   }
-  if (possible_->predicates(atom.predicate) == nullptr) return true;
+  const auto* table = possible_->predicates(atom.predicate);
+  // Of an effect the table says who changes what, not when.
+  if (table == nullptr || table->columns() < atom.terms.size()) return true;
   std::vector<GroundTermId> arguments;
   for (const auto id : atom.terms) {
     const auto value = terms_.term(id);
@@ -213,7 +215,8 @@ void InstanceSearch::match_rows(const InstancePlan::Step& step, std::size_t numb
     is_event = atom.predicate == typed.core.happens;
     if (!is_event && atom.predicate != typed.core.holds_at) {
       table = possible_->predicates(atom.predicate);
-      columns = atom.terms;
+      columns.assign(atom.terms.begin(),
+                     atom.terms.begin() + static_cast<std::ptrdiff_t>(table->columns()));
     } else {
       time = atom.terms[1];
     }

@@ -1,6 +1,7 @@
 #include "compiler/ground/possible_atoms.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -292,6 +293,23 @@ bool PossibleAtoms::may_happen(std::uint32_t event, std::optional<Timepoint> t) 
   if (!model_.may_happen(event)) return false;
   if (!t || !is_scheduled(model_.terms()[model_.events()[event]].symbol)) return true;
   return occurrence_set_.contains(occurrence_key(event, *t));
+}
+
+void PossibleAtoms::know_effects() {
+  const auto& core = model_.typed().core;
+  for (const auto& predicate : {core.initiates, core.terminates, core.releases}) {
+    if (predicate) predicates_.insert_or_assign(*predicate, GroundTable(2));
+  }
+}
+
+bool PossibleAtoms::add_effect(EffectKind kind, std::uint32_t event, std::uint32_t fluent) {
+  const auto& core = model_.typed().core;
+  if (!effects_.emplace(kind, event, fluent).second) return false;
+  const auto predicate = kind == EffectKind::kInitiates    ? core.initiates
+                         : kind == EffectKind::kTerminates ? core.terminates
+                                                           : core.releases;
+  predicates_.at(*predicate).add(std::array{model_.events()[event], model_.fluents()[fluent]});
+  return true;
 }
 
 void PossibleAtoms::set_predicate_table(SymbolId symbol, GroundTable table) {

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
+#include <tuple>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -52,7 +54,8 @@ class PossibleAtoms {
   GroundTable& fluents(SymbolId symbol);
   /// Events that may happen, by symbol; with the timepoint as last column if `is_scheduled`.
   GroundTable& events(SymbolId symbol);
-  /// User predicates that may be true; none where nothing is known.
+  /// User predicates that may be true, and (without their timepoint) effects that there may be;
+  /// none where nothing is known.
   GroundTable* predicates(SymbolId symbol);
 
   /// Does every occurrence of the symbol's events stand at a fixed timepoint?
@@ -79,6 +82,11 @@ class PossibleAtoms {
   bool may_hold(std::uint32_t fluent, std::optional<Timepoint> t) const;
   bool may_happen(std::uint32_t event, std::optional<Timepoint> t) const;
 
+  /// From now on there are tables of effects, at first empty.
+  void know_effects();
+  /// False: it was there.
+  bool add_effect(EffectKind kind, std::uint32_t event, std::uint32_t fluent);
+
   void set_predicate_table(SymbolId symbol, GroundTable table);
   /// May the user predicate's atom be true?
   bool may_be_true(SymbolId symbol, GroundTermId term) const;
@@ -88,6 +96,7 @@ class PossibleAtoms {
   std::map<SymbolId, GroundTable> fluents_, predicates_;
   std::map<std::pair<SymbolId, bool>, GroundTable> events_;  // by symbol and whether timed
   std::map<SymbolId, std::unordered_set<std::uint32_t>> true_predicates_;
+  std::set<std::tuple<EffectKind, std::uint32_t, std::uint32_t>> effects_;
   std::vector<bool> scheduled_;  // by symbol
   bool all_scheduled_ = false;
   bool timeless_ = false;

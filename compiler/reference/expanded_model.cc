@@ -1,6 +1,7 @@
 #include "compiler/reference/expanded_model.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "compiler/base/contract.h"
 #include "compiler/reference/model_expander.h"
@@ -13,6 +14,12 @@ std::optional<std::uint32_t> look_up(const std::map<std::string, std::uint32_t>&
   const auto found = numbers.find(text);
   if (found == numbers.end()) return std::nullopt;
   return found->second;
+}
+
+std::vector<std::uint32_t> ascending(std::vector<std::uint32_t> numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
 }
 
 }  // namespace
@@ -197,13 +204,18 @@ std::size_t ReferenceTerms::depth(const TypedModel& model, std::size_t limit) {
 }
 
 FormulaTrees::Node FormulaTrees::atom(std::uint32_t number) {
-  nodes_.push_back({FormulaKind::kAtom, number, 0});
+  nodes_.push_back({FormulaKind::kAtom, number, 0, false});
+  return static_cast<Node>(nodes_.size() - 1);
+}
+
+FormulaTrees::Node FormulaTrees::effect(std::uint32_t number) {
+  nodes_.push_back({FormulaKind::kAtom, number, 0, true});
   return static_cast<Node>(nodes_.size() - 1);
 }
 
 FormulaTrees::Node FormulaTrees::add(FormulaKind kind, const std::vector<Node>& parts) {
-  nodes_.push_back(
-      {kind, static_cast<std::uint32_t>(parts_.size()), static_cast<std::uint32_t>(parts.size())});
+  nodes_.push_back({kind, static_cast<std::uint32_t>(parts_.size()),
+                    static_cast<std::uint32_t>(parts.size()), false});
   parts_.insert(parts_.end(), parts.begin(), parts.end());
   return static_cast<Node>(nodes_.size() - 1);
 }
@@ -279,30 +291,54 @@ std::vector<std::uint32_t> FormulaTrees::atoms_of(Node root) const {
     const auto& entry = nodes_[visit.back()];
     visit.pop_back();
     if (entry.kind == FormulaKind::kAtom) {
-      atoms.push_back(entry.first);
+      if (!entry.is_effect) atoms.push_back(entry.first);
       continue;
     }
     for (std::uint32_t i = 0; i < entry.count; ++i) visit.push_back(parts_[entry.first + i]);
   }
-  std::sort(atoms.begin(), atoms.end());
-  atoms.erase(std::unique(atoms.begin(), atoms.end()), atoms.end());
-  return atoms;
+  return ascending(std::move(atoms));
 }
 
-bool FormulaTrees::value(Node node, const std::vector<std::uint8_t>& values) const {
+std::vector<std::uint32_t> FormulaTrees::effects_of(Node root, bool negative) const {
+  std::vector<std::uint32_t> effects;
+  std::vector<std::pair<Node, bool>> visit = {{root, negative}};
+  while (!visit.empty()) {
+    const auto [node, turned] = visit.back();
+    visit.pop_back();
+    const auto& entry = nodes_[node];
+    if (entry.kind == FormulaKind::kAtom) {
+      if (entry.is_effect && !turned) effects.push_back(entry.first);
+      continue;
+    }
+    for (std::uint32_t i = 0; i < entry.count; ++i) {
+      const auto part = parts_[entry.first + i];
+      visit.emplace_back(part, entry.kind == FormulaKind::kNot ? !turned : turned);
+      if (entry.kind == FormulaKind::kIff) visit.emplace_back(part, !turned);
+    }
+  }
+  return ascending(std::move(effects));
+}
+
+bool FormulaTrees::value(Node node, const Values& values, const Effects& effects) const {
   const auto& entry = nodes_[node];
-  const auto part = [&](std::uint32_t i) { return value(parts_[entry.first + i], values); };
+  const auto part = [&](std::uint32_t i) {
+    return value(parts_[entry.first + i], values, effects);
+  };
+  /// Not the part, with the effects in it that count for the whole turned round.
+  const auto no_part = [&](std::uint32_t i) {
+    return !value(parts_[entry.first + i], values, {effects.negative, effects.positive});
+  };
   switch (entry.kind) {
     case FormulaKind::kTrue:
       return true;
     case FormulaKind::kFalse:
       return false;
     case FormulaKind::kAtom:
-      return values[entry.first] != 0;
+      return (entry.is_effect ? *effects.positive : values)[entry.first] != 0;
     case FormulaKind::kNot:
-      return !part(0);
+      return no_part(0);
     case FormulaKind::kIff:
-      return part(0) == part(1);
+      return (part(0) || no_part(1)) && (part(1) || no_part(0));
     case FormulaKind::kAnd:
       for (std::uint32_t i = 0; i < entry.count; ++i) {
         if (!part(i)) return false;
@@ -325,6 +361,35 @@ bool FormulaTrees::value(Node node, const std::vector<std::uint8_t>& values) con
 
 ExpandedModel::ExpandedModel(const TypedModel& model, ReferenceBudget& budget) {
   ModelExpander(model, budget, *this).run();
+}
+
+/// From every effect that needs another to be absent: is there a way back?
+bool ExpandedModel::has_circular_effect() const {
+  std::vector<std::vector<std::uint32_t>> needed(effects_.size()), absent(effects_.size());
+  for (std::size_t i = 0; i < effects_.size(); ++i) {
+    const auto& effect = effects_[i];
+    for (const auto& row : rows(effect.fluent, effect.time)) {
+      if (row.kind != effect.kind || row.event != effect.event) continue;
+      for (const bool negative : {false, true}) {
+        const auto found = trees_.effects_of(row.condition.node, negative);
+        needed[i].insert(needed[i].end(), found.begin(), found.end());
+        if (negative) absent[i].insert(absent[i].end(), found.begin(), found.end());
+      }
+    }
+  }
+  for (std::size_t start = 0; start < effects_.size(); ++start) {
+    std::vector<bool> reached(effects_.size(), false);
+    auto todo = absent[start];
+    while (!todo.empty()) {
+      const auto next = todo.back();
+      todo.pop_back();
+      if (next == start) return true;
+      if (reached[next]) continue;
+      reached[next] = true;
+      todo.insert(todo.end(), needed[next].begin(), needed[next].end());
+    }
+  }
+  return false;
 }
 
 std::optional<std::uint32_t> ExpandedModel::fluent(const std::string& text) const {

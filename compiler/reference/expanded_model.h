@@ -82,12 +82,16 @@ class ReferenceTerms {
 class FormulaTrees {
  public:
   using Node = std::uint32_t;
+  /// Truth values by number.
+  using Values = std::vector<std::uint8_t>;
 
   FormulaTrees() : nodes_(2) { nodes_[kTruth].kind = FormulaKind::kTrue; }
   static constexpr Node kFalsity = 0, kTruth = 1;
   static Node constant(bool value) { return value ? kTruth : kFalsity; }
 
   Node atom(std::uint32_t number);
+  /// An effect predicate's atom: what its value is follows from other atoms.
+  Node effect(std::uint32_t number);
   /// kNot, kAnd, kOr, kImplies or kIff over its parts.
   Node connect(FormulaKind kind, const std::vector<Node>& parts);
 
@@ -97,17 +101,28 @@ class FormulaTrees {
 
   /// The conjuncts of a conjunction, else the node itself.
   std::vector<Node> conjuncts(Node node) const;
-  /// The atoms below a node, ascending, each once.
+  /// The atoms below a node, ascending, each once; effects are none of them.
   std::vector<std::uint32_t> atoms_of(Node node) const;
+  /// The effects below a node that count for it (against it: `negative`), ascending, each once.
+  std::vector<std::uint32_t> effects_of(Node node, bool negative) const;
 
+  /// What the effects in a formula are: those that count for the formula, those that count against
+  /// it.
+  struct Effects {
+    const Values* positive = nullptr;
+    const Values* negative = nullptr;
+  };
   /// The truth value where values[a] tells whether atom a is true. As deep as the tree.
-  bool value(Node node, const std::vector<std::uint8_t>& values) const;
+  bool value(Node node, const Values& values, const Effects& effects) const;
+  /// Of a tree without effects.
+  bool value(Node node, const Values& values) const { return value(node, values, {}); }
 
  private:
   struct Entry {
     FormulaKind kind = FormulaKind::kFalse;
-    std::uint32_t first = 0;  // the atom, or the place of the first part in parts_
+    std::uint32_t first = 0;  // the atom or effect, or the place of the first part in parts_
     std::uint32_t count = 0;
+    bool is_effect = false;  // kAtom
   };
   Node add(FormulaKind kind, const std::vector<Node>& parts);
   Node junction(bool conjunction, const std::vector<Node>& parts);
@@ -144,6 +159,13 @@ class ExpandedModel {
     std::uint32_t event = 0;
     ReferenceFormula condition;
     std::size_t effect = 0;  // index into the typed model's effects
+  };
+  /// An effect that a condition mentions; the rows that bring it about are those of its kind.
+  struct EffectAtom {
+    EffectKind kind = EffectKind::kInitiates;
+    std::uint32_t event = 0, fluent = 0;
+    std::int64_t time = 0;
+    std::int64_t needed = 0;  // the last timepoint that must exist for all of its rows to
   };
   /// DEC3 or DEC4: while `fluent` has developed since `begin`, `target` holds at `end`.
   struct Path {
@@ -188,6 +210,10 @@ class ExpandedModel {
   const std::vector<EffectRow>& rows(std::uint32_t fluent, std::int64_t t) const {
     return rows_[static_cast<std::size_t>(t) * fluents_.size() + fluent];
   }
+  /// By the numbers that they have in the trees.
+  const std::vector<EffectAtom>& effects() const { return effects_; }
+  /// Does some effect depend on its own absence?
+  bool has_circular_effect() const;
   const std::vector<Path>& paths() const { return paths_; }
   const std::vector<Completed>& completed() const { return completed_; }
   /// The axioms that do not exist: every instance names something beyond the horizon or its sort.
@@ -212,6 +238,7 @@ class ExpandedModel {
   FormulaTrees trees_;
   std::vector<Conjunct> conjuncts_;
   std::vector<std::vector<EffectRow>> rows_;
+  std::vector<EffectAtom> effects_;
   std::vector<Path> paths_;
   std::vector<Completed> completed_;
   std::vector<std::size_t> silent_axioms_;

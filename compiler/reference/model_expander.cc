@@ -74,12 +74,37 @@ ReferenceFormula ModelExpander::measured(Node node) const {
   for (const auto atom : out_.trees_.atoms_of(node)) {
     formula.needed = std::max(formula.needed, out_.needed(atom));
   }
+  for (const bool negative : {false, true}) {
+    for (const auto effect : out_.trees_.effects_of(node, negative)) {
+      formula.needed = std::max(formula.needed, out_.effects_[effect].needed);
+    }
+  }
   return formula;
 }
 
 void ModelExpander::expand_effects() {
   for (std::size_t i = 0; i < model_.effects.size(); ++i) expand_effect(i);
   effects_known_ = true;
+  measure_effects();
+}
+
+/// What an effect in a condition needs, the condition needs.
+void ModelExpander::measure_effects() {
+  for (auto& effect : out_.effects_) effect.needed = effect.time + 1;
+  for (bool grown = !out_.effects_.empty(); grown;) {
+    grown = false;
+    for (auto& rows : out_.rows_) {
+      for (auto& row : rows) row.condition = measured(row.condition.node);
+    }
+    for (auto& effect : out_.effects_) {
+      const auto before = effect.needed;
+      for (const auto& row : out_.rows(effect.fluent, effect.time)) {
+        if (row.kind != effect.kind || row.event != effect.event) continue;
+        effect.needed = std::max(effect.needed, row.condition.needed);
+      }
+      grown = grown || effect.needed != before;
+    }
+  }
 }
 
 /// An instance whose terms or condition do not exist gives no row.
@@ -311,13 +336,21 @@ std::optional<ModelExpander::Node> ModelExpander::event_atom(const TypedFormula&
   return std::nullopt;
 }
 
-/// Completed by circumscription: some effect axiom says so.
+/// Completed by circumscription: some effect axiom says so. While the axioms are being read, and in
+/// what they say of one another, an effect is an atom.
 std::optional<ModelExpander::Node> ModelExpander::effect_atom(EffectKind kind,
                                                               const std::vector<Value>& arguments) {
   const auto event = out_.event(terms_.text(arguments[0]));
   const auto fluent = out_.fluent(terms_.text(arguments[1]));
   const auto t = terms_.number(arguments[2]);
-  if (!event || !fluent || !t || *t >= out_.horizon_ || !effects_known_) return std::nullopt;
+  if (!event || !fluent || !t || *t >= out_.horizon_) return std::nullopt;
+  if (!effects_known_) {
+    const auto number = static_cast<std::uint32_t>(out_.effects_.size());
+    const auto [found, added] =
+        effect_numbers_.try_emplace(std::tuple(kind, *event, *fluent, *t), number);
+    if (added) out_.effects_.push_back({kind, *event, *fluent, *t, 0});
+    return out_.trees_.effect(found->second);
+  }
   std::vector<Node> conditions;
   for (const auto& row : out_.rows(*fluent, *t)) {
     if (row.kind == kind && row.event == *event) conditions.push_back(row.condition.node);

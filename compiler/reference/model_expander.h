@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "compiler/reference/expanded_model.h"
@@ -26,6 +28,7 @@ class ModelExpander {
   void number_atoms();
   void expand_effects();
   void expand_effect(std::size_t index);
+  void measure_effects();
   void expand_axioms();
   void expand_trajectories();
   void expand_trajectory(std::size_t index);
@@ -53,6 +56,9 @@ class ModelExpander {
   ReferenceTerms terms_;
   ReferenceTerms::Environment environment_;
   bool effects_known_ = false;
+  /// By kind, event, fluent and timepoint: the number among the expanded model's effects.
+  std::map<std::tuple<EffectKind, std::uint32_t, std::uint32_t, std::int64_t>, std::uint32_t>
+      effect_numbers_;
 };
 
 }  // namespace parallax::compiler

@@ -11,9 +11,46 @@ constexpr std::size_t kMaxAtoms = 6;  // quoted in one text
 
 }  // namespace
 
+/// The alternating fixpoint (Van Gelder 1989): too few effects, then too many, closer each time.
+ReferenceSearch::ReferenceSearch(const TypedModel& model, const ExpandedModel& expanded,
+                                 const Values& values, std::int64_t last)
+    : model_(model), expanded_(expanded), values_(values), last_(last) {
+  effects_.assign(expanded.effects().size(), 0);
+  if (effects_.empty()) return;
+  for (;;) {
+    const auto most = least_effects(effects_);
+    auto least = least_effects(most);
+    const bool settled = least == effects_;
+    effects_ = std::move(least);
+    if (!settled) continue;
+    circular_ = effects_ != most;
+    return;
+  }
+}
+
+ReferenceSearch::Values ReferenceSearch::least_effects(const Values& absent) const {
+  Values found(absent.size(), 0);
+  for (bool grown = true; grown;) {
+    grown = false;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const auto& effect = expanded_.effects()[i];
+      if (found[i] != 0 || effect.needed > last_) continue;
+      for (const auto& row : expanded_.rows(effect.fluent, effect.time)) {
+        if (row.kind != effect.kind || row.event != effect.event) continue;
+        if (!expanded_.trees().value(row.condition.node, values_, {&found, &absent})) continue;
+        found[i] = 1;
+        grown = true;
+        break;
+      }
+    }
+  }
+  return found;
+}
+
 void ReferenceSearch::run(std::size_t limit, std::int64_t max_reasons) {
   limit_ = limit;
   if (full()) return;
+  if (circular_) note({Rule::kCircularEffects, 0, 0, 0, 0});
   check_axioms();
   check_releases();
   const auto fluents = static_cast<std::uint32_t>(expanded_.fluents().size());
@@ -29,7 +66,8 @@ void ReferenceSearch::run(std::size_t limit, std::int64_t max_reasons) {
 
 ReferenceSearch::Truth ReferenceSearch::value(const ReferenceFormula& formula) const {
   if (formula.needed > last_) return Truth::kUnknown;
-  return expanded_.trees().value(formula.node, values_) ? Truth::kTrue : Truth::kFalse;
+  return expanded_.trees().value(formula.node, values_, {&effects_, &effects_}) ? Truth::kTrue
+                                                                                : Truth::kFalse;
 }
 
 ReferenceSearch::Truth ReferenceSearch::fires(const ExpandedModel::EffectRow& row,
@@ -141,7 +179,8 @@ bool ReferenceSearch::has_reason(const ExpandedModel::Completed& completed, Valu
   bool found = false;
   for (std::size_t i = 0; i < completed.reasons.size() && !found; ++i) {
     const auto& formula = expanded_.conjuncts()[completed.reasons[i]].formula;
-    found = formula.needed > last_ || !expanded_.trees().value(formula.node, changed);
+    found = formula.needed > last_ ||
+            !expanded_.trees().value(formula.node, changed, {&effects_, &effects_});
   }
   changed[completed.atom] = 1;
   return found;
@@ -320,6 +359,10 @@ Violation ReferenceEvaluator::describe(const ReferenceFinding& finding,
       const auto& completed = expanded_.completed()[finding.index];
       const auto what = "completion of " + expanded_.atom_text(completed.atom);
       return {model_.completions[completed.completion].source, what, t, what + ": no reason"};
+    }
+    case Rule::kCircularEffects: {
+      const std::string what = "effects depend on their own absence";
+      return {model_.effects.front().source, what, t, what};
     }
   }
   return {};

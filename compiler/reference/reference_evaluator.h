@@ -21,7 +21,8 @@ struct ReferenceFinding {
     kFrame,            // DEC5 to DEC8
     kEffect,           // DEC9 to DEC12; index: row of (fluent, timepoint)
     kTrajectory,       // DEC3 or DEC4; index: path
-    kCompletion        // index: completed atom
+    kCompletion,       // index: completed atom
+    kCircularEffects   // some effect depends on its own absence
   };
   Rule rule = Rule::kAxiom;
   int dec = 0;  // the number of the DEC axiom
@@ -36,8 +37,7 @@ class ReferenceSearch {
  public:
   using Values = std::vector<std::uint8_t>;
   ReferenceSearch(const TypedModel& model, const ExpandedModel& expanded, const Values& values,
-                  std::int64_t last)
-      : model_(model), expanded_(expanded), values_(values), last_(last) {}
+                  std::int64_t last);
 
   /// Ends at `limit` findings, or when more than `max_reasons` formulas were evaluated to find
   /// reasons of completed atoms.
@@ -55,6 +55,9 @@ class ReferenceSearch {
   }
   bool is_true(std::uint32_t atom) const { return values_[atom] != 0; }
   Truth value(const ReferenceFormula& formula) const;
+  /// The effects that the rows bring about where conditions take those of `absent` for what they
+  /// deny: rows are added until nothing new follows.
+  Values least_effects(const Values& absent) const;
   /// Does an event change the fluent this way at t?
   Truth changed(EffectKind kind, std::uint32_t fluent, std::int64_t t) const;
   Truth fires(const ExpandedModel::EffectRow& row, std::int64_t t) const;
@@ -71,6 +74,8 @@ class ReferenceSearch {
   const ExpandedModel& expanded_;
   const Values& values_;
   std::int64_t last_ = 0;
+  Values effects_;  // as ExpandedModel numbers them
+  bool circular_ = false;
   std::size_t limit_ = 0;
   std::vector<ReferenceFinding> found_;
   bool finished_ = true;

@@ -27,7 +27,8 @@ struct Occurrence {
   Polarity polarity = Polarity::kPositive;
   /// Is the atom reached from the root through `[..]`, right sides of `->` and `&` alone?
   bool head = false;
-  std::string_view place;  // of an atom that is no head, for the message
+  bool in_condition = false;  // does it stand on the left of some `->`?
+  std::string_view place;     // of an atom that is no head, for the message
 };
 
 class ShapeReader {
@@ -82,9 +83,10 @@ class ShapeReader {
       TypedFormulaId formula;
       Polarity polarity;
       bool head;
+      bool in_condition;
       std::string_view place;
     };
-    std::vector<Visit> stack = {{root, Polarity::kPositive, true, {}}};
+    std::vector<Visit> stack = {{root, Polarity::kPositive, true, false, {}}};
     while (!stack.empty()) {
       const Visit visit = stack.back();
       stack.pop_back();
@@ -93,7 +95,8 @@ class ShapeReader {
                           std::string_view place) {
         // The outermost construct that is in the way is the one to name.
         const bool keep = !visit.head;
-        stack.push_back({child, polarity, visit.head && head, keep ? visit.place : place});
+        stack.push_back(
+            {child, polarity, visit.head && head, visit.in_condition, keep ? visit.place : place});
       };
       switch (formula.kind) {
         case FormulaKind::kTrue:
@@ -102,7 +105,8 @@ class ShapeReader {
           break;
         case FormulaKind::kAtom:
           if (effect(formula) || trajectory(formula)) {
-            occurrences_.push_back({visit.formula, visit.polarity, visit.head, visit.place});
+            occurrences_.push_back(
+                {visit.formula, visit.polarity, visit.head, visit.in_condition, visit.place});
           }
           break;
         case FormulaKind::kNot:
@@ -118,6 +122,7 @@ class ShapeReader {
           break;
         case FormulaKind::kImplies:
           go(formula.children[0], flipped(visit.polarity), false, "in a condition");
+          stack.back().in_condition = true;
           go(formula.children[1], visit.polarity, true, {});
           break;
         case FormulaKind::kIff:
@@ -143,24 +148,25 @@ class ShapeReader {
     go(side, whole ? Polarity::kPositive : Polarity::kBoth, false, "on a side of `<->`");
   }
 
+  /// In a condition an effect stands for its completed meaning, negated or not. Elsewhere it would
+  /// assert an effect where a formula that is no effect axiom cannot.
   bool check_occurrences() {
-    const bool any_head = std::any_of(occurrences_.begin(), occurrences_.end(),
-                                      [](const Occurrence& found) { return found.head; });
     bool fine = true;
     for (const auto& found : occurrences_) {
       if (found.head) continue;
       const auto& atom = at(found.atom);
       const auto& name = model_.symbols[atom.predicate].name;
-      if (found.polarity == Polarity::kPositive || trajectory(atom)) {
+      const bool is_trajectory = trajectory(atom).has_value();
+      if (is_trajectory && found.in_condition) {
+        sink_.error(DiagnosticCode::kTrajectoryInCondition, atom.source, name);
+        fine = false;
+      } else if (is_trajectory || (!found.in_condition && found.polarity == Polarity::kPositive)) {
         auto report = sink_.error(DiagnosticCode::kEffectShape, atom.source, name, found.place);
         if (found.place.starts_with("below")) {
           report.fix(
               "a quantifier reaches to the end of the formula: put parentheses around the "
               "condition, as in `({x} P(x)) -> ...`");
         }
-        fine = false;
-      } else if (any_head) {
-        sink_.error(DiagnosticCode::kEffectInCondition, atom.source, name);
         fine = false;
       }
     }
@@ -239,7 +245,8 @@ class ShapeReader {
       model_.trajectories.push_back({*path, std::move(variables), condition, terms[0], terms[1],
                                      terms[2], terms[3], label_, source});
     } else {
-      model_.axioms.push_back({label_, rebuilt(steps, task.formula), source, false});
+      const auto formula = rebuilt(steps, task.formula);
+      model_.axioms.push_back({label_, formula, source, mentions_effects(model_, formula)});
     }
   }
 
@@ -286,8 +293,11 @@ class ShapeReader {
       reason = "loses sight of it, because it does not start with `[...]`";
     } else if (steps.size() != expected) {
       reason = "loses sight of it, because it has more than one `[...]` or `->`";
-    } else if (occurrences_.size() > 1) {
+    } else if (std::count_if(occurrences_.begin(), occurrences_.end(),
+                             [](const Occurrence& found) { return found.head; }) > 1) {
       reason = "loses sight of it, because it has more than one effect";
+    } else if (occurrences_.size() > 1) {
+      reason = "takes the effect in its condition for what that effect would bring about";
     } else if (model_.terms[at(head).terms[2]].kind != TermKind::kVariable) {
       reason = "lets the fluent change at every timepoint, because its time is no variable";
     } else {
@@ -305,6 +315,22 @@ class ShapeReader {
 };
 
 }  // namespace
+
+bool mentions_effects(const TypedModel& model, TypedFormulaId root) {
+  const auto& core = model.core;
+  std::vector<TypedFormulaId> todo = {root};
+  while (!todo.empty()) {
+    const auto& formula = model.formulas[todo.back()];
+    todo.pop_back();
+    if (formula.kind == FormulaKind::kAtom &&
+        (formula.predicate == core.initiates || formula.predicate == core.terminates ||
+         formula.predicate == core.releases)) {
+      return true;
+    }
+    todo.insert(todo.end(), formula.children.begin(), formula.children.end());
+  }
+  return false;
+}
 
 void add_effect_formula(TypedFormulaId formula, std::string label, TypedModel& model,
                         base::DiagnosticSink& sink) {

@@ -1,6 +1,9 @@
 #include "compiler/sema/check.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -11,6 +14,7 @@
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/sema/axiom_shapes.h"
+#include "compiler/sema/calculus_axioms.h"
 #include "compiler/sema/declarations.h"
 #include "compiler/sema/elaborator.h"
 #include "compiler/sema/exclusion.h"
@@ -145,11 +149,13 @@ constexpr std::string_view kCausalDefinitions = "foundations/ECCausal.e";
 class ModelChecker {
  public:
   ModelChecker(const ModelAst& ast, const base::SourceFiles& files, const IgnoredNames& ignored,
-               const CheckOptions& options, TypedModel& model, base::DiagnosticSink& sink)
+               const CheckOptions& options, Repetitions& repetitions, TypedModel& model,
+               base::DiagnosticSink& sink)
       : ast_(ast),
         files_(files),
         ignored_(ignored),
         old_reasoner_(options.old_reasoner),
+        repetitions_(repetitions),
         model_(model),
         sink_(sink),
         elaborator_(model, {.complete_model = options.complete_model}, sink),
@@ -182,6 +188,7 @@ class ModelChecker {
       return;
     }
     if (ignored_.concern(ast, statement)) return;
+    if (holds_by_itself(place)) return;
     const auto found = elaborator_.elaborate(ast, statement.formula);
     if (!label.empty()) labels_.insert(label);
     if (!found) return;
@@ -190,6 +197,65 @@ class ModelChecker {
     } else if (!functions_.add(*found, elaborator_.domains())) {
       model_.axioms.push_back({std::move(label), *found, ast.source(statement.source), false});
     }
+  }
+
+  /// An axiom of the calculus written out, or a text of the foundations in a copy of them.
+  bool holds_by_itself(const ModelAst::Place& place) {
+    const Ast& ast = ast_.ast(place);
+    const auto& statement = ast_.statement(place);
+    const auto& file = ast_.files[place.file];
+    if (file.built_in || !mentions_any(ast, statement, kEffectNames)) return false;
+    const auto shape = ClauseShape::of(ast, statement);
+    if (!shape) return false;
+    if (!calculus_) calculus_.emplace();
+    if (file.repeats_foundation && repeats_definition(*shape)) return true;
+    if (!calculus_->recognises(*shape)) return false;
+    // DEC3 and DEC4 are written with a predicate that somebody may have defined in another way.
+    if (mentions_any(ast, statement, kTrajectoryNames) && has_unusual_interval()) return false;
+    repetitions_.note_axiom(ast.source(statement.source));
+    return true;
+  }
+
+  static constexpr std::array<std::string_view, 2> kTrajectoryNames = {"Trajectory",
+                                                                       "AntiTrajectory"};
+  static constexpr std::array<std::string_view, 3> kEffectNames = {"Initiates", "Terminates",
+                                                                   "Releases"};
+
+  static bool mentions_any(const Ast& ast, const Statement& formula,
+                           std::span<const std::string_view> names) {
+    for (auto i = formula.first_node.index(); i <= formula.formula.index(); ++i) {
+      const Node& node = ast[NodeId(i)];
+      if (node.kind == NodeKind::kApply &&
+          std::find(names.begin(), names.end(), ast.name(node)) != names.end()) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  template <typename Visit>
+  bool any_formula(const Visit& visit) const {
+    return std::any_of(ast_.order.begin(), ast_.order.end(), [&](const ModelAst::Place& place) {
+      return ast_.statement(place).kind == StatementKind::kFormula && visit(place);
+    });
+  }
+
+  bool repeats_definition(const ClauseShape& shape) const {
+    return any_formula([&](const ModelAst::Place& place) {
+      if (!ast_.files[place.file].built_in) return false;
+      const auto definition = ClauseShape::of(ast_.ast(place), ast_.statement(place));
+      return definition && shape.same_as(*definition);
+    });
+  }
+
+  bool has_unusual_interval() const {
+    return any_formula([&](const ModelAst::Place& place) {
+      const Ast& ast = ast_.ast(place);
+      const auto& statement = ast_.statement(place);
+      if (!CalculusAxioms::defined_interval(ast, statement.formula)) return false;
+      const auto shape = ClauseShape::of(ast, statement);
+      return !shape || !calculus_->is_usual_definition(*shape);
+    });
   }
 
   /// Foundations define predicates by `[..] P(..) <-> ...`. A definition changes nothing about
@@ -248,10 +314,12 @@ class ModelChecker {
   const base::SourceFiles& files_;
   const IgnoredNames& ignored_;
   bool old_reasoner_;
+  Repetitions& repetitions_;
   TypedModel& model_;
   base::DiagnosticSink& sink_;
   Elaborator elaborator_;
   FunctionTable functions_;
+  std::optional<CalculusAxioms> calculus_;  // made when first asked
   std::unordered_set<std::string> labels_;  // look-up only
 };
 
@@ -261,8 +329,9 @@ base::Result<TypedModel> check_model(const ModelAst& ast, const base::SourceFile
                                      base::DiagnosticSink& sink, const CheckOptions& options) {
   TypedModel model;
   const IgnoredNames ignored(ast);
-  declare(ast, ignored, options, model, sink);
-  ModelChecker(ast, files, ignored, options, model, sink).run();
+  Repetitions repetitions(ast, sink);
+  declare(ast, ignored, options, repetitions, model, sink);
+  ModelChecker(ast, files, ignored, options, repetitions, model, sink).run();
   if (sink.has_errors()) return sink.already_reported();
   return model;
 }

@@ -33,11 +33,16 @@ std::string capitalized(std::string_view name) {
 class Declarer {
  public:
   Declarer(const ModelAst& model_ast, const IgnoredNames& ignored, const CheckOptions& options,
-           TypedModel& model, base::DiagnosticSink& sink)
-      : model_ast_(model_ast), ignored_(ignored), options_(options), model_(model), sink_(sink) {}
+           Repetitions& repetitions, TypedModel& model, base::DiagnosticSink& sink)
+      : model_ast_(model_ast),
+        ignored_(ignored),
+        options_(options),
+        repetitions_(repetitions),
+        model_(model),
+        sink_(sink) {}
 
   void run() {
-    declare_sorts(model_ast_, model_, sink_);
+    declare_sorts(model_ast_, repetitions_, model_, sink_);
     reserve();
     // Several passes, so that the order of the statements does not matter.
     for_each([&](const Ast& ast, const Statement& statement) {
@@ -101,6 +106,10 @@ class Declarer {
     const auto like = model_.find_sort(sort_of_variable(name));
     if (!is_constant_name(name)) {
       sink_.error(DiagnosticCode::kNameSpelling, ast.source(word), shortened(name), "a constant");
+    } else if (like == sort_id && sort.reified && name != sort.name) {
+      // Old models declare `fluent fluent2` before they use the variable.
+      sink_.warning(DiagnosticCode::kVariableDeclared, ast.source(word), shortened(name),
+                    sort.name);
     } else if (like) {
       sink_.error(DiagnosticCode::kNameSpelling, ast.source(word), shortened(name), "a constant")
           .note(model_.sorts[*like].declared,
@@ -129,7 +138,7 @@ class Declarer {
     const bool same =
         std::find(object.sorts.begin(), object.sorts.end(), sort) != object.sorts.end();
     if (same) {
-      report_twice(ast, word, object.name, object.declared);
+      repetitions_.note(object.name, ast.source(word), object.declared);
     } else if (!additional) {
       const auto& first = model_.sorts[object.sorts.front()].name;
       sink_.error(DiagnosticCode::kSecondSort, ast.source(word), shortened(object.name), first)
@@ -179,7 +188,12 @@ class Declarer {
     symbol.kind = kind_of(*sort);
     complete = result_sort(ast, statement, *sort, symbol) && complete;
     if (const auto before = model_.find_symbol(name)) {
-      return report_twice(ast, statement.name, name, model_.symbols[*before].declared);
+      const auto& first = model_.symbols[*before];
+      if (complete && first.kind == symbol.kind && first.arguments == symbol.arguments &&
+          first.result == symbol.result) {
+        return repetitions_.note(name, ast.source(statement.name), first.declared);
+      }
+      return report_twice(ast, statement.name, name, first.declared);
     }
     // An incomplete one would only cause complaints about every use of it.
     if (!complete) return;
@@ -361,6 +375,7 @@ class Declarer {
   const ModelAst& model_ast_;
   const IgnoredNames& ignored_;
   const CheckOptions& options_;
+  Repetitions& repetitions_;
   TypedModel& model_;
   base::DiagnosticSink& sink_;
   std::size_t position_ = 0;  // in ModelAst::order
@@ -394,9 +409,37 @@ bool IgnoredNames::concern(const Ast& ast, const Statement& formula) const {
   return false;
 }
 
+Repetitions::Repetitions(const ModelAst& ast, base::DiagnosticSink& sink) : sink_(sink) {
+  for (const auto& file : ast.files) {
+    const auto index = file.ast.file().index();
+    if (index >= kinds_.size()) kinds_.resize(index + 1, kOwn);
+    kinds_[index] = file.built_in ? kBuiltIn : file.repeats_foundation ? kCopy : kOwn;
+  }
+  told_.assign(kinds_.size(), false);
+}
+
+void Repetitions::note(std::string_view name, base::SourceRange again, base::SourceRange first) {
+  // A foundation may be loaded after the declarations that repeat it.
+  if (built_in(again)) std::swap(again, first);
+  if (built_in(again) || is_copy(again) || is_copy(first)) return;
+  if (!built_in(first)) {
+    sink_.warning(DiagnosticCode::kDeclaredAgain, again, shortened(name))
+        .note(first, "first declared here");
+    return;
+  }
+  note_foundation(again, "`" + shortened(name) + "`");
+}
+
+void Repetitions::note_foundation(base::SourceRange again, std::string_view what) {
+  const auto file = again.file.index();
+  if (is_copy(again) || told_[file]) return;
+  told_[file] = true;
+  sink_.warning(DiagnosticCode::kFoundationRepeated, again, what);
+}
+
 void declare(const ModelAst& ast, const IgnoredNames& ignored, const CheckOptions& options,
-             TypedModel& model, base::DiagnosticSink& sink) {
-  Declarer(ast, ignored, options, model, sink).run();
+             Repetitions& repetitions, TypedModel& model, base::DiagnosticSink& sink) {
+  Declarer(ast, ignored, options, repetitions, model, sink).run();
 }
 
 }  // namespace parallax::compiler

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 #include "compiler/base/diagnostic.h"
 #include "compiler/sema/check.h"
@@ -12,9 +15,35 @@
 
 namespace parallax::compiler {
 
+/// What is said again. Once for each file where the foundations said it first: old models repeat
+/// them, whole or in part; not at all where the file is a copy of a foundation.
+class Repetitions {
+ public:
+  Repetitions(const ModelAst& ast, base::DiagnosticSink& sink);
+  /// `name` at `again` is declared as it was at `first`, in whatever order the two stand.
+  void note(std::string_view name, base::SourceRange again, base::SourceRange first);
+  /// An axiom of the event calculus, which holds by itself.
+  void note_axiom(base::SourceRange source) { note_foundation(source, "this axiom"); }
+  bool built_in(base::SourceRange range) const { return is(kBuiltIn, range); }
+  bool is_copy(base::SourceRange range) const { return is(kCopy, range); }
+
+ private:
+  void note_foundation(base::SourceRange again, std::string_view what);
+
+  enum Kind : std::uint8_t { kOwn, kCopy, kBuiltIn };
+  bool is(Kind kind, base::SourceRange range) const {
+    return range.file.index() < kinds_.size() && kinds_[range.file.index()] == kind;
+  }
+
+  base::DiagnosticSink& sink_;
+  std::vector<Kind> kinds_;  // by file
+  std::vector<bool> told_;   // by file: that it repeats the foundations
+};
+
 /// All `sort` and `reified sort` statements: names, then parents, then what parents imply. A sort
 /// below itself (E2003) loses the parent that closes the circle.
-void declare_sorts(const ModelAst& ast, TypedModel& model, base::DiagnosticSink& sink);
+void declare_sorts(const ModelAst& ast, Repetitions& repetitions, TypedModel& model,
+                   base::DiagnosticSink& sink);
 
 /// E2010 for reified sorts whose terms could be nested without end. Needs all symbols.
 void check_finite_sorts(const TypedModel& model, base::DiagnosticSink& sink);
@@ -45,6 +74,6 @@ class IgnoredNames {
 /// Fills the sorts, objects and symbols of `model` from all declarations, wherever in the model
 /// they stand, and its options and completions. Reports and leaves out what is wrong.
 void declare(const ModelAst& ast, const IgnoredNames& ignored, const CheckOptions& options,
-             TypedModel& model, base::DiagnosticSink& sink);
+             Repetitions& repetitions, TypedModel& model, base::DiagnosticSink& sink);
 
 }  // namespace parallax::compiler

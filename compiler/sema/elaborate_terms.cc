@@ -182,6 +182,10 @@ void Elaborator::report_unknown_symbol(const Node& node, Position position,
     report.fix("write `" + shortened(text) + "` without parentheses");
     return;
   }
+  if (const auto advice = calculus_advice(text, node.child_count); !term && !advice.empty()) {
+    report.fix(std::string(advice));
+    return;
+  }
   const auto near = term ? advice_.symbol(text, kTerms) : advice_.symbol(text, kPredicates);
   if (near) {
     const auto& found = model_.symbols[*near];

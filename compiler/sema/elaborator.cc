@@ -220,10 +220,11 @@ void Elaborator::enter_apply(Frame& frame, const Node& node) {
     // What stands beyond the declared arguments has no sort to be checked against.
     frame.end_child =
         std::min(node.child_count, static_cast<std::uint32_t>(symbol.arguments.size()));
-    sink_
-        .error(DiagnosticCode::kWrongArity, source(node), shortened(symbol.name),
-               symbol.arguments.size(), node.child_count)
-        .note(symbol.declared, "`" + signature(model_, symbol) + "` declared here");
+    auto report = sink_.error(DiagnosticCode::kWrongArity, source(node), shortened(symbol.name),
+                              symbol.arguments.size(), node.child_count);
+    report.note(symbol.declared, "`" + signature(model_, symbol) + "` declared here");
+    const auto advice = calculus_advice(symbol.name, node.child_count);
+    if (frame.symbol == model_.core.happens && !advice.empty()) report.fix(std::string(advice));
   }
 }
 

@@ -37,6 +37,28 @@ std::string with_article(std::string_view noun) {
   return fmt::format("{} {}", vowel ? "an" : "a", noun);
 }
 
+std::string_view calculus_advice(std::string_view name, std::size_t arguments) {
+  if (name == "Happens3" || (name == "Happens" && arguments == 3)) {
+    return "an event that takes time is a predicate of the model: declare `predicate "
+           "Happens3(event,time,time)`, write `[event,time] Happens(event,time) -> "
+           "Happens3(event,time,time).`, one rule for each compound event, and `completion "
+           "Happens3`; its effects are those of its parts";
+  }
+  if (name == "Clipped" || name == "Declipped") {
+    return "add `load foundations/DEC.e`, which defines it";
+  }
+  if (name == "StoppedIn" || name == "StartedIn") {
+    return "DEC3 and DEC4 hold by themselves; for other uses declare and define it, as `Clipped` "
+           "is "
+           "in `foundations/DEC.e`";
+  }
+  if (name == "Started" || name == "Stopped" || name == "Initiated" || name == "Terminated") {
+    return "add `load foundations/ECCausal.e`, which defines it";
+  }
+  if (name == "AntiTrajectory" || name == "Trajectory") return "add `load foundations/EC.e`";
+  return {};
+}
+
 std::string signature(const TypedModel& model, const Symbol& symbol) {
   std::string out = shortened(symbol.name) + "(";
   for (std::size_t i = 0; i < symbol.arguments.size(); ++i) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,6 +19,10 @@ std::string with_article(std::string_view noun);
 std::string signature(const TypedModel& model, const Symbol& symbol);
 /// The sort of a term for messages: of a constant the first one, "integer" for numbers.
 std::string sort_name(const TypedModel& model, TermId term);
+
+/// What to do where a predicate of the event calculus is used that the model has not declared, or
+/// an old one with another number of arguments; empty for other names.
+std::string_view calculus_advice(std::string_view name, std::size_t arguments);
 
 /// Finds declared names near a misspelt one. Gives up on sets of names so large that searching them
 /// for every error would take longer than checking the model.

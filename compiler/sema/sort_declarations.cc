@@ -107,8 +107,9 @@ constexpr std::size_t kMostCircles = 20;
 
 class SortDeclarer {
  public:
-  SortDeclarer(const ModelAst& model_ast, TypedModel& model, base::DiagnosticSink& sink)
-      : model_ast_(model_ast), model_(model), sink_(sink) {}
+  SortDeclarer(const ModelAst& model_ast, Repetitions& repetitions, TypedModel& model,
+               base::DiagnosticSink& sink)
+      : model_ast_(model_ast), repetitions_(repetitions), model_(model), sink_(sink) {}
 
   void run() {
     for_each_item([&](const Ast& ast, const Statement& statement, const Item& item) {
@@ -139,10 +140,12 @@ class SortDeclarer {
   void declare(const Ast& ast, const Statement& statement, const Item& item) {
     const auto name = ast.text(item.name);
     if (const auto before = model_.find_sort(name)) {
-      // A second statement may add a second parent, and nothing else.
+      // A second statement may repeat the first or add a second parent, and nothing else.
       const bool reified = statement.kind == StatementKind::kReifiedSort;
-      if (item.parent.empty() || model_.sorts[*before].reified != reified) {
+      if (model_.sorts[*before].reified != reified) {
         report_again(ast, item, *before);
+      } else if (item.parent.empty()) {
+        repetitions_.note(name, ast.source(item.name), model_.sorts[*before].declared);
       }
       return;
     }
@@ -170,7 +173,8 @@ class SortDeclarer {
     auto& parents = model_.sorts[*sort].parents;
     const bool first_statement = model_.sorts[*sort].declared == ast.source(item.name);
     if (std::find(parents.begin(), parents.end(), *parent) != parents.end()) {
-      return report_again(ast, item, *sort);
+      return repetitions_.note(ast.text(item.name), ast.source(item.name),
+                               model_.sorts[*sort].declared);
     }
     if (!first_statement && !parents.empty()) {
       sink_.warning(DiagnosticCode::kSecondParent, ast.source(item.name), model_.sorts[*sort].name)
@@ -213,6 +217,7 @@ class SortDeclarer {
   }
 
   const ModelAst& model_ast_;
+  Repetitions& repetitions_;
   TypedModel& model_;
   base::DiagnosticSink& sink_;
   std::vector<std::uint32_t> order_;
@@ -220,8 +225,9 @@ class SortDeclarer {
 
 }  // namespace
 
-void declare_sorts(const ModelAst& ast, TypedModel& model, base::DiagnosticSink& sink) {
-  SortDeclarer(ast, model, sink).run();
+void declare_sorts(const ModelAst& ast, Repetitions& repetitions, TypedModel& model,
+                   base::DiagnosticSink& sink) {
+  SortDeclarer(ast, repetitions, model, sink).run();
 }
 
 void check_finite_sorts(const TypedModel& model, base::DiagnosticSink& sink) {

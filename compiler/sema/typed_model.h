@@ -183,7 +183,8 @@ struct Axiom {
 enum class EffectKind : std::uint8_t { kInitiates, kTerminates, kReleases };
 
 /// `[variables] condition -> Initiates(event, fluent, time)` (Mueller 2006, section 2.7).
-/// `event` and `fluent` are terms; `time` is a term, usually a variable.
+/// `event` and `fluent` are terms; `time` is a term, usually a variable. Where the condition
+/// mentions effects itself, the effects of the model are the least ones that its axioms admit.
 struct EffectAxiom {
   EffectKind kind = EffectKind::kInitiates;
   std::vector<VariableId> variables;  // universally quantified

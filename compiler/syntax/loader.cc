@@ -58,7 +58,7 @@ Declipped(time1,fluent,time2) <->
 )"},
     {"foundations/ECTraj.e",
      R"(; Trajectories and antitrajectories (DEC3, DEC4) need no text of their own.
-load foundations/EC.e
+load foundations/DEC.e
 )"},
     {"foundations/ECCausal.e",
      R"(; Causal constraints: what a fluent is made to be at a timepoint by the events there.
@@ -178,14 +178,14 @@ class ModelLoader {
     const fs::path path(std::string(ast.text(word)));
     const fs::path folder = folders_[place.file];
     const auto normal = path.lexically_normal();
-    if (!model_.files[place.file].built_in && load_from_disk(path, folder, range)) return;
-    if (load_foundation(normal.string())) return;
+    if (find_foundation(normal.string())) return load_foundation(normal.string(), place, range);
+    if (load_from_disk(path, folder, range)) return;
     report_missing(path, range);
   }
 
   /// True if the file was found (and loaded or refused).
-  bool load_from_disk(const fs::path& path, const fs::path& folder,
-                      const base::SourceRange& range) {
+  bool load_from_disk(const fs::path& path, const fs::path& folder, const base::SourceRange& range,
+                      bool repeats_foundation = false) {
     std::vector<fs::path> candidates = {folder / path};
     if (path.is_relative()) {
       for (const auto& include : options_.include_dirs) candidates.push_back(include / path);
@@ -200,13 +200,14 @@ class ModelLoader {
         unreadable_ = true;
         return true;
       }
-      load_found(candidate, range);
+      load_found(candidate, range, repeats_foundation);
       return true;
     }
     return false;
   }
 
-  void load_found(const fs::path& candidate, const base::SourceRange& range) {
+  void load_found(const fs::path& candidate, const base::SourceRange& range,
+                  bool repeats_foundation) {
     const auto real = canonical_or_empty(candidate);
     if (!gate_.check(candidate, range, sink_)) {
       unreadable_ = true;
@@ -230,18 +231,29 @@ class ModelLoader {
     }
     index_of_.emplace(real.string(), model_.files.size());
     open(*file, candidate.parent_path(), false);
+    model_.files.back().repeats_foundation = repeats_foundation;
   }
 
-  bool load_foundation(std::string path) {
-    if (!find_foundation(path)) return false;
+  void load_foundation(std::string path, const ModelAst::Place& place,
+                       const base::SourceRange& range) {
     foundation_loaded_ = true;
-    const bool by_user = !model_.files[stack_.back().file].built_in;
+    const auto& by = model_.files[place.file];
+    const bool by_user = !by.built_in && !by.repeats_foundation;
     if (path == "foundations/EC.e" && encoding3_ && by_user) {
-      if (trajectory_) open_foundation("foundations/ECTraj.e");
+      if (trajectory_) open_foundation("foundations/ECTraj.e", place, range);
       path = "foundations/DEC.e";
     }
+    open_foundation(path, place, range);
+  }
+
+  /// What is opened last acts first.
+  void open_foundation(const std::string& path, const ModelAst::Place& place,
+                       const base::SourceRange& range) {
+    if (!model_.files[place.file].built_in) {
+      const fs::path folder = folders_[place.file];
+      load_from_disk(path, folder, range, true);
+    }
     open_foundation(path);
-    return true;
   }
 
   void open_foundation(const std::string& path) {

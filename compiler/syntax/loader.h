@@ -34,6 +34,9 @@ struct ModelAst {
   struct File {
     Ast ast;
     bool built_in = false;  // one of our foundations
+    /// A file on disk with the name of a foundation, which is loaded as well: what it has in common
+    /// with the foundation it only repeats.
+    bool repeats_foundation = false;
   };
   struct Place {
     std::uint32_t file = 0;       // index into `files`
@@ -51,10 +54,11 @@ struct ModelAst {
 };
 
 /// Reads the model files and what they load. `load PATH` is looked up beside the loading file, in
-/// the include folders, in the current folder, among the built-in foundations. Each file is read
-/// once (by its real path), so cycles are harmless (W1019 says so). Folders, FIFOs and devices are
-/// refused (E1015), and so is what a PathGate with the model files, the files that name them, the
-/// include folders and the current folder does not admit (E1016), unless `allow_outside`. Fails
+/// the include folders, in the current folder, among the built-in foundations. A built-in one is
+/// loaded by its name even where a file on disk has that name, and the file after it. Each file is
+/// read once (by its real path), so cycles are harmless (W1019 says so). Folders, FIFOs and devices
+/// are refused (E1015), and so is what a PathGate with the model files, the files that name them,
+/// the include folders and the current folder does not admit (E1016), unless `allow_outside`. Fails
 /// only if a text could not be read; syntax errors are reported and what is left is returned, so
 /// that the checker can go on. Ask the sink before using the model.
 base::Result<ModelAst> load_model(std::span<const std::filesystem::path> paths,

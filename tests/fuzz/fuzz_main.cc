@@ -19,6 +19,7 @@ struct FuzzOptions {
   std::size_t max_differences = 5;
   bool clingo = false;
   bool compat = false;
+  bool effect_constraints = false;
   bool print = false;
   bool no_shrink = false;
 };
@@ -32,9 +33,11 @@ struct FuzzFigures {
 };
 
 bool is_plausible(const std::string& codes) {
-  // A formula that is false whatever happens, one that says nothing, and a comparison of sorts that
-  // share no element.
-  return codes == "E2109" || codes == "E3003" || codes == "E3004" || codes == "E3003 E3004";
+  // A formula that is false whatever happens, one that says nothing, an effect that depends on its
+  // own absence, and a comparison of sorts that share no element.
+  return codes == "E2109" || codes == "E3016" || codes == "E3003 E3016" || codes == "E3004 E3016" ||
+         codes == "E3003 E3004 E3016" || codes == "E3003" || codes == "E3004" ||
+         codes == "E3003 E3004";
 }
 
 void count(const Comparison& comparison, FuzzFigures& figures) {
@@ -134,7 +137,8 @@ int fuzz(const FuzzOptions& options) {
   for (std::uint64_t i = 0; i < options.count; ++i) {
     const auto seed = options.seed + i;
     const bool large = is_large(options, seed);
-    const auto model = random_model(seed, large ? kSolverSize : kBruteForceSize);
+    const auto model =
+        random_model(seed, large ? kSolverSize : kBruteForceSize, options.effect_constraints);
     if (options.print) {
       fmt::print("{}", model.print());
       continue;
@@ -164,6 +168,8 @@ int run(int argc, char** argv) {
   table.flag("--clingo", options.clingo, "Compare with clingo as well, where it is installed");
   table.flag("--compat", options.compat,
              "Compare --compat decreasoner with a second implementation of its rules");
+  table.flag("--effect-constraints", options.effect_constraints,
+             "Add effect axioms whose conditions mention effects to every model");
   table.flag("--print", options.print, "Print the models instead of comparing");
   table.flag("--no-shrink", options.no_shrink, "Print differing models as they are");
   const auto line = tools::parse_and_print({table, "", false, {}}, argc, argv);

@@ -27,6 +27,14 @@ class ModelMaker {
     return std::move(statements_);
   }
 
+  /// To be called after the rest, so that models without them are the same.
+  std::vector<RandomStatement> make_effect_constraints() {
+    statements_.clear();
+    const auto count = 1 + random_.below(3);
+    for (std::size_t i = 0; i < count; ++i) effect_constraint();
+    return std::move(statements_);
+  }
+
  private:
   void declare(std::string text) { statements_.push_back({std::move(text), {}, {}}); }
 
@@ -163,6 +171,45 @@ class ModelMaker {
     }
   }
 
+  /// An effect that another brings with it, or that there is only without another.
+  void effect_constraint() {
+    auto quantifier = open(true);
+    auto& scope = formulas_.scope();
+    if (random_.chance(60) && std::find(scope.begin(), scope.end(), "event") == scope.end()) {
+      scope.emplace_back("event");
+      quantifier = quantifier.substr(0, quantifier.size() - 1) + ",event]";
+    }
+    auto cause = effect();
+    auto head = effect();
+    if (!cause || !head) return;
+    const auto roll = random_.below(100);
+    if (roll < 20) {
+      cause = RandomFormula{"&", {*std::move(cause), formulas_.formula(1)}};
+    } else if (roll < 40) {
+      auto inner = quantified_effect();
+      if (inner) cause = std::move(inner);
+    } else if (roll < 50) {
+      cause = RandomFormula{"!", {*std::move(cause)}};
+    } else if (roll < 62) {
+      static const std::vector<std::string> kConnectives = {"|", "->", "<->"};
+      auto other = random_.chance(50) ? effect() : std::nullopt;
+      if (!other) other = formulas_.formula(1);
+      cause = RandomFormula{random_.pick(kConnectives), {*std::move(other), *std::move(cause)}};
+    }
+    state(closed(quantifier, {"->", {*std::move(cause), *std::move(head)}}), 5);
+  }
+
+  std::optional<RandomFormula> quantified_effect() {
+    const auto before = formulas_.scope().size();
+    const auto name = formulas_.enter(formulas_.any_sort());
+    auto inner = effect();
+    formulas_.scope().resize(before);
+    if (!inner) return std::nullopt;
+    if (random_.chance(15)) inner = RandomFormula{"!", {*std::move(inner)}};
+    return RandomFormula{random_.chance(50) ? "[" + name + "]" : "{" + name + "}",
+                         {*std::move(inner)}};
+  }
+
   /// Noninertial fluents and predicates are often tied to something.
   void definitions() {
     for (const auto& fluent : schema_.fluents) {
@@ -272,7 +319,7 @@ std::string RandomModel::print() const {
   return text;
 }
 
-RandomModel random_model(std::uint64_t seed, const ModelSize& size) {
+RandomModel random_model(std::uint64_t seed, const ModelSize& size, bool effect_constraints) {
   FuzzRandom random(seed);
   const bool large = size.most > kBruteForceSize.most;
   RandomModel model;
@@ -281,7 +328,13 @@ RandomModel random_model(std::uint64_t seed, const ModelSize& size) {
     auto schema = random_schema(random, large);
     model.atoms = schema.atoms();
     if (model.atoms < size.least || model.atoms > size.most) continue;
-    model.statements = ModelMaker(random, std::move(schema), large).make();
+    ModelMaker maker(random, std::move(schema), large);
+    model.statements = maker.make();
+    if (effect_constraints) {
+      for (auto& statement : maker.make_effect_constraints()) {
+        model.statements.push_back(std::move(statement));
+      }
+    }
     return model;
   }
 }

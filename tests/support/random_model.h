@@ -60,7 +60,10 @@ inline constexpr ModelSize kSolverSize{20, 60};
 /// sorts, functions, every connective, quantifiers over empty sorts, fluents and events, time
 /// arithmetic, completion with and without label, releases, noninertial and manualrelease fluents,
 /// trajectories, definitions over effects, mutex and xor. Well-sorted by construction; it may
-/// still be refused because a formula is false or says nothing. The same seed gives the same model.
-RandomModel random_model(std::uint64_t seed, const ModelSize& size);
+/// still be refused because a formula is false or says nothing. The same seed gives the same model;
+/// with `effect_constraints` effect axioms whose conditions mention effects are added to it, which
+/// may be refused because an effect depends on its own absence.
+RandomModel random_model(std::uint64_t seed, const ModelSize& size,
+                         bool effect_constraints = false);
 
 }  // namespace parallax::test

@@ -48,7 +48,7 @@ std::vector<Case> cases() {
       {"E1017", "sort a\na 3\n"},
       {"W1101", "sort a\na A\n[a]\na = A.\n"},
       {"E2001", "nosuchsort A\n"},
-      {"E2002", "sort a\nsort a\n"},
+      {"E2002", "sort a\nreified sort a\n"},
       {"E2003", "sort a: a\n"},
       {"E2004", "fluent F\n"},
       {"E2005", "sort a\na A(a)\n"},
@@ -76,7 +76,7 @@ std::vector<Case> cases() {
       {"E2113", "fluent F()\n"},
       {"E2114", "predicate P()\n" + repeated("P().\n", 510'000)},
       {"E2301", world + "[time] P(A) | Initiates(E(),F(A),time).\n"},
-      {"E2303", world + "[time] Initiates(E(),F(A),time) -> Releases(E(),F(A),time).\n"},
+      {"E2303", world + "[time,offset] Trajectory(F(A),time,F(A),offset) -> P(A).\n"},
       {"E2304", world + "function G(a): a\na B\nG(A)=A.\nG(A)=B.\n"},
       {"E2305", "load foundations/Root.e\nreified sort event\nevent E()\nevent D()\nmutex E, D\n"},
       {"W2001", world + "Initiates(E(),F(A),0).\n"},
@@ -86,6 +86,9 @@ std::vector<Case> cases() {
       {"W2006", world + "3: P(A).\n"},
       {"W2007", "sort a, b\nsort c: a\nsort c: b\n"},
       {"W2008", "range time 0 1\nrange time 0 2\n"},
+      {"W2012", "sort a\nsort a\n"},
+      {"W2010", "sort time: integer\n"},
+      {"W2011", "fluent fluent2\n"},
   };
 }
 

@@ -32,15 +32,15 @@ TEST_CASE("sorts: parents, integer and reified are inherited, in any order of de
   CHECK_FALSE(model.find_sort("nothing"));
 }
 
-TEST_CASE("sorts: a second parent is accepted with a warning, a repetition is an error") {
+TEST_CASE("sorts: a second parent and a repetition are accepted with a warning") {
   const CheckedText checked("sort a\nsort b\nsort c: a\nsort c: b\nc C\n");
   CHECK(checked.places() == Strings{"W2007 4:6-6"});
   REQUIRE(checked.model);
   CHECK(checked.model->sorts[*checked.model->find_sort("c")].parents.size() == 2);
   CHECK(
       checked.model->sorts_overlap(*checked.model->find_sort("a"), *checked.model->find_sort("b")));
-  CHECK(places("sort a\nsort a\n") == Strings{"E2002 2:6-6"});
-  CHECK(places("sort a\nsort b: a\nsort b: a\n") == Strings{"E2002 3:6-6"});
+  CHECK(places("sort a\nsort a\n") == Strings{"W2012 2:6-6"});
+  CHECK(places("sort a\nsort b: a\nsort b: a\n") == Strings{"W2012 3:6-6"});
   CHECK(places("sort a\nsort b\nreified sort b: a\n") == Strings{"E2002 3:14-14"});
 }
 
@@ -60,7 +60,7 @@ TEST_CASE("constants: one sort each unless the declaration says `!`") {
   CHECK(
       checked.model->sorts_overlap(*checked.model->find_sort("a"), *checked.model->find_sort("b")));
   CHECK(places("sort a\nsort b\na C\nb C\n") == Strings{"E2014 4:3-3"});
-  CHECK(places("sort a\na C, C\n") == Strings{"E2002 2:6-6"});
+  CHECK(places("sort a\na C, C\n") == Strings{"W2012 2:6-6"});
   CHECK(places("sort a\na 3, A\n") == Strings{"E1017 2:3-3"});
   CHECK(places("agnt James\nsort agent\n") == Strings{"E2001 1:1-4"});
   CHECK(places("sort v: integer\nv C\nrange v 0 1\n") == Strings{"E2006 2:3-3"});
@@ -119,6 +119,25 @@ TEST_CASE("symbols: contradictory and malformed declarations") {
   CHECK(places("predicate Happens(time)\n") == Strings{"E2002 1:11-17"});
   CHECK(CheckedText("predicate Happens(time)\n").text().find("foundations/EC.e:") !=
         std::string::npos);
+}
+
+TEST_CASE("symbols: the same declaration again is a warning, another one an error") {
+  const std::string model = std::string(kTime) + "sort a\na A\nfluent F(a)\nfunction G(a): a\n";
+  CHECK(places(model + "fluent F(a)\n") == Strings{"W2012 6:8-8"});
+  CHECK(places(model + "function G(a): a\n") == Strings{"W2012 6:10-10"});
+  CHECK(places(model + "fluent F(a,a)\n") == Strings{"E2002 6:8-8"});
+  CHECK(places(model + "event F(a)\n") == Strings{"E2002 6:7-7"});
+}
+
+TEST_CASE("foundations: a model may declare what they declare, with one warning a file") {
+  const std::string root = "sort boolean\nsort integer\nreified sort predicate\n";
+  const std::string calculus =
+      "sort time: integer\nsort offset: integer\nreified sort fluent\nreified sort event\n"
+      "predicate Happens(event,time)\npredicate HoldsAt(fluent,time)\nfluent fluent2\n";
+  CHECK(places(root + calculus + "range time 0 1\n") == Strings{"W2010 1:6-12", "W2011 10:8-14"});
+  CHECK(places(root + "load foundations/EC.e\n") == Strings{"W2010 1:6-12"});
+  CHECK(places("sort integer\nsort time\npredicate HoldsAt(fluent)\n") ==
+        Strings{"W2010 1:6-12", "E2002 3:11-17"});
 }
 
 TEST_CASE("symbols: terms that could nest without end are refused") {

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -216,6 +217,24 @@ TEST_CASE("foundations: a model that loads none gets Root and EC, first of all")
   CHECK(first_built_in("sort a\n") == "EC.e Root.e ");
   CHECK(first_built_in("load foundations/Root.e\n") == "Root.e ");
   CHECK(first_built_in("load foundations/Root.e\nload foundations/EC.e\n") == "Root.e EC.e ");
+}
+
+TEST_CASE("foundations: a folder of that name beside the model makes no difference") {
+  const Folder folder;
+  folder.write("foundations/Root.e", "sort boolean\nsort integer\nreified sort predicate\n");
+  folder.write("foundations/EC.e", "sort time: integer\nreified sort fluent\n");
+  const auto main = folder.write("a.e", "load foundations/Root.e\nload foundations/EC.e\nsort a\n");
+  const Loaded loaded({main});
+  REQUIRE_MESSAGE(loaded.model, loaded.text());
+  Strings files;
+  for (const auto& file : loaded.model->files) {
+    const auto name = fs::path(loaded.files[file.ast.file()].name()).filename().string();
+    files.push_back(name + (file.built_in ? " built in" : file.repeats_foundation ? " copy" : ""));
+  }
+  std::sort(files.begin(), files.end());
+  CHECK(files == Strings{"EC.e built in", "EC.e copy", "Root.e built in", "Root.e copy", "a.e"});
+  // The built-in declarations come first, so the copies repeat them.
+  CHECK(loaded.order().find("AntiTrajectory") < loaded.order().find("sort a\n"));
 }
 
 TEST_CASE("foundations: with encoding 3 EC means DEC, and trajectories come with it") {

@@ -279,5 +279,72 @@ TEST_CASE("subsorts: a variable of the wide sort, an argument of the narrow one"
       6);
 }
 
+TEST_CASE("effect constraints: an effect brings others with it, the least that follow") {
+  const std::string turkey =
+      "range time 0 1\nfluent Alive()\nfluent Walking()\nevent Shoot()\nevent Sneeze()\n"
+      "[time] Terminates(Shoot(),Alive(),time).\n"
+      "HoldsAt(Alive(),0). HoldsAt(Walking(),0).\n";
+  // Either event or not; the shot ends both.
+  compare(
+      turkey + "[event,time] Terminates(event,Alive(),time) -> Terminates(event,Walking(),time).",
+      4);
+  // Both ways round, nothing more follows.
+  compare(turkey +
+              "[event,time] Terminates(event,Alive(),time) -> Terminates(event,Walking(),time)."
+              "[event,time] Terminates(event,Walking(),time) -> Terminates(event,Alive(),time).",
+          4);
+  // What only brings itself with it never is.
+  compare(
+      "range time 0 1\nfluent F()\nfluent G()\nevent E()\n!HoldsAt(F(),0). !HoldsAt(G(),0).\n"
+      "[event,time] Initiates(event,F(),time) -> Initiates(event,G(),time).\n"
+      "[event,time] Initiates(event,G(),time) -> Initiates(event,F(),time).\n",
+      2);
+  // The tray tied to the trolley moves with it, the book if it is tied to the tray: pushed or not,
+  // tied or not.
+  compare(
+      "range time 0 1\nsort thing\nthing Trolley, Tray, Book\nfluent Away(thing)\n"
+      "fluent Tied(thing)\nevent Push()\nfunction Base(thing): thing\n"
+      "Base(Trolley)=Trolley. Base(Tray)=Trolley. Base(Book)=Tray.\n"
+      "[time] Initiates(Push(),Away(Trolley),time).\n"
+      "[event,thing,time] Initiates(event,Away(Base(thing)),time) & HoldsAt(Tied(thing),time) -> "
+      "Initiates(event,Away(thing),time).\n"
+      "[thing] !HoldsAt(Away(thing),0).\nHoldsAt(Tied(Tray),0). !HoldsAt(Tied(Trolley),0).\n",
+      4);
+}
+
+TEST_CASE("effect constraints: denied, quantified, at another timepoint, in releases") {
+  // D sets G; an event that does not set G sets F. Then: what sets F at one timepoint ends it at
+  // the next, so it can happen at the first only.
+  compare(
+      "range time 0 1\nfluent F()\nfluent G()\nevent E()\nevent D()\n"
+      "!HoldsAt(F(),0). !HoldsAt(G(),0).\n[time] Initiates(D(),G(),time).\n"
+      "[event,time] !Initiates(event,G(),time) -> Initiates(event,F(),time).\n",
+      4);
+  compare(
+      "range time 0 2\nsort a\na A, B\nfluent F(a)\nfluent G()\nevent E(a)\n"
+      "[a] !HoldsAt(F(a),0). !HoldsAt(G(),0).\n[a,time] Initiates(E(a),F(a),time).\n"
+      "[a,time] ({a1} Initiates(E(a),F(a1),time-1)) -> Terminates(E(a),F(a),time).\n"
+      "[time] !Happens(E(B),time).",
+      2);
+  compare(
+      "range time 0 1\nfluent F()\nfluent G()\nevent E()\n!HoldsAt(F(),0). !HoldsAt(G(),0).\n"
+      "[time] Initiates(E(),F(),time).\n"
+      "[event,time] Initiates(event,F(),time) -> Releases(event,G(),time).\n",
+      3);
+}
+
+TEST_CASE("effect constraints: an effect that depends on its own absence is refused") {
+  const std::string world = "range time 0 1\nfluent F()\nfluent G()\nevent E()\n";
+  const TextModel cycle(world +
+                        "[event,time] !Initiates(event,F(),time) -> Initiates(event,G(),time).\n"
+                        "[event,time] Initiates(event,G(),time) -> Initiates(event,F(),time).\n");
+  CHECK(cycle.codes().find("E3016") != std::string::npos);
+  const TextModel tautology(
+      world +
+      "[event,time] Initiates(event,F(),time) | !Initiates(event,F(),time) -> "
+      "Initiates(event,F(),time).\n");
+  CHECK(tautology.codes().find("E3016") != std::string::npos);
+}
+
 }  // namespace
 }  // namespace parallax::test
