@@ -131,11 +131,15 @@ TEST_CASE("every code of the front end is produced by some text") {
     note(codes);
   }
   note(CheckedText("fluent F()\n", {.complete_model = false}).codes());  // W2003
-  note(codes_of_formula("F(). F()."));                                   // E1018
-  note(codes_of_formula("[time] Initiates(E(),F(),time)"));              // E2302
-  note(codes_of_load("load dir.e\n"));                                   // E1015
-  note(codes_of_load("load /etc/passwd\n"));                             // E1016
-  note(codes_of_load("load main.e\n"));                                  // W1019
+  note(
+      CheckedText("sort n: integer\nrange n 1 2\nfunction F(): n\nF()=1.\nF()=2.\nrange time 0 1\n",
+                  {.old_reasoner = true})
+          .codes());                                         // W2009
+  note(codes_of_formula("F(). F()."));                       // E1018
+  note(codes_of_formula("[time] Initiates(E(),F(),time)"));  // E2302
+  note(codes_of_load("load dir.e\n"));                       // E1015
+  note(codes_of_load("load /etc/passwd\n"));                 // E1016
+  note(codes_of_load("load main.e\n"));                      // W1019
   for (const auto& info : base::all_diagnostics()) {
     const bool mine = info.id[1] == '1' || info.id[1] == '2';
     // W21xx and W22xx are lint's, and tested there.
