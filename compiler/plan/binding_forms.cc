@@ -38,6 +38,20 @@ void form_quasiquote(FormCompiler& c, DatumId form, FormItems items) {
   c.nil(form);
 }
 
+/// A `let` of a global rebinds it for what its body calls, as far as that runs in the same task.
+int show_variable(FormCompiler& c, LexicalBinding variable, DatumId form) {
+  const auto global = c.defined.globals.find(variable.name);
+  if (global == c.defined.globals.end()) {
+    c.code.show(std::move(variable));
+    return 0;
+  }
+  c.code.bind_special(global->second, variable.index, form);
+  variable.kind = BindingKind::kSpecial;
+  variable.index = global->second;
+  c.code.show(std::move(variable));
+  return 1;
+}
+
 void let(FormCompiler& c, DatumId form, FormItems items, bool sequential) {
   if (items.size() < 2 || (!c.data.is_list(items[1]) && !c.data.is_nil(items[1]))) {
     return c.refuse(form, "expected a list of bindings");
@@ -45,6 +59,7 @@ void let(FormCompiler& c, DatumId form, FormItems items, bool sequential) {
   const auto scope = c.code.scope().size();
   std::vector<LexicalBinding> bound;
   std::uint32_t count = 0;
+  int specials = 0;
   for (const auto binding : c.data.children(items[1])) {
     const auto parts = c.data.children(binding);
     const auto name = parts.empty() ? binding : parts.front();
@@ -59,10 +74,13 @@ void let(FormCompiler& c, DatumId form, FormItems items, bool sequential) {
     }
     ++count;
     bound.push_back(c.code.named(BindingKind::kVariable, c.data.name(name), c.code.height() - 1));
-    if (sequential) c.code.show(bound.back());
+    if (sequential) specials += show_variable(c, bound.back(), form);
   }
-  if (!sequential) c.code.show(bound);
+  for (const auto& variable : bound) {
+    if (!sequential) specials += show_variable(c, variable, form);
+  }
   c.compile_body(c.skip_declarations(items.subspan(2)));
+  for (; specials > 0; --specials) c.code.pop_guard(form);
   c.code.squeeze(count, form);
   c.code.cut_scope(scope);
 }
@@ -70,11 +88,13 @@ void let(FormCompiler& c, DatumId form, FormItems items, bool sequential) {
 void form_let(FormCompiler& c, DatumId form, FormItems items) { let(c, form, items, false); }
 void form_let_star(FormCompiler& c, DatumId form, FormItems items) { let(c, form, items, true); }
 
-/// The lexical variable that a form may change, or a report of why it may not.
+/// The variable that a form may change, lexical or rebound, or a report of why it may not.
 const LexicalBinding* assignable(FormCompiler& c, DatumId form, DatumId place) {
   if (c.data.is_symbol(place) && !c.data.is_nil(place)) {
     if (const auto* binding = c.code.lookup(BindingKind::kVariable, c.data.name(place)))
       return binding;
+    const auto* special = c.code.lookup(BindingKind::kSpecial, c.data.name(place));
+    if (special != nullptr && !c.code.in_other_task(*special)) return special;
     if (!c.defined.globals.contains(c.data.name(place))) {
       c.compile(place);  // reports it
       c.code.drop(place);
@@ -91,6 +111,11 @@ const LexicalBinding* assignable(FormCompiler& c, DatumId form, DatumId place) {
   return nullptr;
 }
 
+void assign(FormCompiler& c, const LexicalBinding& place, DatumId form) {
+  if (place.kind != BindingKind::kSpecial) return c.code.store(place, form);
+  c.code.emit(PlanOp::kStoreSpecial, place.index, 0, form);
+}
+
 void form_setf(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() % 2 == 0) c.malformed(form, "expected pairs of a place and a value");
   if (items.size() < 3) return c.nil(form);
@@ -100,7 +125,7 @@ void form_setf(FormCompiler& c, DatumId form, FormItems items) {
     }
     c.compile(items[i + 1]);
     const auto* target = assignable(c, form, items[i]);
-    if (target != nullptr) c.code.store(*target, form);
+    if (target != nullptr) assign(c, *target, form);
   }
 }
 
@@ -111,14 +136,14 @@ void form_incf(FormCompiler& c, DatumId form, FormItems items) {
   const auto* target = assignable(c, form, items[1]);
   if (target == nullptr) return c.nil(form);
   const LexicalBinding place = *target;  // compiling may grow the scope
-  c.code.load(place, form);
+  c.compile(items[1]);
   if (items.size() == 3) {
     c.compile(items[2]);
   } else {
     c.code.constant(c.values.number(Number(1)), form);
   }
   c.code.builtin(c.form_name(form) == "decf" ? "-" : "+", 2, form);
-  c.code.store(place, form);
+  assign(c, place, form);
 }
 
 void form_push(FormCompiler& c, DatumId form, FormItems items) {
@@ -129,9 +154,9 @@ void form_push(FormCompiler& c, DatumId form, FormItems items) {
   const auto* target = assignable(c, form, items[2]);
   if (target == nullptr) return;
   const LexicalBinding place = *target;
-  c.code.load(place, form);
+  c.compile(items[2]);
   c.code.builtin("cons", 2, form);
-  c.code.store(place, form);
+  assign(c, place, form);
 }
 
 /// Binds the names of `pattern` to the elements of the list at `place`; the new variables stay on
@@ -171,15 +196,54 @@ void form_destructuring_bind(FormCompiler& c, DatumId form, FormItems items) {
   c.code.cut_scope(scope);
 }
 
+/// (values a b ...) is its first value, for whoever does not ask for the others.
+void form_values(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() == 1) return c.nil(form);
+  for (const auto item : items.subspan(1)) c.compile(item);
+  for (auto extra = items.size() - 2; extra > 0; --extra) c.code.drop(form);
+}
+
+/// (multiple-value-bind (v...) (values a...) form...): the values must be written there.
+void form_multiple_value_bind(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 3 || (!c.data.is_list(items[1]) && !c.data.is_nil(items[1]))) {
+    return c.refuse(form, "expected variables and a form");
+  }
+  if (c.data.head(items[2]) != "values") {
+    c.unsupported(form,
+                  "the values come from `(values ...)` itself; let the function return a list "
+                  "and use `destructuring-bind`");
+    return c.nil(form);
+  }
+  const auto given = c.data.children(items[2]).subspan(1);
+  const auto names = c.data.children(items[1]);
+  const auto scope = c.code.scope().size();
+  const auto height = c.code.height();
+  for (const auto value : given) c.compile(value);
+  for (auto i = given.size(); i < names.size(); ++i) c.nil(form);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!c.data.is_symbol(names[i])) {
+      c.malformed(form, "a variable is a name");
+      continue;
+    }
+    c.code.show(c.code.named(BindingKind::kVariable, c.data.name(names[i]),
+                             height + static_cast<std::uint32_t>(i)));
+  }
+  const auto count = c.code.height() - height;
+  c.compile_body(c.skip_declarations(items.subspan(3)));
+  c.code.squeeze(count, form);
+  c.code.cut_scope(scope);
+}
+
 }  // namespace
 
 std::span<const FormEntry> binding_forms() {
   static constexpr FormEntry kForms[] = {
-      {"quote", form_quote}, {"quasiquote", form_quasiquote},
-      {"let", form_let},     {"let*", form_let_star},
-      {"setf", form_setf},   {"setq", form_setf},
-      {"incf", form_incf},   {"decf", form_incf},
-      {"push", form_push},   {"destructuring-bind", form_destructuring_bind},
+      {"quote", form_quote},   {"quasiquote", form_quasiquote},
+      {"let", form_let},       {"let*", form_let_star},
+      {"setf", form_setf},     {"setq", form_setf},
+      {"incf", form_incf},     {"decf", form_incf},
+      {"push", form_push},     {"destructuring-bind", form_destructuring_bind},
+      {"values", form_values}, {"multiple-value-bind", form_multiple_value_bind},
   };
   return kForms;
 }

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
@@ -12,13 +14,31 @@ void form_progn(FormCompiler& c, DatumId /*form*/, FormItems items) {
   c.compile_body(items.subspan(1));
 }
 
+/// The forms run in a task of their own.
+void task(FormCompiler& c, DatumId form, FormItems body) {
+  const auto scope = c.code.open_task(form);
+  c.compile_body(body);
+  c.code.close_task(scope, form);
+}
+
+void form_top_level(FormCompiler& c, DatumId form, FormItems items) {
+  task(c, form, items.subspan(1));
+}
+
+/// `(:tag name form...)` may stand anywhere inside.
+void form_with_tags(FormCompiler& c, DatumId /*form*/, FormItems items) {
+  ++c.tags;
+  c.compile_body(items.subspan(1));
+  --c.tags;
+}
+
 /// Every branch is a unit of its own, which sees the variables around it.
 void par_by_turns(FormCompiler& c, DatumId form, FormItems branches) {
   std::vector<std::uint32_t> units;
   for (const auto branch : branches) {
     const auto unit = c.code.declare_unit("a branch", branch, 0);
     c.code.enter_unit(unit);
-    c.compile(branch);
+    task(c, branch, FormItems(&branch, 1));
     c.code.leave_unit(PlanOp::kEndBranch, branch);
     units.push_back(unit);
   }
@@ -30,7 +50,11 @@ void form_par(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() > 2) {
     c.warning(DiagnosticCode::kParallelInOrder, form, c.form_name(form));
   }
-  c.compile_body(items.subspan(1));
+  if (items.size() < 2) return c.refuse(form, "without branches it waits for nothing and fails");
+  for (std::size_t i = 1; i < items.size(); ++i) {
+    task(c, items[i], items.subspan(i, 1));
+    if (i > 1) c.code.drop(items[i]);  // the value is that of the first branch
+  }
 }
 
 /// Transparent forms whose first argument says where or how to run.
@@ -155,7 +179,9 @@ void form_case(FormCompiler& c, DatumId form, FormItems items) {
     const bool any = c.data.is_symbol(parts[0], "t") || c.data.is_symbol(parts[0], "otherwise");
     otherwise = any;
     const auto single = parts.subspan(0, 1);
-    const auto keys = c.data.is_list(parts[0]) ? c.data.children(parts[0]) : single;
+    // `nil` is the empty list of keys; the key itself is written `(nil)`.
+    const bool list = c.data.is_list(parts[0]) || c.data.is_nil(parts[0]);
+    const auto keys = list ? c.data.children(parts[0]) : single;
     std::vector<std::size_t> to_body;
     for (const auto key : any ? FormItems() : keys) {
       case_clause_test(c, key, place, clause);
@@ -197,8 +223,13 @@ void return_from(FormCompiler& c, DatumId form, std::string_view block,
     c.nil(form);
   }
   const auto* target = c.code.lookup(BindingKind::kBlock, block);
-  if (target != nullptr) return c.code.leave_to(*target, form);
-  c.error(DiagnosticCode::kReturnOutsideBlock, form, c.form_name(form));
+  if (target != nullptr && !c.code.in_other_task(*target)) return c.code.leave_to(*target, form);
+  auto error = c.error(DiagnosticCode::kReturnOutsideBlock, form, c.form_name(form));
+  if (target == nullptr) return;
+  error.note(fmt::format(
+      "the body of a `def-cram-function` and a branch of `par` run in a task of their own, which "
+      "nothing leaves but its end and a failure; put `(block {} ...)` inside it and leave that",
+      block));
 }
 
 void form_return(FormCompiler& c, DatumId form, FormItems items) {
@@ -213,6 +244,21 @@ void form_return_from(FormCompiler& c, DatumId form, FormItems items) {
   }
   const std::string block = c.data.is_nil(items[1]) ? "nil" : c.data.name(items[1]);
   return_from(c, form, block, items.size() > 2 ? std::optional(items[2]) : std::nullopt);
+}
+
+/// (print x) is x.
+void form_print(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 2) return c.refuse(form, "expected a value");
+  c.check_no_perform(form);
+  c.compile(items[1]);
+}
+
+/// (format nil "text" ...) is a string, whose directives stay as they are; any other is nil.
+void form_format(FormCompiler& c, DatumId form, FormItems items) {
+  c.check_no_perform(form);
+  const bool text = items.size() > 2 && c.data.is_nil(items[1]) && c.data.is_string(items[2]);
+  if (!text) return c.nil(form);
+  c.code.constant(c.datum_value(items[2]), form);
 }
 
 /// Logging, belief updates, markers: accepted, not evaluated.
@@ -236,8 +282,8 @@ std::span<const FormEntry> control_forms() {
   static constexpr FormEntry kForms[] = {
       {"progn", form_progn},
       {"seq", form_progn},
-      {"top-level", form_progn},
-      {"with-tags", form_progn},
+      {"top-level", form_top_level},
+      {"with-tags", form_with_tags},
       {"with-simulated-robot", form_progn},
       {"with-real-robot", form_progn},
       {"with-projected-task-tree", form_skip_argument},
@@ -262,8 +308,8 @@ std::span<const FormEntry> control_forms() {
       {"ros-info", form_ignored},
       {"ros-warn", form_ignored},
       {"ros-error", form_ignored},
-      {"format", form_ignored},
-      {"print", form_ignored},
+      {"format", form_format},
+      {"print", form_print},
       {"sleep", form_ignored},
       {"on-event", form_ignored},
       {"visualize-marker", form_ignored},

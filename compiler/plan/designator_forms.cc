@@ -31,7 +31,9 @@ void designator_value(FormCompiler& c, DatumId value) {
     const auto& name = c.data.name(value);
     const bool special = name.size() > 2 && name.front() == '*' && name.back() == '*';
     if (name.front() == '?' || special) return c.compile(value);
-    return c.code.constant(c.datum_value(value), value);
+    // CRAM makes keywords of plain symbols in a designator.
+    if (name == "nil" || name == "t") return c.compile(value);
+    return c.code.constant(c.values.keyword(name), value);
   }
   const auto items = c.data.children(value);
   if (items.empty()) return c.code.constant(c.datum_value(value), value);

@@ -11,10 +11,16 @@ struct Entry {
 };
 
 constexpr Entry kBuiltIn[] = {
-    {"plan-failure", nullptr},
+    {"t", nullptr},
+    {"condition", "t"},
+    {"serious-condition", "condition"},
+    {"error", "serious-condition"},
+    {"simple-error", "error"},
+    {"type-error", "error"},
+    {"case-failure", "type-error"},
+    {"plan-failure", "serious-condition"},
     {"composite-failure", "plan-failure"},
     {"simple-plan-failure", "plan-failure"},
-    {"case-failure", "simple-plan-failure"},
     {"low-level-failure", "simple-plan-failure"},
     {"actionlib-action-timed-out", "low-level-failure"},
     {"navigation-low-level-failure", "low-level-failure"},

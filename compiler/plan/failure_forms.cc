@@ -46,6 +46,7 @@ void handling(FormCompiler& c, DatumId form, const std::vector<HandlerSource>& h
               FormItems body) {
   const auto block = c.code.open_block("nil");
   const auto start = c.code.open_exit();
+  const auto retry = c.code.named(BindingKind::kRetry, "", start);
   // `retry` comes back here with a value, as every exit does.
   c.nil(form);
   c.code.set_exit(start);
@@ -54,10 +55,17 @@ void handling(FormCompiler& c, DatumId form, const std::vector<HandlerSource>& h
   for (const auto& handler : handlers) {
     const auto unit = compile_handler(c, handler, start);
     for (const auto name : handler.classes) {
-      if (const auto known = c.failure_class(name)) table.push_back({*known, unit});
+      const auto known = c.failure_class(name);
+      if (!known) continue;
+      // CRAM names the function of a clause by its class: of two with one name the last is called.
+      for (auto& clause : table) {
+        if (clause.failure_class == *known) clause.unit = unit;
+      }
+      table.push_back({*known, unit});
     }
   }
   c.code.push_handlers(c.code.add_handlers(std::move(table)), form);
+  c.code.show(retry);
   c.compile_body(body);
   c.code.pop_guard(form);
   c.code.close_block(block);
@@ -73,13 +81,15 @@ void form_with_failure_handling(FormCompiler& c, DatumId form, FormItems items) 
     const auto variable = parts.size() < 2 ? FormItems() : c.data.children(parts[1]);
     const bool shaped = parts.size() >= 2 &&
                         (c.data.is_list(parts[1]) || c.data.is_nil(parts[1])) &&
-                        variable.size() <= 1 && (variable.empty() || c.data.is_symbol(variable[0]));
+                        variable.size() == 1 && c.data.is_symbol(variable[0]);
     if (!shaped) {
-      c.malformed(form, "a handler is (class (variable) form...)");
+      c.malformed(form,
+                  "a handler is (class (variable) form...); it is called with the failure and "
+                  "needs the variable, as in (plan-failure (e) ...)");
       continue;
     }
     HandlerSource handler{class_list(c, parts[0]), std::nullopt, parts.subspan(2), clause};
-    if (!variable.empty()) handler.variable = variable[0];
+    handler.variable = variable[0];
     handlers.push_back(std::move(handler));
   }
   handling(c, form, handlers, items.subspan(2));
@@ -164,23 +174,86 @@ void form_reset_counter(FormCompiler& c, DatumId form, FormItems items) {
 
 void form_retry(FormCompiler& c, DatumId form, FormItems /*items*/) {
   c.nil(form);
-  if (const auto* target = c.code.lookup(BindingKind::kRetry, ""))
-    return c.code.leave_to(*target, form);
-  c.error(DiagnosticCode::kRetryOutsideHandler, form);
+  const auto* target = c.code.lookup(BindingKind::kRetry, "");
+  if (target == nullptr) {
+    c.error(DiagnosticCode::kRetryOutsideHandler, form);
+  } else if (c.code.in_other_task(*target)) {
+    c.error(DiagnosticCode::kRetryOutsideHandler, form)
+        .note(
+            "a branch of `par` and a tagged form run in a task of their own, which a retry cannot "
+            "leave; let it fail with a class that the handler retries on");
+  } else {
+    c.code.leave_to(*target, form);
+  }
 }
 
 /// (fail 'class ...), (fail "text" ...), (fail), (fail e) with the variable of a handler.
 void form_fail(FormCompiler& c, DatumId form, FormItems items) {
   c.check_no_perform(form);
+  const bool lisp_error = c.form_name(form) == "error";
   const bool has_class = items.size() > 1 && !c.data.is_string(items[1]);
-  if (has_class && c.data.is_symbol(items[1])) {
+  const bool quoted = has_class && c.data.head(items[1]) == "quote";
+  if (has_class && !quoted) {
     c.compile(items[1]);
     c.code.emit(PlanOp::kFailValue, 0, 0, form);
     return;
   }
-  std::optional<std::string> name = "simple-plan-failure";
+  std::optional<std::string> name = lisp_error ? "simple-error" : "simple-plan-failure";
   if (has_class) name = c.failure_class(items[1]);
   c.code.fail(name.value_or("plan-failure"), form);
+}
+
+/// (make-condition 'class :slot value...): the failure, which `fail` raises; slots are ignored.
+void form_make_condition(FormCompiler& c, DatumId form, FormItems items) {
+  c.check_no_perform(form);
+  if (items.size() < 2 || c.data.head(items[1]) != "quote") {
+    return c.refuse(form, "expected a quoted failure class");
+  }
+  const auto name = c.failure_class(items[1]);
+  c.code.constant(name ? c.values.failure(*name) : c.values.nil(), form);
+}
+
+/// (handler-case form (class (e) form...)...): unwinds first, then takes the first clause that
+/// fits.
+void form_handler_case(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 2) return c.refuse(form, "expected a form and clauses");
+  std::vector<HandlerClause> table;
+  std::vector<std::pair<std::uint32_t, FormItems>> clauses;
+  for (const auto clause : items.subspan(2)) {
+    const auto parts = c.data.children(clause);
+    const bool shaped = parts.size() >= 2 &&
+                        (c.data.is_list(parts[1]) || c.data.is_nil(parts[1])) &&
+                        c.data.children(parts[1]).size() <= 1 && !c.data.is_keyword(parts[0]);
+    if (!shaped) {
+      c.malformed(clause, "a clause is (class (variable) form...); there is no `:no-error`");
+      continue;
+    }
+    const auto exit = c.code.open_exit();
+    const auto unit = c.code.declare_unit("a failure handler", clause, 1);
+    c.code.enter_unit(unit);
+    c.code.load(0, clause);
+    c.code.emit(PlanOp::kExit, 1, exit, clause);
+    c.code.leave_unit(PlanOp::kEndHandler, clause);
+    for (const auto name : class_list(c, parts[0])) {
+      if (const auto known = c.failure_class(name)) table.push_back({*known, unit});
+    }
+    clauses.emplace_back(exit, parts);
+  }
+  c.code.push_handlers(c.code.add_handlers(std::move(table)), form);
+  c.compile(items[1]);
+  c.code.pop_guard(form);
+  std::vector<std::size_t> to_end;
+  for (const auto& [exit, parts] : clauses) {
+    to_end.push_back(c.code.jump(PlanOp::kJump, form));
+    c.code.set_exit(exit);  // with the failure on the stack
+    const auto scope = c.code.scope().size();
+    const auto variable = c.data.children(parts[1]);
+    if (!variable.empty()) c.code.bind_top(c.data.name(variable[0]));
+    c.compile_body(c.skip_declarations(parts.subspan(2)));
+    c.code.squeeze(1, form);
+    c.code.cut_scope(scope);
+  }
+  for (const auto jump : to_end) c.code.patch_jump(jump);
 }
 
 void form_unwind_protect(FormCompiler& c, DatumId form, FormItems items) {
@@ -208,6 +281,7 @@ std::uint32_t catch_all(FormCompiler& c, std::uint32_t exit, DatumId source) {
 }
 
 void form_try_in_order(FormCompiler& c, DatumId form, FormItems items) {
+  const auto block = c.code.open_block("nil");
   std::vector<std::size_t> to_end;
   for (const auto branch : items.subspan(1)) {
     const auto next = c.code.open_exit();
@@ -220,6 +294,7 @@ void form_try_in_order(FormCompiler& c, DatumId form, FormItems items) {
   }
   c.code.fail("composite-failure", form);
   for (const auto jump : to_end) c.code.patch_jump(jump);
+  c.code.close_block(block);
 }
 
 /// (try-each-in-order (v list) body...): the next element after a failure.
@@ -228,8 +303,8 @@ void form_try_each(FormCompiler& c, DatumId form, FormItems items) {
   if (head.size() != 2 || !c.data.is_symbol(head[0])) {
     return c.refuse(form, "expected (variable list) and a body");
   }
-  const auto block = c.code.open_block("");
-  const LexicalBinding out = *c.code.lookup(BindingKind::kBlock, "");
+  const auto block = c.code.open_block("nil");
+  const LexicalBinding out = *c.code.lookup(BindingKind::kBlock, "nil");
   c.compile(head[1]);
   const auto loop = begin_list_loop(c, c.data.name(head[0]), form);
   const auto next = c.code.open_exit();
@@ -256,6 +331,9 @@ std::span<const FormEntry> failure_forms() {
       {"reset-counter", form_reset_counter},
       {"retry", form_retry},
       {"fail", form_fail},
+      {"error", form_fail},
+      {"make-condition", form_make_condition},
+      {"handler-case", form_handler_case},
       {"unwind-protect", form_unwind_protect},
       {"try-in-order", form_try_in_order},
       {"try-each-in-order", form_try_each},

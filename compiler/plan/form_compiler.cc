@@ -53,10 +53,8 @@ constexpr Hint kRejected[] = {
     {"lambda", "a lambda is only an argument of funcall, apply, mapcar, mapc, every and some"},
     {"function",
      "a function value is only an argument of funcall, apply, mapcar, mapc, every and some"},
-    {"handler-case", "use `with-failure-handling`"},
     {"handler-bind", "use `with-failure-handling`"},
     {"ignore-errors", "use `with-failure-handling`"},
-    {"error", "use `fail`"},
     {"tagbody", "use a loop"},
     {"go", "use a loop"},
     {"do", "use `loop` or `dotimes`"},
@@ -136,6 +134,11 @@ void FormCompiler::compile_list(DatumId form) {
   const auto items = data.children(form);
   if (items.empty()) return nil(form);
   const auto head = data.head(form);
+  if (tags > 0 && items.size() > 2 && data.is_keyword(items[0]) && data.name(items[0]) == "tag") {
+    const auto scope = code.open_task(form);
+    compile_body(items.subspan(2));
+    return code.close_task(scope, form);
+  }
   if (!head) {
     return refuse(form, "a form starts with a name");
   }
@@ -185,7 +188,7 @@ ValueId FormCompiler::datum_value(DatumId datum) {
     case DatumKind::kSymbol:
       return data.is_nil(datum) ? values.nil() : values.symbol(data.name(datum));
     case DatumKind::kKeyword:
-      return values.symbol(data.name(datum));
+      return values.keyword(data.name(datum));
     case DatumKind::kNumber:
       return values.number(data.number(datum));
     case DatumKind::kString:

@@ -22,7 +22,11 @@ struct PlanParameter {
   std::string name;
   std::string keyword;  // not empty: passed by `:keyword`
   bool optional = false;
+  bool rest = false;  // the list of all further arguments
   std::optional<DatumId> default_value;
+  // The default is no constant: the function computes it where nothing was passed.
+  bool computed = false;
+  std::optional<std::string> supplied;  // a variable that says whether something was passed
 };
 
 /// A function of the plan, or a local one: its code is a unit.
@@ -30,6 +34,9 @@ struct PlanFunction {
   std::uint32_t unit = 0;
   std::vector<PlanParameter> parameters;
   DatumId source;
+  bool other_keys = false;  // &allow-other-keys
+  bool task = false;        // its body is a task of its own: def-cram-function
+  bool top_level = false;   // def-top-level-cram-function: nothing in a plan may call it
 };
 
 /// What the plan defines at top level, and the local functions met so far.
@@ -90,6 +97,8 @@ class FormCompiler {
   const bool interleave;  // the branches of `par` take turns
   PlanAssembler code;
   PlanDefinitions defined;
+  int tags = 0;              // how many `with-tags` are around
+  bool in_function = false;  // not among the bare forms at top level
 
  private:
   void compile_symbol(DatumId symbol);

@@ -18,33 +18,34 @@ namespace {
 
 struct Signature {
   std::vector<PlanParameter> parameters;
+  bool other_keys = false;
   bool good = true;
 };
 
+bool is_constant(const FormCompiler& c, DatumId form) {
+  if (c.data.is_nil(form)) return true;
+  if (c.data.is_list(form)) return c.data.head(form) == "quote";
+  return !c.data.is_symbol(form) || c.data.name(form) == "t";
+}
+
 void parameter(FormCompiler& c, DatumId form, DatumId item, std::string_view mode, Signature& out) {
   PlanParameter result;
-  result.optional = !mode.empty();
+  result.optional = mode == "&optional" || mode == "&key";
+  result.rest = mode == "&rest";
   auto name = item;
   const auto parts = c.data.children(item);
-  if (result.optional && !parts.empty() && parts.size() <= 2) {
+  if (result.optional && !parts.empty() && parts.size() <= 3) {
     name = parts.front();
-    if (parts.size() == 2) result.default_value = parts[1];
+    if (parts.size() > 1) result.default_value = parts[1];
+    if (parts.size() > 2 && c.data.is_symbol(parts[2])) result.supplied = c.data.name(parts[2]);
   }
   if (!c.data.is_symbol(name) || c.data.is_nil(name)) {
     c.malformed(form, "a parameter is a name");
     out.good = false;
     return;
   }
-  if (result.default_value && !c.data.is_nil(*result.default_value)) {
-    const auto value = *result.default_value;
-    const bool constant = !c.data.is_list(value) || c.data.head(value) == "quote";
-    const bool variable =
-        c.data.is_symbol(value) && c.data.name(value).front() != '*' && c.data.name(value) != "t";
-    if (!constant || variable) {
-      c.unsupported(form, "the default of a parameter must be a constant");
-      out.good = false;
-    }
-  }
+  result.computed =
+      result.supplied || (result.default_value && !is_constant(c, *result.default_value));
   result.name = c.data.name(name);
   if (mode == "&key") result.keyword = result.name;
   out.parameters.push_back(std::move(result));
@@ -63,13 +64,30 @@ Signature parameter_list(FormCompiler& c, DatumId form, DatumId list) {
       parameter(c, form, item, mode, out);
       continue;
     }
+    const bool had_rest = !out.parameters.empty() && out.parameters.back().rest;
     mode = c.data.name(item);
-    if (mode == "&optional" || mode == "&key") continue;
-    c.unsupported(form, fmt::format("`{}` in a parameter list", mode));
+    if (mode == "&allow-other-keys") {
+      out.other_keys = true;
+      continue;
+    }
+    if (mode == "&optional" || mode == "&rest" || (mode == "&key" && !had_rest)) continue;
+    c.unsupported(form, had_rest ? "`&key` after `&rest`; name the keys alone"
+                                 : fmt::format("`{}` in a parameter list", mode));
     out.good = false;
     break;
   }
   return out;
+}
+
+/// A value for a parameter that the call leaves out.
+void push_default(FormCompiler& c, const PlanParameter& parameter, DatumId source) {
+  if (parameter.computed) {
+    c.code.constant(c.values.not_given(), source);
+  } else if (parameter.default_value) {
+    c.compile(*parameter.default_value);
+  } else {
+    c.nil(source);
+  }
 }
 
 /// `:test #'eq` and the like add nothing: equality of values is structural.
@@ -97,6 +115,13 @@ bool push_arguments(FormCompiler& c, DatumId form, std::string_view name,
   std::size_t next = 0;
   for (const auto& parameter : function.parameters) {
     std::optional<DatumId> value;
+    if (parameter.rest) {
+      const auto others = arguments.subspan(next);
+      for (const auto other : others) c.compile(other);
+      c.code.builtin("list", static_cast<std::uint32_t>(others.size()), form);
+      next = arguments.size();
+      continue;
+    }
     if (!parameter.keyword.empty()) {
       for (auto i = next; i + 1 < arguments.size(); i += 2) {
         const bool mine =
@@ -109,11 +134,10 @@ bool push_arguments(FormCompiler& c, DatumId form, std::string_view name,
       c.code.set_height(height);
       return wrong(fmt::format("no value for `{}`", parameter.name));
     }
-    if (!value) value = parameter.default_value;
     if (value) {
       c.compile(*value);
     } else {
-      c.nil(form);
+      push_default(c, parameter, form);
     }
   }
   for (auto i = next; i < arguments.size(); i += 2) {
@@ -123,6 +147,11 @@ bool push_arguments(FormCompiler& c, DatumId form, std::string_view name,
     const bool known = i + 1 < arguments.size() &&
                        std::any_of(function.parameters.begin(), function.parameters.end(), keyed);
     if (known) continue;
+    if (function.other_keys && i + 1 < arguments.size() && c.data.is_keyword(arguments[i])) {
+      c.compile(arguments[i + 1]);  // evaluated, and of no further use
+      c.code.drop(form);
+      continue;
+    }
     c.code.set_height(height);
     return wrong(fmt::format("unexpected argument `{}`", print_datum(c.data, arguments[i])));
   }
@@ -157,7 +186,9 @@ void form_apply(FormCompiler& c, DatumId form, FormItems items) {
     return;
   }
   const auto& parameters = callee->function->parameters;
-  const auto optional = [](const PlanParameter& parameter) { return parameter.optional; };
+  const auto optional = [](const PlanParameter& parameter) {
+    return parameter.optional || parameter.rest;
+  };
   if (std::any_of(parameters.begin(), parameters.end(), optional)) {
     c.unsupported(form, "a function with optional parameters cannot be applied to a list");
   }
@@ -202,19 +233,55 @@ PlanFunction declare_function(FormCompiler& c, DatumId form, std::string_view na
   const auto count = static_cast<std::uint32_t>(signature.parameters.size());
   const auto unit = c.code.declare_unit(name, form, count);
   c.code.code().units[unit].recursive_limit = true;
-  return {unit, std::move(signature.parameters), form};
+  PlanFunction out{unit, std::move(signature.parameters), form};
+  out.other_keys = signature.other_keys;
+  const auto kind = c.data.head(form).value_or("");
+  out.top_level = kind == "def-top-level-cram-function";
+  out.task = out.top_level || kind == "def-cram-function";
+  return out;
+}
+
+/// Computes what the call left to the function, in the order of the parameters.
+std::uint32_t compile_defaults(FormCompiler& c, const PlanFunction& function) {
+  std::uint32_t flags = 0;
+  for (std::uint32_t i = 0; i < function.parameters.size(); ++i) {
+    const auto& parameter = function.parameters[i];
+    if (parameter.supplied) {
+      c.code.load(i, function.source);
+      c.code.builtin("%given", 1, function.source);
+    }
+    if (parameter.computed) {
+      c.code.load(i, function.source);
+      c.code.builtin("%given", 1, function.source);
+      c.code.builtin("not", 1, function.source);
+      const auto given = c.code.jump(PlanOp::kJumpIfNil, function.source);
+      if (parameter.default_value) {
+        c.compile(*parameter.default_value);
+      } else {
+        c.nil(function.source);
+      }
+      c.code.store_and_drop(i, function.source);
+      c.code.patch_jump(given);
+    }
+    c.code.show(c.code.named(BindingKind::kVariable, parameter.name, i));
+    if (!parameter.supplied) continue;
+    c.code.bind_top(*parameter.supplied);
+    ++flags;
+  }
+  return flags;
 }
 
 void compile_function(FormCompiler& c, const PlanFunction& function, std::string_view block_name,
                       FormItems body) {
   const auto scope = c.code.scope().size();
   c.code.enter_unit(function.unit);
-  for (std::uint32_t i = 0; i < function.parameters.size(); ++i) {
-    c.code.show(c.code.named(BindingKind::kVariable, function.parameters[i].name, i));
-  }
+  const auto flags = compile_defaults(c, function);
   const auto block = c.code.open_block(block_name);
+  if (function.task) c.code.open_task(function.source);
   c.compile_body(c.skip_declarations(body));
+  if (function.task) c.code.pop_guard(function.source);
   c.code.close_block(block);
+  if (flags > 0) c.code.squeeze(flags, function.source);
   c.code.leave_unit(PlanOp::kReturn, function.source);
   c.code.cut_scope(scope);
 }
@@ -274,7 +341,9 @@ void emit_call(FormCompiler& c, const Callee& callee, std::uint32_t count, Datum
     return c.code.adjust(1 - static_cast<int>(count));
   }
   const auto& parameters = callee.function->parameters;
-  const auto optional = [](const PlanParameter& parameter) { return parameter.optional; };
+  const auto optional = [](const PlanParameter& parameter) {
+    return parameter.optional || parameter.rest;
+  };
   const auto required = parameters.size() - static_cast<std::size_t>(std::count_if(
                                                 parameters.begin(), parameters.end(), optional));
   if (count < required || count > parameters.size()) {
@@ -282,11 +351,14 @@ void emit_call(FormCompiler& c, const Callee& callee, std::uint32_t count, Datum
             fmt::format("the function takes {} arguments, not {}", required, count));
   }
   for (auto i = static_cast<std::size_t>(count); i < parameters.size(); ++i) {
-    if (parameters[i].default_value) {
-      c.compile(*parameters[i].default_value);
-    } else {
+    if (parameters[i].rest) {
       c.nil(source);
+    } else {
+      push_default(c, parameters[i], source);
     }
+  }
+  if (count > 0 && count == parameters.size() && parameters.back().rest) {
+    c.code.builtin("list", 1, source);
   }
   const auto pushed = std::max(count, static_cast<std::uint32_t>(parameters.size()));
   const auto op = callee.level ? PlanOp::kCallLocal : PlanOp::kCall;
@@ -297,6 +369,12 @@ void emit_call(FormCompiler& c, const Callee& callee, std::uint32_t count, Datum
 void compile_call(FormCompiler& c, DatumId form, std::string_view name, const Callee& callee,
                   FormItems arguments) {
   if (callee.function != nullptr) {
+    if (callee.function->top_level && c.in_function) {
+      c.error(DiagnosticCode::kUnsupportedPlanForm, form, name,
+              "a `def-top-level-cram-function` cannot be called from a plan; make it a "
+              "`def-cram-function`")
+          .note(c.data.source(callee.function->source), "defined here");
+    }
     if (!push_arguments(c, form, name, *callee.function, arguments)) {
       return c.nil(form);
     }

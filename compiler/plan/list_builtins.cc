@@ -144,6 +144,10 @@ BuiltinResult expect_length(const BuiltinCall& c) {
                                                           wanted, items->size())};
 }
 
+BuiltinResult given(const BuiltinCall& c) {
+  return c.values.boolean(c.values.kind(c.args[0]) != ValueKind::kNotGiven);
+}
+
 template <ValueKind kKind>
 BuiltinResult has_kind(const BuiltinCall& c) {
   return c.values.boolean(c.values.kind(c.args[0]) == kKind);
@@ -191,6 +195,7 @@ constexpr BuiltinEntry kListTable[] = {
     {{"stringp", 1, 1}, has_kind<ValueKind::kString>},
     {{"typep", 2, 2}, typep},
     {{"%expect-length", 2, 2}, expect_length},
+    {{"%given", 1, 1}, given},
 };
 
 }  // namespace

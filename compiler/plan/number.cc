@@ -24,6 +24,7 @@ struct Decimal {
   std::string digits;
   std::int64_t fraction_digits = 0;
   std::int64_t exponent = 0;
+  bool has_exponent = false;
 };
 
 bool read_exponent(std::string_view text, std::int64_t& exponent) {
@@ -59,7 +60,20 @@ bool split_decimal(std::string_view token, Decimal& out) {
   if (i == token.size()) return true;
   constexpr std::string_view kMarkers = "eEdDfFsSlL";
   if (kMarkers.find(token[i]) == std::string_view::npos) return false;
+  out.has_exponent = true;
   return read_exponent(token.substr(i + 1), out.exponent);
+}
+
+/// `-0.25` for -25 and two places; always with a point.
+std::string decimal_text(std::int64_t digits, int places) {
+  if (places == 0) return fmt::format("{}.0", digits);
+  auto text = fmt::format("{}", digits);
+  const std::string sign = digits < 0 ? "-" : "";
+  text.erase(0, sign.size());
+  const auto after = static_cast<std::size_t>(places);
+  if (text.size() <= after) text.insert(0, after + 1 - text.size(), '0');
+  text.insert(text.size() - after, ".");
+  return sign + text;
 }
 
 bool power_of_ten(std::int64_t exponent, std::int64_t& out) {
@@ -115,7 +129,14 @@ double Number::as_double(std::int64_t integer) { return static_cast<double>(inte
 Number Number::inexact(double value) {
   Number out;
   out.exact_ = false;
+  out.float_ = true;
   out.value_ = value;
+  return out;
+}
+
+Number Number::as_float() const {
+  Number out = *this;
+  out.float_ = true;
   return out;
 }
 
@@ -143,7 +164,9 @@ Number::Parse Number::parse(std::string_view token, Number& out) {
   Decimal decimal;
   if (!split_decimal(token, decimal)) return Parse::kNotANumber;
   if (const auto exact = exact_decimal(decimal)) {
-    out = *exact;
+    // `1.` is an integer in Lisp, as `1` is.
+    const bool is_float = decimal.fraction_digits > 0 || decimal.has_exponent;
+    out = is_float ? exact->as_float() : *exact;
     return Parse::kNumber;
   }
   const auto text = fmt::format("{}{}e{}", decimal.negative ? "-" : "", decimal.digits,
@@ -164,9 +187,26 @@ Number::Parse Number::parse(std::string_view token, Number& out) {
 
 std::string Number::to_string() const {
   if (!exact_) return fmt::format("{:.20e}", value_);  // more digits than an exact one may have
+  if (float_) {
+    std::int64_t digits = numerator_;
+    for (int places = 0; places <= kMaxExponent; ++places) {
+      if (digits % denominator_ == 0) return decimal_text(digits / denominator_, places);
+      if (__builtin_mul_overflow(digits, std::int64_t{10}, &digits)) break;
+    }
+    return fmt::format("{:.20e}", value_);
+  }
   if (denominator_ == 1) return fmt::format("{}", numerator_);
   return fmt::format("{}/{}", numerator_, denominator_);
 }
+
+namespace {
+
+/// With a float among the operands the result is one.
+Number of_kind(const Number& result, const Number& a, const Number& b) {
+  return a.is_float() || b.is_float() ? result.as_float() : result;
+}
+
+}  // namespace
 
 Number operator+(const Number& a, const Number& b) {
   std::int64_t left = 0;
@@ -177,7 +217,7 @@ Number operator+(const Number& a, const Number& b) {
       !__builtin_mul_overflow(b.numerator(), a.denominator(), &right) &&
       !__builtin_add_overflow(left, right, &sum) &&
       !__builtin_mul_overflow(a.denominator(), b.denominator(), &denominator)) {
-    return *Number::ratio(sum, denominator);
+    return of_kind(*Number::ratio(sum, denominator), a, b);
   }
   return Number::inexact(a.value() + b.value());
 }
@@ -189,7 +229,7 @@ Number operator*(const Number& a, const Number& b) {
   std::int64_t denominator = 0;
   if (a.exact() && b.exact() && !__builtin_mul_overflow(a.numerator(), b.numerator(), &numerator) &&
       !__builtin_mul_overflow(a.denominator(), b.denominator(), &denominator)) {
-    return *Number::ratio(numerator, denominator);
+    return of_kind(*Number::ratio(numerator, denominator), a, b);
   }
   return Number::inexact(a.value() * b.value());
 }
@@ -197,7 +237,7 @@ Number operator*(const Number& a, const Number& b) {
 std::optional<Number> divide(const Number& a, const Number& b) {
   if (b.exact() ? b.numerator() == 0 : b.value() == 0.0) return std::nullopt;
   if (b.exact() && b.numerator() != kMin) {
-    return a * *Number::ratio(b.denominator(), b.numerator());
+    return of_kind(a * *Number::ratio(b.denominator(), b.numerator()), a, b);
   }
   return Number::inexact(a.value() / b.value());
 }

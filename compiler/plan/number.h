@@ -23,6 +23,9 @@ class Number {
   static Parse parse(std::string_view token, Number& out);
 
   bool exact() const { return exact_; }
+  /// Written with a point or an exponent, or computed from such a number: `eql` to no rational.
+  bool is_float() const { return float_; }
+  Number as_float() const;
   bool is_integer() const { return exact_ && denominator_ == 1; }
   std::int64_t numerator() const { return numerator_; }      // exact numbers only
   std::int64_t denominator() const { return denominator_; }  // positive, coprime to the numerator
@@ -35,6 +38,7 @@ class Number {
  private:
   static double as_double(std::int64_t integer);
   bool exact_ = true;
+  bool float_ = false;
   std::int64_t numerator_ = 0;
   std::int64_t denominator_ = 1;
   double value_ = 0.0;

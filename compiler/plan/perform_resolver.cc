@@ -75,7 +75,9 @@ base::DiagnosticBuilder PerformResolver::unbound(ValueId designator, SourceRange
         fmt::format("{}: only motions and actions are performed", values_.print(designator)));
   }
   const auto type = values_.key(designator, "type");
-  const std::string name = type ? values_.print(*type) : "(no type)";
+  const bool named = type && values_.kind(*type) == ValueKind::kSymbol;
+  const std::string name =
+      named ? values_[*type].text : (type ? values_.print(*type) : std::string("(no type)"));
   std::string keys;
   for (const auto& [key, item] : value.keys) {
     if (key != "type") keys += fmt::format(" :{}", normalise_key(key));
@@ -143,7 +145,9 @@ Result<FormulaTree> PerformResolver::constant(ValueId id, std::string_view what,
       return constant_term(*name);
     }
     case ValueKind::kNumber:
-      if (value.number.is_integer()) return constant_term(value.number.to_string());
+      if (value.number.is_integer()) {
+        return constant_term(fmt::format("{}", value.number.numerator()));
+      }
       return wrong("a number that is no integer; the model has no such constants");
     case ValueKind::kModel:
       return register_term(graph_.values[value.model].name, value.model);
@@ -157,6 +161,7 @@ Result<FormulaTree> PerformResolver::constant(ValueId id, std::string_view what,
       return wrong(
           "a pose where a name is needed; map it with `region`, `place` "
           "or `gaze`");
+    case ValueKind::kNotGiven:
     case ValueKind::kNil:
       return wrong("nil");
     case ValueKind::kCons:
@@ -426,6 +431,7 @@ void PerformResolver::flatten(const std::string& name, ValueId id, PlanArguments
       }
       return;
     }
+    case ValueKind::kNotGiven:
     case ValueKind::kNil:
     case ValueKind::kQuaternion:
     case ValueKind::kPose:

@@ -105,6 +105,24 @@ void PlanAssembler::push_cleanup(std::uint32_t unit, DatumId source) {
   ++frames_.back().guards;
 }
 
+std::size_t PlanAssembler::open_task(DatumId source) {
+  emit(PlanOp::kPushTask, 0, 0, source);
+  ++frames_.back().guards;
+  const auto scope = scope_.size();
+  show(named(BindingKind::kTask, "", 0));
+  return scope;
+}
+
+void PlanAssembler::close_task(std::size_t scope, DatumId source) {
+  pop_guard(source);
+  cut_scope(scope);
+}
+
+void PlanAssembler::bind_special(std::uint32_t global, std::uint32_t place, DatumId source) {
+  emit(PlanOp::kBindSpecial, global, place, source);
+  ++frames_.back().guards;
+}
+
 void PlanAssembler::pop_guard(DatumId source) {
   emit(PlanOp::kPopGuard, 0, 0, source);
   --frames_.back().guards;
@@ -157,6 +175,13 @@ const LexicalBinding* PlanAssembler::lookup(BindingKind kind, std::string_view n
     if (binding->kind == kind && binding->name == name) return &*binding;
   }
   return nullptr;
+}
+
+bool PlanAssembler::in_other_task(const LexicalBinding& binding) const {
+  for (auto inner = scope_.rbegin(); inner != scope_.rend() && &*inner != &binding; ++inner) {
+    if (inner->kind == BindingKind::kTask) return true;
+  }
+  return false;
 }
 
 std::uint32_t PlanAssembler::level_of(const LexicalBinding& binding) const {

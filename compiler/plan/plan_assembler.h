@@ -11,7 +11,17 @@
 
 namespace parallax::compiler {
 
-enum class BindingKind : std::uint8_t { kVariable, kCounter, kBlock, kFunction, kRetry };
+/// kSpecial: a global that is rebound, its number is the index. kTask: no name; what is around it
+/// belongs to another task.
+enum class BindingKind : std::uint8_t {
+  kVariable,
+  kCounter,
+  kBlock,
+  kFunction,
+  kRetry,
+  kSpecial,
+  kTask
+};
 
 /// A name that is visible here. Frames are counted from the outermost unit being written.
 struct LexicalBinding {
@@ -64,6 +74,11 @@ class PlanAssembler {
   std::uint32_t add_handlers(std::vector<HandlerClause> table);
   void push_handlers(std::uint32_t table, DatumId source);
   void push_cleanup(std::uint32_t unit, DatumId source);
+  /// What follows is a task of its own, up to close_task.
+  std::size_t open_task(DatumId source);
+  void close_task(std::size_t scope, DatumId source);
+  /// The value at `place` of the open unit is what the global means, up to pop_guard.
+  void bind_special(std::uint32_t global, std::uint32_t place, DatumId source);
   void pop_guard(DatumId source);
 
   // --- units
@@ -83,6 +98,8 @@ class PlanAssembler {
   const std::vector<LexicalBinding>& scope() const { return scope_; }
   void cut_scope(std::size_t size) { scope_.resize(size); }
   const LexicalBinding* lookup(BindingKind kind, std::string_view name) const;
+  /// Does a task begin between here and the name, which `lookup` gave?
+  bool in_other_task(const LexicalBinding& binding) const;
   /// How many units out the name belongs to.
   std::uint32_t level_of(const LexicalBinding& binding) const;
   void load(const LexicalBinding& binding, DatumId source);

@@ -1,9 +1,12 @@
 // `par` whose branches take turns, perform by perform. All branches begin at the same height of
-// frames, guards and stack; the one that runs is in place, the others are kept aside.
+// frames, guards and stack; the one that runs is in place, the others are kept aside. Each is a
+// task of its own. When the first of them fails, the others may still carry out the performs at
+// which they wait; then the `par` fails, and they run their clean-ups once a handler around it has
+// decided.
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/plan/plan_machine.h"
 
 namespace parallax::compiler {
@@ -49,18 +52,90 @@ void put_aside(PlanState& state, std::size_t depth) {
 }
 
 bool has_cleanup(const PlanBranchState& branch) {
-  for (const auto& guard : branch.guards) {
-    if (guard.cleanup) return true;
-  }
-  for (const auto& frame : branch.frames) {
-    if (frame.kind == FrameKind::kCleanup) return true;
-  }
+  const auto cleans_up = [](const PlanGuard& guard) { return guard.kind == GuardKind::kCleanup; };
+  if (std::any_of(branch.guards.begin(), branch.guards.end(), cleans_up)) return true;
   for (const auto& par : branch.pars) {
-    for (const auto& inner : par.branches) {
-      if (has_cleanup(inner)) return true;
-    }
+    if (std::any_of(par.branches.begin(), par.branches.end(), has_cleanup)) return true;
   }
   return false;
+}
+
+bool runs_cleanup(const PlanFrame& frame) { return frame.kind == FrameKind::kCleanup; }
+
+bool in_cleanup(const PlanBranchState& branch) {
+  if (std::any_of(branch.frames.begin(), branch.frames.end(), runs_cleanup)) return true;
+  for (const auto& par : branch.pars) {
+    if (std::any_of(par.branches.begin(), par.branches.end(), in_cleanup)) return true;
+  }
+  return false;
+}
+
+/// How indices move of what is put elsewhere: those from `frame` and `place` on.
+struct Shift {
+  std::size_t frame = 0;
+  std::size_t frames = 0;  // by so much
+  std::size_t place = 0;
+  std::size_t places = 0;
+};
+
+std::uint32_t moved_frame(std::uint32_t frame, const std::vector<Shift>& shifts) {
+  for (auto shift = shifts.rbegin(); shift != shifts.rend(); ++shift) {
+    if (frame >= shift->frame) return frame + static_cast<std::uint32_t>(shift->frames);
+  }
+  return frame;
+}
+
+std::uint32_t moved_place(std::uint32_t place, const std::vector<Shift>& shifts) {
+  for (auto shift = shifts.rbegin(); shift != shifts.rend(); ++shift) {
+    if (place >= shift->place) return place + static_cast<std::uint32_t>(shift->places);
+  }
+  return place;
+}
+
+/// Puts what the clean-ups of an ended branch need on top of everything: they run when control
+/// leaves what lies below.
+void keep_cleanups(PlanState& state, const PlanPar& par, const PlanBranchState& branch,
+                   std::vector<Shift> shifts) {
+  if (!has_cleanup(branch)) return;
+  shifts.push_back(
+      {par.frames, state.frames.size() - par.frames, par.height, state.stack.size() - par.height});
+  const auto border = static_cast<std::uint32_t>(state.guards.size());
+  state.guards.push_back({GuardKind::kEvaporated, 0,
+                          static_cast<std::uint32_t>(state.frames.size()),
+                          static_cast<std::uint32_t>(state.stack.size())});
+  for (auto frame : branch.frames) {
+    frame.link = moved_frame(frame.link, shifts);
+    frame.base = moved_place(frame.base, shifts);
+    frame.guard_base = border;
+    frame.skip_to = border;
+    frame.pc = 0;
+    state.frames.push_back(frame);
+  }
+  state.stack.insert(state.stack.end(), branch.stack.begin(), branch.stack.end());
+  for (auto guard : branch.guards) {
+    if (guard.kind != GuardKind::kCleanup) continue;
+    guard.frame = moved_frame(guard.frame, shifts);
+    guard.height = moved_place(guard.height, shifts);
+    state.guards.push_back(guard);
+  }
+  for (const auto& nested : branch.pars) {
+    for (auto inner = nested.branches.rbegin(); inner != nested.branches.rend(); ++inner) {
+      keep_cleanups(state, nested, *inner, shifts);
+    }
+  }
+}
+
+void find_failing(const PlanPar& par, PlanMachine::BranchPath& path,
+                  std::vector<PlanMachine::BranchPath>& out) {
+  // Clean-ups that are under way come to their end first.
+  const bool busy = std::any_of(par.branches.begin(), par.branches.end(), in_cleanup);
+  if (par.failure && !busy) out.push_back(path);
+  for (std::size_t i = 0; i < par.branches.size(); ++i) {
+    if (par.branches[i].pars.empty()) continue;
+    path.push_back(i);
+    find_failing(par.branches[i].pars.front(), path, out);
+    path.pop_back();
+  }
 }
 
 void find_waiting(const PlanPar& par, PlanMachine::BranchPath& path,
@@ -109,6 +184,17 @@ PlanMachine::Step PlanMachine::end_branch(PlanState& state) {
   return next_branch(state);
 }
 
+/// The branch that runs has failed, and its clean-ups have run.
+PlanMachine::Step PlanMachine::fail_branch(PlanState& state, ValueId failure) {
+  auto& par = state.pars.back();
+  par.branches[par.active].done = true;
+  if (!par.failure) par.failure = failure;
+  state.frames.resize(par.frames);
+  state.guards.resize(par.guards);
+  state.stack.resize(par.height);
+  return next_branch(state);
+}
+
 /// No branch of the innermost `par` is in place: starts the next one, or leaves the `par`, or goes
 /// outward where all wait.
 PlanMachine::Step PlanMachine::next_branch(PlanState& state) {
@@ -123,8 +209,13 @@ PlanMachine::Step PlanMachine::next_branch(PlanState& state) {
       }
       all_done = all_done && par.branches[i].done;
     }
-    if (all_done) {
-      const auto result = par.branches.back().result;  // as in written order
+    if (par.failure) {
+      std::vector<BranchPath> waiting;
+      BranchPath path;
+      find_waiting(par, path, waiting);
+      if (waiting.empty()) return evaporate(state);
+    } else if (all_done) {
+      const auto result = par.branches.front().result;
       state.pars.pop_back();
       state.stack.push_back(result);
       return {};
@@ -135,8 +226,15 @@ PlanMachine::Step PlanMachine::next_branch(PlanState& state) {
 }
 
 std::optional<PlanStop> PlanMachine::wait(PlanState& state, const StopPerform& perform) {
+  const auto failed = std::find_if(state.pars.begin(), state.pars.end(),
+                                   [](const PlanPar& par) { return par.failure.has_value(); });
+  // A branch of a `par` that has failed performs nothing new, but for the clean-ups it is in.
+  bool goes_on = failed == state.pars.end();
+  if (!goes_on) {
+    goes_on = std::any_of(state.frames.begin() + failed->frames, state.frames.end(), runs_cleanup);
+  }
   auto& par = state.pars.back();
-  par.branches[par.active].turn = PlanTurn{perform.designator, perform.form};
+  if (goes_on) par.branches[par.active].turn = PlanTurn{perform.designator, perform.form};
   put_aside(state, state.pars.size() - 1);
   return next_branch(state);
 }
@@ -145,6 +243,13 @@ std::vector<PlanMachine::BranchPath> PlanMachine::waiting(const PlanState& state
   std::vector<BranchPath> out;
   BranchPath path;
   find_waiting(state.pars.front(), path, out);
+  return out;
+}
+
+std::vector<PlanMachine::BranchPath> PlanMachine::failing(const PlanState& state) {
+  std::vector<BranchPath> out;
+  BranchPath path;
+  find_failing(state.pars.front(), path, out);
   return out;
 }
 
@@ -157,21 +262,20 @@ StopPerform PlanMachine::resume(PlanState& state, const BranchPath& path) {
   return out;
 }
 
-/// Control leaves for this frame: what other branches of `par`s above it were about is over.
-PlanMachine::Step PlanMachine::abandon_branches(PlanState& state, std::size_t frame) {
-  while (!state.pars.empty() && frame < state.pars.back().frames) {
-    const auto& par = state.pars.back();
-    for (const auto& branch : par.branches) {
-      if (!has_cleanup(branch)) continue;
-      sink_.error(
-          base::DiagnosticCode::kUnsupportedPlanForm, data_.source(par.form), "par",
-          "a branch is left while another one is inside `unwind-protect`; take the branches "
-          "in order");
-      return StopError{};
-    }
-    state.pars.pop_back();
+std::optional<PlanStop> PlanMachine::fail_par(PlanState& state, const BranchPath& path) {
+  for (const auto branch : path) put_in_place(state, branch);
+  return evaporate(state);
+}
+
+/// The innermost `par` fails. Of its branches only the clean-ups are left, those of the first
+/// branch on top; they run once a handler has decided, or on the way out of the task.
+PlanMachine::Step PlanMachine::evaporate(PlanState& state) {
+  const auto par = std::move(state.pars.back());
+  state.pars.pop_back();
+  for (auto branch = par.branches.rbegin(); branch != par.branches.rend(); ++branch) {
+    keep_cleanups(state, par, *branch, {});
   }
-  return {};
+  return search(state, *par.failure, par.guards);
 }
 
 }  // namespace parallax::compiler

@@ -95,7 +95,7 @@ class PlanCompiler {
     for (const auto parent : c_.data.children(items[2])) {
       if (const auto known = c_.failure_class(parent)) parents.push_back(*known);
     }
-    if (parents.empty()) parents.emplace_back("simple-plan-failure");
+    if (parents.empty()) parents.emplace_back("condition");
     if (c_.code.code().classes.add(c_.data.name(items[1]), std::move(parents))) return;
     c_.error(DiagnosticCode::kDuplicatePlanDefinition, items[1], c_.data.name(items[1]));
   }
@@ -133,10 +133,12 @@ class PlanCompiler {
       c_.code.adjust(-1);
     }
     c_.code.leave_unit(PlanOp::kDone, first);
+    c_.in_function = true;
     for (const auto& name : c_.defined.function_order) {
       const auto& function = c_.defined.functions.at(name);
       compile_function(c_, function, name, c_.data.children(function.source).subspan(3));
     }
+    c_.in_function = false;
   }
 
   void compile_main(const std::optional<std::string>& entry) {

@@ -24,6 +24,8 @@ enum class PlanOp : std::uint8_t {
   kStore,         // variable b of the frame a links out := top, which stays
   kLoadGlobal,    // push global a
   kStoreGlobal,   // global a := pop
+  kBindSpecial,   // global a means variable b of this frame from here on
+  kStoreSpecial,  // what global a means in this task := top, which stays
   kPop,           // drop the top
   kSqueeze,       // drop a values below the top
   kJump,          // to a
@@ -39,7 +41,8 @@ enum class PlanOp : std::uint8_t {
   kReturn,        // leave the unit with the top as its result
   kPushHandlers,  // failures look into table a from here on
   kPushCleanup,   // leaving runs unit a from here on
-  kPopGuard,      // the last of those two ends
+  kPushTask,      // a task begins: its clean-ups run before any handler around it
+  kPopGuard,      // the last of those, or of kBindSpecial, ends
   kRunCleanup,    // run unit a as a clean-up, push nothing
   kEndHandler,    // the handler fell through: the failure goes outward
   kEndCleanup,    // go on with what the clean-up interrupted

@@ -24,14 +24,15 @@ class KeyWriter {
     number(guards.size());
     number(stack.size());
     for (const auto& frame : frames) {
-      const std::uint32_t kinds = static_cast<std::uint32_t>(frame.kind) * 4U +
+      const std::uint32_t kinds = static_cast<std::uint32_t>(frame.kind) * 8U +
                                   static_cast<std::uint32_t>(frame.pending.kind);
       key.insert(key.end(), {frame.unit, frame.pc, frame.link, frame.base, frame.guard_base, kinds,
-                             frame.skip_to, frame.failure.index(), frame.pending.frame,
-                             frame.pending.exit, frame.pending.value.index()});
+                             frame.skip_to, frame.clause, frame.failure.index(),
+                             frame.pending.frame, frame.pending.exit, frame.pending.value.index()});
     }
     for (const auto& guard : guards) {
-      key.insert(key.end(), {guard.cleanup ? 1U : 0U, guard.index, guard.frame, guard.height});
+      key.insert(key.end(),
+                 {static_cast<std::uint32_t>(guard.kind), guard.index, guard.frame, guard.height});
     }
     for (const auto value : stack) {
       const bool hidden = !counters_ && values_.kind(value) == ValueKind::kCounter;
@@ -46,6 +47,7 @@ class KeyWriter {
       number(par.frames);
       number(par.active);
       number(par.form.index());
+      number(par.failure ? par.failure->index() + 1 : 0);
       for (const auto& branch : par.branches) {
         number((branch.started ? 1U : 0U) + (branch.done ? 2U : 0U) + (branch.turn ? 4U : 0U));
         number(branch.result.index());
@@ -72,6 +74,7 @@ void visit_part(const std::vector<PlanFrame>& frames, const std::vector<ValueId>
 
 void visit_pars(const std::vector<PlanPar>& pars, const std::function<void(ValueId)>& visit) {
   for (const auto& par : pars) {
+    if (par.failure) visit(*par.failure);
     for (const auto& branch : par.branches) {
       visit(branch.result);
       if (branch.turn) visit(branch.turn->designator);
@@ -181,6 +184,11 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
       return {};
     case PlanOp::kLoadGlobal:
       return load_global(state, instruction);
+    case PlanOp::kBindSpecial:
+      return bind_special(state, instruction);
+    case PlanOp::kStoreSpecial:
+      stack[*special(state, instruction.a)] = stack.back();
+      return {};
     case PlanOp::kStoreGlobal:
       globals_[instruction.a] = pop(state);
       return {};
@@ -224,6 +232,7 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
     case PlanOp::kExit: {
       const auto carried = pop(state);
       const auto frame = linked(state, instruction.a);
+      if (auto stop = check_exit(state, instruction, frame)) return stop;
       return unwind(state, {PendingKind::kExit, frame, instruction.b, carried});
     }
     case PlanOp::kPar:
@@ -236,6 +245,7 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
       return StopDone{};
     case PlanOp::kPushHandlers:
     case PlanOp::kPushCleanup:
+    case PlanOp::kPushTask:
       push_guard(state, instruction);
       return {};
     case PlanOp::kPopGuard:
@@ -257,6 +267,10 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
 }
 
 PlanMachine::Step PlanMachine::load_global(PlanState& state, const PlanInstruction& instruction) {
+  if (const auto rebound = special(state, instruction.a)) {
+    state.stack.push_back(state.stack[*rebound]);
+    return {};
+  }
   if (const auto value = globals_[instruction.a]) {
     state.stack.push_back(*value);
     return {};
@@ -265,6 +279,41 @@ PlanMachine::Step PlanMachine::load_global(PlanState& state, const PlanInstructi
   sink_.error(DiagnosticCode::kUnboundPlanVariable, data_.source(instruction.source), global.name)
       .note(data_.source(global.source), "it is defined only here");
   return StopError{};
+}
+
+/// A local function may be called in another task than the one whose block it leaves.
+PlanMachine::Step PlanMachine::check_exit(const PlanState& state,
+                                          const PlanInstruction& instruction, std::uint32_t frame) {
+  const auto left = state.frames[frame].guard_base + code_.exits[instruction.b].guards;
+  for (auto guard = std::size_t{left}; guard < state.guards.size(); ++guard) {
+    if (state.guards[guard].kind != GuardKind::kTask) continue;
+    sink_
+        .error(DiagnosticCode::kReturnOutsideBlock, data_.source(instruction.source),
+               name_at(instruction.source))
+        .note(
+            "it is reached in a task of its own, a `def-cram-function` or a branch of `par`, which "
+            "nothing leaves but its end and a failure");
+    return StopError{};
+  }
+  return {};
+}
+
+/// A variable of the running frame is what the global means from here on.
+PlanMachine::Step PlanMachine::bind_special(PlanState& state, const PlanInstruction& instruction) {
+  const auto frame = static_cast<std::uint32_t>(state.frames.size() - 1);
+  const auto place = state.frames[frame].base + instruction.b;
+  state.guards.push_back({GuardKind::kSpecial, instruction.a, frame, place});
+  return {};
+}
+
+/// Where the task that runs has rebound the global, if it has: a task sees no other's bindings.
+std::optional<std::size_t> PlanMachine::special(const PlanState& state,
+                                                std::uint32_t global) const {
+  for (auto guard = state.guards.rbegin(); guard != state.guards.rend(); ++guard) {
+    if (guard->kind == GuardKind::kTask) return std::nullopt;
+    if (guard->kind == GuardKind::kSpecial && guard->index == global) return guard->height;
+  }
+  return std::nullopt;
 }
 
 PlanMachine::Step PlanMachine::expect_list(const PlanState& state,

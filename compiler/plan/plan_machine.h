@@ -16,14 +16,15 @@
 namespace parallax::compiler {
 
 enum class FrameKind : std::uint8_t { kCall, kHandler, kCleanup };
-enum class PendingKind : std::uint8_t { kNone, kExit, kFail };
+enum class PendingKind : std::uint8_t { kNone, kExit, kCross, kFail };
 
-/// What a clean-up interrupted: a jump out of the frames above `frame`, or the end of the plan.
+/// What a clean-up interrupted: a jump out of the frames above `frame`, a failure on its way out of
+/// a task, or the end of the plan.
 struct Pending {
   PendingKind kind = PendingKind::kNone;
   std::uint32_t frame = 0;
-  std::uint32_t exit = 0;
-  ValueId value;  // kExit: carried along; kFail: the failure
+  std::uint32_t exit = 0;  // kExit: the target; kCross: the guard of the task's border
+  ValueId value;           // kExit: carried along; kCross and kFail: the failure
 };
 
 /// One activation of a unit. Everything is an index, so equal activations compare equal.
@@ -35,16 +36,22 @@ struct PlanFrame {
   std::uint32_t guard_base = 0;  // guards below belong to other frames
   FrameKind kind = FrameKind::kCall;
   std::uint32_t skip_to = 0;  // kHandler: guards from here up to guard_base are asleep
+  std::uint32_t clause = 0;   // kHandler: the clause of the table that it is
   ValueId failure;            // kHandler: what it handles
   Pending pending;            // kCleanup
   // Not part of the state's identity: performs on the way here, when the frame was made.
   std::uint32_t performs = 0;
 };
 
-/// An active with-failure-handling or unwind-protect.
+/// kTask: a task begins here, which no failure leaves before its clean-ups have run. kEvaporated:
+/// the same of a branch that another one's failure has ended; failures of its clean-ups are lost.
+/// kSpecial: a special variable is rebound here, by the value at `height`.
+enum class GuardKind : std::uint8_t { kHandlers, kCleanup, kTask, kEvaporated, kSpecial };
+
+/// An active with-failure-handling or unwind-protect, the border of a task, a rebound special.
 struct PlanGuard {
-  bool cleanup = false;
-  std::uint32_t index = 0;  // the handler table, or the clean-up's unit
+  GuardKind kind = GuardKind::kHandlers;
+  std::uint32_t index = 0;  // the handler table, the clean-up's unit, the global
   std::uint32_t frame = 0;
   std::uint32_t height = 0;  // of the stack when it began
 };
@@ -76,6 +83,9 @@ struct PlanPar {
   std::uint32_t guards = 0;
   std::uint32_t height = 0;
   std::size_t active = 0;  // the branch whose state is in place
+  // The first failure that left a branch. The others may still carry out the perform at which they
+  // wait, and nothing more; then the failure goes on.
+  std::optional<ValueId> failure;
   DatumId form;
   std::vector<PlanBranchState> branches;
 };
@@ -157,6 +167,10 @@ class PlanMachine {
   /// Where branches wait: the way to each through nested `par`s, in written order.
   using BranchPath = std::vector<std::size_t>;
   static std::vector<BranchPath> waiting(const PlanState& state);
+  /// The way to each `par` whose failure may go on now.
+  static std::vector<BranchPath> failing(const PlanState& state);
+  /// The `par` at the end of that way fails; run goes on with a handler.
+  std::optional<PlanStop> fail_par(PlanState& state, const BranchPath& path);
   /// Puts that branch in place; its perform is next.
   static StopPerform resume(PlanState& state, const BranchPath& path);
   /// Lets a function of the plan answer; run goes into it.
@@ -178,11 +192,16 @@ class PlanMachine {
   void run_cleanup(PlanState& state, const PlanInstruction& instruction);
   Step end_handler(PlanState& state);
   Step end_cleanup(PlanState& state);
-  Step search(PlanState& state, ValueId failure, std::size_t limit);
+  Step search(PlanState& state, ValueId failure, std::size_t limit, std::size_t clause = 0);
+  Step leave_task(PlanState& state, std::size_t border, ValueId failure);
+  Step check_exit(const PlanState& state, const PlanInstruction& instruction, std::uint32_t frame);
+  Step bind_special(PlanState& state, const PlanInstruction& instruction);
+  std::optional<std::size_t> special(const PlanState& state, std::uint32_t global) const;
   Step start_par(PlanState& state, const PlanInstruction& instruction);
   Step end_branch(PlanState& state);
   Step next_branch(PlanState& state);
-  Step abandon_branches(PlanState& state, std::size_t frames);
+  Step fail_branch(PlanState& state, ValueId failure);
+  Step evaporate(PlanState& state);
   Step unwind(PlanState& state, Pending pending);
   void add_key(PlanState& state, const PlanInstruction& instruction);
   std::size_t place(const PlanState& state, const PlanInstruction& instruction) const;

@@ -1,6 +1,8 @@
 // Failures, handlers and clean-ups. A handler runs on top of the failed body, as in CRAM, where
 // conditions are signalled before the stack is unwound: it sees the outer handlers only, and the
-// clean-ups of the body run once it has decided.
+// clean-ups of the body run once it has decided. That holds within one task: a failure that finds
+// no handler there ends the task with its clean-ups, and only then the handlers around it are
+// asked.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -36,15 +38,26 @@ PlanFrame drop_frame(PlanState& state) {
 }
 
 /// Once a handler runs, the body that failed never goes on; all that is left of it are its
-/// clean-ups. Without the rest, failures of different performs reach their handler in one state.
+/// clean-ups and its special variables. Without the rest, failures of different performs reach
+/// their handler in one state.
 void drop_abandoned(PlanState& state, std::size_t handling) {
+  const auto stays = [&](std::size_t guard) {
+    const auto kind = state.guards[guard].kind;
+    return kind == GuardKind::kCleanup || kind == GuardKind::kSpecial;
+  };
   auto keep = state.guards.size() - 1;
-  while (keep > handling && !state.guards[keep].cleanup) --keep;
+  while (keep > handling && !stays(keep)) --keep;
   const auto guard = state.guards[keep];
   state.guards.resize(keep + 1);
   state.frames.resize(std::size_t{guard.frame} + 1);
   state.frames.back().pc = 0;  // it goes on at an exit or not at all
-  state.stack.resize(guard.height);
+  const std::uint32_t variable = guard.kind == GuardKind::kSpecial ? 1 : 0;
+  state.stack.resize(std::size_t{guard.height} + variable);
+}
+
+GuardKind guard_kind(PlanOp op) {
+  if (op == PlanOp::kPushTask) return GuardKind::kTask;
+  return op == PlanOp::kPushCleanup ? GuardKind::kCleanup : GuardKind::kHandlers;
 }
 
 }  // namespace
@@ -52,9 +65,9 @@ void drop_abandoned(PlanState& state, std::size_t handling) {
 void PlanMachine::push_guard(PlanState& state, const PlanInstruction& instruction) {
   const auto frame = static_cast<std::uint32_t>(state.frames.size() - 1);
   const auto height = static_cast<std::uint32_t>(state.stack.size());
-  const bool cleanup = instruction.op == PlanOp::kPushCleanup;
-  state.guards.push_back({cleanup, instruction.a, frame, height});
-  if (!cleanup) handlers_met_[instruction.a] = true;
+  const auto kind = guard_kind(instruction.op);
+  state.guards.push_back({kind, instruction.a, frame, height});
+  if (kind == GuardKind::kHandlers) handlers_met_[instruction.a] = true;
 }
 
 void PlanMachine::run_cleanup(PlanState& state, const PlanInstruction& instruction) {
@@ -62,10 +75,11 @@ void PlanMachine::run_cleanup(PlanState& state, const PlanInstruction& instructi
   state.frames.push_back(frame_on_top(state, instruction.a, frame, FrameKind::kCleanup));
 }
 
-/// The handler fell through: the failure goes on to the next outer handler.
+/// The handler declined: the next matching clause of its form is asked, then those further out.
 PlanMachine::Step PlanMachine::end_handler(PlanState& state) {
   const auto handler = drop_frame(state);
-  return search(state, handler.failure, handler.skip_to);
+  return search(state, handler.failure, std::size_t{handler.skip_to} + 1,
+                std::size_t{handler.clause} + 1);
 }
 
 PlanMachine::Step PlanMachine::end_cleanup(PlanState& state) {
@@ -91,22 +105,27 @@ std::optional<PlanStop> PlanMachine::raise(PlanState& state, ValueId failure) {
   return search(state, failure, state.guards.size());
 }
 
-/// Looks for a handler among the guards below `limit`, innermost first. A frame that is handling a
-/// failure hides the guards between the one it belongs to and its own.
-PlanMachine::Step PlanMachine::search(PlanState& state, ValueId failure, std::size_t limit) {
+/// Looks for a handler among the guards below `limit`, innermost first, and in the first of them
+/// from `clause` on. A frame that is handling a failure hides the guards between the one it belongs
+/// to and its own.
+PlanMachine::Step PlanMachine::search(PlanState& state, ValueId failure, std::size_t limit,
+                                      std::size_t clause) {
   for (auto f = state.frames.size(); f-- > 0;) {
     const auto& frame = state.frames[f];
     for (auto g = limit; g-- > frame.guard_base;) {
       const auto guard = state.guards[g];
-      if (guard.cleanup) continue;
-      for (const auto& clause : code_.handlers[guard.index]) {
-        if (!code_.classes.is_a(values_[failure].text, clause.failure_class)) continue;
-        if (auto stop = abandon_branches(state, guard.frame)) return stop;
+      const bool border = guard.kind == GuardKind::kTask || guard.kind == GuardKind::kEvaporated;
+      if (border) return leave_task(state, g, failure);
+      if (guard.kind != GuardKind::kHandlers) continue;
+      const auto& clauses = code_.handlers[guard.index];
+      for (auto i = std::exchange(clause, 0); i < clauses.size(); ++i) {
+        if (!code_.classes.is_a(values_[failure].text, clauses[i].failure_class)) continue;
         drop_abandoned(state, g);
-        auto handler = frame_on_top(state, clause.unit, guard.frame, FrameKind::kHandler);
+        auto handler = frame_on_top(state, clauses[i].unit, guard.frame, FrameKind::kHandler);
         handler.skip_to = static_cast<std::uint32_t>(g);
+        handler.clause = static_cast<std::uint32_t>(i);
         handler.failure = failure;
-        handlers_run_.push_back(clause.unit);
+        handlers_run_.push_back(clauses[i].unit);
         state.frames.push_back(handler);
         state.stack.push_back(failure);
         return {};
@@ -118,22 +137,48 @@ PlanMachine::Step PlanMachine::search(PlanState& state, ValueId failure, std::si
   return unwind(state, {PendingKind::kFail, 0, 0, failure});
 }
 
+/// No handler of the task takes the failure: its clean-ups run, then the task around it fails. What
+/// fails in the clean-ups of an evaporated branch is lost, and what ended the branch goes on.
+PlanMachine::Step PlanMachine::leave_task(PlanState& state, std::size_t border, ValueId failure) {
+  if (state.guards[border].kind == GuardKind::kTask) {
+    const auto index = static_cast<std::uint32_t>(border);
+    return unwind(state, {PendingKind::kCross, state.guards[border].frame, index, failure});
+  }
+  for (auto f = std::size_t{state.guards[border].frame} + 1; f < state.frames.size(); ++f) {
+    const auto pending = state.frames[f].pending;
+    if (state.frames[f].kind == FrameKind::kCleanup && pending.kind != PendingKind::kNone) {
+      return unwind(state, pending);
+    }
+  }
+  return unwind(state, {PendingKind::kFail, 0, 0, failure});
+}
+
 /// Leaves frames and guards up to the target, clean-up by clean-up.
 PlanMachine::Step PlanMachine::unwind(PlanState& state, Pending pending) {
   const bool exits = pending.kind == PendingKind::kExit;
-  if (auto stop = abandon_branches(state, exits ? pending.frame : 0U)) return stop;
+  const bool crosses = pending.kind == PendingKind::kCross;
   const auto target =
-      exits ? state.frames[pending.frame].guard_base + code_.exits[pending.exit].guards : 0U;
+      exits ? state.frames[pending.frame].guard_base + code_.exits[pending.exit].guards
+            : (crosses ? pending.exit : 0U);
+  PlanGuard last;
   while (state.guards.size() > target) {
-    const auto guard = state.guards.back();
+    last = state.guards.back();
     state.guards.pop_back();
-    if (!guard.cleanup) continue;
-    state.frames.resize(std::size_t{guard.frame} + 1);
-    state.stack.resize(guard.height);
-    auto cleanup = frame_on_top(state, guard.index, guard.frame, FrameKind::kCleanup);
+    if (last.kind != GuardKind::kCleanup) continue;
+    state.frames.resize(std::size_t{last.frame} + 1);
+    state.stack.resize(last.height);
+    auto cleanup = frame_on_top(state, last.index, last.frame, FrameKind::kCleanup);
     cleanup.pending = pending;
     state.frames.push_back(cleanup);
     return {};
+  }
+  if (crosses) {
+    const bool branch = !state.pars.empty() && target == state.pars.back().guards;
+    if (branch) return fail_branch(state, pending.value);
+    state.frames.resize(std::size_t{pending.frame} + 1);
+    state.frames.back().pc = 0;  // it goes on at an exit or not at all
+    state.stack.resize(last.height);
+    return search(state, pending.value, state.guards.size());
   }
   if (!exits) return StopFailed{values_[pending.value].text};
   state.frames.resize(std::size_t{pending.frame} + 1);

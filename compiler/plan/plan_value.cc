@@ -23,14 +23,19 @@ std::string fingerprint(const Value& value) {
   std::string out = fmt::format("{} ", static_cast<int>(value.kind));
   switch (value.kind) {
     case ValueKind::kNil:
+    case ValueKind::kNotGiven:
       break;
     case ValueKind::kSymbol:
+      out += value.keyword ? ":" : "";
+      append(out, value.text);
+      break;
     case ValueKind::kString:
     case ValueKind::kFailure:
       append(out, value.text);
       break;
     case ValueKind::kNumber:
     case ValueKind::kCounter:
+      out += value.number.is_float() ? "f" : "";
       out += value.number.exact() ? value.number.to_string()
                                   : fmt::format("{:a}", value.number.value());
       break;
@@ -57,7 +62,9 @@ std::string fingerprint(const Value& value) {
 }
 
 std::string print_number(const Number& number) {
-  return number.is_integer() ? number.to_string() : fmt::format("{}", number.value());
+  if (number.is_integer())
+    return fmt::format("{}{}", number.numerator(), number.is_float() ? ".0" : "");
+  return fmt::format("{}", number.value());
 }
 
 }  // namespace
@@ -113,6 +120,14 @@ ValueId ValueStore::symbol(std::string_view name) {
   return intern(std::move(value));
 }
 
+ValueId ValueStore::keyword(std::string_view name) {
+  Value value;
+  value.kind = ValueKind::kSymbol;
+  value.text = name;
+  value.keyword = true;
+  return intern(std::move(value));
+}
+
 ValueId ValueStore::string(std::string_view text) {
   Value value;
   value.kind = ValueKind::kString;
@@ -155,6 +170,12 @@ ValueId ValueStore::failure(std::string_view failure_class) {
   return intern(std::move(value));
 }
 
+ValueId ValueStore::not_given() {
+  Value value;
+  value.kind = ValueKind::kNotGiven;
+  return intern(std::move(value));
+}
+
 ValueId ValueStore::model(ModelValueId id) {
   Value value;
   value.kind = ValueKind::kModel;
@@ -187,7 +208,7 @@ std::string ValueStore::print(ValueId id) const {
     case ValueKind::kNil:
       return "nil";
     case ValueKind::kSymbol:
-      return value.text;
+      return (value.keyword ? ":" : "") + value.text;
     case ValueKind::kString:
       return fmt::format("\"{}\"", value.text);
     case ValueKind::kNumber:
@@ -208,6 +229,8 @@ std::string ValueStore::print(ValueId id) const {
       return fmt::format("the failure {}", value.text);
     case ValueKind::kModel:
       return "a value of the model";
+    case ValueKind::kNotGiven:
+      return "no argument";
   }
   return {};
 }

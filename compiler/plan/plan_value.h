@@ -20,7 +20,7 @@ using ValueId = base::Id<ValueTag>;
 
 enum class ValueKind : std::uint8_t {
   kNil,
-  kSymbol,  // :left and left are one value
+  kSymbol,
   kNumber,
   kString,
   kCons,
@@ -28,9 +28,10 @@ enum class ValueKind : std::uint8_t {
   kQuaternion,
   kPose,
   kDesignator,
-  kFailure,  // text: the class
-  kModel,    // determined by the model; see PlanGraph::values
-  kCounter,  // hidden iteration count of a bounded loop
+  kFailure,   // text: the class
+  kModel,     // determined by the model; see PlanGraph::values
+  kCounter,   // hidden iteration count of a bounded loop
+  kNotGiven,  // stands for an argument whose default the function computes
 };
 
 enum class DesignatorKind : std::uint8_t { kMotion, kAction, kObject, kLocation, kAllObjects };
@@ -39,9 +40,10 @@ std::string_view to_string(DesignatorKind kind);
 /// A value of a plan variable. Immutable; equal values have equal ids (see ValueStore).
 struct Value {
   ValueKind kind = ValueKind::kNil;
-  std::string text;  // symbol name, string, failure class
-  Number number;     // kNumber, kCounter
-  ValueId head;      // kCons
+  std::string text;      // symbol name, string, failure class
+  bool keyword = false;  // kSymbol: :left, not left
+  Number number;         // kNumber, kCounter
+  ValueId head;          // kCons
   ValueId tail;
   Pose pose;  // kPose; kVector and kQuaternion use their part
   DesignatorKind designator = DesignatorKind::kMotion;
@@ -65,6 +67,7 @@ class ValueStore {
   ValueId truth() const { return truth_; }
   ValueId boolean(bool value) const { return value ? truth_ : nil(); }
   ValueId symbol(std::string_view name);
+  ValueId keyword(std::string_view name);
   ValueId string(std::string_view text);
   ValueId number(const Number& number);
   ValueId counter(std::int64_t count);
@@ -72,6 +75,7 @@ class ValueStore {
   ValueId list(const std::vector<ValueId>& items);
   ValueId failure(std::string_view failure_class);
   ValueId model(ModelValueId id);
+  ValueId not_given();
   ValueId intern(Value value);
 
   const Value& operator[](ValueId id) const { return values_[id]; }

@@ -31,7 +31,8 @@ struct Job {
   std::optional<ValueId> failure;  // goes on by failing
   std::optional<StopPerform> act;  // goes on by performing
   Edge edge = Edge::kEntry;
-  std::uint32_t owner = 0;  // location or branch
+  std::uint32_t owner = 0;                              // location or branch
+  std::optional<PlanMachine::BranchPath> failing = {};  // goes on by the failure of a `par`
 };
 
 /// Explores the states of a plan depth first, success before failure, and writes the graph.
@@ -104,22 +105,15 @@ class Explorer {
 };
 
 void Explorer::set(const Job& job, PlanTarget target) {
-  switch (job.edge) {
-    case Job::Edge::kEntry:
-      graph_.entry = target;
-      return;
-    case Job::Edge::kSuccess:
-      graph_.locations[LocationId(job.owner)].on_success = target;
-      return;
-    case Job::Edge::kFailure:
-      graph_.locations[LocationId(job.owner)].on_failure = target;
-      return;
-    case Job::Edge::kTrue:
-      graph_.branches[BranchId(job.owner)].if_true = target;
-      return;
-    case Job::Edge::kFalse:
-      graph_.branches[BranchId(job.owner)].if_false = target;
-      return;
+  using Edge = Job::Edge;
+  if (job.edge == Edge::kEntry) {
+    graph_.entry = target;
+  } else if (job.edge == Edge::kSuccess || job.edge == Edge::kFailure) {
+    auto& location = graph_.locations[LocationId(job.owner)];
+    (job.edge == Edge::kSuccess ? location.on_success : location.on_failure) = target;
+  } else {
+    auto& branch = graph_.branches[BranchId(job.owner)];
+    (job.edge == Edge::kTrue ? branch.if_true : branch.if_false) = target;
   }
 }
 
@@ -244,12 +238,11 @@ std::optional<PlanTarget> Explorer::question(PlanState& state, const StopQuestio
 std::optional<PlanTarget> Explorer::stopped(PlanState& state, const PlanStop& stop) {
   if (const auto* at = std::get_if<StopPerform>(&stop)) return perform(state, *at);
   if (const auto* at = std::get_if<StopQuestion>(&stop)) return question(state, *at);
-  if (const auto* at = std::get_if<StopFailed>(&stop)) {
+  if (const auto* at = std::get_if<StopFailed>(&stop))
     return terminal(TerminalKind::kFailed, at->failure_class, std::nullopt);
-  }
-  if (const auto* at = std::get_if<StopBound>(&stop)) {
+  if (const auto* at = std::get_if<StopBound>(&stop))
     return terminal(TerminalKind::kBound, at->form, at->at);
-  }
+  if (std::holds_alternative<StopTurn>(stop)) return take_turns(state);
   if (std::holds_alternative<StopDone>(stop)) {
     return terminal(TerminalKind::kDone, {}, std::nullopt);
   }
@@ -262,19 +255,23 @@ std::optional<PlanTarget> Explorer::advance(Job& job) {
     if (job.edge == Job::Edge::kFailure) note_handlers(LocationId(job.owner));
     if (stop) return stopped(job.state, *stop);
   }
+  if (job.failing) {
+    if (auto stop = machine_.fail_par(job.state, *job.failing)) return stopped(job.state, *stop);
+  }
   if (job.act) return perform(job.state, *job.act);
   for (;;) {
     auto stop = machine_.run(job.state);
     const auto* act = std::get_if<StopPerform>(&stop);
-    const auto* entry = act != nullptr ? resolver_.find_plan(act->designator) : nullptr;
-    if (act != nullptr && entry == nullptr && !job.state.pars.empty()) {
-      const auto all_wait = machine_.wait(job.state, *act);
-      if (!all_wait) continue;
-      return take_turns(job.state);
+    if (act == nullptr) return stopped(job.state, stop);
+    std::optional<PlanStop> ended;
+    if (const auto* entry = resolver_.find_plan(act->designator)) {
+      ended = run_plan(job.state, *act, *entry);
+    } else if (job.state.pars.empty()) {
+      return perform(job.state, *act);
+    } else {
+      ended = machine_.wait(job.state, *act);
     }
-    if (std::holds_alternative<StopTurn>(stop)) return take_turns(job.state);
-    if (entry == nullptr) return stopped(job.state, stop);
-    if (auto ended = run_plan(job.state, *act, *entry)) return stopped(job.state, *ended);
+    if (ended) return stopped(job.state, *ended);
   }
 }
 
@@ -364,17 +361,23 @@ BranchId Explorer::free_branch(std::string choice, DatumId form) {
       {{}, std::move(choice), data_.source(form), TerminalId(0), TerminalId(0), true});
 }
 
-/// Any branch of a `par` that waits may go on.
+/// Any branch of a `par` that waits may go on, and any failure that has left a branch.
 std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
-  const auto ways = PlanMachine::waiting(state);
+  const auto waiting = PlanMachine::waiting(state);
+  const auto failing = PlanMachine::failing(state);
+  const auto ways = waiting.size() + failing.size();
   const auto go_on = [&](std::size_t way, Job::Edge edge, std::uint32_t owner) {
     Job job{state, {}, {}, edge, owner};
-    job.act = PlanMachine::resume(job.state, ways[way]);
+    if (way < waiting.size()) {
+      job.act = PlanMachine::resume(job.state, waiting[way]);
+    } else {
+      job.failing = failing[way - waiting.size()];
+    }
     return job;
   };
-  if (ways.size() == 1) {
+  if (ways == 1) {
     auto job = go_on(0, Job::Edge::kEntry, 0);
-    return perform(job.state, *job.act);
+    return advance(job);
   }
   auto key = state_key(state, values_, false);
   const auto found = turns_.find(key);
@@ -386,12 +389,13 @@ std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
   auto here = first;
   // The last job is taken first: branches in written order.
   std::vector<Job> jobs;
-  for (std::size_t way = 0; way + 1 < ways.size(); ++way) {
+  for (std::size_t way = 0; way + 1 < ways; ++way) {
     jobs.push_back(go_on(way, Job::Edge::kTrue, here.index()));
-    if (way + 2 == ways.size()) {
+    if (way + 2 == ways) {
       jobs.push_back(go_on(way + 1, Job::Edge::kFalse, here.index()));
     } else {
-      const auto next = free_branch("the next branch goes on", form);
+      const bool goes_on = way + 1 < waiting.size();
+      const auto next = free_branch(goes_on ? "the next branch goes on" : "the `par` fails", form);
       graph_.branches[here].if_false = next;
       here = next;
     }

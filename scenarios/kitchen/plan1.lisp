@@ -31,7 +31,7 @@
 (def-cram-function pick-up (?object)
   (exe:perform (desig:an action (type picking-up) (arm left) (object ?object))))
 
-(def-cram-function find-on-counter (?type)
+(defun find-on-counter (?type)
   (dolist (?cell *counter-cells*)
     (exe:perform (desig:a motion (type looking) (target (desig:a location (pose ?cell)))))
     (cpl:with-failure-handling
@@ -43,7 +43,7 @@
   (cpl:fail 'common-fail:object-nowhere-to-be-found))
 
 ;; Drawers are closed again, also the one that the spoon was in; the hand that holds the spoon pushes.
-(def-cram-function fetch-from-drawers (?type)
+(defun fetch-from-drawers (?type)
   (dolist (?drawer '(:d-top :d-mid :d-low))
     (exe:perform (desig:an action (type opening) (arm left)
                            (object (desig:an object (name ?drawer)))))

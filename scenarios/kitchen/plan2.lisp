@@ -28,7 +28,7 @@
 (def-cram-function pick-up (?object)
   (exe:perform (desig:an action (type picking-up) (arm left) (object ?object))))
 
-(def-cram-function find-on-counter (?type)
+(defun find-on-counter (?type)
   (dolist (?cell *counter-cells*)
     (exe:perform (desig:a motion (type looking) (target (desig:a location (pose ?cell)))))
     (cpl:with-failure-handling
@@ -39,7 +39,7 @@
         (exe:perform (desig:a motion (type detecting) (object (desig:an object (type ?type))))))))
   (cpl:fail 'common-fail:object-nowhere-to-be-found))
 
-(def-cram-function find-in-drawers (?type)
+(defun find-in-drawers (?type)
   (dolist (?drawer '(:d-top :d-mid :d-low))
     (exe:perform (desig:an action (type opening) (arm left)
                            (object (desig:an object (name ?drawer)))))

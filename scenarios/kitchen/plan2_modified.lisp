@@ -31,7 +31,7 @@
   (exe:perform (desig:an action (type picking-up) (arm left) (object ?object)))
   (exe:perform (desig:an action (type regripping) (arm left) (grasping-force 40))))
 
-(def-cram-function find-on-counter (?type)
+(defun find-on-counter (?type)
   (dolist (?cell *counter-cells*)
     (exe:perform (desig:a motion (type looking) (target (desig:a location (pose ?cell)))))
     (cpl:with-failure-handling
@@ -46,7 +46,7 @@
   (exe:perform (desig:an action (type closing) (arm left)
                          (object (desig:an object (name ?drawer))))))
 
-(def-cram-function fetch-from-drawers (?type)
+(defun fetch-from-drawers (?type)
   (dolist (?drawer '(:d-top :d-mid :d-low))
     (exe:perform (desig:an action (type opening) (arm left)
                            (object (desig:an object (name ?drawer)))))

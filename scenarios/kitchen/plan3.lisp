@@ -20,7 +20,7 @@
                          (object (desig:an object (name ?drawer)))))
   (park))
 
-(def-cram-function look-into (?drawer)
+(defun look-into (?drawer)
   (let ((?open nil))
     (dolist (?stance *stances*)
       (exe:perform (desig:a motion (type going) (target (desig:a location (pose ?stance)))))
@@ -39,7 +39,7 @@
           (return-from look-into ?spoon))))
     nil))
 
-(def-cram-function fetch-spoon ()
+(defun fetch-spoon ()
   (dolist (?drawer '(:d-top :d-mid :d-low))
     (let ((?spoon (look-into ?drawer)))
       (when ?spoon

@@ -71,7 +71,7 @@
 
 ;;; Finding.
 
-(def-cram-function find-on-counter (?type)
+(defun find-on-counter (?type)
   (dolist (?cell *cells*)
     (look-at (desig:a location (pose ?cell)))
     (cpl:with-failure-handling

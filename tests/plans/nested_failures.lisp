@@ -52,7 +52,7 @@
       (look-into ?drawer)
       (take-out-of ?drawer ?type ?arm))))
 
-(def-cram-function fetch (?type)
+(defun fetch (?type)
   (let ((?arm 'left))
     (dolist (?drawer '(d-low d-top))
       (cpl:with-retry-counters ((hands 1))

@@ -32,7 +32,7 @@
   (face :shelf))
 
 ;; The next of the products that is still in the crate; grasping one that is not there fails.
-(def-cram-function fetch-fresh (?products)
+(defun fetch-fresh (?products)
   (face :crate)
   (dolist (?product ?products)
     (cpl:with-failure-handling
@@ -44,7 +44,7 @@
       (return-from fetch-fresh ?product)))
   (cpl:fail 'common-fail:object-nowhere-to-be-found))
 
-(def-cram-function put-somewhere (?product)
+(defun put-somewhere (?product)
   (dolist (?board *boards*)
     (let ((?there (inspect-board ?board)))
       (when (and ?there (eq ?there :stale1))

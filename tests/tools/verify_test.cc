@@ -88,7 +88,7 @@ TEST_CASE("traces: branches of a plan run in written order, or in every order") 
             "action picking-up () -> PickUp() ok: Holding() @t+1\n");
   cli.write("par.lisp",
             "(par (perform (a motion (type going) (object (an object (name r2)))))\n"
-            "     (with-failure-handling ((plan-failure () (return)))\n"
+            "     (with-failure-handling ((plan-failure (e) (return)))\n"
             "       (perform (an action (type picking-up)))))\n");
   std::vector<std::string> arguments = {"traces",     "domain.e", "start.e",
                                         "--plan",     "par.lisp", "--bind",

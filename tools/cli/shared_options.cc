@@ -61,7 +61,9 @@ void add_plan_options(OptionTable& command, ModelOptions& options) {
       .show_default();
   command
       .option("--par", options.par,
-              "The branches of `par`: in-order, or interleave for every order of their performs")
+              "The branches of `par`: interleave for every order of their performs; in-order "
+              "leaves out "
+              "the others, and what branches still do after one has failed")
       .check(OneOf{{"in-order", "interleave"}})
       .show_default();
   command

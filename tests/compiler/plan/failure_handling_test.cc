@@ -15,9 +15,9 @@ Unrolled with_prelude(std::string_view text) {
 TEST_CASE("failures: the first clause in written order whose class fits") {
   const auto plan = with_prelude(R"(
 (with-failure-handling
-    ((manipulation-low-level-failure () (go2) (return))
+    ((manipulation-low-level-failure (e) (go2) (return))
      (low-level-failure (e) (go1) (return))
-     (navigation-pose-unreachable () (sig) (return)))
+     (navigation-pose-unreachable (e) (sig) (return)))
   (go1) (pick))
 )");
   // Going fails: low-level-failure comes before navigation-pose-unreachable.
@@ -27,8 +27,8 @@ TEST_CASE("failures: the first clause in written order whose class fits") {
 
 TEST_CASE("failures: a handler that falls through passes the same failure outward") {
   const auto plan = with_prelude(R"(
-(with-failure-handling ((navigation-low-level-failure () (go2) (return)))
-  (with-failure-handling ((navigation-low-level-failure () (sig)))
+(with-failure-handling ((navigation-low-level-failure (e) (go2) (return)))
+  (with-failure-handling ((navigation-low-level-failure (e) (sig)))
     (go1)))
 (pick)
 )");
@@ -39,8 +39,8 @@ TEST_CASE("failures: a handler that falls through passes the same failure outwar
 
 TEST_CASE("failures: a failure in a handler is not caught by the same form") {
   const auto plan = with_prelude(R"(
-(with-failure-handling ((plan-failure () (sig) (return)))
-  (with-failure-handling ((navigation-low-level-failure () (go2) (return))) (go1)))
+(with-failure-handling ((plan-failure (e) (sig) (return)))
+  (with-failure-handling ((navigation-low-level-failure (e) (go2) (return))) (go1)))
 )");
   CHECK(plan.events("--+") == Strings{"Go(r1)", "Go(r2)", "Signal()", "DONE"});
 }
@@ -48,8 +48,8 @@ TEST_CASE("failures: a failure in a handler is not caught by the same form") {
 TEST_CASE("failures: a form inside a handler catches the failures of that handler") {
   const auto plan = with_prelude(R"(
 (with-failure-handling
-    ((navigation-low-level-failure ()
-       (with-failure-handling ((plan-failure () (pick) (return))) (go2))
+    ((navigation-low-level-failure (e)
+       (with-failure-handling ((plan-failure (e) (pick) (return))) (go2))
        (return)))
   (go1))
 )");
@@ -60,7 +60,7 @@ TEST_CASE("failures: a form inside a handler catches the failures of that handle
 TEST_CASE("failures: a retry counter allows exactly that many retries") {
   const auto plan = with_prelude(R"(
 (with-retry-counters ((tries 2))
-  (with-failure-handling ((plan-failure () (do-retry tries (go2) (retry)))) (pick)))
+  (with-failure-handling ((plan-failure (e) (do-retry tries (go2) (retry)))) (pick)))
 )");
   CHECK(plan.events("-+-+-") == Strings{"PickUp(left,box)", "Go(r2)", "PickUp(left,box)", "Go(r2)",
                                         "PickUp(left,box)",
@@ -73,8 +73,8 @@ TEST_CASE("failures: counters can be read and reset") {
   const auto plan = with_prelude(R"(
 (with-retry-counters ((inner 1) (outer 1))
   (with-failure-handling
-      ((plan-failure () (do-retry outer (reset-counter inner) (retry))))
-    (with-failure-handling ((plan-failure () (do-retry inner (retry)))) (sig)))
+      ((plan-failure (e) (do-retry outer (reset-counter inner) (retry))))
+    (with-failure-handling ((plan-failure (e) (do-retry inner (retry)))) (sig)))
   (when (= (get-counter inner) 1) (go1)))
 )");
   // 2 inner attempts, twice.
@@ -88,7 +88,7 @@ TEST_CASE("failures: what a handler sets is visible after a retry") {
   const auto plan = with_prelude(R"(
 (let ((?where *p1*))
   (with-retry-counters ((n 1))
-    (with-failure-handling ((plan-failure () (do-retry n (setf ?where *p2*) (retry))))
+    (with-failure-handling ((plan-failure (e) (do-retry n (setf ?where *p2*) (retry))))
       (perform (a motion (type going) (target ?where))))))
 )");
   CHECK(plan.events("-+") == Strings{"Go(r1)", "Go(r2)", "DONE"});
@@ -96,13 +96,13 @@ TEST_CASE("failures: what a handler sets is visible after a retry") {
 
 TEST_CASE("failures: a handler is one place, whatever failed in the body") {
   const auto plan = with_prelude(R"(
-(with-failure-handling ((plan-failure () (pick) (sig) (return)))
+(with-failure-handling ((plan-failure (e) (pick) (sig) (return)))
   (go1) (go2) (go1) (go2) (go1))
 )");
   CHECK(plan.graph->locations.size() == 5 + 2);
   // With a clean-up in between, what is left to be cleaned up still matters.
   const auto cleaned = with_prelude(R"(
-(with-failure-handling ((navigation-low-level-failure () (go2) (return)))
+(with-failure-handling ((navigation-low-level-failure (e) (go2) (return)))
   (unwind-protect (go1) (sig))
   (go1))
 )");
@@ -111,7 +111,7 @@ TEST_CASE("failures: a handler is one place, whatever failed in the body") {
 }
 
 TEST_CASE("failures: an endless retry is a cycle") {
-  const auto plan = with_prelude("(with-failure-handling ((plan-failure () (retry))) (sig))");
+  const auto plan = with_prelude("(with-failure-handling ((plan-failure (e) (retry))) (sig))");
   CHECK(plan.graph->locations.size() == 1);
   CHECK(plan.walk("--+") == "L0 L0 L0 DONE");
 }
@@ -137,11 +137,11 @@ TEST_CASE("failures: fail with a class, a text, nothing and an own class") {
   CHECK(last("(fail)") == "FAILED(simple-plan-failure)");
   CHECK(last("(ecase 'a (b 1))") == "FAILED(case-failure)");
   CHECK(last("(define-condition lost (navigation-low-level-failure) ((where :initarg :where)))"
-             "(with-failure-handling ((low-level-failure () (fail 'common-fail:lost)))"
+             "(with-failure-handling ((low-level-failure (e) (fail 'common-fail:lost)))"
              " (fail 'lost))") == "FAILED(lost)");
   const auto plan = with_prelude(
       "(define-condition lost (navigation-low-level-failure) ())"
-      "(with-failure-handling ((navigation-low-level-failure () (sig) (return))) (fail 'lost))");
+      "(with-failure-handling ((navigation-low-level-failure (e) (sig) (return))) (fail 'lost))");
   CHECK(plan.events("+") == Strings{"Signal()", "DONE"});
 }
 
@@ -149,7 +149,7 @@ TEST_CASE("failures: clean-up runs on every exit, after the handler has decided"
   const auto plan = with_prelude(R"(
 (with-retry-counters ((n 1))
   (with-failure-handling
-      ((navigation-low-level-failure () (do-retry n (pick) (retry)) (return)))
+      ((navigation-low-level-failure (e) (do-retry n (pick) (retry)) (return)))
     (unwind-protect (go1) (sig))))
 (go2)
 )");
@@ -179,7 +179,7 @@ TEST_CASE("failures: they pass through calls, and handlers see the variables aro
 (defun deep () (go1))
 (defun middle () (unwind-protect (deep) (sig)))
 (let ((seen nil))
-  (with-failure-handling ((plan-failure () (setf seen t) (return))) (middle))
+  (with-failure-handling ((plan-failure (e) (setf seen t) (return))) (middle))
   (when seen (go2)))
 )");
   CHECK(plan.events("-++") == Strings{"Go(r1)", "Signal()", "Go(r2)", "DONE"});
@@ -208,9 +208,9 @@ TEST_CASE("failures: the tutorial's handle-failure macro") {
 TEST_CASE("failures: three nested handlers with counters keep their counts apart") {
   const auto plan = with_prelude(R"(
 (with-retry-counters ((a 1) (b 1) (c 1))
-  (with-failure-handling ((plan-failure () (do-retry a (retry)) (return)))
-    (with-failure-handling ((plan-failure () (do-retry b (retry))))
-      (with-failure-handling ((plan-failure () (do-retry c (retry))))
+  (with-failure-handling ((plan-failure (e) (do-retry a (retry)) (return)))
+    (with-failure-handling ((plan-failure (e) (do-retry b (retry))))
+      (with-failure-handling ((plan-failure (e) (do-retry c (retry))))
         (sig)))))
 (go1)
 )");

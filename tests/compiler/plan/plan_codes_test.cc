@@ -41,11 +41,16 @@ const Case kCases[] = {
      "a "
      "list"},
     {"(car)", "CPL007", "`car`: takes at least 1 arguments, not 0"},
+    {"(defun f (&key x &allow-other-keys) x)(f 1)", "CPL007", "`f`: unexpected argument `1`"},
     {"(+ 1 'a)", "CPL008", "`+`: argument 2 is a, not a number"},
     {"(/ 1 0)", "CPL008", "`/`: division by zero"},
     {"(dolist (x 5) x)", "CPL008", "`dolist`: expected a list, not 5"},
     {"(destructuring-bind (a b) '(1) a)", "CPL008",
      "`destructuring-bind`: the pattern has 2 parts, the list 1"},
+    {"(par)", "CPL003", "malformed `par`: without branches it waits for nothing and fails"},
+    {"(multiple-value-bind (a b) (list 1 2) a)", "CPL013",
+     "`multiple-value-bind` is not in the subset here: the values come from `(values ...)` itself; "
+     "let the function return a list and use `destructuring-bind`"},
     {"(make-quaternion 0 0 0 0)", "CPL008", "`make-quaternion`: the quaternion has no direction"},
     {"(holds 'f)", "CPL008", "`holds`: expected a quoted fluent such as '(holding left box)"},
     {"(performe (a motion (type going)))", "CPL010", "no form or function `performe`"},
@@ -56,8 +61,8 @@ const Case kCases[] = {
      "`setf` writes to `*x*`, which is not a lexical variable"},
     {"(defmacro m () 1)", "CPL013",
      "`defmacro` is not in the subset here: macros are not expanded; write a function"},
-    {"(defun f (&rest r) r)(f)", "CPL013",
-     "`defun` is not in the subset here: `&rest` in a parameter list"},
+    {"(defun f (&aux r) r)(f)", "CPL013",
+     "`defun` is not in the subset here: `&aux` in a parameter list"},
     {"(loop for x in '(1) sum x)", "CPL013",
      "`sum` is not in the subset here: the loop clause `sum`"},
     {"(ros-info (x) (perform (a motion (type signalling))))", "CPL013",
@@ -86,10 +91,10 @@ const Case kCases[] = {
     {"(perform (a motion (type detecting) (object (an object (name box)))))", "CPL033",
      "the motion designator gives `object` no `type`"},
     {"(retry)", "CPL040", "`retry` outside a failure handler"},
-    {"(with-failure-handling () (retry))", "CPL040", "`retry` outside a failure handler"},
+    {"(progn (retry))", "CPL040", "`retry` outside a failure handler"},
     {"(fail 'perception-object-not-fond)", "CPL041",
      "no failure class `perception-object-not-fond`"},
-    {"(with-failure-handling ((nonsense () 1)) 1)", "CPL041", "no failure class `nonsense`"},
+    {"(with-failure-handling ((nonsense (e) 1)) 1)", "CPL041", "no failure class `nonsense`"},
     {"(return 1)", "CPL042", "`return` leaves no block around it"},
     {"(defun f () (f))(f)", "CPL050",
      "`f` calls itself more than 8 deep without performing anything"},
@@ -170,7 +175,7 @@ TEST_CASE("codes: all mistakes of a plan come out in one run, also on paths not 
 
 TEST_CASE("codes: the outcome of one path does not hide the mistake on another") {
   const auto plan = unroll(prelude() + R"(
-(with-failure-handling ((plan-failure () (+ 1 :a) (return))) (sig))
+(with-failure-handling ((plan-failure (e) (+ 1 :a) (return))) (sig))
 (perform (a motion (type going) (target 1/2)))
 )");
   CHECK(plan.codes() == Strings{"CPL008", "CPL033"});

@@ -103,7 +103,7 @@ TEST_CASE("unroller: search the drawers, retry the pick once") {
 }
 
 const char* const kManyStances = R"lisp(
-(def-cram-function look-from-many (?d)
+(defun look-from-many (?d)
   (dolist (?p *stances*)
     (perform (a motion (type going) (pose ?p)))
     (perform (a motion (type looking) (target (a location (in (an object (name ?d)))))))

@@ -21,27 +21,31 @@ void check_values(const std::vector<std::pair<std::string, std::string>>& cases)
 
 TEST_CASE("forms: arithmetic and lists") {
   check_values({
-      {"(+ 1/3 1/6 0.5)", "1"},
+      {"(+ 1/3 1/6 0.5)", "1.0"},
       {"(- 5)", "-5"},
       {"(/ 1 3)", "1/3"},
       {"(* 2 (max 1 3 2) (min 4 2) (abs -1))", "12"},
-      {"(1- (1+ 0.5))", "1/2"},
+      {"(1- (1+ 0.5))", "0.5"},
       {"(< 1 2 3)", "t"},
       {"(< 1 3 3)", "nil"},
       {"(/= 1 2 1)", "nil"},
-      {"(list 1 \"a\" :b)", "(1 \"a\" b)"},
+      {"(list 1 \"a\" :b)", "(1 \"a\" :b)"},
       {"(append '(a) nil (list 'b (car '(c d))))", "(a b c)"},
       {"(reverse (cons 1 (cdr '(9 2 3))))", "(3 2 1)"},
       {"(nth 1 '(a b))", "b"},
       {"(fifth '(1 2))", "nil"},
       {"(last '(1 2))", "(2)"},
       {"(length '(1 2))", "2"},
-      {"(member :b '(a b c) :test #'eq)", "(b c)"},
+      {"(member 'b '(a b c) :test #'eq)", "(b c)"},
+      {"(member :b '(a b c))", "nil"},
       {"(find 'x '(a b c))", "nil"},
       {"(remove 'a '(a b a))", "(b)"},
-      {"(assoc :k '((j 1) (k 2)))", "(k 2)"},
-      {"`(a ,(+ 1 1) ,@(list 'b 'c) (d ,:e))", "(a 2 b c (d e))"},
-      {"(eq :left 'left)", "t"},
+      {"(assoc 'k '((j 1) (k 2)))", "(k 2)"},
+      {"`(a ,(+ 1 1) ,@(list 'b 'c) (d ,:e))", "(a 2 b c (d :e))"},
+      {"(eq :left 'left)", "nil"},
+      {"(eql 1 1.0)", "nil"},
+      {"(equal 0.5 1/2)", "nil"},
+      {"(= 0.5 1/2)", "t"},
       {"(list (cadr '(1 2)) (caddr '(1 2 3)))", "(2 3)"},
       {"(apply #'+ 1 2 '(3 4))", "10"},
       {"(apply #'list nil)", "nil"},
@@ -54,7 +58,18 @@ TEST_CASE("forms: conditions and local control") {
   check_values({
       {"(cond (nil 1) ((= 1 2) 2) ((list 3)) (t 4))", "(3)"},
       {"(cond (nil 1))", "nil"},
-      {"(case :b (a 1) ((b c) 2) (t 3))", "2"},
+      {"(case 'b (a 1) ((b c) 2) (t 3))", "2"},
+      {"(case :b (a 1) ((b c) 2) (t 3))", "3"},
+      {"(case nil (nil 1) (t 2))", "2"},
+      {"(case nil ((nil) 1) (t 2))", "1"},
+      {"(print :x)", ":x"},
+      {"(format nil \"x\")", "\"x\""},
+      {"(multiple-value-bind (a b c) (values 1 2) (list a b c))", "(1 2 nil)"},
+      {"(list (values 1 2) (values))", "(1 nil)"},
+      {"(handler-case (fail 'object-unfetchable) (low-level-failure (e) 1) (plan-failure () 2))",
+       "2"},
+      {"(handler-case (ecase 1 (2 3)) (plan-failure (e) 1) (error () 2))", "2"},
+      {"(handler-case (list 1) (plan-failure (e) 2))", "(1)"},
       {"(case 7 (a 1) (otherwise 3))", "3"},
       {"(ecase 'a (a 1))", "1"},
       {"(and 1 2 nil (fail 'plan-failure))", "nil"},
@@ -99,6 +114,9 @@ TEST_CASE("forms: functions, keyword arguments and local functions") {
 (defun add (a &optional (b 10)) (+ a b))
 (defun key (a &key (b 1) c) (list a b c))
 (defun early (x) (when x (return-from early 'out)) 'in)
+(defun others (a &rest more) (list a more))
+(defun computed (a &key (b (+ a 1)) (c nil given)) (list a b c given))
+(defun free (&key (k :a) &allow-other-keys) k)
 )";
   check_values({
       {"(flet ((f (x) (+ x 1))) (f (f 1)))", "3"},
@@ -113,6 +131,15 @@ TEST_CASE("forms: functions, keyword arguments and local functions") {
                                                         {"(add 1 2)", "3"},
                                                         {"(key 1 :c 3)", "(1 1 3)"},
                                                         {"(key 1 :c 3 :b 2)", "(1 2 3)"},
+                                                        {"(others 1)", "(1 nil)"},
+                                                        {"(others 1 2 3)", "(1 (2 3))"},
+                                                        {"(funcall #'others 1 2)", "(1 (2))"},
+                                                        {"(mapcar #'others '(1))", "((1 nil))"},
+                                                        {"(computed 1)", "(1 2 nil nil)"},
+                                                        {"(computed 1 :c nil)", "(1 2 nil t)"},
+                                                        {"(computed 1 :b 5)", "(1 5 nil nil)"},
+                                                        {"(free :j 1)", ":a"},
+                                                        {"(free :j 1 :k 2)", "2"},
                                                         {"(early t)", "out"},
                                                         {"(early nil)", "in"}}) {
     const auto& expression = one.first;
@@ -136,7 +163,7 @@ TEST_CASE("forms: the entry is the named function, else the bare forms, else the
 TEST_CASE("forms: paths that reach the same state are one location") {
   // Each failure is swallowed, so both outcomes of a perform meet again: no 2^10 paths.
   std::string text = prelude() +
-                     "(defun try () (with-failure-handling ((plan-failure () "
+                     "(defun try () (with-failure-handling ((plan-failure (e) "
                      "(return))) (sig)) nil)";
   for (int i = 0; i < 10; ++i) text += "(try)";
   const auto plan = unroll(text);
@@ -148,7 +175,7 @@ TEST_CASE("forms: paths that reach the same state are one location") {
 TEST_CASE("forms: different values keep paths apart") {
   const auto plan = unroll(prelude() + R"(
 (let ((ok t))
-  (with-failure-handling ((plan-failure () (setf ok nil) (return))) (sig))
+  (with-failure-handling ((plan-failure (e) (setf ok nil) (return))) (sig))
   (if ok (go1) (go2)))
 )");
   REQUIRE(plan.graph.has_value());
@@ -226,7 +253,7 @@ TEST_CASE("forms: an action can be a function of the plan") {
 )";
   const auto plan = unroll(fetch + R"(
 (let ((?got (perform (an action (type fetching) (arm left) (object (an object (name box)))))))
-  (when (eq (desig-prop-value ?got :name) 'box) (sig)))
+  (when (eq (desig-prop-value ?got :name) :box) (sig)))
 )",
                            {}, binding);
   REQUIRE(plan.codes().empty());

@@ -57,7 +57,7 @@ TEST_CASE("graph: a plan without performs goes straight to a terminal") {
 
 TEST_CASE("graph: unrolling twice gives the same dump") {
   const std::string text = prelude() +
-                           "(dotimes (i 3) (with-failure-handling ((plan-failure () (go2) "
+                           "(dotimes (i 3) (with-failure-handling ((plan-failure (e) (go2) "
                            "(return))) (go1) (pick)))";
   const auto one = unroll(text);
   const auto two = unroll(text);

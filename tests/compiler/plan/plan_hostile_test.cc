@@ -26,7 +26,7 @@ TEST_CASE("hostile: nesting up to the limit is compiled and run") {
   REQUIRE(plan.graph.has_value());
   CHECK(plan.events("+") == Strings{"Signal()", "DONE"});
   const auto handlers =
-      unroll(prelude() + repeat("(with-failure-handling ((plan-failure () (sig))) ", 400) +
+      unroll(prelude() + repeat("(with-failure-handling ((plan-failure (e) (sig))) ", 400) +
              "(sig)" + repeat(")", 400));
   REQUIRE(handlers.graph.has_value());
   CHECK(handlers.graph->locations.size() == 401);
@@ -58,7 +58,7 @@ TEST_CASE("hostile: deep calls in many states stop at a limit of memory") {
   options.max_call_depth = 1000;
   const auto plan =
       unroll(prelude() +
-                 "(defun f (n) (sig) (with-failure-handling ((plan-failure () (f (+ n "
+                 "(defun f (n) (sig) (with-failure-handling ((plan-failure (e) (f (+ n "
                  "2)))) (f (+ n 1))))(f 0)",
              options);
   CHECK(plan.codes() == Strings{"CPL051"});
@@ -69,7 +69,7 @@ TEST_CASE("hostile: a plan with too many states stops at the limit") {
   const auto plan = unroll(prelude() + R"(
 (let ((seen nil))
   (dotimes (i 30)
-    (with-failure-handling ((plan-failure () (push i seen) (return))) (sig))))
+    (with-failure-handling ((plan-failure (e) (push i seen) (return))) (sig))))
 )");
   CHECK(plan.codes() == Strings{"CPL051"});
 }

@@ -98,7 +98,7 @@ TEST_CASE("an object that is only described is any one that fits, each a trace")
 TEST_CASE("a description that nothing fits fails, and the plan can handle that") {
   const std::string plan = R"(
 (with-failure-handling
-    ((designator-reference-failure ()
+    ((designator-reference-failure (e)
        (perform (an action (type picking-up) (object (an object (name c3)))))
        (return)))
   (perform (an action (type picking-up) (object (an object (type red))))))
@@ -109,7 +109,7 @@ TEST_CASE("a description that nothing fits fails, and the plan can handle that")
   CHECK(model.keys().keys == std::vector<std::string>{"Grab(c3);"});
   // One that tries again for ever, at one timepoint, is cut and named.
   PlannedModel endless(std::string(kCups) + "[cup] !HoldsAt(Seen(cup),0).\n", R"(
-(with-failure-handling ((designator-reference-failure () (retry)))
+(with-failure-handling ((designator-reference-failure (e) (retry)))
   (perform (an action (type picking-up) (object (an object (type red))))))
 )",
                        std::string(kCupBinding) + kReferences, "{cup} HoldsAt(Held(cup),time)", 3);

@@ -87,9 +87,12 @@ class Reader {
       out.text = std::move(word);
       return out;
     }
+    const bool keyword = word.starts_with(':');
     if (const auto colon = word.rfind(':'); colon != std::string::npos) word.erase(0, colon + 1);
     for (auto& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return symbol(std::move(word));
+    auto out = symbol(std::move(word));
+    out.keyword = keyword;
+    return out;
   }
 
   std::string_view text_;
@@ -102,7 +105,7 @@ std::vector<Datum> read_data(std::string_view text) { return Reader(text).all();
 
 std::string print(const Datum& datum) {
   if (datum.kind == Datum::Kind::kString) return '"' + datum.text + '"';
-  if (!datum.is_list()) return datum.text;
+  if (!datum.is_list()) return (datum.keyword ? ":" : "") + datum.text;
   if (datum.head() == "quote" && datum.items.size() == 2) return "'" + print(datum.items[1]);
   std::string out = "(";
   for (const auto& item : datum.items) {

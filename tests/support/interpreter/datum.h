@@ -12,6 +12,7 @@ struct Datum {
   enum class Kind { kSymbol, kNumber, kString, kList };
   Kind kind = Kind::kList;
   std::string text;  // symbols without package and colon, in lower case
+  bool keyword = false;
   double number = 0.0;
   std::vector<Datum> items;
 

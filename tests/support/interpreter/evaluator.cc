@@ -17,7 +17,7 @@ constexpr ClassAndParent kClasses[] = {
     {"composite-failure", "plan-failure"},
     {"low-level-failure", "simple-plan-failure"},
     {"high-level-failure", "simple-plan-failure"},
-    {"case-failure", "simple-plan-failure"},
+    {"case-failure", "error"},
     {"navigation-low-level-failure", "low-level-failure"},
     {"navigation-pose-unreachable", "navigation-low-level-failure"},
     {"manipulation-low-level-failure", "low-level-failure"},
@@ -103,6 +103,11 @@ PlanItem Evaluator::eval(const Datum& form, const ScopePtr& scope) {
     case Datum::Kind::kSymbol: {
       if (form.is("nil")) return {};
       if (form.is("t")) return true_item(true);
+      if (form.keyword) {
+        auto out = symbol_item(form.text);
+        out.keyword = true;
+        return out;
+      }
       if (const auto* value = find(form.text, scope)) return *value;
       return symbol_item(form.text);  // a keyword; a misspelt variable would show in the events
     }
@@ -135,6 +140,9 @@ PlanItem* Evaluator::find(const std::string& name, const ScopePtr& scope) {
     const auto found = at->variables.find(name);
     if (found != at->variables.end()) return &found->second;
   }
+  for (auto i = specials_.size(); i-- > task_specials_;) {
+    if (specials_[i].first == name) return &specials_[i].second;
+  }
   const auto global = globals_->variables.find(name);
   return global == globals_->variables.end() ? nullptr : &global->second;
 }
@@ -151,14 +159,23 @@ bool Evaluator::binding(const Datum& form, const ScopePtr& scope, PlanItem& out)
   if (head == "let" || head == "let*") {
     auto inner = std::make_shared<Scope>();
     inner->outer = scope;
+    std::vector<std::pair<std::string, PlanItem>> specials;
     for (const auto& entry : items[1].items) {
       const bool bare = !entry.is_list();
       const auto value = bare || entry.items.size() < 2
                              ? PlanItem()
                              : eval(entry.items[1], head == "let*" ? inner : scope);
-      inner->variables[bare ? entry.text : entry.items[0].text] = value;
+      const auto& name = bare ? entry.text : entry.items[0].text;
+      if (globals_->variables.contains(name)) {
+        specials.emplace_back(name, value);
+      } else {
+        inner->variables[name] = value;
+      }
     }
-    out = body(items, 2, inner);
+    out = rebinding([&] {
+      specials_.insert(specials_.end(), specials.begin(), specials.end());
+      return body(items, 2, inner);
+    });
   } else if (head == "destructuring-bind") {
     auto inner = std::make_shared<Scope>();
     inner->outer = scope;
@@ -219,6 +236,51 @@ PlanItem Evaluator::in_block(const std::string& name, const std::function<PlanIt
   }
 }
 
+/// What `run` rebinds is undone on every way out.
+PlanItem Evaluator::rebinding(const std::function<PlanItem()>& run) {
+  const auto depth = specials_.size();
+  try {
+    auto out = run();
+    specials_.resize(depth);
+    return out;
+  } catch (...) {
+    specials_.resize(depth);
+    throw;
+  }
+}
+
+/// A task of its own: it sees no block and no rebound special around it, and a failure that nobody
+/// in it handles ends it, with its clean-ups, before it is signalled outside.
+PlanItem Evaluator::in_task(const std::function<PlanItem()>& run) {
+  const int id = ++next_id_;
+  const auto handlers = handlers_;
+  const auto blocks = std::exchange(blocks_, {});
+  const auto specials = std::exchange(task_specials_, specials_.size());
+  const auto leave = [&] {
+    handlers_ = handlers;
+    blocks_ = blocks;
+    task_specials_ = specials;
+  };
+  Handler border;
+  border.task = true;
+  border.id = id;
+  handlers_.push_back(border);
+  std::string failure;
+  try {
+    auto out = rebinding(run);
+    leave();
+    return out;
+  } catch (const TaskFailed& failed) {
+    leave();
+    if (failed.task != id) throw;
+    failure = failed.what;
+  } catch (...) {
+    leave();
+    throw;
+  }
+  signal(failure);
+}
+
 PlanItem Evaluator::apply(const std::vector<Datum>& parameters, const std::vector<Datum>& forms,
                           std::size_t from, const std::vector<PlanItem>& arguments,
                           const ScopePtr& outer, const std::string& name) {
@@ -277,7 +339,8 @@ PlanItem Evaluator::call(const Datum& form, const ScopePtr& scope) {
   const auto found = functions_.find(name);
   if (found == functions_.end()) return builtin(name, arguments);
   const auto& items = found->second->items;
-  return apply(items[2].items, items, 3, arguments, nullptr, name);
+  const auto run = [&] { return apply(items[2].items, items, 3, arguments, nullptr, name); };
+  return items[0].is("defun") ? run() : in_task(run);
 }
 
 }  // namespace parallax::test

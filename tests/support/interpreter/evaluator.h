@@ -34,7 +34,8 @@ struct Scope {
 using ScopePtr = std::shared_ptr<Scope>;
 
 /// One execution of a plan. Failures look for a handler before anything is unwound, as conditions
-/// of Lisp do; jumps are C++ exceptions, so clean-ups run on their way.
+/// of Lisp do, but a task is left before the handlers around it are asked; jumps are C++
+/// exceptions, so clean-ups run on their way.
 class Evaluator {
  public:
   /// `program` and `world` outlive the evaluator. Picks beyond the given ones are the first choice.
@@ -50,6 +51,7 @@ class Evaluator {
 
   struct Handler {
     const std::vector<Datum>* clauses = nullptr;  // ((class (e) body...) ...)
+    bool task = false;                            // none: a task begins here
     ScopePtr scope;
     int id = 0;
     std::vector<Block> blocks;
@@ -69,6 +71,8 @@ class Evaluator {
   PlanItem apply(const std::vector<Datum>& parameters, const std::vector<Datum>& forms,
                  std::size_t from, const std::vector<PlanItem>& arguments, const ScopePtr& outer,
                  const std::string& name);
+  PlanItem in_task(const std::function<PlanItem()>& run);
+  PlanItem rebinding(const std::function<PlanItem()>& run);
   PlanItem in_block(const std::string& name, const std::function<PlanItem()>& run);
   PlanItem loop_form(const Datum& form, const ScopePtr& scope);
   PlanItem handling(const std::vector<Datum>& clauses, const Datum& form, std::size_t from,
@@ -79,7 +83,7 @@ class Evaluator {
   PlanItem designator_value(const Datum& datum, const ScopePtr& scope);
   PlanItem perform(const PlanItem& what);
   [[noreturn]] void signal(const std::string& failure);
-  bool matches(const Datum& clause_class, const std::string& failure) const;
+  const Datum& clause_called(const std::vector<Datum>& clauses, const std::string& name) const;
   bool below(std::string failure, const std::string& ancestor) const;
   void set(const Datum& place, PlanItem value, const ScopePtr& scope);
   PlanItem* find(const std::string& name, const ScopePtr& scope);
@@ -95,8 +99,10 @@ class Evaluator {
   std::map<std::string, const Datum*> functions_;
   std::map<std::string, std::string> parents_;  // of failure classes
   std::vector<const Datum*> main_;
-  std::vector<Handler> handlers_;  // active ones, innermost last
-  std::vector<Block> blocks_;      // of the function that runs, innermost last
+  std::vector<Handler> handlers_;                           // active ones, innermost last
+  std::vector<std::pair<std::string, PlanItem>> specials_;  // rebound by `let`, innermost last
+  std::size_t task_specials_ = 0;                           // where those of this task begin
+  std::vector<Block> blocks_;  // of the function that runs, innermost last
   int next_id_ = 0;
 };
 

@@ -10,7 +10,9 @@ PlanItem quoted(const Datum& datum) {
   if (datum.kind == Datum::Kind::kNumber) return number_item(datum.number);
   if (datum.kind == Datum::Kind::kSymbol) {
     if (datum.is("nil")) return {};
-    return datum.is("t") ? true_item(true) : symbol_item(datum.text);
+    auto out = datum.is("t") ? true_item(true) : symbol_item(datum.text);
+    out.keyword = datum.keyword;
+    return out;
   }
   PlanItem out;
   if (datum.kind == Datum::Kind::kString) {
@@ -26,7 +28,7 @@ PlanItem quoted(const Datum& datum) {
 
 bool has_no_effect(const std::string& head) {
   return head == "ros-info" || head == "ros-warn" || head == "ros-error" || head == "format" ||
-         head == "print" || head == "sleep" || head == "declare" || head == "on-event";
+         head == "sleep" || head == "declare" || head == "on-event";
 }
 
 }  // namespace
@@ -38,8 +40,15 @@ bool Evaluator::control(const Datum& form, const ScopePtr& scope, PlanItem& out)
     out = quoted(items[1]);
   } else if (has_no_effect(head)) {
     out = {};
-  } else if (head == "progn" || head == "seq" || head == "par" || head == "top-level") {
+  } else if (head == "progn" || head == "seq" || head == "top-level") {
     out = body(items, 1, scope);
+  } else if (head == "par") {
+    for (std::size_t i = 1; i < items.size(); ++i) {
+      auto value = in_task([&] { return eval(items[i], scope); });
+      if (i == 1) out = std::move(value);
+    }
+  } else if (head == "print") {
+    out = eval(items[1], scope);
   } else if (head == "if") {
     if (!eval(items[1], scope).is_nil()) {
       out = eval(items[2], scope);
@@ -160,7 +169,10 @@ PlanItem Evaluator::builtin(const std::string& name, const std::vector<PlanItem>
     return out;
   }
   if (name == "not" || name == "null") return true_item(a.at(0).is_nil());
-  if (name == "eq" || name == "eql" || name == "equal") return true_item(a.at(0) == a.at(1));
+  if (name == "eq" || name == "eql" || name == "equal") {
+    const bool object = a.at(0).object || a.at(1).object;
+    return true_item(object ? a[0].text == a[1].text : a[0] == a[1]);
+  }
   if (name == "=") return true_item(a.at(0).number == a.at(1).number);
   if (name == "<") return true_item(a.at(0).number < a.at(1).number);
   if (name == ">") return true_item(a.at(0).number > a.at(1).number);

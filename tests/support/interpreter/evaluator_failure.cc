@@ -25,12 +25,31 @@ bool Evaluator::below(std::string failure, const std::string& ancestor) const {
   }
 }
 
-bool Evaluator::matches(const Datum& named, const std::string& failure) const {
-  if (!named.is_list()) return below(failure, named.text);
+namespace {
+
+/// A clause for `(or a b)` stands for one with a and one with b.
+std::vector<std::string> named_classes(const Datum& clause) {
+  const auto& named = unquoted(clause.items[0]);
+  if (!named.is_list()) return {named.text};
+  std::vector<std::string> out;
   for (const auto& item : named.items) {
-    if (!item.is("or") && below(failure, unquoted(item).text)) return true;
+    if (!item.is("or")) out.push_back(unquoted(item).text);
   }
-  return false;
+  return out;
+}
+
+}  // namespace
+
+/// Clauses are functions named by their class: the last one with the name is what is called.
+const Datum& Evaluator::clause_called(const std::vector<Datum>& clauses,
+                                      const std::string& name) const {
+  const Datum* out = nullptr;
+  for (const auto& clause : clauses) {
+    for (const auto& other : named_classes(clause)) {
+      if (other == name) out = &clause;
+    }
+  }
+  return *out;
 }
 
 /// Handlers are asked from the inside outwards, on top of what has failed.
@@ -40,9 +59,16 @@ void Evaluator::signal(const std::string& failure) {
     const auto& handler = active[i];
     handlers_.assign(active.begin(), active.begin() + static_cast<std::ptrdiff_t>(i));
     blocks_ = handler.blocks;
+    if (handler.task) throw TaskFailed{handler.id, failure};
     if (handler.clauses == nullptr) throw Leave{handler.id, symbol_item("%failed")};
-    for (const auto& clause : *handler.clauses) {
-      if (!matches(unquoted(clause.items[0]), failure)) continue;
+    std::vector<const Datum*> called;
+    for (const auto& written : *handler.clauses) {
+      for (const auto& name : named_classes(written)) {
+        if (below(failure, name)) called.push_back(&clause_called(*handler.clauses, name));
+      }
+    }
+    for (const auto* function : called) {
+      const auto& clause = *function;
       auto scope = std::make_shared<Scope>();
       scope->outer = handler.scope;
       scope->variables[kRetry] = number_item(handler.id);
@@ -51,8 +77,7 @@ void Evaluator::signal(const std::string& failure) {
         value.kind = PlanItem::Kind::kFailure;
         scope->variables[clause.items[1].items[0].text] = value;
       }
-      body(clause.items, 2, scope);
-      break;  // it fell through: the same failure goes on outwards
+      body(clause.items, 2, scope);  // it declined if that returns: the next clause, then outwards
     }
   }
   throw Unhandled{failure};
@@ -67,9 +92,12 @@ PlanItem Evaluator::handling(const std::vector<Datum>& clauses, const Datum& for
     for (;;) {
       handlers_ = outer;
       blocks_ = blocks;
-      handlers_.push_back({&clauses, scope, id, blocks});
+      handlers_.push_back({&clauses, false, scope, id, blocks});
       try {
-        return body(form.items, from, scope);
+        auto inner = std::make_shared<Scope>();
+        inner->outer = scope;
+        inner->variables[kRetry] = number_item(id);
+        return body(form.items, from, inner);
       } catch (const Again& again) {
         if (again.handling != id) throw;
       }
@@ -80,7 +108,7 @@ PlanItem Evaluator::handling(const std::vector<Datum>& clauses, const Datum& for
 /// A form whose failure, of whatever class, is reported to the caller by the symbol %failed.
 PlanItem Evaluator::attempt(const Datum& form, const ScopePtr& scope) {
   return in_block("%attempt", [&] {
-    handlers_.push_back({nullptr, scope, blocks_.back().id, blocks_});
+    handlers_.push_back({nullptr, false, scope, blocks_.back().id, blocks_});
     return eval(form, scope);
   });
 }
@@ -136,11 +164,14 @@ bool Evaluator::failures(const Datum& form, const ScopePtr& scope, PlanItem& out
   } else if (head == "unwind-protect") {
     out = cleaned_up(form, scope);
   } else if (head == "try-in-order") {
-    for (std::size_t i = 1; i < items.size(); ++i) {
-      out = attempt(items[i], scope);
-      if (out.text != "%failed") return true;
-    }
-    signal("composite-failure");
+    out = in_block("nil", [&] {
+      for (std::size_t i = 1; i < items.size(); ++i) {
+        auto value = attempt(items[i], scope);
+        if (value.text != "%failed") return value;
+      }
+      signal("composite-failure");
+      return PlanItem();
+    });
   } else {
     return false;
   }
@@ -195,6 +226,7 @@ PlanItem Evaluator::perform(const PlanItem& what) {
   if (outcome.success && !outcome.returns.empty()) {
     if (next_pick_ == picks_.size()) picks_.push_back({0, outcome.returns.size()});
     result = symbol_item(outcome.returns[picks_[next_pick_++].chosen]);
+    result.object = true;
     key_ += '=' + result.text;
   }
   key_ += ';';

@@ -16,6 +16,11 @@ struct Leave {
 struct Again {
   int handling = 0;
 };
+/// Nobody in this task handled the failure: the task ends.
+struct TaskFailed {
+  int task = 0;
+  std::string what;
+};
 /// Nobody handled a failure of this class.
 struct Unhandled {
   std::string what;

@@ -15,9 +15,16 @@ class Generator {
     model(out.model);
     out.horizon = 2 + below(4);
     std::string text;
+    text += "(defparameter *thing* 't1)\n";
     if (coin()) {
-      text += "(defun helper (?x) " + statement(2, {"?x"}) + " " + act("?x") + ")\n";
-      helper_ = true;
+      text += std::string(coin() ? "(defun" : "(def-cram-function") + " helper (?x) " +
+              statement(2, {"?x"}) + " " + act("?x") + ")\n";
+      helpers_.push_back("helper");
+    }
+    if (coin()) {
+      text += std::string(coin() ? "(defun" : "(def-cram-function") +
+              " task (?x) (unwind-protect " + statement(2, {"?x"}) + " " + act("*thing*") + "))\n";
+      helpers_.push_back("task");
     }
     text += "(def-cram-function main () " + statement(4, {}) + " " + statement(3, {}) + ")";
     out.plan = read_data(text);
@@ -119,6 +126,7 @@ class Generator {
   std::string perform(const Names& scope) {
     const int choice = below(8);
     if (choice == 0) return "(perform (an action (type waiting)))";
+    if (choice == 2) return act("*thing*");
     return choice == 1 ? look() : act(object(scope));
   }
   std::string condition(int depth, const Names& scope) {
@@ -148,6 +156,7 @@ class Generator {
                            "manipulation-low-level-failure",
                            "perception-low-level-failure",
                            "(or perception-object-not-found gripper-low-level-failure)",
+                           "(or low-level-failure manipulation-low-level-failure)",
                            "simple-plan-failure",
                            "high-level-failure"};
     return one_of(classes);
@@ -176,8 +185,10 @@ class Generator {
     const auto counter = "tries" + std::to_string(++fresh_);
     auto out = "(with-retry-counters ((" + counter + " " + std::to_string(below(3)) +
                ")) (with-failure-handling (" + handler(depth, scope, counter);
-    if (coin()) out += " " + handler(depth, scope, counter);
-    return out + ") " + statement(depth - 1, scope) + " " + perform(scope) + "))";
+    for (int more = below(3); more-- > 0;) out += " " + handler(depth, scope, counter);
+    out += ") " + statement(depth - 1, scope) + " " + perform(scope);
+    if (below(4) == 0) out += " (do-retry " + counter + " (retry))";
+    return out + "))";
   }
   std::string with_variable(int depth, const Names& scope) {
     const auto name = "?v" + std::to_string(++fresh_);
@@ -216,7 +227,9 @@ class Generator {
   std::string statement(int depth, const Names& scope) {
     if (depth <= 0) return perform(scope);
     const auto sub = [&] { return statement(depth - 1, scope); };
-    switch (below(14)) {
+    switch (below(15)) {
+      case 13:
+        return "(let ((*thing* 't2)) " + sub() + " " + perform(scope) + ")";
       case 0:
         return "(progn " + sub() + " " + sub() + ")";
       case 1:
@@ -243,7 +256,9 @@ class Generator {
       case 11:
         return "(cond (" + condition(1, scope) + " " + sub() + ") (t " + sub() + "))";
       case 12:
-        if (helper_) return "(helper " + (scope.empty() ? "'t1" : one_of(scope)) + ")";
+        if (!helpers_.empty()) {
+          return "(" + one_of(helpers_) + " " + (scope.empty() ? "'t1" : one_of(scope)) + ")";
+        }
         return perform(scope);
       default:
         return perform(scope);
@@ -252,7 +267,7 @@ class Generator {
 
   std::mt19937_64 random_;
   Names things_, kinds_;
-  bool helper_ = false;
+  Names helpers_;  // functions that are written by now
   int fresh_ = 0;
 };
 

@@ -13,7 +13,9 @@ namespace parallax::test {
 struct PlanItem {
   enum class Kind { kNil, kTrue, kSymbol, kNumber, kString, kList, kDesignator, kFailure };
   Kind kind = Kind::kNil;
-  std::string text;  // of a symbol, a string, a failure's class; a designator's kind
+  std::string text;      // of a symbol, a string, a failure's class; a designator's kind
+  bool keyword = false;  // kSymbol: :left, not left
+  bool object = false;   // kSymbol: what a perform returned, which is known by its name
   double number = 0.0;
   std::vector<PlanItem> items;
   std::vector<std::pair<std::string, PlanItem>> keys;  // of a designator

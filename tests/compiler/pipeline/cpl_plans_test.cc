@@ -1,0 +1,160 @@
+// What the real CPL did with small plans, measured, and what the unroller makes of the same files.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "compiler/pipeline/compile.h"
+#include "runtime/enumerate/model_enumerator.h"
+
+namespace parallax::test {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kFolder = fs::path(PARALLAX_SOURCE_DIR) / "tests" / "plans" / "cpl";
+
+/// Plans that differ, and why.
+const std::map<std::string, std::string> kExceptions = {
+    {"s44_loop_forms",
+     "it performs with the value nil, of which the model has no constant: refused (CPL033)"},
+    {"s55_handler_on_t",
+     "a handler on `condition` also hears what the real one signals that is no failure"},
+};
+
+struct Measured {
+  bool dies = false;
+  bool lisp_error = false;
+  std::set<std::string> traces;
+  std::set<std::string> failures;  // classes that ended it
+};
+
+std::map<std::string, Measured> measured() {
+  std::ifstream in(kFolder / "measured.txt");
+  REQUIRE(in);
+  std::map<std::string, Measured> out;
+  Measured* plan = nullptr;
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line);
+    std::string word;
+    words >> word;
+    if (!line.starts_with(' ')) {
+      plan = &out[word];
+      plan->dies = static_cast<bool>(words >> word);
+      continue;
+    }
+    REQUIRE(plan != nullptr);
+    plan->lisp_error = plan->lisp_error || word == "error";
+    if (word.starts_with("failed(")) plan->failures.insert(word.substr(7, word.size() - 8));
+    std::string trace;
+    while (words >> word) trace += word + ' ';
+    plan->traces.insert(trace);
+  }
+  return out;
+}
+
+struct Ours {
+  bool refused = false;
+  bool located = false;  // the refusal names a place in the plan
+  std::string codes;
+  std::set<std::string> traces;
+  std::set<std::string> failures;
+};
+
+Ours unrolled(const std::string& name) {
+  const auto text_of = [](const fs::path& path) {
+    std::ifstream in(path);
+    REQUIRE(in);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  struct NoRegions final : compiler::PoseLocator {
+    std::optional<std::string> region_of(std::string_view, const compiler::Pose&) const override {
+      return std::nullopt;
+    }
+    std::optional<Nearest> nearest(std::string_view, const compiler::Pose&) const override {
+      return std::nullopt;
+    }
+  };
+  const NoRegions nowhere;
+  base::SourceFiles files;
+  base::DiagnosticSink sink;
+  const auto plan = files.add("plan.lisp", text_of(kFolder / "measured" / (name + ".lisp")));
+  const auto binding = files.add("free.bind", text_of(kFolder / "free.bind"));
+  compiler::CompileInput input;
+  input.models = {kFolder / "free.e"};
+  input.horizon = 9;
+  input.plan = compiler::PlanInput{plan, binding, std::nullopt, &nowhere};
+  input.plan->interleave = !name.starts_with('s');
+  const auto compiled = compiler::compile_model(input, files, sink);
+  Ours out;
+  out.refused = !compiled;
+  for (const auto& entry : sink.sorted()) {
+    if (base::info(entry.code).severity != base::Severity::kError) continue;
+    out.codes += std::string(base::info(entry.code).id) + ' ';
+    out.located = entry.range && entry.range->file == plan && entry.range->end > entry.range->begin;
+  }
+  if (out.refused) return out;
+  for (const auto& terminal : compiled->plan->terminals) {
+    if (terminal.kind == compiler::TerminalKind::kFailed) out.failures.insert(terminal.detail);
+  }
+  runtime::SolverSession session(compiled->model, runtime::make_cadical_solver());
+  runtime::ModelEnumerator enumerator(session);
+  while (const auto trace = enumerator.next()) {
+    std::string key;
+    for (std::size_t t = 0; t + 1 < trace->points.size(); ++t) {
+      const auto& point = trace->points[t];
+      for (const auto& event : trace->happens(t)) {
+        key += event;
+        if (!point.succeeded) key += "!";
+        if (point.returned) key += '=' + *point.returned;
+        key += ' ';
+      }
+    }
+    out.traces.insert(key);
+  }
+  return out;
+}
+
+std::string difference(const std::string& name, const Measured& real, const Ours& ours) {
+  if (real.dies || real.lisp_error) {
+    return ours.refused && ours.located ? "" : "accepted, and the real one dies";
+  }
+  if (ours.refused) {
+    return name.starts_with('r') && ours.located ? "" : "refused: " + ours.codes;
+  }
+  std::string out;
+  for (const auto& trace : real.traces) {
+    if (!ours.traces.contains(trace)) out += "missing " + trace + '\n';
+  }
+  for (const auto& trace : ours.traces) {
+    if (!name.starts_with('p') && !real.traces.contains(trace)) out += "not real " + trace + '\n';
+  }
+  for (const auto& failure : real.failures) {
+    if (!ours.failures.contains(failure)) out += "does not end in " + failure + '\n';
+  }
+  return out;
+}
+
+TEST_CASE("plans mean what the real CPL made of them") {
+  const auto all = measured();
+  CHECK(all.size() == 70);
+  for (const auto& [name, real] : all) {
+    CAPTURE(name);
+    const auto text = difference(name, real, unrolled(name));
+    if (kExceptions.contains(name)) {
+      CHECK_MESSAGE(!text.empty(), "no exception any more: " << kExceptions.at(name));
+    } else {
+      CHECK_MESSAGE(text.empty(), text);
+    }
+  }
+  for (const auto& [name, reason] : kExceptions) CHECK(all.contains(name));
+}
+
+}  // namespace
+}  // namespace parallax::test
