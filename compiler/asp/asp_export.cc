@@ -1,6 +1,7 @@
 #include "compiler/asp/asp_export.h"
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -156,9 +157,62 @@ std::string domain_rules(const TypedModel& model, const AspNames& names, TermWri
   return DomainWriter(model, names, terms).write();
 }
 
-/// The atoms that may be true: HoldsAt, Happens, ReleasedAt, user predicates.
-std::string choice_rules(const TypedModel& model, const AspNames& names, TermWriter& terms) {
+bool is_users_predicate(const TypedModel& model, SymbolId id) {
   const auto& core = model.core;
+  return model.symbols[id].kind == SymbolKind::kPredicate && id != core.holds_at &&
+         id != core.happens && id != core.released_at && id != core.initiates &&
+         id != core.terminates && id != core.releases && id != core.trajectory &&
+         id != core.anti_trajectory;
+}
+
+/// Which atoms of user predicates tell traces apart: facts for the model's own horizon. For another
+/// one, which `clingo -c horizon=N` gives, nothing is known, and all are.
+class OpenAtoms {
+ public:
+  OpenAtoms(const TypedModel& model, AspNames& names, const AspOptions& options)
+      : model_(model), names_(names), given_(options.open_atoms.has_value()) {
+    if (!given_) return;
+    for (const auto& atom : *options.open_atoms) {
+      const auto symbol = model.find_symbol(std::string_view(atom).substr(0, atom.find('(')));
+      const auto written = names.printed(atom);
+      const auto arguments = std::min(written.find('('), written.size());
+      if (symbol) atoms_[symbol->index()].push_back(written.substr(arguments));
+    }
+  }
+
+  /// `{ P(X1,..) } :- domain.`, for atoms that are open.
+  std::string choice(SymbolId predicate, const std::vector<std::string>& variables,
+                     AspBody domain) {
+    const auto atom = applied(names_.symbol(predicate), variables);
+    if (!given_) return rule_text("{ " + atom + " }", domain);
+    const auto name = names_.fresh("open_" + names_.symbol(predicate));
+    std::string text;
+    const auto known = atoms_.find(predicate.index());
+    if (known != atoms_.end()) {
+      for (const auto& arguments : known->second) text += name + arguments + ".\n";
+    }
+    text += "#defined " + name + "/" + std::to_string(variables.size()) + ".\n";
+    const auto open = applied(name, variables);
+    const auto& ranges = model_.sorts[*model_.core.time].ranges;
+    if (ranges.size() == 1) {
+      auto elsewhere = domain;
+      elsewhere.push_back(plain_literal("horizon != " + std::to_string(ranges[0].upper)));
+      text += rule_text(open, elsewhere);
+    }
+    domain.push_back(plain_literal(open));
+    return text + rule_text("{ " + atom + " }", domain);
+  }
+
+ private:
+  const TypedModel& model_;
+  AspNames& names_;
+  bool given_;
+  std::map<std::size_t, std::vector<std::string>> atoms_;  // arguments, by predicate
+};
+
+/// The atoms that may be true: HoldsAt, Happens, ReleasedAt, user predicates.
+std::string choice_rules(const TypedModel& model, const AspNames& names, TermWriter& terms,
+                         OpenAtoms& open) {
   std::string text =
       "\n% Every trace is possible that nothing forbids\n"
       "{ holds_at(F,T) } :- fluent(F), time(T).\n"
@@ -170,11 +224,7 @@ std::string choice_rules(const TypedModel& model, const AspNames& names, TermWri
   for (std::size_t i = 0; i < model.symbols.size(); ++i) {
     const auto id = model.symbols.id_at(i);
     const auto& symbol = model.symbols[id];
-    if (symbol.kind != SymbolKind::kPredicate || id == core.holds_at || id == core.happens ||
-        id == core.released_at || id == core.initiates || id == core.terminates ||
-        id == core.releases || id == core.trajectory || id == core.anti_trajectory) {
-      continue;
-    }
+    if (!is_users_predicate(model, id)) continue;
     shown += "#show " + names.symbol(id) + "/" + std::to_string(symbol.arguments.size()) + ".\n";
     if (std::any_of(symbol.arguments.begin(), symbol.arguments.end(),
                     [&](SortId sort) { return terms.is_unbounded(sort); })) {
@@ -186,7 +236,7 @@ std::string choice_rules(const TypedModel& model, const AspNames& names, TermWri
       variables.push_back("X" + std::to_string(k + 1));
       body.push_back(plain_literal(applied(names.sort(symbol.arguments[k]), {variables.back()})));
     }
-    text += rule_text("{ " + applied(names.symbol(id), variables) + " }", body);
+    text += open.choice(id, variables, std::move(body));
   }
   return text + shown;
 }
@@ -222,11 +272,12 @@ class Exporter {
         options_(options),
         terms_(model, names, sink),
         formulas_(model, names, terms_, rules_),
-        completion_(model, names, terms_, formulas_, rules_) {}
+        completion_(model, names, terms_, formulas_, rules_),
+        open_(model, names, options) {}
 
   std::string write() {
     rules_ = domain_rules(model_, names_, terms_);
-    rules_ += choice_rules(model_, names_, terms_);
+    rules_ += choice_rules(model_, names_, terms_, open_);
     rules_ += calculus_rules(model_);
     for (const auto& effect : model_.effects) write_effect(effect);
     for (const auto& trajectory : model_.trajectories) write_trajectory(trajectory);
@@ -335,8 +386,7 @@ class Exporter {
         variables.push_back("X" + std::to_string(k + 1));
       }
       const auto& mentioned = formulas_.mentioned(id);
-      rules_ += rule_text("{ " + applied(names_.symbol(id), variables) + " }",
-                          {plain_literal(applied(mentioned, variables))}) +
+      rules_ += open_.choice(id, variables, {plain_literal(applied(mentioned, variables))}) +
                 "#defined " + mentioned + "/" + std::to_string(variables.size()) + ".\n";
     }
   }
@@ -349,9 +399,17 @@ class Exporter {
   TermWriter terms_;
   FormulaWriter formulas_;
   CompletionRules completion_;
+  OpenAtoms open_;
 };
 
 }  // namespace
+
+bool has_user_predicates(const TypedModel& model) {
+  for (std::size_t i = 0; i < model.symbols.size(); ++i) {
+    if (is_users_predicate(model, model.symbols.id_at(i))) return true;
+  }
+  return false;
+}
 
 base::Result<AspProgram> to_asp(const TypedModel& model, const base::SourceFiles& files,
                                 const AspOptions& options, base::DiagnosticSink& sink) {

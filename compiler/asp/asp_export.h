@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "compiler/asp/term_writer.h"
 #include "compiler/base/diagnostic.h"
@@ -14,6 +16,9 @@ struct AspOptions {
   /// Adds `axiom_exists(N)` for every axiom (numbered from 0 in source order) that says something:
   /// an axiom without the atom lies outside the timepoints altogether.
   bool report_existence = false;
+  /// The atoms of user predicates that tell traces apart, printed as in traces; all others are
+  /// false, as long as `horizon` is the model's. None: every atom of a predicate may be true.
+  std::optional<std::vector<std::string>> open_atoms = std::nullopt;
 };
 
 /// A program for clingo 5, and the way back from its names.
@@ -21,6 +26,10 @@ struct AspProgram {
   std::string text;
   AspNames names;
 };
+
+/// Does the model declare predicates beside those of the event calculus? Only then there are atoms
+/// to be open or not.
+bool has_user_predicates(const TypedModel& model);
 
 /// The typed model as a logic program. Its answer sets, restricted to the shown atoms, are the
 /// models in the standard meaning: over holds_at(F,T), happens(E,T), released_at(F,T) and the

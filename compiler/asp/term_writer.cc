@@ -61,6 +61,7 @@ AspNames::AspNames(const TypedModel& model) {
     objects_.push_back(fresh(object.name));
     originals_.emplace(objects_.back(), object.name);
   }
+  for (const auto& [name, original] : originals_) by_original_.emplace(original, name);
 }
 
 std::string AspNames::fresh(std::string_view wanted) {
@@ -88,6 +89,25 @@ std::string AspNames::original(std::string_view printed) const {
       out += applied ? name.substr(0, name.find('(')) : name;
     }
     i = end;
+  }
+  return out;
+}
+
+std::string AspNames::printed(std::string_view original) const {
+  std::string out;
+  for (std::size_t i = 0; i < original.size();) {
+    if (!base::is_name_character(original[i])) {
+      out += original[i++];
+      continue;
+    }
+    std::size_t end = i;
+    while (end < original.size() && base::is_name_character(original[end])) ++end;
+    std::string word(original.substr(i, end - i));
+    const auto rest = original.substr(end);
+    if (rest.starts_with('(')) word += "()";
+    const auto known = by_original_.find(word);
+    out += known == by_original_.end() ? original.substr(i, end - i) : known->second;
+    i = rest.starts_with("()") ? end + 2 : end;
   }
   return out;
 }

@@ -30,11 +30,14 @@ class AspNames {
   /// A ground term or user's atom as clingo prints it, in the model's spelling without blanks:
   /// `on(red,3)` is `On(Red,3)`, `f` is `F()`.
   std::string original(std::string_view printed) const;
+  /// The way back: `On(Red,3)` is `on(red,3)`, `F()` is `f`.
+  std::string printed(std::string_view original) const;
 
  private:
   std::vector<std::string> sorts_, objects_, symbols_;
   std::set<std::string, std::less<>> taken_;
   std::map<std::string, std::string, std::less<>> originals_;  // symbols with `()` appended
+  std::map<std::string, std::string, std::less<>> by_original_;
 };
 
 /// A body literal as text. Where it is an atom of the model, also which one: completion has to

@@ -211,7 +211,9 @@ class Grounder {
     if (grounder_.failed()) return;
     const auto falsity = model_.formulas().falsity();
     if (!formula) {
-      sink_.error(DiagnosticCode::kNothingToSay, axiom.source, model_.horizon());
+      if (!axiom.is_foundation) {
+        sink_.error(DiagnosticCode::kNothingToSay, axiom.source, model_.horizon());
+      }
     } else if (*formula == falsity && !standard_) {
       sink_.warning(DiagnosticCode::kFalseFormulaDropped, axiom.source);
     } else if (*formula == falsity && is_false_whatever_happens(axiom)) {

@@ -229,6 +229,7 @@ bool ReferenceEvaluator::accepts(const Values& values) const {
 std::vector<base::SourceRange> ReferenceEvaluator::silent_axioms() const {
   std::vector<base::SourceRange> sources;
   for (const auto axiom : expanded_.silent_axioms()) {
+    if (model_.axioms[axiom].is_foundation) continue;
     sources.push_back(model_.axioms[axiom].source);
   }
   return sources;

@@ -154,7 +154,6 @@ class ModelChecker {
       : ast_(ast),
         files_(files),
         ignored_(ignored),
-        old_reasoner_(options.old_reasoner),
         repetitions_(repetitions),
         model_(model),
         sink_(sink),
@@ -259,7 +258,8 @@ class ModelChecker {
   }
 
   /// Foundations define predicates by `[..] P(..) <-> ...`. A definition changes nothing about
-  /// other predicates, so it is left out unless P is mentioned.
+  /// other predicates, so it is left out unless P is mentioned. ECCausal.e is loaded for its
+  /// definitions alone: they stay.
   void definitions() {
     std::vector<ModelAst::Place> waiting;
     for (const auto& place : ast_.order) {
@@ -272,7 +272,11 @@ class ModelChecker {
       std::vector<ModelAst::Place> unused;
       for (const auto& place : waiting) {
         if (is_used(place)) {
+          const auto before = model_.axioms.size();
           formula(place);
+          for (auto i = before; i < model_.axioms.size(); ++i) {
+            model_.axioms[i].is_foundation = true;
+          }
           again = true;
         } else {
           unused.push_back(place);
@@ -285,7 +289,7 @@ class ModelChecker {
   bool is_used(const ModelAst::Place& place) const {
     const Ast& ast = ast_.ast(place);
     const auto& file = files_[ast.source(ast_.statement(place).source).file];
-    if (old_reasoner_ && file.name() == kCausalDefinitions) return true;
+    if (file.name() == kCausalDefinitions) return true;
     NodeId id = ast_.statement(place).formula;
     while (ast[id].kind == NodeKind::kForall) id = ast.child(ast[id], ast[id].child_count - 1);
     if (ast[id].kind == NodeKind::kBinary) id = ast.child(ast[id], 0);
@@ -313,7 +317,6 @@ class ModelChecker {
   const ModelAst& ast_;
   const base::SourceFiles& files_;
   const IgnoredNames& ignored_;
-  bool old_reasoner_;
   Repetitions& repetitions_;
   TypedModel& model_;
   base::DiagnosticSink& sink_;

@@ -21,9 +21,8 @@ struct CheckOptions {
   std::optional<std::int64_t> usual_time_upper = std::nullopt;
   /// False for a part of a model (a library file): missing ranges are then warnings.
   bool complete_model = true;
-  /// As the 2005 reasoner reads it: the definitions of ECCausal.e stay also where nothing mentions
-  /// what they define, constants of ignored names stay in their sorts, and of two values of a
-  /// function the last one counts.
+  /// As the 2005 reasoner reads it: constants of ignored names stay in their sorts, and of two
+  /// values of a function the last one counts.
   bool old_reasoner = false;
 };
 

@@ -178,6 +178,8 @@ struct Axiom {
   /// Mentions Initiates, Terminates or Releases in a condition or a definition (as the definitions
   /// of ECCausal.e do): they stand there for their completed meaning.
   bool mentions_effects = false;
+  /// A definition of the foundations. It may say nothing of a model that never asks for it.
+  bool is_foundation = false;
 };
 
 enum class EffectKind : std::uint8_t { kInitiates, kTerminates, kReleases };

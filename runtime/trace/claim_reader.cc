@@ -300,6 +300,11 @@ bool ClaimReader::has_symbol(AtomKind kind, const std::string& symbol) const {
                      [&](const auto& one) { return one.symbol == symbol; });
 }
 
+bool ClaimReader::may_happen_last(const std::string& event, Timepoint length) const {
+  if (vocabulary_ == nullptr) return true;
+  return length == vocabulary_->horizon && vocabulary_->last_events.contains(event);
+}
+
 bool ClaimReader::has(AtomKind kind, const std::string& name) const {
   if (vocabulary_ == nullptr) return true;
   if (kind == AtomKind::kHappens) return events_.contains(name);

@@ -90,6 +90,8 @@ class ClaimReader {
   base::DiagnosticSink& sink() { return sink_; }
   /// Has the model such a symbol?
   bool has_symbol(compiler::AtomKind kind, const std::string& symbol) const;
+  /// Can the event happen at the end of a trace of this length?
+  bool may_happen_last(const std::string& event, Timepoint length) const;
 
  private:
   bool has(compiler::AtomKind kind, const std::string& name) const;

@@ -148,7 +148,9 @@ Vocabulary vocabulary_of(const compiler::CompiledModel& model) {
   std::vector<std::string> predicates;
   for (const auto& atom : model.fixed) {
     if (atom.kind == compiler::AtomKind::kPredicate) predicates.push_back(atom.name);
+    if (atom.kind == compiler::AtomKind::kHappens) out.last_events.insert(atom.name);
   }
+  out.horizon = model.horizon;
   std::sort(predicates.begin(), predicates.end());
   for (std::size_t p = 0; p < predicates.size(); ++p) add(out.predicates, predicates[p], p);
   return out;

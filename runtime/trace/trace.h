@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -103,6 +104,9 @@ struct Vocabulary {
   std::vector<SymbolInstances> fluents, events;
   std::vector<SymbolInstances> releasable;  // the fluents that can be released
   std::vector<SymbolInstances> predicates;  // user predicates that some formula mentions
+  /// Events that may happen at the last timepoint, which `--compat decreasoner` has atoms for.
+  std::set<std::string> last_events;
+  Timepoint horizon = 0;
 };
 
 Vocabulary vocabulary_of(const compiler::CompiledModel& model);

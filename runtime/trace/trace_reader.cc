@@ -65,10 +65,10 @@ base::Result<ClaimedTrace> read_jsonl_trace(const JsonValue& root, ClaimReader& 
     }
   }
   if (trace.points.empty()) return reader.unexpected("at least one timepoint", *points);
-  if (!trace.points.back().happens.listed.empty()) {
-    const auto& first = *trace.points.back().happens.listed.begin();
-    return sink.error(base::DiagnosticCode::kTraceFileShape, first.second.source,
-                      "no event at the last timepoint", fmt::format("`{}`", first.first));
+  for (const auto& [event, claim] : trace.points.back().happens.listed) {
+    if (reader.may_happen_last(event, trace.length())) continue;
+    return sink.error(base::DiagnosticCode::kTraceFileShape, claim.source,
+                      "no event at the last timepoint", fmt::format("`{}`", event));
   }
   if (!read_list(root, "predicates", AtomKind::kPredicate, reader, trace.predicates)) {
     return sink.already_reported();

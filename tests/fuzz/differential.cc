@@ -35,6 +35,7 @@ class Comparer {
     result_.brute_force = brute_.has_value();
     result_.clingo = clingo_.has_value();
     if (auto found = compare_traces()) return *found;
+    if (auto found = compare_export()) return *found;
     if (auto found = compare_variants()) return *found;
     return result_;
   }
@@ -171,6 +172,29 @@ class Comparer {
       return difference("parallax > " + name, "parallax has more traces");
     }
     return std::nullopt;
+  }
+
+  /// With the open atoms named, the export has the traces of `--distinct all`, one for one.
+  std::optional<Comparison> compare_export() {
+    if (!clingo_ || !compiler::has_user_predicates(*base_.typed)) return std::nullopt;
+    const auto limit = options_.max_traces + 1;
+    const auto ours = solver_valuations(*base_.compiled, limit);
+    if (!ours.complete) return std::nullopt;
+    compiler::AspOptions asp;
+    asp.open_atoms.emplace(ours.predicates->begin(), ours.predicates->end());
+    const auto program = compiler::to_asp(*base_.typed, base_.files, asp, base_.sink);
+    if (!program) return difference("export", base_.codes());
+    std::string error;
+    const auto theirs = clingo_traces(*program, limit, false,
+                                      static_cast<std::size_t>(evaluator_->horizon()), error);
+    if (!theirs) return difference("clingo", error + program->text);
+    if (theirs->found.traces.size() != ours.traces.size()) {
+      return difference("number of traces over all atoms",
+                        std::to_string(ours.traces.size()) + " against " +
+                            std::to_string(theirs->found.traces.size()));
+    }
+    return same("parallax", in_full(ours, ours), "clingo over all atoms",
+                in_full(theirs->found, theirs->found));
   }
 
   std::optional<Comparison> check_part(const TraceList& enumerated) const {

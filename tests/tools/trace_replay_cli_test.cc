@@ -52,6 +52,42 @@ TEST_CASE("what the program writes agrees with the model it was made from") {
   CHECK(one.out.starts_with("trace 1: agrees\n1 trace replayed, complete"));
 }
 
+TEST_CASE(
+    "a list with an event at the last timepoint is replayed with the options it was made with") {
+  const CliFixture cli;
+  cli.write("m.e",
+            "range time 0 1\nfluent F()\nevent E()\nevent D()\nHoldsAt(F(),0) | Happens(E(),1).\n");
+  const std::vector<std::string> traces = {"traces", "m.e", "--compat", "decreasoner"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), traces.begin(), traces.end());
+    return cli.parallax(more);
+  };
+  for (const auto* format : {"jsonl", "itf"}) {
+    const auto list = with({"--limit", "0", "--format", format}).out;
+    cli.write("list", list);
+    const auto replayed = with({"--replay", "list"});
+    CHECK(replayed.err == "");
+    CHECK(replayed.code == 0);
+    CHECK(replayed.out.find("3 traces replayed, complete: 3 agree, 0 fail") != std::string::npos);
+  }
+  cli.write("list.jsonl", with({"--limit", "0", "--format", "jsonl"}).out);
+  CHECK(cli.read("list.jsonl").find(R"~({"time":1,"happens":["E()"])~") != std::string::npos);
+  CHECK(cli.parallax({"diff", "list.jsonl", "list.jsonl"}).code == 0);
+  // The standard meaning has no such event, nor has the old one another than the formula's.
+  const auto trace = [](const char* first, const char* last) {
+    return R"~({"timepoints":[{"time":0,"happens":[],"holds":[)~" + std::string(first) +
+           R"~(],"released":[]},{"time":1,"happens":[)~" + last + R"~(],"holds":[)~" + first +
+           "],\"released\":[]}]}\n";
+  };
+  cli.write("one.jsonl", trace("\"F()\"", "\"E()\""));
+  CHECK(with({"--replay", "one.jsonl"}).code == 0);
+  CHECK(cli.parallax({"traces", "m.e", "--replay", "one.jsonl"}).code == 3);
+  cli.write("other.jsonl", trace("\"F()\"", "\"D()\""));
+  CHECK(with({"--replay", "other.jsonl"}).err.find("E6102") != std::string::npos);
+  cli.write("none.jsonl", trace("", ""));
+  CHECK(with({"--replay", "none.jsonl"}).code == 1);
+}
+
 TEST_CASE("a list that was cut off behind a trace is replayed, with a remark") {
   const Lamp lamp;
   const auto whole = lamp.cli.read("t.jsonl");

@@ -1,11 +1,16 @@
 #include "tools/app/emit_stage.h"
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "compiler/asp/asp_export.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
+#include "compiler/cnf/encoder.h"
+#include "compiler/ground/grounder.h"
 #include "compiler/sema/check.h"
 #include "compiler/sema/model_text.h"
 #include "compiler/syntax/lexer.h"
@@ -99,6 +104,21 @@ std::string typed(const compiler::ModelAst& ast, const compiler::CheckOptions& c
          });
 }
 
+/// The atoms of user predicates that the compiled model has. None: it cannot be grounded, which is
+/// no reason not to hand it to another solver.
+std::optional<std::vector<std::string>> open_atoms(const compiler::TypedModel& model,
+                                                   const compiler::GroundOptions& options) {
+  base::DiagnosticSink silent;
+  auto ground = compiler::ground_model(model, options, silent);
+  if (!ground) return std::nullopt;
+  std::vector<std::string> atoms;
+  for (const auto& atom : compiler::encode(*ground).fixed) {
+    if (atom.kind == compiler::AtomKind::kPredicate) atoms.push_back(atom.name);
+  }
+  std::sort(atoms.begin(), atoms.end());
+  return atoms;
+}
+
 std::string logic_program(const compiler::ModelAst& ast, const compiler::CheckOptions& check,
                           const ModelOptions& options, Context& context) {
   auto& sink = context.sink();
@@ -109,8 +129,16 @@ std::string logic_program(const compiler::ModelAst& ast, const compiler::CheckOp
   }
   const auto model = compiler::check_model(ast, context.files(), sink, check);
   if (!model) return {};
-  auto program = compiler::to_asp(*model, context.files(), {}, sink);
-  return program ? std::move(program->text) : std::string();
+  compiler::AspOptions asp;
+  std::string remark;
+  if (compiler::has_user_predicates(*model)) {
+    asp.open_atoms = open_atoms(*model, compile_input(options, context).ground);
+    if (!asp.open_atoms) {
+      remark = "% The model could not be grounded: every atom of its predicates may be true.\n";
+    }
+  }
+  auto program = compiler::to_asp(*model, context.files(), asp, sink);
+  return program ? remark + program->text : std::string();
 }
 
 /// The options as if the model of the scenario had been named.

@@ -78,6 +78,9 @@ TEST_CASE("names that differ in the first letter's size or are words of the prog
   CHECK(exported.has("thing(not_;not__;a;a_)."));
   CHECK(names.original("step_(not_)") == "Step(Not)");
   CHECK(names.original("step_(a_)") == "Step(a)");
+  for (const auto* text : {"Step(Not)", "Step(a)", "Happens_()", "Q(Step(A),Happens_(),-3)"}) {
+    CHECK(names.original(names.printed(text)) == text);
+  }
   CHECK(names.original("happens_") == "Happens_()");
 }
 
