@@ -22,30 +22,33 @@ struct Hint {
   std::string_view text;
 };
 
-/// Reactive forms and what to use instead.
+constexpr std::string_view kNoFluents =
+    "there are no fluents; ask the model with `(holds '(fluent argument...))` where it matters";
+
+/// Reactive forms and how to write it instead.
 constexpr Hint kReactive[] = {
-    {"pursue", "par"},
-    {"try-all", "try-in-order"},
-    {"par-loop", "dolist"},
-    {"partial-order", "seq"},
-    {"whenever", "loop"},
-    {"wait-for", "holds"},
-    {"with-policy", "progn"},
-    {"with-policies", "progn"},
-    {"with-task-suspended", "progn"},
-    {"with-task", "progn"},
-    {"make-fluent", "holds"},
-    {"fl-funcall", "holds"},
-    {"fl-and", "and"},
-    {"fl-or", "or"},
-    {"fl-not", "not"},
-    {"fl-eq", "eq"},
-    {"pulsed", "holds"},
+    {"pursue", "write the branch that is to end it; `par` if all of them are to end"},
+    {"try-all", "use `try-in-order`, which tries one branch after the other"},
+    {"par-loop", "write the branches out in a `par`, or use `dolist` for one after the other"},
+    {"partial-order", "write the steps in one of the orders, in a `seq`"},
+    {"whenever", "ask `(holds '(fluent argument...))` after the performs that can change it"},
+    {"wait-for", "ask `(holds '(fluent argument...))`; nothing changes but by performs"},
+    {"with-policy", "write the body alone, in a `progn`, and check the policy after its performs"},
+    {"with-policies", "write the body alone, in a `progn`, and check them after its performs"},
+    {"with-task-suspended", "write the body alone, in a `progn`"},
+    {"with-task", "write the body alone, in a `progn`"},
+    {"make-fluent", kNoFluents},
+    {"fl-funcall", kNoFluents},
+    {"fl-and", kNoFluents},
+    {"fl-or", kNoFluents},
+    {"fl-not", kNoFluents},
+    {"fl-eq", kNoFluents},
+    {"pulsed", kNoFluents},
 };
 
 constexpr Hint kRejected[] = {
     {"defmacro", "macros are not expanded; write a function"},
-    {"macrolet", "macros are not expanded; write a function"},
+    {"macrolet", "macros are not expanded; write a function with `flet`"},
     {"defstruct", "there are no structures"},
     {"defclass", "there are no classes"},
     {"defmethod", "there are no generic functions; write a function"},
@@ -53,8 +56,8 @@ constexpr Hint kRejected[] = {
     {"lambda", "a lambda is only an argument of funcall, apply, mapcar, mapc, every and some"},
     {"function",
      "a function value is only an argument of funcall, apply, mapcar, mapc, every and some"},
-    {"handler-bind", "use `with-failure-handling`"},
-    {"ignore-errors", "use `with-failure-handling`"},
+    {"handler-bind", "use `with-failure-handling`, which binds in the same way"},
+    {"ignore-errors", "use `(handler-case form (error () nil))`"},
     {"tagbody", "use a loop"},
     {"go", "use a loop"},
     {"do", "use `loop` or `dotimes`"},
@@ -250,8 +253,7 @@ void FormCompiler::unsupported(DatumId form, std::string_view text) {
 
 void FormCompiler::unknown_form(DatumId form, std::string_view name) {
   if (const auto* hint = find_hint(kReactive, name)) {
-    error(DiagnosticCode::kReactiveForm, form, name)
-        .note(fmt::format("the nearest form of the subset is `{}`", hint->text));
+    error(DiagnosticCode::kReactiveForm, form, name).note(std::string(hint->text));
     return;
   }
   if (const auto* hint = find_hint(kRejected, name)) {

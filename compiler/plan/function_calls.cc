@@ -326,6 +326,17 @@ std::optional<Callee> resolve_callee(FormCompiler& c, DatumId form, DatumId func
   return callee;
 }
 
+namespace {
+
+/// `pushed` values are on the stack, one for each parameter.
+void enter_function(FormCompiler& c, const Callee& callee, std::uint32_t pushed, DatumId source) {
+  const auto op = callee.level ? PlanOp::kCallLocal : PlanOp::kCall;
+  c.code.emit(op, callee.function->unit, callee.level.value_or(0), source);
+  c.code.adjust(1 - static_cast<int>(pushed));
+}
+
+}  // namespace
+
 void emit_call(FormCompiler& c, const Callee& callee, std::uint32_t count, DatumId source) {
   if (callee.builtin) {
     const auto& builtin = plan_builtins()[*callee.builtin];
@@ -360,10 +371,7 @@ void emit_call(FormCompiler& c, const Callee& callee, std::uint32_t count, Datum
   if (count > 0 && count == parameters.size() && parameters.back().rest) {
     c.code.builtin("list", 1, source);
   }
-  const auto pushed = std::max(count, static_cast<std::uint32_t>(parameters.size()));
-  const auto op = callee.level ? PlanOp::kCallLocal : PlanOp::kCall;
-  c.code.emit(op, callee.function->unit, callee.level.value_or(0), source);
-  c.code.adjust(1 - static_cast<int>(pushed));
+  enter_function(c, callee, std::max(count, static_cast<std::uint32_t>(parameters.size())), source);
 }
 
 void compile_call(FormCompiler& c, DatumId form, std::string_view name, const Callee& callee,
@@ -379,7 +387,7 @@ void compile_call(FormCompiler& c, DatumId form, std::string_view name, const Ca
       return c.nil(form);
     }
     const auto count = static_cast<std::uint32_t>(callee.function->parameters.size());
-    return emit_call(c, callee, count, form);
+    return enter_function(c, callee, count, form);
   }
   if (name == "member" || name == "find" || name == "assoc" || name == "remove") {
     arguments = without_test_argument(c, form, arguments);
