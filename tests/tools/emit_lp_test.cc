@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -88,6 +89,26 @@ TEST_CASE("the answer sets of the logic program are the traces of --distinct all
     if (!found) return;
     CHECK(cli.parallax({"traces", "m.e", "--count", "--distinct", "all"}).out == *found);
   }
+}
+
+TEST_CASE("the same of the classic problems") {
+  const CliFixture cli;
+  int compared = 0;
+  const auto folder = std::filesystem::path(PARALLAX_SOURCE_DIR) / "scenarios/classics";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".e") continue;
+    const auto model = entry.path().string();
+    CAPTURE(model);
+    const auto printed = cli.parallax({"compile", model, "--emit=lp", "--allow-outside"});
+    if (printed.code != 0) continue;  // a part that others load
+    const auto found = answer_sets(cli, printed.out);
+    if (!found) return;
+    const auto counted =
+        cli.parallax({"traces", model, "--count", "--distinct", "all", "--allow-outside"});
+    CHECK(counted.out == *found);
+    ++compared;
+  }
+  CHECK(compared >= 20);
 }
 
 TEST_CASE("for another horizon than the model's, the logic program leaves every atom open") {
