@@ -20,7 +20,7 @@ namespace parallax::compiler {
 
 /// A plan and its binding table, both already read into the source files.
 struct PlanInput {
-  base::FileId plan;
+  std::vector<base::FileId> plan;  // its files in order (load_plan_files)
   base::FileId binding;
   std::optional<std::string> entry;      // the function to run; the default is the last one defined
   const PoseLocator* locator = nullptr;  // outlives the call

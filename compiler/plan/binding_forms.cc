@@ -20,9 +20,12 @@ void quasiquote(FormCompiler& c, DatumId datum) {
     c.unsupported(datum, "nested backquotes");
     return c.nil(datum);
   }
+  const bool dotted = c.data.is_dotted(datum);
   for (const auto item : items) {
     const auto parts = c.data.children(item);
-    if (c.data.head(item) == "unquote-splicing" && parts.size() == 2) {
+    if (dotted && item == items.back()) {
+      quasiquote(c, item);
+    } else if (c.data.head(item) == "unquote-splicing" && parts.size() == 2) {
       c.compile(parts[1]);
     } else {
       quasiquote(c, item);
@@ -40,13 +43,12 @@ void form_quasiquote(FormCompiler& c, DatumId form, FormItems items) {
 
 /// A `let` of a global rebinds it for what its body calls, as far as that runs in the same task.
 int show_variable(FormCompiler& c, LexicalBinding variable, DatumId form) {
-  const auto global = c.defined.globals.find(variable.name);
-  if (global == c.defined.globals.end()) {
+  if (variable.kind != BindingKind::kSpecial) {
     c.code.show(std::move(variable));
     return 0;
   }
+  const auto global = c.defined.globals.find(variable.name);
   c.code.bind_special(global->second, variable.index, form);
-  variable.kind = BindingKind::kSpecial;
   variable.index = global->second;
   c.code.show(std::move(variable));
   return 1;
@@ -73,7 +75,10 @@ void let(FormCompiler& c, DatumId form, FormItems items, bool sequential) {
       c.nil(binding);
     }
     ++count;
-    bound.push_back(c.code.named(BindingKind::kVariable, c.data.name(name), c.code.height() - 1));
+    const bool is_global = c.defined.globals.contains(c.data.key(name));
+    bound.push_back(is_global ? c.code.named(BindingKind::kSpecial, c.data.key(name), 0)
+                              : c.code.named(BindingKind::kVariable, c.data.name(name), 0));
+    bound.back().index = c.code.height() - 1;
     if (sequential) specials += show_variable(c, bound.back(), form);
   }
   for (const auto& variable : bound) {
@@ -93,9 +98,9 @@ const LexicalBinding* assignable(FormCompiler& c, DatumId form, DatumId place) {
   if (c.data.is_symbol(place) && !c.data.is_nil(place)) {
     if (const auto* binding = c.code.lookup(BindingKind::kVariable, c.data.name(place)))
       return binding;
-    const auto* special = c.code.lookup(BindingKind::kSpecial, c.data.name(place));
+    const auto* special = c.code.lookup(BindingKind::kSpecial, c.data.key(place));
     if (special != nullptr && !c.code.in_other_task(*special)) return special;
-    if (!c.defined.globals.contains(c.data.name(place))) {
+    if (!c.defined.globals.contains(c.data.key(place))) {
       c.compile(place);  // reports it
       c.code.drop(place);
       return nullptr;
@@ -103,7 +108,7 @@ const LexicalBinding* assignable(FormCompiler& c, DatumId form, DatumId place) {
   }
   auto error =
       c.error(DiagnosticCode::kHeapWrite, place, c.form_name(form), print_datum(c.data, place));
-  if (const auto global = c.defined.globals.find(c.data.is_symbol(place) ? c.data.name(place) : "");
+  if (const auto global = c.defined.globals.find(c.data.is_symbol(place) ? c.data.key(place) : "");
       global != c.defined.globals.end()) {
     error.note(c.data.source(c.code.code().globals[global->second].source),
                "it is a global constant, defined here");

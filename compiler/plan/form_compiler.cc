@@ -117,7 +117,7 @@ void FormCompiler::compile_symbol(DatumId symbol) {
   if (const auto* binding = code.lookup(BindingKind::kVariable, name)) {
     return code.load(*binding, symbol);
   }
-  if (const auto global = defined.globals.find(name); global != defined.globals.end()) {
+  if (const auto global = defined.globals.find(data.key(symbol)); global != defined.globals.end()) {
     code.emit(PlanOp::kLoadGlobal, global->second, 0, symbol);
     return code.adjust(1);
   }
@@ -127,6 +127,7 @@ void FormCompiler::compile_symbol(DatumId symbol) {
   }
   for (const auto& [global, index] : defined.globals) names.push_back(global);
   auto report = error(DiagnosticCode::kUnboundPlanVariable, symbol, name);
+  note_other_package(report, symbol);
   if (const auto near = base::nearest_name(name, names)) {
     report.fix(fmt::format("replace `{}` with `{}`", name, *near));
   }
@@ -145,7 +146,9 @@ void FormCompiler::compile_list(DatumId form) {
   if (!head) {
     return refuse(form, "a form starts with a name");
   }
-  if (const auto callee = find_callee(*this, *head); callee && callee->function != nullptr) {
+  if (data.is_dotted(form)) return refuse(form, "a dotted list is data: quote it");
+  if (const auto callee = find_callee(*this, items.front());
+      callee && callee->function != nullptr) {
     return compile_call(*this, form, *head, *callee, items.subspan(1));
   }
   const auto known = plan_forms().find(*head);
@@ -158,14 +161,14 @@ void FormCompiler::compile_list(DatumId form) {
     code.set_height(height + 1);
     return;
   }
-  if (const auto callee = find_callee(*this, *head))
+  if (const auto callee = find_callee(*this, items.front()))
     return compile_call(*this, form, *head, *callee, items.subspan(1));
   if (head->starts_with("check-") && head->ends_with("-collisions")) {
     warning(DiagnosticCode::kProjectionIgnored, form, form_name(form));
     check_no_perform(form);
     return nil(form);
   }
-  unknown_form(form, *head);
+  unknown_form(form, items.front());
   nil(form);
 }
 
@@ -202,7 +205,13 @@ ValueId FormCompiler::datum_value(DatumId datum) {
     case DatumKind::kList: {
       std::vector<ValueId> items;
       for (const auto item : data.children(datum)) items.push_back(datum_value(item));
-      return values.list(items);
+      if (!data.is_dotted(datum)) return values.list(items);
+      auto out = items.back();
+      items.pop_back();
+      for (auto item = items.rbegin(); item != items.rend() && !values.full(); ++item) {
+        out = values.cons(*item, out);
+      }
+      return out;
     }
   }
   return values.nil();
@@ -251,7 +260,16 @@ void FormCompiler::unsupported(DatumId form, std::string_view text) {
   error(DiagnosticCode::kUnsupportedPlanForm, form, form_name(form), text);
 }
 
-void FormCompiler::unknown_form(DatumId form, std::string_view name) {
+void FormCompiler::note_other_package(base::DiagnosticBuilder& report, DatumId symbol) const {
+  for (const auto& [full, key] : text_.keys) {
+    if (!full.ends_with("::" + data.name(symbol))) continue;
+    report.note(fmt::format("`{}` is another symbol; export and use it, or write it so", full));
+    return;
+  }
+}
+
+void FormCompiler::unknown_form(DatumId form, DatumId symbol) {
+  const auto& name = data.name(symbol);
   if (const auto* hint = find_hint(kReactive, name)) {
     error(DiagnosticCode::kReactiveForm, form, name).note(std::string(hint->text));
     return;
@@ -261,6 +279,7 @@ void FormCompiler::unknown_form(DatumId form, std::string_view name) {
     return;
   }
   auto report = error(DiagnosticCode::kUnknownPlanForm, form, name);
+  note_other_package(report, symbol);
   // Looking for the nearest name is the expensive part; nobody reads the thousandth suggestion.
   if (sink_.error_count() > kMaxSuggestions) return;
   std::vector<std::string> names;

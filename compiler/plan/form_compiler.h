@@ -86,7 +86,7 @@ class FormCompiler {
   /// malformed, and nil in the form's place.
   void refuse(DatumId form, std::string_view text);
   void unsupported(DatumId form, std::string_view text);
-  void unknown_form(DatumId form, std::string_view name);
+  void unknown_form(DatumId form, DatumId symbol);
   /// What is not evaluated must not perform either: the plan would silently lose an action.
   void check_no_perform(DatumId form);
   std::string form_name(DatumId form) const;
@@ -101,6 +101,8 @@ class FormCompiler {
   bool in_function = false;  // not among the bare forms at top level
 
  private:
+  /// A definition of that name in a package from which the plan does not see it.
+  void note_other_package(base::DiagnosticBuilder& report, DatumId symbol) const;
   void compile_symbol(DatumId symbol);
   void compile_list(DatumId form);
 

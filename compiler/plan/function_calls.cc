@@ -180,6 +180,7 @@ void form_apply(FormCompiler& c, DatumId form, FormItems items) {
   c.compile(items.back());
   c.code.builtin("append", static_cast<std::uint32_t>(items.size() - 2), form);
   if (!callee) return;
+  c.code.emit(PlanOp::kExpectList, 0, 0, form);
   c.code.emit(PlanOp::kApply, 0, 0, form);
   if (callee->builtin) {
     c.code.emit(PlanOp::kBuiltin, *callee->builtin, 0, form);
@@ -286,14 +287,16 @@ void compile_function(FormCompiler& c, const PlanFunction& function, std::string
   c.code.cut_scope(scope);
 }
 
-std::optional<Callee> find_callee(const FormCompiler& c, std::string_view name) {
+std::optional<Callee> find_callee(const FormCompiler& c, DatumId symbol) {
+  const auto& name = c.data.name(symbol);
   Callee callee;
   if (const auto* local = c.code.lookup(BindingKind::kFunction, name)) {
     callee.function = &c.defined.local_functions.at(local->index);
     callee.level = c.code.level_of(*local);
     return callee;
   }
-  if (const auto found = c.defined.functions.find(name); found != c.defined.functions.end()) {
+  if (const auto found = c.defined.functions.find(c.data.key(symbol));
+      found != c.defined.functions.end()) {
     callee.function = &found->second;
     return callee;
   }
@@ -310,8 +313,8 @@ std::optional<Callee> resolve_callee(FormCompiler& c, DatumId form, DatumId func
     parts = c.data.children(function);
   }
   if (c.data.is_symbol(function)) {
-    if (auto callee = find_callee(c, c.data.name(function))) return callee;
-    c.unknown_form(function, c.data.name(function));
+    if (auto callee = find_callee(c, function)) return callee;
+    c.unknown_form(function, function);
     return std::nullopt;
   }
   if (c.data.head(function) != "lambda" || parts.size() < 2) {

@@ -15,7 +15,8 @@ struct Callee {
   std::optional<std::uint32_t> builtin;
 };
 
-std::optional<Callee> find_callee(const FormCompiler& c, std::string_view name);
+/// A local function, one of the plan, or a built-in, by what the symbol means in its package.
+std::optional<Callee> find_callee(const FormCompiler& c, DatumId symbol);
 /// #'f, 'f or a lambda, as the argument of funcall and the mapping functions; none: reported.
 std::optional<Callee> resolve_callee(FormCompiler& c, DatumId form, DatumId function);
 

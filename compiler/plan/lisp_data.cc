@@ -75,7 +75,7 @@ bool equal_shallow(const LispData& a, DatumId left, const LispData& b, DatumId r
     case DatumKind::kNumber:
       return a.number(left) == b.number(right);
     case DatumKind::kList:
-      return a[left].count == b[right].count;
+      return a[left].count == b[right].count && a[left].dotted == b[right].dotted;
   }
   return false;
 }
@@ -94,21 +94,42 @@ NameId LispData::intern(std::string_view text) {
 }
 
 DatumId LispData::add_named(DatumKind kind, std::string_view name, std::string_view package,
-                            base::SourceRange source) {
-  return data_.add({kind, intern(name), intern(package), 0, 0, source});
+                            base::SourceRange source, bool external) {
+  const auto id = intern(name);
+  return data_.add({kind, false, external, id, intern(package), id, 0, 0, source});
 }
 
 DatumId LispData::add_number(const Number& number, base::SourceRange source) {
   const auto index = static_cast<std::uint32_t>(numbers_.size());
   numbers_.push_back(number);
-  return data_.add({DatumKind::kNumber, NameId(), NameId(), index, 0, source});
+  return data_.add(
+      {DatumKind::kNumber, false, false, NameId(), NameId(), NameId(), index, 0, source});
 }
 
 DatumId LispData::add_list(std::span<const DatumId> children, base::SourceRange source) {
   const auto first = static_cast<std::uint32_t>(children_.size());
   children_.insert(children_.end(), children.begin(), children.end());
   const auto count = static_cast<std::uint32_t>(children.size());
-  return data_.add({DatumKind::kList, NameId(), NameId(), first, count, source});
+  return data_.add(
+      {DatumKind::kList, false, false, NameId(), NameId(), NameId(), first, count, source});
+}
+
+DatumId LispData::add_dotted(std::vector<DatumId> items, DatumId tail, base::SourceRange source) {
+  const auto word = head(tail);
+  const bool comma = word == "unquote" || word == "unquote-splicing";
+  bool dotted = true;
+  if (is_nil(tail)) {
+    dotted = false;
+  } else if (is_list(tail) && !comma) {
+    dotted = is_dotted(tail);
+    const auto rest = children(tail);
+    items.insert(items.end(), rest.begin(), rest.end());
+  } else {
+    items.push_back(tail);
+  }
+  const auto id = add_list(items, source);
+  data_[id].dotted = dotted;
+  return id;
 }
 
 std::span<const DatumId> LispData::children(DatumId id) const {
@@ -162,6 +183,7 @@ std::string print_datum(const LispData& data, DatumId id) {
       continue;
     }
     if (next != 0) out += ' ';
+    if (data.is_dotted(open.back().first) && next + 1 == items.size()) out += ". ";
     begin(items[next]);
   }
   return out;

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/plan/lisp_token.h"
 
 namespace parallax::compiler {
 
@@ -19,118 +19,6 @@ using base::DiagnosticCode;
 using base::SourceRange;
 
 namespace {
-
-/// A cursor over the text of one plan file. Byte offsets; never past the end.
-class LispCursor {
- public:
-  explicit LispCursor(std::string_view text) : text_(text) {}
-  bool at_end() const { return position_ >= text_.size(); }
-  std::uint32_t position() const { return static_cast<std::uint32_t>(position_); }
-  /// The byte `ahead` of the cursor; 0 beyond the end.
-  char peek(std::size_t ahead = 0) const {
-    return position_ + ahead < text_.size() ? text_[position_ + ahead] : '\0';
-  }
-  char take() { return text_[position_++]; }
-  void skip(std::size_t count) { position_ = std::min(position_ + count, text_.size()); }
-  std::string_view since(std::uint32_t begin) const {
-    return text_.substr(begin, position_ - begin);
-  }
-
- private:
-  std::string_view text_;
-  std::size_t position_ = 0;
-};
-
-/// A symbol-like token: letters outside |bars| folded to lower case, escapes resolved.
-struct LispToken {
-  std::string text;
-  bool escaped = false;           // some part was written in |bars| or after a backslash
-  bool unterminated = false;      // the text ended inside |bars|
-  bool ends_with_colon = false;   // unescaped
-  std::int64_t first_colon = -1;  // index in `text` of the first unescaped colon
-  std::int64_t colons = 0;        // number of unescaped colons
-};
-
-bool skip_block_comment(LispCursor& cursor) {
-  std::int64_t depth = 0;
-  do {
-    if (cursor.at_end()) return false;
-    if (cursor.peek() == '#' && cursor.peek(1) == '|') {
-      ++depth;
-      cursor.skip(2);
-    } else if (cursor.peek() == '|' && cursor.peek(1) == '#') {
-      --depth;
-      cursor.skip(2);
-    } else {
-      cursor.skip(1);
-    }
-  } while (depth > 0);
-  return true;
-}
-
-/// The inside of |bars|, the cursor behind the opening one.
-void scan_bars(LispCursor& cursor, LispToken& token) {
-  token.escaped = true;
-  while (!cursor.at_end()) {
-    char c = cursor.take();
-    if (c == '|') return;
-    if (c == '\\' && !cursor.at_end()) c = cursor.take();
-    token.text += c;
-  }
-  token.unterminated = true;
-}
-
-bool is_lisp_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
-}
-
-/// Ends a token: blanks and ( ) " ' ; ` ,
-bool is_lisp_delimiter(char c) {
-  return is_lisp_blank(c) || std::string_view("()\"';`,").find(c) != std::string_view::npos;
-}
-
-LispToken scan_token(LispCursor& cursor) {
-  LispToken token;
-  while (!cursor.at_end() && !is_lisp_delimiter(cursor.peek())) {
-    const char c = cursor.take();
-    token.ends_with_colon = c == ':';
-    if (c == '|') {
-      scan_bars(cursor, token);
-    } else if (c == '\\') {
-      token.escaped = true;
-      if (cursor.at_end()) {
-        token.unterminated = true;
-      } else {
-        token.text += cursor.take();
-      }
-    } else {
-      if (c == ':') {
-        if (token.first_colon < 0) token.first_colon = static_cast<std::int64_t>(token.text.size());
-        ++token.colons;
-      }
-      token.text += base::to_lower(c);
-    }
-  }
-  return token;
-}
-
-/// Skips blanks, `; comments` and nested `#| comments |#`. False if a block comment does not end;
-/// `begin` is then its place.
-bool skip_blanks(LispCursor& cursor, std::uint32_t& begin) {
-  while (!cursor.at_end()) {
-    if (is_lisp_blank(cursor.peek())) {
-      cursor.skip(1);
-    } else if (cursor.peek() == ';') {
-      while (!cursor.at_end() && cursor.peek() != '\n') cursor.skip(1);
-    } else if (cursor.peek() == '#' && cursor.peek(1) == '|') {
-      begin = cursor.position();
-      if (!skip_block_comment(cursor)) return false;
-    } else {
-      return true;
-    }
-  }
-  return true;
-}
 
 /// What waits for its next datum.
 enum class OpenKind : std::uint8_t {
@@ -146,13 +34,16 @@ struct OpenDatum {
   std::size_t first_child = 0;  // kList: index into the stack of finished children
   std::string_view word;        // kPrefix: the symbol at the head of the list
   bool negated = false;         // kFeature: #-
+  std::optional<SourceRange> dot = std::nullopt;  // kList: where its dot stands
+  std::size_t tail = 0;                           // the first child behind the dot
 };
 
 /// Reads a file without recursion: what is open lies on a stack.
 class LispReader {
  public:
-  LispReader(const base::SourceFiles& files, base::FileId file, base::DiagnosticSink& sink)
-      : file_(file), cursor_(files[file].text()), sink_(sink) {}
+  LispReader(const base::SourceFiles& files, base::FileId file, LispText into,
+             base::DiagnosticSink& sink)
+      : file_(file), cursor_(files[file].text()), sink_(sink), out_(std::move(into)) {}
 
   base::Result<LispText> read();
 
@@ -171,6 +62,7 @@ class LispReader {
   void read_next();
   void read_string();
   void read_token();
+  void read_dot(std::string_view dots, SourceRange where);
   void read_symbol(const LispToken& token, std::uint32_t begin);
   void read_sharp();
   void read_character(std::uint32_t begin);
@@ -254,7 +146,7 @@ void LispReader::deliver_once(DatumId datum, std::optional<DatumId>& wrapped) {
       pop();
       // A branch that is kept is simply read on; the other one is read and dropped.
       if (feature_holds(out_.data, datum) == top.negated)
-        push({OpenKind::kSkip, top.begin, 0, {}, false});
+        push({OpenKind::kSkip, top.begin, 0, {}, false, {}, 0});
       return;
     case OpenKind::kSkip:
       pop();
@@ -277,7 +169,13 @@ void LispReader::close_list() {
   const OpenDatum top = open_.back();
   pop();
   const auto children = std::span(finished_).subspan(top.first_child);
-  const auto list = out_.data.add_list(children, range(top.begin));
+  if (top.dot && finished_.size() != top.tail + 1) {
+    unreadable(*top.dot, "one datum stands behind a dot, and `)` behind that");
+  }
+  const bool dotted = top.dot && finished_.size() == top.tail + 1;
+  const auto list = dotted ? out_.data.add_dotted({children.begin(), children.end() - 1},
+                                                  children.back(), range(top.begin))
+                           : out_.data.add_list(children, range(top.begin));
   finished_.resize(top.first_child);
   deliver(list);
 }
@@ -286,7 +184,7 @@ void LispReader::read_next() {
   const auto begin = cursor_.position();
   const auto prefix = [&](std::size_t length, std::string_view word) {
     cursor_.skip(length);
-    push({OpenKind::kPrefix, begin, 0, word, false});
+    push({OpenKind::kPrefix, begin, 0, word, false, {}, 0});
   };
   switch (cursor_.peek()) {
     case '(':
@@ -294,7 +192,7 @@ void LispReader::read_next() {
         column_one_ = SourceRange{file_, begin, begin + 1};
       }
       cursor_.skip(1);
-      push({OpenKind::kList, begin, finished_.size(), {}, false});
+      push({OpenKind::kList, begin, finished_.size(), {}, false, {}, 0});
       return;
     case ')':
       close_list();
@@ -329,7 +227,6 @@ void LispReader::report_open_list() {
 }
 
 base::Result<LispText> LispReader::read() {
-  out_.file = file_;
   while (!stopped_) {
     std::uint32_t comment = 0;
     if (!skip_blanks(cursor_, comment)) {
@@ -385,11 +282,26 @@ void LispReader::read_token() {
         break;
     }
     if (token.text.find_first_not_of('.') == std::string::npos) {
-      unreadable(range(begin), "dotted pairs are not read");
+      read_dot(token.text, range(begin));
       return;
     }
   }
   read_symbol(token, begin);
+}
+
+/// The dot of (a . b). What is wrong with its neighbours is said where the list ends.
+void LispReader::read_dot(std::string_view dots, SourceRange where) {
+  const bool in_list = !open_.empty() && open_.back().kind == OpenKind::kList;
+  if (dots != "." || !in_list || open_.back().dot || finished_.size() == open_.back().first_child) {
+    if (!suppressed()) {
+      unreadable(where, dots == "." ? "a dot stands once in a list, behind a datum of it"
+                                    : "a symbol of dots only");
+    }
+    if (in_list) open_.back().dot.reset();  // one message is enough
+    return;
+  }
+  open_.back().dot = where;
+  open_.back().tail = finished_.size();
 }
 
 void LispReader::read_symbol(const LispToken& token, std::uint32_t begin) {
@@ -404,7 +316,7 @@ void LispReader::read_symbol(const LispToken& token, std::uint32_t begin) {
   const bool well_formed = together && !token.ends_with_colon && colons <= (colon == 0 ? 1U : 2U);
   if (!well_formed) unreadable(range(begin), "misplaced `:` in this symbol");
   const auto kind = colon == 0 ? DatumKind::kKeyword : DatumKind::kSymbol;
-  deliver(out_.data.add_named(kind, name, text.substr(0, colon), range(begin)));
+  deliver(out_.data.add_named(kind, name, text.substr(0, colon), range(begin), colons == 1));
 }
 
 void LispReader::read_character(std::uint32_t begin) {
@@ -437,7 +349,7 @@ void LispReader::read_sharp() {
   switch (cursor_.peek(1)) {
     case '\'':
       cursor_.skip(2);
-      push({OpenKind::kPrefix, begin, 0, "function", false});
+      push({OpenKind::kPrefix, begin, 0, "function", false, {}, 0});
       return;
     case '+':
     case '-': {
@@ -460,7 +372,22 @@ void LispReader::read_sharp() {
 
 base::Result<LispText> read_lisp(const base::SourceFiles& files, base::FileId file,
                                  base::DiagnosticSink& sink) {
-  return LispReader(files, file, sink).read();
+  return read_lisp(files, std::span(&file, 1), sink);
+}
+
+base::Result<LispText> read_lisp(const base::SourceFiles& files, std::span<const base::FileId> plan,
+                                 base::DiagnosticSink& sink) {
+  PARALLAX_REQUIRE(!plan.empty(), "a plan has at least one file");
+  LispText text;
+  text.file = plan.front();
+  bool failed = false;
+  for (const auto file : plan) {
+    auto read = LispReader(files, file, std::move(text), sink).read();
+    failed |= !read;
+    text = read ? *std::move(read) : LispText{plan.front(), {}, {}, {}};
+  }
+  if (failed) return sink.already_reported();
+  return text;
 }
 
 }  // namespace parallax::compiler

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <map>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
@@ -8,11 +11,13 @@
 
 namespace parallax::compiler {
 
-/// The data of one plan file and its top-level forms in order.
+/// The data of a plan's files and their top-level forms in order.
 struct LispText {
-  base::FileId file;
+  base::FileId file;  // the first one
   LispData data;
   std::vector<DatumId> forms;
+  /// "package::name" of each definition -> its key (resolve_packages); empty without packages.
+  std::map<std::string, std::string, std::less<>> keys;
 };
 
 inline constexpr std::size_t kMaxLispDepth = 1000;
@@ -23,6 +28,9 @@ inline constexpr std::size_t kMaxLispData = 1000000;
 /// reader macros are CPL002, everything else that cannot be read is CPL001, several per run.
 /// Linear in the length of the text; nothing recursive, so nesting costs no stack.
 base::Result<LispText> read_lisp(const base::SourceFiles& files, base::FileId file,
+                                 base::DiagnosticSink& sink);
+/// The same for several files, one behind the other; the limits are those of all together.
+base::Result<LispText> read_lisp(const base::SourceFiles& files, std::span<const base::FileId> plan,
                                  base::DiagnosticSink& sink);
 
 }  // namespace parallax::compiler

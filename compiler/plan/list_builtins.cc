@@ -72,13 +72,19 @@ BuiltinResult length(const BuiltinCall& c) {
 }
 
 BuiltinResult append(const BuiltinCall& c) {
+  if (c.args.empty()) return c.values.nil();
   std::vector<ValueId> all;
-  for (std::size_t i = 0; i < c.args.size(); ++i) {
+  for (std::size_t i = 0; i + 1 < c.args.size(); ++i) {
     const auto items = c.values.elements(c.args[i]);
     if (!items) return c.wrong(i, "a list");
     all.insert(all.end(), items->begin(), items->end());
   }
-  return c.values.list(all);
+  // The last one is the tail as it stands, which need not be a list.
+  auto out = c.args.back();
+  for (auto item = all.rbegin(); item != all.rend() && !c.values.full(); ++item) {
+    out = c.values.cons(*item, out);
+  }
+  return out;
 }
 
 BuiltinResult reverse(const BuiltinCall& c) {

@@ -41,6 +41,7 @@ class PlanCompiler {
       return sink_.error(DiagnosticCode::kNoPlanEntry, base::SourceRange{text_.file, 0, 0},
                          "the file has no forms");
     }
+    for (const auto form : text_.forms) check_dotted(form);
     collect_definitions();
     if (bare_forms_.empty() && c_.defined.functions.empty()) {
       return c_.error(DiagnosticCode::kNoPlanEntry, text_.forms.front(),
@@ -53,12 +54,30 @@ class PlanCompiler {
   }
 
  private:
+  /// A dotted list is data: as code it would be read as if the dot were not there.
+  void check_dotted(DatumId form) {
+    std::vector<std::pair<DatumId, bool>> open = {{form, false}};  // in a template?
+    while (!open.empty()) {
+      const auto [datum, is_data] = open.back();
+      open.pop_back();
+      const auto head = c_.data.head(datum).value_or("");
+      if (head == "quote") continue;
+      if (!is_data && c_.data.is_dotted(datum)) {
+        c_.malformed(datum, "a dotted list is data: quote it");
+        return;
+      }
+      const bool inside = (is_data && head != "unquote" && head != "unquote-splicing") ||
+                          (!is_data && head == "quasiquote");
+      for (const auto item : c_.data.children(datum)) open.emplace_back(item, inside);
+    }
+  }
+
   bool define_name(DatumId form, DatumId name) {
     if (!c_.data.is_symbol(name)) {
       c_.malformed(form, "expected a name");
       return false;
     }
-    const auto [entry, added] = defined_.emplace(c_.data.name(name), name);
+    const auto [entry, added] = defined_.emplace(c_.data.key(name), name);
     if (added) return true;
     c_.error(DiagnosticCode::kDuplicatePlanDefinition, name, c_.data.name(name))
         .note(c_.data.source(entry->second), "first defined here");
@@ -68,8 +87,8 @@ class PlanCompiler {
   void define_function(DatumId form, FormItems items) {
     if (items.size() < 3) return c_.malformed(form, "expected a name, parameters and a body");
     if (!define_name(form, items[1])) return;
-    const auto& name = c_.data.name(items[1]);
-    if (plan_forms().contains(name))
+    const auto& name = c_.data.key(items[1]);
+    if (plan_forms().contains(c_.data.name(items[1])))
       return c_.unsupported(form, fmt::format("`{}` is a built-in form", name));
     const auto function = declare_function(c_, form, name, items[2]);
     c_.code.code().functions.emplace(name, function.unit);
@@ -81,9 +100,9 @@ class PlanCompiler {
     if (items.size() < 2) return c_.malformed(form, "expected a name and a value");
     // A function and a variable of one name live in different namespaces in Lisp; here they clash.
     if (!define_name(form, items[1])) return;
-    c_.defined.globals.emplace(c_.data.name(items[1]),
+    c_.defined.globals.emplace(c_.data.key(items[1]),
                                static_cast<std::uint32_t>(c_.code.code().globals.size()));
-    c_.code.code().globals.push_back({c_.data.name(items[1]), form});
+    c_.code.code().globals.push_back({c_.data.key(items[1]), form});
     global_forms_.push_back(form);
   }
 
@@ -129,22 +148,32 @@ class PlanCompiler {
       } else {
         c_.nil(form);
       }
-      c_.code.emit(PlanOp::kStoreGlobal, c_.defined.globals.at(c_.data.name(items[1])), 0, form);
+      c_.code.emit(PlanOp::kStoreGlobal, c_.defined.globals.at(c_.data.key(items[1])), 0, form);
       c_.code.adjust(-1);
     }
     c_.code.leave_unit(PlanOp::kDone, first);
     c_.in_function = true;
     for (const auto& name : c_.defined.function_order) {
       const auto& function = c_.defined.functions.at(name);
-      compile_function(c_, function, name, c_.data.children(function.source).subspan(3));
+      const auto& block = c_.data.name(c_.data.children(function.source)[1]);
+      compile_function(c_, function, block, c_.data.children(function.source).subspan(3));
     }
     c_.in_function = false;
+  }
+
+  /// An entry may be named as `package::name` or `package:name`.
+  std::string entry_key(std::string entry) const {
+    const auto colon = entry.find(':');
+    if (colon == std::string::npos) return entry;
+    if (!entry.substr(colon).starts_with("::")) entry.insert(colon, ":");
+    const auto found = text_.keys.find(entry);
+    return found == text_.keys.end() ? entry : found->second;
   }
 
   void compile_main(const std::optional<std::string>& entry) {
     c_.code.code().main = c_.code.declare_unit("the plan", text_.forms.front(), 0);
     c_.code.enter_unit(c_.code.code().main);
-    std::optional<std::string> name = entry;
+    auto name = entry ? std::optional(entry_key(*entry)) : std::nullopt;
     if (!name && bare_forms_.empty() && !c_.defined.function_order.empty())
       name = c_.defined.function_order.back();
     if (!name) {

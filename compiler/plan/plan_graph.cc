@@ -37,7 +37,7 @@ std::string terminal_text(const PlanTerminal& terminal, const base::SourceFiles&
 }
 
 /// A label in double quotes for Graphviz.
-std::string quoted(std::string_view text) {
+std::string dot_text(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
@@ -169,23 +169,23 @@ std::string dump_dot(const PlanGraph& graph, const base::SourceFiles& files) {
   for (std::size_t i = 0; i < graph.locations.size(); ++i) {
     const auto& location = graph.locations[graph.locations.id_at(i)];
     out += fmt::format("  L{} [label={}];\n", i,
-                       quoted(location.event.text + " at " + files.place(location.source)));
+                       dot_text(location.event.text + " at " + files.place(location.source)));
   }
   for (std::size_t i = 0; i < graph.branches.size(); ++i) {
     const auto& branch = graph.branches[graph.branches.id_at(i)];
-    out += fmt::format("  B{} [shape=diamond, label={}];\n", i, quoted(branch.text()));
+    out += fmt::format("  B{} [shape=diamond, label={}];\n", i, dot_text(branch.text()));
   }
   for (std::size_t i = 0; i < graph.terminals.size(); ++i) {
     const auto& terminal = graph.terminals[graph.terminals.id_at(i)];
     out +=
-        fmt::format("  T{} [shape=oval, label={}];\n", i, quoted(terminal_text(terminal, files)));
+        fmt::format("  T{} [shape=oval, label={}];\n", i, dot_text(terminal_text(terminal, files)));
   }
   out += fmt::format("  start -> {};\n", name(graph.entry));
   for (std::size_t i = 0; i < graph.locations.size(); ++i) {
     const auto& location = graph.locations[graph.locations.id_at(i)];
     out += fmt::format("  L{} -> {};\n", i, name(location.on_success));
     out += fmt::format("  L{} -> {} [style=dashed, label={}];\n", i, name(location.on_failure),
-                       quoted(location.failure_class));
+                       dot_text(location.failure_class));
   }
   for (std::size_t i = 0; i < graph.branches.size(); ++i) {
     const auto& branch = graph.branches[graph.branches.id_at(i)];

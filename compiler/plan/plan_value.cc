@@ -214,8 +214,11 @@ std::string ValueStore::print(ValueId id) const {
     case ValueKind::kNumber:
     case ValueKind::kCounter:
       return print_number(value.number);
-    case ValueKind::kCons:
-      return "a list";
+    case ValueKind::kCons: {
+      auto tail = id;
+      while (kind(tail) == ValueKind::kCons) tail = values_[tail].tail;
+      return is_nil(tail) ? "a list" : "a dotted list";
+    }
     case ValueKind::kVector:
       return "a vector";
     case ValueKind::kQuaternion:

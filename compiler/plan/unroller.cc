@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/plan/lisp_packages.h"
 #include "compiler/plan/lisp_reader.h"
 #include "compiler/plan/perform_resolver.h"
 #include "compiler/plan/plan_compiler.h"
@@ -484,11 +485,12 @@ std::optional<PlanTarget> Explorer::refer(PlanState& state, const StopPerform& s
 
 }  // namespace
 
-base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files, base::FileId plan,
-                                    const PlanBinding& binding, const PoseLocator& locator,
-                                    const UnrollOptions& options, base::DiagnosticSink& sink) {
-  const auto text = read_lisp(files, plan, sink);
-  if (!text) return sink.already_reported();
+base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files,
+                                    std::span<const base::FileId> plan, const PlanBinding& binding,
+                                    const PoseLocator& locator, const UnrollOptions& options,
+                                    base::DiagnosticSink& sink) {
+  auto text = read_lisp(files, plan, sink);
+  if (!text || !resolve_packages(*text, sink)) return sink.already_reported();
   ValueStore values;
   const auto code = compile_plan(*text, options.entry, options.interleave, values, sink);
   if (!code) return sink.already_reported();

@@ -37,9 +37,11 @@ struct UnrollOptions {
 /// paths. What a bound cut off ends in a kBound terminal.
 ///
 /// The plan is the function `entry`; without it the bare top-level forms in order; without those
-/// the last function defined. Reports CPL0xx errors and W- warnings, several per run.
-base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files, base::FileId plan,
-                                    const PlanBinding& binding, const PoseLocator& locator,
-                                    const UnrollOptions& options, base::DiagnosticSink& sink);
+/// the last function defined. Several files are one plan, read in their order. Reports CPL0xx
+/// errors and W- warnings, several per run.
+base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files,
+                                    std::span<const base::FileId> plan, const PlanBinding& binding,
+                                    const PoseLocator& locator, const UnrollOptions& options,
+                                    base::DiagnosticSink& sink);
 
 }  // namespace parallax::compiler

@@ -95,6 +95,17 @@ void check_free_regions(const Scenario& scenario, base::DiagnosticSink& sink) {
   }
 }
 
+/// Whether the files of a plan's folder are read or not, they are what the scenario names.
+void note_plan(const std::filesystem::path& path, base::SourceFiles& files) {
+  files.note_input(path.string());
+  std::error_code error;
+  for (auto at = std::filesystem::directory_iterator(path, error);
+       !error && at != std::filesystem::directory_iterator(); at.increment(error)) {
+    const auto ending = at->path().extension();
+    if (ending == ".lisp" || ending == ".asd") files.note_input(at->path().string());
+  }
+}
+
 class ScenarioReader {
  public:
   ScenarioReader(const YamlNode& root, const base::PathGate& gate, const base::SourceFiles& files,
@@ -135,12 +146,16 @@ class ScenarioReader {
       scenario.models = located_texts(*node, Key::kModel, sink_);
       for (auto& model : scenario.models) resolve(model);
     }
-    scenario.plan = optional_path(Key::kPlan);
+    if (const auto* node = fields_.find(Key::kPlan)) {
+      scenario.plan = located_texts(*node, Key::kPlan, sink_);
+      for (auto& plan : scenario.plan) resolve(plan);
+    }
     scenario.bind = optional_path(Key::kBind);
-    if (scenario.plan.has_value() != scenario.bind.has_value()) {
-      const auto* given = fields_.find(scenario.plan ? Key::kPlan : Key::kBind);
-      sink_.error(DiagnosticCode::kMissingKey, given->range, "the scenario",
-                  scenario.plan ? Key::kBind : Key::kPlan);
+    const auto* plan = fields_.find(Key::kPlan);
+    const auto* bind = fields_.find(Key::kBind);
+    if ((plan == nullptr) != (bind == nullptr)) {
+      sink_.error(DiagnosticCode::kMissingKey, (plan != nullptr ? plan : bind)->range,
+                  "the scenario", plan != nullptr ? Key::kBind : Key::kPlan);
     }
     if (const auto* node = fields_.find(Key::kConstraints)) {
       scenario.constraints = located_texts(*node, Key::kConstraints, sink_);
@@ -293,9 +308,8 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
   if (!root) return sink.already_reported();
   ScenarioReader(*root, gate, files, sink).read(scenario);
   for (const auto& model : scenario.models) files.note_input(model.text);
-  for (const auto* part : {&scenario.plan, &scenario.bind}) {
-    if (*part) files.note_input((*part)->text);
-  }
+  for (const auto& plan : scenario.plan) note_plan(plan.text, files);
+  if (scenario.bind) files.note_input(scenario.bind->text);
   // Of another simulator it is known when it has been started.
   const bool built_in = scenario.simulator.command.empty();
   if (built_in && scenario.mapping && sink.error_count() == errors_before) {

@@ -91,7 +91,8 @@ struct Scenario {
   std::string name;   // the file as the user wrote it
   std::string title;  // what it calls itself; may be empty
   std::vector<LocatedText> models;
-  std::optional<LocatedText> plan, bind;
+  std::vector<LocatedText> plan;  // files and folders in order
+  std::optional<LocatedText> bind;
   std::vector<LocatedText> constraints;
   std::int32_t horizon = 0;
   base::SourceRange horizon_source;

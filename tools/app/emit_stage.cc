@@ -183,7 +183,7 @@ base::Result<std::string> front_end_text(std::string_view stage, const ModelOpti
   if (file_kind(options.models.front()) == FileKind::kScenario && options.models.size() == 1) {
     const auto scenario = harness::load_scenario(options.models.front(), context.files(), sink);
     if (!scenario) return sink.already_reported();
-    if (scenario->plan || !scenario->constraints.empty()) {
+    if (!scenario->plan.empty() || !scenario->constraints.empty()) {
       context.remark(
           fmt::format("--emit={} shows the model alone, without plan and constraints", stage));
     }

@@ -19,10 +19,11 @@ struct ModelOptions {
   std::vector<std::string> until;  // state constraints
   /// `verify`: traces end where this formula does not hold.
   std::optional<std::string> property = std::nullopt;
-  std::string plan, bind;      // Lisp file and binding table; both or none
-  std::string plan_entry;      // the function to run; empty: as the plan says
-  std::string regions;         // the scenario whose regions the plan's poses lie in
-  std::int32_t max_loop = 16;  // iterations of a loop that nothing static ends
+  std::vector<std::string> plan;  // Lisp files and folders in order; none or with `bind`
+  std::string bind;               // the binding table
+  std::string plan_entry;         // the function to run; empty: as the plan says
+  std::string regions;            // the scenario whose regions the plan's poses lie in
+  std::int32_t max_loop = 16;     // iterations of a loop that nothing static ends
   std::int32_t max_call_depth = 8;
   std::int32_t location_samples = 0;  // further solutions that `next-solution` gives
   std::string par = "in-order";       // the branches of `par`: in-order or interleave

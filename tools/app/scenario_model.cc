@@ -9,6 +9,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
+#include "compiler/plan/plan_files.h"
 #include "compiler/syntax/lexer.h"
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/replay.h"
@@ -108,6 +109,19 @@ base::Status look_for_violations(const std::string& property, compiler::CompileI
   return base::Unit{};
 }
 
+}  // namespace
+
+base::Result<std::vector<base::FileId>> load_scenario_plan(const harness::Scenario& scenario,
+                                                           Context& context) {
+  base::PathGate gate(context.form().allow_outside);
+  gate.admit_beside(scenario.file);
+  std::vector<compiler::PlanPath> paths;
+  for (const auto& plan : scenario.plan) paths.push_back({plan.text, plan.source});
+  return compiler::load_plan_files(paths, gate, context.files(), context.sink());
+}
+
+namespace {
+
 base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scenario,
                                                    const RegionLocator& locator, Context& context) {
   auto& files = context.files();
@@ -122,8 +136,8 @@ base::Result<compiler::CompileInput> compile_input(const harness::Scenario& scen
   for (const auto& text : scenario.constraints) {
     input.constraints.push_back(constraint_text(text, files));
   }
-  if (scenario.plan) {
-    const auto plan = base::load_text(scenario.plan->text, files, sink);
+  if (!scenario.plan.empty()) {
+    const auto plan = load_scenario_plan(scenario, context);
     const auto bind = base::load_text(scenario.bind->text, files, sink);
     if (!plan || !bind) return sink.already_reported();
     input.plan = compiler::PlanInput{*plan, *bind, std::nullopt, &locator};
@@ -192,7 +206,19 @@ base::Status add_plan(const ModelOptions& options, std::optional<harness::Scenar
     regions = *std::move(scenario);
   }
   locator.emplace(regions ? regions->mapping->regions() : kNowhere);
-  const auto plan = base::load_text(options.plan, context.files(), sink);
+  std::vector<compiler::PlanPath> paths;
+  base::PathGate gate(context.form().allow_outside);
+  for (const auto& path : options.plan) {
+    paths.push_back({path, std::nullopt});
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error)) {
+      gate.admit_from(path);
+    } else {
+      // The user named it, whatever it leads to.
+      gate.admit_folder(path);
+    }
+  }
+  const auto plan = compiler::load_plan_files(paths, gate, context.files(), sink);
   const auto bind = base::load_text(options.bind, context.files(), sink);
   if (!plan || !bind) return sink.already_reported();
   input.plan = compiler::PlanInput{.plan = *plan,
@@ -215,8 +241,10 @@ base::Status expect_kinds(const ModelOptions& options, Context& context) {
   for (const auto& path : options.models) {
     (void)expect_kind(path, {FileKind::kModel}, "a model", context);
   }
+  for (const auto& path : options.plan) {
+    (void)expect_kind(path, {FileKind::kPlan}, "a plan", context);
+  }
   if (!options.plan.empty()) {
-    (void)expect_kind(options.plan, {FileKind::kPlan}, "a plan", context);
     (void)expect_kind(options.bind, {FileKind::kBinding}, "a binding table", context);
   }
   if (!options.regions.empty()) {

@@ -31,6 +31,10 @@ struct ScenarioModel {
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path, Context& context,
                                                 bool costs = false);
 
+/// Reads the files of the scenario's plan, in their order.
+base::Result<std::vector<base::FileId>> load_scenario_plan(const harness::Scenario& scenario,
+                                                           Context& context);
+
 /// The scenario's model once more, for another horizon, with its plan or for any events. None where
 /// that fails; nothing is reported.
 std::optional<compiler::CompiledModel> compile_variant(const harness::Scenario& scenario,

@@ -47,7 +47,7 @@ std::optional<compiler::Compilation> compile(int horizon, bool with_plan) {
     const auto plan = base::load_text(root / "tests/plans/lay_the_table.lisp", files, sink);
     const auto bind = base::load_text(root / "scenarios/kitchen/robot.bind", files, sink);
     if (!plan || !bind) return std::nullopt;
-    input.plan = compiler::PlanInput{*plan, *bind, std::nullopt, &places};
+    input.plan = compiler::PlanInput{{*plan}, *bind, std::nullopt, &places};
   }
   const std::string goal = "{base} (Happens(Go(base),time-1) & HoldsAt(RobotAt(base),time))";
   const auto text = files.add("goal", goal);

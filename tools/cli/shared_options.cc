@@ -43,7 +43,11 @@ Option& add_model_options(OptionTable& command, ModelOptions& options) {
 }
 
 void add_plan_options(OptionTable& command, ModelOptions& options) {
-  command.option("--plan", options.plan, "Plan to unroll with the models (.lisp)").needs("--bind");
+  command
+      .option("--plan", options.plan,
+              "Plan to unroll with the models: a file (.lisp) or a folder, repeated in load order")
+      .list(ListForm::kOneEachTime)
+      .needs("--bind");
   command.option("--bind", options.bind, "What the plan's designators mean").needs("--plan");
   command.option("--plan-entry", options.plan_entry, "The plan's function to run").needs("--plan");
   command.option("--regions", options.regions, "Scenario whose regions the plan's poses lie in")

@@ -74,12 +74,16 @@ base::Result<ModelRevision> load_scenario_revision(const std::string& path, Cont
   load.named_by = {path};
   load.allow_outside = context.form().allow_outside;
   add_text_facts(models, load, out.facts);
-  for (const auto* part : {&scenario.plan, &scenario.bind}) {
-    if (!*part) continue;
-    const auto kind = part == &scenario.plan ? RevisionKind::kPlan : RevisionKind::kBinding;
-    const auto plan = load_plan_revision((*part)->text, kind, context);
-    if (!plan) return context.sink().already_reported();
-    out.facts.insert(out.facts.end(), plan->facts.begin(), plan->facts.end());
+  if (!scenario.plan.empty()) {
+    const auto files = load_scenario_plan(scenario, context);
+    if (!files) return context.sink().already_reported();
+    const auto lisp = compiler::read_lisp(context.files(), *files, context.sink());
+    if (!lisp) return context.sink().already_reported();
+    const auto plan = compiler::plan_facts(*lisp, context.files());
+    out.facts.insert(out.facts.end(), plan.begin(), plan.end());
+    const auto bind = load_plan_revision(scenario.bind->text, RevisionKind::kBinding, context);
+    if (!bind) return context.sink().already_reported();
+    out.facts.insert(out.facts.end(), bind->facts.begin(), bind->facts.end());
   }
   for (const auto& constraint : scenario.constraints) {
     const auto& file = context.files()[constraint.source.file];

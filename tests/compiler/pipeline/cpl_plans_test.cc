@@ -120,7 +120,7 @@ Ours unrolled(const std::string& name, const std::string& text) {
   compiler::CompileInput input;
   input.models = {kFolder / "free.e"};
   input.horizon = 9;
-  input.plan = compiler::PlanInput{plan, binding, std::nullopt, &nowhere};
+  input.plan = compiler::PlanInput{{plan}, binding, std::nullopt, &nowhere};
   input.plan->interleave = !name.starts_with('s');
   const auto compiled = compiler::compile_model(input, files, sink);
   Ours out;

@@ -53,6 +53,10 @@ TEST_CASE("reader: every kind of token") {
       {"'x `(a ,b ,@c) #'f",
        "(quote x) (quasiquote (a (unquote b) (unquote-splicing c))) "
        "(function f)"},
+      {"(a . b) (a b . (c . d)) (a . (b c)) (a . nil) (a .b 1.5)",
+       "(a . b) (a b c . d) (a b c) (a) (a .b 1.5)"},
+      {"(a . 'b) `(a . ,b) ((a . 1) . 2)",
+       "(a quote b) (quasiquote (a . (unquote b))) ((a . 1) . 2)"},
       {"#\\a #\\Space #\\( ()", "#\\a #\\Space #\\( ()"},
       {"a ; comment ( \n b #| x #| y |# ) |# c", "a b c"},
       {"#+seecer a #-seecer b #+sbcl c #-sbcl d", "a d"},
@@ -120,7 +124,17 @@ TEST_CASE("reader: what cannot be read is reported where it stands") {
       {"(a \"b)", "CPL001 1:4 cannot read this datum: this string does not end"},
       {"a #| b", "CPL001 1:3 cannot read this datum: this comment does not end"},
       {"|a", "CPL001 1:1 cannot read this datum: this symbol does not end"},
-      {"(a . b)", "CPL001 1:4 cannot read this datum: dotted pairs are not read"},
+      {"(. b)",
+       "CPL001 1:2 cannot read this datum: a dot stands once in a list, behind a datum of it"},
+      {"(a . b . c)",
+       "CPL001 1:8 cannot read this datum: a dot stands once in a list, behind a datum of it"},
+      {"(a . b c)",
+       "CPL001 1:4 cannot read this datum: one datum stands behind a dot, and `)` behind that"},
+      {"(a .)",
+       "CPL001 1:4 cannot read this datum: one datum stands behind a dot, and `)` behind that"},
+      {"(a ... b)", "CPL001 1:4 cannot read this datum: a symbol of dots only"},
+      {"a . b",
+       "CPL001 1:3 cannot read this datum: a dot stands once in a list, behind a datum of it"},
       {"(a ')", "CPL001 1:4 cannot read this datum: nothing follows this prefix"},
       {"'", "CPL001 1:1 cannot read this datum: nothing follows this prefix"},
       {"a:b:c", "CPL001 1:1 cannot read this datum: misplaced `:` in this symbol"},
@@ -150,7 +164,7 @@ TEST_CASE("reader: an open list names the form in column 1 that it swallowed") {
 }
 
 TEST_CASE("reader: several errors come out of one run") {
-  const auto reading = read("#.a (b . c) #S(d) 1/0");
+  const auto reading = read("#.a (b . c d) #S(d) 1/0");
   CHECK(reading.sink.error_count() == 4);
 }
 

@@ -13,6 +13,10 @@ struct Case {
 
 const Case kCases[] = {
     {"(perform", "CPL001", "cannot read this datum: this list does not end"},
+    {"(let ((x . 1)) x)", "CPL003", "malformed `x`: a dotted list is data: quote it"},
+    {"(list . (1 . 2))", "CPL003", "malformed `list`: a dotted list is data: quote it"},
+    {"(length '(1 . 2))", "CPL008", "`length`: argument 1 is a dotted list, not a list"},
+    {"(apply #'list '(1 . 2))", "CPL008", "`apply`: expected a list, not a dotted list"},
     {"(perform #.x)", "CPL002", "the reader macro `#.` is not in the subset"},
     {"(let x 1)", "CPL003", "malformed `let`: expected a list of bindings"},
     {"(if)", "CPL003", "malformed `if`: expected a test, a form and perhaps another form"},
