@@ -279,19 +279,19 @@ std::vector<LocatedText> located_texts(const YamlNode& node, std::string_view ke
   return out;
 }
 
-bool may_include_expectation(const std::filesystem::path& path, bool allow_outside) {
+bool may_be_case(const std::filesystem::path& path, bool allow_outside) {
   base::SourceFiles files;
   base::DiagnosticSink unread;
   base::PathGate gate(allow_outside);
   gate.admit_beside(path);
   if (const auto root = load_yaml(path, gate, files, unread)) {
     const auto* expect = root->find(Key::kExpect);
-    return expect != nullptr && expect->value.kind != YamlNode::Kind::kNull;
+    if (expect != nullptr) return expect->value.kind != YamlNode::Kind::kNull;
+    return root->find(Key::kModel) != nullptr;
   }
   if (files.size() == 0) return false;
-  const auto text = files[base::FileId(0)].text();
-  const auto key = std::string(Key::kInclude) + ":";
-  return text.starts_with(key) || text.find("\n" + key) != std::string_view::npos;
+  const auto own = parse_yaml(base::FileId(0), files, unread);
+  return !own || own->find(Key::kInclude) != nullptr;
 }
 
 base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::SourceFiles& files,

@@ -26,8 +26,8 @@ using std::chrono::milliseconds;
 
 constexpr auto kTermGrace = milliseconds(2000);
 constexpr auto kStoppedGrace = milliseconds(500);  // when everything is to end soon
-constexpr auto kPollSlice = milliseconds(100);    // how late the stop flag may be seen
-constexpr auto kMemorySlice = milliseconds(250);  // how late too much memory may be seen
+constexpr auto kPollSlice = milliseconds(100);     // how late the stop flag may be seen
+constexpr auto kMemorySlice = milliseconds(250);   // how late too much memory may be seen
 constexpr auto kReapSlice = milliseconds(5);
 constexpr std::size_t kErrorBytes = std::size_t{1} << 14U;
 constexpr std::size_t kErrorLines = 50;

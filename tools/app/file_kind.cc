@@ -28,10 +28,10 @@ constexpr std::array<NameEnding, 10> kEndings = {{{".e", FileKind::kModel},
                                                   {".itf.json", FileKind::kTraces},
                                                   {".drat", FileKind::kProof}}};
 
-/// Formats that are no text begin with a signature and zeros. A zero farther behind is an accident
-/// in a text, which its reader locates.
+/// Formats that are no text have zeros in their signature or right behind it: ELF, PNG, ZIP and the
+/// like within 16 bytes. A zero farther behind is an accident in a text, which its reader locates.
 bool is_binary(std::string_view begin) {
-  constexpr std::size_t kSignature = 32;
+  constexpr std::size_t kSignature = 16;
   return begin.substr(0, kSignature).find('\0') != std::string_view::npos;
 }
 

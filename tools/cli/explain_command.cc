@@ -67,6 +67,12 @@ int explain_contradiction(const compiler::CompiledModel& model,
 }
 
 int explain_run(const ExplainOptions& options, Invocation& invocation) {
+  if (options.asks_why || !options.model.until.empty()) {
+    invocation.sink().error_about(
+        base::DiagnosticCode::kUsage, options.model.models.front(),
+        "--why and --until ask about models and scenarios, not about folders of runs");
+    return 0;
+  }
   const auto found = load_discrepancy({options.model.models.front(), options.scenario},
                                       options.sample, invocation);
   if (!found) return 0;

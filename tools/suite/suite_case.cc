@@ -118,8 +118,8 @@ void add_scenario(const std::string& file, std::string_view text, bool allow_out
   const auto group = folder.empty() ? std::string(".") : folder.generic_string();
   if (scenario && scenario->expect) {
     cases.push_back({file, file, group, *scenario->expect, scenario->simulator.command});
-  } else if (!scenario && (says_what_it_expects(text) ||
-                           harness::may_include_expectation(file, allow_outside))) {
+  } else if (!scenario &&
+             (says_what_it_expects(text) || harness::may_be_case(file, allow_outside))) {
     cases.push_back({file, file, group, harness::Expectation{}});
   }
 }

@@ -168,8 +168,7 @@ TEST_CASE("codes: unknown and reactive forms name the nearest form of the subset
   CHECK(note("(whn t 1)") == "the nearest form of the subset is `when`");
   CHECK(note("(with-failure-handlin () 1)") ==
         "the nearest form of the subset is `with-failure-handling`");
-  CHECK(note("(try-all 1 2)") ==
-        "use `try-in-order`, which tries one branch after the other");
+  CHECK(note("(try-all 1 2)") == "use `try-in-order`, which tries one branch after the other");
   CHECK(note("(perform (a motion (type goin)))") == "the nearest binding is motion `going`");
 }
 

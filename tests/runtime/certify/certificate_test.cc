@@ -1,11 +1,14 @@
 #include "runtime/certify/certificate.h"
 
 #include <doctest/doctest.h>
+#include <signal.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <fstream>
 #include <functional>
+#include <optional>
 
 #include "runtime/enumerate/model_enumerator.h"
 #include "tests/support/planned_model.h"
@@ -244,16 +247,36 @@ TEST_CASE("files that cannot be written are refused before the work, and nothing
   CHECK(folder.names().empty());
 }
 
+/// While it lives, files take no byte, as on a disk that is full; pipes and terminals do.
+class FullDisk {
+ public:
+  FullDisk() : handler_(::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit none{0, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &none);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    ::signal(SIGXFSZ, handler_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
 TEST_CASE("a disk that takes no more is noticed, whether the search was logged or not") {
   const TextModel model("range time 0 1\nfluent F()\nHoldsAt(F(),0).\n!HoldsAt(F(),0).\n");
   for (const bool logged : {false, true}) {
     CAPTURE(logged);
     const Folder folder;
     base::DiagnosticSink sink;
-    fs::create_symlink("/dev/full", folder.file("p.drat.part"));
     auto files = runtime::ProofFiles::create(folder.file("p.drat"), sink);
     REQUIRE(files);
     const runtime::CompletenessClaim claim(model.compiled);
+    std::optional<FullDisk> full(std::in_place);
     if (logged) {
       CHECK(runtime::SolverSession(model.compiled,
                                    runtime::make_logged_solver(files->proof(), claim),
@@ -261,6 +284,7 @@ TEST_CASE("a disk that takes no more is noticed, whether the search was logged o
                 .solve(1, {}) == runtime::SolveStatus::kUnsatisfiable);
     }
     const auto certificate = runtime::prove(claim, *files, {}, sink, logged);
+    full.reset();
     CHECK(certificate.verdict == ProofVerdict::kNotFinished);
     REQUIRE(sink.error_count() == 1);
     CHECK(base::info(sink.sorted().front().code).id == "E0005");

@@ -140,12 +140,20 @@ TEST_CASE("a broken variant of a case is a case, whose process says what is wron
   folder.write("s/base.yaml", "expect: {verdict: discrepancy}\n");
   folder.write("s/variant.yaml", "include: base.yaml\nhorizn: 3\n");
   folder.write("s/lost.yaml", "include: gone.yaml\n");
+  folder.write("s/slip.yaml", "name: x\n  expect: {verdict: discrepancy}\n");
+  folder.write("s/junk.yaml", "junk: [1\n");
+  folder.write("s/typo.yaml", "model: [m.e]\nexpct: {verdict: discrepancy}\n");
+  folder.write("s/world.yaml", "bodies: {}\n");
   folder.write("s/taken_back.yaml", "include: base.yaml\nexpect:\n");
   const auto found = find_in(folder.path() / "s");
   CHECK(found.code == 0);
   std::vector<std::string> names;
   for (const auto& one : found.cases) names.push_back(fs::path(one.file).filename().string());
-  CHECK(std::count(names.begin(), names.end(), "variant.yaml") == 1);
+  for (const auto* broken : {"variant.yaml", "slip.yaml", "junk.yaml", "typo.yaml"}) {
+    CAPTURE(broken);
+    CHECK(std::count(names.begin(), names.end(), broken) == 1);
+  }
+  CHECK(std::count(names.begin(), names.end(), "world.yaml") == 0);
   CHECK(std::count(names.begin(), names.end(), "lost.yaml") == 1);
   CHECK(std::count(names.begin(), names.end(), "base.yaml") == 1);
 }
