@@ -232,8 +232,8 @@ class Grounder {
       } else {
         model_.require(*formula, origin);
       }
-      // A definition over effects (ECCausal, Clipped) says what happens, it is no reason for it.
-      if (axiom.mentions_effects) return;
+      // The encoder of 2005 takes no axiom about effects for a reason.
+      if (standard_ ? defines_by_effects(typed_, axiom) : axiom.mentions_effects) return;
       const auto width = always ? profile.width : Constraint::kOnce;
       if (!completion_.note(axiom.label, *formula, width)) {
         sink_.warning(DiagnosticCode::kNamedCompletion, axiom.source);

@@ -6,6 +6,7 @@
 
 #include "compiler/ground/possible_atoms.h"
 #include "compiler/ground/time_profile.h"
+#include "compiler/sema/axiom_shapes.h"
 
 namespace parallax::compiler {
 namespace {
@@ -86,7 +87,8 @@ std::vector<bool> Narrative::scheduled_symbols(const Completion& completion) con
     scheduled[i] = typed.symbols[typed.symbols.id_at(i)].kind == SymbolKind::kEvent;
   }
   for (const auto& axiom : typed.axioms) {
-    if (axiom.mentions_effects || (completion.label && *completion.label != axiom.label)) continue;
+    if (defines_by_effects(typed, axiom) || (completion.label && *completion.label != axiom.label))
+      continue;
     const auto shape = time_profile(typed, axiom.formula).shape;
     if (shape == TimeShape::kRigid || shape == TimeShape::kFixed) continue;
     for_each_positive_event(typed, axiom.formula, [&](TermId event) {

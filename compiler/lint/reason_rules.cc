@@ -7,6 +7,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/lint/rules.h"
+#include "compiler/sema/axiom_shapes.h"
 #include "compiler/syntax/lexer.h"
 
 namespace parallax::compiler {
@@ -50,7 +51,8 @@ void find_unused_labels(const LintContext& context) {
   const auto completed = completed_predicates(model);
   const auto named = named_labels(model);
   for (const auto& axiom : model.axioms) {
-    if (axiom.label.empty() || axiom.mentions_effects || named.contains(axiom.label)) continue;
+    if (axiom.label.empty() || defines_by_effects(model, axiom) || named.contains(axiom.label))
+      continue;
     for (const auto atom : positive_atoms(model, axiom.formula)) {
       const auto predicate = model.formulas[atom].predicate;
       const auto entry = completed.find(predicate.index());
@@ -69,7 +71,7 @@ void find_completions_without_axiom(const LintContext& context) {
   for (const auto& axiom : model.axioms) {
     if (axiom.label.empty()) continue;
     labels.insert(axiom.label);
-    if (axiom.mentions_effects) continue;
+    if (defines_by_effects(model, axiom)) continue;
     for (const auto atom : positive_atoms(model, axiom.formula)) {
       reasons.emplace(axiom.label, model.formulas[atom].predicate.index());
     }
@@ -93,7 +95,7 @@ void find_predicates_not_completed(const LintContext& context) {
   }
   std::set<std::uint32_t> reported;
   for (const auto& axiom : model.axioms) {
-    if (axiom.mentions_effects || context.built_in(axiom.source)) continue;
+    if (defines_by_effects(model, axiom) || context.built_in(axiom.source)) continue;
     for (const auto atom : positive_atoms(model, axiom.formula)) {
       const auto predicate = model.formulas[atom].predicate;
       if (completed.contains(predicate.index()) || reported.contains(predicate.index())) continue;

@@ -198,6 +198,13 @@ std::vector<std::uint32_t> ModelExpander::atoms_of(SymbolId predicate) const {
   return atoms;
 }
 
+/// What is defined over effects (Clipped, ECCausal) is no reason of what defines it.
+bool ModelExpander::is_definition(TypedFormulaId id) const {
+  const auto& formula = model_.formulas[id];
+  return formula.kind == FormulaKind::kForall ? is_definition(formula.children[0])
+                                              : formula.kind == FormulaKind::kIff;
+}
+
 /// For every completed atom, the conjuncts of the label that mention it.
 void ModelExpander::complete() {
   for (std::size_t c = 0; c < model_.completions.size() && !budget_.spent(); ++c) {
@@ -206,7 +213,7 @@ void ModelExpander::complete() {
     for (const auto atom : atoms_of(completion.predicate)) completed[atom] = {c, atom, {}};
     for (std::size_t i = 0; i < out_.conjuncts_.size(); ++i) {
       const auto& axiom = model_.axioms[out_.conjuncts_[i].axiom];
-      if (axiom.mentions_effects) continue;
+      if (axiom.mentions_effects && is_definition(axiom.formula)) continue;
       if (completion.label && *completion.label != axiom.label) continue;
       for (const auto atom : out_.trees_.atoms_of(out_.conjuncts_[i].formula.node)) {
         const auto found = completed.find(atom);

@@ -32,6 +32,7 @@ class ModelExpander {
   void expand_axioms();
   void expand_trajectories();
   void expand_trajectory(std::size_t index);
+  bool is_definition(TypedFormulaId id) const;
   void complete();
   /// The atoms of the predicate that exist so far.
   std::vector<std::uint32_t> atoms_of(SymbolId predicate) const;

@@ -332,6 +332,15 @@ bool mentions_effects(const TypedModel& model, TypedFormulaId root) {
   return false;
 }
 
+bool defines_by_effects(const TypedModel& model, const Axiom& axiom) {
+  if (!axiom.mentions_effects) return false;
+  auto root = axiom.formula;
+  while (model.formulas[root].kind == FormulaKind::kForall) {
+    root = model.formulas[root].children.front();
+  }
+  return model.formulas[root].kind == FormulaKind::kIff;
+}
+
 void add_effect_formula(TypedFormulaId formula, std::string label, TypedModel& model,
                         base::DiagnosticSink& sink) {
   ShapeReader(std::move(label), model, sink).read(formula);

@@ -21,4 +21,8 @@ void add_effect_formula(TypedFormulaId formula, std::string label, TypedModel& m
 /// Does Initiates, Terminates or Releases occur anywhere in the formula?
 bool mentions_effects(const TypedModel& model, TypedFormulaId formula);
 
+/// Is the axiom the definition of a predicate by effects, `P(..) <-> ..`, as those of Clipped and
+/// of ECCausal.e? It says what happens then; for completion it is no reason of what it mentions.
+bool defines_by_effects(const TypedModel& model, const Axiom& axiom);
+
 }  // namespace parallax::compiler

@@ -106,8 +106,8 @@ class PlannedModel {
     compiler::CompileInput input;
     input.models = models;
     input.horizon = horizon;
-    input.plan = compiler::PlanInput{{files_.add("plan.lisp", plan)},
-                                     files_.add("plan.bind", binding), std::nullopt, &locator};
+    input.plan = compiler::PlanInput{
+        {files_.add("plan.lisp", plan)}, files_.add("plan.bind", binding), std::nullopt, &locator};
     const auto text = files_.add("constraint", constraint);
     const base::SourceRange range{text, 0, static_cast<std::uint32_t>(constraint.size())};
     input.constraints = {{range, range}};

@@ -127,7 +127,8 @@ inline Unrolled unroll(std::string_view plan, const UnrollOptions& options = {},
   const auto bind = out.files.add("plan.bind", std::string(binding_text));
   const auto binding = parse_plan_binding(out.files, bind, out.sink);
   if (!binding) return out;
-  auto graph = unroll_plan(out.files, std::span(&file, 1), *binding, LineLocator(), options, out.sink);
+  auto graph =
+      unroll_plan(out.files, std::span(&file, 1), *binding, LineLocator(), options, out.sink);
   if (graph) out.graph = std::move(*graph);
   return out;
 }

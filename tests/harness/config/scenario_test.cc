@@ -11,7 +11,8 @@ TEST_CASE("a scenario is read with defaults, paths beside its file, and the worl
   REQUIRE_MESSAGE(scenario.has_value(), workspace.reports().front());
   REQUIRE(scenario->models.size() == 2);
   CHECK(scenario->models[0].text == (workspace.folder() / "domain.e").string());
-  CHECK(scenario->plan->text == (workspace.folder() / "fetch.lisp").string());
+  REQUIRE(scenario->plan.size() == 1);
+  CHECK(scenario->plan[0].text == (workspace.folder() / "fetch.lisp").string());
   CHECK(scenario->horizon == 6);
   REQUIRE(scenario->constraints.size() == 1);
   // The range is the text without its quotes, so that an error inside it can be placed.

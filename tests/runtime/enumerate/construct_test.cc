@@ -214,6 +214,23 @@ TEST_CASE("an axiom about effects constrains the events") {
       3);
 }
 
+TEST_CASE("an axiom with effects in its condition is a reason for completion, as every other") {
+  const std::string world = "range time 0 1\nfluent A()\nevent Y()\nevent X()\n";
+  // Nothing initiates A: Y happens, and A holds or not; without a reason for X it does not happen.
+  compare(world + "[time] !Initiates(Y(),A(),time) -> Happens(Y(),time).\ncompletion Happens\n", 2);
+  // X happens, Y does not, and A stays what it is.
+  compare(world +
+              "[time] Initiates(Y(),A(),time).\n"
+              "[time] Initiates(Y(),A(),time) -> Happens(X(),time).\ncompletion Happens\n",
+          2);
+  // Only where A holds.
+  compare(world +
+              "[time] Initiates(Y(),A(),time).\n"
+              "[time] HoldsAt(A(),time) & Initiates(Y(),A(),time) -> Happens(X(),time).\n"
+              "completion Happens\n",
+          2);
+}
+
 TEST_CASE("Clipped counts the terminations of an interval") {
   compare(
       "load foundations/DEC.e\nrange time 0 1\nfluent F()\nevent E()\n"

@@ -297,12 +297,11 @@ TEST_CASE_FIXTURE(DiffFixture, "trace files are read as strictly as traces --rep
       "[]",
       "{\"timepoints\":[]}",
       "{\"timepoints\":[{\"time\":0,\"holds\":3}]}",
-      "{\"timepoints\":[{\"holds\":[]}]}",               // without its time
-      spoilt("\"time\":1", "\"time\":2"),                // a gap
-      spoilt("\"trace\":1", "\"trace\":-1"),             // a negative number
-      spoilt("\"holds\":[\"F()\"]", "\"holds\":[1]"),    // no text
-      spoilt("\"trace\":1", "\"trace\":1,\"trace\":1"),  // a name twice
-      spoilt("\"time\":1,\"happens\":[]", "\"time\":1,\"happens\":[\"E()\"]"),
+      "{\"timepoints\":[{\"holds\":[]}]}",                  // without its time
+      spoilt("\"time\":1", "\"time\":2"),                   // a gap
+      spoilt("\"trace\":1", "\"trace\":-1"),                // a negative number
+      spoilt("\"holds\":[\"F()\"]", "\"holds\":[1]"),       // no text
+      spoilt("\"trace\":1", "\"trace\":1,\"trace\":1"),     // a name twice
       "{\"summary\":true,\"traces\":7,\"complete\":true}",  // another number of traces
   };
   for (const auto& line : bad) {
@@ -316,6 +315,10 @@ TEST_CASE_FIXTURE(DiffFixture, "trace files are read as strictly as traces --rep
     CHECK(first.find("b.jsonl:2:") == 0);
     CHECK(first == replayed.err.substr(0, replayed.err.find('\n')));
   }
+  // An event at the last timepoint: only a model says whether it knows of one.
+  write("b.jsonl", spoilt("\"time\":1,\"happens\":[]", "\"time\":1,\"happens\":[\"E()\"]") + "\n");
+  CHECK(parallax({"diff", "a.jsonl", "b.jsonl"}).code == 0);
+  CHECK(parallax({"traces", "m.e", "--replay", "b.jsonl"}).code == 3);
   write("b.jsonl", "");
   CHECK(parallax({"diff", "a.jsonl", "b.jsonl"}).code == 3);
 }
