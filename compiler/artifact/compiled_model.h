@@ -203,9 +203,6 @@ struct CompiledModel {
     return fluent.index() < release_slots.size() ? of_slot(release_slots[fluent.index()], t)
                                                  : std::nullopt;
   }
-  std::optional<Literal> happens_at(EventId event, Timepoint t) const {
-    return of_slot(events[event.index()].slot, t);
-  }
   /// Calls `visit` for every variable that stands for an atom of the model, in canonical order:
   /// timepoint by timepoint fluents, releases, events in declaration order, then the fixed ones.
   /// Linear in what it visits.

@@ -177,17 +177,15 @@ Result<FormulaTree> PerformResolver::constant(ValueId id, std::string_view what,
 /// Where a value points: at a pose, or at an object that it is in, on or of.
 PerformResolver::Target PerformResolver::target(ValueId id) const {
   // Every step goes into a part of a finite value.
-  for (std::string relation;;) {
+  for (;;) {
     const auto& value = values_[id];
-    if (value.kind == ValueKind::kPose) return {value.pose, {}, {}};
+    if (value.kind == ValueKind::kPose) return {value.pose, {}};
     const bool location =
         value.kind == ValueKind::kDesignator && value.designator == DesignatorKind::kLocation;
-    if (!location) return {std::nullopt, relation, id};
+    if (!location) return {std::nullopt, id};
     const auto leading = leading_key(value);
     if (!leading) return {};
-    const auto& [key, next] = value.keys[*leading];
-    if (normalise_key(key) != "target") relation = key;
-    id = next;
+    id = value.keys[*leading].second;
   }
 }
 
@@ -213,10 +211,7 @@ Result<FormulaTree> PerformResolver::mapped(std::string_view function, ValueId v
   }
   const auto object = constant(*where.object, key, source);
   if (!object) return sink_.already_reported();
-  auto region = locator_.region_of_object(function, where.relation, object->text);
-  if (region) return constant_term(*region);
-  return sink_.error(DiagnosticCode::kDesignatorValue, source, "performed", key,
-                     fmt::format("an object that `{}` does not map", function));
+  return constant_term(object->text);  // a location in or on an object is the object itself
 }
 
 Result<ValueId> PerformResolver::variable(const BindingEntry& entry, ValueId designator,

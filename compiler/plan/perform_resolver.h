@@ -93,8 +93,7 @@ class PerformResolver {
  private:
   struct Target {
     std::optional<Pose> pose;
-    std::string relation;  // otherwise: in, on, ... and the object there
-    std::optional<ValueId> object;
+    std::optional<ValueId> object;  // otherwise: what it is in, on or of
   };
   using Variables = std::map<std::string, ValueId, std::less<>>;
   base::Result<FormulaTree> fill(const FormulaTree& formula, const Variables& variables,

@@ -37,13 +37,6 @@ class PoseLocator {
   };
   /// For messages: the region nearest to a pose outside; none if the function has no regions.
   virtual std::optional<Nearest> nearest(std::string_view function, const Pose& pose) const = 0;
-  /// The constant for a location given by an object, such as (a location (in (an object (name
-  /// drawer)))): by default the object itself. `relation` is the key: in, on, of.
-  virtual std::optional<std::string> region_of_object(std::string_view /*function*/,
-                                                      std::string_view /*relation*/,
-                                                      std::string_view object) const {
-    return std::string(object);
-  }
 };
 
 }  // namespace parallax::compiler

@@ -5,13 +5,6 @@
 namespace parallax::compiler {
 namespace {
 
-Unrolled with_prelude(std::string_view text) {
-  auto plan = unroll(prelude() + std::string(text));
-  CHECK(plan.codes().empty());
-  REQUIRE(plan.graph.has_value());
-  return plan;
-}
-
 TEST_CASE("failures: the first clause in written order whose class fits") {
   const auto plan = with_prelude(R"(
 (with-failure-handling

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <doctest/doctest.h>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -148,6 +149,14 @@ inline std::string prelude() {
 (defun pick () (perform (an action (type picking-up) (arm left) (object (an object (name box))))))
 (defun sig () (perform (a motion (type signalling))))
 )";
+}
+
+/// The plan after the prelude, unrolled without a word.
+inline Unrolled with_prelude(std::string_view text) {
+  auto plan = unroll(prelude() + std::string(text));
+  CHECK(plan.codes().empty());
+  REQUIRE(plan.graph.has_value());
+  return plan;
 }
 
 using Strings = std::vector<std::string>;

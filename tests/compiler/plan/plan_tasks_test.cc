@@ -6,13 +6,6 @@
 namespace parallax::compiler {
 namespace {
 
-Unrolled with_prelude(std::string_view text) {
-  auto plan = unroll(prelude() + std::string(text));
-  CHECK(plan.codes().empty());
-  REQUIRE(plan.graph.has_value());
-  return plan;
-}
-
 TEST_CASE("tasks: clean-ups inside run before the handlers around, within one task after them") {
   const std::string main =
       " f () (unwind-protect (go1) (sig)))"
