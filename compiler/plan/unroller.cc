@@ -3,9 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <iterator>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -13,97 +11,14 @@
 #include <vector>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/plan/explorer.h"
 #include "compiler/plan/lisp_packages.h"
 #include "compiler/plan/lisp_reader.h"
-#include "compiler/plan/perform_resolver.h"
 #include "compiler/plan/plan_compiler.h"
-#include "compiler/plan/plan_machine.h"
 
 namespace parallax::compiler {
 
 using base::DiagnosticCode;
-
-namespace {
-
-/// An execution that waits to be continued, and the edge that it gives a target to.
-struct Job {
-  enum class Edge : std::uint8_t { kEntry, kSuccess, kFailure, kTrue, kFalse };
-  PlanState state;
-  std::optional<ValueId> failure;  // goes on by failing
-  std::optional<StopPerform> act;  // goes on by performing
-  Edge edge = Edge::kEntry;
-  std::uint32_t owner = 0;                              // location or branch
-  std::optional<PlanMachine::BranchPath> failing = {};  // goes on by the failure of a `par`
-};
-
-/// Explores the states of a plan depth first, success before failure, and writes the graph.
-class Explorer {
- public:
-  Explorer(const LispData& data, const PlanCode& code, const PlanBinding& binding,
-           const PoseLocator& locator, const UnrollOptions& options, ValueStore& values,
-           base::DiagnosticSink& sink)
-      : data_(data),
-        code_(code),
-        binding_(binding),
-        options_(options),
-        values_(values),
-        sink_(sink),
-        machine_(code, data,
-                 {static_cast<std::uint32_t>(std::max(options.max_call_depth, 1)), options.max_loop,
-                  options.max_steps, options.location_samples},
-                 values, sink),
-        resolver_(binding, locator, ModelNames(options.constants), ModelNames(options.fluents),
-                  code.classes, graph_, values, sink) {}
-
-  base::Result<PlanGraph> explore();
-
- private:
-  using StateKey = std::vector<std::uint32_t>;
-  void set(const Job& job, PlanTarget target);
-  void note_handlers(std::optional<LocationId> failed);
-  void write_handlers();
-  std::optional<PlanTarget> advance(Job& job);
-  std::optional<PlanTarget> stopped(PlanState& state, const PlanStop& stop);
-  bool has_room(const StateKey& key, DatumId form);
-  std::optional<PlanTarget> perform(PlanState& state, const StopPerform& stop);
-  std::optional<PlanStop> run_plan(PlanState& state, const StopPerform& stop,
-                                   const BindingEntry& entry);
-  std::optional<PlanTarget> refer(PlanState& state, const StopPerform& stop,
-                                  const PerformResolver::Reference& reference);
-  bool choose(const PlanState& state, const StopPerform& stop,
-              const PerformResolver::Reference& reference, BranchId some);
-  StopPerform named(const StopPerform& stop, const PerformResolver::Reference& reference,
-                    std::string_view name);
-  std::optional<PlanTarget> take_turns(const PlanState& state);
-  BranchId branch(FormulaTree guard, DatumId form);
-  BranchId free_branch(std::string choice, DatumId form);
-  std::optional<PlanTarget> question(PlanState& state, const StopQuestion& stop);
-  base::Result<FormulaTree> guard_of(const StopQuestion& stop);
-  ModelValueId free_register(const PlanState& state, DatumId form, const std::string& variable);
-  PlanTarget terminal(TerminalKind kind, std::string detail, std::optional<DatumId> at);
-  std::vector<base::SourceRange> calls(const PlanState& state) const;
-
-  const LispData& data_;
-  const PlanCode& code_;
-  const PlanBinding& binding_;
-  const UnrollOptions& options_;
-  ValueStore& values_;
-  base::DiagnosticSink& sink_;
-  PlanGraph graph_;
-  PlanMachine machine_;
-  PerformResolver resolver_;
-  std::vector<Job> jobs_;
-  std::map<StateKey, LocationId> locations_;
-  std::map<std::pair<StateKey, FormulaTree>, BranchId> branches_;
-  std::map<StateKey, BranchId> references_;
-  std::map<StateKey, BranchId> turns_;
-  std::map<std::string, TerminalId> terminals_;
-  std::map<std::pair<std::uint32_t, std::string>, std::vector<ModelValueId>> registers_;
-  std::map<std::uint32_t, PlanHandler> handlers_;  // by unit: what they take up
-  bool failed_ = false;
-  std::size_t key_words_ = 0;
-  bool full_ = false;  // the limit of locations was reached and reported
-};
 
 void Explorer::set(const Job& job, PlanTarget target) {
   using Edge = Job::Edge;
@@ -405,85 +320,6 @@ std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
                std::make_move_iterator(jobs.rend()));
   return first;
 }
-
-/// The same perform with the object named.
-StopPerform Explorer::named(const StopPerform& stop, const PerformResolver::Reference& reference,
-                            std::string_view name) {
-  auto value = values_[reference.object];
-  value.keys.emplace_back("name", values_.symbol(name));
-  auto id = values_.intern(std::move(value));
-  for (auto step = reference.path.rbegin(); step != reference.path.rend(); ++step) {
-    auto outer = values_[step->first];
-    outer.keys[step->second].second = id;
-    id = values_.intern(std::move(outer));
-  }
-  return {id, stop.form};
-}
-
-/// Any one of the candidates whose formula holds: free branches choose, and a choice that does not
-/// hold is no execution.
-bool Explorer::choose(const PlanState& state, const StopPerform& stop,
-                      const PerformResolver::Reference& reference, BranchId some) {
-  const auto& names =
-      options_.candidates[static_cast<std::size_t>(reference.binding - binding_.objects.data())];
-  const auto never = terminal(TerminalKind::kNever, {}, std::nullopt);
-  std::vector<FormulaTree> guards;
-  std::optional<BranchId> before;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    auto guard = resolver_.candidate(reference, names[i], data_.source(stop.form));
-    if (!guard) return false;
-    guards.push_back(*guard);
-    const auto test = branch(*std::move(guard), stop.form);
-    graph_.branches[test].if_false = never;
-    jobs_.push_back({state, {}, named(stop, reference, names[i]), Job::Edge::kTrue, test.index()});
-    PlanTarget here = test;
-    std::optional<BranchId> choice;
-    if (i + 1 < names.size()) {
-      choice = free_branch(fmt::format("{} is meant", names[i]), stop.form);
-      graph_.branches[*choice].if_true = test;
-      here = *choice;
-    }
-    (before ? graph_.branches[*before].if_false : graph_.branches[some].if_true) = here;
-    before = choice;
-  }
-  graph_.branches[some].guard = disjunction(guards);
-  return true;
-}
-
-/// A perform of an object that the plan describes only.
-std::optional<PlanTarget> Explorer::refer(PlanState& state, const StopPerform& stop,
-                                          const PerformResolver::Reference& reference) {
-  const auto& binding = *reference.binding;
-  const auto index = static_cast<std::size_t>(&binding - binding_.objects.data());
-  const auto source = data_.source(stop.form);
-  if (index >= options_.candidates.size() || options_.candidates[index].empty()) {
-    sink_.error(DiagnosticCode::kDesignatorValue, source, "performed", "object",
-                "a description that no constant of the model can meet");
-    return std::nullopt;
-  }
-  const auto failure = code_.classes.canonical(binding.failure_class);
-  if (!failure) {
-    sink_.error(DiagnosticCode::kUnknownFailureClass, binding.failure_source,
-                binding.failure_class);
-    return std::nullopt;
-  }
-  // Nothing but this ends a plan that tries again and again at one timepoint.
-  if (++state.missed > static_cast<std::uint32_t>(options_.max_loop)) {
-    return terminal(TerminalKind::kBound, "perform", stop.form);
-  }
-  auto key = state_key(state, values_, true);
-  key.push_back(stop.designator.index());
-  key.push_back(state.missed);
-  const auto found = references_.find(key);
-  if (found != references_.end()) return found->second;
-  const auto some = branch({}, stop.form);
-  references_.emplace(std::move(key), some);
-  jobs_.push_back({state, values_.failure(*failure), {}, Job::Edge::kFalse, some.index()});
-  if (!choose(state, stop, reference, some)) return std::nullopt;
-  return some;
-}
-
-}  // namespace
 
 base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files,
                                     std::span<const base::FileId> plan, const PlanBinding& binding,

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compiler/base/result.h"
+#include "compiler/plan/perform_resolver.h"
+#include "compiler/plan/plan_compiler.h"
+#include "compiler/plan/plan_machine.h"
+#include "compiler/plan/unroller.h"
+
+namespace parallax::compiler {
+
+/// An execution that waits to be continued, and the edge that it gives a target to.
+struct Job {
+  enum class Edge : std::uint8_t { kEntry, kSuccess, kFailure, kTrue, kFalse };
+  PlanState state;
+  std::optional<ValueId> failure;  // goes on by failing
+  std::optional<StopPerform> act;  // goes on by performing
+  Edge edge = Edge::kEntry;
+  std::uint32_t owner = 0;                              // location or branch
+  std::optional<PlanMachine::BranchPath> failing = {};  // goes on by the failure of a `par`
+};
+
+/// Explores the states of a plan depth first, success before failure, and writes the graph.
+class Explorer {
+ public:
+  Explorer(const LispData& data, const PlanCode& code, const PlanBinding& binding,
+           const PoseLocator& locator, const UnrollOptions& options, ValueStore& values,
+           base::DiagnosticSink& sink)
+      : data_(data),
+        code_(code),
+        binding_(binding),
+        options_(options),
+        values_(values),
+        sink_(sink),
+        machine_(code, data,
+                 {static_cast<std::uint32_t>(std::max(options.max_call_depth, 1)), options.max_loop,
+                  options.max_steps, options.location_samples},
+                 values, sink),
+        resolver_(binding, locator, ModelNames(options.constants), ModelNames(options.fluents),
+                  code.classes, graph_, values, sink) {}
+
+  base::Result<PlanGraph> explore();
+
+ private:
+  using StateKey = std::vector<std::uint32_t>;
+  void set(const Job& job, PlanTarget target);
+  void note_handlers(std::optional<LocationId> failed);
+  void write_handlers();
+  std::optional<PlanTarget> advance(Job& job);
+  std::optional<PlanTarget> stopped(PlanState& state, const PlanStop& stop);
+  bool has_room(const StateKey& key, DatumId form);
+  std::optional<PlanTarget> perform(PlanState& state, const StopPerform& stop);
+  std::optional<PlanStop> run_plan(PlanState& state, const StopPerform& stop,
+                                   const BindingEntry& entry);
+  std::optional<PlanTarget> refer(PlanState& state, const StopPerform& stop,
+                                  const PerformResolver::Reference& reference);
+  bool choose(const PlanState& state, const StopPerform& stop,
+              const PerformResolver::Reference& reference, BranchId some);
+  StopPerform named(const StopPerform& stop, const PerformResolver::Reference& reference,
+                    std::string_view name);
+  std::optional<PlanTarget> take_turns(const PlanState& state);
+  BranchId branch(FormulaTree guard, DatumId form);
+  BranchId free_branch(std::string choice, DatumId form);
+  std::optional<PlanTarget> question(PlanState& state, const StopQuestion& stop);
+  base::Result<FormulaTree> guard_of(const StopQuestion& stop);
+  ModelValueId free_register(const PlanState& state, DatumId form, const std::string& variable);
+  PlanTarget terminal(TerminalKind kind, std::string detail, std::optional<DatumId> at);
+  std::vector<base::SourceRange> calls(const PlanState& state) const;
+
+  const LispData& data_;
+  const PlanCode& code_;
+  const PlanBinding& binding_;
+  const UnrollOptions& options_;
+  ValueStore& values_;
+  base::DiagnosticSink& sink_;
+  PlanGraph graph_;
+  PlanMachine machine_;
+  PerformResolver resolver_;
+  std::vector<Job> jobs_;
+  std::map<StateKey, LocationId> locations_;
+  std::map<std::pair<StateKey, FormulaTree>, BranchId> branches_;
+  std::map<StateKey, BranchId> references_;
+  std::map<StateKey, BranchId> turns_;
+  std::map<std::string, TerminalId> terminals_;
+  std::map<std::pair<std::uint32_t, std::string>, std::vector<ModelValueId>> registers_;
+  std::map<std::uint32_t, PlanHandler> handlers_;  // by unit: what they take up
+  bool failed_ = false;
+  std::size_t key_words_ = 0;
+  bool full_ = false;  // the limit of locations was reached and reported
+};
+
+}  // namespace parallax::compiler
