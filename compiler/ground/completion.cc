@@ -44,7 +44,8 @@ bool CompletionWriter::completes(const Entry& entry, const GroundAtom& atom) con
          model_.terms()[GroundTermId(atom.index)].symbol == entry.completion->predicate;
 }
 
-bool CompletionWriter::note(const std::string& label, FormulaId formula, Timepoint width) {
+bool CompletionWriter::note(const std::string& label, FormulaId formula, Timepoint width,
+                            const OpaqueEffects* effects) {
   if (entries_.empty()) return true;
   const bool old = meaning_ == Meaning::kDecreasoner;
   if (old && note_old_clauses(label, formula)) return true;
@@ -53,9 +54,11 @@ bool CompletionWriter::note(const std::string& label, FormulaId formula, Timepoi
   if (formulas.kind(formula) == FormulaNodeKind::kAnd && !formula.negated()) {
     const auto children = formulas.children(formula);
     const std::vector<FormulaId> parts(children.begin(), children.end());
-    for (const auto part : parts) any_reason = note_conjunct(label, part, width) || any_reason;
+    for (const auto part : parts) {
+      any_reason = note_conjunct(label, part, width, effects) || any_reason;
+    }
   } else {
-    any_reason = note_conjunct(label, formula, width);
+    any_reason = note_conjunct(label, formula, width, effects);
   }
   return !old || !any_reason;
 }
@@ -85,14 +88,16 @@ bool CompletionWriter::note_old_clauses(const std::string& label, FormulaId form
   return true;
 }
 
-bool CompletionWriter::note_conjunct(const std::string& label, FormulaId formula, Timepoint width) {
+bool CompletionWriter::note_conjunct(const std::string& label, FormulaId formula, Timepoint width,
+                                     const OpaqueEffects* effects) {
   bool any_reason = false;
   for (const auto variable : positive_atoms(model_.formulas(), formula)) {
     const auto atom = model_.atom(variable);
     for (auto& entry : entries_) {
       const auto& wanted = entry.completion->label;
       if (!completes(entry, atom) || (wanted && *wanted != label)) continue;
-      note_reason(atom, ~substitute(model_.formulas(), formula, variable, false), width, entry);
+      const auto reason = ~substitute(model_.formulas(), formula, variable, false);
+      note_reason(atom, effects == nullptr ? reason : effects->resolved(reason), width, entry);
       any_reason = true;
     }
   }

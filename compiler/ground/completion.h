@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compiler/ground/ground_model.h"
+#include "compiler/ground/opaque_effects.h"
 
 namespace parallax::compiler {
 
@@ -21,9 +22,13 @@ class CompletionWriter {
  public:
   CompletionWriter(GroundModel& model, Meaning meaning);
   /// Notes an axiom with this label (empty without one): a formula that holds once, or, with a
-  /// width, at every timepoint as GroundModel::require_always has it. Call for every axiom. False:
-  /// the 2005 reasoner completes over clauses that are not made here, and with less effect.
-  bool note(const std::string& label, FormulaId formula, Timepoint width);
+  /// width, at every timepoint as GroundModel::require_always has it. Call for every axiom.
+  /// `effects`: what atoms in the formula stand for effects, if it mentions any. False: the 2005
+  /// reasoner completes over clauses that are not made here, and with less effect.
+  bool note(const std::string& label, FormulaId formula, Timepoint width,
+            const OpaqueEffects* effects = nullptr);
+  /// Does the model complete anything?
+  bool has_completions() const { return !entries_.empty(); }
   /// The first completion of a predicate, if it has one.
   const Completion* completion_of(SymbolId predicate) const;
   /// The occurrences (event, timepoint) that the axioms noted so far give a reason for under the
@@ -57,7 +62,8 @@ class CompletionWriter {
 
   bool completes(const Entry& entry, const GroundAtom& atom) const;
   const Entry* first_entry(SymbolId predicate) const;
-  bool note_conjunct(const std::string& label, FormulaId formula, Timepoint width);
+  bool note_conjunct(const std::string& label, FormulaId formula, Timepoint width,
+                     const OpaqueEffects* effects);
   bool note_old_clauses(const std::string& label, FormulaId formula);
   void note_reason(const GroundAtom& atom, FormulaId reason, Timepoint width, Entry& entry);
   void write_timed(Entry& entry);

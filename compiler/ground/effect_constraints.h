@@ -12,15 +12,6 @@
 
 namespace parallax::compiler {
 
-/// `Initiates(event, fluent, t)` without variables.
-struct EffectKey {
-  EffectKind kind = EffectKind::kInitiates;
-  std::uint32_t event = 0;
-  std::uint32_t fluent = 0;
-  Timepoint time = 0;
-  friend auto operator<=>(const EffectKey&, const EffectKey&) = default;
-};
-
 /// Effect axioms whose conditions mention effects (Mueller 2006,
 /// section 6.4.1): the effect predicates are the least ones that all effect
 /// axioms admit (circumscription). While the axioms are grounded, an effect in

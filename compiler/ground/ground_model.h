@@ -161,6 +161,15 @@ struct EffectRow {
   std::uint32_t origin = 0;
 };
 
+/// `Initiates(event, fluent, t)` without variables.
+struct EffectKey {
+  EffectKind kind = EffectKind::kInitiates;
+  std::uint32_t event = 0;
+  std::uint32_t fluent = 0;
+  Timepoint time = 0;
+  friend auto operator<=>(const EffectKey&, const EffectKey&) = default;
+};
+
 /// "Initiates", "Terminates" or "Releases".
 std::string_view effect_word(EffectKind kind);
 

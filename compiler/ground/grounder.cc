@@ -15,6 +15,7 @@
 #include "compiler/ground/ground_model.h"
 #include "compiler/ground/invariants.h"
 #include "compiler/ground/narrative.h"
+#include "compiler/ground/opaque_effects.h"
 #include "compiler/ground/possible_atoms.h"
 #include "compiler/ground/time_profile.h"
 #include "compiler/sema/axiom_shapes.h"
@@ -40,6 +41,7 @@ class Grounder {
         rows_(model.fluents().size()),
         effects_(model, grounder_, rows_),
         completion_(model, options.meaning),
+        opaque_(model, rows_),
         standard_(options.meaning == Meaning::kStandard),
         relevance_(standard_ && options.relevance),
         asserted_(typed_.axioms.size(), false) {
@@ -192,53 +194,76 @@ class Grounder {
   }
 
   void assert_axiom(const Axiom& axiom, const TimeProfile& profile) {
-    grounder_.start(axiom.source);
     const bool always = profile.shape == TimeShape::kUniform && standard_ && options_.templates &&
                         !waits_for_scheduled_event(axiom) &&
                         !has_empty_quantifier(typed_, model_.universe(), axiom.formula);
-    std::optional<FormulaId> formula;
-    if (!always) {
-      grounder_.read_whole_axiom(true);
-      formula = grounder_.ground(axiom.formula);
-      grounder_.read_whole_axiom(false);
-    } else if (profile.width <= model_.horizon()) {
-      possible_.set_timeless(true);
-      grounder_.bind(profile.variable, model_.terms().integer(profile.back));
-      formula = grounder_.ground(axiom.formula);
-      grounder_.unbind(profile.variable);
-      possible_.set_timeless(false);
+    const bool opaque = standard_ && axiom.mentions_effects && completion_.has_completions();
+    grounder_.start(axiom.source);
+    if (opaque) {
+      grounder_.use_effect_atoms(
+          [this](EffectKind kind, std::uint32_t event, std::uint32_t fluent, Timepoint t) {
+            return opaque_.atom({kind, event, fluent, t});
+          });
     }
+    const auto formula = always ? ground_for_every_timepoint(axiom, profile) : ground_once(axiom);
+    grounder_.use_effect_atoms(nullptr);
     if (grounder_.failed()) return;
-    const auto falsity = model_.formulas().falsity();
     if (!formula) {
       if (!axiom.is_foundation) {
         sink_.error(DiagnosticCode::kNothingToSay, axiom.source, model_.horizon());
       }
-    } else if (*formula == falsity && !standard_) {
-      sink_.warning(DiagnosticCode::kFalseFormulaDropped, axiom.source);
-    } else if (*formula == falsity && is_false_whatever_happens(axiom)) {
-      auto error = sink_.error(DiagnosticCode::kFormulaIsFalse, axiom.source);
-      if (has_event_at(axiom.formula, model_.horizon())) {
-        const auto last = model_.horizon();
-        error.help(fmt::format(
-            "No event happens at the last timepoint, {0}, because nothing follows it: let time go "
-            "on with `range time 0 {1}` or --horizon {1}, or let the event happen earlier.",
-            last, last + 1));
-      }
-    } else {
-      const auto origin = model_.add_origin(axiom.source, OriginKind::kAxiom);
-      if (always) {
-        model_.require_always(*formula, origin, profile.width);
-      } else {
-        model_.require(*formula, origin);
-      }
-      // The encoder of 2005 takes no axiom about effects for a reason.
-      if (standard_ ? defines_by_effects(typed_, axiom) : axiom.mentions_effects) return;
-      const auto width = always ? profile.width : Constraint::kOnce;
-      if (!completion_.note(axiom.label, *formula, width)) {
-        sink_.warning(DiagnosticCode::kNamedCompletion, axiom.source);
-      }
+      return;
     }
+    const auto said = opaque ? opaque_.resolved(*formula) : *formula;
+    if (said == model_.formulas().falsity() && report_false(axiom)) return;
+    const auto origin = model_.add_origin(axiom.source, OriginKind::kAxiom);
+    if (always) {
+      model_.require_always(said, origin, profile.width);
+    } else {
+      model_.require(said, origin);
+    }
+    // The encoder of 2005 takes no axiom about effects for a reason.
+    if (standard_ ? defines_by_effects(typed_, axiom) : axiom.mentions_effects) return;
+    const auto width = always ? profile.width : Constraint::kOnce;
+    if (!completion_.note(axiom.label, *formula, width, opaque ? &opaque_ : nullptr)) {
+      sink_.warning(DiagnosticCode::kNamedCompletion, axiom.source);
+    }
+  }
+
+  std::optional<FormulaId> ground_once(const Axiom& axiom) {
+    grounder_.read_whole_axiom(true);
+    const auto formula = grounder_.ground(axiom.formula);
+    grounder_.read_whole_axiom(false);
+    return formula;
+  }
+
+  std::optional<FormulaId> ground_for_every_timepoint(const Axiom& axiom,
+                                                      const TimeProfile& profile) {
+    if (profile.width > model_.horizon()) return std::nullopt;
+    possible_.set_timeless(true);
+    grounder_.bind(profile.variable, model_.terms().integer(profile.back));
+    const auto formula = grounder_.ground(axiom.formula);
+    grounder_.unbind(profile.variable);
+    possible_.set_timeless(false);
+    return formula;
+  }
+
+  /// True: an axiom that is false is not asserted.
+  bool report_false(const Axiom& axiom) {
+    if (!standard_) {
+      sink_.warning(DiagnosticCode::kFalseFormulaDropped, axiom.source);
+      return true;
+    }
+    if (!is_false_whatever_happens(axiom)) return false;
+    auto error = sink_.error(DiagnosticCode::kFormulaIsFalse, axiom.source);
+    if (has_event_at(axiom.formula, model_.horizon())) {
+      const auto last = model_.horizon();
+      error.help(fmt::format(
+          "No event happens at the last timepoint, {0}, because nothing follows it: let time go "
+          "on with `range time 0 {1}` or --horizon {1}, or let the event happen earlier.",
+          last, last + 1));
+    }
+    return true;
   }
 
   bool has_event_at(TypedFormulaId root, Timepoint timepoint) const {
@@ -275,6 +300,7 @@ class Grounder {
   EffectRows rows_;
   EffectGrounder effects_;
   CompletionWriter completion_;
+  OpaqueEffects opaque_;
   bool standard_, relevance_;
   std::vector<TimeProfile> profiles_;  // by axiom
   std::vector<bool> asserted_;         // by axiom

@@ -343,26 +343,31 @@ std::optional<ModelExpander::Node> ModelExpander::event_atom(const TypedFormula&
   return std::nullopt;
 }
 
-/// Completed by circumscription: some effect axiom says so. While the axioms are being read, and in
-/// what they say of one another, an effect is an atom.
+/// An effect stays an atom: what some effect axiom says of it (circumscription) is no part of the
+/// formula that mentions it. Where it is plain that no effect axiom, or one without a condition,
+/// brings it about, it is a constant.
 std::optional<ModelExpander::Node> ModelExpander::effect_atom(EffectKind kind,
                                                               const std::vector<Value>& arguments) {
   const auto event = out_.event(terms_.text(arguments[0]));
   const auto fluent = out_.fluent(terms_.text(arguments[1]));
   const auto t = terms_.number(arguments[2]);
   if (!event || !fluent || !t || *t >= out_.horizon_) return std::nullopt;
-  if (!effects_known_) {
-    const auto number = static_cast<std::uint32_t>(out_.effects_.size());
-    const auto [found, added] =
-        effect_numbers_.try_emplace(std::tuple(kind, *event, *fluent, *t), number);
-    if (added) out_.effects_.push_back({kind, *event, *fluent, *t, 0});
-    return out_.trees_.effect(found->second);
+  ExpandedModel::EffectAtom effect{kind, *event, *fluent, *t, *t + 1};
+  if (effects_known_) {
+    std::vector<Node> conditions;
+    for (const auto& row : out_.rows(*fluent, *t)) {
+      if (row.kind != kind || row.event != *event) continue;
+      conditions.push_back(row.condition.node);
+      effect.needed = std::max(effect.needed, row.condition.needed);
+    }
+    const auto any = out_.trees_.connect(FormulaKind::kOr, conditions);
+    if (any == FormulaTrees::kTruth || any == FormulaTrees::kFalsity) return any;
   }
-  std::vector<Node> conditions;
-  for (const auto& row : out_.rows(*fluent, *t)) {
-    if (row.kind == kind && row.event == *event) conditions.push_back(row.condition.node);
-  }
-  return out_.trees_.connect(FormulaKind::kOr, conditions);
+  const auto number = static_cast<std::uint32_t>(out_.effects_.size());
+  const auto [found, added] =
+      effect_numbers_.try_emplace(std::tuple(kind, *event, *fluent, *t), number);
+  if (added) out_.effects_.push_back(effect);
+  return out_.trees_.effect(found->second);
 }
 
 }  // namespace parallax::compiler

@@ -114,8 +114,8 @@ struct ReferenceLimits {
 /// and encoder; it is their oracle. Always the standard meaning.
 ///
 /// Completion is pointwise circumscription: a true atom of a completed predicate has a reason if
-/// some axiom of the label becomes false where that atom alone does. Axioms that mention effects
-/// are no reasons.
+/// some axiom of the label becomes false where that atom alone does, with all effects as they are.
+/// A definition over effects is no reason.
 ///
 /// Cost: the instances of the model for construction; per check the atoms of these instances, and
 /// for every true completed atom those of the instances that mention it.

@@ -171,7 +171,8 @@ class ModelMaker {
     }
   }
 
-  /// An effect that another brings with it, or that there is only without another.
+  /// An effect that another brings with it, or that there is only without another; or an occurrence
+  /// for which an effect is the reason.
   void effect_constraint() {
     auto quantifier = open(true);
     auto& scope = formulas_.scope();
@@ -180,7 +181,7 @@ class ModelMaker {
       quantifier = quantifier.substr(0, quantifier.size() - 1) + ",event]";
     }
     auto cause = effect();
-    auto head = effect();
+    auto head = random_.chance(25) ? formulas_.occurrence() : effect();
     if (!cause || !head) return;
     const auto roll = random_.below(100);
     if (roll < 20) {

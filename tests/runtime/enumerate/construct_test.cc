@@ -231,6 +231,23 @@ TEST_CASE("an axiom with effects in its condition is a reason for completion, as
           2);
 }
 
+TEST_CASE("completion looks at effects from outside: what brings them about is no reason") {
+  const std::string world = "range time 0 2\nfluent A()\nfluent B()\nevent X()\nevent Y()\n";
+  // X initiates B exactly where X happens. Y happens where it does not, and nothing gives X a
+  // reason: Y at 0 and 1, A and B as they like.
+  compare(world +
+              "[event,time] Happens(event,time) -> Initiates(event,B(),time).\n"
+              "[time] !Initiates(X(),B(),time) -> Happens(Y(),time).\ncompletion Happens\n",
+          4);
+  // E gives itself a reason, by way of its effect: completion asks for a reason, not for a first
+  // one.
+  compare(
+      "range time 0 1\nfluent F()\nevent E()\n"
+      "[time] Happens(E(),time) -> Terminates(E(),F(),time).\n"
+      "[event,time] Terminates(event,F(),time) -> Happens(E(),0).\ncompletion Happens\n",
+      4);
+}
+
 TEST_CASE("Clipped counts the terminations of an interval") {
   compare(
       "load foundations/DEC.e\nrange time 0 1\nfluent F()\nevent E()\n"
