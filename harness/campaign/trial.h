@@ -138,8 +138,6 @@ class Trial {
   base::DiagnosticBuilder report_refused(const SampleRecord& record) const;
   base::DiagnosticBuilder report_missing(const SampleRecord& record,
                                          const std::string& variable) const;
-  base::DiagnosticBuilder report_other_start(const SampleRecord& record,
-                                             const DivergingFluent& fluent) const;
 
   TrialBench* bench_;
   const Journal* journal_ = nullptr;

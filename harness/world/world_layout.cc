@@ -287,8 +287,9 @@ StartState read_start_state(const WorldSpec& spec, const WorldLayout& layout, co
       if (spec.mobile || shift_line_robot(spec, layout, *base, *number, start.placements)) {
         continue;
       }
-      return refusal(SimStatus::kInvalidStart,
-                     fmt::format("robot.x = {} lies beyond the end of the drive", *number));
+      return refusal(
+          SimStatus::kInvalidStart,
+          fmt::format("`robot` cannot stand at x = {}, beyond the end of its drive", *number));
     }
     const std::optional<BodyId> body = layout.find_body(owner);
     if (!body || !layout.is_free[body->index()] || !layout.bodies[*body].can_set(item)) {

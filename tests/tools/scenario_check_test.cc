@@ -99,6 +99,44 @@ TEST_CASE("check finds contradictory starts and constraints that nothing meets")
   }
 }
 
+TEST_CASE(
+    "check puts the simulator into starts, and reports those that are all invalid as run does") {
+  const CliFixture cli;
+  std::string place;
+  SUBCASE("one body in another") {
+    cli.replace("common.yaml", "box.y: 0", "box.y: -0.6\n    box.x: 1.5\n    robot.x: 1.5");
+    cli.replace("start.e", "RobotIn(r1)", "RobotIn(r2)");
+    place =
+        "common.yaml:11:5-6: error[E7105]: 100 starts in a row were invalid for sample 1 of "
+        "trace 1: `base` overlaps `box` by";
+  }
+  SUBCASE("the robot beyond its range") {
+    cli.replace("common.yaml", "r1: {x: [0, 1]}", "r1: {x: [-9, 1], start: {x: [-9, -8]}}");
+    place =
+        "common.yaml:10:5-6: error[E7105]: 100 starts in a row were invalid for sample 1 of "
+        "trace 1: `robot` cannot stand at x = -8.";
+  }
+  const auto said = check(cli, 3);
+  CHECK(has(said, place));
+  const auto run = cli.parallax({"run", "scenario.yaml"});
+  CHECK(run.code == 3);
+  CHECK(run.err == said);
+}
+
+TEST_CASE("check of a scenario lints its model as check of the model does") {
+  const CliFixture cli;
+  cli.write("domain.e", cli.read("domain.e") + "fluent Lit()\n");
+  cli.replace("common.yaml", "Holding(): {flag", "Lit(): ignored\n  Holding(): {flag");
+  const auto said = check(cli, 0);
+  const auto model = cli.parallax({"check", "domain.e", "start.e", "--horizon", "6"});
+  CHECK(has(said, "warning[W2101]: no event initiates, terminates or releases the fluent `Lit`"));
+  CHECK(said == model.err);
+  CHECK(cli.parallax({"check", "scenario.yaml", "--no-lint"}).err == "no errors\n");
+  CHECK(cli.parallax({"check", "scenario.yaml", "--allow", "W2101"}).err == "no errors\n");
+  // Only who asks is told.
+  CHECK_FALSE(has(cli.parallax({"run", "scenario.yaml"}).err, "W2101"));
+}
+
 TEST_CASE("a handler that no failure of its body comes to is reported where it stands") {
   const CliFixture cli;
   const auto plan = cli.read("fetch.lisp");

@@ -9,7 +9,7 @@
 #include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/campaign.h"
-#include "harness/campaign/trial.h"
+#include "harness/campaign/start_check.h"
 #include "harness/robot/ode_simulator.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/app/trace_feed.h"
@@ -19,6 +19,10 @@ namespace {
 
 using compiler::SymbolId;
 using compiler::TermKind;
+
+// The first traces of a campaign, with the seed that it has where none is given.
+constexpr std::int64_t kTracesTried = 10;
+constexpr std::uint64_t kSeedTried = 1;
 
 /// The fluents that a formula names.
 std::set<SymbolId> fluents_named(const std::string& formula, const compiler::TypedModel& model) {
@@ -135,16 +139,32 @@ void check_before_run(const ScenarioModel& loaded, Context& context) {
   harness::warn_of_low_limit(scenario, context.files(), sink);
   EnumeratedTraces traces(model, context);
   traces.explain_absence_by([&] { return reasons_for_absence(loaded, context); });
-  const auto trace = traces.next();
-  if (!trace || !*trace) return;
   const harness::ModelFluents fluents(*traces.symbols());
-  harness::SimulatorInfo simulator;
+  std::optional<harness::OdeSimulator> simulator;
   if (scenario.simulator.command.empty()) {
-    simulator = harness::OdeSimulator(scenario.world).info();
+    simulator.emplace(scenario.world);
   } else {
     context.remark("the simulator was not started: what it observes and takes is not checked");
   }
-  (void)harness::prepare_trace(scenario, fluents.ground(), simulator, **trace, sink);
+  const auto info = simulator ? simulator->info() : harness::SimulatorInfo();
+  std::set<std::string> tried;  // starts; most traces share theirs
+  const auto last = scenario.limits.max_traces > 0
+                        ? std::min(scenario.limits.max_traces, kTracesTried)
+                        : kTracesTried;
+  for (std::int64_t number = 0; number < last && !context.stopped(); ++number) {
+    const auto trace = traces.next();
+    if (!trace || !*trace) return;
+    const auto prepared = harness::prepare_trace(scenario, fluents.ground(), info, **trace, sink);
+    if (!prepared) return;
+    if (!simulator || !tried.insert(fmt::format("{}", fmt::join((*trace)->holds(0), ";"))).second) {
+      continue;
+    }
+    const auto errors_before = sink.error_count();
+    harness::check_first_start(
+        scenario, **trace, *prepared, fluents, kSeedTried, *simulator,
+        [&] { return context.stopped(); }, sink);
+    if (sink.error_count() != errors_before) return;
+  }
 }
 
 }  // namespace parallax::tools

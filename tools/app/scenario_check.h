@@ -9,9 +9,10 @@ namespace parallax::tools {
 
 /// What `parallax run` would find before its first simulation, beyond what loading the scenario
 /// finds: missing constraints, a criterion that cannot be met, a model without an execution, no
-/// trace within the horizon, and whatever keeps the first trace from being simulated: its start
-/// states, the arguments of its actions, sampling. Commands of other simulators are not started;
-/// what they would say of themselves is not checked.
+/// trace within the horizon, and whatever keeps the first traces from being simulated: their start
+/// states, the arguments of their actions, sampling. The built-in simulator is put into a start of
+/// each, so starts that are all invalid show; nothing is moved. Commands of other simulators are
+/// not started; what they would say is not checked.
 void check_before_run(const ScenarioModel& loaded, Context& context);
 
 /// Of a scenario without a trace: which fluents of the constraints no event of the plan changes,

@@ -152,9 +152,11 @@ struct Switches {
   std::string emit_pass = {};
   std::optional<std::int64_t> horizon = std::nullopt;
   bool with_plan = true;
+  bool lint = false;
   void apply(compiler::CompileInput& input) const {
     input.costs = costs;
     input.emit_pass = emit_pass;
+    input.lint = input.lint || lint;
     if (horizon) input.horizon = *horizon;
     if (!with_plan) input.plan.reset();
     if (!plain) return;
@@ -299,8 +301,8 @@ bool is_file(const fs::path& path) {
 }  // namespace
 
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path, Context& context,
-                                                bool costs) {
-  return load(path, context, {costs, false});
+                                                bool lint) {
+  return load(path, context, {.lint = lint});
 }
 
 std::optional<compiler::CompiledModel> compile_variant(const harness::Scenario& scenario,

@@ -27,9 +27,9 @@ struct ScenarioModel {
 };
 
 /// Reads the scenario, compiles model, plan and constraints, and holds the mapping and the actions
-/// against the model. `costs`: also count what each axiom costs.
+/// against the model. `lint`: also reports what is legal but hardly meant.
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path, Context& context,
-                                                bool costs = false);
+                                                bool lint = false);
 
 /// Reads the files of the scenario's plan, in their order.
 base::Result<std::vector<base::FileId>> load_scenario_plan(const harness::Scenario& scenario,
