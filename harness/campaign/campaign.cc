@@ -145,9 +145,15 @@ class Campaign {
     if (const auto* recorded = journal_->find(plan.trace->number)) {
       // The plan may be named from elsewhere, as the scenario may.
       if (!same_but_for_places(*recorded, line)) {
-        return sink_.error_about(
-            DiagnosticCode::kJournalMismatch, (options_.run_dir / kJournalName).string(),
-            fmt::format("trace {}", plan.trace->number), recorded->trace->key, plan.trace->key);
+        const auto number = plan.trace->number;
+        if (recorded->trace->key == plan.trace->key) {
+          return sink_.error(DiagnosticCode::kForeignJournalLine,
+                             journal_->recorded().trace_places.at(number),
+                             "it has the events of the trace, but not its states and calls");
+        }
+        return sink_.error(DiagnosticCode::kJournalMismatch,
+                           journal_->recorded().trace_places.at(number),
+                           fmt::format("trace {}", number), recorded->trace->key, plan.trace->key);
       }
       if (!check_recorded(plan)) return sink_.already_reported();
     } else {
@@ -157,19 +163,13 @@ class Campaign {
     return base::Unit{};
   }
 
-  /// A record counts as a sample only if its number is what its start and seed were drawn from.
   base::Status check_recorded(const TracePlan& plan) {
     const auto& recorded = journal_->recorded();
     const SampleKey first(plan.trace->number, 0, DrawPhase::kCertify);
     for (auto at = recorded.samples.lower_bound(first); at != recorded.samples.end(); ++at) {
       const auto& record = at->second;
       if (record.trace != plan.trace->number) break;
-      const DrawKey key{plan.campaign_seed, plan.trace_key, DrawPhase::kCertify,
-                        static_cast<std::uint64_t>(record.sample),
-                        static_cast<std::uint64_t>(record.attempt)};
-      std::string why;
-      if (record.seed != simulator_seed(key)) why = "its seed is not that of its number";
-      if (record.initial != plan.sampler.draw(key)) why = "its start is not that of its number";
+      const auto why = wrong_draw(record, plan.sampler, plan.campaign_seed, plan.trace_key);
       if (why.empty()) continue;
       return sink_.error(DiagnosticCode::kForeignJournalLine, recorded.places.at(at->first), why);
     }

@@ -67,6 +67,7 @@ class JournalReader {
       const auto number = trace->trace->number;
       const bool fresh = journal_.traces.emplace(number, std::move(*trace)).second;
       if (!fresh) return "trace " + std::to_string(number) + " stands there twice";
+      journal_.trace_places.emplace(number, line_);
       return std::nullopt;
     }
     return take_record(std::get<SampleRecord>(std::move(decoded)));
@@ -80,7 +81,23 @@ class JournalReader {
     if (record.status == SampleStatus::kOk && !whole) {
       return "it has not one observation for every timepoint of its trace";
     }
+    if (record.status == SampleStatus::kOk && record.digest != digest_of(record)) {
+      return "its digest is not that of its last observation";
+    }
     const SampleKey key(record.trace, record.sample, record.phase);
+    if (record.phase == DrawPhase::kConfirm) {
+      const auto first = journal_.samples.find({record.trace, record.sample, DrawPhase::kCertify});
+      if (first == journal_.samples.end()) return "it repeats a simulation that is not there";
+      if (record.initial != first->second.initial || record.seed != first->second.seed) {
+        return "it repeats a simulation with another start or seed";
+      }
+      // The digest is one of all that happened, if the simulator keeps its promise.
+      const bool same = journal_.header->simulator.determinism == "bitwise" &&
+                        !record.digest.empty() && record.digest == first->second.digest;
+      if (same && first_difference(first->second, record)) {
+        return "it differs from the simulation that it repeats, but for the digest";
+      }
+    }
     if (!journal_.samples.emplace(key, std::move(record)).second) {
       return "this simulation stands there twice";
     }

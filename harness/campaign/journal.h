@@ -52,6 +52,7 @@ struct JournalText {
   std::map<std::int64_t, TraceLine> traces;
   std::map<SampleKey, SampleRecord> samples;
   std::map<SampleKey, base::SourceRange> places;  // their lines, without the newline
+  std::map<std::int64_t, base::SourceRange> trace_places;
   base::FileId file;
   std::size_t complete_bytes = 0;  // up to the end of the last whole line
 };

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "compiler/base/contract.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/whole_number.h"
 #include "harness/campaign/journal.h"
@@ -98,6 +99,14 @@ std::optional<SampleId> default_sample(const JournalText& journal) {
   return first;
 }
 
+RecordedRun recorded_run(const JournalText& journal, SampleId id) {
+  PARALLAX_REQUIRE(journal.header.has_value(), "a journal with records has a header");
+  const SampleKey key(id.trace, id.sample, DrawPhase::kCertify);
+  return {*journal.header,         id,
+          journal.samples.at(key), journal.traces.at(id.trace),
+          journal.places.at(key),  journal.trace_places.at(id.trace)};
+}
+
 base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir,
                                             std::optional<SampleId> id, base::SourceFiles& files,
                                             base::DiagnosticSink& sink) {
@@ -113,7 +122,7 @@ base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir
     note_samples(*journal, report);
     return report;
   }
-  return RecordedRun{*journal->header, *id, found->second, journal->traces.at(found->second.trace)};
+  return recorded_run(*journal, *id);
 }
 
 std::string scenario_change(const JournalHeader& header, const std::string& scenario_hash) {

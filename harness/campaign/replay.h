@@ -49,8 +49,11 @@ struct RecordedRun {
   JournalHeader header;  // of the journal
   SampleId id;
   SampleRecord record;
-  TraceLine line;  // its trace and the calls for that
+  TraceLine line;                          // its trace and the calls for that
+  base::SourceRange source, trace_source;  // their lines in the journal
 };
+/// One that is there.
+RecordedRun recorded_run(const JournalText& journal, SampleId id);
 
 /// The first discrepancy of a run (a repetition in the journal marks it), else its first sample.
 std::optional<SampleId> default_sample(const JournalText& journal);

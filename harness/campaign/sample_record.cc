@@ -46,6 +46,14 @@ std::optional<RecordDifference> differing_state(const State& a, const State& b,
 
 }  // namespace
 
+std::string digest_of(const SampleRecord& record) {
+  if (record.observations.empty()) return {};
+  const auto found = record.observations.back().find("digest");
+  if (found == record.observations.back().end()) return {};
+  const auto* text = std::get_if<std::string>(&found->second);
+  return text != nullptr ? *text : std::string();
+}
+
 bool bit_equal(const Value& a, const Value& b) {
   const auto* x = std::get_if<double>(&a);
   const auto* y = std::get_if<double>(&b);

@@ -50,6 +50,9 @@ struct SampleRecord {
   friend bool operator==(const SampleRecord&, const SampleRecord&) = default;
 };
 
+/// The digest that the last observation shows; empty if it shows none.
+std::string digest_of(const SampleRecord& record);
+
 /// Equal to the last bit: 0.0 and -0.0 are not, nor are 1 and 1.0.
 bool bit_equal(const Value& a, const Value& b);
 

@@ -46,7 +46,7 @@ class Attempt {
           {outcome.status, base::with_invalid_utf8_replaced(outcome.reason), outcome.sim_time_s});
       if (const auto lost = observe()) return lost;
     }
-    record_.digest = digest_of(record_.observations.back());
+    record_.digest = digest_of(record_);
     return SimStatus::kOk;
   }
 
@@ -68,13 +68,6 @@ class Attempt {
     }
     record_.observations.push_back(std::move(state));
     return std::nullopt;
-  }
-
-  static std::string digest_of(const State& state) {
-    const auto found = state.find("digest");
-    if (found == state.end()) return {};
-    const auto* text = std::get_if<std::string>(&found->second);
-    return text != nullptr ? *text : std::string();
   }
 
   const std::vector<ActionCall>& calls_;
@@ -211,6 +204,16 @@ std::string_view to_string(SampleStatus status) {
 
 bool may_repeat_losses(const SimulatorInfo& simulator) {
   return simulator.seeds && simulator.determinism == "bitwise";
+}
+
+std::string wrong_draw(const SampleRecord& record, const Sampler& sampler,
+                       std::uint64_t campaign_seed, std::uint64_t trace_key) {
+  const DrawKey key{campaign_seed, trace_key, DrawPhase::kCertify,
+                    static_cast<std::uint64_t>(record.sample),
+                    static_cast<std::uint64_t>(record.attempt)};
+  if (record.initial != sampler.draw(key)) return "its start is not that of its number";
+  if (record.seed != simulator_seed(key)) return "its seed is not that of its number";
+  return {};
 }
 
 std::optional<SampleRecord> run_sample(const TracePlan& plan, std::int64_t sample,

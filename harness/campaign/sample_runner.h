@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "harness/campaign/sample_record.h"
@@ -41,6 +42,11 @@ bool may_repeat_losses(const SimulatorInfo& simulator);
 std::optional<SampleRecord> run_sample(const TracePlan& plan, std::int64_t sample,
                                        Simulator& simulator,
                                        const std::function<bool()>& abandoned);
+
+/// A record counts as a sample only if its number is what its start and seed were drawn from: what
+/// is wrong with them, or empty.
+std::string wrong_draw(const SampleRecord& record, const Sampler& sampler,
+                       std::uint64_t campaign_seed, std::uint64_t trace_key);
 
 /// Simulates the start and seed of `record` again, with nothing drawn; once more when it is lost
 /// and `repeats_losses` says so.

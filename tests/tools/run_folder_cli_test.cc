@@ -1,5 +1,8 @@
 // Run folders as real processes read them back: from any current folder, moved, damaged.
 
+#include <functional>
+#include <sstream>
+
 #include "tests/tools/cli_json.h"
 
 namespace parallax::test {
@@ -110,6 +113,118 @@ TEST_CASE("a damaged journal is located by every command that reads it") {
     CHECK(result.code == 3);
     CHECK(holds(result.err, place));
     CHECK(holds(result.err, "E7103"));
+  }
+}
+
+/// Changes line `line` of the journal in `r`, from 0.
+void edit_line(const CliFixture& cli, std::size_t line,
+               const std::function<void(nlohmann::ordered_json&)>& edit) {
+  std::istringstream text(cli.read("r/journal.ndjson"));
+  std::string out, each;
+  for (std::size_t i = 0; std::getline(text, each); ++i) {
+    auto json = nlohmann::ordered_json::parse(each);
+    if (i == line) edit(json);
+    out += json.dump() + "\n";
+  }
+  cli.write("r/journal.ndjson", out);
+}
+
+TEST_CASE("a journal that was changed is not believed") {
+  const RunFixture cli;
+  using Json = nlohmann::ordered_json;
+  constexpr std::size_t kHeader = 0, kTrace = 1, kFirst = 2, kLast = 3;
+  REQUIRE(Json::parse(cli.read("r/report.json"))["simulations"] == 1);
+  std::string why, place = "r/journal.ndjson:2:1-";
+  const auto first_and_last = [&](const std::function<void(Json&)>& edit) {
+    edit_line(cli, kFirst, edit);
+    edit_line(cli, kLast, edit);
+    place = "r/journal.ndjson:3:1-";
+  };
+  SUBCASE("a start that was not drawn") {
+    first_and_last([](Json& record) { record["initial"]["box.x"] = 1.5; });
+    why = "its start is not that of its number";
+  }
+  SUBCASE("a seed that was not drawn") {
+    first_and_last([](Json& record) { record["seed"] = 12345; });
+    why = "its seed is not that of its number";
+  }
+  SUBCASE("another number") {
+    edit_line(cli, kTrace, [](Json& trace) { trace["key"] = "Go(r2);"; });
+    why = "`Go(r2);` is not its key";
+  }
+  SUBCASE("another seed of the run") {
+    edit_line(cli, kHeader, [](Json& header) { header["seed"] = 2; });
+    why = "its start is not that of its number";
+    place = "r/journal.ndjson:3:1-";
+  }
+  SUBCASE("a state that the model does not come to") {
+    edit_line(cli, kTrace, [](Json& trace) { trace["holds"][2] = {"BoxIn(r1)", "RobotIn(r1)"}; });
+    why = "the model has no trace that goes so up to timepoint 2";
+  }
+  SUBCASE("a fluent that the model has not") {
+    edit_line(cli, kTrace, [](Json& trace) { trace["holds"][2] = {"Flying()"}; });
+    why = "it names what the model has not";
+  }
+  SUBCASE("another controller") {
+    edit_line(cli, kTrace, [](Json& trace) { trace["events"][0]["controller"] = "placing"; });
+    why = "`placing` is not what the scenario does for `PickUp()`";
+  }
+  SUBCASE("what was observed, beside its digest") {
+    edit_line(cli, kFirst, [](Json& record) { record["observations"].back()["box.x"] = 0.25; });
+    why = "it differs from the simulation that it repeats, but for the digest";
+    place = "r/journal.ndjson:4:1-";
+  }
+  SUBCASE("the digest") {
+    edit_line(cli, kFirst, [](Json& record) { record["digest"] = "0"; });
+    why = "its digest is not that of its last observation";
+    place = "r/journal.ndjson:3:1-";
+  }
+  SUBCASE("two simulations of one number") {
+    edit_line(cli, kLast, [](Json& record) { record["phase"] = "certify"; });
+    why = "this simulation stands there twice";
+    place = "r/journal.ndjson:4:1-";
+  }
+  for (const std::string command : {"replay", "explain", "draw"}) {
+    CAPTURE(command);
+    const auto result = cli.parallax({command, "r"});
+    CAPTURE(result.err);
+    CHECK(result.code == 3);
+    CHECK(result.out.empty());
+    CHECK(holds(result.err, place));
+    CHECK(holds(result.err, "error[E7103]: this line is not one of the journal: " + why));
+  }
+  const auto resumed =
+      cli.parallax({"run", "wrong_model.yaml", "--out", "r", "--max-runs", "20", "--resume"});
+  CAPTURE(resumed.err);
+  CHECK(resumed.code == 3);
+  CHECK(holds(resumed.err, "r/journal.ndjson:"));
+}
+
+TEST_CASE("explain holds the report against the journal") {
+  const RunFixture cli;
+  auto report = nlohmann::ordered_json::parse(cli.read("r/report.json"));
+  auto& seen = report["discrepancies"][0]["first"][0]["observed"];
+  seen = !seen.get<bool>();
+  cli.write("r/report.json", report.dump());
+  const auto result = cli.parallax({"explain", "r"});
+  CHECK(result.code == 3);
+  CHECK(holds(result.err, "is not the discrepancy that report.json tells of"));
+}
+
+TEST_CASE("a copied run says which scenario is read") {
+  const RunFixture cli;
+  const auto copy = cli.folder() / "copy";
+  fs::create_directory(copy);
+  fs::copy(cli.folder() / "r", copy / "r");
+  for (const auto& entry : fs::directory_iterator(cli.folder())) {
+    if (entry.is_regular_file()) fs::copy(entry.path(), copy / entry.path().filename());
+  }
+  const auto said = "the scenario is " + (cli.folder() / "wrong_model.yaml").string();
+  for (const std::string command : {"replay", "explain", "draw"}) {
+    CHECK(holds(cli.from(copy, {command, "r"}).err, said));
+    CHECK_FALSE(holds(cli.parallax({command, "r"}).err, "the scenario is"));
+    CHECK_FALSE(holds(cli.from(copy, {command, "r", "--scenario", "wrong_model.yaml"}).err,
+                      "the scenario is"));
   }
 }
 

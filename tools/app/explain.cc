@@ -17,8 +17,10 @@
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "harness/campaign/journal.h"
+#include "harness/campaign/judge.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/graph/model_traces.h"
+#include "tools/app/recorded_run.h"
 
 namespace parallax::tools {
 
@@ -163,6 +165,20 @@ class Observation {
   std::vector<std::optional<compiler::EventId>> events_;  // by timepoint
   ObservedRun run_;
 };
+
+/// Does the journal show what the report tells?
+bool is_what_was_seen(const ReportedDiscrepancy& reported, const harness::StateMapping& mapping,
+                      const harness::CampaignTrace& trace, const harness::SampleRecord& record) {
+  if (record.status != harness::SampleStatus::kOk) return false;
+  const harness::ModelFluents fluents(*trace.symbols);
+  const auto judgement = harness::judge(mapping, fluents, trace, record.observations);
+  return judgement.first_divergence == reported.first_divergence &&
+         std::equal(judgement.first.begin(), judgement.first.end(), reported.first.begin(),
+                    reported.first.end(), [](const auto& seen, const auto& told) {
+                      return seen.fluent == told.name && seen.timepoint == told.timepoint &&
+                             seen.observed == told.observed;
+                    });
+}
 
 /// A trace with a valuation of every variable.
 struct ValuedTrace {
@@ -312,15 +328,23 @@ base::Result<std::optional<ObservedDiscrepancy>> load_discrepancy(const RunFolde
   const auto discrepancy = find_discrepancy(folder.folder, sample, sink);
   if (!discrepancy) return sink.already_reported();
   if (!*discrepancy || !journal->header) return std::optional<ObservedDiscrepancy>();
-  auto loaded = load_recorded_scenario(folder, *journal->header, ScenarioUse::kExplain, context);
-  if (!loaded) return sink.already_reported();
-  const auto trace = journal->traces.find((*discrepancy)->trace);
-  if (trace == journal->traces.end()) {
+  const harness::SampleId id{(*discrepancy)->trace, (*discrepancy)->sample};
+  if (!journal->samples.contains({id.trace, id.sample, harness::DrawPhase::kCertify})) {
     return sink
         .error_about(base::DiagnosticCode::kNoSuchSample, folder.folder, (*discrepancy)->id())
         .note("report.json tells of it, the journal does not");
   }
-  auto run = Observation(loaded->compilation.model, trace->second).make(**discrepancy);
+  const auto recorded = harness::recorded_run(*journal, id);
+  auto loaded = load_recorded_scenario(folder, recorded.header, ScenarioUse::kExplain, context);
+  if (!loaded) return sink.already_reported();
+  const auto trace = check_recorded_run(*loaded, recorded, context);
+  if (!trace) return sink.already_reported();
+  const auto& mapping = *loaded->scenario.mapping;
+  if (!is_what_was_seen(**discrepancy, mapping, *trace, recorded.record)) {
+    return sink.error(base::DiagnosticCode::kForeignJournalLine, recorded.source,
+                      "what it observed is not the discrepancy that report.json tells of");
+  }
+  auto run = Observation(loaded->compilation.model, recorded.line).make(**discrepancy);
   return std::optional(ObservedDiscrepancy{*std::move(loaded), std::move(run)});
 }
 

@@ -11,6 +11,7 @@
 #include "runtime/explain/group_solver.h"
 #include "runtime/explain/why.h"
 #include "tools/app/context.h"
+#include "tools/app/recorded_run.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_fact.h"
 

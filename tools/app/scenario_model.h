@@ -53,26 +53,6 @@ base::Result<ScenarioModel> load_plain_scenario(const std::filesystem::path& pat
 base::Result<compiler::Compilation> compile_plain_models(const ModelOptions& options,
                                                          Context& context);
 
-/// A run folder as the command line names it.
-struct RunFolderOptions {
-  std::string folder;
-  std::string scenario;  // where it lies by now; empty: where the journal says
-};
-
-/// Where the scenario of a run lies: a relative path starts in the folder that the run was started
-/// in, or in the current folder if nothing lies there.
-std::filesystem::path scenario_path(const harness::JournalHeader& header);
-
-/// How a scenario is compiled: to be run, or to be explained (load_plain_scenario).
-enum class ScenarioUse : std::uint8_t { kRun, kExplain };
-
-/// Loads the scenario of a run, which must be the one that was run: kReplayImpossible if it is not,
-/// or cannot be read any more. A journal may name any file, so of one that is not the scenario of
-/// the run nothing is said but this, unless the user named it.
-base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& options,
-                                                   const harness::JournalHeader& header,
-                                                   ScenarioUse use, Context& context);
-
 /// The text of an option (`--until`) as a text of its own among the files, so that it is parsed by
 /// itself and messages point into it. kUsage if it says nothing: blanks and comments at most.
 base::Result<base::SourceRange> formula_argument(const std::string& option, const std::string& text,

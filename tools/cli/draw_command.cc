@@ -11,7 +11,7 @@
 #include "harness/draw/scene_svg.h"
 #include "harness/robot/ode_simulator.h"
 #include "tools/app/file_kind.h"
-#include "tools/app/scenario_model.h"
+#include "tools/app/recorded_run.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/shared_options.h"
@@ -152,7 +152,7 @@ int draw_run(const DrawOptions& options, Invocation& invocation) {
   if (!run) return 0;
   const auto loaded = load_recorded_scenario({options.what, options.scenario}, run->header,
                                              ScenarioUse::kRun, invocation);
-  if (!loaded) return 0;
+  if (!loaded || !check_recorded_run(*loaded, *run, invocation)) return 0;
   const auto& scenario = loaded->scenario;
   if (!scenario.simulator.command.empty()) {
     sink.error_about(DiagnosticCode::kUsage, options.what,

@@ -6,7 +6,7 @@
 #include "harness/campaign/replay.h"
 #include "harness/report/report.h"
 #include "tools/app/file_kind.h"
-#include "tools/app/scenario_model.h"
+#include "tools/app/recorded_run.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/shared_options.h"
@@ -31,7 +31,7 @@ int replay(const ReplayOptions& options, Invocation& invocation) {
   if (!run) return 0;
   const auto loaded =
       load_recorded_scenario(options.run, run->header, ScenarioUse::kRun, invocation);
-  if (!loaded) return 0;
+  if (!loaded || !check_recorded_run(*loaded, *run, invocation)) return 0;
   const auto simulator = permitted_simulator(*loaded, options.commands.allow, invocation);
   if (!simulator) return 0;
   const auto result = harness::replay_sample(*run, loaded->sources_hash, *simulator);

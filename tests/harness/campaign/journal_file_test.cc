@@ -36,7 +36,7 @@ SampleRecord record(std::int64_t trace, std::int64_t sample,
     out.reason = "crashed";
     return out;
   }
-  out.observations = {{{"box.x", 0.1}}, {{"box.x", 0.1 + 0.2}}};
+  out.observations = {{{"box.x", 0.1}}, {{"box.x", 0.1 + 0.2}, {"digest", std::string("ab")}}};
   out.outcomes = {{SimStatus::kFailed, "blocked", 1.5}};
   out.digest = "ab";
   return out;

@@ -1,0 +1,193 @@
+#include "tools/app/recorded_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <system_error>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/diagnostic_printer.h"
+#include "compiler/base/hash.h"
+#include "harness/sampling/sampler.h"
+#include "runtime/replay/trace_replay.h"
+
+namespace parallax::tools {
+
+using base::DiagnosticCode;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+/// The recorded trace in the ids of the model. None if it names what the model has not.
+std::optional<harness::CampaignTrace> in_ids_of(const compiler::CompiledModel& model,
+                                                const harness::CampaignTrace& recorded) {
+  const auto symbols = std::make_shared<compiler::SymbolTable>(model);
+  auto trace = recorded;
+  for (std::size_t t = 0; t < trace.points.size(); ++t) {
+    const auto holds = recorded.holds(t), happens = recorded.happens(t);
+    trace.points[t] =
+        runtime::point_of_names(std::vector<std::string>(holds.begin(), holds.end()),
+                                std::vector<std::string>(happens.begin(), happens.end()), *symbols);
+  }
+  if (symbols->fluent_count() != model.fluents.size() ||
+      symbols->event_count() != model.events.size()) {
+    return std::nullopt;
+  }
+  trace.symbols = symbols;
+  return trace;
+}
+
+runtime::AtomClaims only(const runtime::Names& names) {
+  runtime::AtomClaims claims{true, {}};
+  for (const auto& name : names) claims.listed.emplace(std::string(name), runtime::AtomClaim{});
+  return claims;
+}
+
+/// Is this a key of the trace? It has the events, the objects that they returned, of which the
+/// journal has nothing else, and perhaps the start (`run --split-initial`).
+bool is_key_of(const harness::CampaignTrace& trace, std::string_view key) {
+  for (std::size_t t = 0; t < trace.event_count(); ++t) {
+    const auto& event = trace.event(t);
+    if (!key.starts_with(event)) return false;
+    key.remove_prefix(event.size());
+    const auto end = key.find(';');
+    if (end == std::string_view::npos || (end > 0 && key.front() != '=')) return false;
+    key.remove_prefix(end + 1);
+  }
+  return key.empty() || key == fmt::format(" from {}", fmt::join(trace.holds(0), ";"));
+}
+
+/// What is wrong with a trace that a journal has; empty: nothing, or it is not known.
+std::string wrong_trace(const compiler::CompiledModel& model, const harness::CampaignTrace& trace,
+                        const Context& context) {
+  runtime::TraceReplay replay(model,
+                              [&context] { return runtime::make_cadical_solver(&context.stop()); });
+  const auto [least, most] = replay.lengths();
+  const auto length = static_cast<compiler::Timepoint>(trace.event_count());
+  if (length < least || length > most) {
+    return fmt::format("no trace of the model has {} events", length);
+  }
+  if (!is_key_of(trace, trace.key)) return fmt::format("`{}` is not its key", trace.key);
+  runtime::ClaimedTrace claimed;
+  claimed.number = trace.number;
+  for (std::size_t t = 0; t < trace.points.size(); ++t) {
+    claimed.points.push_back({only(trace.holds(t)), only(trace.happens(t)), {}, {}});
+  }
+  using Kind = runtime::ReplayVerdict::Kind;
+  const auto verdict = replay.replay(claimed);
+  if (verdict.kind == Kind::kFails) {
+    return fmt::format("the model has no trace that goes so up to timepoint {}", verdict.timepoint);
+  }
+  // A run with --hits=all has traces that go on behind their first hit.
+  if (verdict.kind == Kind::kNoFirstHit && verdict.timepoint == length) {
+    return "the state constraints do not hold at its end";
+  }
+  return {};
+}
+
+/// What is wrong with the calls, as far as they do not depend on what the plan gives.
+std::string wrong_calls(const harness::Scenario& scenario, const harness::TraceLine& line) {
+  for (std::size_t t = 0; t < line.calls.size(); ++t) {
+    const auto event = harness::ground_fluent(line.trace->event(t));
+    const auto& actions = scenario.actions;
+    const auto action = std::find_if(actions.begin(), actions.end(), [&](const auto& binding) {
+      return binding.event == event.symbol;
+    });
+    const auto& call = line.calls[t];
+    if (action == actions.end() || action->controller != call.controller ||
+        action->time_limit_s != call.time_limit_s) {
+      return fmt::format("`{}` is not what the scenario does for `{}`", call.controller,
+                         event.text);
+    }
+  }
+  return {};
+}
+
+/// What is wrong with the start of a simulation of the trace, whose ids are the model's.
+std::string wrong_start(const harness::Scenario& scenario, const harness::CampaignTrace& trace,
+                        const harness::RecordedRun& run) {
+  base::DiagnosticSink unread;
+  const harness::ModelFluents fluents(*trace.symbols);
+  const auto holds = trace.holds(0);
+  auto cuboid = scenario.mapping->start_cuboid(fluents.ground(),
+                                               std::set<std::string>(holds.begin(), holds.end()),
+                                               scenario.sampling, scenario.sampling_source, unread);
+  if (!cuboid) return "its trace starts where no start can be drawn";
+  const auto sampler = harness::Sampler::make(*std::move(cuboid), scenario.sampling_inset_m,
+                                              scenario.sampling_source, unread);
+  if (!sampler) return "its trace starts where no start can be drawn";
+  return harness::wrong_draw(run.record, *sampler, run.header.seed, base::fnv1a64(trace.key));
+}
+
+}  // namespace
+
+fs::path scenario_path(const harness::JournalHeader& header) {
+  const fs::path named(header.scenario);
+  if (header.start_folder.empty() || named.is_absolute()) return named;
+  std::error_code error;
+  const fs::path start(header.start_folder);
+  // Where the run was started it is called as it was then.
+  if (fs::equivalent(start, fs::current_path(error), error)) return named;
+  return is_file(start / named) || !is_file(named) ? start / named : named;
+}
+
+base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& options,
+                                                   const harness::JournalHeader& header,
+                                                   ScenarioUse use, Context& context) {
+  auto& sink = context.sink();
+  const bool is_recorded = options.scenario.empty();
+  const auto path = is_recorded ? scenario_path(header) : fs::path(options.scenario);
+  const auto refuse = [&](const std::string& why) {
+    return sink.error_about(DiagnosticCode::kReplayImpossible, options.folder, why);
+  };
+  if (is_recorded && !is_file(path)) {
+    return refuse(fmt::format("there is no scenario `{}`", base::printable(path.string())));
+  }
+  const auto before = sink;
+  auto loaded = use == ScenarioUse::kRun ? load_scenario_model(path, context)
+                                         : load_plain_scenario(path, context);
+  const auto change =
+      loaded ? harness::scenario_change(header, loaded->sources_hash) : std::string();
+  if (loaded && change.empty()) {
+    if (is_recorded && path != fs::path(header.scenario)) {
+      context.remark(
+          fmt::format("the scenario is {}, where the run was started; --scenario names another",
+                      base::printable(path.string())));
+    }
+    return loaded;
+  }
+  if (is_recorded) sink = before;
+  if (!loaded && !is_recorded) return sink.already_reported();
+  if (loaded) return refuse(change);
+  const auto name = base::printable(path.string());
+  return refuse(fmt::format(
+      "the scenario `{}` cannot be loaded any more; `parallax check {}` says why", name, name));
+}
+
+base::Result<harness::CampaignTrace> check_recorded_run(const ScenarioModel& loaded,
+                                                        const harness::RecordedRun& run,
+                                                        Context& context) {
+  auto& sink = context.sink();
+  const auto foreign = [&](const base::SourceRange& line, const std::string& why) {
+    return sink.error(DiagnosticCode::kForeignJournalLine, line, why);
+  };
+  const auto& model = loaded.compilation.model;
+  auto trace = in_ids_of(model, *run.line.trace);
+  if (!trace) return foreign(run.trace_source, "it names what the model has not");
+  auto why = wrong_calls(loaded.scenario, run.line);
+  if (why.empty()) why = wrong_trace(model, *trace, context);
+  if (!why.empty()) return foreign(run.trace_source, why);
+  why = wrong_start(loaded.scenario, *trace, run);
+  if (!why.empty()) return foreign(run.source, why);
+  return *std::move(trace);
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "compiler/base/result.h"
+#include "harness/campaign/replay.h"
+#include "harness/config/scenario.h"
+#include "tools/app/scenario_model.h"
+
+namespace parallax::tools {
+
+/// A run folder as the command line names it.
+struct RunFolderOptions {
+  std::string folder;
+  std::string scenario;  // where it lies by now; empty: where the journal says
+};
+
+/// Where the scenario of a run lies: a relative path starts in the folder that the run was started
+/// in, or in the current folder if nothing lies there.
+std::filesystem::path scenario_path(const harness::JournalHeader& header);
+
+/// How a scenario is compiled: to be run, or to be explained (load_plain_scenario).
+enum class ScenarioUse : std::uint8_t { kRun, kExplain };
+
+/// Loads the scenario of a run, which must be the one that was run: kReplayImpossible if it is not,
+/// or cannot be read any more. A journal may name any file, so of one that is not the scenario of
+/// the run nothing is said but this, unless the user named it. Where it is not found by the name
+/// that it has from here, a remark says which file it is.
+base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& options,
+                                                   const harness::JournalHeader& header,
+                                                   ScenarioUse use, Context& context);
+
+/// Can the scenario have had this simulation? Its trace must be one of the model, its calls those
+/// of the actions, its start and seed what is drawn for its number. What was observed is not looked
+/// at. Reports kForeignJournalLine. The trace in the ids of the model; nothing if it was stopped.
+base::Result<harness::CampaignTrace> check_recorded_run(const ScenarioModel& loaded,
+                                                        const harness::RecordedRun& run,
+                                                        Context& context);
+
+}  // namespace parallax::tools
