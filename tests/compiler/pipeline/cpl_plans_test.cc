@@ -19,6 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 const fs::path kFolder = fs::path(PARALLAX_SOURCE_DIR) / "tests" / "plans" / "cpl";
+constexpr std::size_t kHorizon = 9;
 
 /// Plans that differ, and why.
 const std::map<std::string, std::string> kExceptions = {
@@ -42,14 +43,17 @@ std::string text_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// How the plan ended, and the performs.
-void note_trace(std::istringstream words, Measured& plan) {
-  std::string word;
-  words >> word;
-  plan.lisp_error = plan.lisp_error || word == "error";
-  if (word.starts_with("failed(")) plan.failures.insert(word.substr(7, word.size() - 8));
+/// How the plan ended, and the performs; behind those of a plan that is done `last`, if there is
+/// room for it.
+void note_trace(std::istringstream words, Measured& plan, const std::string& last = "") {
+  std::string end;
+  words >> end;
+  plan.lisp_error = plan.lisp_error || end == "error";
+  if (end.starts_with("failed(")) plan.failures.insert(end.substr(7, end.size() - 8));
   std::string trace;
-  while (words >> word) trace += word + ' ';
+  std::size_t performs = 0;
+  for (std::string word; words >> word; ++performs) trace += word + ' ';
+  if (end == "done" && performs < kHorizon) trace += last;
   plan.traces.insert(trace);
 }
 
@@ -73,6 +77,7 @@ std::map<std::string, Measured> measured() {
   return out;
 }
 
+/// Each plan notes that it is done, so that a trace tells success from failure.
 std::map<std::string, Measured> derived() {
   constexpr int kHelpers = 7;  // lines
   std::istringstream helpers(text_of(kFolder / "measured" / "s01_retry.lisp"));
@@ -90,12 +95,13 @@ std::map<std::string, Measured> derived() {
         plan = &entry->second;
         plan->text = prelude;
       } else if (plan != nullptr && line.starts_with("-> ")) {
-        note_trace(std::istringstream(line.substr(3)), *plan);
+        note_trace(std::istringstream(line.substr(3)), *plan, "Note(done) ");
       } else if (plan != nullptr) {
         plan->text += line + '\n';
       }
     }
   }
+  for (auto& [name, plan] : out) plan.text += "(common-lisp-user::note :done)\n";
   return out;
 }
 
@@ -123,7 +129,7 @@ Ours unrolled(const std::string& name, const std::string& text) {
   const auto binding = files.add("free.bind", text_of(kFolder / "free.bind"));
   compiler::CompileInput input;
   input.models = {kFolder / "free.e"};
-  input.horizon = 9;
+  input.horizon = kHorizon;
   input.plan = compiler::PlanInput{{plan}, binding, std::nullopt, &nowhere};
   input.plan->interleave = !name.starts_with('s');
   const auto compiled = compiler::compile_model(input, files, sink);
