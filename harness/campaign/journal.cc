@@ -186,8 +186,18 @@ base::Result<RunFolder> RunFolder::claim(const std::filesystem::path& path, bool
     if (why == EWOULDBLOCK) return sink.error_about(DiagnosticCode::kRunFolderInUse, path.string());
     return sink.error_about(DiagnosticCode::kFileNotWritable, path.string(), std::strerror(why));
   }
-  if (!resume && std::filesystem::exists(path / kJournalName, error)) {
+  const auto taken = [&](const char* name) {
+    return std::filesystem::exists(std::filesystem::symlink_status(path / name, error));
+  };
+  const bool has_run = taken(kJournalName.data());
+  if (!resume && has_run) {
     return sink.error_about(DiagnosticCode::kRunFolderInUse, path.string());
+  }
+  // The journal comes first: without it these belong to somebody else.
+  for (const auto* name : {"report.txt", "report.json"}) {
+    if (has_run || !taken(name)) continue;
+    return sink.error_about(DiagnosticCode::kFileNotWritable, (path / name).string(),
+                            "it is there already, and no run to which it belongs");
   }
   return folder;
 }

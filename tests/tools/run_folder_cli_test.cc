@@ -211,6 +211,24 @@ TEST_CASE("explain holds the report against the journal") {
   CHECK(holds(result.err, "is not the discrepancy that report.json tells of"));
 }
 
+TEST_CASE("a run replaces no report that is none of its own") {
+  const CliFixture cli;
+  fs::create_directory(cli.folder() / "d");
+  for (const std::string name : {"report.txt", "report.json"}) {
+    cli.write("d/" + name, "mine");
+    for (const bool resume : {false, true}) {
+      std::vector<std::string> run = {"run", "scenario.yaml", "--out", "d", "--max-runs", "1"};
+      if (resume) run.emplace_back("--resume");
+      const auto result = cli.parallax(run);
+      CHECK(result.code == 2);
+      CHECK(holds(result.err, "d/" + name + ": error[E0005]: cannot write the file: it is there"));
+    }
+    CHECK(cli.read("d/" + name) == "mine");
+    CHECK_FALSE(fs::exists(cli.folder() / "d/journal.ndjson"));
+    fs::remove(cli.folder() / "d" / name);
+  }
+}
+
 TEST_CASE("a copied run says which scenario is read") {
   const RunFixture cli;
   const auto copy = cli.folder() / "copy";

@@ -173,6 +173,64 @@ TEST_CASE("golden files are written below the manifest's folder only, and told b
   CHECK(fs::is_empty(cli.folder() / "victim"));
 }
 
+TEST_CASE("a golden file takes the place of nothing but a list of traces") {
+  const SuiteFixture cli;
+  const auto refuses = [&](const std::string& name, const std::string& why) {
+    CAPTURE(name);
+    const auto manifest = cli.read("s/suite.yaml");
+    cli.replace("s/suite.yaml", "expected/both.txt", name);
+    const bool there = fs::exists(cli.folder() / "s" / name);
+    const auto before = there ? cli.read("s/" + name) : "";
+    const auto result = cli.suite({"--update-goldens"});
+    CHECK(result.code == 1);
+    CHECK(holds(result.err, "s/" + name + " " + why + ", so it is not written"));
+    CHECK(fs::exists(cli.folder() / "s" / name) == there);
+    if (there) CHECK(cli.read("s/" + name) == before);
+    cli.write("s/suite.yaml", manifest);
+  };
+  cli.write("s/notes.txt", "4 traces of mice\n");
+  const std::string no_list = "is there already and holds no list of traces";
+  refuses("lamp.e", no_list);
+  refuses("suite.yaml", no_list);
+  refuses("notes.txt", no_list);
+  refuses(".profile", "is hidden, or lies in a hidden folder");
+  refuses(".git/config", "is hidden, or lies in a hidden folder");
+  REQUIRE(cli.suite({"--update-goldens"}).code == 0);
+  cli.replace("s/expected/both.txt", "trace 1", "trace one");
+  CHECK(cli.suite({"--update-goldens"}).code == 0);
+  CHECK(cli.suite({}).code == 0);
+}
+
+TEST_CASE("files of a manifest are files, whatever they are called") {
+  const SuiteFixture cli;
+  const auto lamp = cli.read("s/lamp.e");
+  cli.write("s/mine.txt", "mine");
+  cli.write("s/--certify=mine.txt", lamp);
+  cli.write("s/suite.yaml",
+            "cases:\n"
+            "  - {id: flag, model: '--certify=mine.txt', expect: {traces: 2, golden: g.txt}}\n");
+  ProcessOptions inside;
+  inside.folder = (cli.folder() / "s").string();
+  const auto result = cli.parallax({"suite", ".", "--update-goldens"}, inside);
+  CAPTURE(result.err);
+  CHECK(result.code == 0);
+  CHECK(cli.read("s/mine.txt") == "mine");
+}
+
+TEST_CASE("--out and --junit replace only what a suite has written") {
+  const SuiteFixture cli;
+  fs::create_directory(cli.folder() / "o");
+  cli.write("o/results.json", "{\"mine\": 1}");
+  const auto refused = cli.parallax({"suite", "s", "--only", "lit", "--out", "o"});
+  CHECK(refused.code == 2);
+  CHECK(holds(refused.err, "o/results.json: error[E0007]: this file is there already"));
+  CHECK(cli.read("o/results.json") == "{\"mine\": 1}");
+  const std::string picture = "<?xml version=\"1.0\"?>\n<svg/>\n";
+  cli.write("picture.svg", picture);
+  CHECK(cli.parallax({"suite", "s", "--only", "lit", "--junit", "picture.svg"}).code == 2);
+  CHECK(cli.read("picture.svg") == picture);
+}
+
 TEST_CASE("a limit that ends a case is an error of that case") {
   const SuiteFixture cli;
   // A million and more traces, which cannot be listed in a hundredth of a second.

@@ -344,8 +344,8 @@ harness::SimulatorFactory simulator_factory(const ScenarioModel& loaded,
   options.command = spec.command;
   if (options.command.empty()) {
     options.command = worker;
-    options.command.insert(options.command.end(), {loaded.scenario.file.string(), "--scenario-hash",
-                                                   loaded.scenario_hash});
+    options.command.insert(options.command.end(), {"--scenario-hash", loaded.scenario_hash, "--",
+                                                   loaded.scenario.file.string()});
   } else {
     options.command.insert(options.command.begin(), supervisor.begin(), supervisor.end());
   }

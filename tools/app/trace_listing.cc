@@ -68,6 +68,7 @@ class ItfFolder final : public runtime::ListFormat {
     auto known = end;
     if (failed_) known = {written_, false, "stopped", {}, {}};
     if (!failed_) write("index.json", format_.end(known));
+    if (failed_ && written_ == 0) return {};  // the error says it
     return fmt::format("{} {}, {}{}, in {}\n", known.traces, known.traces == 1 ? "trace" : "traces",
                        known.exploration, known.remark, folder_.string());
   }

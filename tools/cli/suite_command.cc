@@ -161,18 +161,33 @@ std::string summary_document(const SuiteRecord& record) {
   return base::json_text(document) + '\n';
 }
 
-/// A report replaces an earlier report, or an empty file, and no file that the suite reads.
+/// A JUnit report, as far as one can see.
+bool is_junit(std::string_view text) {
+  constexpr std::size_t kHead = 4096;
+  return text.starts_with("<") &&
+         text.substr(0, kHead).find("<testsuite") != std::string_view::npos;
+}
+
+/// Results replace earlier results, a report replaces an earlier report, or an empty file, and no
+/// file that the suite reads.
 bool may_write(const SuiteOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto results = std::filesystem::path(options.out) / kResultsFile;
   if (!base::check_output(results, invocation.files(), sink)) return false;
+  std::error_code error;
+  base::DiagnosticSink unread;
+  if (std::filesystem::exists(results, error) && !std::filesystem::is_empty(results, error) &&
+      !read_results(options.out, unread)) {
+    sink.error_about(base::DiagnosticCode::kUsage, results.string(),
+                     "this file is there already and holds no results that --out could replace");
+    return false;
+  }
   if (options.junit.empty()) return true;
   if (!base::check_output(options.junit, invocation.files(), sink)) return false;
-  std::error_code error;
   if (!std::filesystem::is_regular_file(options.junit, error)) return true;
   const auto text = base::read_file(options.junit, sink);
   if (!text) return false;
-  if (text->empty() || text->starts_with("<?xml")) return true;
+  if (text->empty() || is_junit(*text)) return true;
   sink.error_about(base::DiagnosticCode::kUsage, options.junit,
                    "this file is there already and is no report that --junit could replace");
   return false;

@@ -45,7 +45,7 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
                 const TraceWriter& writer, runtime::ListFormat* listing, const Ending& ending,
                 const TraceCertifier& certifier, double wall_s, Invocation& invocation) {
   const bool stopped = ending.exploration == "stopped" || certifier.is_asked();
-  if (stopped && stop_flag().load()) {
+  if (stopped && stop_flag().load() && !invocation.sink().has_errors()) {
     invocation.remark("stopped before the end: there may be more traces");
   }
   if (!stopped) invocation.answered();

@@ -160,12 +160,20 @@ std::string first_error(const std::string& document) {
 
 constexpr std::size_t kMaxMessageBytes = std::size_t{64} << 10U;
 
+/// What this program is run with. Files are named by others: one of the name `--certify=m.e` is a
+/// file all the same.
+struct CommandWords {
+  std::vector<std::string> options;  // behind the command's name
+  std::vector<std::string> files;
+};
+
 /// Runs this program again with other arguments. When `stop` is raised it is asked to end and
 /// waited for all the same.
-base::Captured run_this_program(const std::vector<std::string>& arguments,
-                                const std::atomic<bool>& stop) {
+base::Captured run_this_program(const CommandWords& words, const std::atomic<bool>& stop) {
   std::vector<std::string> command = {"parallax"};
-  command.insert(command.end(), arguments.begin(), arguments.end());
+  command.insert(command.end(), words.options.begin(), words.options.end());
+  command.emplace_back("--");
+  command.insert(command.end(), words.files.begin(), words.files.end());
   base::CaptureOptions options;
   options.program = "/proc/self/exe";
   options.max_errors = kMaxMessageBytes;
@@ -207,20 +215,14 @@ void add_limit(const harness::Expectation& expect, std::vector<std::string>& wor
 void run_rates(const SuiteCase& one, const harness::Expectation& expect,
                const RunnerOptions& options, const std::atomic<bool>& stop, CaseResult& result) {
   const auto& rate = *expect.rate;
-  std::vector<std::string> words = {"rates",
-                                    one.file,
-                                    "--json",
-                                    "--seed",
-                                    std::to_string(options.seed),
-                                    "--trace",
-                                    std::to_string(rate.trace),
-                                    "--runs",
-                                    std::to_string(rate.runs),
-                                    "--quiet",
-                                    "--color=never"};
+  std::vector<std::string> words = {"rates",   "--json",
+                                    "--seed",  std::to_string(options.seed),
+                                    "--trace", std::to_string(rate.trace),
+                                    "--runs",  std::to_string(rate.runs),
+                                    "--quiet", "--color=never"};
   add_permissions(options, true, words);
   add_limit(expect, words);
-  const auto child = run_this_program(words, stop);
+  const auto child = run_this_program({std::move(words), {one.file}}, stop);
   result.messages += child.err;
   if (child.code != 0) return report_no_answer(child, result);
   for (auto& problem : unmet(rate, child.out)) result.problems.push_back(std::move(problem));
@@ -253,11 +255,11 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
     return;
   }
   std::vector<std::string> words = {
-      "run",   one.file,        "--json",  "--seed",       std::to_string(options.seed),
+      "run",   "--json",        "--seed",  std::to_string(options.seed),
       "--out", folder.string(), "--quiet", "--color=never"};
   add_permissions(options, true, words);
   add_limit(expect, words);
-  const auto child = run_this_program(words, stop);
+  const auto child = run_this_program({std::move(words), {one.file}}, stop);
   result.messages += child.err;
   // Exit code 1 is a finding and 4 a verdict that may be the expected one; both give a document.
   const bool answered = child.code == 0 || child.code == 1 || child.code == 4;
@@ -265,10 +267,8 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
   for (auto& problem : unmet(expect, child.out)) result.problems.push_back(std::move(problem));
 }
 
-std::vector<std::string> traces_command(const harness::ManifestCase& one,
-                                        const RunnerOptions& options) {
+CommandWords traces_command(const harness::ManifestCase& one, const RunnerOptions& options) {
   std::vector<std::string> words = {"traces"};
-  for (const auto& model : one.models) words.push_back(model.text);
   for (const auto& constraint : one.constraints) {
     words.push_back("--until=" + constraint.text);  // also one that begins with `-`
   }
@@ -281,7 +281,9 @@ std::vector<std::string> traces_command(const harness::ManifestCase& one,
   }
   words.insert(words.end(), {"--quiet", "--color=never"});
   add_permissions(options, false, words);
-  return words;
+  CommandWords command{std::move(words), {}};
+  for (const auto& model : one.models) command.files.push_back(model.text);
+  return command;
 }
 
 /// What the document of `parallax traces --json` says against the expected number.
@@ -303,6 +305,33 @@ void compare_count(const harness::TraceExpectation& expect, const std::string& d
                                         phrase(*expect.traces, expect.complete)));
 }
 
+/// Is this what `parallax traces` has printed, so that a newer list may take its place? Its last
+/// line is "4 traces, complete ...".
+bool is_list_of_traces(std::string_view text) {
+  const auto end = text.find_last_not_of('\n');
+  if (end == std::string_view::npos) return true;
+  text = text.substr(0, end + 1);
+  const auto newline = text.rfind('\n');
+  if (newline != std::string_view::npos) text.remove_prefix(newline + 1);
+  const auto digits = std::min(text.find_first_not_of("0123456789"), text.size());
+  text.remove_prefix(digits);
+  return digits > 0 && (text.starts_with(" trace, ") || text.starts_with(" traces, "));
+}
+
+/// Why the golden file must not be written; empty: it may. Manifests come from others: theirs must
+/// replace no model, no manifest and no file that other programs read.
+std::string unfit_for_golden(const std::string& path, const fs::path& folder,
+                             const base::Result<std::string>& text) {
+  if (!base::lies_below(path, folder)) return "does not lie below the manifest's folder";
+  const auto inside = base::real_path(path).lexically_relative(base::real_path(folder));
+  for (const auto& part : inside) {
+    if (part.string().starts_with('.')) return "is hidden, or lies in a hidden folder";
+  }
+  if (!text) return "cannot be read";
+  if (!is_list_of_traces(*text)) return "is there already and holds no list of traces";
+  return {};
+}
+
 void compare_golden(const std::string& path, const std::string& text, const fs::path& manifest,
                     bool update, CaseResult& result) {
   base::DiagnosticSink sink;
@@ -311,9 +340,9 @@ void compare_golden(const std::string& path, const std::string& text, const fs::
   const auto expected = exists ? base::read_file(path, sink) : base::Result<std::string>("");
   if (exists && expected && *expected == text) return;
   if (update && result.problems.empty()) {
-    if (!base::lies_below(path, manifest.parent_path())) {
-      result.problems.push_back(
-          fmt::format("{} does not lie below the manifest's folder, so it is not written", path));
+    const auto unfit = unfit_for_golden(path, manifest.parent_path(), expected);
+    if (!unfit.empty()) {
+      result.problems.push_back(fmt::format("{} {}, so it is not written", path, unfit));
       return;
     }
     fs::create_directories(fs::path(path).parent_path(), error);
@@ -340,9 +369,9 @@ void run_traces(const harness::ManifestCase& one, const fs::path& manifest,
   const auto command = traces_command(one, options);
   if (one.expect.traces) {
     auto words = command;
-    words.emplace_back("--json");
+    words.options.emplace_back("--json");
     // Counting goes on to the end, so it answers only whether these are all.
-    if (one.expect.complete) words.emplace_back("--count");
+    if (one.expect.complete) words.options.emplace_back("--count");
     const auto child = run_this_program(words, stop);
     result.messages = child.err;
     if (child.code != 0) return report_no_answer(child, result);
