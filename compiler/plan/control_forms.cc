@@ -33,7 +33,7 @@ void form_with_tags(FormCompiler& c, DatumId /*form*/, FormItems items) {
 }
 
 /// Every branch is a unit of its own, which sees the variables around it.
-void par_by_turns(FormCompiler& c, DatumId form, FormItems branches) {
+void branches_by_turns(FormCompiler& c, DatumId form, FormItems branches, bool pursue) {
   std::vector<std::uint32_t> units;
   for (const auto branch : branches) {
     const auto unit = c.code.declare_unit("a branch", branch, 0);
@@ -42,11 +42,13 @@ void par_by_turns(FormCompiler& c, DatumId form, FormItems branches) {
     c.code.leave_unit(PlanOp::kEndBranch, branch);
     units.push_back(unit);
   }
-  c.code.par(std::move(units), form);
+  c.code.par(std::move(units), pursue, form);
 }
 
 void form_par(FormCompiler& c, DatumId form, FormItems items) {
-  if (items.size() > 2 && c.interleave) return par_by_turns(c, form, items.subspan(1));
+  if (items.size() > 2 && c.interleave) {
+    return branches_by_turns(c, form, items.subspan(1), false);
+  }
   if (items.size() > 2) {
     c.warning(DiagnosticCode::kParallelInOrder, form, c.form_name(form));
   }
@@ -55,6 +57,24 @@ void form_par(FormCompiler& c, DatumId form, FormItems items) {
     task(c, items[i], items.subspan(i, 1));
     if (i > 1) c.code.drop(items[i]);  // the value is that of the first branch
   }
+}
+
+/// In written order the first branch ends before the others have performed anything. They are
+/// checked all the same.
+void form_pursue(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 2) return c.refuse(form, "without branches it waits for nothing and fails");
+  if (items.size() > 2 && c.interleave) {
+    return branches_by_turns(c, form, items.subspan(1), true);
+  }
+  task(c, items[1], items.subspan(1, 1));
+  if (items.size() == 2) return;
+  c.warning(DiagnosticCode::kParallelInOrder, form, c.form_name(form));
+  const auto over = c.code.jump(PlanOp::kJump, form);
+  for (std::size_t i = 2; i < items.size(); ++i) {
+    task(c, items[i], items.subspan(i, 1));
+    c.code.drop(items[i]);
+  }
+  c.code.patch_jump(over);
 }
 
 /// Transparent forms whose first argument says where or how to run.
@@ -290,6 +310,7 @@ std::span<const FormEntry> control_forms() {
       {"with-projection-environment", form_skip_argument},
       {"with-process-modules-running", form_skip_argument},
       {"par", form_par},
+      {"pursue", form_pursue},
       {"if", form_if},
       {"when", form_when},
       {"unless", form_unless},

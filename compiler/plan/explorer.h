@@ -23,8 +23,8 @@ struct Job {
   std::optional<ValueId> failure;  // goes on by failing
   std::optional<StopPerform> act;  // goes on by performing
   Edge edge = Edge::kEntry;
-  std::uint32_t owner = 0;                              // location or branch
-  std::optional<PlanMachine::BranchPath> failing = {};  // goes on by the failure of a `par`
+  std::uint32_t owner = 0;                         // location or branch
+  std::optional<PlanMachine::Ending> ending = {};  // goes on by the end of a `par`
 };
 
 /// Explores the states of a plan depth first, success before failure, and writes the graph.

@@ -57,6 +57,9 @@ void handling(FormCompiler& c, DatumId form, const std::vector<HandlerSource>& h
     for (const auto name : handler.classes) {
       const auto known = c.failure_class(name);
       if (!known) continue;
+      if (*known == "condition" || *known == "t") {
+        c.warning(DiagnosticCode::kBroadHandler, name, *known);
+      }
       // CRAM names the function of a clause by its class: of two with one name the last is called.
       for (auto& clause : table) {
         if (clause.failure_class == *known) clause.unit = unit;

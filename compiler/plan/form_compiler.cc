@@ -27,7 +27,6 @@ constexpr std::string_view kNoFluents =
 
 /// Reactive forms and how to write it instead.
 constexpr Hint kReactive[] = {
-    {"pursue", "write the branch that is to end it; `par` if all of them are to end"},
     {"try-all", "use `try-in-order`, which tries one branch after the other"},
     {"par-loop", "write the branches out in a `par`, or use `dolist` for one after the other"},
     {"partial-order", "write the steps in one of the orders, in a `seq`"},

@@ -53,6 +53,10 @@ std::optional<std::string> ModelNames::find(std::string_view name) const {
   return found->second;
 }
 
+bool ModelNames::has(std::string_view name) const {
+  return std::find(names_.begin(), names_.end(), name) != names_.end();
+}
+
 std::optional<std::string> ModelNames::nearest(std::string_view name) const {
   return base::nearest_name(name, names_, 3);
 }
@@ -161,8 +165,10 @@ Result<FormulaTree> PerformResolver::constant(ValueId id, std::string_view what,
       return wrong(
           "a pose where a name is needed; map it with `region`, `place` "
           "or `gaze`");
-    case ValueKind::kNotGiven:
     case ValueKind::kNil:
+      if (constants_.has("nil")) return constant_term("nil");
+      return wrong("nil, and the model has no constant of that name");
+    case ValueKind::kNotGiven:
       return wrong("nil");
     case ValueKind::kCons:
     case ValueKind::kVector:

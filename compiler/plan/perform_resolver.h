@@ -27,6 +27,8 @@ class ModelNames {
   /// one declared that is equal up to case, `-` and `_`. Without any names
   /// every name is taken as it is.
   std::optional<std::string> find(std::string_view name) const;
+  /// Is this very name among them?
+  bool has(std::string_view name) const;
   /// For a suggestion.
   std::optional<std::string> nearest(std::string_view name) const;
 

@@ -149,9 +149,11 @@ void PlanAssembler::leave_unit(PlanOp last, DatumId source) {
   frames_.pop_back();
 }
 
-void PlanAssembler::par(std::vector<std::uint32_t> units, DatumId source) {
+void PlanAssembler::par(std::vector<std::uint32_t> units, bool pursue, DatumId source) {
+  const auto exit = pursue ? std::optional(open_exit()) : std::nullopt;
   emit(PlanOp::kPar, static_cast<std::uint32_t>(code_.pars.size()), 0, source);
-  code_.pars.push_back(std::move(units));
+  code_.pars.push_back({std::move(units), exit});
+  if (exit) set_exit(*exit);
   adjust(1);
 }
 

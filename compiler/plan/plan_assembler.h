@@ -85,8 +85,8 @@ class PlanAssembler {
   std::uint32_t declare_unit(std::string_view name, DatumId source, std::uint32_t parameters);
   void enter_unit(std::uint32_t unit);
   void leave_unit(PlanOp last, DatumId source);
-  /// The branches of a `par`, each a unit.
-  void par(std::vector<std::uint32_t> units, DatumId source);
+  /// The branches of a `par` or `pursue`, each a unit, which take turns.
+  void par(std::vector<std::uint32_t> units, bool pursue, DatumId source);
 
   // --- names
   /// A name of the open unit, not visible yet.

@@ -1,8 +1,8 @@
-// `par` whose branches take turns, perform by perform. All branches begin at the same height of
-// frames, guards and stack; the one that runs is in place, the others are kept aside. Each is a
-// task of its own. When the first of them fails, the others may still carry out the performs at
-// which they wait; then the `par` fails, and they run their clean-ups once a handler around it has
-// decided.
+// `par` and `pursue` whose branches take turns, perform by perform. All branches begin at the same
+// height of frames, guards and stack; the one that runs is in place, the others are kept aside.
+// Each is a task of its own. When the first of them fails (of a `pursue`: ends), the others may
+// still carry out the performs at which they wait; then they run their clean-ups, and the whole
+// ends.
 #include <algorithm>
 #include <iterator>
 #include <utility>
@@ -31,6 +31,7 @@ void put_in_place(PlanState& state, std::size_t branch) {
   auto& par = state.pars.back();
   par.active = branch;
   auto& own = par.branches[branch];
+  own.fresh = own.fresh || !own.started;
   own.started = true;
   put_back(state.frames, own.frames);
   put_back(state.guards, own.guards);
@@ -45,6 +46,7 @@ void put_aside(PlanState& state, std::size_t depth) {
   auto nested = take_above(state.pars, depth + 1);
   auto& par = state.pars[depth];
   auto& own = par.branches[par.active];
+  own.fresh = false;
   own.pars = std::move(nested);
   own.frames = take_above(state.frames, par.frames);
   own.guards = take_above(state.guards, par.guards);
@@ -113,7 +115,7 @@ void keep_cleanups(PlanState& state, const PlanPar& par, const PlanBranchState& 
   }
   state.stack.insert(state.stack.end(), branch.stack.begin(), branch.stack.end());
   for (auto guard : branch.guards) {
-    if (guard.kind != GuardKind::kCleanup) continue;
+    if (guard.kind != GuardKind::kCleanup && guard.kind != GuardKind::kSpecial) continue;
     guard.frame = moved_frame(guard.frame, shifts);
     guard.height = moved_place(guard.height, shifts);
     state.guards.push_back(guard);
@@ -125,15 +127,26 @@ void keep_cleanups(PlanState& state, const PlanPar& par, const PlanBranchState& 
   }
 }
 
-void find_failing(const PlanPar& par, PlanMachine::BranchPath& path,
-                  std::vector<PlanMachine::BranchPath>& out) {
+std::vector<PlanMachine::ParEnd> ends_of(const PlanPar& par) {
+  using ParEnd = PlanMachine::ParEnd;
+  std::vector<ParEnd> out;
   // Clean-ups that are under way come to their end first.
-  const bool busy = std::any_of(par.branches.begin(), par.branches.end(), in_cleanup);
-  if (par.failure && !busy) out.push_back(path);
+  if (std::any_of(par.branches.begin(), par.branches.end(), in_cleanup)) return out;
+  if (par.value) out.push_back(ParEnd::kValue);
+  if (!par.failure) return out;
+  out.push_back(ParEnd::kFailure);
+  const bool cleans_up = std::any_of(par.branches.begin(), par.branches.end(), has_cleanup);
+  if (cleans_up) out.push_back(ParEnd::kFailureAfterCleanups);
+  return out;
+}
+
+void find_endings(const PlanPar& par, PlanMachine::BranchPath& path,
+                  std::vector<PlanMachine::Ending>& out) {
+  for (const auto end : ends_of(par)) out.push_back({path, end});
   for (std::size_t i = 0; i < par.branches.size(); ++i) {
     if (par.branches[i].pars.empty()) continue;
     path.push_back(i);
-    find_failing(par.branches[i].pars.front(), path, out);
+    find_endings(par.branches[i].pars.front(), path, out);
     path.pop_back();
   }
 }
@@ -157,7 +170,8 @@ PlanMachine::Step PlanMachine::start_par(PlanState& state, const PlanInstruction
   par.guards = static_cast<std::uint32_t>(state.guards.size());
   par.height = static_cast<std::uint32_t>(state.stack.size());
   par.form = instruction.source;
-  for (const auto unit : code_.pars[instruction.a]) {
+  par.exit = code_.pars[instruction.a].exit;
+  for (const auto unit : code_.pars[instruction.a].units) {
     PlanBranchState branch;
     PlanFrame frame;
     frame.unit = unit;
@@ -177,7 +191,10 @@ PlanMachine::Step PlanMachine::end_branch(PlanState& state) {
   auto& par = state.pars.back();
   auto& own = par.branches[par.active];
   own.done = true;
+  own.fresh = false;
   own.result = state.stack.back();
+  // A failure that came first decides.
+  if (par.exit && !par.failure && !par.value) par.value = own.result;
   state.frames.resize(par.frames);
   state.guards.resize(par.guards);
   state.stack.resize(par.height);
@@ -188,6 +205,7 @@ PlanMachine::Step PlanMachine::end_branch(PlanState& state) {
 PlanMachine::Step PlanMachine::fail_branch(PlanState& state, ValueId failure) {
   auto& par = state.pars.back();
   par.branches[par.active].done = true;
+  par.branches[par.active].fresh = false;
   if (!par.failure) par.failure = failure;
   state.frames.resize(par.frames);
   state.guards.resize(par.guards);
@@ -209,11 +227,12 @@ PlanMachine::Step PlanMachine::next_branch(PlanState& state) {
       }
       all_done = all_done && par.branches[i].done;
     }
-    if (par.failure) {
+    if (par.failure || par.value) {
       std::vector<BranchPath> waiting;
       BranchPath path;
       find_waiting(par, path, waiting);
-      if (waiting.empty()) return evaporate(state);
+      const auto ends = ends_of(par);
+      if (waiting.empty() && ends.size() == 1) return evaporate(state, ends.front());
     } else if (all_done) {
       const auto result = par.branches.front().result;
       state.pars.pop_back();
@@ -226,12 +245,14 @@ PlanMachine::Step PlanMachine::next_branch(PlanState& state) {
 }
 
 std::optional<PlanStop> PlanMachine::wait(PlanState& state, const StopPerform& perform) {
-  const auto failed = std::find_if(state.pars.begin(), state.pars.end(),
-                                   [](const PlanPar& par) { return par.failure.has_value(); });
-  // A branch of a `par` that has failed performs nothing new, but for the clean-ups it is in.
-  bool goes_on = failed == state.pars.end();
+  const auto decided = std::find_if(state.pars.begin(), state.pars.end(), [](const PlanPar& par) {
+    return par.failure.has_value() || par.value.has_value();
+  });
+  // A branch of a `par` that is decided performs nothing new, but for what it begins with and the
+  // clean-ups it is in.
+  bool goes_on = decided == state.pars.end() || decided->branches[decided->active].fresh;
   if (!goes_on) {
-    goes_on = std::any_of(state.frames.begin() + failed->frames, state.frames.end(), runs_cleanup);
+    goes_on = std::any_of(state.frames.begin() + decided->frames, state.frames.end(), runs_cleanup);
   }
   auto& par = state.pars.back();
   if (goes_on) par.branches[par.active].turn = PlanTurn{perform.designator, perform.form};
@@ -246,10 +267,10 @@ std::vector<PlanMachine::BranchPath> PlanMachine::waiting(const PlanState& state
   return out;
 }
 
-std::vector<PlanMachine::BranchPath> PlanMachine::failing(const PlanState& state) {
-  std::vector<BranchPath> out;
+std::vector<PlanMachine::Ending> PlanMachine::endings(const PlanState& state) {
+  std::vector<Ending> out;
   BranchPath path;
-  find_failing(state.pars.front(), path, out);
+  find_endings(state.pars.front(), path, out);
   return out;
 }
 
@@ -262,20 +283,25 @@ StopPerform PlanMachine::resume(PlanState& state, const BranchPath& path) {
   return out;
 }
 
-std::optional<PlanStop> PlanMachine::fail_par(PlanState& state, const BranchPath& path) {
-  for (const auto branch : path) put_in_place(state, branch);
-  return evaporate(state);
+std::optional<PlanStop> PlanMachine::end_par(PlanState& state, const Ending& ending) {
+  for (const auto branch : ending.path) put_in_place(state, branch);
+  return evaporate(state, ending.end);
 }
 
-/// The innermost `par` fails. Of its branches only the clean-ups are left, those of the first
-/// branch on top; they run once a handler has decided, or on the way out of the task.
-PlanMachine::Step PlanMachine::evaporate(PlanState& state) {
+/// The innermost `par` ends. Of its branches only the clean-ups are left, those of the first branch
+/// on top. They run before a value goes on, before a failure does, or once a handler of it has
+/// decided or on the way out of the task.
+PlanMachine::Step PlanMachine::evaporate(PlanState& state, ParEnd end) {
   const auto par = std::move(state.pars.back());
   state.pars.pop_back();
   for (auto branch = par.branches.rbegin(); branch != par.branches.rend(); ++branch) {
     keep_cleanups(state, par, *branch, {});
   }
-  return search(state, *par.failure, par.guards);
+  const auto frame = par.frames - 1;
+  if (end == ParEnd::kValue)
+    return unwind(state, {PendingKind::kExit, frame, *par.exit, *par.value});
+  if (end == ParEnd::kFailure) return search(state, *par.failure, par.guards);
+  return unwind(state, {PendingKind::kCross, frame, par.guards, *par.failure});
 }
 
 }  // namespace parallax::compiler

@@ -50,7 +50,7 @@ enum class PlanOp : std::uint8_t {
   kFail,          // fail with class (string) a
   kFailValue,     // pop a failure or a class name and fail with it
   kExpectList,    // the top must be a list that is known (CPL021, CPL008)
-  kPar,           // start the branches of table a, each by turns
+  kPar,           // start the branches of table a, which take turns
   kEndBranch,     // a branch is over, with the top as its value
   kTick,          // count variable a up; cut here beyond the loop limit
   kDone,          // the plan is over
@@ -84,6 +84,12 @@ struct HandlerClause {
   std::uint32_t unit = 0;
 };
 
+/// The branches of a `par` or `pursue`, each a unit.
+struct ParBranches {
+  std::vector<std::uint32_t> units;
+  std::optional<std::uint32_t> exit;  // `pursue`: where the first value goes on
+};
+
 struct PlanGlobal {
   std::string name;
   DatumId source;
@@ -95,7 +101,7 @@ struct PlanCode {
   std::uint32_t main = 0;
   std::vector<ExitTarget> exits;
   std::vector<std::vector<HandlerClause>> handlers;
-  std::vector<std::vector<std::uint32_t>> pars;  // the units of the branches
+  std::vector<ParBranches> pars;
   std::vector<PlanGlobal> globals;
   std::vector<std::string> strings;
   FailureClasses classes;

@@ -48,8 +48,10 @@ class KeyWriter {
       number(par.active);
       number(par.form.index());
       number(par.failure ? par.failure->index() + 1 : 0);
+      number(par.value ? par.value->index() + 1 : 0);
       for (const auto& branch : par.branches) {
-        number((branch.started ? 1U : 0U) + (branch.done ? 2U : 0U) + (branch.turn ? 4U : 0U));
+        number((branch.started ? 1U : 0U) + (branch.done ? 2U : 0U) + (branch.turn ? 4U : 0U) +
+               (branch.fresh ? 8U : 0U));
         number(branch.result.index());
         if (branch.turn) number(branch.turn->designator.index());
         part(branch.frames, branch.guards, branch.stack);
@@ -75,6 +77,7 @@ void visit_part(const std::vector<PlanFrame>& frames, const std::vector<ValueId>
 void visit_pars(const std::vector<PlanPar>& pars, const std::function<void(ValueId)>& visit) {
   for (const auto& par : pars) {
     if (par.failure) visit(*par.failure);
+    if (par.value) visit(*par.value);
     for (const auto& branch : par.branches) {
       visit(branch.result);
       if (branch.turn) visit(branch.turn->designator);
@@ -233,7 +236,7 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
       const auto carried = pop(state);
       const auto frame = linked(state, instruction.a);
       if (auto stop = check_exit(state, instruction, frame)) return stop;
-      return unwind(state, {PendingKind::kExit, frame, instruction.b, carried});
+      return jump_out(state, {PendingKind::kExit, frame, instruction.b, carried});
     }
     case PlanOp::kPar:
       return start_par(state, instruction);
@@ -306,12 +309,32 @@ PlanMachine::Step PlanMachine::bind_special(PlanState& state, const PlanInstruct
   return {};
 }
 
+namespace {
+
+/// A handler does not see what is left of ended branches, whose clean-ups are still to run.
+bool left_over(const PlanState& state, std::size_t guard) {
+  const auto at = [&](std::size_t index) {
+    return state.guards.begin() + static_cast<std::ptrdiff_t>(index);
+  };
+  const auto evaporated = [](const PlanGuard& kept) { return kept.kind == GuardKind::kEvaporated; };
+  return std::any_of(state.frames.begin(), state.frames.end(), [&](const PlanFrame& frame) {
+    const bool covers =
+        frame.kind == FrameKind::kHandler && frame.skip_to < guard && guard < frame.guard_base;
+    return covers && std::any_of(at(frame.skip_to), at(guard + 1), evaporated);
+  });
+}
+
+}  // namespace
+
 /// Where the task that runs has rebound the global, if it has: a task sees no other's bindings.
 std::optional<std::size_t> PlanMachine::special(const PlanState& state,
                                                 std::uint32_t global) const {
-  for (auto guard = state.guards.rbegin(); guard != state.guards.rend(); ++guard) {
-    if (guard->kind == GuardKind::kTask) return std::nullopt;
-    if (guard->kind == GuardKind::kSpecial && guard->index == global) return guard->height;
+  for (auto g = state.guards.size(); g-- > 0;) {
+    if (left_over(state, g)) continue;
+    const auto& guard = state.guards[g];
+    if (guard.kind == GuardKind::kSpecial && guard.index == global) return guard.height;
+    const bool border = guard.kind == GuardKind::kTask || guard.kind == GuardKind::kEvaporated;
+    if (border) return std::nullopt;
   }
   return std::nullopt;
 }

@@ -68,6 +68,7 @@ struct PlanPar;
 /// begin at the same height, so that the indices in it are right whenever it is put back.
 struct PlanBranchState {
   bool started = false;
+  bool fresh = false;  // on the way to its first perform
   bool done = false;
   ValueId result;  // done
   std::optional<PlanTurn> turn;
@@ -77,15 +78,17 @@ struct PlanBranchState {
   std::vector<PlanPar> pars;  // at most one: of a branch that is itself in branches
 };
 
-/// An active `par` whose branches take turns, perform by perform.
+/// An active `par` or `pursue` whose branches take turns, perform by perform. The first failure
+/// that leaves a branch decides it, and of a `pursue` the first value as well. Then the other
+/// branches may still carry out the perform at which they wait, and nothing more.
 struct PlanPar {
   std::uint32_t frames = 0;  // what the branches share
   std::uint32_t guards = 0;
   std::uint32_t height = 0;
-  std::size_t active = 0;  // the branch whose state is in place
-  // The first failure that left a branch. The others may still carry out the perform at which they
-  // wait, and nothing more; then the failure goes on.
+  std::size_t active = 0;             // the branch whose state is in place
+  std::optional<std::uint32_t> exit;  // `pursue`: where it goes on with its value
   std::optional<ValueId> failure;
+  std::optional<ValueId> value;  // `pursue` only; both are set if a failure came second
   DatumId form;
   std::vector<PlanBranchState> branches;
 };
@@ -126,7 +129,8 @@ struct StopBound {
   std::string form;
   DatumId at;
 };
-struct StopTurn {};   // every branch of the outermost `par` is over or waits for its turn
+struct StopTurn {
+};  // of the outermost `par` every branch is over or waits, or it may end in two ways
 struct StopError {};  // reported
 using PlanStop =
     std::variant<StopPerform, StopQuestion, StopDone, StopFailed, StopBound, StopTurn, StopError>;
@@ -167,10 +171,16 @@ class PlanMachine {
   /// Where branches wait: the way to each through nested `par`s, in written order.
   using BranchPath = std::vector<std::size_t>;
   static std::vector<BranchPath> waiting(const PlanState& state);
-  /// The way to each `par` whose failure may go on now.
-  static std::vector<BranchPath> failing(const PlanState& state);
-  /// The `par` at the end of that way fails; run goes on with a handler.
-  std::optional<PlanStop> fail_par(PlanState& state, const BranchPath& path);
+  /// How a `par` that is decided may end now. The clean-ups of the branches that it ends run in
+  /// tasks of their own, so a handler of its failure may decide before them or after.
+  enum class ParEnd : std::uint8_t { kValue, kFailure, kFailureAfterCleanups };
+  struct Ending {
+    BranchPath path;  // to the `par`
+    ParEnd end = ParEnd::kValue;
+  };
+  static std::vector<Ending> endings(const PlanState& state);
+  /// The `par` ends like that; run goes on with what follows.
+  std::optional<PlanStop> end_par(PlanState& state, const Ending& ending);
   /// Puts that branch in place; its perform is next.
   static StopPerform resume(PlanState& state, const BranchPath& path);
   /// Lets a function of the plan answer; run goes into it.
@@ -201,7 +211,8 @@ class PlanMachine {
   Step end_branch(PlanState& state);
   Step next_branch(PlanState& state);
   Step fail_branch(PlanState& state, ValueId failure);
-  Step evaporate(PlanState& state);
+  Step evaporate(PlanState& state, ParEnd end);
+  Step jump_out(PlanState& state, const Pending& pending);
   Step unwind(PlanState& state, Pending pending);
   void add_key(PlanState& state, const PlanInstruction& instruction);
   std::size_t place(const PlanState& state, const PlanInstruction& instruction) const;

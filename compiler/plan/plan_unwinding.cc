@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
@@ -58,6 +59,15 @@ void drop_abandoned(PlanState& state, std::size_t handling) {
 GuardKind guard_kind(PlanOp op) {
   if (op == PlanOp::kPushTask) return GuardKind::kTask;
   return op == PlanOp::kPushCleanup ? GuardKind::kCleanup : GuardKind::kHandlers;
+}
+
+/// The clean-up of an evaporated branch that runs, if one does: a frame above the border's.
+std::optional<std::size_t> last_cleanup(const PlanState& state, const PlanGuard& border) {
+  for (auto f = std::size_t{border.frame} + 1; f < state.frames.size(); ++f) {
+    const auto& frame = state.frames[f];
+    if (frame.kind == FrameKind::kCleanup && frame.pending.kind != PendingKind::kNone) return f;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -144,13 +154,22 @@ PlanMachine::Step PlanMachine::leave_task(PlanState& state, std::size_t border, 
     const auto index = static_cast<std::uint32_t>(border);
     return unwind(state, {PendingKind::kCross, state.guards[border].frame, index, failure});
   }
-  for (auto f = std::size_t{state.guards[border].frame} + 1; f < state.frames.size(); ++f) {
-    const auto pending = state.frames[f].pending;
-    if (state.frames[f].kind == FrameKind::kCleanup && pending.kind != PendingKind::kNone) {
-      return unwind(state, pending);
-    }
+  if (const auto cleanup = last_cleanup(state, state.guards[border])) {
+    return unwind(state, state.frames[*cleanup].pending);
   }
   return unwind(state, {PendingKind::kFail, 0, 0, failure});
+}
+
+/// A jump. Out of the clean-up of an evaporated branch into that branch, of which nothing else is
+/// left, it only ends the clean-up.
+PlanMachine::Step PlanMachine::jump_out(PlanState& state, const Pending& pending) {
+  for (auto guard = state.guards.rbegin(); guard != state.guards.rend(); ++guard) {
+    if (guard->kind != GuardKind::kEvaporated || guard->frame > pending.frame) continue;
+    const auto cleanup = last_cleanup(state, *guard);
+    if (cleanup && pending.frame < *cleanup) return unwind(state, state.frames[*cleanup].pending);
+    break;
+  }
+  return unwind(state, pending);
 }
 
 /// Leaves frames and guards up to the target, clean-up by clean-up.

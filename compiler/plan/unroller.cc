@@ -171,8 +171,8 @@ std::optional<PlanTarget> Explorer::advance(Job& job) {
     if (job.edge == Job::Edge::kFailure) note_handlers(LocationId(job.owner));
     if (stop) return stopped(job.state, *stop);
   }
-  if (job.failing) {
-    if (auto stop = machine_.fail_par(job.state, *job.failing)) return stopped(job.state, *stop);
+  if (job.ending) {
+    if (auto stop = machine_.end_par(job.state, *job.ending)) return stopped(job.state, *stop);
   }
   if (job.act) return perform(job.state, *job.act);
   for (;;) {
@@ -277,17 +277,33 @@ BranchId Explorer::free_branch(std::string choice, DatumId form) {
       {{}, std::move(choice), data_.source(form), TerminalId(0), TerminalId(0), true});
 }
 
-/// Any branch of a `par` that waits may go on, and any failure that has left a branch.
+namespace {
+
+std::string_view choice_of(PlanMachine::ParEnd end) {
+  switch (end) {
+    case PlanMachine::ParEnd::kValue:
+      return "the `pursue` ends";
+    case PlanMachine::ParEnd::kFailure:
+      return "the branches fail";
+    case PlanMachine::ParEnd::kFailureAfterCleanups:
+      return "the branches fail after the clean-ups";
+  }
+  return "";
+}
+
+}  // namespace
+
+/// Any branch of a `par` that waits may go on, and a `par` that is decided may end.
 std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
   const auto waiting = PlanMachine::waiting(state);
-  const auto failing = PlanMachine::failing(state);
-  const auto ways = waiting.size() + failing.size();
+  const auto endings = PlanMachine::endings(state);
+  const auto ways = waiting.size() + endings.size();
   const auto go_on = [&](std::size_t way, Job::Edge edge, std::uint32_t owner) {
     Job job{state, {}, {}, edge, owner};
     if (way < waiting.size()) {
       job.act = PlanMachine::resume(job.state, waiting[way]);
     } else {
-      job.failing = failing[way - waiting.size()];
+      job.ending = endings[way - waiting.size()];
     }
     return job;
   };
@@ -300,7 +316,13 @@ std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
   if (found != turns_.end()) return found->second;
   const auto form = state.pars.front().form;
   if (!has_room(key, form)) return std::nullopt;
-  const auto first = free_branch("the first branch goes on", form);
+  const auto choice = [&](std::size_t way) {
+    const bool goes_on = way < waiting.size();
+    return free_branch(goes_on ? (way == 0 ? "the first branch goes on" : "the next branch goes on")
+                               : std::string(choice_of(endings[way - waiting.size()].end)),
+                       form);
+  };
+  const auto first = choice(0);
   turns_.emplace(std::move(key), first);
   auto here = first;
   // The last job is taken first: branches in written order.
@@ -310,8 +332,7 @@ std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
     if (way + 2 == ways) {
       jobs.push_back(go_on(way + 1, Job::Edge::kFalse, here.index()));
     } else {
-      const bool goes_on = way + 1 < waiting.size();
-      const auto next = free_branch(goes_on ? "the next branch goes on" : "the `par` fails", form);
+      const auto next = choice(way + 1);
       graph_.branches[here].if_false = next;
       here = next;
     }

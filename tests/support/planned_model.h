@@ -47,7 +47,9 @@ class TwoRooms final : public compiler::PoseLocator {
 class PlannedModel {
  public:
   PlannedModel(const std::string& model, const std::string& plan, const std::string& binding,
-               const std::string& constraint, std::optional<std::int64_t> horizon) {
+               const std::string& constraint, std::optional<std::int64_t> horizon,
+               bool interleave = false)
+      : interleave_(interleave) {
     std::string name = (std::filesystem::temp_directory_path() / "parallax_model_XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) return;
     const auto path = std::filesystem::path(name) / "model.e";
@@ -108,6 +110,7 @@ class PlannedModel {
     input.horizon = horizon;
     input.plan = compiler::PlanInput{
         {files_.add("plan.lisp", plan)}, files_.add("plan.bind", binding), std::nullopt, &locator};
+    input.plan->interleave = interleave_;
     const auto text = files_.add("constraint", constraint);
     const base::SourceRange range{text, 0, static_cast<std::uint32_t>(constraint.size())};
     input.constraints = {{range, range}};
@@ -115,6 +118,7 @@ class PlannedModel {
     if (result) compilation_ = *std::move(result);
   }
 
+  bool interleave_ = false;
   base::SourceFiles files_;
   base::DiagnosticSink sink_;
   TwoRooms rooms_;

@@ -65,9 +65,9 @@ void add_plan_options(OptionTable& command, ModelOptions& options) {
       .show_default();
   command
       .option("--par", options.par,
-              "The branches of `par`: interleave for every order of their performs; in-order "
-              "leaves out "
-              "the others, and what branches still do after one has failed")
+              "The branches of `par` and `pursue`: interleave for every order of their performs; "
+              "in-order leaves out the others, what branches still do after one has failed, and of "
+              "a `pursue` all but the first branch")
       .check(OneOf{{"in-order", "interleave"}})
       .show_default();
   command

@@ -25,10 +25,11 @@ std::string joined(const Strings& keys) {
 std::string disagreement(const PlanCase& plan_case) {
   const PlannedModel planned(plan_case.model.model_text(), plan_case.plan_text(),
                              plan_case.model.binding_text(), plan_case.model.constraint_text(),
-                             plan_case.horizon);
+                             plan_case.horizon, plan_case.by_turns);
   if (!planned.compiles()) return "not compiled: " + planned.codes();
   RuleWorld world(plan_case.model);
-  const auto executed = execute_all(plan_case.plan_text(), world, plan_case.horizon);
+  const auto executed =
+      execute_all(plan_case.plan_text(), world, plan_case.horizon, plan_case.by_turns);
   auto traces = planned.keys();
   const bool complete = traces.exploration == Exploration::kAllTracesExplored;
   std::sort(traces.keys.begin(), traces.keys.end());
@@ -83,7 +84,8 @@ TEST_CASE("5,000 random plans in random models: what is executed is what is enum
                         : plan_case.plan_text()));
     }
     RuleWorld world(plan_case.model);
-    const auto executed = execute_all(plan_case.plan_text(), world, plan_case.horizon);
+    const auto executed =
+        execute_all(plan_case.plan_text(), world, plan_case.horizon, plan_case.by_turns);
     traces += executed.keys.size();
     picks += executed.runs - world.initial_states();
     if (executed.beyond_horizon) ++bounded;

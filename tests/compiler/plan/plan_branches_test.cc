@@ -183,6 +183,63 @@ TEST_CASE("branches: clean-up in a branch runs, also when another one's failure 
             .all.contains("PickUp(left,box) Go(r2) DONE"));
 }
 
+TEST_CASE("branches: a clean-up of a branch that was ended goes nowhere but to its end") {
+  // A jump out of it, a handler around it and a rebound global of another task.
+  for (const std::string cleanup : {"(return-from b)", "(progn (return-from b) (go2))"}) {
+    const auto jump = by_turns(
+        "(with-failure-handling ((plan-failure (e) (return))) (par (seq (block b (unwind-protect "
+        "(seq (go1) (go2)) " +
+        cleanup + ")) (sig)) (pick)))" + opens("d", 1));
+    REQUIRE(jump.graph.has_value());
+    CHECK(Ways(jump, {"PickUp(left,box)"}).all.contains("PickUp(left,box) OpenDrawer(d1) DONE"));
+    CHECK(!Ways(jump, {"PickUp(left,box)"})
+               .all.contains("PickUp(left,box) Signal() OpenDrawer(d1) DONE"));
+  }
+  const auto retried = by_turns(
+      "(with-failure-handling ((plan-failure (e) (return))) (par (with-failure-handling "
+      "((plan-failure (e) (sig) (return))) (unwind-protect (go1) (go2))) (pick)))");
+  CHECK(Ways(retried, {"PickUp(left,box)", "Go(r2)"}).all.contains("PickUp(left,box) Go(r2) DONE"));
+  const auto special = by_turns(
+      "(defparameter *to* *p1*)(defun there () (perform (a motion (type going) (target *to*))))"
+      "(let ((*to* *p2*)) (with-failure-handling ((plan-failure (e) (there) (return))) "
+      "(par (let ((*to* *p1*)) (unwind-protect (sig) (there))) (pick))))");
+  const auto all = Ways(special, {"PickUp(left,box)"}).all;
+  CHECK(all.contains("PickUp(left,box) Go(r2) Go(r1) DONE"));
+  CHECK(all.contains("PickUp(left,box) Go(r1) Go(r2) DONE"));
+}
+
+TEST_CASE("branches: a branch begins even if another one has failed before its turn came") {
+  const std::string fails = "(fail 'object-unfetchable)";
+  const auto first = by_turns("(par " + fails + "(seq (go1) (go2)))");
+  const auto last = by_turns("(par (seq (go1) (go2)) " + fails + ")");
+  const std::set<std::string> both = {"FAILED(object-unfetchable)",
+                                      "Go(r1) FAILED(object-unfetchable)"};
+  CHECK(Ways(first).all == both);
+  CHECK(Ways(last).all == both);
+}
+
+TEST_CASE("branches: a pursue ends with the first of its branches, and cleans up") {
+  CHECK(orders("(pursue " + opens("a", 1) + opens("b", 1) + ")") == 4);
+  CHECK(orders("(pursue (list 1) (list 2))") == 1);
+  CHECK(by_turns("(when (eq (pursue :a :b) :a) (sig))").events("+") == Strings{"Signal()", "DONE"});
+  // A pursue within a par within retries.
+  const auto nested = by_turns(
+      "(let ((tries 0)) (with-failure-handling ((plan-failure (e) (incf tries) (when (< tries 2) "
+      "(retry)) (return))) (par (pursue (go1) (unwind-protect (seq (go2) (go1)) (sig))) "
+      "(pick))))");
+  REQUIRE(nested.graph.has_value());
+  for (const auto& way : Ways(nested, {"PickUp(left,box)"}).all) {
+    CAPTURE(way);
+    CHECK(way.ends_with("DONE"));
+    CHECK(way.find("Signal()") != std::string::npos);
+  }
+  // In written order the first branch alone runs; the others are checked.
+  const auto plan = unroll(prelude() + "(pursue (seq (go1) (sig)) (go2))");
+  CHECK(plan.codes() == Strings{"W-PAR"});
+  CHECK(plan.events("++") == Strings{"Go(r1)", "Signal()", "DONE"});
+  CHECK(unroll(prelude() + "(pursue (go1) (nonsense))").has("CPL010"));
+}
+
 TEST_CASE("branches: without turns they run in written order") {
   const auto plan = unroll(prelude() + "(par (seq (go1) (go2)) (sig))");
   CHECK(plan.codes() == Strings{"W-PAR"});

@@ -41,11 +41,12 @@ bool is_definition(const std::string& head) {
 }  // namespace
 
 Evaluator::Evaluator(const std::vector<Datum>& program, World& world, int horizon,
-                     std::vector<Pick> picks)
+                     std::vector<Pick> picks, bool by_turns)
     : world_(world),
       horizon_(horizon),
       picks_(std::move(picks)),
-      globals_(std::make_shared<Scope>()) {
+      globals_(std::make_shared<Scope>()),
+      by_turns_(by_turns) {
   for (const auto& entry : kClasses) parents_[entry.name] = entry.parent;
   const Datum* last = nullptr;
   for (const auto& form : program) {
@@ -81,6 +82,11 @@ Ending Evaluator::run() {
   } catch (const Stop& stop) {
     return stop.hit ? Ending{Ending::Kind::kHit, key_} : Ending{Ending::Kind::kBeyond, {}};
   }
+}
+
+std::size_t Evaluator::pick(std::size_t choices) {
+  if (next_pick_ == picks_.size()) picks_.push_back({0, choices});
+  return picks_[next_pick_++].chosen;
 }
 
 /// A trace has at least one step: a plan that performs nothing waits for one, and the constraint

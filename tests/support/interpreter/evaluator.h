@@ -12,7 +12,7 @@
 
 namespace parallax::test {
 
-/// One pick among the objects that a perform could return.
+/// One pick: among the objects that a perform could return, or whose turn it is.
 struct Pick {
   std::size_t chosen = 0;
   std::size_t choices = 0;
@@ -39,7 +39,8 @@ using ScopePtr = std::shared_ptr<Scope>;
 class Evaluator {
  public:
   /// `program` and `world` outlive the evaluator. Picks beyond the given ones are the first choice.
-  Evaluator(const std::vector<Datum>& program, World& world, int horizon, std::vector<Pick> picks);
+  Evaluator(const std::vector<Datum>& program, World& world, int horizon, std::vector<Pick> picks,
+            bool by_turns);
   Ending run();
   const std::vector<Pick>& picks() const { return picks_; }
 
@@ -57,7 +58,28 @@ class Evaluator {
     std::vector<Block> blocks;
   };
 
+  struct Branch;
+  struct Branches;
+  struct Way;
+  struct Place {
+    std::vector<Handler> handlers;
+    std::vector<Block> blocks;
+    std::vector<std::pair<std::string, PlanItem>> specials;
+    std::size_t task_specials = 0;
+  };
+
   Ending ended(Ending ending) const;
+  std::size_t pick(std::size_t choices);
+  PlanItem taking_turns(const Datum& form, const ScopePtr& scope, bool pursue);
+  PlanItem turns_of(Branches& all);
+  void start(Branches& all, const Datum& form, const ScopePtr& scope);
+  void resume(Branch& branch);
+  void note(Branches& all, Branch& branch) const;
+  void end_all(Branches& all);
+  void yield(Branch& branch);
+  void wait_for_turn();
+  Place place() const;
+  void restore(const Place& place);
   PlanItem eval(const Datum& form, const ScopePtr& scope);
   PlanItem body(const std::vector<Datum>& forms, std::size_t from, const ScopePtr& scope);
   PlanItem list_form(const Datum& form, const ScopePtr& scope);
@@ -104,6 +126,8 @@ class Evaluator {
   std::size_t task_specials_ = 0;                           // where those of this task begin
   std::vector<Block> blocks_;  // of the function that runs, innermost last
   int next_id_ = 0;
+  bool by_turns_ = false;
+  Branch* running_ = nullptr;  // none: what is not in a branch
 };
 
 }  // namespace parallax::test

@@ -42,6 +42,10 @@ bool Evaluator::control(const Datum& form, const ScopePtr& scope, PlanItem& out)
     out = {};
   } else if (head == "progn" || head == "seq" || head == "top-level") {
     out = body(items, 1, scope);
+  } else if ((head == "par" || head == "pursue") && by_turns_ && items.size() > 2) {
+    out = taking_turns(form, scope, head == "pursue");
+  } else if (head == "pursue") {
+    out = in_task([&] { return eval(items[1], scope); });  // it ends before another begins
   } else if (head == "par") {
     for (std::size_t i = 1; i < items.size(); ++i) {
       auto value = in_task([&] { return eval(items[i], scope); });

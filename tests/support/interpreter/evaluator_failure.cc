@@ -113,25 +113,6 @@ PlanItem Evaluator::attempt(const Datum& form, const ScopePtr& scope) {
   });
 }
 
-PlanItem Evaluator::cleaned_up(const Datum& form, const ScopePtr& scope) {
-  const auto handlers = handlers_;
-  const auto blocks = blocks_;
-  PlanItem out;
-  std::exception_ptr jump;
-  try {
-    out = eval(form.items[1], scope);
-  } catch (const Stop&) {
-    throw;
-  } catch (...) {
-    jump = std::current_exception();
-  }
-  handlers_ = handlers;
-  blocks_ = blocks;
-  body(form.items, 2, scope);
-  if (jump) std::rethrow_exception(jump);
-  return out;
-}
-
 bool Evaluator::failures(const Datum& form, const ScopePtr& scope, PlanItem& out) {
   const auto head = form.head();
   const auto& items = form.items;
@@ -218,14 +199,14 @@ PlanItem Evaluator::designator_value(const Datum& datum, const ScopePtr& scope) 
 }
 
 PlanItem Evaluator::perform(const PlanItem& what) {
+  wait_for_turn();
   if (time_ == horizon_) throw Stop{false};
   const auto outcome = world_.perform(what);
   ++time_;
   key_ += outcome.event;
   auto result = true_item(true);
   if (outcome.success && !outcome.returns.empty()) {
-    if (next_pick_ == picks_.size()) picks_.push_back({0, outcome.returns.size()});
-    result = symbol_item(outcome.returns[picks_[next_pick_++].chosen]);
+    result = symbol_item(outcome.returns[pick(outcome.returns.size())]);
     result.object = true;
     key_ += '=' + result.text;
   }

@@ -4,7 +4,7 @@
 
 namespace parallax::test {
 
-Executions execute_all(std::string_view plan, World& world, int horizon) {
+Executions execute_all(std::string_view plan, World& world, int horizon, bool by_turns) {
   const auto program = read_data(plan);
   Executions out;
   for (std::size_t start = 0; start < world.initial_states(); ++start) {
@@ -12,7 +12,7 @@ Executions execute_all(std::string_view plan, World& world, int horizon) {
     std::vector<Pick> picks;
     do {
       world.reset(start);
-      Evaluator evaluator(program, world, horizon, picks);
+      Evaluator evaluator(program, world, horizon, picks, by_turns);
       const auto end = evaluator.run();
       ++out.runs;
       if (end.kind == Ending::Kind::kHit) out.keys.insert(end.text);

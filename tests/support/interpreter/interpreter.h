@@ -20,6 +20,7 @@ struct Executions {
 
 /// Executes the plan, form by form, on one state at a time. Throws std::runtime_error for what it
 /// does not know. The plan's bare top-level forms are run, or else its last function.
-Executions execute_all(std::string_view plan, World& world, int horizon);
+/// `by_turns`: the branches of `par` and `pursue` in every order of their performs.
+Executions execute_all(std::string_view plan, World& world, int horizon, bool by_turns = false);
 
 }  // namespace parallax::test

@@ -25,6 +25,8 @@ struct TaskFailed {
 struct Unhandled {
   std::string what;
 };
+/// The branch that runs is ended by another one.
+struct Evaporated {};
 /// The trace is complete, or the horizon is reached: nothing more is executed, no clean-ups either.
 struct Stop {
   bool hit = false;

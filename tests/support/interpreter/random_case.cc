@@ -14,6 +14,7 @@ class Generator {
     PlanCase out;
     model(out.model);
     out.horizon = 2 + below(4);
+    out.by_turns = below(4) == 0;
     std::string text;
     text += "(defparameter *thing* 't1)\n";
     if (coin()) {
@@ -247,7 +248,8 @@ class Generator {
       case 7:
         return "(unwind-protect " + sub() + " " + perform(scope) + ")";
       case 8:
-        return std::string(coin() ? "(try-in-order " : "(par ") + sub() + " " + sub() + ")";
+        if (coin()) return "(try-in-order " + sub() + " " + sub() + ")";
+        return std::string(below(3) > 0 ? "(par " : "(pursue ") + sub() + " " + sub() + ")";
       case 9:
         return "(block b " + sub() + " (when " + condition(1, scope) + " (return-from b)) " +
                sub() + ")";

@@ -15,6 +15,7 @@ struct PlanCase {
   RuleModel model;
   std::vector<Datum> plan;
   int horizon = 0;
+  bool by_turns = false;  // the branches of `par` and `pursue`
   std::string plan_text() const;
 };
 
