@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -29,27 +30,33 @@ struct CheckedPlan {
   std::set<std::string> events;
 };
 
-/// The constants that the object of an entry can be: those of the sort of its
-/// place in the formula.
-base::Result<std::vector<std::string>> candidates(const ObjectBinding& binding,
-                                                  const TypedModel& model,
-                                                  base::DiagnosticSink& sink) {
-  const auto& formula = binding.formula;
+/// The constants that a variable of an entry can be: those of the sort of its place in the formula;
+/// none if the formula says nothing of it.
+std::optional<std::vector<std::string>> constants_of(const FormulaTree& formula,
+                                                     std::string_view variable,
+                                                     const TypedModel& model) {
   const auto sort = sort_by_use(model, formula, [&](const FormulaNode& node) {
     return node.leaf == LeafKind::kParameter &&
-           formula.parameters[node.number].variable == binding.variable;
+           formula.parameters[node.number].variable == variable;
   });
-  if (!sort) {
-    return sink.error(base::DiagnosticCode::kBindingSyntax, binding.formula_source,
-                      fmt::format("a formula that says something of {}", binding.variable),
-                      "another one");
-  }
+  if (!sort) return std::nullopt;
   std::vector<std::string> out;
   for (const auto& object : model.objects) {
     const auto fits = [&](SortId of) { return model.is_subsort(of, *sort); };
     if (std::any_of(object.sorts.begin(), object.sorts.end(), fits)) out.push_back(object.name);
   }
   return out;
+}
+
+/// The constants that the object of an entry can be.
+base::Result<std::vector<std::string>> candidates(const ObjectBinding& binding,
+                                                  const TypedModel& model,
+                                                  base::DiagnosticSink& sink) {
+  auto out = constants_of(binding.formula, binding.variable, model);
+  if (out) return *std::move(out);
+  return sink.error(base::DiagnosticCode::kBindingSyntax, binding.formula_source,
+                    fmt::format("a formula that says something of {}", binding.variable),
+                    "another one");
 }
 
 /// The range of `time` where nobody gives one: up to the longest path of the
@@ -81,6 +88,13 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, TypedModel& model,
     auto names = candidates(object, model, sink);
     if (!names) return sink.already_reported();
     options.candidates.push_back(*std::move(names));
+  }
+  for (const auto& query : binding->queries) {
+    auto& variables = options.query_candidates.emplace_back();
+    for (const auto& name : query.variables) {
+      variables.push_back(
+          constants_of(query.formula, name, model).value_or(std::vector<std::string>()));
+    }
   }
   auto graph = unroll_plan(files, input.plan, *binding, *input.locator, options, sink);
   if (!graph) return sink.already_reported();

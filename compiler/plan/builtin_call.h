@@ -16,6 +16,7 @@ struct BuiltinCall {
   std::span<const ValueId> args;
   const FailureClasses& classes;
   ValueStore& values;
+  DesignatorLinks& links;
   std::int64_t location_samples = 0;
 
   BuiltinFailure wrong(std::size_t index, std::string_view wanted) const {
@@ -52,5 +53,6 @@ struct BuiltinEntry {
 std::span<const BuiltinEntry> number_builtins();
 std::span<const BuiltinEntry> list_builtins();
 std::span<const BuiltinEntry> pose_builtins();
+std::span<const BuiltinEntry> designator_builtins();
 
 }  // namespace parallax::compiler

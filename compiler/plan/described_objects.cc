@@ -25,26 +25,36 @@ StopPerform Explorer::named(const StopPerform& stop, const PerformResolver::Refe
   return {id, stop.form};
 }
 
-/// Any one of the candidates whose formula holds: free branches choose, and a choice that does not
-/// hold is no execution.
-bool Explorer::choose(const PlanState& state, const StopPerform& stop,
-                      const PerformResolver::Reference& reference, BranchId some) {
-  const auto& names =
-      options_.candidates[static_cast<std::size_t>(reference.binding - binding_.objects.data())];
+/// Any one of those whose guards hold: free branches choose, and a choice that does not hold is no
+/// execution.
+BranchId Explorer::one_of(const std::vector<ModelWay>& ways, DatumId form,
+                          const std::function<Job(std::uint32_t)>& job) {
+  const auto add = [&](std::uint32_t number, Job::Edge edge, BranchId owner) {
+    auto next = job(number);
+    next.edge = edge;
+    next.owner = owner.index();
+    jobs_.push_back(std::move(next));
+  };
+  if (ways.size() == 1) {
+    const auto only = branch(ways.front().guard, form);
+    add(0, Job::Edge::kFalse, only);
+    add(1, Job::Edge::kTrue, only);
+    return only;
+  }
+  const auto some = branch({}, form);
+  add(0, Job::Edge::kFalse, some);
   const auto never = terminal(TerminalKind::kNever, {}, std::nullopt);
   std::vector<FormulaTree> guards;
   std::optional<BranchId> before;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    auto guard = resolver_.candidate(reference, names[i], data_.source(stop.form));
-    if (!guard) return false;
-    guards.push_back(*guard);
-    const auto test = branch(*std::move(guard), stop.form);
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    guards.push_back(ways[i].guard);
+    const auto test = branch(ways[i].guard, form);
     graph_.branches[test].if_false = never;
-    jobs_.push_back({state, {}, named(stop, reference, names[i]), Job::Edge::kTrue, test.index()});
+    add(static_cast<std::uint32_t>(i + 1), Job::Edge::kTrue, test);
     PlanTarget here = test;
     std::optional<BranchId> choice;
-    if (i + 1 < names.size()) {
-      choice = free_branch(fmt::format("{} is meant", names[i]), stop.form);
+    if (i + 1 < ways.size()) {
+      choice = free_branch(fmt::format("{} is meant", ways[i].name), form);
       graph_.branches[*choice].if_true = test;
       here = *choice;
     }
@@ -52,7 +62,7 @@ bool Explorer::choose(const PlanState& state, const StopPerform& stop,
     before = choice;
   }
   graph_.branches[some].guard = disjunction(guards);
-  return true;
+  return some;
 }
 
 /// A perform of an object that the plan describes only.
@@ -81,10 +91,17 @@ std::optional<PlanTarget> Explorer::refer(PlanState& state, const StopPerform& s
   key.push_back(state.missed);
   const auto found = references_.find(key);
   if (found != references_.end()) return found->second;
-  const auto some = branch({}, stop.form);
+  std::vector<ModelWay> ways;
+  for (const auto& name : options_.candidates[index]) {
+    auto guard = resolver_.candidate(reference, name, source);
+    if (!guard) return std::nullopt;
+    ways.push_back({*std::move(guard), name, {}});
+  }
+  const auto some = one_of(ways, stop.form, [&](std::uint32_t number) {
+    if (number == 0) return Job{state, values_.failure(*failure), {}};
+    return Job{state, {}, named(stop, reference, ways[number - 1].name)};
+  });
   references_.emplace(std::move(key), some);
-  jobs_.push_back({state, values_.failure(*failure), {}, Job::Edge::kFalse, some.index()});
-  if (!choose(state, stop, reference, some)) return std::nullopt;
   return some;
 }
 

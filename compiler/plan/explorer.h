@@ -2,16 +2,19 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "compiler/base/result.h"
 #include "compiler/plan/perform_resolver.h"
 #include "compiler/plan/plan_compiler.h"
 #include "compiler/plan/plan_machine.h"
+#include "compiler/plan/rule_proofs.h"
 #include "compiler/plan/unroller.h"
 
 namespace parallax::compiler {
@@ -25,14 +28,17 @@ struct Job {
   Edge edge = Edge::kEntry;
   std::uint32_t owner = 0;                         // location or branch
   std::optional<PlanMachine::Ending> ending = {};  // goes on by the end of a `par`
+  /// Goes on by asking the rules again: what carries out an action, or whether a goal holds.
+  std::optional<std::variant<StopPerform, StopProof>> proof = {};
+  std::vector<std::uint32_t> answers = {};  // of the model, to what the rules asked so far
 };
 
 /// Explores the states of a plan depth first, success before failure, and writes the graph.
 class Explorer {
  public:
-  Explorer(const LispData& data, const PlanCode& code, const PlanBinding& binding,
-           const PoseLocator& locator, const UnrollOptions& options, ValueStore& values,
-           base::DiagnosticSink& sink)
+  Explorer(const LispData& data, const PlanCode& code, const FactBase& facts,
+           const PlanBinding& binding, const PoseLocator& locator, const UnrollOptions& options,
+           ValueStore& values, base::DiagnosticSink& sink)
       : data_(data),
         code_(code),
         binding_(binding),
@@ -44,7 +50,10 @@ class Explorer {
                   options.max_steps, options.location_samples},
                  values, sink),
         resolver_(binding, locator, ModelNames(options.constants), ModelNames(options.fluents),
-                  code.classes, graph_, values, sink) {}
+                  code.classes, graph_, values, sink),
+        rules_(
+            facts, data, code, options, resolver_, machine_,
+            [this](const StopQuestion& stop) { return guard_of(stop); }, values, sink) {}
 
   base::Result<PlanGraph> explore();
 
@@ -61,8 +70,22 @@ class Explorer {
                                    const BindingEntry& entry);
   std::optional<PlanTarget> refer(PlanState& state, const StopPerform& stop,
                                   const PerformResolver::Reference& reference);
-  bool choose(const PlanState& state, const StopPerform& stop,
-              const PerformResolver::Reference& reference, BranchId some);
+  /// One of the ways whose guards hold, or, with the number 0, none of them.
+  BranchId one_of(const std::vector<ModelWay>& ways, DatumId form,
+                  const std::function<Job(std::uint32_t)>& job);
+  /// What became of a perform or a goal that the rules were asked about: where control goes if
+  /// they ask the model, or if that was an error; otherwise the machine goes on, unless it stopped.
+  struct Ruled {
+    bool goes_on = false;
+    std::optional<PlanTarget> target;
+    std::optional<PlanStop> stop;
+  };
+  Ruled ask_rules(Job& job);
+  Ruled ground(Job& job, const StopPerform& perform);
+  Ruled prove(Job& job, const StopProof& proof);
+  Ruled ask_model(const Job& job, const ProofQuestion& question, DatumId form);
+  Ruled nothing_fits(Job& job, const StopPerform& perform, bool fits);
+  bool is_ruled(const StopPerform& perform) const;
   StopPerform named(const StopPerform& stop, const PerformResolver::Reference& reference,
                     std::string_view name);
   std::optional<PlanTarget> take_turns(const PlanState& state);
@@ -70,6 +93,7 @@ class Explorer {
   BranchId free_branch(std::string choice, DatumId form);
   std::optional<PlanTarget> question(PlanState& state, const StopQuestion& stop);
   base::Result<FormulaTree> guard_of(const StopQuestion& stop);
+  ValueId found_object(ModelValueId id, ValueId designator);
   ModelValueId free_register(const PlanState& state, DatumId form, const std::string& variable);
   PlanTarget terminal(TerminalKind kind, std::string detail, std::optional<DatumId> at);
   std::vector<base::SourceRange> calls(const PlanState& state) const;
@@ -83,6 +107,7 @@ class Explorer {
   PlanGraph graph_;
   PlanMachine machine_;
   PerformResolver resolver_;
+  RuleProofs rules_;
   std::vector<Job> jobs_;
   std::map<StateKey, LocationId> locations_;
   std::map<std::pair<StateKey, FormulaTree>, BranchId> branches_;

@@ -88,7 +88,7 @@ const std::map<std::string_view, FormFunction>& plan_forms() {
   static const auto table = [] {
     std::map<std::string_view, FormFunction> out;
     for (const auto part : {binding_forms(), control_forms(), loop_forms(), failure_forms(),
-                            designator_forms(), call_forms()}) {
+                            designator_forms(), prolog_forms(), call_forms()}) {
       for (const auto& entry : part) out.emplace(entry.name, entry.compile);
     }
     return out;

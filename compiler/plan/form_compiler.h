@@ -124,6 +124,7 @@ std::span<const FormEntry> control_forms();     // order, choice, blocks, questi
 std::span<const FormEntry> loop_forms();        // dolist, dotimes, loop, mapcar and its like
 std::span<const FormEntry> failure_forms();     // handlers, retries, clean-ups, the next branch
 std::span<const FormEntry> designator_forms();  // designators and their perform
+std::span<const FormEntry> prolog_forms();      // solutions of `prolog`
 std::span<const FormEntry> call_forms();        // funcall, apply, local functions
 
 /// All of them, by name.

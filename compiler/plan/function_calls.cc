@@ -33,11 +33,18 @@ void parameter(FormCompiler& c, DatumId form, DatumId item, std::string_view mod
   result.optional = mode == "&optional" || mode == "&key";
   result.rest = mode == "&rest";
   auto name = item;
-  const auto parts = c.data.children(item);
+  auto parts = c.data.children(item);
   if (result.optional && !parts.empty() && parts.size() <= 3) {
     name = parts.front();
     if (parts.size() > 1) result.default_value = parts[1];
     if (parts.size() > 2 && c.data.is_symbol(parts[2])) result.supplied = c.data.name(parts[2]);
+  }
+  // ((:key variable) ...): the caller's name for it and the function's own.
+  std::string keyword;
+  if (const auto pair = c.data.children(name);
+      mode == "&key" && pair.size() == 2 && c.data.is_keyword(pair[0])) {
+    keyword = c.data.name(pair[0]);
+    name = pair[1];
   }
   if (!c.data.is_symbol(name) || c.data.is_nil(name)) {
     c.malformed(form, "a parameter is a name");
@@ -47,7 +54,7 @@ void parameter(FormCompiler& c, DatumId form, DatumId item, std::string_view mod
   result.computed =
       result.supplied || (result.default_value && !is_constant(c, *result.default_value));
   result.name = c.data.name(name);
-  if (mode == "&key") result.keyword = result.name;
+  if (mode == "&key") result.keyword = keyword.empty() ? result.name : keyword;
   out.parameters.push_back(std::move(result));
 }
 
@@ -228,6 +235,33 @@ void form_flet(FormCompiler& c, DatumId form, FormItems items) {
 
 }  // namespace
 
+namespace {
+
+/// The constant that stands for an argument that is not given.
+ValueId default_value(FormCompiler& c, const PlanParameter& parameter) {
+  if (parameter.computed) return c.values.not_given();
+  if (!parameter.default_value) return c.values.nil();
+  const auto parts = c.data.children(*parameter.default_value);
+  return c.datum_value(parts.size() == 2 ? parts[1] : *parameter.default_value);
+}
+
+/// For calls whose arguments are known only while the plan runs.
+void note_signature(FormCompiler& c, const PlanFunction& function) {
+  using Kind = UnitParameter::Kind;
+  auto& unit = c.code.code().units[function.unit];
+  unit.other_keys = function.other_keys;
+  unit.top_level = function.top_level;
+  for (const auto& parameter : function.parameters) {
+    auto kind = parameter.optional ? Kind::kOptional : Kind::kRequired;
+    if (!parameter.keyword.empty()) kind = Kind::kKey;
+    if (parameter.rest) kind = Kind::kRest;
+    unit.signature.push_back(
+        {kind, parameter.name, parameter.keyword, default_value(c, parameter)});
+  }
+}
+
+}  // namespace
+
 PlanFunction declare_function(FormCompiler& c, DatumId form, std::string_view name,
                               DatumId parameters) {
   auto signature = parameter_list(c, form, parameters);
@@ -239,6 +273,7 @@ PlanFunction declare_function(FormCompiler& c, DatumId form, std::string_view na
   const auto kind = c.data.head(form).value_or("");
   out.top_level = kind == "def-top-level-cram-function";
   out.task = out.top_level || kind == "def-cram-function";
+  note_signature(c, out);
   return out;
 }
 

@@ -163,6 +163,7 @@ BuiltinResult typep(const BuiltinCall& c) {
   const auto& value = c.values[c.args[0]];
   const auto& type = c.values[c.args[1]];
   if (type.kind != ValueKind::kSymbol) return c.wrong(1, "a failure class");
+  if (const auto holds = has_designator_type(value, type.text)) return c.values.boolean(*holds);
   const auto wanted = c.classes.canonical(type.text);
   if (!wanted) return c.wrong(1, "a failure class");
   const bool holds = value.kind == ValueKind::kFailure && c.classes.is_a(value.text, *wanted);

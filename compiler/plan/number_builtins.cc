@@ -28,7 +28,7 @@ BuiltinResult multiply(const BuiltinCall& c) {
 BuiltinResult subtract(const BuiltinCall& c) {
   if (c.number(0) == nullptr) return not_a_number(c, 0);
   if (c.args.size() == 1) return c.values.number(Number(0) - *c.number(0));
-  const BuiltinCall rest{c.args.subspan(1), c.classes, c.values};
+  const BuiltinCall rest{c.args.subspan(1), c.classes, c.values, c.links};
   return fold(rest, *c.number(0), [](const Number& a, const Number& b) { return a - b; });
 }
 

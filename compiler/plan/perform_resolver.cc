@@ -8,6 +8,7 @@
 #include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
+#include "compiler/plan/designator_links.h"
 
 namespace parallax::compiler {
 
@@ -121,6 +122,24 @@ const BindingEntry* PerformResolver::find_entry(ValueId designator, SourceRange 
   return entry;
 }
 
+const QueryBinding* PerformResolver::find_query(std::string_view name,
+                                                std::size_t arguments) const {
+  for (const auto& query : binding_.queries) {
+    if (query.name == name && query.variables.size() == arguments) return &query;
+  }
+  return nullptr;
+}
+
+base::Result<FormulaTree> PerformResolver::query_formula(const QueryBinding& query,
+                                                         std::span<const ValueId> arguments,
+                                                         base::SourceRange source) {
+  Variables variables;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    variables.emplace(query.variables[i], arguments[i]);
+  }
+  return fill(query.formula, variables, source);
+}
+
 const BindingEntry* PerformResolver::find_plan(ValueId designator) const {
   const auto* entry = matching_entry(designator);
   return entry != nullptr && entry->plan ? entry : nullptr;
@@ -175,6 +194,7 @@ Result<FormulaTree> PerformResolver::constant(ValueId id, std::string_view what,
     case ValueKind::kQuaternion:
     case ValueKind::kFailure:
     case ValueKind::kCounter:
+    case ValueKind::kFurther:
       return wrong(values_.print(id));
   }
   return wrong("nothing");
@@ -227,7 +247,9 @@ Result<ValueId> PerformResolver::variable(const BindingEntry& entry, ValueId des
     const auto value = key_value(designator, key.key);
     PARALLAX_REQUIRE(value.has_value(), "the entry was chosen because its keys are there");
     if (!key.property) return *value;
-    if (const auto property = values_.key(*value, *key.property)) return *property;
+    if (is_designator(values_[*value])) {
+      if (const auto property = property_value(values_, *value, *key.property)) return *property;
+    }
     return sink_.error(DiagnosticCode::kDesignatorValue, source, to_string(entry.kind), key.key,
                        fmt::format("no `{}`", *key.property));
   }
@@ -293,22 +315,16 @@ Result<FormulaTree> PerformResolver::fill(const FormulaTree& formula, const Vari
   return out;
 }
 
-Result<FormulaTree> PerformResolver::question(ValueId list, bool query_only, SourceRange source) {
+Result<FormulaTree> PerformResolver::question(ValueId list, SourceRange source) {
   const auto items = values_.elements(list);
   if (!items || items->empty() || values_.kind(items->front()) != ValueKind::kSymbol) {
-    return sink_.error(DiagnosticCode::kPlanValue, source, query_only ? "prolog" : "holds",
+    return sink_.error(DiagnosticCode::kPlanValue, source, "holds",
                        "expected a quoted fluent such as '(holding left box)");
   }
   const auto& head = values_[items->front()].text;
-  for (const auto& query : binding_.queries) {
-    if (query.name != head || query.variables.size() + 1 != items->size()) continue;
-    Variables variables;
-    for (std::size_t i = 1; i < items->size(); ++i) {
-      variables.emplace(query.variables[i - 1], (*items)[i]);
-    }
-    return fill(query.formula, variables, source);
+  if (const auto* query = find_query(head, items->size() - 1)) {
+    return query_formula(*query, std::span(*items).subspan(1), source);
   }
-  if (query_only) return unbound_query(head, items->size() - 1, source);
   const auto name = model_name(fluents_, head, source);
   if (!name) return sink_.already_reported();
   std::vector<FormulaTree> arguments;
@@ -438,6 +454,7 @@ void PerformResolver::flatten(const std::string& name, ValueId id, PlanArguments
     case ValueKind::kPose:
     case ValueKind::kFailure:
     case ValueKind::kCounter:
+    case ValueKind::kFurther:
       return;
   }
 }

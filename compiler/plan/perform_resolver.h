@@ -70,9 +70,22 @@ class PerformResolver {
   base::Result<ValueId> variable(const BindingEntry& entry, ValueId designator,
                                  std::string_view name, base::SourceRange source);
 
-  /// The formula of `(holds '(fluent argument...))`, or of a query;
-  /// `query_only`: CPL030 if it is none.
-  base::Result<FormulaTree> question(ValueId list, bool query_only, base::SourceRange source);
+  /// Whether some entry of the table is the designator's.
+  bool has_entry(ValueId designator) const { return matching_entry(designator) != nullptr; }
+  /// The formula of `(holds '(fluent argument...))`, or of a query.
+  base::Result<FormulaTree> question(ValueId list, base::SourceRange source);
+  std::span<const QueryBinding> queries() const { return binding_.queries; }
+  /// The model's constant that a plan calls so.
+  std::optional<std::string> model_constant(std::string_view name) const {
+    return constants_.find(name);
+  }
+  const QueryBinding* find_query(std::string_view name, std::size_t arguments) const;
+  base::Result<FormulaTree> query_formula(const QueryBinding& query,
+                                          std::span<const ValueId> arguments,
+                                          base::SourceRange source);
+  /// Reports that the table has no such query (CPL030).
+  base::DiagnosticBuilder unbound_query(std::string_view name, std::size_t arguments,
+                                        base::SourceRange source);
 
   /// An object that the event needs the name of and the plan has neither named
   /// nor detected; the way there: designators from the value of a key inwards,
@@ -100,8 +113,6 @@ class PerformResolver {
   using Variables = std::map<std::string, ValueId, std::less<>>;
   base::Result<FormulaTree> fill(const FormulaTree& formula, const Variables& variables,
                                  base::SourceRange source);
-  base::DiagnosticBuilder unbound_query(std::string_view name, std::size_t arguments,
-                                        base::SourceRange source);
   base::DiagnosticBuilder unbound(ValueId designator, base::SourceRange source);
   const BindingEntry* matching_entry(ValueId designator) const;
   std::optional<ValueId> key_value(ValueId designator, std::string_view key) const;

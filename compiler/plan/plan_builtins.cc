@@ -8,7 +8,8 @@ namespace {
 const std::vector<BuiltinEntry>& table() {
   static const auto all = [] {
     std::vector<BuiltinEntry> out;
-    for (const auto part : {number_builtins(), list_builtins(), pose_builtins()}) {
+    for (const auto part :
+         {number_builtins(), list_builtins(), pose_builtins(), designator_builtins()}) {
       out.insert(out.end(), part.begin(), part.end());
     }
     return out;
@@ -37,8 +38,9 @@ std::optional<std::uint32_t> find_builtin(std::string_view name) {
 
 BuiltinResult call_builtin(std::uint32_t builtin, std::span<const ValueId> arguments,
                            const FailureClasses& classes, std::int64_t location_samples,
-                           ValueStore& values) {
-  return table()[builtin].function(BuiltinCall{arguments, classes, values, location_samples});
+                           DesignatorLinks& links, ValueStore& values) {
+  return table()[builtin].function(
+      BuiltinCall{arguments, classes, values, links, location_samples});
 }
 
 }  // namespace parallax::compiler

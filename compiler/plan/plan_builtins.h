@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "compiler/plan/designator_links.h"
 #include "compiler/plan/failure_classes.h"
 #include "compiler/plan/plan_value.h"
 
@@ -30,7 +31,8 @@ struct ModelEquality {
   ValueId left;
   ValueId right;
 };
-enum class BuiltinError : std::uint8_t { kValue, kModelComparison, kModelList };
+/// kRaise: the plan fails, with the class in the text.
+enum class BuiltinError : std::uint8_t { kValue, kModelComparison, kModelList, kRaise };
 struct BuiltinFailure {
   BuiltinError kind = BuiltinError::kValue;
   std::string text;  // what is wrong with the arguments
@@ -41,6 +43,6 @@ using BuiltinResult = std::variant<ValueId, ModelEquality, BuiltinFailure>;
 /// values in the store. The number of arguments is right.
 BuiltinResult call_builtin(std::uint32_t builtin, std::span<const ValueId> arguments,
                            const FailureClasses& classes, std::int64_t location_samples,
-                           ValueStore& values);
+                           DesignatorLinks& links, ValueStore& values);
 
 }  // namespace parallax::compiler

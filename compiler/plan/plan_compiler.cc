@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <string>
 #include <utility>
@@ -26,7 +28,7 @@ bool defines_global(std::string_view head) {
 
 bool is_housekeeping(std::string_view head) {
   return head == "in-package" || head == "defpackage" || head == "declaim" || head == "declare" ||
-         head == "proclaim" || head == "export";
+         head == "proclaim" || head == "export" || head == "def-fact-group";
 }
 
 /// Collects what the file defines, compiles it, then what is to be run.
@@ -42,6 +44,7 @@ class PlanCompiler {
                          "the file has no forms");
     }
     for (const auto form : text_.forms) check_dotted(form);
+    note_designator_use();
     collect_definitions();
     if (bare_forms_.empty() && c_.defined.functions.empty()) {
       return c_.error(DiagnosticCode::kNoPlanEntry, text_.forms.front(),
@@ -54,6 +57,28 @@ class PlanCompiler {
   }
 
  private:
+  /// Whether the plan tells designators apart, and whether it asks what they say.
+  void note_designator_use() {
+    static constexpr std::string_view kEquate[] = {"equate", "desig-equal"};
+    static constexpr std::string_view kDescribe[] = {
+        "desig-prop-value", "desig-prop-values", "properties",     "description",
+        "copy-designator",  "property",          "def-fact-group", "extend-designator-properties"};
+    const auto is_one = [](const auto& names, std::string_view name) {
+      return std::find(std::begin(names), std::end(names), name) != std::end(names);
+    };
+    std::vector<DatumId> open(text_.forms.begin(), text_.forms.end());
+    while (!open.empty()) {
+      const auto datum = open.back();
+      open.pop_back();
+      const auto items = c_.data.children(datum);
+      open.insert(open.end(), items.begin(), items.end());
+      if (!c_.data.is_symbol(datum)) continue;
+      auto& code = c_.code.code();
+      code.identities = code.identities || is_one(kEquate, c_.data.name(datum));
+      code.describes = code.describes || code.identities || is_one(kDescribe, c_.data.name(datum));
+    }
+  }
+
   /// A dotted list is data: as code it would be read as if the dot were not there.
   void check_dotted(DatumId form) {
     std::vector<std::pair<DatumId, bool>> open = {{form, false}};  // in a template?
@@ -61,7 +86,7 @@ class PlanCompiler {
       const auto [datum, is_data] = open.back();
       open.pop_back();
       const auto head = c_.data.head(datum).value_or("");
-      if (head == "quote") continue;
+      if (head == "quote" || head == "def-fact-group") continue;
       if (!is_data && c_.data.is_dotted(datum)) {
         c_.malformed(datum, "a dotted list is data: quote it");
         return;
@@ -139,6 +164,9 @@ class PlanCompiler {
 
   void compile_functions() {
     const auto first = text_.forms.front();
+    c_.code.code().halt = c_.code.declare_unit("a computation", first, 0);
+    c_.code.enter_unit(c_.code.code().halt);
+    c_.code.leave_unit(PlanOp::kDone, first);
     c_.code.code().definitions = c_.code.declare_unit("the definitions", first, 0);
     c_.code.enter_unit(c_.code.code().definitions);
     for (const auto form : global_forms_) {

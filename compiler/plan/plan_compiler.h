@@ -63,11 +63,23 @@ struct PlanInstruction {
   DatumId source;
 };
 
+/// How a parameter of a function gets its value.
+struct UnitParameter {
+  enum class Kind : std::uint8_t { kRequired, kOptional, kKey, kRest };
+  Kind kind = Kind::kRequired;
+  std::string name;
+  std::string keyword;    // kKey, without colon
+  ValueId default_value;  // kOptional, kKey: what stands for an argument that is not given
+};
+
 /// A function, a handler, a clean-up or a local function.
 struct PlanUnit {
   std::string name;
   std::uint32_t parameters = 0;
-  bool recursive_limit = false;  // named functions count their own recursion
+  std::vector<UnitParameter> signature;  // functions: one for each parameter
+  bool other_keys = false;               // &allow-other-keys
+  bool top_level = false;                // def-top-level-cram-function
+  bool recursive_limit = false;          // named functions count their own recursion
   DatumId source;
   std::vector<PlanInstruction> code;
 };
@@ -99,6 +111,7 @@ struct PlanCode {
   std::vector<PlanUnit> units;
   std::uint32_t definitions = 0;  // the unit that sets the globals
   std::uint32_t main = 0;
+  std::uint32_t halt = 0;  // a unit that is over at once: a computation of its own returns to it
   std::vector<ExitTarget> exits;
   std::vector<std::vector<HandlerClause>> handlers;
   std::vector<ParBranches> pars;
@@ -106,6 +119,8 @@ struct PlanCode {
   std::vector<std::string> strings;
   FailureClasses classes;
   std::map<std::string, std::uint32_t, std::less<>> functions;  // the plan's own: their units
+  bool identities = false;  // designators are equated: each is a thing of its own
+  bool describes = false;   // properties are asked for: found objects keep their description
 };
 
 /// Turns a plan into code for the unroller's machine. `entry` names the function to run; without it

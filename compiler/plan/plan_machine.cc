@@ -40,6 +40,13 @@ class KeyWriter {
     }
   }
 
+  void links(const DesignatorLinks& links) {
+    for (const auto& chain : links.chains) {
+      number(chain.size());
+      for (const auto member : chain) number(member.index());
+    }
+  }
+
   /// As deep as the text nests `par`.
   void pars(const std::vector<PlanPar>& pars) {
     number(pars.size());
@@ -98,6 +105,9 @@ ValueId pop(PlanState& state) {
 void for_each_value(const PlanState& state, const std::function<void(ValueId)>& visit) {
   visit_part(state.frames, state.stack, visit);
   visit_pars(state.pars, visit);
+  for (const auto& chain : state.links.chains) {
+    for (const auto member : chain) visit(member);
+  }
 }
 
 std::vector<std::uint32_t> state_key(const PlanState& state, const ValueStore& values,
@@ -105,6 +115,7 @@ std::vector<std::uint32_t> state_key(const PlanState& state, const ValueStore& v
   KeyWriter writer(values, counters);
   writer.part(state.frames, state.guards, state.stack);
   if (!state.pars.empty()) writer.pars(state.pars);
+  writer.links(state.links);
   return std::move(writer.key);
 }
 
@@ -210,14 +221,12 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
     case PlanOp::kBuiltin:
       return builtin(state, instruction);
     case PlanOp::kHolds:
-      return StopQuestion{pop(state), instruction.source, instruction.a != 0};
-    case PlanOp::kDesignator: {
-      Value value;
-      value.kind = ValueKind::kDesignator;
-      value.designator = static_cast<DesignatorKind>(instruction.a);
-      stack.push_back(values_.intern(std::move(value)));
+      if (instruction.a == 0) return StopQuestion{pop(state), instruction.source};
+      return StopProof{pop(state), instruction.source, instruction.a == 2};
+    case PlanOp::kDesignator:
+      refresh_links(state, {});
+      stack.push_back(state.links.make(values_, static_cast<DesignatorKind>(instruction.a), {}));
       return {};
-    }
     case PlanOp::kAddKey:
       add_key(state, instruction);
       return {};
@@ -363,8 +372,9 @@ PlanMachine::Step PlanMachine::builtin(PlanState& state, const PlanInstruction& 
   const auto count = static_cast<std::ptrdiff_t>(instruction.b);
   const std::vector<ValueId> arguments(state.stack.end() - count, state.stack.end());
   state.stack.resize(state.stack.size() - arguments.size());
-  auto result =
-      call_builtin(instruction.a, arguments, code_.classes, limits_.location_samples, values_);
+  refresh_links(state, arguments);
+  auto result = call_builtin(instruction.a, arguments, code_.classes, limits_.location_samples,
+                             state.links, values_);
   if (const auto* value = std::get_if<ValueId>(&result)) {
     state.stack.push_back(*value);
     return {};
@@ -373,21 +383,8 @@ PlanMachine::Step PlanMachine::builtin(PlanState& state, const PlanInstruction& 
     return StopQuestion{*equality, instruction.source};
   }
   const auto& failure = std::get<BuiltinFailure>(result);
-  const auto name = plan_builtins()[instruction.a].name;
-  const auto source = data_.source(instruction.source);
-  switch (failure.kind) {
-    case BuiltinError::kValue:
-      sink_.error(DiagnosticCode::kPlanValue, source,
-                  name.front() == '%' ? name_at(instruction.source) : std::string(name),
-                  failure.text);
-      break;
-    case BuiltinError::kModelComparison:
-      sink_.error(DiagnosticCode::kModelComparison, source, name);
-      break;
-    case BuiltinError::kModelList:
-      sink_.error(DiagnosticCode::kModelList, source, name);
-      break;
-  }
+  if (failure.kind == BuiltinError::kRaise) return raise(state, values_.failure(failure.text));
+  report(failure, instruction.a, instruction.source);
   return StopError{};
 }
 
@@ -405,6 +402,12 @@ PlanMachine::Step PlanMachine::leave(PlanState& state) {
   const auto result = state.stack.back();
   const auto base = state.frames.back().base;
   state.frames.pop_back();
+  // The task of a perform ends with the function that carries it out.
+  if (!state.guards.empty() && state.guards.back().kind == GuardKind::kTask &&
+      state.guards.back().index == kPerformTask &&
+      std::size_t{state.guards.back().frame} + 1 == state.frames.size()) {
+    state.guards.pop_back();
+  }
   state.stack.resize(base);
   state.stack.push_back(result);
   return {};
@@ -441,6 +444,9 @@ PlanMachine::Step PlanMachine::call(PlanState& state, const PlanInstruction& ins
 
 std::optional<PlanStop> PlanMachine::enter(PlanState& state, std::uint32_t unit,
                                            const std::vector<ValueId>& arguments, DatumId form) {
+  const auto caller = static_cast<std::uint32_t>(state.frames.size() - 1);
+  const auto height = static_cast<std::uint32_t>(state.stack.size());
+  state.guards.push_back({GuardKind::kTask, kPerformTask, caller, height});
   state.stack.insert(state.stack.end(), arguments.begin(), arguments.end());
   return call(state, {PlanOp::kCall, unit, 0, form});
 }

@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
+#include "compiler/plan/designator_links.h"
 #include "compiler/plan/lisp_data.h"
 #include "compiler/plan/plan_builtins.h"
 #include "compiler/plan/plan_compiler.h"
@@ -47,6 +49,9 @@ struct PlanFrame {
 /// the same of a branch that another one's failure has ended; failures of its clean-ups are lost.
 /// kSpecial: a special variable is rebound here, by the value at `height`.
 enum class GuardKind : std::uint8_t { kHandlers, kCleanup, kTask, kEvaporated, kSpecial };
+
+/// The index of a kTask that ends with the function called in it.
+inline constexpr std::uint32_t kPerformTask = 1;
 
 /// An active with-failure-handling or unwind-protect, the border of a task, a rebound special.
 struct PlanGuard {
@@ -98,13 +103,18 @@ struct PlanState {
   std::vector<PlanFrame> frames;
   std::vector<PlanGuard> guards;
   std::vector<ValueId> stack;
-  std::vector<PlanPar> pars;   // outermost first
+  std::vector<PlanPar> pars;  // outermost first
+  DesignatorLinks links;
   std::uint32_t performs = 0;  // on the path so far; not part of the state's identity
   std::uint32_t missed = 0;    // references that failed since the last perform; the same
 };
 
 /// Calls visit(value) for every value that the state holds, also in branches that wait.
 void for_each_value(const PlanState& state, const std::function<void(ValueId)>& visit);
+
+/// Forgets the links of designators that nothing else in the state, and nothing of `more`, refers
+/// to.
+void drop_dead_links(PlanState& state, std::span<const ValueId> more, const ValueStore& values);
 
 /// Equal for equal states. Without `counters`, states that differ only in how often an endless loop
 /// has run are equal: coming back to such a state is a cycle, not news.
@@ -119,7 +129,11 @@ struct StopPerform {
 struct StopQuestion {                           // only the model knows
   std::variant<ValueId, ModelEquality> fluent;  // a fluent's list, or whether two values are equal
   DatumId form;
-  bool query_only = false;  // of `prolog`: the list is a query of the binding table
+};
+struct StopProof {  // the goal of a `prolog` form
+  ValueId goal;
+  DatumId form;
+  bool all = false;  // every solution, not just one
 };
 struct StopDone {};
 struct StopFailed {
@@ -132,8 +146,8 @@ struct StopBound {
 struct StopTurn {
 };  // of the outermost `par` every branch is over or waits, or it may end in two ways
 struct StopError {};  // reported
-using PlanStop =
-    std::variant<StopPerform, StopQuestion, StopDone, StopFailed, StopBound, StopTurn, StopError>;
+using PlanStop = std::variant<StopPerform, StopQuestion, StopProof, StopDone, StopFailed, StopBound,
+                              StopTurn, StopError>;
 
 struct MachineLimits {
   std::uint32_t max_call_depth = 8;
@@ -183,9 +197,18 @@ class PlanMachine {
   std::optional<PlanStop> end_par(PlanState& state, const Ending& ending);
   /// Puts that branch in place; its perform is next.
   static StopPerform resume(PlanState& state, const BranchPath& path);
-  /// Lets a function of the plan answer; run goes into it.
+  /// Lets a function of the plan answer, in a task of its own; run goes into it.
   std::optional<PlanStop> enter(PlanState& state, std::uint32_t unit,
                                 const std::vector<ValueId>& arguments, DatumId form);
+  /// A state in which the unit is all that runs: StopDone with its value on top.
+  PlanState computation(std::uint32_t unit, const std::vector<ValueId>& arguments,
+                        DesignatorLinks links) const;
+  /// Prepares the making of designators: an identity that neither the state nor `more` has.
+  void refresh_links(PlanState& state, std::span<const ValueId> more) const;
+  /// Counts a step that is made elsewhere; false beyond the limit.
+  bool count_step() { return ++steps_ + values_.elements_read() <= limits_.max_steps; }
+  /// Says why a built-in has no value.
+  void report(const BuiltinFailure& failure, std::uint32_t builtin, DatumId form);
 
  private:
   using Step = std::optional<PlanStop>;  // empty: go on

@@ -24,6 +24,7 @@ std::string fingerprint(const Value& value) {
   switch (value.kind) {
     case ValueKind::kNil:
     case ValueKind::kNotGiven:
+    case ValueKind::kFurther:
       break;
     case ValueKind::kSymbol:
       out += value.keyword ? ":" : "";
@@ -48,15 +49,15 @@ std::string fingerprint(const Value& value) {
       append(out, value.pose);
       break;
     case ValueKind::kDesignator:
-      out += fmt::format("{} ", static_cast<int>(value.designator));
-      for (const auto& [key, item] : value.keys) {
-        append(out, key);
-        out += fmt::format("{} ", item.index());
-      }
+      out += fmt::format("{} {} ", static_cast<int>(value.designator), value.identity);
       break;
     case ValueKind::kModel:
-      out += fmt::format("{}", value.model.index());
+      out += fmt::format("{} ", value.model.index());
       break;
+  }
+  for (const auto& [key, item] : value.keys) {
+    append(out, key);
+    out += fmt::format("{} ", item.index());
   }
   return out;
 }
@@ -94,23 +95,29 @@ ValueId ValueStore::intern(Value value) {
   auto text = fingerprint(value);
   const auto found = ids_.find(text);
   if (found != ids_.end()) return found->second;
-  note_registers(value);
+  note_parts(value);
   const auto id = values_.add(std::move(value));
   ids_.emplace(std::move(text), id);
   return id;
 }
 
-void ValueStore::note_registers(Value& value) const {
-  auto& out = value.registers;
+/// What the value and its parts refer to.
+void ValueStore::note_parts(Value& value) const {
   const auto include = [&](ValueId part) {
-    const auto& more = values_[part].registers;
-    out.insert(out.end(), more.begin(), more.end());
+    const auto& from = values_[part];
+    value.registers.insert(value.registers.end(), from.registers.begin(), from.registers.end());
+    value.identities.insert(value.identities.end(), from.identities.begin(), from.identities.end());
   };
-  if (value.kind == ValueKind::kModel) out = {value.model};
+  const auto tidy = [](auto& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  };
+  value.registers.clear(), value.identities.clear();
+  if (value.kind == ValueKind::kModel) value.registers = {value.model};
+  if (value.identity != 0) value.identities = {value.identity};
   if (value.kind == ValueKind::kCons) include(value.head), include(value.tail);
   for (const auto& [key, part] : value.keys) include(part);
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
+  tidy(value.registers), tidy(value.identities);
 }
 
 ValueId ValueStore::symbol(std::string_view name) {
@@ -217,6 +224,7 @@ std::string ValueStore::print(ValueId id) const {
     case ValueKind::kCons: {
       auto tail = id;
       while (kind(tail) == ValueKind::kCons) tail = values_[tail].tail;
+      if (kind(tail) == ValueKind::kFurther) return "solutions, of which the first alone is known";
       return is_nil(tail) ? "a list" : "a dotted list";
     }
     case ValueKind::kVector:
@@ -234,6 +242,8 @@ std::string ValueStore::print(ValueId id) const {
       return "a value of the model";
     case ValueKind::kNotGiven:
       return "no argument";
+    case ValueKind::kFurther:
+      return "further solutions";
   }
   return {};
 }

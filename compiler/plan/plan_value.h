@@ -32,6 +32,7 @@ enum class ValueKind : std::uint8_t {
   kModel,     // determined by the model; see PlanGraph::values
   kCounter,   // hidden iteration count of a bounded loop
   kNotGiven,  // stands for an argument whose default the function computes
+  kFurther,   // the rest of a list of solutions, of which only the first is known
 };
 
 enum class DesignatorKind : std::uint8_t { kMotion, kAction, kObject, kLocation, kAllObjects };
@@ -47,9 +48,12 @@ struct Value {
   ValueId tail;
   Pose pose;  // kPose; kVector and kQuaternion use their part
   DesignatorKind designator = DesignatorKind::kMotion;
-  std::vector<std::pair<std::string, ValueId>> keys;  // kDesignator: in written order
+  // kDesignator: in written order; kModel: the description that it was sought by
+  std::vector<std::pair<std::string, ValueId>> keys;
+  std::uint32_t identity = 0;  // kDesignator: tells it from another one with the same keys
   ModelValueId model;
-  std::vector<ModelValueId> registers;  // of the model values in it, sorted; set by the store
+  std::vector<ModelValueId> registers;    // of the model values in it, sorted; set by the store
+  std::vector<std::uint32_t> identities;  // of the designators in it, sorted; set by the store
 };
 
 /// How many further solutions of a location `next-solution` has gone through.
@@ -94,7 +98,7 @@ class ValueStore {
   std::string print(ValueId id) const;
 
  private:
-  void note_registers(Value& value) const;
+  void note_parts(Value& value) const;
 
   base::Store<ValueId, Value> values_;
   std::map<std::string, ValueId> ids_;

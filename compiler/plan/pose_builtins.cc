@@ -89,33 +89,6 @@ BuiltinResult stamp_pose(const BuiltinCall& c) {
   return make(c, ValueKind::kPose, stamped);
 }
 
-/// `reference` and `current-desig`: a designator is its own solution.
-
-BuiltinResult next_solution(const BuiltinCall& c) {
-  // A new sample of a location is the same region in the model: as many as were asked for, which
-  // differ in nothing but their number.
-  auto value = c.values[c.args[0]];
-  const bool location =
-      value.kind == ValueKind::kDesignator && value.designator == DesignatorKind::kLocation;
-  if (!location) return c.wrong(0, "a location designator");
-  std::int64_t number = 0;
-  if (const auto last = c.values.key(c.args[0], kSolutionKey)) {
-    number = c.values[*last].number.numerator();
-    value.keys.pop_back();
-  }
-  if (number >= c.location_samples) return c.values.nil();
-  value.keys.emplace_back(kSolutionKey, c.values.number(Number(number + 1)));
-  return c.values.intern(std::move(value));
-}
-
-BuiltinResult property(const BuiltinCall& c) {
-  const auto& value = c.values[c.args[0]];
-  const auto& key = c.values[c.args[1]];
-  if (value.kind != ValueKind::kDesignator) return c.wrong(0, "a designator");
-  if (key.kind != ValueKind::kSymbol) return c.wrong(1, "a key");
-  return c.values.key(c.args[0], key.text).value_or(c.values.nil());
-}
-
 constexpr BuiltinEntry kPoseTable[] = {
     {{"make-3d-vector", 3, 3}, make_vector},
     {{"make-quaternion", 4, 4}, make_quaternion},
@@ -125,10 +98,6 @@ constexpr BuiltinEntry kPoseTable[] = {
     {{"make-pose", 2, 2}, make_pose},
     {{"make-pose-stamped", 4, 4}, make_pose_stamped},
     {{"pose->pose-stamped", 3, 3}, stamp_pose},
-    {{"next-solution", 1, 1}, next_solution},
-    {{"current-desig", 1, 1}, first_argument},
-    {{"reference", 1, 1}, first_argument},
-    {{"desig-prop-value", 2, 2}, property},
 };
 
 }  // namespace

@@ -94,7 +94,7 @@ std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform&
   if (entry->returns) {
     const auto value = free_register(state, stop.form, *entry->returns);
     graph_.locations[id].result = value;
-    result = values_.model(value);
+    result = found_object(value, stop.designator);
   }
   ++state.performs;
   state.missed = 0;
@@ -103,6 +103,18 @@ std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform&
   jobs_.push_back({std::move(state), {}, {}, Job::Edge::kSuccess, id.index()});
   jobs_.back().state.stack.push_back(result);
   return id;
+}
+
+/// What a perform returns. Where the plan asks for properties, it keeps the description by which it
+/// was sought.
+ValueId Explorer::found_object(ModelValueId id, ValueId designator) {
+  const auto sought = code_.describes ? values_.key(designator, "object") : std::nullopt;
+  Value value;
+  value.kind = ValueKind::kModel;
+  value.model = id;
+  if (sought && values_.kind(*sought) == ValueKind::kDesignator) value.keys = values_[*sought].keys;
+  std::erase_if(value.keys, [](const auto& key) { return key.first == "name"; });
+  return values_.intern(std::move(value));
 }
 
 /// The first register of this perform that the plan does not refer to any more.
@@ -126,7 +138,7 @@ ModelValueId Explorer::free_register(const PlanState& state, DatumId form,
 base::Result<FormulaTree> Explorer::guard_of(const StopQuestion& stop) {
   const auto source = data_.source(stop.form);
   if (const auto* fluent = std::get_if<ValueId>(&stop.fluent)) {
-    return resolver_.question(*fluent, stop.query_only, source);
+    return resolver_.question(*fluent, source);
   }
   const auto& equality = std::get<ModelEquality>(stop.fluent);
   const auto left = resolver_.constant(equality.left, "eq", source);
@@ -176,9 +188,24 @@ std::optional<PlanTarget> Explorer::advance(Job& job) {
   }
   if (job.act) return perform(job.state, *job.act);
   for (;;) {
+    if (job.proof) {
+      const auto ruled = ask_rules(job);
+      if (ruled.stop) return stopped(job.state, *ruled.stop);
+      if (!ruled.goes_on) return ruled.target;
+    }
     auto stop = machine_.run(job.state);
-    const auto* act = std::get_if<StopPerform>(&stop);
+    if (const auto* goal = std::get_if<StopProof>(&stop)) {
+      job.proof = *goal;
+      continue;
+    }
+    auto* act = std::get_if<StopPerform>(&stop);
     if (act == nullptr) return stopped(job.state, stop);
+    act->designator = resolve_links(job.state.links, values_, act->designator);
+    drop_dead_links(job.state, std::span(&act->designator, 1), values_);
+    if (is_ruled(*act)) {
+      job.proof = *act;
+      continue;
+    }
     std::optional<PlanStop> ended;
     if (const auto* entry = resolver_.find_plan(act->designator)) {
       ended = run_plan(job.state, *act, *entry);
@@ -346,12 +373,14 @@ base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files,
                                     std::span<const base::FileId> plan, const PlanBinding& binding,
                                     const PoseLocator& locator, const UnrollOptions& options,
                                     base::DiagnosticSink& sink) {
+  const auto errors_before = sink.error_count();
   auto text = read_lisp(files, plan, sink);
   if (!text || !resolve_packages(*text, sink)) return sink.already_reported();
   ValueStore values;
+  const auto facts = read_fact_groups(*text, values, sink);
   const auto code = compile_plan(*text, options.entry, options.interleave, values, sink);
-  if (!code) return sink.already_reported();
-  return Explorer(text->data, *code, binding, locator, options, values, sink).explore();
+  if (!code || sink.error_count() != errors_before) return sink.already_reported();
+  return Explorer(text->data, *code, facts, binding, locator, options, values, sink).explore();
 }
 
 }  // namespace parallax::compiler

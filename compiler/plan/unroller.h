@@ -27,6 +27,8 @@ struct UnrollOptions {
   std::vector<std::string> fluents;
   /// The model's constants that each object entry of the binding table can mean.
   std::vector<std::vector<std::string>> candidates;
+  /// The same for each variable of each query.
+  std::vector<std::vector<std::vector<std::string>>> query_candidates;
   bool interleave = false;            // explore every order of the performs in branches of `par`
   std::int32_t location_samples = 0;  // further solutions of a location before there is none
 };

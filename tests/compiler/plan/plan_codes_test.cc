@@ -90,7 +90,7 @@ const Case kCases[] = {
      "no binding for motion `going` with the keys ()"},
     {"(prolog '(in-hand left box))", "CPL030", "no binding for query `in-hand` with 2 arguments"},
     {"(prolog '(and (in-hand box) (in-hand cup)))", "CPL030",
-     "no binding for query `and` with 2 arguments"},
+     "no binding for query `in-hand` with 1 arguments"},
     {"(prolog 'in-hand)", "CPL008",
      "`prolog`: expected a quoted fluent such as '(holding left box)"},
     {"(perform 5)", "CPL030", "no binding for 5: only motions and actions are performed"},
