@@ -19,6 +19,11 @@ std::string shortened(std::string message) {
   return message.substr(0, kKept) + " [...] " + message.substr(message.size() - kKept);
 }
 
+bool is_unknown_name(DiagnosticCode code) {
+  return code == DiagnosticCode::kUnknownSort || code == DiagnosticCode::kUnknownName ||
+         code == DiagnosticCode::kVariableWithoutSort;
+}
+
 auto sort_key(const Diagnostic& d) {
   const bool located = d.range.has_value();
   return std::tuple(located, located ? d.range->file.index() : 0U, located ? d.range->begin : 0U,
@@ -70,11 +75,27 @@ DiagnosticBuilder DiagnosticSink::add(DiagnosticCode code, std::optional<SourceR
   const bool is_error = info(code).severity == Severity::kError;
   auto& count = is_error ? error_count_ : warning_count_;
   const bool muted = !is_error && std::find(muted_.begin(), muted_.end(), code) != muted_.end();
-  if (muted || ++count > (is_error ? error_limit_ : warning_limit_)) {
+  const auto drop = [&] {
     dropped_ = Diagnostic{};
     return DiagnosticBuilder(*this, kDropped);
+  };
+  if (muted) return drop();
+  ++count;
+  const bool unknown = range && is_unknown_name(code);
+  if (unknown) {
+    const auto first = unknown_.find({code, message});
+    if (first != unknown_.end()) {
+      auto& entry = entries_[first->second];
+      if (entry.range != range) ++entry.again;
+      ++merged_;
+      return drop();
+    }
   }
-  entries_.push_back({code, range, std::move(subject), shortened(std::move(message)), {}, {}, {}});
+  const auto kept = is_error ? count - merged_ : count;
+  if (kept > (is_error ? error_limit_ : warning_limit_)) return drop();
+  if (unknown) unknown_.emplace(std::pair(code, message), entries_.size());
+  entries_.push_back(
+      {code, range, std::move(subject), shortened(std::move(message)), {}, {}, {}, 0});
   return DiagnosticBuilder(*this, entries_.size() - 1);
 }
 
@@ -92,7 +113,12 @@ int DiagnosticSink::exit_code() const {
   int code = 0;
   for (const auto& entry : entries_) {
     if (info(entry.code).severity != Severity::kError) continue;
-    const int mine = 2 + static_cast<int>(info(entry.code).klass);
+    // A path in a text is for the text to mend, not for the command line.
+    const bool in_text = entry.range && (entry.code == DiagnosticCode::kFileNotFound ||
+                                         entry.code == DiagnosticCode::kFileUnreadable ||
+                                         entry.code == DiagnosticCode::kNotARegularFile);
+    const auto klass = in_text ? DiagnosticClass::kInput : info(entry.code).klass;
+    const int mine = 2 + static_cast<int>(klass);
     // An internal error outranks everything: a check that disagreed must not hide behind a typo.
     if (mine == 5) return 5;
     code = code == 0 ? mine : std::min(code, mine);
@@ -115,6 +141,13 @@ std::vector<Diagnostic> DiagnosticSink::sorted() const {
            a.subject == b.subject;
   };
   result.erase(std::unique(result.begin(), result.end(), same), result.end());
+  for (auto& entry : result) {
+    if (entry.again == 0) continue;
+    entry.notes.push_back(
+        {std::nullopt, entry.again == 1
+                           ? std::string("it is used in another place as well")
+                           : fmt::format("it is used in {} other places as well", entry.again)});
+  }
   return result;
 }
 

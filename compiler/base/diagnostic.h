@@ -3,9 +3,11 @@
 #include <fmt/core.h>
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/base/result.h"
@@ -52,7 +54,8 @@ struct Diagnostic {
   std::string message;
   std::vector<DiagnosticNote> notes;
   std::string fix;
-  std::string help;  // what to do here; empty: what the registry says
+  std::string help;       // what to do here; empty: what the registry says
+  std::size_t again = 0;  // further places at which the same name is unknown
 };
 
 class DiagnosticSink;
@@ -79,7 +82,8 @@ class DiagnosticBuilder {
 };
 
 /// Collects what is wrong with the user's input; never prints. Beyond the limits errors and
-/// warnings are counted but not kept.
+/// warnings are counted but not kept. A name that is unknown is one error, however often it is
+/// used: further places are counted in a note.
 class DiagnosticSink {
  public:
   static constexpr std::size_t kUsualLimit = 20;
@@ -112,6 +116,8 @@ class DiagnosticSink {
   void mute(DiagnosticCode warning) { muted_.push_back(warning); }
 
   std::size_t error_count() const { return error_count_; }
+  /// Those of them that are places of an error which is kept.
+  std::size_t merged_count() const { return merged_; }
   std::size_t warning_count() const { return warning_count_; }
   bool has_errors() const { return error_count_ != 0; }
   /// The exit code that the errors ask for: the smallest class wins (usage before input ...).
@@ -127,6 +133,8 @@ class DiagnosticSink {
                         std::string message);
   std::vector<Diagnostic> entries_;
   std::vector<DiagnosticCode> muted_;
+  std::map<std::pair<DiagnosticCode, std::string>, std::size_t> unknown_;  // entries, by message
+  std::size_t merged_ = 0;
   std::size_t error_limit_;
   std::size_t warning_limit_;
   std::size_t error_count_ = 0;

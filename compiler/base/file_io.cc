@@ -58,6 +58,23 @@ Result<std::string> read_file(const std::filesystem::path& path, DiagnosticSink&
   }
 }
 
+Status check_file(const std::filesystem::path& path, const SourceRange& place, DiagnosticSink& sink,
+                  bool or_folder) {
+  struct ::stat status {};
+  if (::stat(path.c_str(), &status) != 0) {
+    if (errno == ENOENT || errno == ENOTDIR) {
+      return sink.error(DiagnosticCode::kFileNotFound, place, "no file `" + path.string() + "`");
+    }
+    return sink.error(DiagnosticCode::kFileUnreadable, place, std::strerror(errno));
+  }
+  if (or_folder && S_ISDIR(status.st_mode)) return Unit{};
+  if (!S_ISREG(status.st_mode)) return sink.error(DiagnosticCode::kNotARegularFile, place);
+  if (::access(path.c_str(), R_OK) != 0) {
+    return sink.error(DiagnosticCode::kFileUnreadable, place, std::strerror(errno));
+  }
+  return Unit{};
+}
+
 Result<FileId> load_text(const std::filesystem::path& path, SourceFiles& files,
                          DiagnosticSink& sink) {
   auto text = read_file(path, sink);

@@ -13,6 +13,11 @@ namespace parallax::base {
 Result<std::string> read_file(const std::filesystem::path& path, DiagnosticSink& sink,
                               std::size_t limit = std::size_t{64} << 20U);
 
+/// Of a path that stands in a text, at `place`: is there a regular file, or a folder where
+/// `or_folder` says so, that can be read? Reports there what read_file would report.
+Status check_file(const std::filesystem::path& path, const SourceRange& place, DiagnosticSink& sink,
+                  bool or_folder = false);
+
 /// Reads and registers the file under the name that the user wrote; refuses NUL bytes and invalid
 /// UTF-8 with a located kInvalidText.
 Result<FileId> load_text(const std::filesystem::path& path, SourceFiles& files,

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <set>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "compiler/plan/plan_binding.h"
 #include "compiler/plan/unroller.h"
 #include "compiler/sema/check.h"
+#include "compiler/sema/name_advice.h"
 #include "compiler/syntax/parser.h"
 
 namespace parallax::compiler {
@@ -70,6 +72,58 @@ void set_horizon(const PlanGraph& graph, std::int64_t max_horizon, TypedModel& m
   time.ranges[0].upper = std::clamp(longest, std::int64_t{1}, max_horizon);
 }
 
+/// Are the events that the plan performs events of the model, as far as one can tell from their
+/// names? Reported at the binding table, where they are named.
+base::Status check_performed(const PlanGraph& graph, const PlanBinding& binding,
+                             const TypedModel& model, base::DiagnosticSink& sink) {
+  const auto errors_before = sink.error_count();
+  constexpr std::array<SymbolKind, 1> kEvents = {SymbolKind::kEvent};
+  for (const auto& entry : binding.entries) {
+    if (entry.plan) continue;
+    const auto performed = std::find_if(
+        graph.locations.begin(), graph.locations.end(),
+        [&](const auto& location) { return location.event_symbol == entry.event_symbol; });
+    const auto symbol = model.find_symbol(entry.event_symbol);
+    const bool fits = symbol && model.symbols[*symbol].kind == SymbolKind::kEvent &&
+                      model.symbols[*symbol].arguments.size() == entry.event_arguments.size();
+    if (performed == graph.locations.end() || fits) continue;
+    auto error =
+        sink.error(base::DiagnosticCode::kPlanEventUnknown, entry.source, entry.event_symbol);
+    error.note(performed->source, "performed here");
+    const auto near = symbol ? symbol : NameAdvice(model, sink).symbol(entry.event_symbol, kEvents);
+    if (!near) continue;
+    const auto& found = model.symbols[*near];
+    error.note(found.declared, fmt::format("`{}` declared here", signature(model, found)));
+    if (!symbol) error.fix(NameAdvice::replace(entry.event_symbol, found.name));
+  }
+  if (sink.error_count() != errors_before) return sink.already_reported();
+  return base::Unit{};
+}
+
+/// Does the model know the regions that poses of the plan lie in? Reported where a region is said.
+base::Status check_regions(const PlanGraph& graph, const PoseLocator& locator,
+                           const TypedModel& model, base::DiagnosticSink& sink) {
+  const auto errors_before = sink.error_count();
+  for (const auto& location : graph.locations) {
+    for (const auto& node : location.event.nodes) {
+      const auto name = location.event.name(node);
+      if (name.empty() || model.find_object(name) || model.find_symbol(name)) continue;
+      const auto place = locator.place_of(name);
+      if (!place) continue;
+      auto error =
+          sink.error(base::DiagnosticCode::kUnknownName, *place, "constant", std::string(name), "");
+      error.note(location.source, "a pose of this perform lies in it");
+      if (const auto near = NameAdvice(model, sink).object(name)) {
+        error.note(model.objects[*near].declared,
+                   fmt::format("`{}` declared here", model.objects[*near].name));
+        error.fix(NameAdvice::replace(name, model.objects[*near].name));
+      }
+    }
+  }
+  if (sink.error_count() != errors_before) return sink.already_reported();
+  return base::Unit{};
+}
+
 base::Result<CheckedPlan> check_plan(const PlanInput& input, TypedModel& model,
                                      base::SourceFiles& files, base::DiagnosticSink& sink) {
   auto binding = parse_plan_binding(files, input.binding, sink);
@@ -97,7 +151,10 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, TypedModel& model,
     }
   }
   auto graph = unroll_plan(files, input.plan, *binding, *input.locator, options, sink);
-  if (!graph) return sink.already_reported();
+  if (!graph || !check_performed(*graph, *binding, model, sink) ||
+      !check_regions(*graph, *input.locator, model, sink)) {
+    return sink.already_reported();
+  }
   auto formulas = check_plan_formulas(*graph, model, files, sink);
   if (!formulas) return sink.already_reported();
   std::set<std::string> events;

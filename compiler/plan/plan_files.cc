@@ -92,12 +92,7 @@ class PlanFileLoader {
     for (const auto& item : *listed) {
       const auto path = (definition.parent_path() / item.path).lexically_normal();
       if (!gate_.check(path, item.place, sink_)) continue;
-      std::error_code error;
-      if (!fs::exists(path, error)) {
-        sink_.error(DiagnosticCode::kFileNotFound, item.place,
-                    fmt::format("no file `{}`", path.string()));
-        continue;
-      }
+      if (!base::check_file(path, item.place, sink_)) continue;
       if (!load_file(path, item.place)) return;
     }
   }
@@ -121,6 +116,7 @@ class PlanFileLoader {
       return false;
     }
     if (!admitted(path, place)) return true;
+    if (place && !base::check_file(path, *place, sink_)) return true;
     const auto [first, added] = seen_.emplace(base::real_path(path), path);
     if (!added) {
       report(DiagnosticCode::kPlanFolder, path, place, path.string(),

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "compiler/base/source_file.h"
+
 namespace parallax::compiler {
 
 /// A pose of a plan: position [m] and unit quaternion in a named frame.
@@ -37,6 +39,10 @@ class PoseLocator {
   };
   /// For messages: the region nearest to a pose outside; none if the function has no regions.
   virtual std::optional<Nearest> nearest(std::string_view function, const Pose& pose) const = 0;
+  /// For messages: where a region of this name is defined.
+  virtual std::optional<base::SourceRange> place_of(std::string_view /*region*/) const {
+    return std::nullopt;
+  }
 };
 
 }  // namespace parallax::compiler

@@ -91,6 +91,9 @@ class Declarer {
 
   void constants(const Ast& ast, const Statement& statement) {
     const auto sort = resolve_sort(ast, statement.sort, model_, sink_);
+    for (std::uint32_t i = 0; !sort && i < statement.item_count; ++i) {
+      model_.refuse(ast.text(ast.items(statement)[i].name));
+    }
     if (!sort) return;
     for (std::uint32_t i = 0; i < statement.item_count; ++i) {
       const auto word = ast.items(statement)[i].name;
@@ -184,7 +187,10 @@ class Declarer {
       if (argument) symbol.arguments.push_back(*argument);
       complete = complete && argument.has_value();
     }
-    if (!sort || !check_constructor(ast, statement, *sort)) return;
+    if (!sort || !check_constructor(ast, statement, *sort)) {
+      model_.refuse(name);
+      return;
+    }
     symbol.kind = kind_of(*sort);
     complete = result_sort(ast, statement, *sort, symbol) && complete;
     if (const auto before = model_.find_symbol(name)) {
@@ -196,7 +202,10 @@ class Declarer {
       return report_twice(ast, statement.name, name, first.declared);
     }
     // An incomplete one would only cause complaints about every use of it.
-    if (!complete) return;
+    if (!complete) {
+      model_.refuse(name);
+      return;
+    }
     const auto id = model_.symbols.add(std::move(symbol));
     model_.symbol_index.insert(id.index(), [this](std::uint32_t position) {
       return std::string_view(model_.symbols[SymbolId(position)].name);
@@ -210,7 +219,10 @@ class Declarer {
       // Declared all the same, so that its uses are understood.
       auto error = sink_.error(DiagnosticCode::kNameSpelling, ast.source(statement.name),
                                shortened(name), with_article(sort.name));
-      if (base::is_lower(name[0])) error.fix(NameAdvice::replace(name, capitalized(name)));
+      if (base::is_lower(name[0])) {
+        error.fix(NameAdvice::replace(name, capitalized(name)));
+        model_.refuse(capitalized(name));  // its uses may be right already
+      }
     }
     if (!sort.reified) {
       sink_
@@ -319,6 +331,7 @@ class Declarer {
                                  std::string_view wanted) {
     const auto name = ast.text(word);
     const auto found = model_.find_symbol(name);
+    if (!found && model_.misdeclared.contains(name)) return std::nullopt;
     if (!found) {
       auto report =
           sink_.error(DiagnosticCode::kUnknownName, ast.source(word), wanted, shortened(name), "");

@@ -49,7 +49,7 @@ void declare_sorts(const ModelAst& ast, Repetitions& repetitions, TypedModel& mo
 void check_finite_sorts(const TypedModel& model, base::DiagnosticSink& sink);
 
 /// The sort `word` names, or nothing after an E2001 with a suggestion.
-std::optional<SortId> resolve_sort(const Ast& ast, Word word, const TypedModel& model,
+std::optional<SortId> resolve_sort(const Ast& ast, Word word, TypedModel& model,
                                    base::DiagnosticSink& sink);
 
 /// One `option NAME VALUE`. E2011 for unknown names, E2012 for values the option cannot have.

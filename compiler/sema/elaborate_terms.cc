@@ -93,6 +93,7 @@ Elaborator::Value Elaborator::variable(const Node& node, std::optional<SortId> e
 
 void Elaborator::report_free(const Node& node, std::optional<SortId> expected) {
   const auto text = ast_->name(node);
+  if (model_.misdeclared.contains(text)) return;
   const std::vector<std::string> names(bound_names_.begin(), bound_names_.end());
   const auto near = base::nearest_name(text, names);
   // `r3` beside the constants `r1` and `r2` is no forgotten quantifier.
@@ -127,6 +128,7 @@ Elaborator::Value Elaborator::constant(const Node& node, std::optional<SortId> e
 
 void Elaborator::report_constant(const Node& node, std::optional<SortId> expected) {
   const auto text = ast_->name(node);
+  if (model_.misdeclared.contains(text)) return;
   auto report =
       sink_.error(DiagnosticCode::kUnknownName, source(node), "constant", shortened(text), "");
   if (const auto symbol = model_.find_symbol(text)) {
@@ -169,6 +171,7 @@ void Elaborator::report_unknown_symbol(const Node& node, Position position,
   constexpr std::array<SymbolKind, 4> kTerms = {SymbolKind::kFluent, SymbolKind::kEvent,
                                                 SymbolKind::kReified, SymbolKind::kFunction};
   const auto text = ast_->name(node);
+  if (model_.misdeclared.contains(text)) return;
   const bool term = position == Position::kTerm;
   std::string what = term ? "function" : "predicate";
   if (term && expected && model_.sorts[*expected].reified) what = model_.sorts[*expected].name;

@@ -245,6 +245,10 @@ void Elaborator::enter_quantifier(Frame& frame, const Node& node) {
     const auto sort = model_.find_sort(sort_name);
     if (!sort) {
       frame.failed = true;
+      if (model_.misdeclared.contains(sort_name)) {
+        reported_free_.insert(name);
+        continue;
+      }
       const auto used_as = sort_of_use(node, name);
       auto report = sink_.error(DiagnosticCode::kVariableWithoutSort, source(variable),
                                 shortened(sort_name), shortened(name));

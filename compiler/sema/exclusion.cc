@@ -56,6 +56,7 @@ class Expansion {
     const auto found = model_.find_symbol(name);
     if (!found) {
       failed_ = true;
+      if (model_.misdeclared.contains(name)) return;
       auto report = sink_.error(DiagnosticCode::kUnknownName, ast_.source(word),
                                 "event, fluent or predicate", shortened(name), "");
       if (const auto near = NameAdvice(model_, sink_).symbol(name, kKinds)) {

@@ -259,10 +259,11 @@ void check_finite_sorts(const TypedModel& model, base::DiagnosticSink& sink) {
   }
 }
 
-std::optional<SortId> resolve_sort(const Ast& ast, Word word, const TypedModel& model,
+std::optional<SortId> resolve_sort(const Ast& ast, Word word, TypedModel& model,
                                    base::DiagnosticSink& sink) {
   const auto name = ast.text(word);
   if (const auto found = model.find_sort(name)) return found;
+  model.refuse(name);
   auto report = sink.error(DiagnosticCode::kUnknownSort, ast.source(word), shortened(name));
   if (const auto near = NameAdvice(model, sink).sort(name)) {
     const auto& sort = model.sorts[*near];

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -269,6 +270,13 @@ struct TypedModel {
   /// or overlapping sort may stand at an argument position; instances outside the declared sort
   /// are left out when grounding.
   bool sorts_overlap(SortId a, SortId b) const;
+
+  /// Names whose declaration was refused, which was reported; errors that follow are not.
+  std::set<std::string, std::less<>> misdeclared;
+  void refuse(std::string_view name) {
+    constexpr std::size_t kMostNames = 10'000;  // far more than errors are shown
+    if (misdeclared.size() < kMostNames) misdeclared.emplace(name);
+  }
 
   /// Filled by check_model. The look-ups above scan the stores where it is not.
   NameIndex sort_index, object_index, symbol_index;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 
 #include "compiler/base/diagnostic_codes.h"
@@ -82,10 +83,19 @@ class Estimator {
       if (!sample) return sink_.already_reported();
       complete = *sample && (*sample)->verdict != SampleVerdict::kLostTooOften;
       if (*sample) count(trace, **sample, rates, causes);
+      report_progress(trace.number, trial->next_sample() - 1);
     }
     trial->end();
     finish(rates, causes);
     return rates;
+  }
+
+  void report_progress(std::int64_t trace, std::int64_t done) const {
+    if (!options_.progress) return;
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started_;
+    const auto made = static_cast<double>(bench_.runs_made());
+    options_.progress(
+        {trace, done, options_.runs, elapsed.count() > 0.0 ? made / elapsed.count() : 0.0});
   }
 
   static void count(const CampaignTrace& trace, const TrialSample& sample, TraceRates& rates,
@@ -129,6 +139,7 @@ class Estimator {
   TraceFeed& traces_;
   const RatesOptions& options_;
   base::DiagnosticSink& sink_;
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   TrialBench bench_;
 };
 

@@ -35,6 +35,7 @@ struct RatesOptions {
   std::int64_t trace = 0;    // 0: all of them
   double confidence = 0.95;  // of each interval
   const std::atomic<bool>* stop = nullptr;
+  std::function<void(const CampaignProgress&)> progress;  // called in the caller's thread
 };
 
 struct RatesResult {

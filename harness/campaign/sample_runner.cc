@@ -7,6 +7,7 @@
 #include <string>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/suggest.h"
 #include "compiler/base/utf8.h"
 #include "harness/region/state_mapping.h"
 #include "harness/simulator/protocol.h"
@@ -153,6 +154,8 @@ class ValueChecker {
   void check(const ActionBinding& binding, const Occurrence& at, const ActionCall& call,
              const ControllerSpec& controller, base::DiagnosticSink& sink) const {
     const auto report = [&](const std::string& name, const std::string& fault) {
+      if (comes_from_plan(binding, at, name))
+        return report_plan_value(binding, at, call, controller, name, fault, sink);
       const auto own = binding.argument_sources.find(name);
       const auto place = own == binding.argument_sources.end() ? binding.source : own->second;
       auto error = sink.error(base::DiagnosticCode::kBadWorld, place,
@@ -173,6 +176,30 @@ class ValueChecker {
   }
 
  private:
+  static bool comes_from_plan(const ActionBinding& binding, const Occurrence& at,
+                              const std::string& name) {
+    const auto& given = at.planned.arguments;
+    return !at.planned.source.empty() &&
+           std::any_of(given.begin(), given.end(),
+                       [&](const auto& one) { return taken_as(binding, one.first) == name; });
+  }
+
+  /// The plan's perform is at fault, not the scenario.
+  void report_plan_value(const ActionBinding& binding, const Occurrence& at, const ActionCall& call,
+                         const ControllerSpec& controller, const std::string& name,
+                         const std::string& fault, base::DiagnosticSink& sink) const {
+    auto error = sink.error_about(base::DiagnosticCode::kBadWorld, at.planned.source,
+                                  fmt::format("`{}` of `{}`", name, at.event.text), fault);
+    error.note(binding.source, fmt::format("the plan's value goes to `{}` here", call.controller));
+    error.help(
+        "Correct the value in the plan, or take another one with `from_plan` of the action.");
+    const auto* argument = find_argument(controller, name);
+    const auto* text = std::get_if<std::string>(&call.arguments.at(name));
+    if (argument == nullptr || text == nullptr) return;
+    const auto near = base::nearest_name(*text, names_for(*argument, world_, layout_));
+    if (near) error.fix(fmt::format("replace `{}` with `{}`", *text, *near));
+  }
+
   std::string fault_of(const ArgumentSpec& argument, const Value& value) const {
     if (is_name(argument)) {
       const auto* text = std::get_if<std::string>(&value);

@@ -30,7 +30,8 @@ base::Status check_settable(const Scenario& scenario, const StartCuboid& start,
       return parameter.name == dimension.variable;
     });
     if (known.empty() || (found != known.end() && found->settable)) continue;
-    sink.error(DiagnosticCode::kVariableNotSettable, scenario.sampling_source, dimension.variable);
+    sink.error(DiagnosticCode::kVariableNotSettable, scenario.sampled_at(dimension.variable),
+               dimension.variable);
     fine = false;
   }
   if (!fine) return sink.already_reported();

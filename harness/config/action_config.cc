@@ -18,6 +18,7 @@ void unknown_argument(const ControllerSpec& controller, const std::string& name,
                       base::SourceRange range, base::DiagnosticSink& sink) {
   std::vector<std::string> known;
   for (const auto& argument : controller.arguments) known.emplace_back(argument.name);
+  known.emplace_back(Key::kTimeLimitS);  // of the action, not of the controller
   auto error = sink.error(DiagnosticCode::kUnknownArgument, range, controller.name, name);
   add_suggestion(error, name, known, "arguments");
 }

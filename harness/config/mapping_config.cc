@@ -357,6 +357,7 @@ void read_sampling(const YamlNode& node, Scenario& scenario, base::DiagnosticSin
                  fmt::format("above 0 and at most {:g} kg", kMaxMass_kg));
     }
     scenario.sampling.push_back({entry.key, *interval});
+    scenario.sampled_sources[entry.key] = entry.key_range;
   }
   std::sort(scenario.sampling.begin(), scenario.sampling.end(),
             [](const auto& a, const auto& b) { return a.variable < b.variable; });

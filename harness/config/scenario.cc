@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
 #include "harness/config/sections.h"
 #include "harness/engine/world_check.h"
 #include "harness/world/world_layout.h"
@@ -144,11 +145,11 @@ class ScenarioReader {
   void read_problem(Scenario& scenario) {
     if (const auto* node = fields_.require(Key::kModel)) {
       scenario.models = located_texts(*node, Key::kModel, sink_);
-      for (auto& model : scenario.models) resolve(model);
+      for (auto& model : scenario.models) resolve(model, false);
     }
     if (const auto* node = fields_.find(Key::kPlan)) {
       scenario.plan = located_texts(*node, Key::kPlan, sink_);
-      for (auto& plan : scenario.plan) resolve(plan);
+      for (auto& plan : scenario.plan) resolve(plan, true);
     }
     scenario.bind = optional_path(Key::kBind);
     const auto* plan = fields_.find(Key::kPlan);
@@ -239,19 +240,16 @@ class ScenarioReader {
     auto text = read_text(*node, fmt::format("`{}`", key), sink_);
     if (!text) return std::nullopt;
     LocatedText path{std::move(*text), node->range};
-    resolve(path);
+    resolve(path, false);
     return path;
   }
 
   /// Makes a path start where its file lies, and says at the key when nothing is there.
-  void resolve(LocatedText& path) {
+  void resolve(LocatedText& path, bool or_folder) {
     const auto resolved = path_beside(path.source, path.text, files_);
-    std::error_code error;
-    if (!gate_.check(resolved, path.source, sink_)) {
-      // Whether anything lies there is not told either.
-    } else if (!std::filesystem::exists(resolved, error)) {
-      sink_.error(DiagnosticCode::kFileNotFound, path.source,
-                  fmt::format("no file `{}`", resolved.string()));
+    // Of what lies outside it is not told either whether it exists.
+    if (gate_.check(resolved, path.source, sink_)) {
+      (void)base::check_file(resolved, path.source, sink_, or_folder);
     }
     path.text = resolved.string();
   }

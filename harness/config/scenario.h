@@ -102,6 +102,12 @@ struct Scenario {
   std::vector<SampledDimension> sampling;
   double sampling_inset_m = 1e-6;  // [m, rad] how far draws stay inside their cuboid
   base::SourceRange regions_source, mapping_source, actions_source, sampling_source;
+  std::map<std::string, base::SourceRange> sampled_sources;  // of the variables there
+  /// Where the sampling of a variable is written, or would be.
+  const base::SourceRange& sampled_at(const std::string& variable) const {
+    const auto found = sampled_sources.find(variable);
+    return found == sampled_sources.end() ? sampling_source : found->second;
+  }
   std::map<std::string, base::SourceRange> body_sources;  // of the names of the world's bodies
   CriterionSpec criterion;
   /// An end state that the model admits for the start and events of a trace is no discrepancy, even

@@ -184,11 +184,11 @@ base::Status check_variables(const Scenario& scenario, const std::vector<Paramet
       return p.name == dimension.variable;
     });
     if (found == parameters.end()) {
-      auto error = sink.error(DiagnosticCode::kUnknownSimVariable, scenario.sampling_source,
-                              dimension.variable);
+      auto error = sink.error(DiagnosticCode::kUnknownSimVariable,
+                              scenario.sampled_at(dimension.variable), dimension.variable);
       add_suggestion(error, dimension.variable, known, "variables");
     } else if (!found->settable) {
-      sink.error(DiagnosticCode::kVariableNotSettable, scenario.sampling_source,
+      sink.error(DiagnosticCode::kVariableNotSettable, scenario.sampled_at(dimension.variable),
                  dimension.variable);
     }
   }

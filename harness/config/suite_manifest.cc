@@ -8,6 +8,7 @@
 
 #include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
 #include "harness/config/sections.h"
 
 namespace parallax::harness {
@@ -138,12 +139,9 @@ class ManifestReader {
 
   void resolve_model(LocatedText& model) {
     const auto resolved = path_beside(model.source, model.text, files_).lexically_normal();
-    std::error_code error;
-    if (!gate_.check(resolved, model.source, sink_)) {
-      // Whether anything lies there is not told either.
-    } else if (!std::filesystem::exists(resolved, error)) {
-      sink_.error(DiagnosticCode::kFileNotFound, model.source,
-                  fmt::format("no file `{}`", resolved.string()));
+    // Of what lies outside it is not told either whether it exists.
+    if (gate_.check(resolved, model.source, sink_)) {
+      (void)base::check_file(resolved, model.source, sink_);
     }
     model.text = resolved.string();
   }

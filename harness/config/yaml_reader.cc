@@ -168,6 +168,24 @@ SourceRange at_mark(base::FileId file, const YAML::Mark& mark, const base::Sourc
   return {file, begin, std::min(begin + 1, size)};
 }
 
+/// A tab where a line is indented, up to the place; YAML has no indentation but blanks.
+std::optional<SourceRange> tab_before(const SourceRange& place, std::string_view text) {
+  for (std::size_t begin = 0; begin <= place.begin && begin < text.size();) {
+    const auto content = std::min(text.find_first_not_of(" \t", begin), text.size());
+    const auto tab = text.substr(begin, content - begin).find('\t');
+    const bool says_nothing = content == text.size() || text[content] == '\n' ||
+                              text[content] == '\r' || text[content] == '#';
+    if (tab != std::string_view::npos && !says_nothing) {
+      const auto at = static_cast<std::uint32_t>(begin + tab);
+      return SourceRange{place.file, at, at + 1};
+    }
+    const auto newline = text.find('\n', content);
+    if (newline == std::string_view::npos) break;
+    begin = newline + 1;
+  }
+  return std::nullopt;
+}
+
 /// Files that include two others each would otherwise grow without bound.
 constexpr int kMaxIncludes = 64;
 
@@ -255,9 +273,7 @@ class Includer {
     if (std::find(open_.begin(), open_.end(), real(path)) != open_.end()) {
       return sink_.error(DiagnosticCode::kIncludeCycle, name.range, name.text);
     }
-    if (!std::filesystem::exists(path)) {
-      return sink_.error(DiagnosticCode::kFileNotFound, name.range, path.string());
-    }
+    if (!base::check_file(path, name.range, sink_)) return sink_.already_reported();
     auto root = load(path);
     if (root && !root->is_map()) {
       return sink_.error(DiagnosticCode::kWrongYamlKind, name.range, "the included file",
@@ -313,7 +329,12 @@ base::Result<YamlNode> parse_yaml(base::FileId file, const base::SourceFiles& fi
     if (sink.error_count() != errors_before) return sink.already_reported();
     return root;
   } catch (const YAML::Exception& error) {
-    return sink.error(DiagnosticCode::kYamlSyntax, at_mark(file, error.mark, files), error.msg);
+    const auto place = at_mark(file, error.mark, files);
+    if (const auto tab = tab_before(place, files[file].text())) {
+      return sink.error(DiagnosticCode::kYamlSyntax, *tab, "a line is indented with a tab")
+          .help("Indent with blanks.");
+    }
+    return sink.error(DiagnosticCode::kYamlSyntax, place, error.msg);
   } catch (const TooDeep& stop) {
     return sink.error(DiagnosticCode::kYamlTooDeep, SourceRange{file, stop.offset, stop.offset + 1},
                       kMaxYamlDepth);

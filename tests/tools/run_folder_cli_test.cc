@@ -229,6 +229,16 @@ TEST_CASE("a run replaces no report that is none of its own") {
   }
 }
 
+TEST_CASE("a run that lacks memory names the limit") {
+  const CliFixture cli;
+  for (const std::string command : {"run", "rates", "suite"}) {
+    const auto result = cli.parallax({command, "scenario.yaml", "--memory-limit", "16"});
+    CAPTURE(result.err);
+    if (result.code != 4) continue;  // it was enough on this machine
+    CHECK(holds(result.err, "error[E0008]: the limit --memory-limit 16 ended the run"));
+  }
+}
+
 TEST_CASE("a copied run says which scenario is read") {
   const RunFixture cli;
   const auto copy = cli.folder() / "copy";

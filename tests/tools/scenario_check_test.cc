@@ -171,6 +171,73 @@ TEST_CASE("a handler that no failure of its body comes to is reported where it s
   }
 }
 
+TEST_CASE("a misspelt name is reported where it is misspelt, with the right one") {
+  const CliFixture cli;
+  const auto only = [&](const std::string& message) {
+    const auto said = check(cli, 3);
+    CHECK(has(said, message));
+    const auto first = said.find(": error[");
+    CHECK(said.find(": error[", first + 1) == std::string::npos);
+    return said;
+  };
+  SUBCASE("a region of the scenario") {
+    cli.replace("common.yaml", "r2: {x", "r3: {x");
+    const auto said = only("common.yaml:11:5-6: error[E2101]: no constant `r3`");
+    CHECK(has(said, "fetch.lisp:11:5-51: note: a pose of this perform lies in it"));
+    CHECK(has(said, "fix: replace `r3` with `r1`"));
+  }
+  SUBCASE("an event of the binding table") {
+    cli.replace("robot.bind", "PickUp()", "PikUp()");
+    const auto said = only("robot.bind:5:");
+    CHECK(has(said, "error[E3011]: the plan performs `PikUp`, which is no event of the model"));
+    CHECK(has(said, "fix: replace `PikUp` with `PickUp`"));
+  }
+  SUBCASE("an event with another number of arguments") {
+    cli.replace("robot.bind", "Place(region(?p))", "Place()");
+    const auto said = only("robot.bind:7:");
+    CHECK(has(said, "error[E3011]: the plan performs `Place`, which is no event of the model"));
+    CHECK(has(said, "note: `Place(region)` declared here"));
+  }
+  SUBCASE("an object of the plan") {
+    const auto plan = cli.read("fetch.lisp");
+    const auto at = plan.rfind("(name box)");
+    cli.write("fetch.lisp", plan.substr(0, at) + "(name bx)" + plan.substr(at + 10));
+    const auto said = only("fetch.lisp:14: error[E5126]: `object` of `Place(r1)`: is `bx`");
+    CHECK(has(said, "common.yaml:22:3-15: note: the plan's value goes to `placing` here"));
+    CHECK(has(said, "fix: replace `bx` with `box`"));
+  }
+  SUBCASE("a time limit") {
+    cli.replace("common.yaml", "going, time_limit_s", "going, time_limit");
+    CHECK(has(only("error[E5121]"), "fix: replace `time_limit` with `time_limit_s`"));
+  }
+  SUBCASE("a sampled variable") {
+    cli.replace("common.yaml", "box.yaw: 0", "box.ya: 0");
+    only("common.yaml:27:5-10: error[E5115]: the simulator has no variable `box.ya`");
+  }
+  SUBCASE("a fluent of the model, used ten times") {
+    cli.replace("domain.e", "fluent RobotIn(region)", "fluent RobotIm(region)");
+    const auto said = only("error[E2101]: no fluent `RobotIn` of 1 argument(s)");
+    CHECK(has(said, "note: it is used in 9 other places as well"));
+    CHECK(has(said, "fix: replace `RobotIn` with `RobotIm`"));
+  }
+  SUBCASE("a fluent that cannot be called so") {
+    cli.replace("domain.e", "fluent Holding()", "fluent holding()");
+    CHECK(has(only("error[E1017]: `holding` cannot name a fluent"),
+              "fix: replace `holding` with `Holding`"));
+  }
+  SUBCASE("a sort, on which declarations and formulas depend") {
+    cli.replace("domain.e", "sort region", "sort regio");
+    CHECK(has(only("domain.e:5:1-6: error[E2001]: no sort `region`"),
+              "fix: replace `region` with `regio`"));
+  }
+  SUBCASE("a tab") {
+    cli.replace("common.yaml", "  include: world.yaml", "\tinclude: world.yaml");
+    CHECK(has(only("common.yaml:5:1: error[E5101]: the YAML text cannot be read: a line is "
+                   "indented with a tab"),
+              "help: Indent with blanks."));
+  }
+}
+
 TEST_CASE("check does not start the commands of other simulators, and says so") {
   const CliFixture cli;
   cli.write("scenario.yaml",

@@ -47,6 +47,13 @@ class RegionLocator final : public compiler::PoseLocator {
     return best;
   }
 
+  std::optional<base::SourceRange> place_of(std::string_view name) const override {
+    for (const auto& region : regions_->regions()) {
+      if (region.name == name) return region.source;
+    }
+    return std::nullopt;
+  }
+
  private:
   /// An angle counts as outside, not as a distance.
   Nearest distance(const harness::Region& region, const harness::Point& at) const {

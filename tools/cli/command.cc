@@ -82,7 +82,7 @@ void Invocation::print_diagnostics(const std::vector<base::Diagnostic>& diagnost
     const auto hidden = count - base::DiagnosticSink::kUsualLimit;
     write_error(fmt::format("{} further {} not shown\n", hidden, what));
   };
-  rest(sink().error_count(), "errors are");
+  rest(sink().error_count() - sink().merged_count(), "errors are");
   if (!options_.quiet) rest(sink().warning_count(), "warnings are");
 }
 

@@ -59,6 +59,8 @@ int usage_error(const ParsedLine& line, std::string_view command, int argc, char
   return 2;
 }
 
+std::int64_t memory_limit_mb = 0;  // for when nothing else is left; 0: none
+
 int run(int argc, char** argv) {
   OptionTable table("parallax", kDescription);
   table.footer(kFooter);
@@ -83,6 +85,7 @@ int run(int argc, char** argv) {
     std::fwrite(line.output.data(), 1, line.output.size(), stdout);
     return *line.exit_code;
   }
+  memory_limit_mb = options.memory_limit_mb;
   install_signal_handlers();
   const LimitGuard limits(options);
   Invocation invocation(options);
@@ -104,7 +107,10 @@ int main(int argc, char** argv) {
     const bool starved = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
                          dynamic_cast<const std::system_error*>(&error) != nullptr;
     if (starved) {
-      sink.error_about(base::DiagnosticCode::kLimitReached, "", error.what());
+      sink.error_about(base::DiagnosticCode::kLimitReached, "",
+                       parallax::tools::memory_limit_mb > 0
+                           ? fmt::format("--memory-limit {}", parallax::tools::memory_limit_mb)
+                           : fmt::format("of memory and threads ({})", error.what()));
     } else {
       sink.error_about(base::DiagnosticCode::kInternal, "", error.what());
     }

@@ -37,8 +37,10 @@ int run_rates(const RateOptions& options, Invocation& invocation) {
   traces.explain_absence_by([&] { return reasons_for_absence(*loaded, invocation); });
   auto rates = options.rates;
   rates.stop = &stop_flag();
+  rates.progress = progress_on_terminal(invocation.options());
   const auto result =
       harness::estimate_rates(loaded->scenario, traces, *simulator, rates, invocation.sink());
+  if (rates.progress) write_error("\r\x1b[K");
   if (!result) return 0;
   if (invocation.options().json) {
     invocation.document(harness::rates_json(*result));

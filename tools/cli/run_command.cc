@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -76,16 +74,6 @@ void apply(const RunOptions& options, harness::Scenario& scenario) {
   if (options.max_runs > 0) scenario.limits.max_runs = options.max_runs;
 }
 
-void show_progress(const harness::CampaignProgress& progress) {
-  const double left =
-      progress.runs_per_s > 0
-          ? static_cast<double>(progress.needed - progress.done) / progress.runs_per_s
-          : 0.0;
-  write_error(fmt::format("\rtrace {}: {}/{} simulations, {:.1f}/s, about {:.0f} s left \x1b[K",
-                          progress.trace, progress.done, progress.needed, progress.runs_per_s,
-                          left));
-}
-
 harness::CampaignOptions campaign_options(const RunOptions& options, const ScenarioModel& loaded,
                                           const Invocation& invocation) {
   harness::CampaignOptions campaign;
@@ -104,7 +92,7 @@ harness::CampaignOptions campaign_options(const RunOptions& options, const Scena
   campaign.scenario_hash = loaded.sources_hash;
   campaign.tool_version = kVersion;
   campaign.stop = &stop_flag();
-  if (!invocation.options().quiet && isatty(STDERR_FILENO) != 0) campaign.progress = show_progress;
+  campaign.progress = progress_on_terminal(invocation.options());
   return campaign;
 }
 

@@ -1,6 +1,7 @@
 #include "tools/cli/shared_options.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <memory>
 #include <mutex>
@@ -186,6 +187,20 @@ base::Result<std::optional<harness::SampleId>> parse_sample_option(const std::st
   if (id) return id;
   return sink.error_about(base::DiagnosticCode::kUsage, "",
                           fmt::format("--sample takes TRACE.SAMPLE such as 2.4, not `{}`", text));
+}
+
+std::function<void(const harness::CampaignProgress&)> progress_on_terminal(
+    const CommonOptions& options) {
+  if (options.quiet || isatty(STDERR_FILENO) == 0) return {};
+  return [](const harness::CampaignProgress& progress) {
+    const double left =
+        progress.runs_per_s > 0
+            ? static_cast<double>(progress.needed - progress.done) / progress.runs_per_s
+            : 0.0;
+    write_error(fmt::format("\rtrace {}: {}/{} simulations, {:.1f}/s, about {:.0f} s left \x1b[K",
+                            progress.trace, progress.done, progress.needed, progress.runs_per_s,
+                            left));
+  };
 }
 
 }  // namespace parallax::tools

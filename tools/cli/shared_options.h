@@ -1,10 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
+#include "harness/campaign/campaign.h"
 #include "harness/campaign/replay.h"
 #include "tools/app/certify.h"
 #include "tools/app/model_options.h"
@@ -17,6 +19,7 @@
 namespace parallax::tools {
 
 class Invocation;
+struct CommonOptions;
 
 /// Options that several commands have. Returns the one of the models themselves, which is required.
 Option& add_model_options(OptionTable& command, ModelOptions& options);
@@ -52,5 +55,10 @@ void add_recorded_scenario_option(OptionTable& command, std::string& scenario);
 /// kUsage if it is no `TRACE.SAMPLE`.
 base::Result<std::optional<harness::SampleId>> parse_sample_option(const std::string& text,
                                                                    base::DiagnosticSink& sink);
+
+/// How far simulations are, on a line of its own that is written over; none unless standard error
+/// is a terminal. `\r\x1b[K` clears it.
+std::function<void(const harness::CampaignProgress&)> progress_on_terminal(
+    const CommonOptions& options);
 
 }  // namespace parallax::tools

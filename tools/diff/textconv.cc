@@ -5,6 +5,9 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+#include <variant>
 
 #include "compiler/artifact/artifact_reader.h"
 #include "compiler/base/diagnostic_codes.h"
@@ -12,6 +15,7 @@
 #include "compiler/base/file_io.h"
 #include "compiler/compare/model_facts.h"
 #include "compiler/syntax/parser.h"
+#include "harness/campaign/journal.h"
 #include "tools/diff/revision.h"
 #include "tools/diff/trace_set.h"
 
@@ -101,6 +105,21 @@ class ReportReader {
   std::vector<Fact> facts_;
 };
 
+/// Of which texts the run was: scenario, models and plan by their hash, which the journal has.
+std::optional<Fact> texts_fact(const fs::path& folder) {
+  base::DiagnosticSink unread;
+  const auto journal = base::read_file_of(folder, harness::kJournalName, unread);
+  if (!journal) return std::nullopt;
+  const auto header =
+      harness::decode_header(std::string_view(*journal).substr(0, journal->find('\n')));
+  const auto* found = std::get_if<harness::JournalHeader>(&header);
+  if (found == nullptr) return std::nullopt;
+  const std::string key = "hash of scenario, models and plan";
+  const auto text = key + ": " + found->scenario_hash;
+  return Fact{
+      FactKind::kDeclaration, key, text, text, {(folder / harness::kJournalName).string(), 1}};
+}
+
 using Text = base::Result<std::string>;
 
 Text model_text(const std::string& path, Context& context) {
@@ -143,7 +162,9 @@ base::Result<std::vector<Fact>> load_run_facts(const std::string& path, Context&
   if (!field(report, "verdict").is_string() || !field(report, "traces").is_array()) {
     return refuse("it has no `verdict` and `traces`");
   }
-  return ReportReader(report, file.string()).run();
+  auto facts = ReportReader(report, file.string()).run();
+  if (auto read = texts_fact(file.parent_path())) facts.push_back(*std::move(read));
+  return facts;
 }
 
 Text canonical_text_of(const std::string& path, Context& context) {

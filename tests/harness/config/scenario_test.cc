@@ -227,7 +227,7 @@ TEST_CASE("the scenario is held against what the simulator says of itself") {
   CHECK_FALSE(check_against_simulator(*scenario, {}, info, workspace.sink).has_value());
   const auto first = workspace.reports();
   REQUIRE(first.size() == 1);
-  CHECK(first[0] == "E5116 at 18:1: the simulator cannot start with a chosen `box.yaw`");
+  CHECK(first[0] == "E5116 at 18:52: the simulator cannot start with a chosen `box.yaw`");
   info.parameters.back().settable = true;
   workspace.sink = base::DiagnosticSink();
   CHECK_FALSE(check_against_simulator(*scenario, {}, info, workspace.sink).has_value());

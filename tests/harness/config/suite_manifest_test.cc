@@ -105,7 +105,7 @@ TEST_CASE("a missing model is reported at its name") {
   ManifestWorkspace workspace;
   CHECK(workspace.report(replaced(kOneCase, "domain.e", "dmain.e"))
             .starts_with("E0001 at 3:12: cannot open"));
-  CHECK(workspace.sink.exit_code() == 2);
+  CHECK(workspace.sink.exit_code() == 3);
   CHECK(workspace.report(replaced(kOneCase, "    model: domain.e\n", ""))
             .starts_with("E5106 at 2:5: the case lacks the key `model`"));
   CHECK(workspace.report(replaced(kOneCase, "domain.e", "[]"))

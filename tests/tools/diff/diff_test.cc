@@ -249,6 +249,19 @@ TEST_CASE_FIXTURE(DiffFixture, "runs are compared by what they report") {
   write("a/report.json", report("no-discrepancy", "1"));
   write("b/report.json", report("no-discrepancy", "1"));
   CHECK(parallax({"diff", "a", "b"}).code == 0);
+  // The same results of other texts are no equal runs.
+  const auto journal = [](const char* hash) {
+    return std::string("{\"journal\":1,\"scenario\":\"s.yaml\",\"scenario_hash\":\"") + hash +
+           "\",\"seed\":1,\"tool_version\":\"1\",\"simulator\":{\"name\":\"s\",\"version\":\"1\","
+           "\"determinism\":\"none\",\"seeds\":true,\"timestep_s\":0.1},\"options\":{}}\n";
+  };
+  write("a/journal.ndjson", journal("00aa"));
+  write("b/journal.ndjson", journal("00bb"));
+  const auto texts = parallax({"diff", "a", "b"});
+  CHECK(texts.code == 1);
+  CHECK(texts.out.find("hash of scenario, models and plan: 00bb") != std::string::npos);
+  write("b/journal.ndjson", journal("00aa"));
+  CHECK(parallax({"diff", "a", "b"}).code == 0);
   write("b/report.json", report("discrepancy", "2"));
   const auto result = parallax({"diff", "a", "b/report.json"});
   CHECK(result.code == 1);
