@@ -22,7 +22,7 @@ TEST_CASE("missing files") {
   const CliFixture cli;
   check_message(cli.parallax({"run", "nowhere.yaml"}), 2, "nowhere.yaml", "cannot open");
   cli.replace("scenario.yaml", "fetch.lisp", "fetsch.lisp");
-  check_message(cli.parallax({"run", "scenario.yaml"}), 2, "scenario.yaml:8", "fetsch.lisp");
+  check_message(cli.parallax({"run", "scenario.yaml"}), 3, "scenario.yaml:8", "fetsch.lisp");
 }
 
 TEST_CASE("a misspelt key is answered with the nearest one") {
