@@ -27,6 +27,21 @@ ProofSearch::Choice& ProofSearch::choose(Choice::Kind kind, TermId term, std::ui
   return choices_.back();
 }
 
+std::optional<std::uint32_t> ProofAnswers::take(std::span<const ModelWay> ways) {
+  const auto said = [&](const ModelWay& way) {
+    const auto found = known.find(way.guard.text);
+    return found == known.end() ? std::optional<bool>() : found->second;
+  };
+  if (ways.size() == 1 && said(ways[0])) return *said(ways[0]) ? 1 : 0;
+  if (next == given.size()) return std::nullopt;
+  const auto answer = given[next++];
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    if (answer == 0) known.emplace(ways[i].guard.text, false);
+    if (answer == i + 1) known.emplace(ways[i].guard.text, true);
+  }
+  return answer;
+}
+
 ProofStop ProofSearch::first(TermId wanted, DatumId at) {
   wanted_ = wanted;
   current_ = goal(Goal::Kind::kProve, wanted, 0, 0, at);
@@ -37,6 +52,10 @@ ProofStop ProofSearch::first(TermId wanted, DatumId at) {
     if (!world.spend(here.at, terms.exhausted())) return ProofError{};
     auto step = execute(here);
     while (step == Step::kFalse) {
+      if (terms.exhausted()) {
+        world.spend(at_, true);
+        return ProofError{};
+      }
       if (choices_.empty()) return ProofNone{};
       const auto choice = std::move(choices_.back());
       choices_.pop_back();
@@ -221,8 +240,12 @@ Step ProofSearch::ask(TermId term, const std::vector<std::string>& used, std::ui
   std::erase_if(asked->ways, [&](const ModelWay& way) {
     return std::find(used.begin(), used.end(), way.name) != used.end();
   });
+  std::erase_if(asked->ways, [&](const ModelWay& way) {
+    const auto known = answers_.known.find(way.guard.text);
+    return known != answers_.known.end() && !known->second;
+  });
   if (asked->ways.empty()) return Step::kFalse;
-  const auto answer = answers_.take();
+  const auto answer = answers_.take(asked->ways);
   if (!answer) return stop(ProofQuestion{std::move(asked->ways)});
   if (*answer == 0) return Step::kFalse;
   if (asked->ways.size() > 1) {
@@ -238,7 +261,7 @@ Step ProofSearch::ask_in_order(TermId term, std::uint32_t from, std::uint32_t ne
   const auto asked = query(term, at);
   if (!asked) return Step::kStop;
   for (auto i = from; i < asked->ways.size(); ++i) {
-    const auto answer = answers_.take();
+    const auto answer = answers_.take(std::span(asked->ways).subspan(i, 1));
     if (!answer) return stop(ProofQuestion{{asked->ways[i]}});
     if (*answer == 0) continue;
     if (i + 1 < asked->ways.size()) choose(Choice::Kind::kModelInOrder, term, next, i + 1, at);

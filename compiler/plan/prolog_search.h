@@ -46,10 +46,10 @@ using ProofStop = std::variant<ProofSolved, ProofNone, ProofQuestion, ProofFaile
 struct ProofAnswers {
   std::span<const std::uint32_t> given;
   std::size_t next = 0;
-  std::optional<std::uint32_t> take() {
-    if (next == given.size()) return std::nullopt;
-    return given[next++];
-  }
+  std::map<std::string, bool, std::less<>> known;  // by formula: what the answers said of it
+
+  /// The answer to the question; none: it was not given yet. What is known is not asked again.
+  std::optional<std::uint32_t> take(std::span<const ModelWay> ways);
 };
 
 /// What a proof needs of the plan and the model.

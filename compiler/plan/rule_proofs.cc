@@ -102,8 +102,9 @@ std::optional<std::vector<ModelWay>> RuleProofs::ways(
 ProofWorld::Computed RuleProofs::truth_of(const StopQuestion& question, ProofAnswers& answers) {
   auto guard = guard_of_(question);
   if (!guard) return ProofError{};
-  const auto answer = answers.take();
-  if (!answer) return ProofQuestion{{{*std::move(guard), {}, {}}}};
+  const ModelWay way{*std::move(guard), {}, {}};
+  const auto answer = answers.take(std::span(&way, 1));
+  if (!answer) return ProofQuestion{{way}};
   return Value{values_.boolean(*answer != 0)};
 }
 
@@ -247,7 +248,7 @@ RuleProofs::Grounding RuleProofs::ground(const StopPerform& perform, const Desig
                                          std::span<const std::uint32_t> given) {
   links_ = links;
   spent_ = 0;
-  ProofAnswers answers{given};
+  ProofAnswers answers{given, 0, {}};
   ProofSearch search(facts_, *this, values_, answers);
   const auto solution = search.terms.variable();
   const auto goal = search.terms.list({search.terms.atom(values_.symbol(kGroundingRule)),
@@ -315,7 +316,7 @@ RuleProofs::Proof RuleProofs::prove(const StopProof& proof, const DesignatorLink
   links_ = links;
   spent_ = 0;
   depth_ = 0;
-  ProofAnswers answers{given};
+  ProofAnswers answers{given, 0, {}};
   return solve(proof, answers);
 }
 

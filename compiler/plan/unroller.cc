@@ -112,7 +112,7 @@ ValueId Explorer::found_object(ModelValueId id, ValueId designator) {
   Value value;
   value.kind = ValueKind::kModel;
   value.model = id;
-  if (sought && values_.kind(*sought) == ValueKind::kDesignator) value.keys = values_[*sought].keys;
+  if (sought && is_designator(values_[*sought])) value.keys = values_[*sought].keys;
   std::erase_if(value.keys, [](const auto& key) { return key.first == "name"; });
   return values_.intern(std::move(value));
 }

@@ -101,6 +101,16 @@ TEST_CASE("designators: a description that was equated with what was detected me
   CHECK(plan.events("+++") == Strings{"Detect(cup)", "PickUp(left,?i1)", "Detect(cup)", "DONE"});
 }
 
+TEST_CASE("designators: what was detected can be sought again, as often as one likes") {
+  const auto plan = with_prelude(R"(
+(let ((?cup (an object (type cup))))
+  (dotimes (i 4)
+    (let ((?seen (perform (a motion (type detecting) (object ?cup)))))
+      (unless (desig-equal ?cup ?seen) (equate ?cup ?seen))))))");
+  CHECK(plan.events("++++") ==
+        Strings{"Detect(cup)", "Detect(cup)", "Detect(cup)", "Detect(cup)", "DONE"});
+}
+
 TEST_CASE("designators: what is forgotten leaves no trace in the state") {
   // Each round makes and equates new designators; the second state is the first one again.
   const auto plan = with_prelude(R"(
