@@ -126,6 +126,15 @@ bool BindingCursor::name(std::string_view what, std::string& out) {
   return true;
 }
 
+bool BindingCursor::symbol(std::string_view what, std::string& package, std::string& out) {
+  if (!name(what, out)) return false;
+  if (!rest().starts_with(":")) return true;
+  package = std::move(out);
+  i_ += rest().starts_with("::") ? 2 : 1;
+  if (peek_name().empty()) return expected(what);
+  return name(what, out);
+}
+
 bool BindingCursor::variable(std::string& out) {
   skip_blanks();
   const auto length = variable_length(rest());

@@ -52,6 +52,8 @@ class BindingCursor {
   bool take_word(std::string_view word);
   /// The name of something; false: reported.
   bool name(std::string_view what, std::string& out);
+  /// A name, perhaps behind the prefix of a package.
+  bool symbol(std::string_view what, std::string& package, std::string& out);
   bool variable(std::string& out);
   /// (?a ?b), with or without commas; nothing at all is an empty list.
   bool variables(std::vector<std::string>& out);

@@ -18,6 +18,7 @@ struct BuiltinCall {
   ValueStore& values;
   DesignatorLinks& links;
   std::int64_t location_samples = 0;
+  std::string_view name = {};
 
   BuiltinFailure wrong(std::size_t index, std::string_view wanted) const {
     const auto kind = values.kind(args[index]) == ValueKind::kModel && wanted == "a list"
@@ -52,7 +53,10 @@ struct BuiltinEntry {
 // The parts of the table, by topic.
 std::span<const BuiltinEntry> number_builtins();
 std::span<const BuiltinEntry> list_builtins();
-std::span<const BuiltinEntry> pose_builtins();
 std::span<const BuiltinEntry> designator_builtins();
+std::span<const BuiltinEntry> pose_part_builtins();
+std::span<const BuiltinEntry> transform_builtins();
+std::span<const BuiltinEntry> frame_builtins();
+std::span<const BuiltinEntry> robot_builtins();
 
 }  // namespace parallax::compiler

@@ -77,14 +77,6 @@ void form_pursue(FormCompiler& c, DatumId form, FormItems items) {
   c.code.patch_jump(over);
 }
 
-/// Transparent forms whose first argument says where or how to run.
-void form_skip_argument(FormCompiler& c, DatumId form, FormItems items) {
-  if (items.size() < 2) {
-    return c.refuse(form, "expected an argument before the body");
-  }
-  c.compile_body(items.subspan(2));
-}
-
 void form_if(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() < 3 || items.size() > 4) {
     return c.refuse(form, "expected a test, a form and perhaps another form");
@@ -281,12 +273,6 @@ void form_format(FormCompiler& c, DatumId form, FormItems items) {
   c.code.constant(c.datum_value(items[2]), form);
 }
 
-/// Logging, belief updates, markers: accepted, not evaluated.
-void form_ignored(FormCompiler& c, DatumId form, FormItems /*items*/) {
-  c.check_no_perform(form);
-  c.nil(form);
-}
-
 /// (holds '(fluent argument...)) and (prolog '(query argument...)) ask the model now.
 void form_holds(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() != 2) {
@@ -306,9 +292,6 @@ std::span<const FormEntry> control_forms() {
       {"with-tags", form_with_tags},
       {"with-simulated-robot", form_progn},
       {"with-real-robot", form_progn},
-      {"with-projected-task-tree", form_skip_argument},
-      {"with-projection-environment", form_skip_argument},
-      {"with-process-modules-running", form_skip_argument},
       {"par", form_par},
       {"pursue", form_pursue},
       {"if", form_if},
@@ -324,16 +307,8 @@ std::span<const FormEntry> control_forms() {
       {"return-from", form_return_from},
       {"holds", form_holds},
       {"prolog", form_holds},
-      {"declare", form_ignored},
-      {"in-package", form_ignored},
-      {"ros-info", form_ignored},
-      {"ros-warn", form_ignored},
-      {"ros-error", form_ignored},
       {"format", form_format},
       {"print", form_print},
-      {"sleep", form_ignored},
-      {"on-event", form_ignored},
-      {"visualize-marker", form_ignored},
   };
   return kForms;
 }

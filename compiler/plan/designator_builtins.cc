@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "compiler/plan/builtin_call.h"
+#include "compiler/plan/unknown_values.h"
 
 namespace parallax::compiler {
 namespace {
@@ -48,7 +49,9 @@ BuiltinResult reference(const BuiltinCall& c) {
     if (!inner) break;
     id = c.links.current(*inner);
   }
-  return c.values.kind(id) == ValueKind::kPose ? id : c.links.current(c.args[0]);
+  const auto kind = c.values.kind(id);
+  const bool pose = kind == ValueKind::kPose || kind == ValueKind::kUnknown;
+  return pose ? id : c.links.current(c.args[0]);
 }
 
 BuiltinResult property(const BuiltinCall& c) {
@@ -56,7 +59,12 @@ BuiltinResult property(const BuiltinCall& c) {
   if (c.values.is_nil(c.args[0])) return c.args[0];
   if (designator_at(c, 0) == nullptr) return c.wrong(0, "a designator");
   if (key.kind != ValueKind::kSymbol) return c.wrong(1, "a key");
-  return property_value(c.values, c.args[0], key.text).value_or(c.values.nil());
+  if (const auto value = property_value(c.values, c.args[0], key.text)) return *value;
+  // Where an object lies that was found, only the robot knows.
+  const bool place = key.text == "pose" || key.text == "transform";
+  const bool found = c.values.kind(c.args[0]) == ValueKind::kModel;
+  if (found && place) return unknown_value(c.name, c.args, c.values);
+  return c.values.nil();
 }
 
 BuiltinResult property_values(const BuiltinCall& c) {

@@ -8,6 +8,8 @@
 #include "compiler/base/suggest.h"
 #include "compiler/plan/function_calls.h"
 #include "compiler/plan/plan_builtins.h"
+#include "compiler/plan/unknown_values.h"
+#include "compiler/plan/world_forms.h"
 
 namespace parallax::compiler {
 
@@ -88,7 +90,7 @@ const std::map<std::string_view, FormFunction>& plan_forms() {
   static const auto table = [] {
     std::map<std::string_view, FormFunction> out;
     for (const auto part : {binding_forms(), control_forms(), loop_forms(), failure_forms(),
-                            designator_forms(), prolog_forms(), call_forms()}) {
+                            designator_forms(), prolog_forms(), call_forms(), world_forms()}) {
       for (const auto& entry : part) out.emplace(entry.name, entry.compile);
     }
     return out;
@@ -120,6 +122,7 @@ void FormCompiler::compile_symbol(DatumId symbol) {
     code.emit(PlanOp::kLoadGlobal, global->second, 0, symbol);
     return code.adjust(1);
   }
+  if (const auto known = robot_global(name, values)) return code.constant(*known, symbol);
   std::vector<std::string> names;
   for (const auto& binding : code.scope()) {
     if (binding.kind == BindingKind::kVariable) names.push_back(binding.name);
@@ -162,6 +165,10 @@ void FormCompiler::compile_list(DatumId form) {
   }
   if (const auto callee = find_callee(*this, items.front()))
     return compile_call(*this, form, *head, *callee, items.subspan(1));
+  if (is_ignored_call(data.package(items.front()), *head)) {
+    check_no_perform(form);
+    return nil(form);
+  }
   if (head->starts_with("check-") && head->ends_with("-collisions")) {
     warning(DiagnosticCode::kProjectionIgnored, form, form_name(form));
     check_no_perform(form);

@@ -126,6 +126,7 @@ std::span<const FormEntry> failure_forms();     // handlers, retries, clean-ups,
 std::span<const FormEntry> designator_forms();  // designators and their perform
 std::span<const FormEntry> prolog_forms();      // solutions of `prolog`
 std::span<const FormEntry> call_forms();        // funcall, apply, local functions
+std::span<const FormEntry> world_forms();       // logging, belief, markers: nothing is done
 
 /// All of them, by name.
 const std::map<std::string_view, FormFunction>& plan_forms();

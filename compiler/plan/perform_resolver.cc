@@ -192,6 +192,8 @@ Result<FormulaTree> PerformResolver::constant(ValueId id, std::string_view what,
     case ValueKind::kCons:
     case ValueKind::kVector:
     case ValueKind::kQuaternion:
+    case ValueKind::kTransform:
+    case ValueKind::kUnknown:
     case ValueKind::kFailure:
     case ValueKind::kCounter:
     case ValueKind::kFurther:
@@ -218,6 +220,26 @@ PerformResolver::Target PerformResolver::target(ValueId id) const {
 Result<FormulaTree> PerformResolver::mapped(std::string_view function, ValueId value,
                                             std::string_view key, SourceRange source) {
   const auto where = target(value);
+  if (where.object && values_.kind(*where.object) == ValueKind::kUnknown) {
+    return sink_.error(
+        DiagnosticCode::kDesignatorValue, source, "performed", key,
+        fmt::format("a pose {}; write the pose in numbers, or name the object that the target is "
+                    "in or on",
+                    values_.print(*where.object)));
+  }
+  if (where.object && values_.kind(*where.object) == ValueKind::kTransform) {
+    return sink_.error(DiagnosticCode::kDesignatorValue, source, "performed", key,
+                       "a transform, not a pose; `strip-transform-stamped` makes a pose of it");
+  }
+  if (where.pose && where.pose->frame != "map" && where.pose->frame != "/map") {
+    const auto& frame = where.pose->frame;
+    return sink_.error(DiagnosticCode::kDesignatorValue, source, "performed", key,
+                       frame.empty() ? std::string("a pose whose frame the plan does not say; give "
+                                                   "it one with `pose->pose-stamped`")
+                                     : fmt::format("a pose in the frame `{}`; the regions are in "
+                                                   "`map`, so give it in that frame",
+                                                   frame));
+  }
   if (where.pose) {
     if (auto region = locator_.region_of(function, *where.pose)) {
       return constant_term(*region);
@@ -452,6 +474,8 @@ void PerformResolver::flatten(const std::string& name, ValueId id, PlanArguments
     case ValueKind::kNil:
     case ValueKind::kQuaternion:
     case ValueKind::kPose:
+    case ValueKind::kTransform:
+    case ValueKind::kUnknown:
     case ValueKind::kFailure:
     case ValueKind::kCounter:
     case ValueKind::kFurther:

@@ -84,10 +84,13 @@ bool BindingParser::parse_formula_now(BindingEntry& entry) {
 
 /// `-> plan f(?a,?b)`: the perform runs a function of the plan.
 bool BindingParser::parse_plan_call(BindingEntry& entry) {
+  std::string package;
   std::string function;
-  if (!at_.name("the function of the plan", function) || !at_.variables(entry.plan_arguments))
+  if (!at_.symbol("the function of the plan", package, function) ||
+      !at_.variables(entry.plan_arguments)) {
     return false;
-  entry.plan = std::move(function);
+  }
+  entry.plan = package.empty() ? std::move(function) : fmt::format("{}::{}", package, function);
   return nothing_left();
 }
 
@@ -146,8 +149,9 @@ void BindingParser::parse_object(std::size_t begin) {
 
 bool BindingParser::types_of(std::vector<std::string>& types) {
   do {
+    std::string package;  // types are compared without it
     std::string type;
-    if (!at_.name("the name of a type", type)) return false;
+    if (!at_.symbol("the name of a type", package, type)) return false;
     types.push_back(std::move(type));
   } while (at_.take("|"));
   return true;
@@ -157,7 +161,8 @@ bool BindingParser::parse_alias(Alias alias) {
   if (at_.take_word("motion")) alias.target_kind = PerformKind::kMotion;
   if (!alias.target_kind && at_.take_word("action")) alias.target_kind = PerformKind::kAction;
   const auto begin = (at_.skip_blanks(), at_.position());
-  if (!at_.name("the name of a type", alias.target)) return false;
+  std::string package;
+  if (!at_.symbol("the name of a type", package, alias.target)) return false;
   alias.source = at_.range(begin, at_.position());
   at_.skip_blanks();
   if (!at_.at_end()) return at_.expected("nothing behind an alias");

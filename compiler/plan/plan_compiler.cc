@@ -53,6 +53,7 @@ class PlanCompiler {
     compile_functions();
     compile_main(entry);
     if (c_.failed()) return sink_.already_reported();
+    c_.code.code().function_names.insert(text_.keys.begin(), text_.keys.end());
     return std::move(c_.code.code());
   }
 

@@ -118,7 +118,8 @@ struct PlanCode {
   std::vector<PlanGlobal> globals;
   std::vector<std::string> strings;
   FailureClasses classes;
-  std::map<std::string, std::uint32_t, std::less<>> functions;  // the plan's own: their units
+  std::map<std::string, std::uint32_t, std::less<>> functions;     // the plan's own: their units
+  std::map<std::string, std::string, std::less<>> function_names;  // by `package::name`: that name
   bool identities = false;  // designators are equated: each is a thing of its own
   bool describes = false;   // properties are asked for: found objects keep their description
 };

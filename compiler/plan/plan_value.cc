@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "compiler/plan/unknown_values.h"
+
 namespace parallax::compiler {
 namespace {
 
@@ -46,7 +48,14 @@ std::string fingerprint(const Value& value) {
     case ValueKind::kVector:
     case ValueKind::kQuaternion:
     case ValueKind::kPose:
+    case ValueKind::kTransform:
       append(out, value.pose);
+      append(out, value.text);
+      out += fmt::format("{}", value.head.index());
+      break;
+    case ValueKind::kUnknown:
+      append(out, value.text);
+      out += fmt::format("{}", value.head.index());
       break;
     case ValueKind::kDesignator:
       out += fmt::format("{} {} ", static_cast<int>(value.designator), value.identity);
@@ -116,6 +125,7 @@ void ValueStore::note_parts(Value& value) const {
   if (value.kind == ValueKind::kModel) value.registers = {value.model};
   if (value.identity != 0) value.identities = {value.identity};
   if (value.kind == ValueKind::kCons) include(value.head), include(value.tail);
+  if (value.kind == ValueKind::kUnknown) include(value.head);
   for (const auto& [key, part] : value.keys) include(part);
   tidy(value.registers), tidy(value.identities);
 }
@@ -234,6 +244,11 @@ std::string ValueStore::print(ValueId id) const {
     case ValueKind::kPose:
       return fmt::format("the pose ({:.4g}, {:.4g}, {:.4g})", value.pose.x_m, value.pose.y_m,
                          value.pose.z_m);
+    case ValueKind::kTransform:
+      return fmt::format("the transform ({:.4g}, {:.4g}, {:.4g})", value.pose.x_m, value.pose.y_m,
+                         value.pose.z_m);
+    case ValueKind::kUnknown:
+      return fmt::format("from `{}`, which only the robot knows", origin_of_unknown(*this, id));
     case ValueKind::kDesignator:
       return fmt::format("a designator ({})", to_string(value.designator));
     case ValueKind::kFailure:

@@ -27,6 +27,8 @@ enum class ValueKind : std::uint8_t {
   kVector,  // a position [m]
   kQuaternion,
   kPose,
+  kTransform,
+  kUnknown,  // only the robot knows it: a term, the function and the list of its arguments
   kDesignator,
   kFailure,   // text: the class
   kModel,     // determined by the model; see PlanGraph::values
@@ -41,12 +43,12 @@ std::string_view to_string(DesignatorKind kind);
 /// A value of a plan variable. Immutable; equal values have equal ids (see ValueStore).
 struct Value {
   ValueKind kind = ValueKind::kNil;
-  std::string text;      // symbol name, string, failure class
+  std::string text;      // symbol name, string, failure class, child frame, function of a term
   bool keyword = false;  // kSymbol: :left, not left
   Number number;         // kNumber, kCounter
-  ValueId head;          // kCons
+  ValueId head;          // kCons; stamp of a pose (nil: none); arguments of a term
   ValueId tail;
-  Pose pose;  // kPose; kVector and kQuaternion use their part
+  Pose pose;  // kPose and kTransform; kVector and kQuaternion use their part
   DesignatorKind designator = DesignatorKind::kMotion;
   // kDesignator: in written order; kModel: the description that it was sought by
   std::vector<std::pair<std::string, ValueId>> keys;

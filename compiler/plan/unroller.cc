@@ -271,7 +271,9 @@ base::Result<PlanGraph> Explorer::explore() {
 /// The perform of an action that is a function of the plan: runs it.
 std::optional<PlanStop> Explorer::run_plan(PlanState& state, const StopPerform& stop,
                                            const BindingEntry& entry) {
-  const auto function = code_.functions.find(*entry.plan);
+  const auto full = code_.function_names.find(*entry.plan);
+  const auto function =
+      code_.functions.find(full == code_.function_names.end() ? *entry.plan : full->second);
   if (function == code_.functions.end()) {
     sink_.error(DiagnosticCode::kUnknownPlanForm, entry.source, *entry.plan);
     return StopError{};

@@ -59,8 +59,7 @@ const Case kCases[] = {
     {"(holds 'f)", "CPL008", "`holds`: expected a quoted fluent such as '(holding left box)"},
     {"(performe (a motion (type going)))", "CPL010", "no form or function `performe`"},
     {"(try-all (sig) (sig))", "CPL011", "`try-all` is a reactive form; the subset has none"},
-    {"(pursue)", "CPL003",
-     "malformed `pursue`: without branches it waits for nothing and fails"},
+    {"(pursue)", "CPL003", "malformed `pursue`: without branches it waits for nothing and fails"},
     {"(pursue (list 1) (list 2))", "W-PAR", "the branches of `pursue` are taken in written order"},
     {"(with-failure-handling ((condition (e) (return))) 1)", "W-BROAD",
      "a handler of `condition` also takes what is no failure"},
@@ -115,6 +114,28 @@ const Case kCases[] = {
     {"(list (all objects (type cup)))", "W-ALL",
      "`(all ...)` stands for a list of objects that only the model knows"},
 };
+
+TEST_CASE("codes: a reactive form is refused where it stands, with the way to write it") {
+  const std::pair<std::string, std::string> forms[] = {
+      {"(cpl:try-all (sig) (go1))", "`try-in-order`"},
+      {"(partial-order ((sig) (go1)) (:order a b))", "in a `seq`"},
+      {"(par-loop (x '(1 2)) (sig))", "`dolist`"},
+      {"(whenever (f) (sig))", "`(holds '(fluent argument...))`"},
+      {"(cpl:wait-for f)", "`(holds '(fluent argument...))`"},
+      {"(with-policy p (1) (sig))", "in a `progn`"},
+      {"(fl-and a b)", "`(holds '(fluent argument...))`"},
+  };
+  for (const auto& [form, way] : forms) {
+    CAPTURE(form);
+    const auto plan = unroll(prelude() + form);
+    CHECK(plan.codes() == Strings{"CPL011"});
+    const auto entry = plan.sink.sorted().front();
+    REQUIRE(entry.range.has_value());
+    CHECK(plan.files[entry.range->file].text().substr(entry.range->begin, form.size()) == form);
+    REQUIRE(entry.notes.size() == 1);
+    CHECK(entry.notes[0].text.find(way) != std::string::npos);
+  }
+}
 
 TEST_CASE("codes: every mistake has its code and says what was found") {
   for (const auto& one : kCases) {

@@ -132,6 +132,34 @@ TEST_CASE("packages: what clashes or is not visible is refused where it stands")
   }
 }
 
+TEST_CASE("packages: a binding table names a function of one of two packages") {
+  const std::string plan =
+      "(defpackage kitchen (:use cl) (:export fetch))(defpackage hall (:use cl))"
+      "(in-package kitchen)(defun fetch (?o) (perform (an action (type opening) (object ?o))))"
+      "(in-package hall)(defun fetch (?o) (perform (an action (type closing) (object ?o))))"
+      "(defun only-here (?o) (fetch ?o))"
+      "(cl-user::perform (an action (type fetching) (object (an object (name d1)))))";
+  const auto events = [&](const std::string& call) {
+    const auto unrolled = unroll(
+        plan, {}, std::string(kBinding) + "action kitchen::fetching (:object ?o) -> plan " + call);
+    if (!unrolled.graph) return unrolled.codes();
+    return unrolled.events("+");
+  };
+  CHECK(events("kitchen::fetch(?o)") == Strings{"OpenDrawer(d1)", "DONE"});
+  CHECK(events("kitchen:fetch (?o)") == Strings{"OpenDrawer(d1)", "DONE"});
+  CHECK(events("hall::fetch(?o)") == Strings{"CloseDrawer(d1)", "DONE"});
+  CHECK(events("hall::only-here(?o)") == Strings{"CloseDrawer(d1)", "DONE"});
+  CHECK(events("only-here(?o)") == Strings{"CloseDrawer(d1)", "DONE"});
+  CHECK(events("cellar::fetch(?o)") == Strings{"CPL010"});
+  CHECK(events("hall::(?o)") == Strings{"E4001"});
+  // An alias may have a prefix as well; it makes no difference.
+  const auto alias =
+      unroll(prelude() + "(perform (an action (type x:shutting) (object (an object (name d1)))))",
+             {}, std::string(kBinding) + "action y::shutting = z::closing");
+  REQUIRE(alias.graph.has_value());
+  CHECK(alias.events("+") == Strings{"CloseDrawer(d1)", "DONE"});
+}
+
 TEST_CASE("packages: many of them, using each other in circles, are bounded") {
   std::string circle;
   for (int i = 0; i < 900; ++i) {
