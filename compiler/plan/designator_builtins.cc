@@ -33,7 +33,11 @@ BuiltinResult next_solution(const BuiltinCall& c) {
   }
   if (number >= c.location_samples) return c.values.nil();
   value.keys.emplace_back(kSolutionKey, c.values.number(Number(number + 1)));
-  return c.values.intern(std::move(value));
+  if (!c.links.identities) return c.values.intern(std::move(value));
+  // The next solution describes the same location, and is younger.
+  const auto next = c.links.make(c.values, DesignatorKind::kLocation, std::move(value.keys));
+  c.links.equate(c.args[0], next);
+  return next;
 }
 
 /// What a location's pose is, where it says so; everything else is its own reference.
@@ -70,6 +74,7 @@ BuiltinResult property(const BuiltinCall& c) {
 BuiltinResult property_values(const BuiltinCall& c) {
   const auto* whole = designator_at(c, 0);
   const auto& key = c.values[c.args[1]];
+  if (c.values.is_nil(c.args[0])) return c.args[0];
   if (whole == nullptr) return c.wrong(0, "a designator");
   if (key.kind != ValueKind::kSymbol) return c.wrong(1, "a key");
   std::vector<ValueId> out;

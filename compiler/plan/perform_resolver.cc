@@ -179,7 +179,10 @@ Result<FormulaTree> PerformResolver::constant(ValueId id, std::string_view what,
       if (value.designator == DesignatorKind::kLocation) {
         if (const auto object = target(id).object) return constant(*object, what, source);
       }
-      return wrong("a designator without a name; name it, or detect it first");
+      return wrong(
+          "a designator without a name; name it, detect it first, or say in an `object` entry of "
+          "the "
+          "binding table what it can mean");
     case ValueKind::kPose:
       return wrong(
           "a pose where a name is needed; map it with `region`, `place` "

@@ -46,6 +46,29 @@ void form_vars_strictly_bound(FormCompiler& c, DatumId form, FormItems items) {
   bind_variables(c, form, items, true);
 }
 
+/// (with-desig-props (key...) designator form...): variables called like the properties.
+void form_with_props(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 3 || !c.data.is_list(items[1])) {
+    return c.refuse(form, "expected a list of properties and a designator");
+  }
+  const auto scope = c.code.scope().size();
+  const auto height = c.code.height();
+  c.compile(items[2]);
+  for (const auto key : c.data.children(items[1])) {
+    if (!c.data.is_symbol(key)) {
+      c.malformed(form, "a property is a name");
+      continue;
+    }
+    c.code.load(height, form);
+    c.code.constant(c.values.keyword(c.data.name(key)), key);
+    c.code.builtin("desig-prop-value", 2, form);
+    c.code.bind_top(c.data.name(key));
+  }
+  c.compile_body(c.skip_declarations(items.subspan(3)));
+  c.code.squeeze(c.code.height() - 1 - height, form);
+  c.code.cut_scope(scope);
+}
+
 /// (with-designators ((name class description)...) form...), one after the other.
 void form_with_designators(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() < 2 || !c.data.is_list(items[1])) {
@@ -78,6 +101,7 @@ std::span<const FormEntry> prolog_forms() {
       {"with-vars-bound", form_vars_bound},
       {"with-vars-strictly-bound", form_vars_strictly_bound},
       {"with-designators", form_with_designators},
+      {"with-desig-props", form_with_props},
   };
   return kForms;
 }

@@ -94,8 +94,8 @@ const Case kCases[] = {
      "`prolog`: expected a quoted fluent such as '(holding left box)"},
     {"(perform 5)", "CPL030", "no binding for 5: only motions and actions are performed"},
     {"(perform (an action (type picking-up) (arm left) (object (an object (type box)))))", "CPL033",
-     "the performed designator gives `?o` a designator without a name; name it, or detect it "
-     "first"},
+     "the performed designator gives `?o` a designator without a name; name it, detect it first, "
+     "or say in an `object` entry of the binding table what it can mean"},
     {"(perform (a motion (type detecting) (object (an object (name box)))))", "CPL033",
      "the motion designator gives `object` no `type`"},
     {"(retry)", "CPL040", "`retry` outside a failure handler"},

@@ -36,6 +36,7 @@ TEST_CASE("designators: properties") {
        "'((:type :cup) (:size 2) (:size 3))"},
       {"(update-designator-properties '((:a 1)) '((:b 2) (:a 3)))", "'((:a 1) (:b 2))"},
       {"(get-desig-class cup)", ":object"},
+      {"(with-desig-props (type colour) cup (list type colour))", "'(:cup nil)"},
       {"(with-designators ((x :object '((:type :cup))) (y :location `((:of ,x)))) "
        "(desig-prop-value (desig-prop-value y :of) :type))",
        ":cup"},

@@ -283,6 +283,70 @@ TEST_CASE("rules: bad ones are located and bounded") {
         "`perform` is not in the subset here: a function that a rule calls cannot perform");
 }
 
+TEST_CASE("rules: two packages have a function of one name; each rule means its own") {
+  const auto plan = unroll(R"(
+(defpackage a (:use :cl))
+(defpackage b (:use :cl))
+(in-package :a)
+(defun fetch (&key ((:object ?o)) &allow-other-keys)
+  (perform (an action (type picking-up) (arm left) (object ?o))))
+(in-package :b)
+(defun fetch (&key ((:object ?o)) &allow-other-keys)
+  (perform (an action (type picking-up) (arm right) (object ?o))))
+(def-fact-group rules (desig:action-grounding)
+  (<- (desig:action-grounding ?d (a::fetch ?d))
+    (spec:property ?d (:type :fetching))
+    (spec:property ?d (:heavy t)))
+  (<- (desig:action-grounding ?d (fetch ?d))
+    (spec:property ?d (:type :fetching))))
+(perform (an action (type fetching) (object (an object (name spoon1)))))
+(perform (an action (type fetching) (object (an object (name spoon1))) (heavy t))))");
+  REQUIRE(plan.graph.has_value());
+  CHECK(plan.events("++") == Strings{"PickUp(right,spoon1)", "PickUp(left,spoon1)", "DONE"});
+}
+
+TEST_CASE("rules: values of every kind come through") {
+  const auto plan = with_prelude(R"(
+(defun tell (&key n s p d l x (z 7) ((:type type)) &allow-other-keys)
+  (if (and (eql n 3) (equal s "a b") (eq p *p1*) (eq (desig-prop-value d :type) :cup)
+           (equal l '(1 (2 :z))) (null x) (eql z 7) (eq type :telling))
+      (go1)
+      (go2)))
+(def-fact-group rules (desig:action-grounding)
+  (<- (desig:action-grounding ?d (tell ?d)) (spec:property ?d (:type :telling))))
+(let ((?d (an object (type cup))) (?l '(1 (2 :z))))
+  (perform (an action (type telling) (n 3) (s "a b") (p *p1*) (d ?d) (l ?l) (x nil)))))");
+  CHECK(plan.events("+") == Strings{"Go(r1)", "DONE"});
+}
+
+TEST_CASE("rules: an action that carries itself out ends as a recursion does") {
+  const std::string rule = R"(
+(def-fact-group rules (desig:action-grounding)
+  (<- (desig:action-grounding ?d (again ?d)) (spec:property ?d (:type :again))))
+(perform (an action (type again))))";
+  const auto idle =
+      unroll("(defun again (&key &allow-other-keys) (perform (an action (type again))))" + rule);
+  CHECK(idle.codes() == Strings{"CPL050"});
+  const auto busy = unroll(
+      prelude() +
+      "(defun again (&key &allow-other-keys) (go1) (perform (an action (type again))))" + rule);
+  REQUIRE(busy.graph.has_value());
+  CHECK(busy.terminals().size() == 2);
+}
+
+TEST_CASE("rules: what a proof was told it does not ask again") {
+  const auto plan = unroll_asking(prelude() + R"(
+(when (prolog '(and (robot-free-hand :left) (robot-free-hand :left) (not (robot-free-hand :right))))
+  (go1)))");
+  REQUIRE(plan.graph.has_value());
+  CHECK(plan.graph->branches.size() == 2);
+  // The same text gives the same graph.
+  const auto once_more = unroll_asking(prelude() + R"(
+(when (prolog '(and (robot-free-hand :left) (robot-free-hand :left) (not (robot-free-hand :right))))
+  (go1)))");
+  CHECK(dump_text(*plan.graph, plan.files) == dump_text(*once_more.graph, once_more.files));
+}
+
 TEST_CASE("rules: the function that carries an action out is a task of its own") {
   // Its clean-up runs before the caller's handler is asked.
   const auto plan = unroll(ruled(R"(
