@@ -1,45 +1,11 @@
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/plan/destructuring.h"
 #include "compiler/plan/form_compiler.h"
 
 namespace parallax::compiler {
 namespace {
 
 using base::DiagnosticCode;
-
-void form_quote(FormCompiler& c, DatumId form, FormItems items) {
-  if (items.size() != 2) c.malformed(form, "expected one datum");
-  c.code.constant(items.size() == 2 ? c.datum_value(items[1]) : c.values.nil(), form);
-}
-
-void quasiquote(FormCompiler& c, DatumId datum) {
-  const auto items = c.data.children(datum);
-  const auto head = c.data.head(datum).value_or("");
-  if (items.empty()) return c.code.constant(c.datum_value(datum), datum);
-  if (head == "unquote" && items.size() == 2) return c.compile(items[1]);
-  if (head == "quasiquote") {
-    c.unsupported(datum, "nested backquotes");
-    return c.nil(datum);
-  }
-  const bool dotted = c.data.is_dotted(datum);
-  for (const auto item : items) {
-    const auto parts = c.data.children(item);
-    if (dotted && item == items.back()) {
-      quasiquote(c, item);
-    } else if (c.data.head(item) == "unquote-splicing" && parts.size() == 2) {
-      c.compile(parts[1]);
-    } else {
-      quasiquote(c, item);
-      c.code.builtin("list", 1, item);
-    }
-  }
-  c.code.builtin("append", static_cast<std::uint32_t>(items.size()), datum);
-}
-
-void form_quasiquote(FormCompiler& c, DatumId form, FormItems items) {
-  if (items.size() == 2) return quasiquote(c, items[1]);
-  c.malformed(form, "expected one datum");
-  c.nil(form);
-}
 
 /// A `let` of a global rebinds it for what its body calls, as far as that runs in the same task.
 int show_variable(FormCompiler& c, LexicalBinding variable, DatumId form) {
@@ -151,6 +117,7 @@ void form_incf(FormCompiler& c, DatumId form, FormItems items) {
   assign(c, place, form);
 }
 
+/// (push value variable), and (pushnew value variable), which adds what is no member by `eql`.
 void form_push(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() != 3) {
     return c.refuse(form, "expected a value and a variable");
@@ -160,30 +127,22 @@ void form_push(FormCompiler& c, DatumId form, FormItems items) {
   if (target == nullptr) return;
   const LexicalBinding place = *target;
   c.compile(items[2]);
-  c.code.builtin("cons", 2, form);
+  c.code.builtin(c.form_name(form) == "push" ? "cons" : "adjoin", 2, form);
   assign(c, place, form);
 }
 
-/// Binds the names of `pattern` to the elements of the list at `place`; the new variables stay on
-/// the stack.
-void destructure(FormCompiler& c, DatumId form, DatumId pattern, std::uint32_t place) {
-  const auto items = c.data.children(pattern);
-  c.code.load(place, form);
-  c.code.constant(c.values.number(Number(static_cast<std::int64_t>(items.size()))), form);
-  c.code.builtin("%expect-length", 2, form);
-  c.code.store_and_drop(place, form);
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    c.code.constant(c.values.number(Number(static_cast<std::int64_t>(i))), form);
-    c.code.load(place, form);
-    c.code.builtin("nth", 2, form);
-    if (c.data.is_list(items[i])) {
-      destructure(c, form, items[i], c.code.height() - 1);
-    } else if (c.data.is_symbol(items[i]) && !c.data.name(items[i]).starts_with("&")) {
-      c.code.bind_top(c.data.name(items[i]));
-    } else {
-      c.unsupported(items[i], "a pattern consists of names");
-    }
-  }
+/// (pop variable) is the first element, which the variable loses.
+void form_pop(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() != 2) return c.refuse(form, "expected a variable");
+  const auto* target = assignable(c, form, items[1]);
+  if (target == nullptr) return c.nil(form);
+  const LexicalBinding place = *target;
+  c.compile(items[1]);
+  c.code.builtin("car", 1, form);
+  c.compile(items[1]);
+  c.code.builtin("cdr", 1, form);
+  assign(c, place, form);
+  c.code.drop(form);
 }
 
 void form_destructuring_bind(FormCompiler& c, DatumId form, FormItems items) {
@@ -201,54 +160,15 @@ void form_destructuring_bind(FormCompiler& c, DatumId form, FormItems items) {
   c.code.cut_scope(scope);
 }
 
-/// (values a b ...) is its first value, for whoever does not ask for the others.
-void form_values(FormCompiler& c, DatumId form, FormItems items) {
-  if (items.size() == 1) return c.nil(form);
-  for (const auto item : items.subspan(1)) c.compile(item);
-  for (auto extra = items.size() - 2; extra > 0; --extra) c.code.drop(form);
-}
-
-/// (multiple-value-bind (v...) (values a...) form...): the values must be written there.
-void form_multiple_value_bind(FormCompiler& c, DatumId form, FormItems items) {
-  if (items.size() < 3 || (!c.data.is_list(items[1]) && !c.data.is_nil(items[1]))) {
-    return c.refuse(form, "expected variables and a form");
-  }
-  if (c.data.head(items[2]) != "values") {
-    c.unsupported(form,
-                  "the values come from `(values ...)` itself; let the function return a list "
-                  "and use `destructuring-bind`");
-    return c.nil(form);
-  }
-  const auto given = c.data.children(items[2]).subspan(1);
-  const auto names = c.data.children(items[1]);
-  const auto scope = c.code.scope().size();
-  const auto height = c.code.height();
-  for (const auto value : given) c.compile(value);
-  for (auto i = given.size(); i < names.size(); ++i) c.nil(form);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (!c.data.is_symbol(names[i])) {
-      c.malformed(form, "a variable is a name");
-      continue;
-    }
-    c.code.show(c.code.named(BindingKind::kVariable, c.data.name(names[i]),
-                             height + static_cast<std::uint32_t>(i)));
-  }
-  const auto count = c.code.height() - height;
-  c.compile_body(c.skip_declarations(items.subspan(3)));
-  c.code.squeeze(count, form);
-  c.code.cut_scope(scope);
-}
-
 }  // namespace
 
 std::span<const FormEntry> binding_forms() {
   static constexpr FormEntry kForms[] = {
-      {"quote", form_quote},   {"quasiquote", form_quasiquote},
-      {"let", form_let},       {"let*", form_let_star},
-      {"setf", form_setf},     {"setq", form_setf},
-      {"incf", form_incf},     {"decf", form_incf},
-      {"push", form_push},     {"destructuring-bind", form_destructuring_bind},
-      {"values", form_values}, {"multiple-value-bind", form_multiple_value_bind},
+      {"let", form_let},   {"let*", form_let_star},
+      {"setf", form_setf}, {"setq", form_setf},
+      {"incf", form_incf}, {"decf", form_incf},
+      {"push", form_push}, {"pushnew", form_push},
+      {"pop", form_pop},   {"destructuring-bind", form_destructuring_bind},
   };
   return kForms;
 }

@@ -53,6 +53,10 @@ struct BuiltinEntry {
 // The parts of the table, by topic.
 std::span<const BuiltinEntry> number_builtins();
 std::span<const BuiltinEntry> list_builtins();
+std::span<const BuiltinEntry> sequence_builtins();
+std::span<const BuiltinEntry> pattern_builtins();
+std::span<const BuiltinEntry> type_builtins();
+std::span<const BuiltinEntry> symbol_builtins();
 std::span<const BuiltinEntry> designator_builtins();
 std::span<const BuiltinEntry> pose_part_builtins();
 std::span<const BuiltinEntry> transform_builtins();

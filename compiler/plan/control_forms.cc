@@ -1,9 +1,12 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/plan/form_compiler.h"
+#include "compiler/plan/function_calls.h"
 
 namespace parallax::compiler {
 namespace {
@@ -12,6 +15,12 @@ using base::DiagnosticCode;
 
 void form_progn(FormCompiler& c, DatumId /*form*/, FormItems items) {
   c.compile_body(items.subspan(1));
+}
+
+/// (eval-when (situation...) form...): there is only one time.
+void form_eval_when(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 2) return c.refuse(form, "expected situations and forms");
+  c.compile_body(items.subspan(2));
 }
 
 /// The forms run in a task of their own.
@@ -265,12 +274,37 @@ void form_print(FormCompiler& c, DatumId form, FormItems items) {
   c.compile(items[1]);
 }
 
-/// (format nil "text" ...) is a string, whose directives stay as they are; any other is nil.
+/// Is everything known that the form names? Arguments of `format` may be written for people only.
+bool can_be_computed(const FormCompiler& c, DatumId form) {
+  std::vector<DatumId> open = {form};
+  while (!open.empty()) {
+    const auto datum = open.back();
+    open.pop_back();
+    if (c.data.is_symbol(datum) && !c.data.is_nil(datum) && c.data.name(datum) != "t") {
+      const bool bound = c.code.lookup(BindingKind::kVariable, c.data.name(datum)) != nullptr;
+      if (!bound && !c.defined.globals.contains(c.data.key(datum))) return false;
+    }
+    const auto items = c.data.children(datum);
+    if (items.empty() || c.data.head(datum) == "quote") continue;
+    if (!c.data.is_symbol(items.front()) || !find_callee(c, items.front())) return false;
+    open.insert(open.end(), items.begin() + 1, items.end());
+  }
+  return true;
+}
+
+/// (format nil "text" ...) is a string; any other is nil. Directives whose argument is not known
+/// stay as they are.
 void form_format(FormCompiler& c, DatumId form, FormItems items) {
   c.check_no_perform(form);
   const bool text = items.size() > 2 && c.data.is_nil(items[1]) && c.data.is_string(items[2]);
   if (!text) return c.nil(form);
   c.code.constant(c.datum_value(items[2]), form);
+  const auto arguments = items.subspan(3);
+  const bool known = std::all_of(arguments.begin(), arguments.end(),
+                                 [&](DatumId item) { return can_be_computed(c, item); });
+  if (!known) return;
+  for (const auto argument : arguments) c.compile(argument);
+  c.code.builtin("%format", static_cast<std::uint32_t>(arguments.size() + 1), form);
 }
 
 /// (holds '(fluent argument...)) and (prolog '(query argument...)) ask the model now.
@@ -292,6 +326,7 @@ std::span<const FormEntry> control_forms() {
       {"with-tags", form_with_tags},
       {"with-simulated-robot", form_progn},
       {"with-real-robot", form_progn},
+      {"eval-when", form_eval_when},
       {"par", form_par},
       {"pursue", form_pursue},
       {"if", form_if},

@@ -3,11 +3,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 #include "compiler/plan/function_calls.h"
+#include "compiler/plan/lisp_macros.h"
 #include "compiler/plan/plan_builtins.h"
+#include "compiler/plan/plan_machine.h"
 #include "compiler/plan/unknown_values.h"
 #include "compiler/plan/world_forms.h"
 
@@ -48,17 +51,10 @@ constexpr Hint kReactive[] = {
 };
 
 constexpr Hint kRejected[] = {
-    {"defmacro", "macros are not expanded; write a function"},
-    {"macrolet", "macros are not expanded; write a function with `flet`"},
     {"defstruct", "there are no structures"},
     {"defclass", "there are no classes"},
     {"defmethod", "there are no generic functions; write a function"},
     {"defgeneric", "there are no generic functions; write a function"},
-    {"lambda", "a lambda is only an argument of funcall, apply, mapcar, mapc, every and some"},
-    {"function",
-     "a function value is only an argument of funcall, apply, mapcar, mapc, every and some"},
-    {"handler-bind", "use `with-failure-handling`, which binds in the same way"},
-    {"ignore-errors", "use `(handler-case form (error () nil))`"},
     {"tagbody", "use a loop"},
     {"go", "use a loop"},
     {"do", "use `loop` or `dotimes`"},
@@ -67,6 +63,10 @@ constexpr Hint kRejected[] = {
     {"throw", "use `return-from`"},
     {"unquote", "a comma needs a backquote around it"},
     {"unquote-splicing", "a comma needs a backquote around it"},
+    {"defmacro", "macros are defined at top level; use `macrolet`"},
+    {"define-compiler-macro", "leave it out; it changes nothing"},
+    {"symbol-macrolet", "write the form out"},
+    {"define-symbol-macro", "write the form out"},
     {"defun", "functions are defined at top level"},
     {"def-cram-function", "functions are defined at top level"},
     {"def-top-level-cram-function", "functions are defined at top level"},
@@ -84,13 +84,20 @@ const Hint* find_hint(const Hint (&table)[kSize], std::string_view form) {
   return nullptr;
 }
 
+/// Does a variable or a pattern of variables follow this word of `loop`?
+bool is_loop_variable(std::string_view word) {
+  return word == "for" || word == "as" || word == "with" || word == "and";
+}
+
 }  // namespace
 
 const std::map<std::string_view, FormFunction>& plan_forms() {
   static const auto table = [] {
     std::map<std::string_view, FormFunction> out;
-    for (const auto part : {binding_forms(), control_forms(), loop_forms(), failure_forms(),
-                            designator_forms(), prolog_forms(), call_forms(), world_forms()}) {
+    for (const auto part :
+         {binding_forms(), quotation_forms(), value_forms(), control_forms(), loop_forms(),
+          loop_form(), mapping_forms(), failure_forms(), type_forms(), designator_forms(),
+          prolog_forms(), call_forms(), local_forms(), world_forms()}) {
       for (const auto& entry : part) out.emplace(entry.name, entry.compile);
     }
     return out;
@@ -98,7 +105,36 @@ const std::map<std::string_view, FormFunction>& plan_forms() {
   return table;
 }
 
+FormCompiler::FormCompiler(LispText& text, ValueStore& store, base::DiagnosticSink& sink,
+                           bool par_by_turns)
+    : data(text.data),
+      values(store),
+      interleave(par_by_turns),
+      text_(text),
+      sink_(sink),
+      expander_(std::make_unique<MacroExpander>(*this)) {}
+
+FormCompiler::~FormCompiler() = default;
+
+base::DiagnosticBuilder FormCompiler::note_calls(base::DiagnosticBuilder report, DatumId at) const {
+  note_macro_calls(report, data, at);
+  return report;
+}
+
 void FormCompiler::compile(DatumId form) {
+  // The reader's limit for what was written holds for what macros make of it.
+  if (depth_ >= kMaxLispDepth) {
+    if (expander_->stop()) {
+      error(DiagnosticCode::kMacroLimit, form, kMaxLispDepth, "nested forms");
+    }
+    return nil(form);
+  }
+  ++depth_;
+  compile_datum(form);
+  --depth_;
+}
+
+void FormCompiler::compile_datum(DatumId form) {
   switch (data[form].kind) {
     case DatumKind::kSymbol:
       return compile_symbol(form);
@@ -149,6 +185,7 @@ void FormCompiler::compile_list(DatumId form) {
     return refuse(form, "a form starts with a name");
   }
   if (data.is_dotted(form)) return refuse(form, "a dotted list is data: quote it");
+  if (const auto* macro = find_macro(items.front())) return compile_expansion(form, *macro);
   if (const auto callee = find_callee(*this, items.front());
       callee && callee->function != nullptr) {
     return compile_call(*this, form, *head, *callee, items.subspan(1));
@@ -176,6 +213,85 @@ void FormCompiler::compile_list(DatumId form) {
   }
   unknown_form(form, items.front());
   nil(form);
+}
+
+void FormCompiler::compile_expansion(DatumId form, const PlanMacro& macro) {
+  const auto expansion = expand(macro, form);
+  if (!expansion) return nil(form);
+  check_dots(*expansion);
+  compile(*expansion);
+}
+
+void FormCompiler::check_dots(DatumId form) {
+  std::vector<std::pair<DatumId, bool>> open = {{form, false}};  // in a template?
+  while (!open.empty()) {
+    const auto [datum, is_data] = open.back();
+    open.pop_back();
+    const auto head = data.head(datum).value_or("");
+    const auto items = data.children(datum);
+    if (head == "quote" || head == "def-fact-group" || head == "defmacro" || head == "macrolet")
+      continue;
+    if (!is_data && !head.empty() && find_macro(items.front()) != nullptr) continue;
+    if (!is_data && data.is_dotted(datum)) {
+      malformed(datum, "a dotted list is data: quote it");
+      return;
+    }
+    const bool inside = (is_data && head != "unquote" && head != "unquote-splicing") ||
+                        (!is_data && head == "quasiquote");
+    // Patterns of variables may have dots.
+    const bool pattern = !is_data && head == "destructuring-bind" && items.size() > 1;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const bool variable = !is_data && head == "loop" && i > 0 && !data.is_list(items[i - 1]) &&
+                            !data.is_number(items[i - 1]) &&
+                            is_loop_variable(data.name(items[i - 1]));
+      if (!variable && !(pattern && i == 1)) open.emplace_back(items[i], inside);
+    }
+  }
+}
+
+std::optional<DatumId> FormCompiler::expand(const PlanMacro& macro, DatumId call) {
+  auto out = expander_->expand(macro, call);
+  if (!out) failed_ = true;
+  return out;
+}
+
+const PlanMacro* FormCompiler::find_macro(DatumId symbol) const {
+  if (defined.macros.empty() && defined.local_macros.empty()) return nullptr;
+  const auto& name = data.name(symbol);
+  for (auto binding = code.scope().rbegin(); binding != code.scope().rend(); ++binding) {
+    if (binding->name != name) continue;
+    if (binding->kind == BindingKind::kFunction) return nullptr;
+    if (binding->kind == BindingKind::kMacro) return &defined.local_macros.at(binding->index);
+  }
+  const auto found = defined.macros.find(data.key(symbol));
+  return found == defined.macros.end() ? nullptr : &found->second;
+}
+
+bool FormCompiler::complete(std::uint32_t unit) {
+  const auto found = defined.unwritten.find(unit);
+  if (found == defined.unwritten.end()) return code.code().units[unit].ready;
+  const auto errors = sink_.error_count();
+  const auto source = std::move(found->second);
+  defined.unwritten.erase(found);
+  auto outside = code.suspend();
+  const auto outer_tags = std::exchange(tags, 0);
+  const bool was_in_function = std::exchange(in_function, true);
+  const bool was_in_macro = std::exchange(in_macro, source.macro.has_value());
+  const auto outer_position = std::exchange(position, source.position);
+  if (source.macro) {
+    compile_macro(*this, *source.macro, source.body);
+  } else {
+    compile_function(*this, source.function, source.block, source.body);
+  }
+  tags = outer_tags;
+  in_function = was_in_function;
+  in_macro = was_in_macro;
+  position = outer_position;
+  code.resume(std::move(outside));
+  // What was refused half-way must not run, in no expansion either.
+  const bool good = sink_.error_count() == errors;
+  if (!good) code.code().units[unit].ready = false;
+  return good;
 }
 
 void FormCompiler::compile_body(FormItems body) {
@@ -221,6 +337,10 @@ ValueId FormCompiler::datum_value(DatumId datum) {
     }
   }
   return values.nil();
+}
+
+ValueId FormCompiler::quoted_value(DatumId datum) {
+  return in_macro ? expander_->value_of(datum, true) : datum_value(datum);
 }
 
 FormItems FormCompiler::skip_declarations(FormItems body) const {
@@ -289,7 +409,10 @@ void FormCompiler::unknown_form(DatumId form, DatumId symbol) {
   // Looking for the nearest name is the expensive part; nobody reads the thousandth suggestion.
   if (sink_.error_count() > kMaxSuggestions) return;
   std::vector<std::string> names;
-  for (const auto& [known, function] : defined.functions) names.push_back(known);
+  for (const auto& [known, function] : defined.functions) {
+    if (known.front() != '%') names.push_back(known);
+  }
+  for (const auto& [known, macro] : defined.macros) names.push_back(known);
   for (const auto& [known, function] : plan_forms()) names.emplace_back(known);
   for (const auto& builtin : plan_builtins()) {
     if (builtin.name.front() != '%') names.emplace_back(builtin.name);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,8 @@
 namespace parallax::compiler {
 
 using FormItems = std::span<const DatumId>;
+
+class MacroExpander;
 
 struct PlanParameter {
   std::string name;
@@ -34,9 +37,29 @@ struct PlanFunction {
   std::uint32_t unit = 0;
   std::vector<PlanParameter> parameters;
   DatumId source;
-  bool other_keys = false;  // &allow-other-keys
-  bool task = false;        // its body is a task of its own: def-cram-function
-  bool top_level = false;   // def-top-level-cram-function: nothing in a plan may call it
+  std::vector<PlanParameter> variables = {};  // &aux: bound behind the parameters
+  bool other_keys = false;                    // &allow-other-keys
+  bool task = false;                          // its body is a task of its own: def-cram-function
+  bool top_level = false;  // def-top-level-cram-function: nothing in a plan may call it
+};
+
+/// A macro: a unit that takes the whole call and returns what it stands for.
+struct PlanMacro {
+  std::string name;
+  std::uint32_t unit = 0;
+  std::uint32_t driver = 0;  // a unit that calls it
+  DatumId source;
+  DatumId parameters;
+  std::size_t position = 0;  // in the text
+};
+
+/// A function or a macro of the text whose code is written when somebody needs it, or at the end.
+struct PlanUnitSource {
+  PlanFunction function;
+  std::optional<PlanMacro> macro;
+  std::string block;
+  FormItems body;
+  std::size_t position = 0;
 };
 
 /// What the plan defines at top level, and the local functions met so far.
@@ -44,6 +67,9 @@ struct PlanDefinitions {
   std::map<std::string, PlanFunction, std::less<>> functions;
   std::vector<std::string> function_order;
   std::map<std::uint32_t, PlanFunction> local_functions;  // by unit
+  std::map<std::string, PlanMacro, std::less<>> macros;
+  std::map<std::uint32_t, PlanMacro> local_macros;    // by unit
+  std::map<std::uint32_t, PlanUnitSource> unwritten;  // by unit
   std::map<std::string, std::uint32_t, std::less<>> globals;
 };
 
@@ -54,9 +80,8 @@ struct PlanDefinitions {
 /// that no execution takes, and the compiler goes on.
 class FormCompiler {
  public:
-  FormCompiler(const LispText& text, ValueStore& store, base::DiagnosticSink& sink,
-               bool par_by_turns)
-      : data(text.data), values(store), interleave(par_by_turns), text_(text), sink_(sink) {}
+  FormCompiler(LispText& text, ValueStore& store, base::DiagnosticSink& sink, bool par_by_turns);
+  ~FormCompiler();
 
   void compile(DatumId form);
   /// The forms in order; the value is the last one's, nil without forms.
@@ -66,8 +91,19 @@ class FormCompiler {
   void otherwise_nil(const std::vector<std::size_t>& to_else, DatumId source);
   /// Quoted data as a value.
   ValueId datum_value(DatumId datum);
+  /// The same; in the text of a macro it remembers its place.
+  ValueId quoted_value(DatumId datum);
   /// The failure class that a symbol, perhaps quoted, names; CPL041 if there is none.
   std::optional<std::string> failure_class(DatumId datum);
+  /// Writes the code of a function or macro of the text, if that was not done; false: it is being
+  /// written, or was refused.
+  bool complete(std::uint32_t unit);
+  /// The macro that the symbol at the head of a form means.
+  const PlanMacro* find_macro(DatumId symbol) const;
+  /// What a call of the macro stands for; none: reported.
+  std::optional<DatumId> expand(const PlanMacro& macro, DatumId call);
+  /// A dotted list is data: as code it would be read as if the dot were not there.
+  void check_dots(DatumId form);
   /// Drops docstrings and declarations at the head of a body.
   FormItems skip_declarations(FormItems body) const;
 
@@ -76,7 +112,7 @@ class FormCompiler {
   base::DiagnosticBuilder error(base::DiagnosticCode code_of_error, DatumId at,
                                 const Args&... args) {
     failed_ = true;
-    return sink_.error(code_of_error, data.source(at), args...);
+    return note_calls(sink_.error(code_of_error, data.source(at), args...), at);
   }
   template <typename... Args>
   void warning(base::DiagnosticCode code_of_warning, DatumId at, const Args&... args) {
@@ -92,23 +128,32 @@ class FormCompiler {
   std::string form_name(DatumId form) const;
   bool failed() const { return failed_; }
 
-  const LispData& data;
+  LispData& data;
   ValueStore& values;
   const bool interleave;  // the branches of `par` take turns
   PlanAssembler code;
   PlanDefinitions defined;
   int tags = 0;              // how many `with-tags` are around
   bool in_function = false;  // not among the bare forms at top level
+  bool in_macro = false;     // in the text of a macro: lists remember where they were written
+  std::size_t position = 0;  // of the form at top level that is compiled
 
  private:
+  base::DiagnosticBuilder note_calls(base::DiagnosticBuilder report, DatumId at) const;
   /// A definition of that name in a package from which the plan does not see it.
   void note_other_package(base::DiagnosticBuilder& report, DatumId symbol) const;
+  void compile_datum(DatumId form);
   void compile_symbol(DatumId symbol);
   void compile_list(DatumId form);
 
-  const LispText& text_;
+  void compile_expansion(DatumId form, const PlanMacro& macro);
+
+  LispText& text_;
   base::DiagnosticSink& sink_;
+  std::unique_ptr<MacroExpander> expander_;
+  std::size_t depth_ = 0;
   bool failed_ = false;
+  friend class MacroExpander;
 };
 
 /// Compiles one form; `items` are its parts, the head first.
@@ -119,13 +164,19 @@ struct FormEntry {
 };
 
 // The special forms of the subset, by subject.
-std::span<const FormEntry> binding_forms();     // variables, assignment, quoted data
+std::span<const FormEntry> binding_forms();     // variables, assignment
+std::span<const FormEntry> quotation_forms();   // quoted data, templates
+std::span<const FormEntry> value_forms();       // several values, functions as values
 std::span<const FormEntry> control_forms();     // order, choice, blocks, questions to the model
-std::span<const FormEntry> loop_forms();        // dolist, dotimes, loop, mapcar and its like
+std::span<const FormEntry> loop_forms();        // dolist, dotimes
+std::span<const FormEntry> loop_form();         // loop
+std::span<const FormEntry> mapping_forms();     // mapcar and its like
 std::span<const FormEntry> failure_forms();     // handlers, retries, clean-ups, the next branch
+std::span<const FormEntry> type_forms();        // typecase, assertions, handler-bind
 std::span<const FormEntry> designator_forms();  // designators and their perform
 std::span<const FormEntry> prolog_forms();      // solutions of `prolog`
-std::span<const FormEntry> call_forms();        // funcall, apply, local functions
+std::span<const FormEntry> call_forms();        // funcall, apply
+std::span<const FormEntry> local_forms();       // local functions and macros
 std::span<const FormEntry> world_forms();       // logging, belief, markers: nothing is done
 
 /// All of them, by name.

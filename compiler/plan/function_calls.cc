@@ -18,6 +18,7 @@ namespace {
 
 struct Signature {
   std::vector<PlanParameter> parameters;
+  std::vector<PlanParameter> variables;  // &aux
   bool other_keys = false;
   bool good = true;
 };
@@ -30,7 +31,8 @@ bool is_constant(const FormCompiler& c, DatumId form) {
 
 void parameter(FormCompiler& c, DatumId form, DatumId item, std::string_view mode, Signature& out) {
   PlanParameter result;
-  result.optional = mode == "&optional" || mode == "&key";
+  const bool aux = mode == "&aux";
+  result.optional = mode == "&optional" || mode == "&key" || aux;
   result.rest = mode == "&rest";
   auto name = item;
   auto parts = c.data.children(item);
@@ -55,7 +57,7 @@ void parameter(FormCompiler& c, DatumId form, DatumId item, std::string_view mod
       result.supplied || (result.default_value && !is_constant(c, *result.default_value));
   result.name = c.data.name(name);
   if (mode == "&key") result.keyword = keyword.empty() ? result.name : keyword;
-  out.parameters.push_back(std::move(result));
+  (aux ? out.variables : out.parameters).push_back(std::move(result));
 }
 
 Signature parameter_list(FormCompiler& c, DatumId form, DatumId list) {
@@ -71,15 +73,14 @@ Signature parameter_list(FormCompiler& c, DatumId form, DatumId list) {
       parameter(c, form, item, mode, out);
       continue;
     }
-    const bool had_rest = !out.parameters.empty() && out.parameters.back().rest;
     mode = c.data.name(item);
+    if (mode == "&body") mode = "&rest";
     if (mode == "&allow-other-keys") {
       out.other_keys = true;
       continue;
     }
-    if (mode == "&optional" || mode == "&rest" || (mode == "&key" && !had_rest)) continue;
-    c.unsupported(form, had_rest ? "`&key` after `&rest`; name the keys alone"
-                                 : fmt::format("`{}` in a parameter list", mode));
+    if (mode == "&optional" || mode == "&rest" || mode == "&key" || mode == "&aux") continue;
+    c.unsupported(form, fmt::format("`{}` in a parameter list", mode));
     out.good = false;
     break;
   }
@@ -97,17 +98,30 @@ void push_default(FormCompiler& c, const PlanParameter& parameter, DatumId sourc
   }
 }
 
-/// `:test #'eq` and the like add nothing: equality of values is structural.
-FormItems without_test_argument(FormCompiler& c, DatumId form, FormItems arguments) {
-  if (arguments.size() != 4 || !c.data.is_keyword(arguments[2])) return arguments;
-  const auto parts = c.data.children(arguments[3]);
-  const bool named = parts.size() == 2 && c.data.is_symbol(parts[1]);
-  const std::string_view test = named ? std::string_view(c.data.name(parts[1])) : "";
-  const bool equality = test == "eq" || test == "eql" || test == "equal" || test == "equalp";
-  if (c.data.name(arguments[2]) != "test" || !equality) {
-    c.unsupported(form, "only `:test` with eq, eql or equal");
+/// Are the arguments to be sorted while the plan runs? So where keywords follow `&rest`, and where
+/// they stand in another order than the parameters: arguments are computed in written order.
+bool binds_late(const FormCompiler& c, const PlanFunction& function, FormItems arguments) {
+  const auto& parameters = function.parameters;
+  const auto is_key = [](const PlanParameter& parameter) { return !parameter.keyword.empty(); };
+  const auto key = std::find_if(parameters.begin(), parameters.end(), is_key);
+  if (key == parameters.end()) return false;
+  const auto rest = [](const PlanParameter& parameter) { return parameter.rest; };
+  if (std::any_of(parameters.begin(), parameters.end(), rest)) return true;
+  auto last = key;
+  const auto others =
+      std::min(arguments.size(), static_cast<std::size_t>(key - parameters.begin()));
+  arguments = arguments.subspan(others);
+  for (std::size_t i = 0; i + 1 < arguments.size(); i += 2) {
+    if (!c.data.is_keyword(arguments[i])) continue;
+    const auto mine =
+        std::find_if(parameters.begin(), parameters.end(), [&](const auto& parameter) {
+          return is_key(parameter) && parameter.keyword == c.data.name(arguments[i]);
+        });
+    if (mine == parameters.end()) continue;
+    if (mine < last) return true;
+    last = mine;
   }
-  return arguments.subspan(0, 2);
+  return false;
 }
 
 /// Pushes one value for every parameter, in the order of the parameters.
@@ -165,13 +179,53 @@ bool push_arguments(FormCompiler& c, DatumId form, std::string_view name,
   return true;
 }
 
+/// A function that is named or written out, as #'f, 'f, a lambda or #'(lambda ...).
+std::optional<Callee> named_callee(FormCompiler& c, DatumId function) {
+  const auto head = c.data.head(function).value_or("");
+  auto parts = c.data.children(function);
+  if ((head == "function" || head == "quote") && parts.size() == 2) {
+    function = parts[1];
+    parts = c.data.children(function);
+    if (c.data.is_symbol(function)) return find_callee(c, function);
+    if (head == "quote") return std::nullopt;
+  }
+  if (c.data.head(function) != "lambda" || parts.size() < 2) return std::nullopt;
+  const auto lambda = declare_function(c, function, "a lambda", parts[1]);
+  compile_function(c, lambda, "", parts.subspan(2));
+  Callee callee;
+  callee.function = &(c.defined.local_functions[lambda.unit] = lambda);
+  callee.level = 0;
+  return callee;
+}
+
+/// Pushes a function of the plan as a value that is called here.
+void callee_value(FormCompiler& c, const Callee& callee, DatumId source) {
+  if (callee.local) return c.code.local_function_value(*callee.local, source);
+  FunctionTemplate made;
+  made.unit = callee.function->unit;
+  made.level = callee.level;
+  if (callee.level) made.shared = {{0, c.code.height()}};
+  c.code.function_value(std::move(made), source);
+}
+
+/// 'f of a name that means no function: said here, also on paths that no execution takes.
+void check_quoted_name(FormCompiler& c, DatumId function) {
+  const auto parts = c.data.children(function);
+  if (c.data.head(function) != "quote" || parts.size() != 2 || !c.data.is_symbol(parts[1])) return;
+  c.unknown_form(function, parts[1]);
+}
+
 void form_funcall(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() < 2) {
     return c.refuse(form, "expected a function");
   }
-  const auto callee = resolve_callee(c, form, items[1]);
-  if (!callee) return c.nil(form);
-  compile_call(c, form, c.form_name(form), *callee, items.subspan(2));
+  if (const auto callee = named_callee(c, items[1])) {
+    return compile_call(c, form, c.form_name(form), *callee, items.subspan(2));
+  }
+  check_quoted_name(c, items[1]);
+  c.compile(items[1]);
+  for (const auto item : items.subspan(2)) c.compile(item);
+  c.code.call_value(static_cast<std::uint32_t>(items.size() - 2), false, form);
 }
 
 /// (apply #'f a b list): the number of arguments is known only when the list is.
@@ -179,58 +233,20 @@ void form_apply(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() < 3) {
     return c.refuse(form, "expected a function and a list of arguments");
   }
-  const auto callee = resolve_callee(c, form, items[1]);
-  for (const auto item : items.subspan(2, items.size() - 3)) {
-    c.compile(item);
-    c.code.builtin("list", 1, item);
-  }
-  c.compile(items.back());
-  c.code.builtin("append", static_cast<std::uint32_t>(items.size() - 2), form);
-  if (!callee) return;
-  c.code.emit(PlanOp::kExpectList, 0, 0, form);
-  c.code.emit(PlanOp::kApply, 0, 0, form);
-  if (callee->builtin) {
-    c.code.emit(PlanOp::kBuiltin, *callee->builtin, 0, form);
-    return;
-  }
-  const auto& parameters = callee->function->parameters;
-  const auto optional = [](const PlanParameter& parameter) {
-    return parameter.optional || parameter.rest;
-  };
-  if (std::any_of(parameters.begin(), parameters.end(), optional)) {
-    c.unsupported(form, "a function with optional parameters cannot be applied to a list");
-  }
-  c.code.emit(callee->level ? PlanOp::kCallLocal : PlanOp::kCall, callee->function->unit,
-              callee->level.value_or(0), form);
+  for (const auto item : items.subspan(1)) c.compile(item);
+  c.code.call_value(static_cast<std::uint32_t>(items.size() - 2), true, form);
 }
 
-/// flet and labels: local functions, which see the variables around them.
-void form_flet(FormCompiler& c, DatumId form, FormItems items) {
-  if (items.size() < 2 || !c.data.is_list(items[1])) {
-    return c.refuse(form, "expected a list of functions");
+/// (multiple-value-call f form...): with all values of all forms.
+void form_multiple_value_call(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 2) return c.refuse(form, "expected a function");
+  c.compile(items[1]);
+  for (const auto item : items.subspan(2)) {
+    c.compile(item);
+    c.code.emit(PlanOp::kListValues, 0, 0, item);
   }
-  const auto scope = c.code.scope().size();
-  std::vector<std::pair<PlanFunction, FormItems>> declared;
-  std::vector<LexicalBinding> bound;
-  for (const auto definition : c.data.children(items[1])) {
-    const auto parts = c.data.children(definition);
-    if (parts.size() < 2 || !c.data.is_symbol(parts[0])) {
-      c.malformed(form, "a function is (name parameters form...)");
-      continue;
-    }
-    auto function = declare_function(c, definition, c.data.name(parts[0]), parts[1]);
-    bound.push_back(c.code.named(BindingKind::kFunction, c.data.name(parts[0]), function.unit));
-    c.defined.local_functions[function.unit] = function;
-    declared.emplace_back(std::move(function), parts.subspan(2));
-  }
-  const bool recursive = c.form_name(form) == "labels";
-  if (recursive) c.code.show(bound);
-  for (std::size_t i = 0; i < declared.size(); ++i) {
-    compile_function(c, declared[i].first, bound[i].name, declared[i].second);
-  }
-  if (!recursive) c.code.show(bound);
-  c.compile_body(c.skip_declarations(items.subspan(2)));
-  c.code.cut_scope(scope);
+  c.code.builtin("append", static_cast<std::uint32_t>(items.size() - 2), form);
+  c.code.call_value(1, true, form);
 }
 
 }  // namespace
@@ -267,8 +283,7 @@ PlanFunction declare_function(FormCompiler& c, DatumId form, std::string_view na
   auto signature = parameter_list(c, form, parameters);
   const auto count = static_cast<std::uint32_t>(signature.parameters.size());
   const auto unit = c.code.declare_unit(name, form, count);
-  c.code.code().units[unit].recursive_limit = true;
-  PlanFunction out{unit, std::move(signature.parameters), form};
+  PlanFunction out{unit, std::move(signature.parameters), form, std::move(signature.variables)};
   out.other_keys = signature.other_keys;
   const auto kind = c.data.head(form).value_or("");
   out.top_level = kind == "def-top-level-cram-function";
@@ -304,13 +319,27 @@ std::uint32_t compile_defaults(FormCompiler& c, const PlanFunction& function) {
     c.code.bind_top(*parameter.supplied);
     ++flags;
   }
+  for (const auto& variable : function.variables) {
+    if (variable.default_value) {
+      c.compile(*variable.default_value);
+    } else {
+      c.nil(function.source);
+    }
+    c.code.bind_top(variable.name);
+    ++flags;
+  }
   return flags;
 }
 
 void compile_function(FormCompiler& c, const PlanFunction& function, std::string_view block_name,
                       FormItems body) {
-  const auto scope = c.code.scope().size();
   c.code.enter_unit(function.unit);
+  compile_function_body(c, function, block_name, body);
+}
+
+void compile_function_body(FormCompiler& c, const PlanFunction& function,
+                           std::string_view block_name, FormItems body) {
+  const auto scope = c.code.scope().size();
   const auto flags = compile_defaults(c, function);
   const auto block = c.code.open_block(block_name);
   if (function.task) c.code.open_task(function.source);
@@ -328,6 +357,7 @@ std::optional<Callee> find_callee(const FormCompiler& c, DatumId symbol) {
   if (const auto* local = c.code.lookup(BindingKind::kFunction, name)) {
     callee.function = &c.defined.local_functions.at(local->index);
     callee.level = c.code.level_of(*local);
+    callee.local = *local;
     return callee;
   }
   if (const auto found = c.defined.functions.find(c.data.key(symbol));
@@ -340,35 +370,48 @@ std::optional<Callee> find_callee(const FormCompiler& c, DatumId symbol) {
   return callee;
 }
 
-std::optional<Callee> resolve_callee(FormCompiler& c, DatumId form, DatumId function) {
-  const auto head = c.data.head(function).value_or("");
-  auto parts = c.data.children(function);
-  if ((head == "function" || head == "quote") && parts.size() == 2) {
-    function = parts[1];
-    parts = c.data.children(function);
+FunctionArgument prepare_function(FormCompiler& c, DatumId form, DatumId function) {
+  FunctionArgument out;
+  out.callee = named_callee(c, function);
+  const auto* named = out.callee ? out.callee->function : nullptr;
+  const bool sorts =
+      named != nullptr && std::any_of(named->parameters.begin(), named->parameters.end(),
+                                      [](const PlanParameter& parameter) {
+                                        return parameter.rest || !parameter.keyword.empty();
+                                      });
+  if (sorts) {
+    callee_value(c, *out.callee, form);
+    out.callee.reset();
+  } else if (out.callee) {
+    c.nil(form);
+  } else {
+    check_quoted_name(c, function);
+    c.compile(function);
   }
-  if (c.data.is_symbol(function)) {
-    if (auto callee = find_callee(c, function)) return callee;
-    c.unknown_form(function, function);
-    return std::nullopt;
-  }
-  if (c.data.head(function) != "lambda" || parts.size() < 2) {
-    c.unsupported(form, "the function must be named or written out, as #'f or a lambda");
-    return std::nullopt;
-  }
-  const auto lambda = declare_function(c, function, "a lambda", parts[1]);
-  compile_function(c, lambda, "", parts.subspan(2));
-  Callee callee;
-  callee.function = &(c.defined.local_functions[lambda.unit] = lambda);
-  callee.level = 0;
-  return callee;
+  out.place = c.code.height() - 1;
+  return out;
+}
+
+void push_prepared(FormCompiler& c, const FunctionArgument& function, DatumId source) {
+  if (!function.callee) c.code.load(function.place, source);
+}
+
+void call_prepared(FormCompiler& c, const FunctionArgument& function, std::uint32_t count,
+                   DatumId source) {
+  if (function.callee) return emit_call(c, *function.callee, count, source);
+  c.code.call_value(count, false, source);
 }
 
 namespace {
 
+bool gives_values(std::string_view builtin) {
+  return builtin == "floor" || builtin == "ceiling" || builtin == "truncate" || builtin == "round";
+}
+
 /// `pushed` values are on the stack, one for each parameter.
 void enter_function(FormCompiler& c, const Callee& callee, std::uint32_t pushed, DatumId source) {
   const auto op = callee.level ? PlanOp::kCallLocal : PlanOp::kCall;
+  if (callee.local) c.code.note_local_call(*callee.local);
   c.code.emit(op, callee.function->unit, callee.level.value_or(0), source);
   c.code.adjust(1 - static_cast<int>(pushed));
 }
@@ -387,6 +430,7 @@ void emit_call(FormCompiler& c, const Callee& callee, std::uint32_t count, Datum
                       count));
     }
     c.code.emit(PlanOp::kBuiltin, *callee.builtin, count, source);
+    if (gives_values(builtin.name)) c.code.code().multiple_values = true;
     return c.code.adjust(1 - static_cast<int>(count));
   }
   const auto& parameters = callee.function->parameters;
@@ -414,6 +458,14 @@ void emit_call(FormCompiler& c, const Callee& callee, std::uint32_t count, Datum
 
 void compile_call(FormCompiler& c, DatumId form, std::string_view name, const Callee& callee,
                   FormItems arguments) {
+  // Without keywords the built-in of that name does the same.
+  const bool ours = callee.function != nullptr && c.data.in_library(callee.function->source);
+  if (const auto known = ours ? find_builtin(name) : std::nullopt;
+      known && plan_builtins()[*known].max_arguments >= arguments.size()) {
+    Callee builtin;
+    builtin.builtin = known;
+    return compile_call(c, form, name, builtin, arguments);
+  }
   if (callee.function != nullptr) {
     if (callee.function->top_level && c.in_function) {
       c.error(DiagnosticCode::kUnsupportedPlanForm, form, name,
@@ -421,14 +473,16 @@ void compile_call(FormCompiler& c, DatumId form, std::string_view name, const Ca
               "`def-cram-function`")
           .note(c.data.source(callee.function->source), "defined here");
     }
+    if (binds_late(c, *callee.function, arguments)) {
+      callee_value(c, callee, form);
+      for (const auto argument : arguments) c.compile(argument);
+      return c.code.call_value(static_cast<std::uint32_t>(arguments.size()), false, form);
+    }
     if (!push_arguments(c, form, name, *callee.function, arguments)) {
       return c.nil(form);
     }
     const auto count = static_cast<std::uint32_t>(callee.function->parameters.size());
     return enter_function(c, callee, count, form);
-  }
-  if (name == "member" || name == "find" || name == "assoc" || name == "remove") {
-    arguments = without_test_argument(c, form, arguments);
   }
   for (const auto argument : arguments) c.compile(argument);
   emit_call(c, callee, static_cast<std::uint32_t>(arguments.size()), form);
@@ -438,8 +492,7 @@ std::span<const FormEntry> call_forms() {
   static constexpr FormEntry kForms[] = {
       {"funcall", form_funcall},
       {"apply", form_apply},
-      {"flet", form_flet},
-      {"labels", form_flet},
+      {"multiple-value-call", form_multiple_value_call},
   };
   return kForms;
 }

@@ -1,5 +1,7 @@
 #include "compiler/plan/lisp_data.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "compiler/base/ascii.h"
@@ -96,22 +98,48 @@ NameId LispData::intern(std::string_view text) {
 DatumId LispData::add_named(DatumKind kind, std::string_view name, std::string_view package,
                             base::SourceRange source, bool external) {
   const auto id = intern(name);
-  return data_.add({kind, false, external, id, intern(package), id, 0, 0, source});
+  return data_.add({kind, false, external, id, intern(package), id, 0, 0, nullptr, source});
 }
 
 DatumId LispData::add_number(const Number& number, base::SourceRange source) {
   const auto index = static_cast<std::uint32_t>(numbers_.size());
   numbers_.push_back(number);
   return data_.add(
-      {DatumKind::kNumber, false, false, NameId(), NameId(), NameId(), index, 0, source});
+      {DatumKind::kNumber, false, false, NameId(), NameId(), NameId(), index, 0, nullptr, source});
 }
 
 DatumId LispData::add_list(std::span<const DatumId> children, base::SourceRange source) {
-  const auto first = static_cast<std::uint32_t>(children_.size());
-  children_.insert(children_.end(), children.begin(), children.end());
+  const auto* kept = keep(children);
   const auto count = static_cast<std::uint32_t>(children.size());
   return data_.add(
-      {DatumKind::kList, false, false, NameId(), NameId(), NameId(), first, count, source});
+      {DatumKind::kList, false, false, NameId(), NameId(), NameId(), 0, count, kept, source});
+}
+
+const DatumId* LispData::keep(std::span<const DatumId> children) {
+  constexpr std::size_t kBlock = 4096;
+  places_ += children.size();
+  if (block_used_ + children.size() > block_size_) {
+    block_size_ = std::max(kBlock, children.size());
+    block_used_ = 0;
+    blocks_.push_back(std::make_unique<DatumId[]>(block_size_));
+  }
+  if (children.empty()) return nullptr;
+  auto* out = blocks_.back().get() + block_used_;
+  std::copy(children.begin(), children.end(), out);
+  block_used_ += children.size();
+  return out;
+}
+
+void LispData::note_expansion(DatumId begin, DatumId call) {
+  if (begin < end_id()) expansions_.push_back({begin, end_id(), call});
+}
+
+std::optional<DatumId> LispData::macro_call(DatumId id) const {
+  const auto after = std::upper_bound(expansions_.begin(), expansions_.end(), id,
+                                      [](DatumId at, const Part& part) { return at < part.begin; });
+  if (after == expansions_.begin()) return std::nullopt;
+  const auto& part = *std::prev(after);
+  return id < part.end ? std::optional(part.call) : std::nullopt;
 }
 
 DatumId LispData::add_dotted(std::vector<DatumId> items, DatumId tail, base::SourceRange source) {
@@ -135,7 +163,7 @@ DatumId LispData::add_dotted(std::vector<DatumId> items, DatumId tail, base::Sou
 std::span<const DatumId> LispData::children(DatumId id) const {
   const auto& datum = data_[id];
   if (datum.kind != DatumKind::kList) return {};
-  return std::span(children_).subspan(datum.first, datum.count);
+  return {datum.children, datum.count};
 }
 
 bool LispData::is_symbol(DatumId id, std::string_view wanted) const {

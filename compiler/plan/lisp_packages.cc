@@ -101,7 +101,7 @@ std::string text_of_names(std::string_view left, std::string_view right, std::st
 
 bool defines_name(std::string_view head) {
   return head == "defun" || head == "def-cram-function" || head == "def-top-level-cram-function" ||
-         head == "defparameter" || head == "defvar" || head == "defconstant";
+         head == "defparameter" || head == "defvar" || head == "defconstant" || head == "defmacro";
 }
 
 void PackageResolver::read_packages() {

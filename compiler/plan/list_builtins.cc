@@ -10,8 +10,9 @@
 namespace parallax::compiler {
 namespace {
 
+template <bool kStructure>
 BuiltinResult same(const BuiltinCall& c) {
-  if (c.args[0] == c.args[1]) return c.values.truth();
+  if (c.values.same(c.args[0], c.args[1])) return c.values.truth();
   const auto left = c.values.kind(c.args[0]);
   const auto right = c.values.kind(c.args[1]);
   const auto comparable = [](ValueKind kind) {
@@ -21,7 +22,7 @@ BuiltinResult same(const BuiltinCall& c) {
   if (asks_model && comparable(left) && comparable(right)) {
     return ModelEquality{c.args[0], c.args[1]};
   }
-  return c.values.nil();
+  return c.values.boolean(kStructure && c.values.equal(c.args[0], c.args[1]));
 }
 
 BuiltinResult is_null(const BuiltinCall& c) { return c.values.boolean(c.values.is_nil(c.args[0])); }
@@ -53,12 +54,6 @@ BuiltinResult nth(const BuiltinCall& c) {
     return c.wrong(0, "a natural number");
   }
   return element(c, 1, static_cast<std::size_t>(number->numerator()));
-}
-
-BuiltinResult last(const BuiltinCall& c) {
-  const auto items = c.values.elements(c.args[0]);
-  if (!items) return c.wrong(0, "a list");
-  return items->empty() ? c.values.nil() : c.values.list({items->back()});
 }
 
 BuiltinResult length(const BuiltinCall& c) {
@@ -110,7 +105,8 @@ BuiltinResult member(const BuiltinCall& c) {
   auto found = searched(c);
   if (auto* failure = std::get_if<BuiltinFailure>(&found)) return *failure;
   const auto& items = std::get<0>(found);
-  const auto at = std::find(items.begin(), items.end(), c.args[0]);
+  const auto at = std::find_if(items.begin(), items.end(),
+                               [&](ValueId item) { return c.values.same(item, c.args[0]); });
   return c.values.list({at, items.end()});
 }
 
@@ -118,7 +114,8 @@ BuiltinResult find(const BuiltinCall& c) {
   auto found = searched(c);
   if (auto* failure = std::get_if<BuiltinFailure>(&found)) return *failure;
   const auto& items = std::get<0>(found);
-  const bool has = std::find(items.begin(), items.end(), c.args[0]) != items.end();
+  const bool has = std::any_of(items.begin(), items.end(),
+                               [&](ValueId item) { return c.values.same(item, c.args[0]); });
   return has ? c.args[0] : c.values.nil();
 }
 
@@ -126,7 +123,7 @@ BuiltinResult remove(const BuiltinCall& c) {
   auto found = searched(c);
   if (auto* failure = std::get_if<BuiltinFailure>(&found)) return *failure;
   auto items = std::get<0>(found);
-  std::erase(items, c.args[0]);
+  std::erase_if(items, [&](ValueId item) { return c.values.same(item, c.args[0]); });
   return c.values.list(items);
 }
 
@@ -135,45 +132,15 @@ BuiltinResult assoc(const BuiltinCall& c) {
   if (!items) return c.wrong(1, "a list");
   for (const auto item : *items) {
     const auto& pair = c.values[item];
-    if (pair.kind == ValueKind::kCons && pair.head == c.args[0]) return item;
+    if (pair.kind == ValueKind::kCons && c.values.same(pair.head, c.args[0])) return item;
   }
   return c.values.nil();
 }
 
-/// (%expect-length list n): the list, which must have n elements.
-BuiltinResult expect_length(const BuiltinCall& c) {
-  const auto items = c.values.elements(c.args[0]);
-  if (!items) return c.wrong(0, "a list");
-  const auto wanted = c.number(1)->numerator();
-  if (static_cast<std::int64_t>(items->size()) == wanted) return c.args[0];
-  return BuiltinFailure{BuiltinError::kValue, fmt::format("the pattern has {} parts, the list {}",
-                                                          wanted, items->size())};
-}
-
-BuiltinResult given(const BuiltinCall& c) {
-  return c.values.boolean(c.values.kind(c.args[0]) != ValueKind::kNotGiven);
-}
-
-template <ValueKind kKind>
-BuiltinResult has_kind(const BuiltinCall& c) {
-  return c.values.boolean(c.values.kind(c.args[0]) == kKind);
-}
-
-BuiltinResult typep(const BuiltinCall& c) {
-  const auto& value = c.values[c.args[0]];
-  const auto& type = c.values[c.args[1]];
-  if (type.kind != ValueKind::kSymbol) return c.wrong(1, "a failure class");
-  if (const auto holds = has_designator_type(value, type.text)) return c.values.boolean(*holds);
-  const auto wanted = c.classes.canonical(type.text);
-  if (!wanted) return c.wrong(1, "a failure class");
-  const bool holds = value.kind == ValueKind::kFailure && c.classes.is_a(value.text, *wanted);
-  return c.values.boolean(holds);
-}
-
 constexpr BuiltinEntry kListTable[] = {
-    {{"eq", 2, 2}, same},
-    {{"eql", 2, 2}, same},
-    {{"equal", 2, 2}, same},
+    {{"eq", 2, 2}, same<false>},
+    {{"eql", 2, 2}, same<false>},
+    {{"equal", 2, 2}, same<true>},
     {{"null", 1, 1}, is_null},
     {{"not", 1, 1}, is_null},
     {{"identity", 1, 1}, first_argument},
@@ -190,7 +157,6 @@ constexpr BuiltinEntry kListTable[] = {
     {{"fourth", 1, 1}, nth_fixed<3>},
     {{"fifth", 1, 1}, nth_fixed<4>},
     {{"nth", 2, 2}, nth},
-    {{"last", 1, 1}, last},
     {{"length", 1, 1}, length},
     {{"append", 0, kAnyNumber}, append},
     {{"reverse", 1, 1}, reverse},
@@ -198,11 +164,6 @@ constexpr BuiltinEntry kListTable[] = {
     {{"find", 2, 2}, find},
     {{"remove", 2, 2}, remove},
     {{"assoc", 2, 2}, assoc},
-    {{"numberp", 1, 1}, has_kind<ValueKind::kNumber>},
-    {{"stringp", 1, 1}, has_kind<ValueKind::kString>},
-    {{"typep", 2, 2}, typep},
-    {{"%expect-length", 2, 2}, expect_length},
-    {{"%given", 1, 1}, given},
 };
 
 }  // namespace

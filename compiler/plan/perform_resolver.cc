@@ -191,7 +191,9 @@ Result<FormulaTree> PerformResolver::constant(ValueId id, std::string_view what,
       if (constants_.has("nil")) return constant_term("nil");
       return wrong("nil, and the model has no constant of that name");
     case ValueKind::kNotGiven:
-      return wrong("nil");
+    case ValueKind::kFunction:
+    case ValueKind::kValues:
+      return wrong(values_.print(id));
     case ValueKind::kCons:
     case ValueKind::kVector:
     case ValueKind::kQuaternion:
@@ -474,6 +476,8 @@ void PerformResolver::flatten(const std::string& name, ValueId id, PlanArguments
       return;
     }
     case ValueKind::kNotGiven:
+    case ValueKind::kFunction:
+    case ValueKind::kValues:
     case ValueKind::kNil:
     case ValueKind::kQuaternion:
     case ValueKind::kPose:

@@ -74,6 +74,7 @@ std::uint32_t PlanAssembler::open_exit() {
 }
 
 void PlanAssembler::leave_to(const LexicalBinding& target, DatumId source) {
+  note_use(target, code_.exits[target.index].height, false);
   emit(PlanOp::kExit, level_of(target), target.index, source);
 }
 
@@ -141,12 +142,14 @@ std::uint32_t PlanAssembler::declare_unit(std::string_view name, DatumId source,
 }
 
 void PlanAssembler::enter_unit(std::uint32_t unit) {
-  frames_.push_back({unit, code_.units[unit].parameters, 0});
+  frames_.push_back({unit, code_.units[unit].parameters, 0, false});
 }
 
 void PlanAssembler::leave_unit(PlanOp last, DatumId source) {
   emit(last, 0, 0, source);
+  code_.units[frames_.back().unit].ready = true;
   frames_.pop_back();
+  if (frames_.empty()) resolve_uses();
 }
 
 void PlanAssembler::par(std::vector<std::uint32_t> units, bool pursue, DatumId source) {
@@ -161,11 +164,11 @@ void PlanAssembler::par(std::vector<std::uint32_t> units, bool pursue, DatumId s
 
 LexicalBinding PlanAssembler::named(BindingKind kind, std::string_view name,
                                     std::uint32_t index) const {
-  return {kind, std::string(name), depth(), index};
+  return {kind, std::string(name), depth(), index, height(), 0};
 }
 
 void PlanAssembler::show(const std::vector<LexicalBinding>& bindings) {
-  scope_.insert(scope_.end(), bindings.begin(), bindings.end());
+  for (const auto& binding : bindings) show(binding);
 }
 
 void PlanAssembler::bind_top(std::string_view name) {
@@ -191,11 +194,14 @@ std::uint32_t PlanAssembler::level_of(const LexicalBinding& binding) const {
 }
 
 void PlanAssembler::load(const LexicalBinding& binding, DatumId source) {
+  note_use(binding, binding.index, binding.kind == BindingKind::kVariable);
   emit(PlanOp::kLoad, level_of(binding), binding.index, source);
   adjust(1);
 }
 
 void PlanAssembler::store(const LexicalBinding& binding, DatumId source) {
+  note_change(binding);
+  note_use(binding, binding.index, false);
   emit(PlanOp::kStore, level_of(binding), binding.index, source);
 }
 

@@ -3,8 +3,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/plan/plan_compiler.h"
@@ -12,7 +15,7 @@
 namespace parallax::compiler {
 
 /// kSpecial: a global that is rebound, its number is the index. kTask: no name; what is around it
-/// belongs to another task.
+/// belongs to another task. kMacro: of a `macrolet`.
 enum class BindingKind : std::uint8_t {
   kVariable,
   kCounter,
@@ -20,7 +23,8 @@ enum class BindingKind : std::uint8_t {
   kFunction,
   kRetry,
   kSpecial,
-  kTask
+  kTask,
+  kMacro
 };
 
 /// A name that is visible here. Frames are counted from the outermost unit being written.
@@ -28,7 +32,9 @@ struct LexicalBinding {
   BindingKind kind = BindingKind::kVariable;
   std::string name;
   std::uint32_t frame = 0;
-  std::uint32_t index = 0;  // variable: place in the frame; block, retry: exit; function: unit
+  std::uint32_t index = 0;   // variable: place in the frame; block, retry: exit; function: unit
+  std::uint32_t height = 0;  // of the stack when it was named
+  std::uint32_t serial = 0;  // of a name that was shown: tells variables apart
 };
 
 /// Writes the code of a plan unit by unit: knows how high the stack of each open unit stands, which
@@ -87,11 +93,33 @@ class PlanAssembler {
   void leave_unit(PlanOp last, DatumId source);
   /// The branches of a `par` or `pursue`, each a unit, which take turns.
   void par(std::vector<std::uint32_t> units, bool pursue, DatumId source);
+  /// What is being written waits: a unit of its own is written in between.
+  struct Suspended;
+  Suspended suspend();
+  void resume(Suspended outside);
+
+  // --- function values
+  /// Opens the unit of a function value; leave_unit closes it. Variables that it uses and that
+  /// never change go along with it; what else it uses from outside, it shares.
+  void enter_function_value(std::uint32_t unit);
+  /// Pushes the value of the unit that was left just now.
+  void function_value(std::uint32_t unit, DatumId source);
+  /// Pushes a function that is no unit of its own: one of the plan, a built-in, a local function.
+  void function_value(FunctionTemplate made, DatumId source);
+  void local_function_value(const LexicalBinding& local, DatumId source);
+  void call_value(std::uint32_t arguments, bool spread, DatumId source);
+  /// A call of the local function follows.
+  void note_local_call(const LexicalBinding& local) { note_use(local, local.height, false); }
+  /// The variable changes after it was bound.
+  void note_change(const LexicalBinding& variable) { changed_.insert(variable.serial); }
 
   // --- names
   /// A name of the open unit, not visible yet.
   LexicalBinding named(BindingKind kind, std::string_view name, std::uint32_t index) const;
-  void show(LexicalBinding binding) { scope_.push_back(std::move(binding)); }
+  void show(LexicalBinding binding) {
+    binding.serial = ++serials_;
+    scope_.push_back(std::move(binding));
+  }
   void show(const std::vector<LexicalBinding>& bindings);
   /// Names the value on top; it stays until it is squeezed out.
   void bind_top(std::string_view name);
@@ -116,13 +144,42 @@ class PlanAssembler {
     std::uint32_t unit = 0;
     std::uint32_t height = 0;
     std::uint32_t guards = 0;
+    bool is_value = false;  // its unit becomes a function value
+  };
+  /// A function value around a use of an outer variable.
+  struct ValueFrame {
+    std::uint32_t unit = 0;
+    std::uint32_t depth = 0;
+  };
+  struct OuterUse {
+    std::uint32_t unit = 0;
+    std::size_t at = 0;  // the instruction, of a load
+    std::uint32_t depth = 0;
+    std::vector<ValueFrame> values;  // outermost first; not empty
+    std::uint32_t frame = 0;         // where the variable is
+    std::uint32_t index = 0;
+    std::optional<std::uint32_t> serial;  // of the variable that is loaded; none: shared
   };
   std::uint32_t depth() const { return static_cast<std::uint32_t>(frames_.size() - 1); }
+  void note_use(const LexicalBinding& binding, std::uint32_t index, bool is_load);
+  void resolve_uses();
+  void keep(const OuterUse& use);
 
   PlanCode code_;
   std::vector<Frame> frames_;
   std::vector<LexicalBinding> scope_;  // the innermost last
+  std::uint32_t serials_ = 0;
+  std::set<std::uint32_t> changed_;
+  std::vector<OuterUse> uses_;
+  std::map<std::uint32_t, std::uint32_t> values_made_;                     // unit -> its template
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> kept_;  // unit, serial -> slot
   std::map<std::string, std::uint32_t, std::less<>> string_ids_;
+};
+
+struct PlanAssembler::Suspended {
+  std::vector<Frame> frames;
+  std::vector<LexicalBinding> scope;
+  std::vector<OuterUse> uses;
 };
 
 }  // namespace parallax::compiler

@@ -1,5 +1,7 @@
 #include "compiler/plan/plan_builtins.h"
 
+#include <unordered_map>
+
 #include "compiler/plan/builtin_call.h"
 #include "compiler/plan/unknown_values.h"
 
@@ -10,7 +12,8 @@ const std::vector<BuiltinEntry>& table() {
   static const auto all = [] {
     std::vector<BuiltinEntry> out;
     for (const auto part :
-         {number_builtins(), list_builtins(), designator_builtins(), pose_part_builtins(),
+         {number_builtins(), list_builtins(), sequence_builtins(), pattern_builtins(),
+          type_builtins(), symbol_builtins(), designator_builtins(), pose_part_builtins(),
           transform_builtins(), frame_builtins(), robot_builtins()}) {
       out.insert(out.end(), part.begin(), part.end());
     }
@@ -31,11 +34,16 @@ std::span<const PlanBuiltin> plan_builtins() {
 }
 
 std::optional<std::uint32_t> find_builtin(std::string_view name) {
-  const auto& all = plan_builtins();
-  for (std::uint32_t i = 0; i < all.size(); ++i) {
-    if (all[i].name == name) return i;
-  }
-  return std::nullopt;
+  static const auto by_name = [] {
+    std::unordered_map<std::string_view, std::uint32_t> out;
+    for (const auto& builtin : plan_builtins()) {
+      out.emplace(builtin.name, static_cast<std::uint32_t>(out.size()));
+    }
+    return out;
+  }();
+  const auto found = by_name.find(name);
+  if (found == by_name.end()) return std::nullopt;
+  return found->second;
 }
 
 BuiltinResult call_builtin(std::uint32_t builtin, std::span<const ValueId> arguments,

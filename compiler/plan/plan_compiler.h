@@ -37,7 +37,13 @@ enum class PlanOp : std::uint8_t {
   kPerform,       // pop a designator; push the result: the model decides
   kCall,          // pop the arguments of unit a, run it, push its result
   kCallLocal,     // the same for a unit whose parent frame is b static links out
-  kApply,         // pop a list; call with its elements what the next instruction calls
+  kFunction,      // push the function value of template a
+  kCallValue,     // pop a arguments and the function below; b = 1: the last one is a list of more
+  kValues,        // pop a values, push them as multiple values
+  kSpreadValues,  // pop a list, push its elements as multiple values
+  kListValues,    // pop multiple values, push the list of them
+  kUnpack,        // pop multiple values, push the first a of them, nil where there are fewer
+  kStamp,         // the list on top was made at template (datum) a
   kReturn,        // leave the unit with the top as its result
   kPushHandlers,  // failures look into table a from here on
   kPushCleanup,   // leaving runs unit a from here on
@@ -79,9 +85,25 @@ struct PlanUnit {
   std::vector<UnitParameter> signature;  // functions: one for each parameter
   bool other_keys = false;               // &allow-other-keys
   bool top_level = false;                // def-top-level-cram-function
-  bool recursive_limit = false;          // named functions count their own recursion
+  bool ready = false;                    // its code is complete
+  std::uint32_t kept = 0;  // variables that a function value keeps lie below its parameters
   DatumId source;
   std::vector<PlanInstruction> code;
+};
+
+/// A variable of a frame `level` static links out.
+struct FramePlace {
+  std::uint32_t level = 0;
+  std::uint32_t index = 0;
+};
+
+/// How a function value is made.
+struct FunctionTemplate {
+  std::uint32_t unit = 0;
+  bool builtin = false;
+  std::optional<std::uint32_t> level;  // of the frame that it is linked to, if it needs one
+  std::vector<FramePlace> kept;        // variables that never change: their values go along
+  std::vector<FramePlace> shared;      // variables and blocks that it must not outlive
 };
 
 /// Where a kExit goes: the frame keeps `height` values and `guards` guards of its own.
@@ -115,20 +137,22 @@ struct PlanCode {
   std::vector<ExitTarget> exits;
   std::vector<std::vector<HandlerClause>> handlers;
   std::vector<ParBranches> pars;
+  std::vector<FunctionTemplate> functions_made;
   std::vector<PlanGlobal> globals;
   std::vector<std::string> strings;
   FailureClasses classes;
   std::map<std::string, std::uint32_t, std::less<>> functions;     // the plan's own: their units
   std::map<std::string, std::string, std::less<>> function_names;  // by `package::name`: that name
-  bool identities = false;  // designators are equated: each is a thing of its own
-  bool describes = false;   // properties are asked for: found objects keep their description
+  bool identities = false;       // designators are equated: each is a thing of its own
+  bool describes = false;        // properties are asked for: found objects keep their description
+  bool multiple_values = false;  // some form gives several values
 };
 
 /// Turns a plan into code for the unroller's machine. `entry` names the function to run; without it
 /// the bare top-level forms run, or else the last function defined; CPL006 if there is nothing to
 /// run. `interleave`: the branches of `par` take turns; otherwise they run in written order
-/// (W-PAR).
-base::Result<PlanCode> compile_plan(const LispText& text, const std::optional<std::string>& entry,
+/// (W-PAR). Macros add their expansions to the text's data.
+base::Result<PlanCode> compile_plan(LispText& text, const std::optional<std::string>& entry,
                                     bool interleave, ValueStore& values,
                                     base::DiagnosticSink& sink);
 

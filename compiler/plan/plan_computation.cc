@@ -53,18 +53,18 @@ void drop_dead_links(PlanState& state, std::span<const ValueId> more, const Valu
 
 void PlanMachine::report(const BuiltinFailure& failure, std::uint32_t builtin, DatumId form) {
   const auto name = plan_builtins()[builtin].name;
-  const auto source = data_.source(form);
+  const bool own = data_.in_library(form) || name.front() == '%';
+  const auto caller = own ? name_at(place_of(form)) : std::string(name);
   switch (failure.kind) {
     case BuiltinError::kRaise:
     case BuiltinError::kValue:
-      sink_.error(DiagnosticCode::kPlanValue, source,
-                  name.front() == '%' ? name_at(form) : std::string(name), failure.text);
+      report(DiagnosticCode::kPlanValue, form, caller, failure.text);
       break;
     case BuiltinError::kModelComparison:
-      sink_.error(DiagnosticCode::kModelComparison, source, name);
+      report(DiagnosticCode::kModelComparison, form, caller);
       break;
     case BuiltinError::kModelList:
-      sink_.error(DiagnosticCode::kModelList, source, name);
+      report(DiagnosticCode::kModelList, form, caller);
       break;
   }
 }

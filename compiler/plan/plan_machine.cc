@@ -125,8 +125,16 @@ std::string PlanMachine::name_at(DatumId form) const {
 }
 
 StopError PlanMachine::error(DiagnosticCode code, const PlanInstruction& at, std::string text) {
-  sink_.error(code, data_.source(at.source), name_at(at.source), text);
+  report(code, at.source, name_at(place_of(at.source)), text);
   return {};
+}
+
+PlanState PlanMachine::start(std::uint32_t unit, const std::vector<ValueId>& arguments) const {
+  PlanState state;
+  state.frames.push_back({});
+  state.frames.back().unit = unit;
+  state.stack = arguments;
+  return state;
 }
 
 PlanState PlanMachine::start() const {
@@ -159,18 +167,23 @@ bool PlanMachine::run_definitions() {
 }
 
 PlanStop PlanMachine::run(PlanState& state) {
+  running_ = &state;
   for (;;) {
     auto& frame = state.frames.back();
     const auto& instruction = code_.units[frame.unit].code[frame.pc];
     if (values_.full() || ++steps_ + values_.elements_read() > limits_.max_steps) {
       const auto limit =
           values_.full() ? static_cast<std::int64_t>(kMaxPlanValues) : limits_.max_steps;
-      sink_.error(DiagnosticCode::kUnrollLimit, data_.source(instruction.source), limit,
-                  values_.full() ? "values" : "steps");
+      report(blame_ ? DiagnosticCode::kMacroLimit : DiagnosticCode::kUnrollLimit,
+             instruction.source, limit, values_.full() ? "values" : "steps");
       return StopError{};
     }
     ++frame.pc;
-    if (auto stop = execute(state, instruction)) return *std::move(stop);
+    auto stop = execute(state, instruction);
+    if (!stop) continue;
+    if (std::holds_alternative<StopUnit>(*stop)) --state.frames.back().pc;
+    running_ = nullptr;
+    return *std::move(stop);
   }
 }
 
@@ -181,11 +194,15 @@ std::uint32_t PlanMachine::linked(const PlanState& state, std::uint32_t level) c
 }
 
 std::size_t PlanMachine::place(const PlanState& state, const PlanInstruction& instruction) const {
-  return state.frames[linked(state, instruction.a)].base + std::size_t{instruction.b};
+  // What a function value keeps lies below its frame: the index is negative.
+  const auto index = static_cast<std::ptrdiff_t>(static_cast<std::int32_t>(instruction.b));
+  const auto base = static_cast<std::ptrdiff_t>(state.frames[linked(state, instruction.a)].base);
+  return static_cast<std::size_t>(base + index);
 }
 
 PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& instruction) {
   auto& stack = state.stack;
+  if (code_.multiple_values) take_primary(state, instruction);
   switch (instruction.op) {
     case PlanOp::kConstant:
       stack.push_back(ValueId(instruction.a));
@@ -194,6 +211,7 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
       stack.push_back(stack[place(state, instruction)]);
       return {};
     case PlanOp::kStore:
+      if (auto stop = check_life(state, instruction)) return stop;
       stack[place(state, instruction)] = stack.back();
       return {};
     case PlanOp::kLoadGlobal:
@@ -201,15 +219,18 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
     case PlanOp::kBindSpecial:
       return bind_special(state, instruction);
     case PlanOp::kStoreSpecial:
+      if (auto stop = check_life(state, instruction)) return stop;
       stack[*special(state, instruction.a)] = stack.back();
       return {};
     case PlanOp::kStoreGlobal:
+      if (auto stop = check_life(state, instruction)) return stop;
       globals_[instruction.a] = pop(state);
       return {};
     case PlanOp::kPop:
       stack.pop_back();
       return {};
     case PlanOp::kSqueeze:
+      if (auto stop = check_life(state, instruction)) return stop;
       stack.erase(stack.end() - 1 - static_cast<std::ptrdiff_t>(instruction.a), stack.end() - 1);
       return {};
     case PlanOp::kJump:
@@ -237,11 +258,24 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
     case PlanOp::kCall:
     case PlanOp::kCallLocal:
       return call(state, instruction);
-    case PlanOp::kApply:
-      return apply(state, instruction);
+    case PlanOp::kFunction:
+      return make_function(state, instruction);
+    case PlanOp::kCallValue:
+      return call_value(state, instruction);
+    case PlanOp::kValues:
+    case PlanOp::kSpreadValues:
+    case PlanOp::kListValues:
+    case PlanOp::kUnpack:
+      multiple_values(state, instruction);
+      return {};
+    case PlanOp::kStamp:
+      stamp(state, instruction);
+      return {};
     case PlanOp::kReturn:
+      if (auto stop = check_life(state, instruction)) return stop;
       return leave(state);
     case PlanOp::kExit: {
+      if (auto stop = check_life(state, instruction)) return stop;
       const auto carried = pop(state);
       const auto frame = linked(state, instruction.a);
       if (auto stop = check_exit(state, instruction, frame)) return stop;
@@ -250,6 +284,7 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
     case PlanOp::kPar:
       return start_par(state, instruction);
     case PlanOp::kEndBranch:
+      if (auto stop = check_life(state, instruction)) return stop;
       return end_branch(state);
     case PlanOp::kTick:
       return tick(state, instruction);
@@ -283,13 +318,14 @@ PlanMachine::Step PlanMachine::load_global(PlanState& state, const PlanInstructi
     state.stack.push_back(state.stack[*rebound]);
     return {};
   }
-  if (const auto value = globals_[instruction.a]) {
+  if (const auto value = instruction.a < globals_.size() ? globals_[instruction.a] : std::nullopt) {
     state.stack.push_back(*value);
     return {};
   }
   const auto& global = code_.globals[instruction.a];
-  sink_.error(DiagnosticCode::kUnboundPlanVariable, data_.source(instruction.source), global.name)
-      .note(data_.source(global.source), "it is defined only here");
+  report(DiagnosticCode::kUnboundPlanVariable, instruction.source, global.name)
+      .note(data_.source(global.source),
+            blame_ ? "globals get their values behind the macros" : "it is defined only here");
   return StopError{};
 }
 
@@ -352,8 +388,7 @@ PlanMachine::Step PlanMachine::expect_list(const PlanState& state,
                                            const PlanInstruction& instruction) {
   const auto top = state.stack.back();
   if (values_.kind(top) == ValueKind::kModel) {
-    sink_.error(DiagnosticCode::kModelList, data_.source(instruction.source),
-                name_at(instruction.source));
+    report(DiagnosticCode::kModelList, instruction.source, name_at(place_of(instruction.source)));
     return StopError{};
   }
   if (values_.elements(top)) return {};
@@ -380,7 +415,7 @@ PlanMachine::Step PlanMachine::builtin(PlanState& state, const PlanInstruction& 
     return {};
   }
   if (const auto* equality = std::get_if<ModelEquality>(&result)) {
-    return StopQuestion{*equality, instruction.source};
+    return StopQuestion{*equality, place_of(instruction.source)};
   }
   const auto& failure = std::get<BuiltinFailure>(result);
   if (failure.kind == BuiltinError::kRaise) return raise(state, values_.failure(failure.text));
@@ -400,7 +435,7 @@ PlanMachine::Step PlanMachine::tick(PlanState& state, const PlanInstruction& ins
 /// The end of a unit: its result replaces its variables.
 PlanMachine::Step PlanMachine::leave(PlanState& state) {
   const auto result = state.stack.back();
-  const auto base = state.frames.back().base;
+  const auto base = state.frames.back().base - code_.units[state.frames.back().unit].kept;
   state.frames.pop_back();
   // The task of a perform ends with the function that carries it out.
   if (!state.guards.empty() && state.guards.back().kind == GuardKind::kTask &&
@@ -414,27 +449,36 @@ PlanMachine::Step PlanMachine::leave(PlanState& state) {
 }
 
 PlanMachine::Step PlanMachine::call(PlanState& state, const PlanInstruction& instruction) {
-  const auto& unit = code_.units[instruction.a];
+  const bool local = instruction.op == PlanOp::kCallLocal;
+  return enter_unit(state, instruction.a, local ? linked(state, instruction.b) : 0,
+                    instruction.source);
+}
+
+/// The arguments are on the stack.
+PlanMachine::Step PlanMachine::enter_unit(PlanState& state, std::uint32_t index, std::uint32_t link,
+                                          DatumId form) {
+  const auto& unit = code_.units[index];
+  if (!unit.ready) return StopUnit{index};
   std::uint32_t depth = 0;
   const PlanFrame* outermost = nullptr;
   // What lies between a handler and the frame it belongs to has failed and is not active any more.
   for (auto f = static_cast<std::uint32_t>(state.frames.size()); f-- > 0;) {
     const auto& active = state.frames[f];
-    if (active.unit == instruction.a) {
+    if (active.unit == index) {
       outermost = &active;
       ++depth;
     }
     if (active.kind == FrameKind::kHandler) f = active.link + 1;
   }
-  if (depth >= limits_.max_call_depth) {
-    if (outermost->performs != state.performs) return StopBound{unit.name, instruction.source};
-    sink_.error(DiagnosticCode::kPlanRecursion, data_.source(instruction.source), unit.name,
-                limits_.max_call_depth);
+  // Our own Lisp calls itself for what the plan gives it, and ends.
+  if (depth >= limits_.max_call_depth && !data_.in_library(unit.source)) {
+    if (outermost->performs != state.performs) return StopBound{unit.name, place_of(form)};
+    report(DiagnosticCode::kPlanRecursion, form, unit.name, limits_.max_call_depth);
     return StopError{};
   }
   PlanFrame frame;
-  frame.unit = instruction.a;
-  frame.link = instruction.op == PlanOp::kCallLocal ? linked(state, instruction.b) : 0;
+  frame.unit = index;
+  frame.link = link;
   frame.base = static_cast<std::uint32_t>(state.stack.size()) - unit.parameters;
   frame.guard_base = static_cast<std::uint32_t>(state.guards.size());
   frame.performs = state.performs;
@@ -448,31 +492,7 @@ std::optional<PlanStop> PlanMachine::enter(PlanState& state, std::uint32_t unit,
   const auto height = static_cast<std::uint32_t>(state.stack.size());
   state.guards.push_back({GuardKind::kTask, kPerformTask, caller, height});
   state.stack.insert(state.stack.end(), arguments.begin(), arguments.end());
-  return call(state, {PlanOp::kCall, unit, 0, form});
-}
-
-/// The elements of the list on top become the arguments of the instruction that follows.
-PlanMachine::Step PlanMachine::apply(PlanState& state, const PlanInstruction& instruction) {
-  const auto list = state.stack.back();
-  state.stack.pop_back();
-  const auto items = values_.elements(list).value_or(std::vector<ValueId>());
-  auto& frame = state.frames.back();
-  auto next = code_.units[frame.unit].code[frame.pc++];
-  const bool is_builtin = next.op == PlanOp::kBuiltin;
-  const auto count = static_cast<std::uint32_t>(items.size());
-  const auto parameters = is_builtin ? 0U : code_.units[next.a].parameters;
-  const auto least = is_builtin ? plan_builtins()[next.a].min_arguments : parameters;
-  const auto most = is_builtin ? plan_builtins()[next.a].max_arguments : parameters;
-  if (count < least || count > most) {
-    return error(
-        DiagnosticCode::kPlanArguments, instruction,
-        fmt::format("the function takes at {} {} arguments, the list has {}",
-                    count < least ? "least" : "most", count < least ? least : most, count));
-  }
-  state.stack.insert(state.stack.end(), items.begin(), items.end());
-  if (!is_builtin) return call(state, next);
-  next.b = count;
-  return builtin(state, next);
+  return enter_unit(state, unit, 0, form);
 }
 
 }  // namespace parallax::compiler

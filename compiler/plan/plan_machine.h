@@ -145,9 +145,15 @@ struct StopBound {
 };
 struct StopTurn {
 };  // of the outermost `par` every branch is over or waits, or it may end in two ways
+struct StopUnit {  // the code of a unit is not complete yet; run tries again
+  std::uint32_t unit = 0;
+};
 struct StopError {};  // reported
 using PlanStop = std::variant<StopPerform, StopQuestion, StopProof, StopDone, StopFailed, StopBound,
-                              StopTurn, StopError>;
+                              StopTurn, StopUnit, StopError>;
+
+/// Names the calls of macros that made the form.
+void note_macro_calls(base::DiagnosticBuilder& report, const LispData& data, DatumId form);
 
 struct MachineLimits {
   std::uint32_t max_call_depth = 8;
@@ -172,6 +178,14 @@ class PlanMachine {
   /// Sets the global constants; false if that reported an error.
   bool run_definitions();
   PlanState start() const;
+  /// A state that calls the unit with these arguments; it is done with the result on the stack.
+  PlanState start(std::uint32_t unit, const std::vector<ValueId>& arguments) const;
+  /// What errors are about, if they arise at `own`: a macro is blamed on its call.
+  struct Blame {
+    DatumId own;
+    DatumId call;
+  };
+  void blame(std::optional<Blame> blame) { blame_ = blame; }
   PlanStop run(PlanState& state);
   /// Lets the current step fail instead of answering; run goes on from there.
   std::optional<PlanStop> raise(PlanState& state, ValueId failure);
@@ -218,7 +232,22 @@ class PlanMachine {
   Step expect_list(const PlanState& state, const PlanInstruction& instruction);
   Step builtin(PlanState& state, const PlanInstruction& instruction);
   Step call(PlanState& state, const PlanInstruction& instruction);
-  Step apply(PlanState& state, const PlanInstruction& instruction);
+  Step make_function(PlanState& state, const PlanInstruction& instruction);
+  Step call_value(PlanState& state, const PlanInstruction& instruction);
+  Step enter_value(PlanState& state, std::vector<ValueId> arguments, const FunctionValue& function,
+                   ValueId kept, const PlanInstruction& instruction);
+  Step enter_unit(PlanState& state, std::uint32_t unit, std::uint32_t link, DatumId form);
+  bool outlives(ValueId value, std::size_t frame, std::size_t place) const;
+  Step check_life(const PlanState& state, const PlanInstruction& instruction);
+  void take_primary(PlanState& state, const PlanInstruction& instruction);
+  void stamp(PlanState& state, const PlanInstruction& instruction);
+  void multiple_values(PlanState& state, const PlanInstruction& instruction);
+  base::DiagnosticBuilder report(base::DiagnosticCode code, DatumId at, auto&&... args) {
+    return note_blame(sink_.error(code, data_.source(place_of(at)), args...), at);
+  }
+  base::DiagnosticBuilder note_blame(base::DiagnosticBuilder report, DatumId at) const;
+  /// Where an error in that form is shown: our own Lisp stands for its caller.
+  DatumId place_of(DatumId form) const;
   Step tick(PlanState& state, const PlanInstruction& instruction);
   Step fail_value(PlanState& state, const PlanInstruction& instruction);
   void push_guard(PlanState& state, const PlanInstruction& instruction);
@@ -252,6 +281,8 @@ class PlanMachine {
   std::int64_t steps_ = 0;
   std::vector<std::uint32_t> handlers_run_;
   std::vector<bool> handlers_met_;
+  std::optional<Blame> blame_;
+  const PlanState* running_ = nullptr;
 };
 
 }  // namespace parallax::compiler

@@ -77,7 +77,9 @@ void PlanMachine::push_guard(PlanState& state, const PlanInstruction& instructio
   const auto height = static_cast<std::uint32_t>(state.stack.size());
   const auto kind = guard_kind(instruction.op);
   state.guards.push_back({kind, instruction.a, frame, height});
-  if (kind == GuardKind::kHandlers) handlers_met_[instruction.a] = true;
+  if (kind != GuardKind::kHandlers) return;
+  if (handlers_met_.size() <= instruction.a) handlers_met_.resize(code_.handlers.size());
+  handlers_met_[instruction.a] = true;
 }
 
 void PlanMachine::run_cleanup(PlanState& state, const PlanInstruction& instruction) {

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <set>
 
 #include "compiler/plan/unknown_values.h"
 
@@ -31,6 +32,7 @@ std::string fingerprint(const Value& value) {
     case ValueKind::kSymbol:
       out += value.keyword ? ":" : "";
       append(out, value.text);
+      out += value.key;
       break;
     case ValueKind::kString:
     case ValueKind::kFailure:
@@ -44,6 +46,17 @@ std::string fingerprint(const Value& value) {
       break;
     case ValueKind::kCons:
       out += fmt::format("{} {}", value.head.index(), value.tail.index());
+      if (value.origin.list != 0) {
+        out += fmt::format(" {} {} {}", value.origin.list, value.origin.index, value.origin.made);
+      }
+      break;
+    case ValueKind::kFunction: {
+      const auto& f = value.function;
+      out += fmt::format("{} {} {} {} {}", f.unit, f.builtin, f.link, f.reach, value.head.index());
+      break;
+    }
+    case ValueKind::kValues:
+      out += fmt::format("{}", value.head.index());
       break;
     case ValueKind::kVector:
     case ValueKind::kQuaternion:
@@ -105,6 +118,7 @@ ValueId ValueStore::intern(Value value) {
   const auto found = ids_.find(text);
   if (found != ids_.end()) return found->second;
   note_parts(value);
+  from_data_ = from_data_ || value.origin.list != 0 || !value.key.empty();
   const auto id = values_.add(std::move(value));
   ids_.emplace(std::move(text), id);
   return id;
@@ -116,6 +130,8 @@ void ValueStore::note_parts(Value& value) const {
     const auto& from = values_[part];
     value.registers.insert(value.registers.end(), from.registers.begin(), from.registers.end());
     value.identities.insert(value.identities.end(), from.identities.begin(), from.identities.end());
+    value.function.link = std::max(value.function.link, from.function.link);
+    value.function.reach = std::max(value.function.reach, from.function.reach);
   };
   const auto tidy = [](auto& list) {
     std::sort(list.begin(), list.end());
@@ -124,7 +140,11 @@ void ValueStore::note_parts(Value& value) const {
   value.registers.clear(), value.identities.clear();
   if (value.kind == ValueKind::kModel) value.registers = {value.model};
   if (value.identity != 0) value.identities = {value.identity};
-  if (value.kind == ValueKind::kCons) include(value.head), include(value.tail);
+  const bool pair = value.kind == ValueKind::kCons;
+  if (pair || value.kind == ValueKind::kFunction || value.kind == ValueKind::kValues) {
+    include(value.head);
+  }
+  if (pair) include(value.tail);
   if (value.kind == ValueKind::kUnknown) include(value.head);
   for (const auto& [key, part] : value.keys) include(part);
   tidy(value.registers), tidy(value.identities);
@@ -193,6 +213,52 @@ ValueId ValueStore::not_given() {
   return intern(std::move(value));
 }
 
+ValueId ValueStore::multiple(const std::vector<ValueId>& all) {
+  if (all.size() == 1) return all.front();
+  Value value;
+  value.kind = ValueKind::kValues;
+  value.head = list(all);
+  return intern(std::move(value));
+}
+
+ValueId ValueStore::primary(ValueId id) const {
+  const auto& value = values_[id];
+  if (value.kind != ValueKind::kValues) return id;
+  return is_nil(value.head) ? nil() : values_[value.head].head;
+}
+
+ValueId ValueStore::gensym(std::string_view prefix) {
+  return symbol(fmt::format("#:{}{}", prefix, ++gensyms_));
+}
+
+bool ValueStore::same(ValueId a, ValueId b) const {
+  if (a == b) return true;
+  const auto& left = values_[a];
+  const auto& right = values_[b];
+  return left.kind == ValueKind::kSymbol && right.kind == ValueKind::kSymbol &&
+         left.keyword == right.keyword && left.text == right.text;
+}
+
+bool ValueStore::equal(ValueId a, ValueId b) const {
+  std::vector<std::pair<ValueId, ValueId>> open = {{a, b}};
+  std::set<std::pair<std::uint32_t, std::uint32_t>> seen;  // parts may be shared
+  while (!open.empty()) {
+    const auto [x, y] = open.back();
+    open.pop_back();
+    if (same(x, y) || !seen.emplace(x.index(), y.index()).second) continue;
+    const auto& left = values_[x];
+    const auto& right = values_[y];
+    // Without macros equal lists are the same.
+    if (!from_data_ || left.kind != ValueKind::kCons || right.kind != ValueKind::kCons) {
+      return false;
+    }
+    ++elements_read_;
+    open.emplace_back(left.tail, right.tail);
+    open.emplace_back(left.head, right.head);
+  }
+  return true;
+}
+
 ValueId ValueStore::model(ModelValueId id) {
   Value value;
   value.kind = ValueKind::kModel;
@@ -259,6 +325,10 @@ std::string ValueStore::print(ValueId id) const {
       return "no argument";
     case ValueKind::kFurther:
       return "further solutions";
+    case ValueKind::kFunction:
+      return "a function";
+    case ValueKind::kValues:
+      return "several values";
   }
   return {};
 }

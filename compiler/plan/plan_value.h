@@ -35,10 +35,32 @@ enum class ValueKind : std::uint8_t {
   kCounter,   // hidden iteration count of a bounded loop
   kNotGiven,  // stands for an argument whose default the function computes
   kFurther,   // the rest of a list of solutions, of which only the first is known
+  kFunction,
+  kValues,  // what `values` gave, not one of them: head is the list of all
 };
 
 enum class DesignatorKind : std::uint8_t { kMotion, kAction, kObject, kLocation, kAllObjects };
 std::string_view to_string(DesignatorKind kind);
+
+/// A function as a value: a unit of the plan or a built-in. One that shares variables with the code
+/// around it lives no longer than they do; a frame and places on the stack say how long that is.
+struct FunctionValue {
+  std::uint32_t unit = 0;
+  bool builtin = false;     // unit is the number of a built-in
+  std::uint32_t link = 0;   // 1 + the frame around it; 0: it needs none
+  std::uint32_t reach = 0;  // 1 + the highest place of a variable that it shares
+  friend bool operator==(const FunctionValue&, const FunctionValue&) = default;
+};
+
+/// Where a cons that was made of a datum came from: the datum at `index` of `list`, or only the
+/// place in a template that the list was made at.
+struct DatumOrigin {
+  std::uint32_t list = 0;  // 1 + its datum; 0: from nowhere
+  std::uint32_t index = 0;
+  bool made = false;  // of a macro's own text: turned back, it is a new datum
+  friend bool operator==(const DatumOrigin&, const DatumOrigin&) = default;
+};
+inline constexpr std::uint32_t kWholeTemplate = 0xFFFFFFFF;  // as index
 
 /// A value of a plan variable. Immutable; equal values have equal ids (see ValueStore).
 struct Value {
@@ -46,9 +68,14 @@ struct Value {
   std::string text;      // symbol name, string, failure class, child frame, function of a term
   bool keyword = false;  // kSymbol: :left, not left
   Number number;         // kNumber, kCounter
-  ValueId head;          // kCons; stamp of a pose (nil: none); arguments of a term
+  std::string key;       // kSymbol: what it is found by, where that is not its name
+  // kCons; stamp of a pose (nil: none); arguments of a term; kFunction: the list of variables that
+  // it keeps; kValues: all
+  ValueId head;
   ValueId tail;
-  Pose pose;  // kPose and kTransform; kVector and kQuaternion use their part
+  DatumOrigin origin;      // kCons, while macros are expanded
+  FunctionValue function;  // kFunction; others: the shortest life of a function in it
+  Pose pose;               // kPose and kTransform; kVector and kQuaternion use their part
   DesignatorKind designator = DesignatorKind::kMotion;
   // kDesignator: in written order; kModel: the description that it was sought by
   std::vector<std::pair<std::string, ValueId>> keys;
@@ -82,7 +109,17 @@ class ValueStore {
   ValueId failure(std::string_view failure_class);
   ValueId model(ModelValueId id);
   ValueId not_given();
+  ValueId multiple(const std::vector<ValueId>& all);
+  /// A symbol that no text can name.
+  ValueId gensym(std::string_view prefix);
   ValueId intern(Value value);
+
+  /// `eql` and `equal` of Lisp; where a value came from does not matter. `same` of lists is their
+  /// structure: there are no two lists that differ in nothing but their identity.
+  bool same(ValueId a, ValueId b) const;
+  bool equal(ValueId a, ValueId b) const;
+  /// The first of multiple values; any other value is itself.
+  ValueId primary(ValueId id) const;
 
   const Value& operator[](ValueId id) const { return values_[id]; }
   ValueKind kind(ValueId id) const { return values_[id].kind; }
@@ -105,6 +142,8 @@ class ValueStore {
   base::Store<ValueId, Value> values_;
   std::map<std::string, ValueId> ids_;
   ValueId truth_;
+  std::int64_t gensyms_ = 0;
+  bool from_data_ = false;                  // values exist that know where they came from
   mutable std::int64_t elements_read_ = 0;  // a statistic, no part of the value
 };
 

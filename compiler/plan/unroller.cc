@@ -44,6 +44,15 @@ PlanTarget Explorer::terminal(TerminalKind kind, std::string detail, std::option
   return id;
 }
 
+/// The calls of macros that made the form, outermost first.
+std::vector<base::SourceRange> macro_calls(const LispData& data, DatumId form) {
+  std::vector<base::SourceRange> out;
+  for (auto call = data.macro_call(form); call; call = data.macro_call(*call)) {
+    out.insert(out.begin(), data.source(*call));
+  }
+  return out;
+}
+
 /// The call sites that are active, outermost first.
 std::vector<base::SourceRange> Explorer::calls(const PlanState& state) const {
   std::vector<base::SourceRange> out;
@@ -51,7 +60,11 @@ std::vector<base::SourceRange> Explorer::calls(const PlanState& state) const {
     const auto& frame = state.frames[i];
     const auto& caller = state.frames[i - 1];
     if (frame.kind != FrameKind::kCall || caller.pc == 0) continue;
-    out.push_back(data_.source(code_.units[caller.unit].code[caller.pc - 1].source));
+    const auto call = code_.units[caller.unit].code[caller.pc - 1].source;
+    if (data_.in_library(call)) continue;
+    const auto macros = macro_calls(data_, call);
+    out.insert(out.end(), macros.begin(), macros.end());
+    out.push_back(data_.source(call));
   }
   return out;
 }
@@ -87,6 +100,8 @@ std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform&
   if (!resolved) return std::nullopt;
   auto& location = *resolved;
   location.calls = calls(state);
+  const auto macros = macro_calls(data_, stop.form);
+  location.calls.insert(location.calls.end(), macros.begin(), macros.end());
   const auto failure = values_.failure(location.failure_class);
   const auto id = graph_.locations.add(std::move(location));
   locations_.emplace(std::move(key), id);

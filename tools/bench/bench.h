@@ -75,6 +75,7 @@ void measure_strategies(Bench& bench);
 void measure_difference(Bench& bench);
 void measure_proofs(Bench& bench);
 void measure_plan(Bench& bench);
+void measure_plan_folder(Bench& bench);
 void measure_world(Bench& bench);
 void measure_demo(Bench& bench);
 void measure_build(Bench& bench);

@@ -24,6 +24,7 @@ const std::vector<Section>& sections() {
       {"difference", "two revisions of a model compared", measure_difference},
       {"horizons", "compile time over the horizon", measure_horizons},
       {"plan", "a long plan in the kitchen", measure_plan},
+      {"plan-folder", "a folder of plans of 3,000 lines", measure_plan_folder},
       {"world", "the two-region world", measure_world},
       {"demo", "the demo", measure_demo},
       {"build", "building the program; measured only if it is named", measure_build, true},

@@ -1,17 +1,22 @@
 // A plan of more than 150 lines with the kitchen model: how its clauses grow with the horizon, and
-// the time to them, to the first trace and to each further one.
+// the time to them, to the first trace and to each further one. The same for a folder of plans of
+// 3,000 lines.
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "compiler/base/file_io.h"
 #include "compiler/pipeline/compile.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/bench/bench.h"
+#include "tools/bench/families/plan_folder.h"
 
 namespace parallax::tools {
 namespace {
@@ -33,8 +38,12 @@ class KitchenPlaces final : public compiler::PoseLocator {
   }
 };
 
-std::optional<compiler::Compilation> compile(int horizon, bool with_plan) {
-  namespace fs = std::filesystem;
+namespace fs = std::filesystem;
+
+/// The files of a plan in the order in which they are loaded.
+using PlanTexts = std::vector<std::pair<std::string, std::string>>;
+
+std::optional<compiler::Compilation> compile(int horizon, const PlanTexts& plan) {
   const fs::path root = PARALLAX_SOURCE_DIR;
   base::SourceFiles files;
   base::DiagnosticSink sink;
@@ -43,11 +52,12 @@ std::optional<compiler::Compilation> compile(int horizon, bool with_plan) {
   input.models = {root / "scenarios/kitchen/domain.e", root / "tests/plans/start_untidy.e"};
   input.load.allow_outside = true;
   input.horizon = horizon;
-  if (with_plan) {
-    const auto plan = base::load_text(root / "tests/plans/lay_the_table.lisp", files, sink);
+  if (!plan.empty()) {
     const auto bind = base::load_text(root / "scenarios/kitchen/robot.bind", files, sink);
-    if (!plan || !bind) return std::nullopt;
-    input.plan = compiler::PlanInput{{*plan}, *bind, std::nullopt, &places};
+    if (!bind) return std::nullopt;
+    std::vector<base::FileId> texts;
+    for (const auto& [name, text] : plan) texts.push_back(files.add(name, text));
+    input.plan = compiler::PlanInput{std::move(texts), *bind, std::nullopt, &places};
   }
   const std::string goal = "{base} (Happens(Go(base),time-1) & HoldsAt(RobotAt(base),time))";
   const auto text = files.add("goal", goal);
@@ -95,12 +105,18 @@ void measure_traces(Bench& bench, const compiler::CompiledModel& model) {
 
 void measure_plan(Bench& bench) {
   bench.begin("a plan of 155 lines in the kitchen, processor time");
+  base::SourceFiles files;
+  base::DiagnosticSink sink;
+  const fs::path root = PARALLAX_SOURCE_DIR;
+  const auto file = base::load_text(root / "tests/plans/lay_the_table.lisp", files, sink);
+  if (!file) return add_figure(bench, "compilation", "the kitchen is missing");
+  const PlanTexts plan = {{files[*file].name(), std::string(files[*file].text())}};
   std::optional<compiler::Compilation> longest;
   for (const int horizon : kHorizons) {
     Stopwatch watch;
-    auto compilation = compile(horizon, true);
+    auto compilation = compile(horizon, plan);
     const double ms = watch.lap_ms();
-    const auto alone = compile(horizon, false);
+    const auto alone = compile(horizon, {});
     if (!compilation || !alone) return add_figure(bench, "compilation", "the kitchen is missing");
     add_figure(bench, fmt::format("horizon {}", horizon),
                fmt::format("{} clauses ({} without the plan), {} variables, compiled in {:.0f} ms",
@@ -109,6 +125,39 @@ void measure_plan(Bench& bench) {
     longest = std::move(compilation);
   }
   measure_traces(bench, longest->model);
+}
+
+void measure_plan_folder(Bench& bench) {
+  bench.begin("a folder of plans in the kitchen, 31 stations, processor time");
+  constexpr int kStations = 31;
+  constexpr int kHorizon = 60;
+  auto folder = plan_folder(kStations);
+  const fs::path place = bench.path("plan-folder");
+  fs::create_directories(place);
+  PlanTexts plan = {{"package.lisp", folder["package.lisp"]},
+                    {"common.lisp", folder["common.lisp"]}};
+  for (int i = 1; i <= kStations; ++i) {
+    const auto name = fmt::format("station-{}.lisp", i);
+    plan.emplace_back(name, folder[name]);
+  }
+  plan.emplace_back("main.lisp", folder["main.lisp"]);
+  std::ptrdiff_t lines = 0;
+  for (const auto& [name, text] : folder) {
+    std::ofstream(place / name) << text;
+    if (name.ends_with(".lisp")) lines += std::count(text.begin(), text.end(), '\n');
+  }
+  add_figure(bench, "text", fmt::format("{} lines in {} files", lines, plan.size()));
+  const fs::path root = PARALLAX_SOURCE_DIR;
+  bench.compare(
+      "read, checked, unrolled and compiled to horizon 60",
+      {parallax_with({"compile", (root / "scenarios/kitchen/domain.e").string(),
+                      (root / "tests/plans/start_untidy.e").string(), "--plan", place.string(),
+                      "--bind", (root / "scenarios/kitchen/robot.bind").string(), "--regions",
+                      (root / "scenarios/kitchen/plan2.yaml").string(), "--horizon",
+                      std::to_string(kHorizon), "-o", bench.path("folder.dec.cnf")})});
+  const auto compilation = compile(kHorizon, plan);
+  if (!compilation) return add_figure(bench, "compilation", "the plan is refused");
+  measure_traces(bench, compilation->model);
 }
 
 }  // namespace parallax::tools

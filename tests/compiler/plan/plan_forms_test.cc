@@ -1,23 +1,10 @@
 #include <doctest/doctest.h>
 
 #include "tests/compiler/plan/plan_fixture.h"
+#include "tests/compiler/plan/value_checks.h"
 
 namespace parallax::compiler {
 namespace {
-
-/// What an expression is worth: (check EXPRESSION WANTED) goes to region 1 if they are equal.
-void check_values(const std::vector<std::pair<std::string, std::string>>& cases) {
-  for (const auto& one : cases) {
-    const auto& expression = one.first;
-    const auto& wanted = one.second;
-    CAPTURE(expression);
-    const auto plan =
-        unroll(prelude() + "(if (equal " + expression + " '" + wanted + ") (go1) (go2))");
-    CHECK(plan.codes().empty());
-    REQUIRE(plan.graph.has_value());
-    CHECK(plan.events("+") == Strings{"Go(r1)", "DONE"});
-  }
-}
 
 TEST_CASE("forms: arithmetic and lists") {
   check_values({
