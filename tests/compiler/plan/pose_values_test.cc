@@ -2,6 +2,10 @@
 // knows.
 #include <doctest/doctest.h>
 
+#include <fstream>
+#include <iterator>
+
+#include "compiler/plan/builtin_call.h"
 #include "tests/compiler/plan/plan_fixture.h"
 
 namespace parallax::compiler {
@@ -43,6 +47,18 @@ std::string going_to(const std::string& pose) {
 
 constexpr const char* kTurned =
     "(cl-transforms:axis-angle->quaternion (cl-transforms:make-3d-vector 0 0 2) (/ pi 2))";
+
+TEST_CASE("poses: the page names every function") {
+  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/plan_language.md");
+  const std::string page{std::istreambuf_iterator<char>(in), {}};
+  for (const auto table :
+       {pose_part_builtins(), transform_builtins(), frame_builtins(), robot_builtins()}) {
+    for (const auto& entry : table) {
+      CAPTURE(std::string(entry.builtin.name));
+      CHECK(page.find(fmt::format("`{}`", entry.builtin.name)) != std::string::npos);
+    }
+  }
+}
 
 TEST_CASE("poses: parts come back, with any prefix") {
   CHECK(holds(near("(cl-transforms:x (cl-tf:make-3d-vector 1.5 2 3))", 1.5)));
