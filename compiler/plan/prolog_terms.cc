@@ -123,7 +123,7 @@ bool TermStore::unify(TermId left, TermId right) {
     }
     const auto x = atom_value(a), y = atom_value(b);
     if (x && y) {
-      if (*x != *y) return false;  // equal values have equal ids
+      if (!values_.equal(*x, *y)) return false;
       continue;
     }
     const auto parts = split(a), others = split(b);

@@ -1,0 +1,28 @@
+(in-package :search-plans)
+
+(def-fact-group search-designators (desig:action-grounding)
+
+  (<- (desig:action-grounding ?action-designator (search-for-object ?resolved-action-designator))
+    (spec:property ?action-designator (:type :searching))
+    ;; what to look for
+    (spec:property ?action-designator (:object ?some-object-designator))
+    (desig:current-designator ?some-object-designator ?object-designator)
+    (spec:property ?object-designator (:type ?object-type))
+    ;; where: at the place that the action or the object itself names, then where such things are
+    (-> (spec:property ?action-designator (:location ?some-location))
+        (desig:current-designator ?some-location ?given-location)
+        (-> (spec:property ?object-designator (:location ?some-object-location))
+            (desig:current-designator ?some-object-location ?given-location)
+            (equal ?given-location NIL)))
+    (findall ?likely (man-int:object-likely-location ?object-type ?likely) ?likely-locations)
+    (lisp-fun merge-search-locations ?given-location ?likely-locations ?locations)
+    (length ?locations ?number)
+    (> ?number 0)
+    (-> (desig:desig-prop ?action-designator (:rounds ?rounds))
+        (true)
+        (equal ?rounds 0))
+    (desig:designator :action ((:type :searching)
+                               (:object ?object-designator)
+                               (:locations ?locations)
+                               (:outer-retries ?rounds))
+                      ?resolved-action-designator)))

@@ -1,0 +1,31 @@
+(in-package :table-plans)
+
+(def-fact-group table-designators (desig:action-grounding)
+
+  (<- (desig:action-grounding ?action-designator (set-table ?resolved-action-designator))
+    (or (spec:property ?action-designator (:type :setting-table))
+        (spec:property ?action-designator (:type :laying-table)))
+    (once (or (spec:property ?action-designator (:things ?things))
+              (lisp-fun usual-setting ?things)))
+    (not (equal ?things NIL))
+    (desig:designator :action ((:type :setting-table) (:things ?things))
+                      ?resolved-action-designator))
+
+  (<- (desig:action-grounding ?action-designator (bring-one ?resolved-action-designator))
+    (spec:property ?action-designator (:type :bringing))
+    (rob-int:robot ?robot)
+    (spec:property ?action-designator (:object ?some-object))
+    (desig:current-designator ?some-object ?object)
+    (spec:property ?object (:type ?type))
+    ;; only with an empty left hand
+    (man-int:robot-free-hand ?robot :left)
+    (bagof ?location (man-int:object-likely-location ?type ?location) ?locations)
+    (lisp-fun kit:get-object-destinations ?type ?targets)
+    (desig:designator :action ((:type ?type)
+                               (:object ?object)
+                               (:locations ?locations)
+                               (:targets ?targets))
+                      ?resolved-action-designator)))
+
+(defun usual-setting ()
+  *table-setting*)

@@ -1,0 +1,4 @@
+(defpackage transport-plans
+  (:nicknames #:trans)
+  (:use #:common-lisp #:cram-prolog)
+  (:export #:transport))

@@ -1,0 +1,8 @@
+(defsystem transport-plans
+  :author "the kitchen's people"
+  :license "MIT"
+  :depends-on (kitchen-knowledge mobile-plans cram-designators cram-executive cram-prolog)
+  :serial t
+  :components ((:file "package")
+               (:file "transport-plans")
+               (:file "transport-designators")))
