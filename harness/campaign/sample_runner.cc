@@ -171,6 +171,9 @@ class ValueChecker {
       if (!fault.empty()) return report(name, fault);
     }
     if (const auto fault = wrong_together(controller, call.arguments)) {
+      return report(fault->name, fault->text);
+    }
+    if (const auto fault = wrong_effort(controller, call.arguments, world_, layout_)) {
       report(fault->name, fault->text);
     }
   }

@@ -134,14 +134,16 @@ constexpr double kOpeningRounding_m = 1e-6;
 
 /// Something that pads are to close on.
 struct Grip {
-  std::string path;
+  std::string path;  // "bodies/spoon1/grasp"
   double width_m = 0.0;
+  double effort_n = 0.0;  // 0: as the action says
 };
 
 /// What an arm's pads can close on.
 struct GripRange {
   const ArmSpec* arm = nullptr;
   double narrowest_m = 0.0, widest_m = 0.0;  // by the stops of the finger
+  double max_force_n = 0.0;                  // of its motor
   bool grips(const Grip& grip) const {
     return std::min(arm->opening_m, widest_m) > grip.width_m && narrowest_m < grip.width_m;
   }
@@ -150,12 +152,12 @@ struct GripRange {
 std::vector<Grip> grips_of(const WorldSpec& spec) {
   std::vector<Grip> grips;
   for (const BodySpec& body : spec.bodies) {
-    if (body.grasp)
-      grips.push_back({"bodies/" + body.name + "/grasp/width_m", body.grasp->width_m});
+    if (!body.grasp) continue;
+    grips.push_back({"bodies/" + body.name + "/grasp", body.grasp->width_m, body.grasp->effort_n});
   }
   for (const JointSpec& joint : spec.joints) {
     if (!joint.handle) continue;
-    grips.push_back({"joints/" + joint.name + "/handle/width_m", joint.handle->width_m});
+    grips.push_back({"joints/" + joint.name + "/handle", joint.handle->width_m});
   }
   return grips;
 }
@@ -167,7 +169,9 @@ class GripperChecker {
     const OdeWorld world(spec);
     for (const ArmSpec& arm : spec.mobile->arms) {
       const auto limits = Jaws(arm, world).opening_limits_m();
-      ranges_.push_back({&arm, limits.first, limits.second});
+      const auto finger = world.layout().find_slider(arm.finger_joint);
+      ranges_.push_back(
+          {&arm, limits.first, limits.second, world.layout().sliders[*finger].max_force_n});
     }
   }
 
@@ -175,13 +179,22 @@ class GripperChecker {
     const auto before = problems_.size();
     for (const GripRange& range : ranges_) check(range);
     if (problems_.size() != before) return;  // all that follows from it would be reported, too
-    double widest_m = 0.0;
-    for (const GripRange& range : ranges_) widest_m = std::max(widest_m, range.arm->opening_m);
+    double widest_m = 0.0, strongest_n = 0.0;
+    for (const GripRange& range : ranges_) {
+      widest_m = std::max(widest_m, range.arm->opening_m);
+      strongest_n = std::max(strongest_n, range.max_force_n);
+    }
     for (const Grip& grip : grips_) {
+      if (grip.effort_n > strongest_n) {
+        problems_.add(grip.path + "/effort_n",
+                      fmt::format("is {:g} N, but no gripper's motor exerts more than {:g} N",
+                                  grip.effort_n, strongest_n));
+        continue;
+      }
       const bool held = std::any_of(ranges_.begin(), ranges_.end(),
                                     [&](const GripRange& range) { return range.grips(grip); });
       if (held) continue;
-      problems_.add(grip.path,
+      problems_.add(grip.path + "/width_m",
                     widest_m <= grip.width_m
                         ? fmt::format("is {:g} m, but no gripper opens wider than {:g} m",
                                       grip.width_m, widest_m)

@@ -336,6 +336,46 @@ std::optional<ArgumentFault> wrong_together(const ControllerSpec& spec, const St
   return std::nullopt;
 }
 
+std::optional<ArgumentFault> wrong_effort(const ControllerSpec& spec, const State& given,
+                                          const WorldSpec& world, const WorldLayout& layout) {
+  const ArgumentSpec* effort = find_argument(spec, "effort_n");
+  if (effort == nullptr || !world.mobile) return std::nullopt;
+  const auto name_of = [&](const char* argument) {
+    const auto found = given.find(argument);
+    const auto* text = found == given.end() ? nullptr : std::get_if<std::string>(&found->second);
+    return text == nullptr ? std::string() : *text;
+  };
+  const auto& arms = world.mobile->arms;
+  const auto arm = std::find_if(arms.begin(), arms.end(),
+                                [&](const ArmSpec& one) { return one.name == name_of("arm"); });
+  const auto finger = arm == arms.end() ? std::nullopt : layout.find_slider(arm->finger_joint);
+  if (!finger) return std::nullopt;
+  const double most = layout.sliders[*finger].max_force_n;
+
+  const auto said = given.find("effort_n");
+  if (said != given.end()) {
+    const double force = as_number(said->second).value_or(0.0);
+    if (!(force > most)) return std::nullopt;
+    return ArgumentFault{
+        "effort_n", fmt::format("is {:g} N, more than the {:g} N (max_force_n) of {}", force, most,
+                                quoted(arm->finger_joint))};
+  }
+  if (effort->fallback > most) {
+    return ArgumentFault{
+        "arm", fmt::format("is {}: the {:g} N of `effort_n` are more than the "
+                           "{:g} N (max_force_n) of {}",
+                           quoted(arm->name), effort->fallback, most, quoted(arm->finger_joint))};
+  }
+  const auto body = layout.find_body(name_of("object"));
+  if (!body || !layout.bodies[*body].grasp) return std::nullopt;
+  const double force = layout.bodies[*body].grasp->effort_n;
+  if (!(force > most)) return std::nullopt;
+  return ArgumentFault{
+      "object", fmt::format("is {}, whose grasp asks for {:g} N (effort_n), more than the {:g} N "
+                            "(max_force_n) of {}",
+                            quoted(name_of("object")), force, most, quoted(arm->finger_joint))};
+}
+
 std::vector<std::string> names_for(const ArgumentSpec& argument, const WorldSpec& world,
                                    const WorldLayout& layout) {
   std::vector<std::string> names;
@@ -379,6 +419,9 @@ std::variant<Arguments, std::string> Arguments::check(const ControllerSpec& spec
     arguments.numbers_.emplace(name, *number);
   }
   if (const auto fault = wrong_together(spec, given)) {
+    return "argument " + quoted(fault->name) + " " + fault->text;
+  }
+  if (const auto fault = wrong_effort(spec, given, world, layout)) {
     return "argument " + quoted(fault->name) + " " + fault->text;
   }
   for (const ArgumentSpec& one : spec.arguments) {

@@ -101,6 +101,10 @@ struct ArgumentFault {
   std::string text;
 };
 std::optional<ArgumentFault> wrong_together(const ControllerSpec& spec, const State& given);
+/// The same of a squeezing force, given or that of the object's grasp: the motor of the arm's
+/// finger has to be able to exert it.
+std::optional<ArgumentFault> wrong_effort(const ControllerSpec& spec, const State& given,
+                                          const WorldSpec& world, const WorldLayout& layout);
 
 /// The names that would do, sorted.
 std::vector<std::string> names_for(const ArgumentSpec& argument, const WorldSpec& world,

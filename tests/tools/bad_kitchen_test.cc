@@ -128,6 +128,32 @@ TEST_CASE("grippers that cannot hold what there is to hold") {
                         "overlay.yaml:2:", "lets the pads hold nothing");
 }
 
+TEST_CASE("a squeeze that no gripper's motor can exert, or not that of the arm that is to") {
+  check_overlay_refused("world: {bodies: {spoon1: {grasp: {effort_n: 1000}}}}", "overlay.yaml:2:",
+                        "is 1000 N, but no gripper's motor exerts more than 60 N");
+  const KitchenCopy cli;
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"actions: {\"PickUp(arm, item)\": {effort_n: 61}}",
+       "effort_n: is 61 N, more than the 60 N (max_force_n) of `left_finger`"},
+      {"world: {joints: {left_finger: {max_force_n: 50}}}",
+       "arm: is `left`: the 60 N of `effort_n` are more than the 50 N"},
+      {"world: {joints: {left_finger: {max_force_n: 5}}, "
+       "bodies: {spoon1: {grasp: {effort_n: 6}}}}\n"
+       "actions: {\"OpenDrawer(arm, drawer)\": {effort_n: 5}}",
+       "object: is `spoon1`, whose grasp asks for 6 N (effort_n), more than the 5 N"}};
+  for (const auto& [overlay, text] : cases) {
+    CAPTURE(overlay);
+    cli.write("kitchen/overlay.yaml", "include: plan2.yaml\n" + overlay + "\n");
+    for (const auto* command : {"check", "run"}) {
+      const auto result = cli.parallax({command, "kitchen/overlay.yaml"});
+      CAPTURE(result.err);
+      CHECK(result.code == 3);
+      CHECK(result.err.find(text) != std::string::npos);
+    }
+    std::filesystem::remove_all(cli.folder() / "out");
+  }
+}
+
 TEST_CASE("a camera that sees nothing") {
   for (const auto* camera : {"half_angle_rad: 1.6", "range_m: [-3, -1]", "range_m: [2.5, 0.3]",
                              "tilt_rad: [1.29, -0.37]", "at_m: [0.07, 0, -9]"}) {
