@@ -60,6 +60,9 @@ class Campaign {
     result_.title = scenario.title;
     result_.seed = options.seed;
     result_.criterion = scenario.criterion;
+    result_.comparison = scenario.comparison();
+    result_.compared =
+        compared_fluents(*scenario.mapping, bench_.fluents().ground(), result_.comparison);
     result_.tool_version = options.tool_version;
     result_.replay_folder = options.run_dir.string();
     result_.exploration = "stopped";
@@ -216,6 +219,10 @@ class Campaign {
 };
 
 }  // namespace
+
+std::string_view to_string(DiscrepancyKind kind) {
+  return kind == DiscrepancyKind::kTransient ? "transient" : "lasting";
+}
 
 std::string_view to_string(CampaignVerdict verdict) {
   switch (verdict) {

@@ -43,7 +43,7 @@ struct CampaignOptions {
 ///         start not valid:      draw again; end with an error after `max_rejected_starts`
 ///         other initial state:  end with an error
 ///         simulator lost:       count a failure; end after `max_lost_in_a_row`
-///         last state predicted, or one that the model admits:  count a clean run
+///         every state predicted, or admitted by the model:  count a clean run
 ///         else:                 repeat it once, report a discrepancy, leave the trace
 ///       verdict of the trace
 ///       after a discrepancy: end, unless `keep_going`

@@ -8,6 +8,7 @@
 
 #include "harness/campaign/sample_record.h"
 #include "harness/campaign/trace_input.h"
+#include "harness/confidence/comparison.h"
 #include "harness/confidence/criterion_spec.h"
 #include "harness/region/state_mapping.h"
 #include "harness/simulator/simulator.h"
@@ -26,8 +27,7 @@ struct DivergingFluent {
   bool observed = false;
 };
 
-/// What led a simulation away from its trace for good: the action that failed there, or else what
-/// changed.
+/// What led a simulation away from its trace: the action that failed there, or else what changed.
 struct Cause {
   std::string text;  // "Go(bTable): navigation-pose-unreachable", "Go(bTable): not Holding(left,m)"
   std::string reason;  // in the simulator's words; empty where no action failed
@@ -36,13 +36,19 @@ struct Cause {
 /// What the one repetition of a discrepancy showed before it was accepted.
 enum class Confirmation : std::uint8_t { kBitEqual, kDiffers, kLost };
 
+/// Does the simulation end otherwise than its trace, or did it just differ on the way?
+enum class DiscrepancyKind : std::uint8_t { kLasting, kTransient };
+/// "lasting", "transient"
+std::string_view to_string(DiscrepancyKind kind);
+
 struct Discrepancy {
+  DiscrepancyKind kind = DiscrepancyKind::kLasting;
   std::int64_t trace = 0;
   std::int64_t sample = 0;
   std::uint64_t seed = 0;                // handed to the simulator at reset
   std::int64_t first_divergence = 0;     // first timepoint at which some mapped fluent differs
   std::vector<DivergingFluent> first;    // what differs there
-  std::vector<DivergingFluent> fluents;  // what differs at the last timepoint; never empty
+  std::vector<DivergingFluent> fluents;  // what differs at the last timepoint; empty if transient
   Cause cause;
   Confirmation confirmation = Confirmation::kBitEqual;
   SampleRecord record;
@@ -53,14 +59,14 @@ struct TraceResult {
   std::shared_ptr<const CampaignTrace> trace;
   CampaignVerdict verdict = CampaignVerdict::kInconclusive;
   std::vector<SampledDimension> start_region;  // the continuous states that it stands for
-  std::vector<std::string> not_compared;       // "LookingAt(..)": ignored by the mapping
   std::int64_t simulations = 0;  // run and not rejected before they began; lost ones included
   std::int64_t clean = 0;
-  std::int64_t admitted = 0;  // of the clean ones: ended otherwise, in a state the model admits
+  std::int64_t admitted = 0;  // of the clean ones: went otherwise, as the model admits
   std::int64_t lost = 0;
-  std::int64_t retried = 0;        // lost at first and observed at the second attempt
-  std::int64_t rejected = 0;       // invalid starts that were drawn again
-  std::int64_t strayed = 0;        // clean at the end, but differing from the trace on the way
+  std::int64_t retried = 0;   // lost at first and observed at the second attempt
+  std::int64_t rejected = 0;  // invalid starts that were drawn again
+  std::int64_t strayed =
+      0;  // of the clean ones: differed on the way, where only the end is compared
   double certified_level = 0.0;    // C
   double certified_epsilon = 1.0;  // with confidence C, p is below this
   std::optional<std::int64_t> paper_stopped_at;
@@ -82,6 +88,8 @@ struct CampaignResult {
   bool failed = false;              // an error ended it, after the traces that are here
   bool journal_open = false;  // if not, the run folder is not this run's, or holds nothing of it
   CriterionSpec criterion;
+  Comparison comparison = Comparison::kEveryStep;
+  std::vector<ComparedFluents> compared;  // by symbol
   SimulatorInfo simulator;
   std::string tool_version;
   std::string replay_folder;  // run folder as the user wrote it

@@ -211,7 +211,9 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
                              {{"max_traces", scenario.limits.max_traces},
                               {"max_rejected_starts", scenario.limits.max_rejected_starts},
                               {"max_lost_in_a_row", scenario.limits.max_lost_in_a_row}}},
-                            {"keep_going", options.keep_going}};
+                            {"keep_going", options.keep_going},
+                            {"compare", to_string(scenario.comparison())},
+                            {"match", scenario.match_model ? "model" : "trace"}};
   header.options = json.dump();
   return header;
 }

@@ -19,6 +19,19 @@ bool predicts_inside(const runtime::TracePoint& point, const ModelFluents& fluen
   return false;
 }
 
+/// Does the mapping say that the fluent is compared at rest only: at the start and the end?
+bool compared_at_rest(const StateMapping& mapping, const GroundFluent& fluent) {
+  const auto* binding = mapping.find(fluent.symbol);
+  return binding != nullptr && binding->at_rest_only;
+}
+
+bool only_at_rest(const StateMapping& mapping, const ModelFluents& fluents,
+                  const std::string& outside) {
+  return std::all_of(fluents.ground().begin(), fluents.ground().end(), [&](const auto& fluent) {
+    return mapping.outside_text(fluent) != outside || compared_at_rest(mapping, fluent);
+  });
+}
+
 }  // namespace
 
 Judgement judge(const StateMapping& mapping, const ModelFluents& fluents,
@@ -26,27 +39,29 @@ Judgement judge(const StateMapping& mapping, const ModelFluents& fluents,
   PARALLAX_REQUIRE(observations.size() == trace.points.size(), "one observation per timepoint");
   Judgement out;
   for (std::size_t t = 0; t < observations.size(); ++t) {
+    const bool at_rest = t == 0 || t + 1 == observations.size();
     std::vector<DivergingFluent> differing;
+    auto& state = out.states.emplace_back();
     for (std::size_t i = 0; i < fluents.ground().size(); ++i) {
       const auto& fluent = fluents.ground()[i];
+      if (!at_rest && compared_at_rest(mapping, fluent)) continue;
       const auto reading = mapping.read(fluent, observations[t], &out.missing);
       if (!reading) continue;  // ignored on purpose
       const bool predicted = runtime::contains(trace.points[t].holds, fluents.id(i));
       // What is neither so nor so differs from both.
       const bool neither = *reading == Reading::kNeither;
       const bool observed = neither ? !predicted : *reading == Reading::kHolds;
-      if (t + 1 == observations.size()) {
-        out.last_state[fluents.id(i)] = observed;
-        out.in_no_state = out.in_no_state || neither;
-      }
+      state.holds[fluents.id(i)] = observed;
+      state.in_no_state = state.in_no_state || neither;
       if (observed != predicted) {
         differing.push_back({fluent.text, static_cast<std::int64_t>(t), predicted, observed});
       }
     }
     for (const auto& text : mapping.outside(fluents.ground(), observations[t])) {
       if (predicts_inside(trace.points[t], fluents, mapping, text)) continue;  // differs above
+      if (!at_rest && only_at_rest(mapping, fluents, text)) continue;
       differing.push_back({text, static_cast<std::int64_t>(t), false, true});
-      if (t + 1 == observations.size()) out.in_no_state = true;
+      state.in_no_state = true;
     }
     if (!differing.empty() && !out.first_divergence) {
       out.first_divergence = static_cast<std::int64_t>(t);
@@ -63,13 +78,15 @@ Judgement judge(const StateMapping& mapping, const ModelFluents& fluents,
   return out;
 }
 
-Cause cause_of(const CampaignTrace& trace, const Judgement& judgement,
+Cause cause_of(const CampaignTrace& trace, const Judgement& judgement, Comparison comparison,
                const std::vector<ActionOutcome>& outcomes) {
-  PARALLAX_REQUIRE(judgement.parted.has_value(), "a simulation that left its trace");
-  const DivergingFluent& fluent = judgement.at_parting.front();
+  PARALLAX_REQUIRE(!judgement.matches(comparison), "a simulation that left its trace");
+  const bool final = comparison == Comparison::kFinal;
+  const auto timepoint = final ? *judgement.parted : *judgement.first_divergence;
+  const auto& fluent = (final ? judgement.at_parting : judgement.first).front();
   const std::string changed = fmt::format("{}{}", fluent.observed ? "" : "not ", fluent.fluent);
   if (trace.event_count() == 0) return {fmt::format("start: {}", changed), {}};
-  const auto step = static_cast<std::size_t>(std::max<std::int64_t>(1, *judgement.parted)) - 1;
+  const auto step = static_cast<std::size_t>(std::max<std::int64_t>(1, timepoint)) - 1;
   const std::string& event = trace.event(step);
   if (outcomes[step].status == SimStatus::kOk) return {fmt::format("{}: {}", event, changed), {}};
   const std::string& reason = outcomes[step].reason;
@@ -78,15 +95,25 @@ Cause cause_of(const CampaignTrace& trace, const Judgement& judgement,
   return {fmt::format("{}: {}", event, condition), reason};
 }
 
-std::vector<std::string> ignored_fluents(const StateMapping& mapping,
-                                         const std::vector<GroundFluent>& fluents) {
-  std::set<std::string> out;
+std::vector<ComparedFluents> compared_fluents(const StateMapping& mapping,
+                                              const std::vector<GroundFluent>& fluents,
+                                              Comparison comparison) {
+  std::map<std::string, ComparedFluents> out;
   for (const auto& fluent : fluents) {
     const auto* binding = mapping.find(fluent.symbol);
-    if (binding == nullptr || !binding->is_ignored()) continue;
-    out.insert(fluent.symbol + (fluent.arguments.empty() ? "()" : "(..)"));
+    if (binding == nullptr) continue;
+    auto& entry = out[fluent.symbol];
+    entry.fluent = fluent.symbol + (fluent.arguments.empty() ? "()" : "(..)");
+    if (binding->is_ignored()) {
+      entry.how = ComparedFluents::How::kIgnored;
+      entry.why = std::get<IgnoredBinding>(binding->condition).why;
+    } else if (comparison == Comparison::kFinal || binding->at_rest_only) {
+      entry.how = ComparedFluents::How::kAtTheEnd;
+    }
   }
-  return {out.begin(), out.end()};
+  std::vector<ComparedFluents> list;
+  for (auto& [symbol, entry] : out) list.push_back(std::move(entry));
+  return list;
 }
 
 State mapped_part(const StateMapping& mapping, const std::vector<GroundFluent>& fluents,

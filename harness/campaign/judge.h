@@ -9,11 +9,19 @@
 
 #include "harness/campaign/campaign_result.h"
 #include "harness/campaign/trace_input.h"
+#include "harness/confidence/comparison.h"
 #include "harness/region/state_mapping.h"
 
 namespace parallax::harness {
 
-/// What the observations of one simulation say about the trace, on every fluent with a mapping.
+/// The compared fluents at one timepoint, as they were observed.
+struct ObservedState {
+  std::map<compiler::FluentId, bool> holds;
+  bool in_no_state = false;  // one that no state of a model stands for
+};
+
+/// What the observations of one simulation say about the trace, on every fluent with a mapping: at
+/// every timepoint, or at the start and the last one where the mapping says so.
 struct Judgement {
   std::optional<std::int64_t> first_divergence;  // timepoint
   std::vector<DivergingFluent> first;            // what differs there
@@ -21,24 +29,26 @@ struct Judgement {
   std::optional<std::int64_t> parted;
   std::vector<DivergingFluent> at_parting;  // what differs there
   std::vector<DivergingFluent> last;        // what differs at the last timepoint
-  /// Every compared fluent at the last timepoint.
-  std::map<compiler::FluentId, bool> last_state;
-  bool in_no_state = false;       // the last state is one that no state of a model stands for
-  std::set<std::string> missing;  // variables that the mapping asks for in vain
-  bool matches() const { return last.empty(); }
+  std::vector<ObservedState> states;        // by timepoint
+  std::set<std::string> missing;            // variables that the mapping asks for in vain
+  bool matches(Comparison comparison) const {
+    return comparison == Comparison::kFinal ? last.empty() : !first_divergence;
+  }
 };
 
 /// `fluents` of the trace's symbols; `observations` has one state per timepoint of the trace.
 Judgement judge(const StateMapping& mapping, const ModelFluents& fluents,
                 const CampaignTrace& trace, const std::vector<State>& observations);
 
-/// Why the last state of a judged simulation differs from that of the trace; it has to differ.
-Cause cause_of(const CampaignTrace& trace, const Judgement& judgement,
+/// Why a judged simulation differs from the trace; it has to. What it first differed in where every
+/// step is compared, and else where it left the trace for good.
+Cause cause_of(const CampaignTrace& trace, const Judgement& judgement, Comparison comparison,
                const std::vector<ActionOutcome>& outcomes);
 
-/// The fluents that are ignored on purpose, one entry a symbol: "LookingAt(..)", "Tired()".
-std::vector<std::string> ignored_fluents(const StateMapping& mapping,
-                                         const std::vector<GroundFluent>& fluents);
+/// How each fluent symbol of the model is compared, sorted by symbol.
+std::vector<ComparedFluents> compared_fluents(const StateMapping& mapping,
+                                              const std::vector<GroundFluent>& fluents,
+                                              Comparison comparison);
 
 /// The part of an observation that the compared fluents are read from.
 State mapped_part(const StateMapping& mapping, const std::vector<GroundFluent>& fluents,

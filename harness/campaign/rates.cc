@@ -98,8 +98,8 @@ class Estimator {
         {trace, done, options_.runs, elapsed.count() > 0.0 ? made / elapsed.count() : 0.0});
   }
 
-  static void count(const CampaignTrace& trace, const TrialSample& sample, TraceRates& rates,
-                    std::map<std::string, CauseRate>& causes) {
+  void count(const CampaignTrace& trace, const TrialSample& sample, TraceRates& rates,
+             std::map<std::string, CauseRate>& causes) {
     const auto& record = sample.record;
     rates.rejected += record.rejected;
     switch (sample.verdict) {
@@ -116,7 +116,7 @@ class Estimator {
     }
     ++rates.runs;
     ++rates.any.count;
-    const Cause cause = cause_of(trace, sample.judgement, record.outcomes);
+    const Cause cause = cause_of(trace, sample.judgement, scenario_.comparison(), record.outcomes);
     CauseRate& rate = causes[cause.text];
     if (rate.count++ == 0) {
       rate.cause = cause.text;

@@ -31,8 +31,6 @@ class TraceCampaign {
     auto& result = outcome_.result;
     result.trace = trial_.plan().trace;
     result.start_region = trial_.start().dimensions;
-    result.not_compared =
-        ignored_fluents(*context.scenario.mapping, context.bench.fluents().ground());
   }
 
   base::Result<TraceOutcome> run() {
@@ -114,7 +112,8 @@ class TraceCampaign {
     found.first_divergence = *judgement.first_divergence;
     found.first = judgement.first;
     found.fluents = judgement.last;
-    found.cause = cause_of(trace(), judgement, record.outcomes);
+    if (judgement.last.empty()) found.kind = DiscrepancyKind::kTransient;
+    found.cause = cause_of(trace(), judgement, context_.scenario.comparison(), record.outcomes);
     if (again->status == SampleStatus::kLost) {
       found.confirmation = Confirmation::kLost;
     } else if (first_difference(record, *again)) {
@@ -157,7 +156,7 @@ class TraceCampaign {
     result.paper_stopped_at = paper_stopped_at(tally_, criterion.paper, criterion.confidence_level);
     result.paper_variant = paper_variant(tally_, criterion.paper);
     result.not_covered = tally_.frame().not_covered;
-    result.claim = claim(tally_, criterion);
+    result.claim = claim(tally_, criterion, context_.scenario.comparison());
     result.caveats = caveats(tally_, criterion, result.paper_stopped_at);
     add_own_caveats(result);
     return std::move(outcome_);
@@ -165,9 +164,13 @@ class TraceCampaign {
 
   void add_own_caveats(TraceResult& result) const {
     if (trace().other_outcomes == base::Known::kYes && context_.scenario.match_model) {
-      result.caveats.push_back(
-          "the model leaves the outcome of these events open; an end state counts as predicted if "
-          "the model admits it");
+      result.caveats.push_back(context_.scenario.comparison() == Comparison::kFinal
+                                   ? "the model leaves the outcome of these events open; an end "
+                                     "state counts as predicted "
+                                     "if the model admits it"
+                                   : "the model leaves the outcome of these events open; states "
+                                     "count as predicted if the "
+                                     "model admits them");
     }
     if (trace().other_initial_states == base::Known::kYes) {
       result.caveats.push_back(
@@ -187,7 +190,9 @@ class TraceCampaign {
     }
     if (result.strayed > 0) {
       result.caveats.push_back(fmt::format(
-          "{} of the clean runs left the trace on the way and ended as predicted", result.strayed));
+          "{} of the clean runs left the trace on the way and ended as predicted; `--compare "
+          "every-step` shows where",
+          result.strayed));
     }
     if (!context_.bench.simulator().seeds) {
       result.caveats.push_back(

@@ -57,12 +57,12 @@ class TraceFeed {
   virtual std::vector<std::string> bounds() const { return {}; }
   /// Of all its traces: the ground fluents and events of the model.
   virtual runtime::Symbols symbols() const = 0;
-  /// Does the model let the events of `trace`, from its initial state, end in a state in which each
-  /// of these fluents has this value? Asked about the trace that was given last, and only if it has
-  /// `other_outcomes`. Undecided where the stop flag is raised meanwhile.
+  /// Does the model let the events of `trace`, from its initial state, lead through states in which
+  /// each of these fluents, by timepoint, has this value? Asked about the trace that was given
+  /// last, and only if it has `other_outcomes`. Undecided where the stop flag is raised meanwhile.
   virtual base::Known admits(const CampaignTrace& trace,
-                             const std::map<compiler::FluentId, bool>& last_state) {
-    (void)trace, (void)last_state;
+                             const std::vector<std::map<compiler::FluentId, bool>>& observed) {
+    (void)trace, (void)observed;
     return base::Known::kNo;
   }
 };

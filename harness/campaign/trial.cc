@@ -151,6 +151,23 @@ TrialSample Trial::lost(SampleRecord record) {
   return sample;
 }
 
+namespace {
+
+/// What the model is asked to admit, by timepoint; none where a compared state is one that no
+/// state of a model stands for.
+std::optional<std::vector<std::map<compiler::FluentId, bool>>> compared_states(
+    const Judgement& judgement, Comparison comparison) {
+  std::vector<std::map<compiler::FluentId, bool>> out(judgement.states.size());
+  const std::size_t first = comparison == Comparison::kFinal ? out.size() - 1 : 0;
+  for (std::size_t t = first; t < out.size(); ++t) {
+    if (judgement.states[t].in_no_state) return std::nullopt;
+    out[t] = judgement.states[t].holds;
+  }
+  return out;
+}
+
+}  // namespace
+
 base::Result<std::optional<TrialSample>> Trial::observed(SampleRecord record) {
   const auto& scenario = bench_->scenario_;
   TrialSample sample;
@@ -165,11 +182,12 @@ base::Result<std::optional<TrialSample>> Trial::observed(SampleRecord record) {
   bench_->lost_in_a_row_ = 0;
   sample.record = std::move(record);
   sample.verdict = SampleVerdict::kAsPredicted;
-  if (!judgement.matches()) {
-    const bool open = scenario.match_model && !judgement.in_no_state &&
+  const auto comparison = scenario.comparison();
+  if (!judgement.matches(comparison)) {
+    const auto observed = compared_states(judgement, comparison);
+    const bool open = scenario.match_model && observed.has_value() &&
                       plan_->trace->other_outcomes == base::Known::kYes;
-    const auto admitted =
-        open ? bench_->feed_.admits(*plan_->trace, judgement.last_state) : base::Known::kNo;
+    const auto admitted = open ? bench_->feed_.admits(*plan_->trace, *observed) : base::Known::kNo;
     if (admitted == base::Known::kUndecided || bench_->stopped()) {
       return std::optional<TrialSample>();
     }

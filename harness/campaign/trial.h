@@ -74,8 +74,8 @@ class TrialBench {
 };
 
 enum class SampleVerdict : std::uint8_t {
-  kAsPredicted,  // it ended in the last state of the trace
-  kAdmitted,     // it ended elsewhere, where the model lets these events end, too
+  kAsPredicted,  // it went through the states of the trace, as far as they are compared
+  kAdmitted,     // it went elsewhere, where the model lets these events lead, too
   kDiscrepancy,
   kLost,
   kLostTooOften,  // one loss too many in a row, which was reported

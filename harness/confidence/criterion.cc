@@ -128,7 +128,7 @@ std::string percent_up(double probability) {
   return fmt::format("{:.{}g} %", std::ceil(value * scale * (1.0 - kNoise)) / scale, kDigits + 1);
 }
 
-std::string claim(const Tally& tally, const CriterionSpec& spec) {
+std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison) {
   if (tally.mismatch() > 0) {
     return fmt::format("{} of {} gave a discrepancy", tally.mismatch(),
                        counted(tally.runs(), "run", "runs"));
@@ -141,9 +141,10 @@ std::string claim(const Tally& tally, const CriterionSpec& spec) {
   const bool as_planned = spec.kind == CriterionKind::kCleanRuns && bound.epsilon <= spec.epsilon;
   return fmt::format(
       "with {} confidence, fewer than {} of {}start states drawn uniformly from the start region "
-      "give a discrepancy ({})",
+      "give a discrepancy {} ({})",
       level_text(bound.confidence_level), percent_up(as_planned ? spec.epsilon : bound.epsilon),
-      tally.rejected() > 0 ? "valid " : "", runs_text(tally));
+      tally.rejected() > 0 ? "valid " : "",
+      comparison == Comparison::kFinal ? "in the last state" : "at any step", runs_text(tally));
 }
 
 std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec,

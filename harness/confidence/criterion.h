@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/confidence/comparison.h"
 #include "harness/confidence/criterion_spec.h"
 #include "harness/confidence/paper_rule.h"
 #include "harness/confidence/tally.h"
@@ -78,7 +79,7 @@ CertifiedBound certified_bound(const Tally& tally, double confidence_level);
 /// Exactly what the runs of one trace support, as one sentence without a full stop: "with 99 %
 /// confidence, fewer than 5 % of start states drawn uniformly from the start region give a
 /// discrepancy (90 clean runs of 90)". Figures are rounded up, so never beyond the evidence.
-std::string claim(const Tally& tally, const CriterionSpec& spec);
+std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison);
 
 /// What weakens the claim, one sentence each: rejected starts, lost runs, fluents without
 /// regression evidence where the paper's rule is satisfied, which it is after `paper_stopped_at`

@@ -36,6 +36,7 @@ struct Key {
   static constexpr std::string_view kCloseTimeoutS = "close_timeout_s";
   static constexpr std::string_view kCollides = "collides";
   static constexpr std::string_view kCommand = "command";
+  static constexpr std::string_view kCompare = "compare";
   static constexpr std::string_view kComplete = "complete";
   static constexpr std::string_view kConfidence = "confidence";
   static constexpr std::string_view kConstraints = "constraints";
@@ -79,6 +80,7 @@ struct Key {
   static constexpr std::string_view kHolds = "holds";
   static constexpr std::string_view kHorizon = "horizon";
   static constexpr std::string_view kId = "id";
+  static constexpr std::string_view kIgnored = "ignored";
   static constexpr std::string_view kInclude = "include";
   static constexpr std::string_view kInsetM = "inset_m";
   static constexpr std::string_view kInside = "inside";

@@ -6,6 +6,7 @@
 
 #include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
+#include "harness/confidence/comparison.h"
 #include "harness/config/sections.h"
 #include "harness/world/structure_check.h"
 
@@ -161,7 +162,7 @@ std::string read_pattern_text(const YamlFields& fields, std::string_view key,
 }
 
 FlagBinding read_flag(YamlFields& fields, const SymbolPattern& pattern) {
-  fields.only({Key::kFlag, Key::kAtStart});
+  fields.only({Key::kFlag, Key::kAtStart, Key::kCompare});
   FlagBinding binding;
   binding.variable = read_pattern_text(fields, Key::kFlag, pattern);
   fields.boolean(Key::kAtStart, binding.at_start);
@@ -169,7 +170,7 @@ FlagBinding read_flag(YamlFields& fields, const SymbolPattern& pattern) {
 }
 
 RangeBinding read_range(YamlFields& fields, const SymbolPattern& pattern) {
-  fields.only({Key::kRange, Key::kHolds, Key::kFails, Key::kAtStart});
+  fields.only({Key::kRange, Key::kHolds, Key::kFails, Key::kAtStart, Key::kCompare});
   RangeBinding binding;
   binding.variable = read_pattern_text(fields, Key::kRange, pattern);
   for (const auto& [key, interval] :
@@ -195,7 +196,7 @@ RangeBinding read_range(YamlFields& fields, const SymbolPattern& pattern) {
 }
 
 EqualsBinding read_equals(YamlFields& fields, const SymbolPattern& pattern) {
-  fields.only({Key::kEquals, Key::kText});
+  fields.only({Key::kEquals, Key::kText, Key::kCompare});
   EqualsBinding binding;
   binding.variable = read_pattern_text(fields, Key::kEquals, pattern);
   fields.require(Key::kText);
@@ -220,6 +221,18 @@ std::optional<FluentBinding> read_binding(const YamlEntry& entry, base::Diagnost
   }
   YamlFields fields(value, fmt::format("the mapping of `{}`", pattern->symbol), sink);
   if (!value.is_map()) return std::nullopt;
+  if (fields.find(Key::kIgnored) != nullptr) {
+    fields.only({Key::kIgnored});
+    IgnoredBinding ignored;
+    fields.text(Key::kIgnored, ignored.why);
+    binding.condition = ignored;
+    return binding;
+  }
+  // Where an observation makes sense at rest only.
+  static constexpr std::array<std::string_view, 2> kComparisons = {
+      to_string(Comparison::kEveryStep), to_string(Comparison::kFinal)};
+  binding.at_rest_only = fields.choice(Key::kCompare, "value of " + key_text(Key::kCompare),
+                                       kComparisons) == std::size_t{1};
   if (fields.find(Key::kFlag) != nullptr) {
     binding.condition = read_flag(fields, *pattern);
     return binding;
@@ -233,7 +246,7 @@ std::optional<FluentBinding> read_binding(const YamlEntry& entry, base::Diagnost
     return binding;
   }
   fields.only({Key::kInside, Key::kBody, Key::kUnless, Key::kOnlyIf, Key::kDrawn, Key::kFlag,
-               Key::kRange, Key::kEquals});
+               Key::kRange, Key::kEquals, Key::kCompare, Key::kIgnored});
   if (fields.require(Key::kInside) == nullptr) return std::nullopt;
   binding.condition = read_inside(fields, *pattern);
   return binding;

@@ -116,12 +116,18 @@ class ScenarioReader {
   void read(Scenario& scenario) {
     fields_.only({Key::kInclude, Key::kName, Key::kModel, Key::kPlan, Key::kBind, Key::kConstraints,
                   Key::kHorizon, Key::kWorld, Key::kRegions, Key::kMapping, Key::kActions,
-                  Key::kSampling, Key::kCriterion, Key::kMatch, Key::kSimulator, Key::kLimits,
-                  Key::kExpect});
+                  Key::kSampling, Key::kCriterion, Key::kCompare, Key::kMatch, Key::kSimulator,
+                  Key::kLimits, Key::kExpect});
     static constexpr std::array<std::string_view, 2> kMatches = {"model", "trace"};
     if (fields_.choice(Key::kMatch, "value of " + key_text(Key::kMatch), kMatches) ==
         std::size_t{1}) {
       scenario.match_model = false;
+    }
+    static constexpr std::array<std::string_view, 2> kComparisons = {
+        to_string(Comparison::kEveryStep), to_string(Comparison::kFinal)};
+    if (const auto which =
+            fields_.choice(Key::kCompare, "value of " + key_text(Key::kCompare), kComparisons)) {
+      scenario.compare = *which == 1 ? Comparison::kFinal : Comparison::kEveryStep;
     }
     fields_.text(Key::kName, scenario.title);
     read_problem(scenario);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
+#include "harness/confidence/comparison.h"
 #include "harness/confidence/criterion_spec.h"
 #include "harness/region/state_mapping.h"
 #include "harness/world/world_spec.h"
@@ -113,6 +114,12 @@ struct Scenario {
   /// An end state that the model admits for the start and events of a trace is no discrepancy, even
   /// if it is not the trace's; false: only the trace's own counts.
   bool match_model = true;
+  std::optional<Comparison> compare;  // none: by the criterion
+  /// The paper's rule is about last states; every other claim about every step.
+  Comparison comparison() const {
+    const bool paper = criterion.kind == CriterionKind::kPaper;
+    return compare.value_or(paper ? Comparison::kFinal : Comparison::kEveryStep);
+  }
   SimulatorSpec simulator;
   Limits limits;
   std::optional<Expectation> expect;

@@ -65,7 +65,9 @@ struct EqualsBinding {
 };
 
 /// Said on purpose: this fluent has no continuous meaning and is not compared.
-struct IgnoredBinding {};
+struct IgnoredBinding {
+  std::string why;  // in the scenario's words; may be empty
+};
 
 /// What a fluent symbol means in the continuous world. Regions are those of the mapping, which was
 /// checked against the model's fluents.
@@ -74,6 +76,8 @@ struct FluentBinding {
   std::size_t arity = 0;
   std::variant<InsideBinding, FlagBinding, RangeBinding, EqualsBinding, IgnoredBinding> condition;
   base::SourceRange source;
+  /// Compared at the start and at the end only, also where other fluents are at every step.
+  bool at_rest_only = false;
 
   /// None if the fluent is ignored on purpose.
   std::optional<Reading> read(const GroundFluent& ground, const State& state,

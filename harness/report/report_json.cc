@@ -38,7 +38,28 @@ Json json_of(const std::vector<DivergingFluent>& fluents) {
   return out;
 }
 
-Json json_of(const TraceResult& result) {
+std::vector<std::string> ignored_names(const std::vector<ComparedFluents>& compared) {
+  std::vector<std::string> names;
+  for (const auto& entry : compared) {
+    if (entry.how == ComparedFluents::How::kIgnored) names.push_back(entry.fluent);
+  }
+  return names;
+}
+
+/// [{"fluent": "Holding(..)", "compared": "every-step"}, {.., "compared": "ignored", "why": ".."}]
+Json json_of(const std::vector<ComparedFluents>& compared) {
+  auto out = Json::array();
+  for (const auto& entry : compared) {
+    const bool ignored = entry.how == ComparedFluents::How::kIgnored;
+    const bool final = entry.how == ComparedFluents::How::kAtTheEnd;
+    const std::string_view how = ignored ? "ignored" : final ? "final" : "every-step";
+    out.push_back({{"fluent", entry.fluent}, {"compared", how}});
+    if (!entry.why.empty()) out.back()["why"] = entry.why;
+  }
+  return out;
+}
+
+Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& compared) {
   const auto& trace = *result.trace;
   auto events = Json::array();
   auto sources = Json::array();
@@ -53,7 +74,7 @@ Json json_of(const TraceResult& result) {
               {"sources", std::move(sources)},
               {"initial_state", holds_json<Json>(trace, 0)},
               {"start_region", json_of(result.start_region)},
-              {"not_compared", result.not_compared},
+              {"not_compared", ignored_names(compared)},
               {"simulations", result.simulations},
               {"guided", 0},
               {"clean", result.clean},
@@ -94,6 +115,7 @@ Json json_of(const Discrepancy& found, const std::string& folder) {
   return {{"trace", found.trace},
           {"sample", found.sample},
           {"seed", found.seed},
+          {"kind", to_string(found.kind)},
           {"first_divergence", found.first_divergence},
           {"cause", {{"text", found.cause.text}, {"reason", found.cause.reason}}},
           {"first", json_of(found.first)},
@@ -118,8 +140,10 @@ Json json_of(const CampaignResult& result, bool with_timing) {
                       {"determinism", result.simulator.determinism},
                       {"timestep_s", result.simulator.timestep_s}};
   out["criterion"] = Json::parse(criterion_json(result.criterion));
+  out["compare"] = to_string(result.comparison);
+  out["compared"] = json_of(result.compared);
   out["traces"] = Json::array();
-  for (const auto& trace : result.traces) out["traces"].push_back(json_of(trace));
+  for (const auto& trace : result.traces) out["traces"].push_back(json_of(trace, result.compared));
   out["discrepancies"] = Json::array();
   for (const auto& found : result.discrepancies) {
     out["discrepancies"].push_back(json_of(found, result.replay_folder));

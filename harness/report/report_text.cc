@@ -79,6 +79,34 @@ class TextReport {
                        runs_needed(criterion.confidence_level, criterion.epsilon),
                        percent_up(criterion.epsilon), level(criterion.confidence_level)));
     }
+    compared();
+  }
+
+  /// What is compared and when, and what is not and why.
+  void compared() {
+    using How = ComparedFluents::How;
+    for (const auto& [how, label] :
+         {std::pair{How::kEveryStep, "every step"}, {How::kAtTheEnd, "only the end"}}) {
+      std::vector<std::string> names;
+      for (const auto& entry : result_.compared) {
+        if (entry.how == how) names.push_back(entry.fluent);
+      }
+      if (!names.empty()) line(label, fmt::format("{}", fmt::join(names, ", ")));
+    }
+    std::vector<std::pair<std::string, std::string>> ignored;  // why, names; in order
+    for (const auto& entry : result_.compared) {
+      if (entry.how != How::kIgnored) continue;
+      const auto same = std::find_if(ignored.begin(), ignored.end(),
+                                     [&](const auto& known) { return known.first == entry.why; });
+      if (same != ignored.end()) {
+        same->second += ", " + entry.fluent;
+      } else {
+        ignored.emplace_back(entry.why, entry.fluent);
+      }
+    }
+    for (const auto& [why, names] : ignored) {
+      line("not compared", why.empty() ? names : fmt::format("{}: {}", names, why));
+    }
   }
 
   void one_trace(const TraceResult& trace) {
@@ -87,7 +115,7 @@ class TextReport {
     start(trace);
     auto runs = fmt::format("{} ({} clean", trace.simulations, trace.clean);
     if (trace.admitted > 0) {
-      runs += fmt::format(", {} of them in another end state", trace.admitted);
+      runs += fmt::format(", {} of them otherwise, as the model admits", trace.admitted);
     }
     if (trace.lost > 0) runs += fmt::format(", {} lost", trace.lost);
     runs += ')';
@@ -98,9 +126,6 @@ class TextReport {
     line("simulations", runs);
     line("claimed", trace.claim);
     figures(trace);
-    if (!trace.not_compared.empty()) {
-      line("not compared:", fmt::format("{}", fmt::join(trace.not_compared, ", ")));
-    }
     for (const auto& caveat : trace.caveats) line("note", caveat);
     for (const auto& found : result_.discrepancies) {
       if (found.trace == trace.trace->number) discrepancy(found, trace);
@@ -160,12 +185,19 @@ class TextReport {
     out_ += fmt::format("\n  {} in simulation {}, seed {}, {}\n", painted("discrepancy", "1;31"),
                         id, found.seed, confirmation(found));
     line("cause", cause(found), 4);
+    const bool on_the_way =
+        found.first_divergence < static_cast<std::int64_t>(trace.trace->event_count());
+    if (on_the_way) parting(found, trace);
+    if (found.kind == DiscrepancyKind::kTransient) {
+      line("transient", "it ends as predicted, having differed on the way", 4);
+    }
     std::vector<std::vector<std::string>> rows = {{"fluent", "timepoint", "predicted", "observed"}};
+    const bool every_step = result_.comparison == Comparison::kEveryStep;
+    if (every_step && on_the_way) {
+      for (const auto& fluent : found.first) rows.push_back(row(fluent));
+    }
     for (const auto& fluent : found.fluents) rows.push_back(row(fluent));
     out_ += table(rows, 4);
-    if (found.first_divergence < static_cast<std::int64_t>(trace.trace->event_count())) {
-      parting(found, trace);
-    }
     unusual_outcomes(found, trace);
     line("start", values(found.record.initial), 4);
     line("end", values(found.end), 4);
@@ -216,9 +248,15 @@ class TextReport {
           fmt::format("{} is {} instead of {}", fluent.fluent, fluent.observed, fluent.predicted));
     }
     line("first seen",
-         fmt::format("at timepoint {}, after {}: {}", t,
-                     t > 0 ? trace.trace->event(t - 1) : "reset", fmt::join(parts, ", ")),
+         fmt::format("at timepoint {}, after {}: {}", t, t > 0 ? event(trace, t - 1) : "reset",
+                     fmt::join(parts, ", ")),
          4);
+  }
+
+  /// "Go(r2) (fetch.lisp:4)"
+  static std::string event(const TraceResult& trace, std::size_t t) {
+    const auto& source = trace.trace->plan[t].source;
+    return trace.trace->event(t) + (source.empty() ? "" : fmt::format(" ({})", source));
   }
 
   /// Actions that ended otherwise than the model says: a failure that it predicts is none of them.

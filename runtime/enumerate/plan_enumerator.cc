@@ -139,13 +139,15 @@ void PlanEnumerator::note_alternatives(std::span<const Literal> fixed, std::size
   trace.other_outcomes = has_alternative(fixed.first(head + start.size()), states);
 }
 
-base::Known PlanEnumerator::admits(const Trace& trace,
-                                   const std::map<compiler::FluentId, bool>& last_state) {
+base::Known PlanEnumerator::admits(
+    const Trace& trace, const std::vector<std::map<compiler::FluentId, bool>>& observed) {
   const auto n = trace.length();
   auto assumptions = hit_at(n);
   // What has no variable is false in every trace.
-  for (const auto& [fluent, holds] : last_state) {
-    if (holds && !session_->model().fluents[fluent.index()].slot) return base::Known::kNo;
+  for (const auto& state : observed) {
+    for (const auto& [fluent, holds] : state) {
+      if (holds && !session_->model().fluents[fluent.index()].slot) return base::Known::kNo;
+    }
   }
   session_->model().for_each_atom([&](const compiler::AtomRef& atom) {
     const auto literal = atom.literal();
@@ -162,9 +164,10 @@ base::Known PlanEnumerator::admits(const Trace& trace,
     } else if (kind == AtomKind::kHoldsAt && time == 0) {
       const bool holds = contains(trace.points.front().holds, atom.fluent());
       assumptions.push_back(holds ? literal : ~literal);
-    } else if (kind == AtomKind::kHoldsAt && time == n) {
-      const auto wanted = last_state.find(atom.fluent());
-      if (wanted == last_state.end()) return;
+    } else if (kind == AtomKind::kHoldsAt && time <= n) {
+      const auto& state = observed[static_cast<std::size_t>(time)];
+      const auto wanted = state.find(atom.fluent());
+      if (wanted == state.end()) return;
       assumptions.push_back(wanted->second ? literal : ~literal);
     }
   });

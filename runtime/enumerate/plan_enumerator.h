@@ -53,7 +53,8 @@ class PlanEnumerator {
 
   /// Does the model admit, for the trace's events and initial state, a last state in which each of
   /// these fluents has the value given? One solver call.
-  base::Known admits(const Trace& trace, const std::map<compiler::FluentId, bool>& last_state);
+  base::Known admits(const Trace& trace,
+                     const std::vector<std::map<compiler::FluentId, bool>>& observed);
   /// Of the traces' ids.
   const Symbols& symbols() const { return symbols_; }
 

@@ -63,8 +63,9 @@ Told enumerate(const compiler::CompiledModel& model, StopAt& stop) {
     told.keys.push_back(runtime::event_key(*trace));
     told.initial_states.push_back(trace->other_initial_states);
     told.outcomes.push_back(trace->other_outcomes);
-    told.admitted.push_back(
-        enumerator.admits(*trace, {{*trace->symbols->fluent("Lit(b2)"), false}}));
+    std::vector<std::map<compiler::FluentId, bool>> observed(trace->points.size());
+    observed.back()[*trace->symbols->fluent("Lit(b2)")] = false;
+    told.admitted.push_back(enumerator.admits(*trace, observed));
   }
   CHECK(!enumerator.next());
   told.exploration = enumerator.exploration();

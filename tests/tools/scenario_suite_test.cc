@@ -72,7 +72,8 @@ TEST_CASE("each kind of expectation passes where it is met and says what was fou
   CHECK(problem("{iterations: 2}", 1) == "1 iterations, expected 2");
   CHECK(problem("{max_simulations: 0}", 1) == "1 simulations, expected at most 0");
   CHECK(problem("{fluents: [RobotIn(r1)]}", 1) == "RobotIn(r1) did not diverge");
-  CHECK(problem("{fluents: [Holding()]}", 1) ==
+  CHECK(problem("{fluents: [Holding()]}", 0).empty());
+  CHECK(problem("{fluents: [Holding()]}\ncompare: final", 1) ==
         "Holding() diverged on the way, but not in the end, which is what counts");
   // Out of reach in 82 % by geometry.
   CHECK(problem("{rate: {between: [0.8, 0.85], runs: 25}}", 0).empty());

@@ -89,10 +89,11 @@ std::vector<std::string> EnumeratedTraces::bounds() const {
   return open_end_texts(*model_, enumerator_->open_ends());
 }
 
-base::Known EnumeratedTraces::admits(const harness::CampaignTrace& trace,
-                                     const std::map<compiler::FluentId, bool>& last_state) {
+base::Known EnumeratedTraces::admits(
+    const harness::CampaignTrace& trace,
+    const std::vector<std::map<compiler::FluentId, bool>>& observed) {
   PARALLAX_REQUIRE(trace.number == given_, "only the trace given last is asked about");
-  return enumerator_->admits(trace, last_state);
+  return enumerator_->admits(trace, observed);
 }
 
 /// Of a search that came to its end: that nothing meets the constraints is proved.

@@ -25,7 +25,7 @@ class EnumeratedTraces final : public harness::TraceFeed {
   std::vector<std::string> bounds() const override;
   runtime::Symbols symbols() const override { return enumerator_->symbols(); }
   base::Known admits(const harness::CampaignTrace& trace,
-                     const std::map<compiler::FluentId, bool>& last_state) override;
+                     const std::vector<std::map<compiler::FluentId, bool>>& observed) override;
   /// What is said beside the message that no execution meets the constraints.
   void explain_absence_by(std::function<std::vector<std::string>()> reasons) {
     reasons_ = std::move(reasons);

@@ -15,7 +15,7 @@ namespace {
 
 struct RateOptions {
   std::string scenario;
-  std::string match;
+  JudgingOptions judging;
   harness::RatesOptions rates;
   CommandPermission commands;
 };
@@ -23,7 +23,7 @@ struct RateOptions {
 int run_rates(const RateOptions& options, Invocation& invocation) {
   auto loaded = load_scenario_model(options.scenario, invocation);
   if (!loaded) return 0;
-  if (!options.match.empty()) loaded->scenario.match_model = options.match == "model";
+  apply(options.judging, loaded->scenario);
   const auto& model = loaded->compilation.model;
   if (!model.has_constraints) {
     invocation.sink().error(base::DiagnosticCode::kNothingToSimulate,
@@ -69,7 +69,7 @@ Command rates_command() {
   command.option("--runs", options->rates.runs, "Simulations of each trace")
       .check(WholeNumber{1, 1'000'000})
       .show_default();
-  add_match_option(command, options->match);
+  add_judging_options(command, options->judging);
   command.option("--confidence", options->rates.confidence, "Confidence of each interval")
       .check(FiniteNumber{0.5, 0.999999})
       .show_default();

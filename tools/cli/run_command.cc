@@ -54,7 +54,7 @@ struct RunOptions {
   bool resume = false;
   bool keep_going = false;
   std::string criterion;
-  std::string match;
+  JudgingOptions judging;
   double confidence = 0.0;  // 0: as the scenario says
   double epsilon = 0.0;
   std::int64_t max_runs = 0;
@@ -68,7 +68,7 @@ void apply(const RunOptions& options, harness::Scenario& scenario) {
   auto& criterion = scenario.criterion;
   if (options.criterion == "paper") criterion.kind = harness::CriterionKind::kPaper;
   if (options.criterion == "clean-runs") criterion.kind = harness::CriterionKind::kCleanRuns;
-  if (!options.match.empty()) scenario.match_model = options.match == "model";
+  apply(options.judging, scenario);
   if (options.confidence > 0) criterion.confidence_level = options.confidence;
   if (options.epsilon > 0) criterion.epsilon = options.epsilon;
   if (options.max_runs > 0) scenario.limits.max_runs = options.max_runs;
@@ -168,7 +168,7 @@ Command run_command() {
                "Go on with the next trace after a discrepancy");
   command.option("--criterion", options->criterion, "When a trace has been tried enough")
       .check(OneOf{{"clean-runs", "paper"}});
-  add_match_option(command, options->match);
+  add_judging_options(command, options->judging);
   command.option("--confidence", options->confidence, "Confidence level C of the claim")
       .check(FiniteNumber{0.5, 0.999999});
   command.option("--epsilon", options->epsilon, "Discrepancy probability to exclude")

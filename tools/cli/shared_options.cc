@@ -87,11 +87,24 @@ void add_hits_option(OptionTable& command, std::string& hits) {
       .show_default();
 }
 
-void add_match_option(OptionTable& command, std::string& match) {
+void add_judging_options(OptionTable& command, JudgingOptions& options) {
   command
-      .option("--match", match,
-              "What an end state is held against: the trace, or all ends the model admits")
+      .option("--match", options.match,
+              "What states are held against: the trace, or all that the model admits")
       .check(OneOf{{"trace", "model"}});
+  command
+      .option("--compare", options.compare,
+              "When: at every step, or in the last state only, as the criterion paper does")
+      .check(OneOf{{"every-step", "final"}});
+}
+
+void apply(const JudgingOptions& options, harness::Scenario& scenario) {
+  using harness::Comparison;
+  if (!options.match.empty()) scenario.match_model = options.match == "model";
+  if (options.compare == to_string(Comparison::kFinal)) scenario.compare = Comparison::kFinal;
+  if (options.compare == to_string(Comparison::kEveryStep)) {
+    scenario.compare = Comparison::kEveryStep;
+  }
 }
 
 void add_search_options(OptionTable& command, SearchOptions& options) {

@@ -26,7 +26,12 @@ Option& add_model_options(OptionTable& command, ModelOptions& options);
 /// --plan and what belongs to it.
 void add_plan_options(OptionTable& command, ModelOptions& options);
 void add_hits_option(OptionTable& command, std::string& hits);
-void add_match_option(OptionTable& command, std::string& match);
+/// How observations are judged; empty: as the scenario says.
+struct JudgingOptions {
+  std::string match, compare;
+};
+void add_judging_options(OptionTable& command, JudgingOptions& options);
+void apply(const JudgingOptions& options, harness::Scenario& scenario);
 void add_search_options(OptionTable& command, SearchOptions& options);
 void add_listing_options(OptionTable& command, ListingOptions& options);
 /// `--certify` takes its file after `=` only, so that a model may follow it.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -85,18 +86,31 @@ class ReportReader {
                     word(field(certified, "epsilon"))));
   }
 
+  static std::vector<std::string> texts(const SortedJson& fluents) {
+    std::vector<std::string> out;
+    for (std::size_t i = 0; fluents.is_array() && i < fluents.size(); ++i) {
+      out.push_back(
+          fmt::format("{} at {} predicted {}, observed {}", word(field(fluents[i], "fluent")),
+                      word(field(fluents[i], "timepoint")), word(field(fluents[i], "predicted")),
+                      word(field(fluents[i], "observed"))));
+    }
+    return out;
+  }
+
   void add_discrepancy(const SortedJson& found) {
     const auto trace = names_.find(word(field(found, "trace")));
-    std::string fluents;
-    const auto& list = field(found, "fluents");
-    for (std::size_t i = 0; list.is_array() && i < list.size(); ++i) {
-      fluents += fmt::format("{}{} at {} predicted {}, observed {}", i == 0 ? "" : "; ",
-                             word(field(list[i], "fluent")), word(field(list[i], "timepoint")),
-                             word(field(list[i], "predicted")), word(field(list[i], "observed")));
+    auto differing = texts(field(found, "first"));
+    // The last state's may be the same ones.
+    for (auto& text : texts(field(found, "fluents"))) {
+      if (std::find(differing.begin(), differing.end(), text) == differing.end()) {
+        differing.push_back(std::move(text));
+      }
     }
+    const auto kind = word(field(found, "kind"));
     add(FactKind::kAxiom,
         "discrepancy in " + (trace == names_.end() ? word(field(found, "trace")) : trace->second),
-        fmt::format("first at {}: {}", word(field(found, "first_divergence")), fluents));
+        fmt::format("{}first at {}: {}", kind == "transient" ? "transient, " : "",
+                    word(field(found, "first_divergence")), fmt::join(differing, "; ")));
   }
 
   const SortedJson& report_;

@@ -117,6 +117,7 @@ std::vector<std::string> unmet(const harness::Expectation& expect, std::string_v
       earlier.insert(fluent.value("fluent", ""));
     }
   }
+  if (run.value("compare", "") != "final") diverging.merge(earlier);
   for (const auto& fluent : expect.fluents) {
     if (diverging.contains(fluent)) continue;
     out.push_back(fmt::format("{} {}", fluent,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "harness/report/report.h"
 #include "tests/harness/campaign/two_regions.h"
@@ -78,8 +79,50 @@ TEST_CASE("keep-going asks for the next trace after a discrepancy") {
   }
 }
 
-TEST_CASE("a run that leaves the trace on the way and ends as predicted is clean, with a note") {
+TEST_CASE("a run that leaves the trace on the way and ends as predicted is a discrepancy") {
   Bench bench;
+  bench.script.wobbles = box_far;
+  const auto result = bench.run();
+  REQUIRE(result.has_value());
+  CHECK(result->verdict == CampaignVerdict::kDiscrepancy);
+  CHECK(exit_code(*result) == 1);
+  REQUIRE(result->discrepancies.size() == 1);
+  const auto& found = result->discrepancies[0];
+  CHECK(found.kind == DiscrepancyKind::kTransient);
+  CHECK(found.sample == first_sample(bench, 1, box_far));
+  CHECK(found.first_divergence == 2);
+  REQUIRE(found.first.size() == 2);
+  CHECK(found.first[0].fluent == "RobotIn(r1)");
+  CHECK(found.fluents.empty());
+  CHECK(found.cause.text == "PickUp(): RobotIn(r1)");
+  const auto text = campaign_text(*result, {});
+  CHECK(text.find("at timepoint 2, after PickUp() (fetch.lisp:3): RobotIn(r1) is true instead of "
+                  "false") != std::string::npos);
+  CHECK(text.find("it ends as predicted") != std::string::npos);
+  CHECK(text.find("RobotIn(r1)  2          false      true\n") != std::string::npos);
+  const auto json = nlohmann::json::parse(campaign_json(*result, false));
+  CHECK(json.at("compare") == "every-step");
+  CHECK(json.at("discrepancies").at(0).at("kind") == "transient");
+}
+
+TEST_CASE("where a fluent is compared at rest only, what it does on the way is its own affair") {
+  std::string text = kScenarioText;
+  const std::string mapped = "RobotIn(region): {inside: region, body: robot}";
+  text.replace(text.find(mapped), mapped.size(),
+               "RobotIn(region): {inside: region, body: robot, compare: final}");
+  Bench bench(text);
+  bench.script.wobbles = [](const State&) { return true; };
+  const auto result = bench.run();
+  REQUIRE(result.has_value());
+  CHECK(result->verdict == CampaignVerdict::kNoDiscrepancy);
+  CHECK(result->traces[0].clean == 90);
+  CHECK(result->traces[0].strayed == 0);
+  CHECK(campaign_text(*result, {}).find("  only the end RobotIn(..)\n") != std::string::npos);
+}
+
+TEST_CASE("where final states are compared such a run is clean, with a note") {
+  Bench bench;
+  bench.scenario.compare = Comparison::kFinal;
   bench.script.wobbles = box_far;
   const auto result = bench.run();
   REQUIRE(result.has_value());

@@ -58,13 +58,15 @@ Judgement judged(const std::vector<State>& observations) {
 
 TEST_CASE("observations that say what the trace says match, whatever is ignored") {
   const auto judgement = judged({state(1.5, false), state(1.5, true), state(0.5, false)});
-  CHECK(judgement.matches());
+  CHECK(judgement.matches(Comparison::kEveryStep));
+  CHECK(judgement.matches(Comparison::kFinal));
   CHECK_FALSE(judgement.first_divergence.has_value());
   CHECK_FALSE(judgement.parted.has_value());
   CHECK(judgement.missing.empty());
-  CHECK_FALSE(judgement.in_no_state);
+  CHECK_FALSE(judgement.states.back().in_no_state);
+  REQUIRE(judgement.states.size() == 3);
   std::map<std::string, bool> last;
-  for (const auto& [id, holds] : judgement.last_state) last[table()->name(id)] = holds;
+  for (const auto& [id, holds] : judgement.states.back().holds) last[table()->name(id)] = holds;
   CHECK(last == std::map<std::string, bool>{{"BoxIn(r1)", true},
                                             {"BoxIn(r2)", false},
                                             {"Held()", false},
@@ -74,7 +76,8 @@ TEST_CASE("observations that say what the trace says match, whatever is ignored"
 
 TEST_CASE("a start that is another one diverges at timepoint 0, even if the end is right") {
   const auto judgement = judged({state(0.5, false), state(1.5, true), state(0.5, false)});
-  CHECK(judgement.matches());
+  CHECK_FALSE(judgement.matches(Comparison::kEveryStep));
+  CHECK(judgement.matches(Comparison::kFinal));
   CHECK(judgement.first_divergence == 0);
   REQUIRE(judgement.first.size() == 2);
   CHECK(judgement.first[0].fluent == "BoxIn(r1)");
@@ -86,7 +89,8 @@ TEST_CASE("a start that is another one diverges at timepoint 0, even if the end 
 
 TEST_CASE("what differs at the end, where it began to, and the action that failed there") {
   const auto judgement = judged({state(1.5, false), state(1.5, false), state(1.5, false)});
-  CHECK_FALSE(judgement.matches());
+  CHECK_FALSE(judgement.matches(Comparison::kEveryStep));
+  CHECK_FALSE(judgement.matches(Comparison::kFinal));
   CHECK(judgement.first_divergence == 1);
   CHECK(judgement.parted == 1);
   REQUIRE(judgement.at_parting.size() == 2);
@@ -97,13 +101,15 @@ TEST_CASE("what differs at the end, where it began to, and the action that faile
   CHECK(judgement.last[0].timepoint == 2);
 
   auto outcomes = kDone;
-  CHECK(cause_of(trace(), judgement, outcomes).text == "PickUp(box): BoxIn(r2)");
-  CHECK(cause_of(trace(), judgement, outcomes).reason.empty());
+  CHECK(cause_of(trace(), judgement, Comparison::kFinal, outcomes).text ==
+        "PickUp(box): BoxIn(r2)");
+  CHECK(cause_of(trace(), judgement, Comparison::kFinal, outcomes).reason.empty());
   outcomes[0] = {SimStatus::kFailed, "slipped: 3 N", 1.0};
-  CHECK(cause_of(trace(), judgement, outcomes).text == "PickUp(box): slipped");
-  CHECK(cause_of(trace(), judgement, outcomes).reason == "slipped: 3 N");
+  CHECK(cause_of(trace(), judgement, Comparison::kFinal, outcomes).text == "PickUp(box): slipped");
+  CHECK(cause_of(trace(), judgement, Comparison::kFinal, outcomes).reason == "slipped: 3 N");
   outcomes[0] = {SimStatus::kTruncated, "", 1.0};
-  CHECK(cause_of(trace(), judgement, outcomes).text == "PickUp(box): truncated");
+  CHECK(cause_of(trace(), judgement, Comparison::kFinal, outcomes).text ==
+        "PickUp(box): truncated");
 }
 
 TEST_CASE("a simulation that comes back has not parted before it leaves for good") {
@@ -111,7 +117,9 @@ TEST_CASE("a simulation that comes back has not parted before it leaves for good
   CHECK(judgement.first_divergence == 1);
   CHECK(judgement.parted == 1);
   const auto back = judged({state(1.5, false), state(0.5, false), state(0.5, false)});
-  CHECK(back.matches());
+  CHECK(back.matches(Comparison::kFinal));
+  CHECK_FALSE(back.matches(Comparison::kEveryStep));
+  CHECK(cause_of(trace(), back, Comparison::kEveryStep, kDone).text == "PickUp(box): BoxIn(r1)");
   CHECK(back.first_divergence == 1);
   CHECK_FALSE(back.parted.has_value());
 }
@@ -128,7 +136,8 @@ TEST_CASE(
   CHECK(dropped.first[1].fluent == "BoxIn(outside)");
   CHECK(dropped.first[1].observed);
   const auto half_open = judged({state(1.5, false), state(1.5, true), state(0.5, false, 0.2)});
-  CHECK(half_open.in_no_state);
+  CHECK(half_open.states.back().in_no_state);
+  CHECK_FALSE(half_open.states[1].in_no_state);
   REQUIRE(half_open.last.size() == 1);
   CHECK(half_open.last[0].fluent == "Open()");
   CHECK_FALSE(half_open.last[0].predicted);
@@ -146,12 +155,25 @@ TEST_CASE("variables that are not there are named") {
 TEST_CASE("without events the cause is the start") {
   const auto only = test::named_trace(1, {}, {{"BoxIn(r2)", "Tired()"}}, {}, table());
   const auto judgement = judge(mapping(), fluents(), only, {state(0.5, false)});
-  CHECK(cause_of(only, judgement, {}).text == "start: BoxIn(r1)");
+  CHECK(cause_of(only, judgement, Comparison::kEveryStep, {}).text == "start: BoxIn(r1)");
 }
 
-TEST_CASE("ignored symbols are listed once, and the rest of a state is what is compared") {
-  CHECK(ignored_fluents(mapping(), fluents().ground()) ==
-        std::vector<std::string>{"LookingAt(..)", "Tired()"});
+TEST_CASE("how symbols are compared is listed once, and the rest of a state is what is compared") {
+  using How = ComparedFluents::How;
+  std::vector<std::pair<std::string, How>> listed;
+  for (const auto& [fluent, how, why] :
+       compared_fluents(mapping(), fluents().ground(), Comparison::kEveryStep)) {
+    listed.emplace_back(fluent, how);
+  }
+  CHECK(listed == std::vector<std::pair<std::string, How>>{{"BoxIn(..)", How::kEveryStep},
+                                                           {"Held()", How::kEveryStep},
+                                                           {"LookingAt(..)", How::kIgnored},
+                                                           {"On(..)", How::kEveryStep},
+                                                           {"Open()", How::kEveryStep},
+                                                           {"Tired()", How::kIgnored}});
+  const auto last = compared_fluents(mapping(), fluents().ground(), Comparison::kFinal);
+  CHECK(last[0].how == How::kAtTheEnd);
+  CHECK(last[2].how == How::kIgnored);
   CHECK(mapped_part(mapping(), fluents().ground(), state(0.5, true)) ==
         State{{"box.held", true}, {"box.x", 0.5}, {"drawer.q", 0.0}, {"lamp", std::string("off")}});
 }

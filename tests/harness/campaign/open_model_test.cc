@@ -38,9 +38,30 @@ TEST_CASE("an end state that the model admits is clean, is counted, and is no re
   CHECK(trace.strayed == 0);
   CHECK_FALSE(trace.paper_stopped_at.has_value());
   CHECK(says(trace,
-             "the model leaves the outcome of these events open; an end state counts as "
-             "predicted if the model admits it"));
+             "the model leaves the outcome of these events open; states count as predicted if the "
+             "model admits them"));
   CHECK(campaign_text(*result, {}).find("not evaluated") != std::string::npos);
+}
+
+TEST_CASE("the model is asked about what is compared: every state, or the last one") {
+  std::vector<std::size_t> asked, wanted;
+  Bench bench;
+  SUBCASE("every state") { wanted = {5, 5, 5, 5, 5}; }
+  SUBCASE("the last one") {
+    bench.scenario.compare = Comparison::kFinal;
+    wanted = {0, 0, 0, 0, 5};
+  }
+  SUBCASE("the last one, by the paper's rule") {
+    bench.scenario.criterion.kind = CriterionKind::kPaper;
+    wanted = {0, 0, 0, 0, 5};
+  }
+  bench.script.drops = [](const State&) { return true; };
+  bench.openness.outcomes = true;
+  bench.openness.asked = &asked;
+  const auto result = bench.run();
+  REQUIRE(result.has_value());
+  CHECK(result->verdict == CampaignVerdict::kDiscrepancy);
+  CHECK(asked == wanted);
 }
 
 TEST_CASE("an end state that the model does not admit is a discrepancy") {
@@ -91,7 +112,10 @@ TEST_CASE("the model is not asked about fluents that are not compared") {
   const auto result = bench.run();
   REQUIRE(result.has_value());
   CHECK(result->traces[0].admitted > 0);
-  CHECK(result->traces[0].not_compared == std::vector<std::string>{"RobotIn(..)"});
+  REQUIRE(result->compared.size() == 3);
+  CHECK(result->compared[2].fluent == "RobotIn(..)");
+  CHECK(result->compared[2].how == ComparedFluents::How::kIgnored);
+  CHECK(result->compared[2].why.empty());
 }
 
 TEST_CASE("an answer during which the run was stopped does not count") {

@@ -192,8 +192,10 @@ class ScriptedSimulator final : public Simulator {
 struct Openness {
   bool initial_states = false, outcomes = false;
   bool is_stopped = false;  // the search ends before it is at its end, and decides nothing more
+  /// Of the last state that is asked about.
   std::function<bool(const std::map<std::string, bool>&)> admits =
       [](const std::map<std::string, bool>&) { return false; };
+  std::vector<std::size_t>* asked = nullptr;  // fluents by timepoint, of the last question
 };
 
 /// Traces of one plan: fetch the box from r2 to r1. They differ in their key only.
@@ -209,11 +211,16 @@ class ListFeed final : public TraceFeed {
     return std::optional<CampaignTrace>(std::move(out));
   }
   base::Known admits(const CampaignTrace& trace,
-                     const std::map<compiler::FluentId, bool>& last_state) override {
+                     const std::vector<std::map<compiler::FluentId, bool>>& observed) override {
     CHECK(trace.number == given_);
+    REQUIRE(observed.size() == trace.points.size());
+    if (openness_.asked != nullptr) {
+      openness_.asked->clear();
+      for (const auto& state : observed) openness_.asked->push_back(state.size());
+    }
     if (openness_.is_stopped) return base::Known::kUndecided;
     std::map<std::string, bool> by_name;
-    for (const auto& [id, holds] : last_state) by_name[trace.symbols->name(id)] = holds;
+    for (const auto& [id, holds] : observed.back()) by_name[trace.symbols->name(id)] = holds;
     return openness_.admits(by_name) ? base::Known::kYes : base::Known::kNo;
   }
   std::string exploration() const override {

@@ -20,37 +20,45 @@ Tally tally_of(std::int64_t clean, std::int64_t lost = 0, std::int64_t rejected 
 
 TEST_CASE("claim: the sentence of a finished clean-runs trace") {
   CHECK(
-      claim(tally_of(90), {}) ==
+      claim(tally_of(90), {}, Comparison::kEveryStep) ==
       "with 99 % confidence, fewer than 5 % of start states drawn uniformly from the start region "
-      "give a discrepancy (90 clean runs of 90)");
+      "give a discrepancy at any step (90 clean runs of 90)");
 }
 
 TEST_CASE("claim: before the end, and with the paper's rule, it is the bound of the runs made") {
   CriterionSpec spec;
-  CHECK(claim(tally_of(7), spec) ==
+  CHECK(claim(tally_of(7), spec, Comparison::kEveryStep) ==
         "with 99 % confidence, fewer than 48.3 % of start states drawn uniformly from the start "
-        "region give a discrepancy (7 clean runs of 7)");
+        "region give a discrepancy at any step (7 clean runs of 7)");
   spec.kind = CriterionKind::kPaper;
-  CHECK(claim(tally_of(90), spec).find("fewer than 4.99 % of") != std::string::npos);
-  CHECK(claim(tally_of(1), spec).find("fewer than 99 % of") != std::string::npos);
+  CHECK(claim(tally_of(90), spec, Comparison::kEveryStep).find("fewer than 4.99 % of") !=
+        std::string::npos);
+  CHECK(claim(tally_of(1), spec, Comparison::kEveryStep).find("fewer than 99 % of") !=
+        std::string::npos);
 }
 
 TEST_CASE("claim: rejected starts narrow it to valid ones, lost runs widen it and are counted") {
-  CHECK(claim(tally_of(90, 0, 3), {}).find("of valid start states drawn") != std::string::npos);
-  const auto sentence = claim(tally_of(175, 1), {});
+  CHECK(claim(tally_of(90, 0, 3), {}, Comparison::kEveryStep).find("of valid start states drawn") !=
+        std::string::npos);
+  const auto sentence = claim(tally_of(175, 1), {}, Comparison::kEveryStep);
   CHECK(
       sentence ==
       "with 98 % confidence, fewer than 5 % of start states drawn uniformly from the start region "
-      "give a discrepancy (175 clean runs of 176, 1 lost run counted as a failure)");
+      "give a discrepancy at any step (175 clean runs of 176, 1 lost run counted as a failure)");
 }
 
 TEST_CASE("claim: nothing is claimed without clean runs or after a discrepancy") {
-  CHECK(claim(tally_of(0), {}) == "nothing is claimed (0 clean runs of 0)");
-  CHECK(claim(tally_of(0, 2), {}) ==
+  CHECK(claim(tally_of(0), {}, Comparison::kEveryStep) == "nothing is claimed (0 clean runs of 0)");
+  CHECK(claim(tally_of(0, 2), {}, Comparison::kEveryStep) ==
         "nothing is claimed (0 clean runs of 2, 2 lost runs counted as failures)");
   auto tally = tally_of(3);
   tally.add_mismatch();
-  CHECK(claim(tally, {}) == "1 of 4 runs gave a discrepancy");
+  CHECK(claim(tally, {}, Comparison::kEveryStep) == "1 of 4 runs gave a discrepancy");
+}
+
+TEST_CASE("claim: it is about what was compared") {
+  CHECK(claim(tally_of(90), {}, Comparison::kFinal)
+            .find("give a discrepancy in the last state (90") != std::string::npos);
 }
 
 TEST_CASE("claim: figures are rounded away from more than was shown") {

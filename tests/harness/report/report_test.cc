@@ -26,6 +26,12 @@ CampaignResult sample_result() {
   result.tool_version = "0.1.0";
   result.replay_folder = "out/two";
   result.simulations = 11;
+  using How = ComparedFluents::How;
+  result.compared = {{"BoxIn(..)", How::kEveryStep, ""},
+                     {"LookingAt(..)", How::kIgnored, ""},
+                     {"Happy()", How::kIgnored, "a matter of taste"},
+                     {"RobotIn(..)", How::kAtTheEnd, ""},
+                     {"Tired()", How::kIgnored, ""}};
   TraceResult clean;
   const auto trace = [](std::int64_t number) {
     return std::make_shared<const CampaignTrace>(
@@ -35,7 +41,6 @@ CampaignResult sample_result() {
   clean.trace = trace(1);
   clean.verdict = CampaignVerdict::kNoDiscrepancy;
   clean.start_region = {{"box.x", {1.0, 2.0, false}}, {"robot.yaw", {0.5, 0.5, true}}};
-  clean.not_compared = {"LookingAt(..)", "Tired()"};
   clean.simulations = clean.clean = 7;
   clean.certified_level = 0.99;
   clean.certified_epsilon = 0.482053;
@@ -95,16 +100,27 @@ TEST_CASE("the text fits 100 columns and carries no colour unless asked for") {
 TEST_CASE("the text says events with places, both figures, the claim, and how to repeat") {
   const auto text = campaign_text(sample_result(), {});
   for (const std::string part :
-       {"1  PickUp()  fetch.lisp:10\n", "with 99 % confidence p < 48.3 %", "satisfied after 3 runs",
-        "[not a probability of error]", "start region give a discrepancy (7 clean runs of 7)",
+       {"1  PickUp()  fetch.lisp:10\n",
+        "with 99 % confidence p < 48.3 %",
+        "satisfied after 3 runs",
+        "[not a probability of error]",
+        "start region give a discrepancy (7 clean runs of 7)",
         "in simulation 2.4, seed 123, repeated bit for bit\n",
-        "    BoxIn(r1)  2          true       false\n",
-        "at timepoint 1, after Go(r2): RobotIn(r2) is false instead of true",
-        "PickUp(), failed after 1.500 s: nothing between the pads \\u001b[31m", "box.x = 1.25",
-        "parallax replay out/two --sample 2.4", "verdict: discrepancy", "about        two traces",
-        "no regression evidence for: Holding()", "  start state  BoxIn(r2), RobotIn(r1)\n",
+        "    BoxIn(r1)    2          true       false\n",
+        "at timepoint 1, after Go(r2) (fetch.lisp:4): RobotIn(r2) is false instead of true",
+        "PickUp(), failed after 1.500 s: nothing between the pads \\u001b[31m",
+        "box.x = 1.25",
+        "parallax replay out/two --sample 2.4",
+        "verdict: discrepancy",
+        "about        two traces",
+        "no regression evidence for: Holding()",
+        "  start state  BoxIn(r2), RobotIn(r1)\n",
         "  start region box.x      1 to 2\n               robot.yaw  0.5\n",
-        "  not compared: LookingAt(..), Tired()\n",
+        "  every step   BoxIn(..)\n",
+        "  only the end RobotIn(..)\n",
+        "  not compared LookingAt(..), Tired()\n",
+        "  not compared Happy(): a matter of taste\n",
+        "    RobotIn(r2)  1          true       false\n",
         "    end        box.held = false, box.x = 1.0055\n"}) {
     CAPTURE(part);
     CHECK(text.find(part) != std::string::npos);
@@ -121,7 +137,7 @@ TEST_CASE("the paper's figure stands in a trace's account once") {
 TEST_CASE("a discrepancy begins with its cause") {
   auto result = sample_result();
   CHECK(campaign_text(result, {})
-            .find("    cause      Place(r1): box-lost: nothing in the gripper\n    fluent") !=
+            .find("    cause      Place(r1): box-lost: nothing in the gripper\n    first seen ") !=
         std::string::npos);
   const auto json = Json::parse(campaign_json(result, true));
   CHECK(json.at("discrepancies").at(0).at("cause") ==
@@ -211,11 +227,16 @@ TEST_CASE("the document has the fields that scripts read") {
   CHECK(trace.at("admitted") == 0);
   CHECK(trace.at("initial_state") == Json({"BoxIn(r2)", "RobotIn(r1)"}));
   CHECK(trace.at("start_region") == Json({{"box.x", {1.0, 2.0}}, {"robot.yaw", 0.5}}));
-  CHECK(trace.at("not_compared") == Json({"LookingAt(..)", "Tired()"}));
+  CHECK(trace.at("not_compared") == Json({"LookingAt(..)", "Happy()", "Tired()"}));
+  CHECK(json.at("compare") == "every-step");
+  CHECK(json.at("compared").at(2) ==
+        Json({{"fluent", "Happy()"}, {"compared", "ignored"}, {"why", "a matter of taste"}}));
+  CHECK(json.at("compared").at(3) == Json({{"fluent", "RobotIn(..)"}, {"compared", "final"}}));
   const auto& found = json.at("discrepancies").at(0);
   CHECK(found.at("trace") == 2);
   CHECK(found.at("sample") == 4);
   CHECK(found.at("seed") == 123);
+  CHECK(found.at("kind") == "lasting");
   CHECK(found.at("first_divergence") == 1);
   CHECK(
       found.at("fluents").at(0) ==

@@ -175,10 +175,16 @@ TEST_CASE("alternatives of a trace are noted, and asked about") {
   CHECK(trace->other_outcomes == base::Known::kYes);  // Lit(b2) is free once the robot has come
   CHECK(trace->other_initial_states == base::Known::kYes);  // Lit(b2) at 0 is open
   const auto fluent = [&](const char* name) { return *trace->symbols->fluent(name); };
-  CHECK(enumerator.admits(*trace, {{fluent("Lit(b2)"), true}, {fluent("At(b2)"), true}}) ==
-        base::Known::kYes);
-  CHECK(enumerator.admits(*trace, {{fluent("Lit(b2)"), false}}) == base::Known::kYes);
-  CHECK(enumerator.admits(*trace, {{fluent("At(a1)"), true}}) == base::Known::kNo);
+  using State = std::map<compiler::FluentId, bool>;
+  const auto admits = [&](const State& middle, const State& last) {
+    return enumerator.admits(*trace, {{}, middle, last});
+  };
+  CHECK(admits({}, {{fluent("Lit(b2)"), true}, {fluent("At(b2)"), true}}) == base::Known::kYes);
+  CHECK(admits({}, {{fluent("Lit(b2)"), false}}) == base::Known::kYes);
+  CHECK(admits({}, {{fluent("At(a1)"), true}}) == base::Known::kNo);
+  // What is asked about the way counts as well.
+  CHECK(admits({{fluent("At(a1)"), true}}, {{fluent("Lit(b2)"), true}}) == base::Known::kYes);
+  CHECK(admits({{fluent("At(b2)"), true}}, {{fluent("Lit(b2)"), true}}) == base::Known::kNo);
   CHECK(!enumerator.next());
 }
 

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace parallax::harness {
+
+/// At which timepoints the observed fluents are held against those of the trace.
+enum class Comparison : std::uint8_t {
+  kEveryStep,  // at the first difference prediction and physics part, wherever the run ends
+  kFinal,      // at the last timepoint only, as in the paper of Meywerk et al.
+};
+/// "every-step", "final"
+constexpr std::string_view to_string(Comparison comparison) {
+  return comparison == Comparison::kFinal ? "final" : "every-step";
+}
+
+/// How the fluents of one symbol are compared.
+struct ComparedFluents {
+  enum class How : std::uint8_t { kEveryStep, kAtTheEnd, kIgnored };
+  std::string fluent;  // "Holding(..)", "Tired()"
+  How how = How::kEveryStep;
+  std::string why;  // of an ignored one, in the scenario's words; may be empty
+};
+
+}  // namespace parallax::harness
