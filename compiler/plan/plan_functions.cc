@@ -131,7 +131,7 @@ std::string count_text(std::size_t count) {
 }  // namespace
 
 PlanMachine::Step PlanMachine::enter_value(PlanState& state, std::vector<ValueId> arguments,
-                                           const FunctionValue& function, ValueId kept,
+                                           const PlanFunctionValue& function, ValueId kept,
                                            const PlanInstruction& instruction) {
   const auto wrong = [&](std::string_view name, const std::string& text) {
     report(DiagnosticCode::kPlanArguments, instruction.source, name, text);

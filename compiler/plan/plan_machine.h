@@ -234,8 +234,9 @@ class PlanMachine {
   Step call(PlanState& state, const PlanInstruction& instruction);
   Step make_function(PlanState& state, const PlanInstruction& instruction);
   Step call_value(PlanState& state, const PlanInstruction& instruction);
-  Step enter_value(PlanState& state, std::vector<ValueId> arguments, const FunctionValue& function,
-                   ValueId kept, const PlanInstruction& instruction);
+  Step enter_value(PlanState& state, std::vector<ValueId> arguments,
+                   const PlanFunctionValue& function, ValueId kept,
+                   const PlanInstruction& instruction);
   Step enter_unit(PlanState& state, std::uint32_t unit, std::uint32_t link, DatumId form);
   bool outlives(ValueId value, std::size_t frame, std::size_t place) const;
   Step check_life(const PlanState& state, const PlanInstruction& instruction);

@@ -44,12 +44,12 @@ std::string_view to_string(DesignatorKind kind);
 
 /// A function as a value: a unit of the plan or a built-in. One that shares variables with the code
 /// around it lives no longer than they do; a frame and places on the stack say how long that is.
-struct FunctionValue {
+struct PlanFunctionValue {
   std::uint32_t unit = 0;
   bool builtin = false;     // unit is the number of a built-in
   std::uint32_t link = 0;   // 1 + the frame around it; 0: it needs none
   std::uint32_t reach = 0;  // 1 + the highest place of a variable that it shares
-  friend bool operator==(const FunctionValue&, const FunctionValue&) = default;
+  friend bool operator==(const PlanFunctionValue&, const PlanFunctionValue&) = default;
 };
 
 /// Where a cons that was made of a datum came from: the datum at `index` of `list`, or only the
@@ -73,9 +73,9 @@ struct Value {
   // it keeps; kValues: all
   ValueId head;
   ValueId tail;
-  DatumOrigin origin;      // kCons, while macros are expanded
-  FunctionValue function;  // kFunction; others: the shortest life of a function in it
-  Pose pose;               // kPose and kTransform; kVector and kQuaternion use their part
+  DatumOrigin origin;          // kCons, while macros are expanded
+  PlanFunctionValue function;  // kFunction; others: the shortest life of a function in it
+  Pose pose;                   // kPose and kTransform; kVector and kQuaternion use their part
   DesignatorKind designator = DesignatorKind::kMotion;
   // kDesignator: in written order; kModel: the description that it was sought by
   std::vector<std::pair<std::string, ValueId>> keys;
