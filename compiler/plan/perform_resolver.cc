@@ -25,15 +25,6 @@ std::optional<PerformKind> perform_kind(const Value& value) {
   return std::nullopt;
 }
 
-std::string fold(std::string_view name) {
-  std::string out;
-  for (const char c : name) {
-    if (c == '-' || c == '_') continue;
-    out += base::to_lower(c);
-  }
-  return out;
-}
-
 bool is_undetected(const ValueStore& values, ValueId id) {
   const auto& value = values[id];
   return value.kind == ValueKind::kDesignator && value.designator == DesignatorKind::kObject &&
@@ -41,26 +32,6 @@ bool is_undetected(const ValueStore& values, ValueId id) {
 }
 
 }  // namespace
-
-ModelNames::ModelNames(std::span<const std::string> names) : names_(names.begin(), names.end()) {
-  for (const auto& name : names_) by_folded_.emplace(fold(name), name);
-}
-
-std::optional<std::string> ModelNames::find(std::string_view name) const {
-  if (names_.empty()) return std::string(name);
-  if (std::find(names_.begin(), names_.end(), name) != names_.end()) return std::string(name);
-  const auto found = by_folded_.find(fold(name));
-  if (found == by_folded_.end()) return std::nullopt;
-  return found->second;
-}
-
-bool ModelNames::has(std::string_view name) const {
-  return std::find(names_.begin(), names_.end(), name) != names_.end();
-}
-
-std::optional<std::string> ModelNames::nearest(std::string_view name) const {
-  return base::nearest_name(name, names_, 3);
-}
 
 /// The value of a key by role: `pose` and `location` are both the target.
 std::optional<ValueId> PerformResolver::key_value(ValueId designator, std::string_view key) const {

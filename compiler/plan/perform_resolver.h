@@ -11,31 +11,13 @@
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/result.h"
 #include "compiler/plan/failure_classes.h"
+#include "compiler/plan/model_names.h"
 #include "compiler/plan/plan_binding.h"
 #include "compiler/plan/plan_graph.h"
 #include "compiler/plan/plan_value.h"
 #include "compiler/plan/pose_locator.h"
 
 namespace parallax::compiler {
-
-/// Finds the model's spelling of a plan's name: Lisp folds case and writes
-/// hyphens, a model has neither, so `top-drawer` means `topDrawer`.
-class ModelNames {
- public:
-  explicit ModelNames(std::span<const std::string> names);
-  /// The name as the model writes it; an exact match goes first, then the first
-  /// one declared that is equal up to case, `-` and `_`. Without any names
-  /// every name is taken as it is.
-  std::optional<std::string> find(std::string_view name) const;
-  /// Is this very name among them?
-  bool has(std::string_view name) const;
-  /// For a suggestion.
-  std::optional<std::string> nearest(std::string_view name) const;
-
- private:
-  std::vector<std::string> names_;
-  std::map<std::string, std::string, std::less<>> by_folded_;
-};
 
 /// The key of a location that says where it is; the others only narrow it.
 std::optional<std::size_t> leading_key(const Value& location);
