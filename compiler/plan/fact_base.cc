@@ -123,8 +123,8 @@ class ClauseReader {
 }  // namespace
 
 ClauseInstance instance_of(const FactClause& clause, TermStore& terms) {
-  std::vector<TermId> made;
-  std::vector<std::optional<TermId>> variables(clause.variables);
+  std::vector<PrologTermId> made;
+  std::vector<std::optional<PrologTermId>> variables(clause.variables);
   made.reserve(clause.nodes.size());
   for (const auto& node : clause.nodes) {
     switch (node.kind) {

@@ -29,8 +29,8 @@ struct FactClause {
 };
 
 struct ClauseInstance {
-  TermId head;
-  std::vector<TermId> body;
+  PrologTermId head;
+  std::vector<PrologTermId> body;
 };
 ClauseInstance instance_of(const FactClause& clause, TermStore& terms);
 

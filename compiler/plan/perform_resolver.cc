@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 #include "compiler/plan/designator_links.h"

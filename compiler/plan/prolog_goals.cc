@@ -84,7 +84,7 @@ Step goal_lisp_type(Search& search, const Arguments& args) {
 
 // --- designators --------------------------------------------------------------------------------
 
-std::optional<ValueId> designator(Search& search, TermId term) {
+std::optional<ValueId> designator(Search& search, PrologTermId term) {
   const auto value = search.terms.value(term);
   if (!value || !is_designator(search.values[*value])) return std::nullopt;
   return value;

@@ -7,7 +7,7 @@ namespace parallax::compiler {
 
 using Step = ProofSearch::Step;
 
-std::uint32_t ProofSearch::goal(Goal::Kind kind, TermId term, std::uint32_t next,
+std::uint32_t ProofSearch::goal(Goal::Kind kind, PrologTermId term, std::uint32_t next,
                                 std::uint32_t number, DatumId at) {
   goals_.push_back({kind, term, next, number, at});
   return static_cast<std::uint32_t>(goals_.size() - 1);
@@ -21,7 +21,7 @@ std::uint32_t ProofSearch::sequence(const Arguments& goals, std::uint32_t next,
   return next;
 }
 
-ProofSearch::Choice& ProofSearch::choose(Choice::Kind kind, TermId term, std::uint32_t next,
+ProofSearch::Choice& ProofSearch::choose(Choice::Kind kind, PrologTermId term, std::uint32_t next,
                                          std::uint32_t number, DatumId at) {
   choices_.push_back({kind, false, terms.mark(), term, {}, next, number, at, {}});
   return choices_.back();
@@ -42,7 +42,7 @@ std::optional<std::uint32_t> ProofAnswers::take(std::span<const ModelWay> ways) 
   return answer;
 }
 
-ProofStop ProofSearch::first(TermId wanted, DatumId at) {
+ProofStop ProofSearch::first(PrologTermId wanted, DatumId at) {
   wanted_ = wanted;
   current_ = goal(Goal::Kind::kProve, wanted, 0, 0, at);
   while (current_ != 0) {
@@ -136,7 +136,8 @@ Step ProofSearch::prove(const Goal& here) {
   return try_clauses(here.term, 0, here.next, here.at);
 }
 
-Step ProofSearch::try_clauses(TermId term, std::uint32_t from, std::uint32_t next, DatumId at) {
+Step ProofSearch::try_clauses(PrologTermId term, std::uint32_t from, std::uint32_t next,
+                              DatumId at) {
   const auto name = terms.symbol(terms.split(term)->first);
   const auto& clauses = facts_.clauses.find(*name)->second;
   const auto cut_to = height();
@@ -158,7 +159,7 @@ Step ProofSearch::try_clauses(TermId term, std::uint32_t from, std::uint32_t nex
   return Step::kFalse;
 }
 
-Step ProofSearch::try_or(TermId alternatives, std::uint32_t next, std::uint32_t number,
+Step ProofSearch::try_or(PrologTermId alternatives, std::uint32_t next, std::uint32_t number,
                          DatumId at) {
   const auto parts = terms.split(alternatives);
   if (!parts) return Step::kFalse;
@@ -167,11 +168,12 @@ Step ProofSearch::try_or(TermId alternatives, std::uint32_t next, std::uint32_t 
   return Step::kTrue;
 }
 
-Step ProofSearch::any_of(TermId pattern, TermId list) {
+Step ProofSearch::any_of(PrologTermId pattern, PrologTermId list) {
   return try_member(pattern, list, current_, at_);
 }
 
-Step ProofSearch::try_member(TermId pattern, TermId list, std::uint32_t next, DatumId at) {
+Step ProofSearch::try_member(PrologTermId pattern, PrologTermId list, std::uint32_t next,
+                             DatumId at) {
   auto rest = list;
   while (const auto parts = terms.split(rest)) {
     if (!world.spend(at, terms.exhausted())) return stop(ProofError{});
@@ -192,7 +194,7 @@ Step ProofSearch::try_member(TermId pattern, TermId list, std::uint32_t next, Da
   return Step::kFalse;
 }
 
-std::optional<ProofSearch::Query> ProofSearch::query(TermId term, DatumId at) {
+std::optional<ProofSearch::Query> ProofSearch::query(PrologTermId term, DatumId at) {
   const auto parts = terms.split(term);
   const auto name = *terms.symbol(parts->first);
   Query out;
@@ -233,7 +235,7 @@ bool ProofSearch::collects() const {
 
 /// A query of the binding table: the model answers, and a free variable is any constant for which
 /// it holds. What failed later is tried again with those that are left.
-Step ProofSearch::ask(TermId term, const std::vector<std::string>& used, std::uint32_t next,
+Step ProofSearch::ask(PrologTermId term, const std::vector<std::string>& used, std::uint32_t next,
                       DatumId at) {
   auto asked = query(term, at);
   if (!asked) return Step::kStop;
@@ -257,7 +259,8 @@ Step ProofSearch::ask(TermId term, const std::vector<std::string>& used, std::ui
 }
 
 /// The same where all solutions are collected: constant by constant, in the model's order.
-Step ProofSearch::ask_in_order(TermId term, std::uint32_t from, std::uint32_t next, DatumId at) {
+Step ProofSearch::ask_in_order(PrologTermId term, std::uint32_t from, std::uint32_t next,
+                               DatumId at) {
   const auto asked = query(term, at);
   if (!asked) return Step::kStop;
   for (auto i = from; i < asked->ways.size(); ++i) {

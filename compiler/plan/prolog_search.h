@@ -32,7 +32,7 @@ struct ProofQuestion {
   std::vector<ModelWay> ways;
 };
 struct ProofSolved {
-  TermId goal;  // as it was proved
+  PrologTermId goal;  // as it was proved
 };
 struct ProofNone {};  // no (further) solution
 struct ProofFailed {
@@ -90,7 +90,7 @@ class ProofSearch {
       : terms(store), values(store), world(of_plan), facts_(facts), answers_(answers) {}
 
   /// The first solution of the goal, which stands at `at`.
-  ProofStop first(TermId goal, DatumId at);
+  ProofStop first(PrologTermId goal, DatumId at);
 
   TermStore terms;
   ValueStore& values;
@@ -99,7 +99,7 @@ class ProofSearch {
   std::optional<ValueId> fits;
 
   enum class Step : std::uint8_t { kTrue, kFalse, kStop };
-  using Arguments = std::vector<TermId>;
+  using Arguments = std::vector<PrologTermId>;
   Step stop(ProofStop why) {
     stopped_ = std::move(why);
     return Step::kStop;
@@ -110,7 +110,7 @@ class ProofSearch {
   }
   static Step truth(bool value) { return value ? Step::kTrue : Step::kFalse; }
   /// The goal goes on with any element of the list that unifies with the pattern.
-  Step any_of(TermId pattern, TermId list);
+  Step any_of(PrologTermId pattern, PrologTermId list);
   Step call(const std::string& function, const Arguments& arguments, DatumId at, ValueId& out);
   DatumId at() const { return at_; }
   /// The outermost clause by which the goal was proved.
@@ -121,7 +121,7 @@ class ProofSearch {
   struct Goal {
     enum class Kind : std::uint8_t { kProve, kCut, kSoftCut, kCollect, kFail };
     Kind kind = Kind::kProve;
-    TermId term;
+    PrologTermId term;
     std::uint32_t next = 0;
     std::uint32_t number = 0;  // kProve: where `cut` cuts to; cuts: the choice; kCollect: which
     DatumId at;
@@ -140,8 +140,8 @@ class ProofSearch {
     Kind kind = Kind::kResume;
     bool dead = false;
     std::size_t trail = 0;
-    TermId term;             // kClauses, kModel: the goal; kOr, kMember: what is left of the list
-    TermId pattern;          // kMember
+    PrologTermId term;       // kClauses, kModel: the goal; kOr, kMember: what is left of the list
+    PrologTermId pattern;    // kMember
     std::uint32_t next = 0;  // the goals behind it
     // kOr: where `cut` cuts to; kClauses, kModelInOrder: the next one; kCollected: which
     std::uint32_t number = 0;
@@ -150,36 +150,36 @@ class ProofSearch {
   };
   struct Collector {
     std::string kind;  // findall, bagof, setof
-    TermId pattern;
-    TermId result;
-    std::vector<TermId> items;
+    PrologTermId pattern;
+    PrologTermId result;
+    std::vector<PrologTermId> items;
   };
   using Control = Step (ProofSearch::*)(const Goal&, const Arguments&);
   static const std::map<std::string_view, Control>& controls();
 
-  std::uint32_t goal(Goal::Kind kind, TermId term, std::uint32_t next, std::uint32_t number,
+  std::uint32_t goal(Goal::Kind kind, PrologTermId term, std::uint32_t next, std::uint32_t number,
                      DatumId at);
   std::uint32_t sequence(const Arguments& goals, std::uint32_t next, std::uint32_t number,
                          DatumId at);
   std::uint32_t height() const { return static_cast<std::uint32_t>(choices_.size()); }
-  Choice& choose(Choice::Kind kind, TermId term, std::uint32_t next, std::uint32_t number,
+  Choice& choose(Choice::Kind kind, PrologTermId term, std::uint32_t next, std::uint32_t number,
                  DatumId at);
   bool backtrack();
   Step resume(const Choice& choice);
   Step execute(const Goal& goal);
   Step prove(const Goal& goal);
-  Step try_clauses(TermId term, std::uint32_t from, std::uint32_t next, DatumId at);
-  Step try_or(TermId alternatives, std::uint32_t next, std::uint32_t number, DatumId at);
-  Step try_member(TermId pattern, TermId list, std::uint32_t next, DatumId at);
+  Step try_clauses(PrologTermId term, std::uint32_t from, std::uint32_t next, DatumId at);
+  Step try_or(PrologTermId alternatives, std::uint32_t next, std::uint32_t number, DatumId at);
+  Step try_member(PrologTermId pattern, PrologTermId list, std::uint32_t next, DatumId at);
   /// A goal that the model answers: its free arguments and the ways in which it can hold.
   struct Query {
     Arguments free;
     std::vector<ModelWay> ways;
   };
-  std::optional<Query> query(TermId term, DatumId at);
+  std::optional<Query> query(PrologTermId term, DatumId at);
   Step hold(const Query& query, std::size_t way, std::uint32_t next);
-  Step ask(TermId term, const std::vector<std::string>& used, std::uint32_t next, DatumId at);
-  Step ask_in_order(TermId term, std::uint32_t from, std::uint32_t next, DatumId at);
+  Step ask(PrologTermId term, const std::vector<std::string>& used, std::uint32_t next, DatumId at);
+  Step ask_in_order(PrologTermId term, std::uint32_t from, std::uint32_t next, DatumId at);
   bool collects() const;
   Step collected(std::uint32_t which, std::uint32_t next);
 
@@ -201,7 +201,7 @@ class ProofSearch {
   std::vector<Collector> collectors_;
   std::uint32_t current_ = 0;
   DatumId at_;
-  TermId wanted_;
+  PrologTermId wanted_;
   std::optional<DatumId> clause_;
   ProofStop stopped_ = ProofNone{};
 };

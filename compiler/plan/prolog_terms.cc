@@ -2,28 +2,28 @@
 
 namespace parallax::compiler {
 
-TermId TermStore::atom(ValueId value) {
+PrologTermId TermStore::atom(ValueId value) {
   nodes_.push_back({Kind::kAtom, false, value.index(), 0});
-  return TermId(static_cast<std::uint32_t>(nodes_.size() - 1));
+  return PrologTermId(static_cast<std::uint32_t>(nodes_.size() - 1));
 }
 
-TermId TermStore::variable() {
+PrologTermId TermStore::variable() {
   nodes_.push_back({Kind::kVariable, false, 0, 0});
-  return TermId(static_cast<std::uint32_t>(nodes_.size() - 1));
+  return PrologTermId(static_cast<std::uint32_t>(nodes_.size() - 1));
 }
 
-TermId TermStore::pair(TermId head, TermId tail) {
+PrologTermId TermStore::pair(PrologTermId head, PrologTermId tail) {
   nodes_.push_back({Kind::kPair, false, head.index(), tail.index()});
-  return TermId(static_cast<std::uint32_t>(nodes_.size() - 1));
+  return PrologTermId(static_cast<std::uint32_t>(nodes_.size() - 1));
 }
 
-TermId TermStore::list(const std::vector<TermId>& items) {
+PrologTermId TermStore::list(const std::vector<PrologTermId>& items) {
   auto out = nil();
   for (auto item = items.rbegin(); item != items.rend(); ++item) out = pair(*item, out);
   return out;
 }
 
-TermId TermStore::from_data(ValueId data, std::map<std::string, TermId>& variables) {
+PrologTermId TermStore::from_data(ValueId data, std::map<std::string, PrologTermId>& variables) {
   // A list is built from its end, so its elements wait on a stack; depth is that of the text.
   const auto& value = values_[data];
   if (value.kind == ValueKind::kSymbol && !value.keyword && value.text.starts_with('?')) {
@@ -33,7 +33,7 @@ TermId TermStore::from_data(ValueId data, std::map<std::string, TermId>& variabl
     return variables.emplace(value.text, variable()).first->second;
   }
   if (value.kind != ValueKind::kCons) return atom(data);
-  std::vector<TermId> items;
+  std::vector<PrologTermId> items;
   auto rest = data;
   while (values_.kind(rest) == ValueKind::kCons) {
     items.push_back(from_data(values_[rest].head, variables));
@@ -44,24 +44,25 @@ TermId TermStore::from_data(ValueId data, std::map<std::string, TermId>& variabl
   return out;
 }
 
-TermId TermStore::walk(TermId term) const {
+PrologTermId TermStore::walk(PrologTermId term) const {
   for (;;) {
     ++work_;
     const auto& node = nodes_[term.index()];
     if (node.kind != Kind::kVariable || !node.bound) return term;
-    term = TermId(node.first);
+    term = PrologTermId(node.first);
   }
 }
 
-std::optional<ValueId> TermStore::atom_value(TermId term) const {
+std::optional<ValueId> TermStore::atom_value(PrologTermId term) const {
   const auto& node = nodes_[walk(term).index()];
   if (node.kind != Kind::kAtom) return std::nullopt;
   return ValueId(node.first);
 }
 
-std::optional<std::pair<TermId, TermId>> TermStore::split(TermId term) {
+std::optional<std::pair<PrologTermId, PrologTermId>> TermStore::split(PrologTermId term) {
   const auto node = nodes_[walk(term).index()];
-  if (node.kind == Kind::kPair) return std::pair(TermId(node.first), TermId(node.second));
+  if (node.kind == Kind::kPair)
+    return std::pair(PrologTermId(node.first), PrologTermId(node.second));
   if (node.kind != Kind::kAtom) return std::nullopt;
   const auto& value = values_[ValueId(node.first)];
   if (value.kind != ValueKind::kCons) return std::nullopt;
@@ -69,13 +70,13 @@ std::optional<std::pair<TermId, TermId>> TermStore::split(TermId term) {
   return std::pair(head, atom(value.tail));
 }
 
-bool TermStore::is_nil(TermId term) const {
+bool TermStore::is_nil(PrologTermId term) const {
   const auto value = atom_value(term);
   return value && values_.is_nil(*value);
 }
 
-std::optional<std::vector<TermId>> TermStore::elements(TermId term) {
-  std::vector<TermId> out;
+std::optional<std::vector<PrologTermId>> TermStore::elements(PrologTermId term) {
+  std::vector<PrologTermId> out;
   auto rest = term;
   while (const auto parts = split(rest)) {
     out.push_back(parts->first);
@@ -85,14 +86,14 @@ std::optional<std::vector<TermId>> TermStore::elements(TermId term) {
   return out;
 }
 
-std::optional<std::string> TermStore::symbol(TermId term) const {
+std::optional<std::string> TermStore::symbol(PrologTermId term) const {
   const auto value = atom_value(term);
   if (!value || values_.kind(*value) != ValueKind::kSymbol) return std::nullopt;
   return values_[*value].text;
 }
 
-bool TermStore::occurs(TermId variable, TermId term) const {
-  std::vector<TermId> open = {term};
+bool TermStore::occurs(PrologTermId variable, PrologTermId term) const {
+  std::vector<PrologTermId> open = {term};
   while (!open.empty() && ++work_ <= kMaxWork) {
     const auto here = walk(open.back());
     open.pop_back();
@@ -105,8 +106,8 @@ bool TermStore::occurs(TermId variable, TermId term) const {
   return false;
 }
 
-bool TermStore::unify(TermId left, TermId right) {
-  std::vector<std::pair<TermId, TermId>> open = {{left, right}};
+bool TermStore::unify(PrologTermId left, PrologTermId right) {
+  std::vector<std::pair<PrologTermId, PrologTermId>> open = {{left, right}};
   while (!open.empty()) {
     if (++work_ > kMaxWork) return false;
     auto [a, b] = open.back();
@@ -141,9 +142,9 @@ void TermStore::undo(std::size_t mark) {
   }
 }
 
-std::optional<ValueId> TermStore::value(TermId term) {
+std::optional<ValueId> TermStore::value(PrologTermId term) {
   // Parts first: a pair that is met again finds the values of its parts on top.
-  std::vector<std::pair<TermId, bool>> open = {{term, false}};
+  std::vector<std::pair<PrologTermId, bool>> open = {{term, false}};
   std::vector<ValueId> done;
   while (!open.empty()) {
     const auto [next, parts_done] = open.back();
@@ -162,17 +163,17 @@ std::optional<ValueId> TermStore::value(TermId term) {
       continue;
     }
     open.emplace_back(here, true);
-    open.emplace_back(TermId(node.second), false);
-    open.emplace_back(TermId(node.first), false);
+    open.emplace_back(PrologTermId(node.second), false);
+    open.emplace_back(PrologTermId(node.first), false);
   }
   return done.back();
 }
 
-TermId TermStore::copy(TermId term) {
+PrologTermId TermStore::copy(PrologTermId term) {
   if (const auto whole = value(term)) return atom(*whole);
-  std::map<std::uint32_t, TermId> renamed;
-  std::vector<std::pair<TermId, bool>> open = {{term, false}};
-  std::vector<TermId> done;
+  std::map<std::uint32_t, PrologTermId> renamed;
+  std::vector<std::pair<PrologTermId, bool>> open = {{term, false}};
+  std::vector<PrologTermId> done;
   while (!open.empty()) {
     if (++work_ > kMaxWork) return term;
     const auto [next, parts_done] = open.back();
@@ -194,8 +195,8 @@ TermId TermStore::copy(TermId term) {
                          : renamed.emplace(here.index(), variable()).first->second);
     } else {
       open.emplace_back(here, true);
-      open.emplace_back(TermId(node.second), false);
-      open.emplace_back(TermId(node.first), false);
+      open.emplace_back(PrologTermId(node.second), false);
+      open.emplace_back(PrologTermId(node.first), false);
     }
   }
   return done.back();

@@ -274,9 +274,9 @@ RuleProofs::Proof RuleProofs::solve(const StopProof& proof, ProofAnswers& answer
   }
   ++depth_;
   ProofSearch search(facts_, *this, values_, answers);
-  std::map<std::string, TermId> variables;
+  std::map<std::string, PrologTermId> variables;
   auto goal = search.terms.from_data(proof.goal, variables);
-  std::vector<TermId> bindings;
+  std::vector<PrologTermId> bindings;
   for (const auto& [name, variable] : variables) {
     bindings.push_back(search.terms.pair(search.terms.atom(values_.symbol(name)), variable));
   }
