@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "compiler/plan/variables.h"
+
 namespace parallax::compiler {
 namespace {
 
@@ -164,18 +166,18 @@ class Destructurer {
 
   /// The value, and above it whether it was given.
   void name_both(DatumId target, std::optional<DatumId> supplied) {
-    if (supplied && c_.data.is_symbol(*supplied)) c_.code.bind_top(c_.data.name(*supplied));
+    if (supplied && c_.data.is_symbol(*supplied)) bind_top(c_, *supplied, form_);
     const auto place = c_.code.height() - 2;
     if (c_.data.is_list(target)) return destructure(c_, form_, target, place);
     if (!c_.data.is_symbol(target)) return c_.unsupported(target, "a pattern consists of names");
-    c_.code.show(c_.code.named(BindingKind::kVariable, c_.data.name(target), place));
+    bind_variable(c_, target, place, form_);
   }
 
   void name_top(DatumId target) {
     if (c_.data.is_nil(target)) return;  // (a nil b): a part that nobody wants
     if (c_.data.is_list(target)) return destructure(c_, form_, target, c_.code.height() - 1);
     if (!c_.data.is_symbol(target)) return c_.unsupported(target, "a pattern consists of names");
-    c_.code.bind_top(c_.data.name(target));
+    bind_top(c_, target, form_);
   }
 
   void finish(bool plain) {
@@ -214,7 +216,7 @@ void compile_macro_parameters(FormCompiler& c, DatumId parameters) {
   }
   if (items.size() > 1 && c.data.is_symbol(items[0], "&whole")) {
     c.code.load(0, parameters);
-    if (c.data.is_symbol(items[1])) c.code.bind_top(c.data.name(items[1]));
+    if (c.data.is_symbol(items[1])) bind_top(c, items[1], parameters);
     const auto source = c.data.source(parameters);
     const bool dotted = c.data.is_dotted(parameters);
     parameters = dotted && items.size() > 3

@@ -1,7 +1,13 @@
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/plan/form_compiler.h"
+#include "compiler/plan/lisp_macros.h"
+#include "compiler/plan/variables.h"
 
 namespace parallax::compiler {
 
@@ -33,12 +39,10 @@ std::uint32_t compile_handler(FormCompiler& c, const HandlerSource& handler,
   c.code.show(c.code.named(BindingKind::kRetry, "", retry_exit));
   const auto unit = c.code.declare_unit("a failure handler", handler.source, 1);
   c.code.enter_unit(unit);
-  if (handler.variable) {
-    c.code.show(c.code.named(BindingKind::kVariable, c.data.name(*handler.variable), 0));
-  }
+  if (handler.variable) bind_variable(c, *handler.variable, 0, handler.source);
   c.compile_body(c.skip_declarations(handler.body));
+  close_variables(c, scope, 0, handler.source);
   c.code.leave_unit(PlanOp::kEndHandler, handler.source);
-  c.code.cut_scope(scope);
   return unit;
 }
 
@@ -112,34 +116,53 @@ void form_with_retry_counters(FormCompiler& c, DatumId form, FormItems items) {
     return c.refuse(form, "expected a list of (counter count)");
   }
   const auto scope = c.code.scope().size();
-  std::uint32_t count = 0;
   std::vector<LexicalBinding> bound;
+  std::vector<DatumId> numbers;
   for (const auto counter : c.data.children(items[1])) {
     const auto parts = c.data.children(counter);
     if (parts.size() != 2 || !c.data.is_symbol(parts[0])) {
       c.malformed(form, "a counter is (name count)");
       continue;
     }
-    c.compile(parts[1]);  // the current count, and below it the one that reset-counter restores
-    bound.push_back(c.code.named(BindingKind::kCounter, c.data.name(parts[0]), c.code.height()));
-    c.code.load(c.code.height() - 1, counter);
-    count += 2;
+    c.compile(parts[1]);
+    bound.push_back(
+        c.code.named(BindingKind::kCounter, c.data.name(parts[0]), c.code.height() - 1));
+    numbers.push_back(parts[1]);
   }
-  c.code.show(bound);
+  for (std::size_t i = 0; i < bound.size(); ++i) {
+    c.code.show(bound[i]);
+    c.defined.counters[c.code.scope().back().serial] = {form, numbers[i]};
+  }
   c.compile_body(items.subspan(2));
-  c.code.squeeze(count, form);
-  c.code.cut_scope(scope);
+  close_variables(c, scope, static_cast<std::uint32_t>(bound.size()), form);
 }
 
+/// The counter that the form names. The macros of CRAM's with-retry-counters know its own counters
+/// only, not those of a form around it.
 const LexicalBinding* counter(FormCompiler& c, DatumId form, FormItems items) {
   if (items.size() < 2 || !c.data.is_symbol(items[1])) {
     c.malformed(form, "expected the name of a counter");
     return nullptr;
   }
-  if (const auto* binding = c.code.lookup(BindingKind::kCounter, c.data.name(items[1])))
-    return binding;
-  c.error(DiagnosticCode::kUnboundPlanVariable, items[1], c.data.name(items[1]))
-      .note("counters are bound by `with-retry-counters`");
+  const auto* binding = c.code.lookup(BindingKind::kCounter, c.data.name(items[1]));
+  if (binding == nullptr) {
+    c.error(DiagnosticCode::kUnboundPlanVariable, items[1], c.data.name(items[1]))
+        .note("counters are bound by `with-retry-counters`");
+    return nullptr;
+  }
+  const auto& names = c.code.scope();
+  const auto innermost = std::find_if(names.rbegin(), names.rend(), [](const LexicalBinding& name) {
+    return name.kind == BindingKind::kCounter;
+  });
+  const auto own = c.defined.counters.at(binding->serial).form;
+  const auto inner = c.defined.counters.at(innermost->serial).form;
+  if (own == inner) return binding;
+  c.error(DiagnosticCode::kUnsupportedPlanForm, form, c.form_name(form),
+          fmt::format("`{}` is a counter of an outer `with-retry-counters`, which the inner one "
+                      "does not know",
+                      binding->name))
+      .note(c.data.source(inner), "the inner one")
+      .fix("bind the counters of both in one `with-retry-counters`");
   return nullptr;
 }
 
@@ -165,13 +188,33 @@ void form_get_counter(FormCompiler& c, DatumId form, FormItems items) {
   c.code.load(*found, form);
 }
 
+/// How many data the form has, but no more than `limit`.
+std::size_t size_of(const LispData& data, DatumId form, std::size_t limit) {
+  std::size_t size = 0;
+  std::vector<DatumId> open = {form};
+  for (; !open.empty() && size < limit; ++size) {
+    const auto items = data.children(open.back());
+    open.pop_back();
+    open.insert(open.end(), items.begin(), items.end());
+  }
+  return size;
+}
+
+/// The number is computed again, here: CRAM's macro puts the form of the number in its place.
 void form_reset_counter(FormCompiler& c, DatumId form, FormItems items) {
   const auto* found = counter(c, form, items);
   if (found == nullptr) return c.nil(form);
   const LexicalBinding place = *found;
-  LexicalBinding initial = place;
-  --initial.index;
-  c.code.load(initial, form);
+  const auto number = c.defined.counters.at(place.serial).number;
+  if (c.resetting) return c.refuse(form, "the number of a counter cannot reset a counter");
+  c.repeated += size_of(c.data, number, kMaxMacroData);
+  if (c.repeated >= kMaxMacroData) {
+    c.error(DiagnosticCode::kMacroLimit, form, kMaxMacroData, "data");
+    return c.nil(form);
+  }
+  c.resetting = true;
+  c.compile(number);
+  c.resetting = false;
   c.code.store(place, form);
 }
 
@@ -251,10 +294,9 @@ void form_handler_case(FormCompiler& c, DatumId form, FormItems items) {
     c.code.set_exit(exit);  // with the failure on the stack
     const auto scope = c.code.scope().size();
     const auto variable = c.data.children(parts[1]);
-    if (!variable.empty()) c.code.bind_top(c.data.name(variable[0]));
+    if (!variable.empty()) bind_top(c, variable[0], form);
     c.compile_body(c.skip_declarations(parts.subspan(2)));
-    c.code.squeeze(1, form);
-    c.code.cut_scope(scope);
+    close_variables(c, scope, 1, form);
   }
   for (const auto jump : to_end) c.code.patch_jump(jump);
 }
@@ -309,7 +351,7 @@ void form_try_each(FormCompiler& c, DatumId form, FormItems items) {
   const auto block = c.code.open_block("nil");
   const LexicalBinding out = *c.code.lookup(BindingKind::kBlock, "nil");
   c.compile(head[1]);
-  const auto loop = begin_list_loop(c, c.data.name(head[0]), form);
+  const auto loop = begin_list_loop(c, head[0], form);
   const auto next = c.code.open_exit();
   c.code.push_handlers(catch_all(c, next, form), form);
   c.compile_body(items.subspan(2));
@@ -318,7 +360,7 @@ void form_try_each(FormCompiler& c, DatumId form, FormItems items) {
   c.code.set_exit(next);
   end_list_loop(c, loop, form);
   c.code.fail("composite-failure", form);
-  c.code.squeeze(2, form);
+  close_variables(c, loop.scope, 2, form);
   c.code.close_block(block);
 }
 

@@ -12,6 +12,7 @@
 #include "compiler/plan/plan_builtins.h"
 #include "compiler/plan/plan_machine.h"
 #include "compiler/plan/unknown_values.h"
+#include "compiler/plan/variables.h"
 #include "compiler/plan/world_forms.h"
 
 namespace parallax::compiler {
@@ -182,6 +183,7 @@ void FormCompiler::compile_list(DatumId form) {
     return code.close_task(scope, form);
   }
   if (!head) {
+    if (data.head(items.front()) == "lambda") return compile_lambda_call(*this, form, items);
     return refuse(form, "a form starts with a name");
   }
   if (data.is_dotted(form)) return refuse(form, "a dotted list is data: quote it");
@@ -437,13 +439,14 @@ void FormCompiler::check_no_perform(DatumId form) {
   }
 }
 
-ListLoop begin_list_loop(FormCompiler& c, std::string_view variable, DatumId source) {
+ListLoop begin_list_loop(FormCompiler& c, DatumId variable, DatumId source) {
   ListLoop loop;
   c.code.emit(PlanOp::kExpectList, 0, 0, source);
   loop.list = c.code.height() - 1;
   c.nil(source);
   loop.item = c.code.height() - 1;
-  c.code.bind_top(variable);
+  loop.scope = c.code.scope().size();
+  bind_top(c, variable, source);
   loop.top = c.code.here();
   c.code.load(loop.list, source);
   loop.end_jump = c.code.jump(PlanOp::kJumpIfNil, source);

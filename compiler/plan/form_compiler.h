@@ -23,13 +23,14 @@ class MacroExpander;
 
 struct PlanParameter {
   std::string name;
+  DatumId symbol;
   std::string keyword;  // not empty: passed by `:keyword`
   bool optional = false;
   bool rest = false;  // the list of all further arguments
   std::optional<DatumId> default_value;
   // The default is no constant: the function computes it where nothing was passed.
   bool computed = false;
-  std::optional<std::string> supplied;  // a variable that says whether something was passed
+  std::optional<DatumId> supplied;  // a variable that says whether something was passed
 };
 
 /// A function of the plan, or a local one: its code is a unit.
@@ -62,6 +63,12 @@ struct PlanUnitSource {
   std::size_t position = 0;
 };
 
+/// A counter of `with-retry-counters`: the form that binds it, and the form of its number.
+struct RetryCounter {
+  DatumId form;
+  DatumId number;
+};
+
 /// What the plan defines at top level, and the local functions met so far.
 struct PlanDefinitions {
   std::map<std::string, PlanFunction, std::less<>> functions;
@@ -71,6 +78,7 @@ struct PlanDefinitions {
   std::map<std::uint32_t, PlanMacro> local_macros;    // by unit
   std::map<std::uint32_t, PlanUnitSource> unwritten;  // by unit
   std::map<std::string, std::uint32_t, std::less<>> globals;
+  std::map<std::uint32_t, RetryCounter> counters;  // those met so far, by the name's serial
 };
 
 /// What the compilers of the single forms share: the data, the code being written, the names, and
@@ -137,6 +145,8 @@ class FormCompiler {
   bool in_function = false;  // not among the bare forms at top level
   bool in_macro = false;     // in the text of a macro: lists remember where they were written
   std::size_t position = 0;  // of the form at top level that is compiled
+  bool resetting = false;    // in the number of a counter that is reset
+  std::size_t repeated = 0;  // data compiled again, for counters that are reset
 
  private:
   base::DiagnosticBuilder note_calls(base::DiagnosticBuilder report, DatumId at) const;
@@ -189,11 +199,12 @@ struct ListLoop {
   std::uint32_t item = 0;  // place of the element
   std::uint32_t top = 0;
   std::size_t end_jump = 0;
+  std::size_t scope = 0;  // before the variable: close_variables ends it and drops both places
 };
 
 /// Opens the loop over the list on top. The body follows and leaves one value, which end_list_loop
 /// drops.
-ListLoop begin_list_loop(FormCompiler& c, std::string_view variable, DatumId source);
+ListLoop begin_list_loop(FormCompiler& c, DatumId variable, DatumId source);
 /// Closes the loop; its two variables are still there, the second one nil.
 void end_list_loop(FormCompiler& c, const ListLoop& loop, DatumId source);
 

@@ -18,6 +18,8 @@ struct Callee {
 
 /// A local function, one of the plan, or a built-in, by what the symbol means in its package.
 std::optional<Callee> find_callee(const FormCompiler& c, DatumId symbol);
+/// The same without the local ones: what a quoted name means.
+std::optional<Callee> find_global_callee(const FormCompiler& c, DatumId symbol);
 /// The function that an argument of funcall and the mapping functions gives: one that is named or
 /// written there, or a value, which prepare_function leaves on the stack (else nil lies there).
 struct FunctionArgument {
@@ -35,6 +37,8 @@ void compile_function_value(FormCompiler& c, DatumId form, DatumId function);
 /// Writes the code of a call with its arguments.
 void compile_call(FormCompiler& c, DatumId form, std::string_view name, const Callee& callee,
                   FormItems arguments);
+/// ((lambda (parameter...) form...) argument...)
+void compile_lambda_call(FormCompiler& c, DatumId form, FormItems items);
 /// Only the call itself: `count` arguments are on the stack.
 void emit_call(FormCompiler& c, const Callee& callee, std::uint32_t count, DatumId source);
 

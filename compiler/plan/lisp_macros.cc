@@ -9,6 +9,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/plan/destructuring.h"
 #include "compiler/plan/lisp_reader.h"
+#include "compiler/plan/variables.h"
 
 namespace parallax::compiler {
 
@@ -41,10 +42,11 @@ void compile_macro(FormCompiler& c, const PlanMacro& macro, FormItems body) {
   c.code.enter_unit(macro.unit);
   const auto scope = c.code.scope().size();
   const auto block = c.code.open_block(macro.name);
+  const auto inside = c.code.scope().size();
   const auto height = c.code.height();
   compile_macro_parameters(c, macro.parameters);
   c.compile_body(c.skip_declarations(body));
-  c.code.squeeze(c.code.height() - 1 - height, macro.source);
+  close_variables(c, inside, c.code.height() - 1 - height, macro.source);
   c.code.close_block(block);
   c.code.leave_unit(PlanOp::kReturn, macro.source);
   c.code.cut_scope(scope);

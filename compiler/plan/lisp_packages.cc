@@ -88,7 +88,9 @@ class PackageResolver {
   base::DiagnosticSink& sink_;
   bool speaks_of_packages_ = false;
   std::map<std::string, LispPackage, std::less<>> packages_;
-  std::map<std::string, std::string, std::less<>> nicknames_;  // also each name itself
+  // Also each name itself; the first ones are Lisp's own.
+  std::map<std::string, std::string, std::less<>> nicknames_ = {
+      {"cl-user", std::string(kUserPackage)}, {"cl", "common-lisp"}};
   std::map<std::string, DatumId, std::less<>> claimed_;
   std::map<std::pair<std::string, std::string>, std::string> homes_;
   std::map<std::string, NameSet, std::less<>> defined_;  // name -> homes

@@ -137,6 +137,7 @@ class LoopParser {
       if (!take_form(clause.form)) return false;
       if (!accumulates(clause.kind) || !take_word("into")) return true;
       if (i_ >= items_.size() || !data_.is_symbol(items_[i_])) return fail("`into` needs a name");
+      clause.result = items_[i_];
       clause.into = data_.name(items_[i_++]);
       return true;
     }

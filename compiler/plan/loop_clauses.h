@@ -44,6 +44,7 @@ struct LoopClause {
   std::optional<DatumId> step;      // kRange; kIn, kOn: the function to the rest
   std::optional<DatumId> then;      // kEquals
   std::string into;                 // what collects: its own variable
+  std::optional<DatumId> result;    // the same, as written
   bool down = false;                // kRange: counts down
   bool exclusive = false;           // kRange: `below`, `above`
   bool negated = false;             // kWhen: unless

@@ -10,6 +10,7 @@
 #include "compiler/plan/form_compiler.h"
 #include "compiler/plan/function_calls.h"
 #include "compiler/plan/loop_clauses.h"
+#include "compiler/plan/variables.h"
 
 namespace parallax::compiler {
 namespace {
@@ -48,7 +49,7 @@ class LoopCompiler {
     }
     c_.code.load(height, form_);
     if (is_list_) c_.code.builtin("reverse", 1, form_);
-    c_.code.squeeze(c_.code.height() - 1 - height, form_);
+    close_variables(c_, out_ + 1, c_.code.height() - 1 - height, form_);
     c_.code.close_block(block);
   }
 
@@ -87,15 +88,15 @@ class LoopCompiler {
         const bool number = clause.kind == LoopKind::kSum || clause.kind == LoopKind::kCount;
         c_.code.constant(number ? zero() : c_.values.nil(), form_);
         into_.emplace(clause.into, c_.code.height() - 1);
-        bind_changing(clause.into);
+        bind_changing(*clause.result, c_.code.height() - 1);
       }
       push_into(clause.inner);
       push_into(clause.otherwise);
     }
   }
 
-  void bind_changing(const std::string& name) {
-    c_.code.bind_top(name);
+  void bind_changing(DatumId name, std::uint32_t place) {
+    bind_variable(c_, name, place, form_);
     c_.code.note_change(c_.code.scope().back());
   }
 
@@ -109,7 +110,7 @@ class LoopCompiler {
     if (!c_.data.is_symbol(pattern)) return c_.unsupported(pattern, "a pattern consists of names");
     c_.nil(form_);
     slots_.emplace(pattern.index(), c_.code.height() - 1);
-    bind_changing(c_.data.name(pattern));
+    bind_changing(pattern, c_.code.height() - 1);
   }
 
   /// The parts of the value on top into the slots of the pattern; missing ones are nil.
@@ -176,9 +177,7 @@ class LoopCompiler {
         push_form(clause.form, 0);
         push_form(clause.limit, 0);
         push_form(clause.step, 1);
-        c_.code.show(
-            c_.code.named(BindingKind::kVariable, c_.data.name(*clause.variable), places_.back()));
-        return c_.code.note_change(c_.code.scope().back());
+        return bind_changing(*clause.variable, places_.back());
       case LoopKind::kEquals:
         return push_names(*clause.variable);
       case LoopKind::kWith:
@@ -210,7 +209,7 @@ class LoopCompiler {
     if (!clause.form) return push_names(*clause.variable);
     c_.compile(*clause.form);
     if (c_.data.is_symbol(*clause.variable) && !c_.data.is_nil(*clause.variable)) {
-      return c_.code.bind_top(c_.data.name(*clause.variable));
+      return bind_top(c_, *clause.variable, form_);
     }
     const auto value = c_.code.height() - 1;
     push_names(*clause.variable);

@@ -1,4 +1,5 @@
 #include "compiler/plan/form_compiler.h"
+#include "compiler/plan/variables.h"
 
 namespace parallax::compiler {
 namespace {
@@ -10,7 +11,7 @@ void form_dolist(FormCompiler& c, DatumId form, FormItems items) {
   }
   const auto block = c.code.open_block("nil");
   c.compile(head[1]);
-  const auto loop = begin_list_loop(c, c.data.name(head[0]), form);
+  const auto loop = begin_list_loop(c, head[0], form);
   c.compile_body(c.skip_declarations(items.subspan(2)));
   end_list_loop(c, loop, form);
   if (head.size() == 3) {
@@ -18,7 +19,7 @@ void form_dolist(FormCompiler& c, DatumId form, FormItems items) {
   } else {
     c.nil(form);
   }
-  c.code.squeeze(2, form);
+  close_variables(c, loop.scope, 2, form);
   c.code.close_block(block);
 }
 
@@ -33,7 +34,7 @@ void form_dotimes(FormCompiler& c, DatumId form, FormItems items) {
   const auto count = c.code.height() - 1;
   c.code.constant(c.values.number(Number(0)), form);
   const auto index = c.code.height() - 1;
-  c.code.bind_top(c.data.name(head[0]));
+  bind_top(c, head[0], form);
   c.code.note_change(c.code.scope().back());
   const auto top = c.code.here();
   c.code.load(index, form);
@@ -52,8 +53,7 @@ void form_dotimes(FormCompiler& c, DatumId form, FormItems items) {
   } else {
     c.nil(form);
   }
-  c.code.squeeze(2, form);
-  c.code.cut_scope(scope);
+  close_variables(c, scope, 2, form);
   c.code.close_block(block);
 }
 

@@ -171,10 +171,6 @@ void PlanAssembler::show(const std::vector<LexicalBinding>& bindings) {
   for (const auto& binding : bindings) show(binding);
 }
 
-void PlanAssembler::bind_top(std::string_view name) {
-  show(named(BindingKind::kVariable, name, height() - 1));
-}
-
 const LexicalBinding* PlanAssembler::lookup(BindingKind kind, std::string_view name) const {
   for (auto binding = scope_.rbegin(); binding != scope_.rend(); ++binding) {
     if (binding->kind == kind && binding->name == name) return &*binding;

@@ -121,8 +121,6 @@ class PlanAssembler {
     scope_.push_back(std::move(binding));
   }
   void show(const std::vector<LexicalBinding>& bindings);
-  /// Names the value on top; it stays until it is squeezed out.
-  void bind_top(std::string_view name);
   const std::vector<LexicalBinding>& scope() const { return scope_; }
   void cut_scope(std::size_t size) { scope_.resize(size); }
   const LexicalBinding* lookup(BindingKind kind, std::string_view name) const;

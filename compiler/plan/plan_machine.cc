@@ -220,8 +220,7 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
       return bind_special(state, instruction);
     case PlanOp::kStoreSpecial:
       if (auto stop = check_life(state, instruction)) return stop;
-      stack[*special(state, instruction.a)] = stack.back();
-      return {};
+      return store_special(state, instruction);
     case PlanOp::kStoreGlobal:
       if (auto stop = check_life(state, instruction)) return stop;
       globals_[instruction.a] = pop(state);
@@ -313,22 +312,6 @@ PlanMachine::Step PlanMachine::execute(PlanState& state, const PlanInstruction& 
   return StopError{};
 }
 
-PlanMachine::Step PlanMachine::load_global(PlanState& state, const PlanInstruction& instruction) {
-  if (const auto rebound = special(state, instruction.a)) {
-    state.stack.push_back(state.stack[*rebound]);
-    return {};
-  }
-  if (const auto value = instruction.a < globals_.size() ? globals_[instruction.a] : std::nullopt) {
-    state.stack.push_back(*value);
-    return {};
-  }
-  const auto& global = code_.globals[instruction.a];
-  report(DiagnosticCode::kUnboundPlanVariable, instruction.source, global.name)
-      .note(data_.source(global.source),
-            blame_ ? "globals get their values behind the macros" : "it is defined only here");
-  return StopError{};
-}
-
 /// A local function may be called in another task than the one whose block it leaves.
 PlanMachine::Step PlanMachine::check_exit(const PlanState& state,
                                           const PlanInstruction& instruction, std::uint32_t frame) {
@@ -344,44 +327,6 @@ PlanMachine::Step PlanMachine::check_exit(const PlanState& state,
     return StopError{};
   }
   return {};
-}
-
-/// A variable of the running frame is what the global means from here on.
-PlanMachine::Step PlanMachine::bind_special(PlanState& state, const PlanInstruction& instruction) {
-  const auto frame = static_cast<std::uint32_t>(state.frames.size() - 1);
-  const auto place = state.frames[frame].base + instruction.b;
-  state.guards.push_back({GuardKind::kSpecial, instruction.a, frame, place});
-  return {};
-}
-
-namespace {
-
-/// A handler does not see what is left of ended branches, whose clean-ups are still to run.
-bool left_over(const PlanState& state, std::size_t guard) {
-  const auto at = [&](std::size_t index) {
-    return state.guards.begin() + static_cast<std::ptrdiff_t>(index);
-  };
-  const auto evaporated = [](const PlanGuard& kept) { return kept.kind == GuardKind::kEvaporated; };
-  return std::any_of(state.frames.begin(), state.frames.end(), [&](const PlanFrame& frame) {
-    const bool covers =
-        frame.kind == FrameKind::kHandler && frame.skip_to < guard && guard < frame.guard_base;
-    return covers && std::any_of(at(frame.skip_to), at(guard + 1), evaporated);
-  });
-}
-
-}  // namespace
-
-/// Where the task that runs has rebound the global, if it has: a task sees no other's bindings.
-std::optional<std::size_t> PlanMachine::special(const PlanState& state,
-                                                std::uint32_t global) const {
-  for (auto g = state.guards.size(); g-- > 0;) {
-    if (left_over(state, g)) continue;
-    const auto& guard = state.guards[g];
-    if (guard.kind == GuardKind::kSpecial && guard.index == global) return guard.height;
-    const bool border = guard.kind == GuardKind::kTask || guard.kind == GuardKind::kEvaporated;
-    if (border) return std::nullopt;
-  }
-  return std::nullopt;
 }
 
 PlanMachine::Step PlanMachine::expect_list(const PlanState& state,

@@ -259,6 +259,7 @@ class PlanMachine {
   Step leave_task(PlanState& state, std::size_t border, ValueId failure);
   Step check_exit(const PlanState& state, const PlanInstruction& instruction, std::uint32_t frame);
   Step bind_special(PlanState& state, const PlanInstruction& instruction);
+  Step store_special(PlanState& state, const PlanInstruction& instruction);
   std::optional<std::size_t> special(const PlanState& state, std::uint32_t global) const;
   Step start_par(PlanState& state, const PlanInstruction& instruction);
   Step end_branch(PlanState& state);

@@ -52,8 +52,11 @@ void drop_abandoned(PlanState& state, std::size_t handling) {
   state.guards.resize(keep + 1);
   state.frames.resize(std::size_t{guard.frame} + 1);
   state.frames.back().pc = 0;  // it goes on at an exit or not at all
-  const std::uint32_t variable = guard.kind == GuardKind::kSpecial ? 1 : 0;
-  state.stack.resize(std::size_t{guard.height} + variable);
+  std::size_t height = guard.height;
+  for (const auto& kept : state.guards) {
+    if (kept.kind == GuardKind::kSpecial) height = std::max(height, std::size_t{kept.height} + 1);
+  }
+  state.stack.resize(height);
 }
 
 GuardKind guard_kind(PlanOp op) {

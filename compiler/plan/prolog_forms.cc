@@ -1,5 +1,6 @@
 // What plans do with the solutions of `prolog`, and designators made for the length of a body.
 #include "compiler/plan/form_compiler.h"
+#include "compiler/plan/variables.h"
 
 namespace parallax::compiler {
 namespace {
@@ -32,11 +33,10 @@ void bind_variables(FormCompiler& c, DatumId form, FormItems items, bool strictl
     c.code.constant(c.values.symbol(c.data.name(variable)), variable);
     c.code.load(height, form);
     c.code.builtin(strictly ? "%bound-value" : "var-value", 2, form);
-    c.code.bind_top(c.data.name(variable));
+    bind_top(c, variable, form);
   }
   c.compile_body(c.skip_declarations(items.subspan(3)));
-  c.code.squeeze(c.code.height() - 1 - height, form);
-  c.code.cut_scope(scope);
+  close_variables(c, scope, c.code.height() - 1 - height, form);
 }
 
 void form_vars_bound(FormCompiler& c, DatumId form, FormItems items) {
@@ -62,11 +62,10 @@ void form_with_props(FormCompiler& c, DatumId form, FormItems items) {
     c.code.load(height, form);
     c.code.constant(c.values.keyword(c.data.name(key)), key);
     c.code.builtin("desig-prop-value", 2, form);
-    c.code.bind_top(c.data.name(key));
+    bind_top(c, key, form);
   }
   c.compile_body(c.skip_declarations(items.subspan(3)));
-  c.code.squeeze(c.code.height() - 1 - height, form);
-  c.code.cut_scope(scope);
+  close_variables(c, scope, c.code.height() - 1 - height, form);
 }
 
 /// (with-designators ((name class description)...) form...), one after the other.
@@ -85,12 +84,11 @@ void form_with_designators(FormCompiler& c, DatumId form, FormItems items) {
     c.compile(parts[1]);
     c.compile(parts[2]);
     c.code.builtin("make-designator", 2, made);
-    c.code.bind_top(c.data.name(parts[0]));
+    bind_top(c, parts[0], form);
     ++count;
   }
   c.compile_body(c.skip_declarations(items.subspan(2)));
-  c.code.squeeze(count, form);
-  c.code.cut_scope(scope);
+  close_variables(c, scope, count, form);
 }
 
 }  // namespace

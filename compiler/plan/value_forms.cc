@@ -1,14 +1,12 @@
 #include <string>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/plan/form_compiler.h"
 #include "compiler/plan/function_calls.h"
+#include "compiler/plan/variables.h"
 
 namespace parallax::compiler {
 namespace {
-
-using base::DiagnosticCode;
 
 void form_values(FormCompiler& c, DatumId form, FormItems items) {
   for (const auto item : items.subspan(1)) c.compile(item);
@@ -44,11 +42,10 @@ void form_multiple_value_bind(FormCompiler& c, DatumId form, FormItems items) {
       c.malformed(form, "a variable is a name");
       continue;
     }
-    c.code.show(c.code.named(BindingKind::kVariable, c.data.name(names[i]), height + i));
+    bind_variable(c, names[i], height + i, form);
   }
   c.compile_body(c.skip_declarations(items.subspan(3)));
-  c.code.squeeze(count, form);
-  c.code.cut_scope(scope);
+  close_variables(c, scope, count, form);
 }
 
 void form_multiple_value_list(FormCompiler& c, DatumId form, FormItems items) {
@@ -78,15 +75,8 @@ void form_multiple_value_setq(FormCompiler& c, DatumId form, FormItems items) {
   c.code.emit(PlanOp::kUnpack, count, 0, form);
   c.code.adjust(static_cast<int>(count) - 1);
   for (auto i = count; i-- > 0;) {
-    const auto* variable = c.data.is_symbol(names[i])
-                               ? c.code.lookup(BindingKind::kVariable, c.data.name(names[i]))
-                               : nullptr;
-    if (variable == nullptr) {
-      c.error(DiagnosticCode::kHeapWrite, names[i], c.form_name(form),
-              print_datum(c.data, names[i]));
-    } else {
-      c.code.store(*variable, form);
-    }
+    const auto* variable = assignable(c, form, names[i]);
+    if (variable != nullptr) assign(c, *variable, form);
     if (i > 0) c.code.drop(form);
   }
 }

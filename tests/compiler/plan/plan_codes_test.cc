@@ -58,6 +58,18 @@ const Case kCases[] = {
      "`setf` writes to `(slot-value x (quote y))`, which is not a lexical variable"},
     {"(defvar *x* 1)(setf *x* 2)", "CPL012",
      "`setf` writes to `*x*`, which is not a lexical variable"},
+    {"(defvar *x* 1)(funcall (let ((*x* 2)) (lambda () (setf *x* 3))))", "CPL012",
+     "`setf` writes to `*x*`, which is not a lexical variable"},
+    {"(flet ((g () 1)) (funcall 'g))", "CPL010", "no form or function `g`"},
+    {"((lambda (k) k))", "CPL007", "`a lambda`: no value for `k`"},
+    {"((lambda))", "CPL003", "malformed `(...)`: expected a lambda with parameters"},
+    {"(with-retry-counters ((m 1)) (with-retry-counters ((n 1)) (get-counter m)))", "CPL013",
+     "`get-counter` is not in the subset here: `m` is a counter of an outer `with-retry-counters`, "
+     "which the inner one does not know"},
+    {"(with-retry-counters ((n 1)) (with-retry-counters ((n (reset-counter n))) (reset-counter "
+     "n)))",
+     "CPL003", "malformed `reset-counter`: the number of a counter cannot reset a counter"},
+    {"(defun f () (:tag a (list 1)))(f)", "CPL003", "malformed `(...)`: a form starts with a name"},
     {"(list 1)(flet ((f () (defmacro m () 1))) (f))", "CPL013",
      "`defmacro` is not in the subset here: macros are defined at top level; use `macrolet`"},
     {"(loop for x across y do (print x))", "CPL013",
