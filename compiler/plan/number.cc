@@ -25,6 +25,7 @@ struct Decimal {
   std::int64_t fraction_digits = 0;
   std::int64_t exponent = 0;
   bool has_exponent = false;
+  bool is_double = false;
 };
 
 bool read_exponent(std::string_view text, std::int64_t& exponent) {
@@ -61,6 +62,8 @@ bool split_decimal(std::string_view token, Decimal& out) {
   constexpr std::string_view kMarkers = "eEdDfFsSlL";
   if (kMarkers.find(token[i]) == std::string_view::npos) return false;
   out.has_exponent = true;
+  constexpr std::string_view kDoubles = "dDlL";
+  out.is_double = kDoubles.find(token[i]) != std::string_view::npos;
   return read_exponent(token.substr(i + 1), out.exponent);
 }
 
@@ -126,17 +129,17 @@ Number::Parse parse_ratio(std::string_view token, std::size_t slash, Number& out
 
 double Number::as_double(std::int64_t integer) { return static_cast<double>(integer); }
 
-Number Number::inexact(double value) {
+Number Number::inexact(double value, Kind kind) {
   Number out;
   out.exact_ = false;
-  out.float_ = true;
+  out.kind_ = kind;
   out.value_ = value;
   return out;
 }
 
-Number Number::as_float() const {
+Number Number::as_float(Kind kind) const {
   Number out = *this;
-  out.float_ = true;
+  out.kind_ = kind;
   return out;
 }
 
@@ -163,10 +166,11 @@ Number::Parse Number::parse(std::string_view token, Number& out) {
   }
   Decimal decimal;
   if (!split_decimal(token, decimal)) return Parse::kNotANumber;
+  const auto kind = decimal.is_double ? Kind::kDouble : Kind::kSingle;
   if (const auto exact = exact_decimal(decimal)) {
     // `1.` is an integer in Lisp, as `1` is.
     const bool is_float = decimal.fraction_digits > 0 || decimal.has_exponent;
-    out = is_float ? exact->as_float() : *exact;
+    out = is_float ? exact->as_float(kind) : *exact;
     return Parse::kNumber;
   }
   const auto text = fmt::format("{}{}e{}", decimal.negative ? "-" : "", decimal.digits,
@@ -181,19 +185,27 @@ Number::Parse Number::parse(std::string_view token, Number& out) {
     if (has_digit && magnitude > 0) return Parse::kOutOfRange;
     value = 0.0;
   }
-  out = inexact(value);
+  out = inexact(value, kind);
   return Parse::kNumber;
 }
 
 std::string Number::to_string() const {
-  if (!exact_) return fmt::format("{:.20e}", value_);  // more digits than an exact one may have
-  if (float_) {
+  const std::string marker = kind_ == Kind::kDouble ? "d" : "e";
+  const auto scientific = [&] {  // more digits than an exact one may have
+    auto text = fmt::format("{:.20e}", value_);
+    return text.replace(text.find('e'), 1, marker);
+  };
+  if (!exact_) return scientific();
+  if (is_float()) {
     std::int64_t digits = numerator_;
     for (int places = 0; places <= kMaxExponent; ++places) {
-      if (digits % denominator_ == 0) return decimal_text(digits / denominator_, places);
+      if (digits % denominator_ == 0) {
+        const std::string suffix = kind_ == Kind::kDouble ? "d0" : "";
+        return decimal_text(digits / denominator_, places) + suffix;
+      }
       if (__builtin_mul_overflow(digits, std::int64_t{10}, &digits)) break;
     }
-    return fmt::format("{:.20e}", value_);
+    return scientific();
   }
   if (denominator_ == 1) return fmt::format("{}", numerator_);
   return fmt::format("{}/{}", numerator_, denominator_);
@@ -201,9 +213,15 @@ std::string Number::to_string() const {
 
 namespace {
 
-/// With a float among the operands the result is one.
+/// With a float among the operands the result is one, with a double a double.
 Number of_kind(const Number& result, const Number& a, const Number& b) {
-  return a.is_float() || b.is_float() ? result.as_float() : result;
+  const auto kind = std::max(a.kind(), b.kind());
+  return kind == Number::Kind::kRational ? result : result.as_float(kind);
+}
+
+/// The same where the exact result does not fit.
+Number inexact_of_kind(double result, const Number& a, const Number& b) {
+  return Number::inexact(result, std::max({a.kind(), b.kind(), Number::Kind::kSingle}));
 }
 
 }  // namespace
@@ -219,7 +237,7 @@ Number operator+(const Number& a, const Number& b) {
       !__builtin_mul_overflow(a.denominator(), b.denominator(), &denominator)) {
     return of_kind(*Number::ratio(sum, denominator), a, b);
   }
-  return Number::inexact(a.value() + b.value());
+  return inexact_of_kind(a.value() + b.value(), a, b);
 }
 
 Number operator-(const Number& a, const Number& b) { return a + b * Number(-1); }
@@ -231,7 +249,7 @@ Number operator*(const Number& a, const Number& b) {
       !__builtin_mul_overflow(a.denominator(), b.denominator(), &denominator)) {
     return of_kind(*Number::ratio(numerator, denominator), a, b);
   }
-  return Number::inexact(a.value() * b.value());
+  return inexact_of_kind(a.value() * b.value(), a, b);
 }
 
 std::optional<Number> divide(const Number& a, const Number& b) {
@@ -239,7 +257,7 @@ std::optional<Number> divide(const Number& a, const Number& b) {
   if (b.exact() && b.numerator() != kMin) {
     return of_kind(a * *Number::ratio(b.denominator(), b.numerator()), a, b);
   }
-  return Number::inexact(a.value() / b.value());
+  return inexact_of_kind(a.value() / b.value(), a, b);
 }
 
 int compare(const Number& a, const Number& b) {

@@ -12,9 +12,13 @@ namespace parallax::compiler {
 /// 2^62 * 4 is 1.8446744073709552e19. Inexactness never goes away again.
 class Number {
  public:
+  /// What `eql` tells apart beside the value. A float was written with a point or an exponent, a
+  /// double with `d`, or computed from such a number.
+  enum class Kind : std::uint8_t { kRational, kSingle, kDouble };
+
   Number() = default;
   explicit Number(std::int64_t integer) : numerator_(integer), value_(as_double(integer)) {}
-  static Number inexact(double value);
+  static Number inexact(double value, Kind kind = Kind::kSingle);
   /// None for a zero denominator.
   static std::optional<Number> ratio(std::int64_t numerator, std::int64_t denominator);
   /// Reads `1`, `-0.2`, `1.`, `.5`, `0.75d0`, `1e-3`, `3/4`; exact if the digits and the power of
@@ -23,9 +27,9 @@ class Number {
   static Parse parse(std::string_view token, Number& out);
 
   bool exact() const { return exact_; }
-  /// Written with a point or an exponent, or computed from such a number: `eql` to no rational.
-  bool is_float() const { return float_; }
-  Number as_float() const;
+  Kind kind() const { return kind_; }
+  bool is_float() const { return kind_ != Kind::kRational; }
+  Number as_float(Kind kind = Kind::kSingle) const;
   bool is_integer() const { return exact_ && denominator_ == 1; }
   std::int64_t numerator() const { return numerator_; }      // exact numbers only
   std::int64_t denominator() const { return denominator_; }  // positive, coprime to the numerator
@@ -38,7 +42,7 @@ class Number {
  private:
   static double as_double(std::int64_t integer);
   bool exact_ = true;
-  bool float_ = false;
+  Kind kind_ = Kind::kRational;
   std::int64_t numerator_ = 0;
   std::int64_t denominator_ = 1;
   double value_ = 0.0;

@@ -40,7 +40,7 @@ std::string fingerprint(const Value& value) {
       break;
     case ValueKind::kNumber:
     case ValueKind::kCounter:
-      out += value.number.is_float() ? "f" : "";
+      out += fmt::format("{} ", static_cast<int>(value.number.kind()));
       out += value.number.exact() ? value.number.to_string()
                                   : fmt::format("{:a}", value.number.value());
       break;

@@ -150,9 +150,7 @@ bool show(const BuiltinCall& c, ValueId id, bool exact, std::string& out, int de
       out += exact ? fmt::format("\"{}\"", value.text) : value.text;
       return true;
     case ValueKind::kNumber: {
-      const bool whole = value.number.is_integer();
-      out += whole ? fmt::format("{}", value.number.numerator()) : value.number.to_string();
-      if (whole && value.number.is_float()) out += ".0";
+      out += value.number.to_string();
       return true;
     }
     case ValueKind::kFailure:

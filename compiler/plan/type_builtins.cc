@@ -18,6 +18,10 @@ bool is_symbol(const Value& v) { return is(v, ValueKind::kSymbol) || is(v, Value
 bool is_list(const Value& v) { return is(v, ValueKind::kCons) || is(v, ValueKind::kNil); }
 bool is_number(const Value& v) { return is(v, ValueKind::kNumber); }
 bool is_float(const Value& v) { return is_number(v) && (v.number.is_float() || !v.number.exact()); }
+template <Number::Kind kKind>
+bool is_kind(const Value& v) {
+  return is_number(v) && v.number.kind() == kKind;
+}
 bool is_rational(const Value& v) { return is_number(v) && !is_float(v); }
 bool is_integer(const Value& v) { return is_rational(v) && v.number.is_integer(); }
 bool is_keyword(const Value& v) { return is(v, ValueKind::kSymbol) && v.keyword; }
@@ -47,8 +51,8 @@ const std::map<std::string_view, Test>& types() {
       {"fixnum", is_integer},
       {"unsigned-byte", [](const Value& v) { return is_integer(v) && v.number.numerator() >= 0; }},
       {"float", is_float},
-      {"single-float", is_float},
-      {"double-float", is_float},
+      {"single-float", is_kind<Number::Kind::kSingle>},
+      {"double-float", is_kind<Number::Kind::kDouble>},
       {"function", [](const Value& v) { return is(v, ValueKind::kFunction); }},
   };
   return table;

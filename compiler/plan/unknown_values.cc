@@ -139,7 +139,7 @@ std::optional<BuiltinResult> with_unknown(std::string_view builtin,
 }
 
 std::optional<ValueId> robot_global(std::string_view name, ValueStore& values) {
-  if (name == "pi") return values.number(Number::inexact(std::numbers::pi));
+  if (name == "pi") return values.number(Number::inexact(std::numbers::pi, Number::Kind::kDouble));
   for (const auto& global : kGlobals) {
     if (global.name != name) continue;
     if (global.frame.empty()) return unknown_value(name, {}, values);

@@ -48,7 +48,7 @@ TEST_CASE("reader: every kind of token") {
       {"(Perform ?X :LEFT *Pose*)", "(perform ?x :left *pose*)"},
       {"|Mixed Case| a|B|c \\X", "|Mixed Case| |aBc| |X|"},
       {"exe:perform desig::an cl-tf:make-pose", "exe::perform desig::an cl-tf::make-pose"},
-      {"1 -0.2 1.5 0.75d0 1e-3 3/4 +7", "1 -0.2 1.5 0.75 0.001 3/4 7"},
+      {"1 -0.2 1.5 0.75d0 1e-3 3/4 +7", "1 -0.2 1.5 0.75d0 0.001 3/4 7"},
       {R"("a \"b\" \\ ~a")", R"("a \"b\" \\ ~a")"},
       {"'x `(a ,b ,@c) #'f",
        "(quote x) (quasiquote (a (unquote b) (unquote-splicing c))) "

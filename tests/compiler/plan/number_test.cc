@@ -34,7 +34,15 @@ TEST_CASE("number: a float is no rational, whatever its value") {
   CHECK((read("1/2") + read("1/2")) == Number(1));
   CHECK((read("0.5") + read("1/2")) == Number(1).as_float());
   CHECK(divide(read("1.0"), read("2"))->is_float());
-  for (const std::string token : {"1.0", "-0.2", "1e3", "0.75d0", "12.5", "1/3"}) {
+  CHECK_FALSE(read("1.0") == read("1.0d0"));
+  CHECK(read("1f0") == read("1.0"));
+  CHECK(read("1l0") == read("1.0D0"));
+  CHECK(compare(read("1.0"), read("1.0d0")) == 0);
+  CHECK((read("1") + read("2.5d0")) == read("3.5d0"));
+  CHECK((read("0.5") * read("2d0")) == read("1d0"));
+  CHECK(divide(read("1d0"), read("4.0")) == read("0.25d0"));
+  CHECK((read("1d300") * read("3")).kind() == Number::Kind::kDouble);
+  for (const std::string token : {"1.0", "-0.2", "1e3", "0.75d0", "1d30", "1e30", "12.5", "1/3"}) {
     CAPTURE(token);
     CHECK(read(read(token).to_string()) == read(token));
   }
