@@ -207,7 +207,7 @@ std::optional<ProofSearch::Query> ProofSearch::query(PrologTermId term, DatumId 
       wrong(at, name, "an argument is a value or a variable, not a list with variables");
       return std::nullopt;
     }
-    out.free.push_back(argument);
+    out.free.push_back(terms.walk(argument));
   }
   auto ways = world.ways(name, known, at);
   if (!ways) {
@@ -215,6 +215,15 @@ std::optional<ProofSearch::Query> ProofSearch::query(PrologTermId term, DatumId 
     return std::nullopt;
   }
   out.ways = *std::move(ways);
+  // A variable that stands twice has one value: what contradicts itself is not asked.
+  std::erase_if(out.ways, [&](const ModelWay& way) {
+    for (std::size_t i = 0; i < out.free.size(); ++i) {
+      for (std::size_t j = i + 1; j < out.free.size(); ++j) {
+        if (out.free[i] == out.free[j] && way.bound[i] != way.bound[j]) return true;
+      }
+    }
+    return false;
+  });
   return out;
 }
 

@@ -87,6 +87,7 @@ std::optional<std::vector<ModelWay>> RuleProofs::ways(
     out = std::move(longer);
   }
   for (auto& way : out) {
+    if (!spend(at, false)) return std::nullopt;
     std::vector<ValueId> all;
     std::size_t next = 0;
     for (const auto& argument : arguments) all.push_back(argument ? *argument : way.bound[next++]);

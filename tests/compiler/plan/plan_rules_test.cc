@@ -238,6 +238,11 @@ TEST_CASE("rules: free variables of prolog") {
   std::sort(events.begin(), events.end());
   CHECK(events == Strings{"Go(r1)", "PickUp(left,cup1)", "PickUp(left,spoon1)",
                           "PickUp(right,cup1)", "PickUp(right,spoon1)"});
+  // No object is a hand; a variable that stands twice has one value.
+  const auto twice = unroll_asking(prelude() + "(if (prolog '(object-in-hand ?x ?x)) (go1) (go2))");
+  REQUIRE(twice.graph.has_value());
+  REQUIRE(twice.graph->locations.size() == 1);
+  CHECK(twice.graph->locations.begin()->event.text == "Go(r2)");
   const auto length = unroll_asking(prelude() + "(length (prolog '(object-in-hand ?o :left)))");
   CHECK(length.codes() == Strings{"CPL008"});
   const auto all = unroll_asking(prelude() + R"(
