@@ -166,16 +166,24 @@ bool PlanMachine::run_definitions() {
   return std::holds_alternative<StopDone>(stop);
 }
 
+void PlanMachine::report_full(DatumId at) {
+  const auto code = blame_ ? DiagnosticCode::kMacroLimit : DiagnosticCode::kUnrollLimit;
+  if (values_.too_much_text()) {
+    report(code, at, static_cast<std::int64_t>(kMaxPlanText), "characters of text");
+  } else if (values_.full()) {
+    report(code, at, static_cast<std::int64_t>(kMaxPlanValues), "values");
+  } else {
+    report(code, at, limits_.max_steps, "steps");
+  }
+}
+
 PlanStop PlanMachine::run(PlanState& state) {
   running_ = &state;
   for (;;) {
     auto& frame = state.frames.back();
     const auto& instruction = code_.units[frame.unit].code[frame.pc];
     if (values_.full() || ++steps_ + values_.elements_read() > limits_.max_steps) {
-      const auto limit =
-          values_.full() ? static_cast<std::int64_t>(kMaxPlanValues) : limits_.max_steps;
-      report(blame_ ? DiagnosticCode::kMacroLimit : DiagnosticCode::kUnrollLimit,
-             instruction.source, limit, values_.full() ? "values" : "steps");
+      report_full(instruction.source);
       return StopError{};
     }
     ++frame.pc;

@@ -223,6 +223,8 @@ class PlanMachine {
   bool count_step() { return ++steps_ + values_.elements_read() <= limits_.max_steps; }
   /// Says why a built-in has no value.
   void report(const BuiltinFailure& failure, std::uint32_t builtin, DatumId form);
+  /// The bound of values, text or steps that was reached.
+  void report_full(DatumId at);
 
  private:
   using Step = std::optional<PlanStop>;  // empty: go on

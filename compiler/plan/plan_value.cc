@@ -118,6 +118,7 @@ ValueId ValueStore::intern(Value value) {
   const auto found = ids_.find(text);
   if (found != ids_.end()) return found->second;
   note_parts(value);
+  text_size_ += value.text.size();
   from_data_ = from_data_ || value.origin.list != 0 || !value.key.empty();
   const auto id = values_.add(std::move(value));
   ids_.emplace(std::move(text), id);

@@ -90,6 +90,8 @@ inline constexpr std::string_view kSolutionKey = "solution";
 
 /// More values than any plan needs; a loop that builds ever longer lists reaches it.
 inline constexpr std::size_t kMaxPlanValues = 250000;
+/// Characters in all of them together; a loop that doubles a string reaches it.
+inline constexpr std::size_t kMaxPlanText = 16'000'000;
 
 /// Hash-conses values: structurally equal values get the same id, so that two states of a plan are
 /// equal exactly if their ids are.
@@ -128,9 +130,10 @@ class ValueStore {
   std::optional<std::vector<ValueId>> elements(ValueId id) const;
   /// The value of one key of a designator.
   std::optional<ValueId> key(ValueId designator, std::string_view name) const;
-  /// More than kMaxPlanValues were made; lists are not built any more and whoever runs the plan
-  /// must stop.
-  bool full() const { return values_.size() > kMaxPlanValues; }
+  /// More than kMaxPlanValues were made, or more than kMaxPlanText in them; lists are not built any
+  /// more and whoever runs the plan must stop.
+  bool full() const { return values_.size() > kMaxPlanValues || too_much_text(); }
+  bool too_much_text() const { return text_size_ > kMaxPlanText; }
   /// The number of list elements that `elements` has walked over: work that steps do not show.
   std::int64_t elements_read() const { return elements_read_; }
   /// For messages.
@@ -145,6 +148,7 @@ class ValueStore {
   std::int64_t gensyms_ = 0;
   bool from_data_ = false;                  // values exist that know where they came from
   mutable std::int64_t elements_read_ = 0;  // a statistic, no part of the value
+  std::size_t text_size_ = 0;
 };
 
 }  // namespace parallax::compiler

@@ -128,6 +128,7 @@ BuiltinResult concatenate(const BuiltinCall& c) {
     const auto& part = c.values[c.args[i]];
     if (part.kind != ValueKind::kString) return c.wrong(i, "a string");
     out += part.text;
+    if (out.size() > kMaxPlanText) break;  // the store is full with this one, and the plan ends
   }
   return c.values.string(out);
 }

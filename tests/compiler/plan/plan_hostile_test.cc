@@ -75,9 +75,11 @@ TEST_CASE("hostile: a plan with too many states stops at the limit") {
 }
 
 TEST_CASE("hostile: loops that build or read ever longer lists stop at a limit") {
-  for (const auto* text : {"(dotimes (i 100000000) (list i i i))",
-                           "(let ((l '(1))) (dotimes (i 60) (setf l (append l l))))",
-                           "(let ((l nil)) (dotimes (i 1000000) (push i l) (length l)))"}) {
+  for (const auto* text :
+       {"(dotimes (i 100000000) (list i i i))",
+        "(let ((l '(1))) (dotimes (i 60) (setf l (append l l))))",
+        "(let ((l nil)) (dotimes (i 1000000) (push i l) (length l)))",
+        "(let ((s \"ab\")) (dotimes (i 60) (setf s (concatenate 'string s s s))))"}) {
     CHECK(unroll(text).codes() == Strings{"CPL051"});
   }
 }
