@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "compiler/base/contract.h"
 
@@ -38,6 +39,7 @@ Judgement judge(const StateMapping& mapping, const ModelFluents& fluents,
                 const CampaignTrace& trace, const std::vector<State>& observations) {
   PARALLAX_REQUIRE(observations.size() == trace.points.size(), "one observation per timepoint");
   Judgement out;
+  std::vector<DivergingFluent> lasting;
   for (std::size_t t = 0; t < observations.size(); ++t) {
     const bool at_rest = t == 0 || t + 1 == observations.size();
     std::vector<DivergingFluent> differing;
@@ -67,14 +69,22 @@ Judgement judge(const StateMapping& mapping, const ModelFluents& fluents,
       out.first_divergence = static_cast<std::int64_t>(t);
       out.first = differing;
     }
-    if (differing.empty()) {
-      out.parted.reset();
-    } else if (!out.parted) {
-      out.parted = static_cast<std::int64_t>(t);
-      out.at_parting = differing;
+    // Since when each of them does, without a break.
+    std::vector<DivergingFluent> since;
+    for (const auto& fluent : differing) {
+      const auto before = std::find_if(lasting.begin(), lasting.end(), [&](const auto& known) {
+        return known.fluent == fluent.fluent;
+      });
+      since.push_back(before == lasting.end() ? fluent : *before);
     }
+    lasting = std::move(since);
     if (t + 1 == observations.size()) out.last = std::move(differing);
   }
+  for (const auto& fluent : lasting) {
+    if (!out.parted || fluent.timepoint < *out.parted) out.parted = fluent.timepoint;
+  }
+  std::copy_if(lasting.begin(), lasting.end(), std::back_inserter(out.at_parting),
+               [&](const auto& fluent) { return fluent.timepoint == *out.parted; });
   return out;
 }
 

@@ -25,9 +25,10 @@ struct ObservedState {
 struct Judgement {
   std::optional<std::int64_t> first_divergence;  // timepoint
   std::vector<DivergingFluent> first;            // what differs there
-  /// Where the simulation left the trace and did not come back; none if the last state agrees.
+  /// Where the first of the fluents that differ at the end began to, and did not come back; none if
+  /// the last state agrees.
   std::optional<std::int64_t> parted;
-  std::vector<DivergingFluent> at_parting;  // what differs there
+  std::vector<DivergingFluent> at_parting;  // those that began to there
   std::vector<DivergingFluent> last;        // what differs at the last timepoint
   std::vector<ObservedState> states;        // by timepoint
   std::set<std::string> missing;            // variables that the mapping asks for in vain

@@ -37,7 +37,8 @@ class Estimator {
             [](const SampleRecord&) {}, sink) {}
 
   base::Result<RatesResult> run() {
-    RatesResult result{scenario_.name, options_.seed, options_.confidence, true, {}};
+    RatesResult result{scenario_.name,         options_.seed, options_.confidence,
+                       scenario_.comparison(), true,          {}};
     const auto started = bench_.start();
     if (!started) return sink_.already_reported();
     result.complete = *started;

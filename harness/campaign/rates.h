@@ -42,6 +42,7 @@ struct RatesResult {
   std::string scenario;
   std::uint64_t seed = 0;
   double confidence = 0.0;
+  Comparison comparison = Comparison::kEveryStep;
   bool complete = true;  // false: stopped, or the simulator was lost too often
   std::vector<TraceRates> traces;
 };

@@ -372,8 +372,11 @@ std::string replay_text(const ReplayResult& result, const ReportStyle& style) {
 }
 
 std::string rates_text(const RatesResult& result) {
-  std::string out = fmt::format("{}, seed {}; intervals with {:g} % confidence (Clopper-Pearson)\n",
-                                result.scenario, result.seed, 100.0 * result.confidence);
+  std::string out =
+      fmt::format("{}, seed {}; {} compared; intervals with {:g} % confidence (Clopper-Pearson)\n",
+                  result.scenario, result.seed,
+                  result.comparison == Comparison::kFinal ? "last states" : "every step",
+                  100.0 * result.confidence);
   for (const TraceRates& trace : result.traces) {
     out += fmt::format("\ntrace {}: {} runs, {} starts rejected, {} lost\n  {}\n", trace.number,
                        trace.runs, trace.rejected, trace.lost, trace.trace);
@@ -396,6 +399,7 @@ std::string rates_json(const RatesResult& result) {
                    {"scenario", result.scenario},
                    {"seed", result.seed},
                    {"confidence", result.confidence},
+                   {"compare", to_string(result.comparison)},
                    {"complete", result.complete},
                    {"traces", Json::array()}};
   for (const TraceRates& trace : result.traces) {

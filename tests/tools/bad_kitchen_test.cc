@@ -113,7 +113,8 @@ TEST_CASE("numbers of the plan beyond their bounds are known before the first si
   const auto result = cli.parallax({"run", "kitchen/plan2.yaml"});
   CAPTURE(result.err);
   CHECK(result.code == 3);
-  CHECK(result.err.find("error[E5126]: actions/Go/max_speed_m_s: is -0.1") != std::string::npos);
+  CHECK(result.err.find("error[E5126]: `max_speed_m_s` of `Go(bTable)`: is -0.1") !=
+        std::string::npos);
   CHECK(result.err.find("plan2.lisp") != std::string::npos);
 }
 

@@ -48,6 +48,7 @@ Json transient(const CliFixture& cli) {
   CHECK(found.at("fluents").empty());
 
   const auto rates = json_of(cli, {"rates", "own.yaml", "--runs", "5"});
+  CHECK(rates.at("compare") == "every-step");
   CHECK(rates.at("traces").at(0).at("any").at("count") == 5);
   // Who looks at the last state only sees nothing, and is told so.
   const auto last =
@@ -125,6 +126,25 @@ TEST_CASE("the kitchen's model without what opening a drawer does to the arm") {
   const auto& found = report.at("discrepancies").at(0);
   CHECK(found.at("sample") == 1);
   CHECK(found.at("cause").at("text") == "OpenDrawer(left,dTop): not Parked(left)");
+}
+
+TEST_CASE("where last states are compared the cause is one that the last state shows") {
+  const CliFixture cli;
+  // Odd() differs from picking up to placing in every run, and never in the end.
+  cli.write("odd.e", cli.read("domain.e") +
+                         "fluent Odd()\n[time] Initiates(PickUp(),Odd(),time).\n"
+                         "[region,time] Terminates(Place(region),Odd(),time).\n"
+                         "!HoldsAt(Odd(),0).\n");
+  cli.write("odd.yaml",
+            "include: edge.yaml\nmodel: [odd.e, start.e]\n"
+            "mapping: {Odd(): {range: robot.x, holds: [5, 6], fails: [-5, 4.9]}}\n");
+  const auto causes = [&](const std::string& comparison) {
+    const auto rates = json_of(cli, {"rates", "odd.yaml", "--runs", "6", "--compare", comparison});
+    return rates.at("traces").at(0).at("causes");
+  };
+  for (const auto& cause : causes("final")) CHECK(cause.at("cause") == "Place(r1): not BoxIn(r1)");
+  REQUIRE(causes("every-step").size() == 1);
+  CHECK(causes("every-step").at(0).at("cause") == "PickUp(): not Odd()");
 }
 
 TEST_CASE("what is no comparison is refused at its place") {

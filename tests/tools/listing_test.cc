@@ -248,8 +248,7 @@ TEST_CASE("a folder of ITF files says that it was stopped until its list has end
     again->begin();
     CHECK(list.context.stopped());
     again->trace(lamp(1, true));
-    CHECK(again->end({1, true, "complete", {}, {}}) ==
-          "0 traces, stopped, in " + folder.string() + "\n");
+    CHECK(again->end({1, true, "complete", {}, {}}).empty());  // it is not its folder
     CHECK(list.context.sink().error_count() == 1);
     CHECK(slurp(folder / "index.json") == before);
     CHECK(slurp(folder / "trace_000001.itf.json").find("Press()\"") == std::string::npos);

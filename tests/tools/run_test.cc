@@ -204,7 +204,18 @@ TEST_CASE("replay repeats a recorded simulation bit for bit") {
     const auto at = journal.find("\"tool.x\":", journal.find("\"observations\""));
     REQUIRE(at != std::string::npos);
     const auto end = journal.find(',', at);
-    journal[end - 1] = journal[end - 1] == '1' ? '2' : '1';
+    const auto seen = journal.substr(at, end - at);
+    auto told = seen;
+    told.back() = told.back() == '1' ? '2' : '1';
+    auto once = journal;
+    cli.write("run/journal.ndjson", once.replace(at, seen.size(), told));
+    // The discrepancy was repeated: its record contradicts the repetition.
+    const auto odd = cli.parallax({"replay", "run", "--sample", "1.1"});
+    CHECK(odd.code == 3);
+    CHECK(odd.err.find("differs from the simulation that it repeats") != std::string::npos);
+    for (auto next = at; next != std::string::npos; next = journal.find(seen, next)) {
+      journal.replace(next, seen.size(), told);
+    }
     cli.write("run/journal.ndjson", journal);
     const auto result = cli.parallax({"replay", "run", "--sample", "1.1"});
     CHECK(result.code == 1);
