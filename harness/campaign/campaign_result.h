@@ -65,8 +65,8 @@ struct TraceResult {
   std::int64_t lost = 0;
   std::int64_t retried = 0;   // lost at first and observed at the second attempt
   std::int64_t rejected = 0;  // invalid starts that were drawn again
-  std::int64_t strayed =
-      0;  // of the clean ones: differed on the way, where only the end is compared
+  /// Of the clean ones: differed on the way, where only the end is compared.
+  std::int64_t strayed = 0;
   double certified_level = 0.0;    // C
   double certified_epsilon = 1.0;  // with confidence C, p is below this
   std::optional<std::int64_t> paper_stopped_at;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -11,9 +13,10 @@ enum class Comparison : std::uint8_t {
   kEveryStep,  // at the first difference prediction and physics part, wherever the run ends
   kFinal,      // at the last timepoint only, as in the paper of Meywerk et al.
 };
-/// "every-step", "final"
+/// The words for it, in the order of the enumerators.
+inline constexpr std::array<std::string_view, 2> kComparisons = {"every-step", "final"};
 constexpr std::string_view to_string(Comparison comparison) {
-  return comparison == Comparison::kFinal ? "final" : "every-step";
+  return kComparisons[static_cast<std::size_t>(comparison)];
 }
 
 /// How the fluents of one symbol are compared.

@@ -6,7 +6,6 @@
 
 #include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
-#include "harness/confidence/comparison.h"
 #include "harness/config/sections.h"
 #include "harness/world/structure_check.h"
 
@@ -229,10 +228,7 @@ std::optional<FluentBinding> read_binding(const YamlEntry& entry, base::Diagnost
     return binding;
   }
   // Where an observation makes sense at rest only.
-  static constexpr std::array<std::string_view, 2> kComparisons = {
-      to_string(Comparison::kEveryStep), to_string(Comparison::kFinal)};
-  binding.at_rest_only = fields.choice(Key::kCompare, "value of " + key_text(Key::kCompare),
-                                       kComparisons) == std::size_t{1};
+  binding.at_rest_only = read_comparison(fields) == Comparison::kFinal;
   if (fields.find(Key::kFlag) != nullptr) {
     binding.condition = read_flag(fields, *pattern);
     return binding;

@@ -51,6 +51,12 @@ void read_paper_rule(const YamlFields& fields, PaperRuleSpec& rule) {
 
 }  // namespace
 
+std::optional<Comparison> read_comparison(const YamlFields& fields) {
+  auto comparison = Comparison::kEveryStep;
+  if (!read_enum(fields, Key::kCompare, kComparisons, comparison)) return std::nullopt;
+  return comparison;
+}
+
 CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink) {
   CriterionSpec criterion;
   criterion.paper = paper_literal();

@@ -123,12 +123,7 @@ class ScenarioReader {
         std::size_t{1}) {
       scenario.match_model = false;
     }
-    static constexpr std::array<std::string_view, 2> kComparisons = {
-        to_string(Comparison::kEveryStep), to_string(Comparison::kFinal)};
-    if (const auto which =
-            fields_.choice(Key::kCompare, "value of " + key_text(Key::kCompare), kComparisons)) {
-      scenario.compare = *which == 1 ? Comparison::kFinal : Comparison::kEveryStep;
-    }
+    scenario.compare = read_comparison(fields_);
     fields_.text(Key::kName, scenario.title);
     read_problem(scenario);
     read_simulation(scenario);

@@ -47,6 +47,9 @@ std::vector<ActionBinding> read_actions(const YamlNode& node, bool built_in,
 /// `sampling`: inset and the dimensions that no fluent bounds, sorted by variable.
 void read_sampling(const YamlNode& node, Scenario& scenario, base::DiagnosticSink& sink);
 
+/// `compare`, of a scenario or of one fluent; none: it is not said.
+std::optional<Comparison> read_comparison(const YamlFields& fields);
+
 CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink);
 SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink);
 Limits read_limits(const YamlNode& node, base::DiagnosticSink& sink);

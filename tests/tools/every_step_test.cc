@@ -62,7 +62,8 @@ Json transient(const CliFixture& cli) {
   // A run is continued with the comparison that it began with.
   const auto other =
       cli.parallax({"run", "own.yaml", "--epsilon", "0.4", "--out", "last", "--resume", "--json"});
-  CHECK(other.code != 0);
+  CHECK(other.code == 3);
+  CHECK(other.out.find("E7102") != std::string::npos);
   return found;
 }
 
@@ -142,6 +143,7 @@ TEST_CASE("where last states are compared the cause is one that the last state s
     const auto rates = json_of(cli, {"rates", "odd.yaml", "--runs", "6", "--compare", comparison});
     return rates.at("traces").at(0).at("causes");
   };
+  REQUIRE_FALSE(causes("final").empty());
   for (const auto& cause : causes("final")) CHECK(cause.at("cause") == "Place(r1): not BoxIn(r1)");
   REQUIRE(causes("every-step").size() == 1);
   CHECK(causes("every-step").at(0).at("cause") == "PickUp(): not Odd()");

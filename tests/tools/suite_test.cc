@@ -35,8 +35,7 @@ class SuiteFixture : public CliFixture {
           "    expect: {traces: 1}\n");
   }
   ProcessResult suite(const std::vector<std::string>& arguments) const {
-    // The tests may themselves run under CI.
-    return suite_with({"-u", "CI"}, arguments);
+    return suite_with({}, arguments);
   }
   ProcessResult suite_under_ci(const std::vector<std::string>& arguments) const {
     return suite_with({"CI=true"}, arguments);

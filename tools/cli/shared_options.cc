@@ -101,9 +101,8 @@ void add_judging_options(OptionTable& command, JudgingOptions& options) {
 void apply(const JudgingOptions& options, harness::Scenario& scenario) {
   using harness::Comparison;
   if (!options.match.empty()) scenario.match_model = options.match == "model";
-  if (options.compare == to_string(Comparison::kFinal)) scenario.compare = Comparison::kFinal;
-  if (options.compare == to_string(Comparison::kEveryStep)) {
-    scenario.compare = Comparison::kEveryStep;
+  for (const auto comparison : {Comparison::kEveryStep, Comparison::kFinal}) {
+    if (options.compare == to_string(comparison)) scenario.compare = comparison;
   }
 }
 

@@ -20,16 +20,18 @@ std::string joined(const Strings& keys) {
   return out;
 }
 
+Executions executed_by_interpreter(const PlanCase& plan_case) {
+  RuleWorld world(plan_case.model);
+  return execute_all(plan_case.plan_text(), world, plan_case.horizon, plan_case.by_turns);
+}
+
 /// What the executions of the interpreter and the traces of the solver disagree on; empty if they
 /// agree.
-std::string disagreement(const PlanCase& plan_case) {
+std::string disagreement(const PlanCase& plan_case, const Executions& executed) {
   const PlannedModel planned(plan_case.model.model_text(), plan_case.plan_text(),
                              plan_case.model.binding_text(), plan_case.model.constraint_text(),
                              plan_case.horizon, plan_case.by_turns);
   if (!planned.compiles()) return "not compiled: " + planned.codes();
-  RuleWorld world(plan_case.model);
-  const auto executed =
-      execute_all(plan_case.plan_text(), world, plan_case.horizon, plan_case.by_turns);
   auto traces = planned.keys();
   const bool complete = traces.exploration == Exploration::kAllTracesExplored;
   std::sort(traces.keys.begin(), traces.keys.end());
@@ -47,7 +49,7 @@ std::string disagreement(const PlanCase& plan_case) {
 std::string report(const PlanCase& found) {
   const auto small = shrunk(found, [](const PlanCase& candidate) {
     try {
-      const auto text = disagreement(candidate);
+      const auto text = disagreement(candidate, executed_by_interpreter(candidate));
       return !text.empty() && !text.starts_with("not compiled");
     } catch (const std::exception&) {
       return false;
@@ -55,7 +57,7 @@ std::string report(const PlanCase& found) {
   });
   return small.model.model_text() + "\n" + small.model.binding_text() + "\n" + small.plan_text() +
          "\n" + small.model.constraint_text() + " within " + std::to_string(small.horizon) + "\n" +
-         disagreement(small);
+         disagreement(small, executed_by_interpreter(small));
 }
 
 TEST_CASE("5,000 random plans in random models: what is executed is what is enumerated") {
@@ -66,8 +68,10 @@ TEST_CASE("5,000 random plans in random models: what is executed is what is enum
   for (std::uint64_t seed = 1; seed <= 5000 + static_cast<std::uint64_t>(too_large); ++seed) {
     const auto plan_case = random_plan_case(seed);
     std::string text;
+    Executions executed;
     try {
-      text = disagreement(plan_case);
+      executed = executed_by_interpreter(plan_case);
+      text = disagreement(plan_case, executed);
     } catch (const std::exception& error) {
       text = std::string("thrown: ") + error.what();
     }
@@ -83,11 +87,8 @@ TEST_CASE("5,000 random plans in random models: what is executed is what is enum
                         ? report(plan_case)
                         : plan_case.plan_text()));
     }
-    RuleWorld world(plan_case.model);
-    const auto executed =
-        execute_all(plan_case.plan_text(), world, plan_case.horizon, plan_case.by_turns);
     traces += executed.keys.size();
-    picks += executed.runs - world.initial_states();
+    picks += executed.runs - RuleWorld(plan_case.model).initial_states();
     if (executed.beyond_horizon) ++bounded;
   }
   // The generator is of use only if much happens.

@@ -1,6 +1,8 @@
 // `par` and `pursue` whose branches take turns. A branch is a thread of its own; only one thread
 // runs at a time, and control is handed over where a branch waits at a perform. Who goes on is a
 // pick, so that all orders are executed.
+#include <sched.h>
+
 #include <algorithm>
 #include <exception>
 #include <memory>
@@ -46,6 +48,30 @@ struct Evaluator::Branch {
   Place place;
   std::binary_semaphore go{0}, back{0};
   std::thread thread;
+};
+
+/// Branches hand control to each other, so they are on one core: waking a thread on another one
+/// takes many times longer. Ends with its scope.
+class OneCore {
+ public:
+  OneCore() {
+    const int here = ::sched_getcpu();
+    if (here < 0 || here >= CPU_SETSIZE) return;
+    if (::sched_getaffinity(0, sizeof before_, &before_) != 0) return;
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(here, &one);
+    narrowed_ = ::sched_setaffinity(0, sizeof one, &one) == 0;
+  }
+  ~OneCore() {
+    if (narrowed_) ::sched_setaffinity(0, sizeof before_, &before_);
+  }
+  OneCore(const OneCore&) = delete;
+  OneCore& operator=(const OneCore&) = delete;
+
+ private:
+  cpu_set_t before_{};
+  bool narrowed_ = false;
 };
 
 struct Evaluator::Branches {
@@ -266,6 +292,8 @@ PlanItem Evaluator::turns_of(Branches& all) {
 }
 
 PlanItem Evaluator::taking_turns(const Datum& form, const ScopePtr& scope, bool pursue) {
+  std::optional<OneCore> one_core;
+  if (running_ == nullptr) one_core.emplace();  // inner branches are there already
   Branches all;
   all.pursue = pursue;
   all.owner = running_;
