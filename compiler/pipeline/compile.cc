@@ -124,8 +124,9 @@ base::Status check_regions(const PlanGraph& graph, const PoseLocator& locator,
   return base::Unit{};
 }
 
-base::Result<CheckedPlan> check_plan(const PlanInput& input, TypedModel& model,
-                                     base::SourceFiles& files, base::DiagnosticSink& sink) {
+base::Result<CheckedPlan> check_plan(const PlanInput& input, const std::atomic<bool>* stop,
+                                     TypedModel& model, base::SourceFiles& files,
+                                     base::DiagnosticSink& sink) {
   auto binding = parse_plan_binding(files, input.binding, sink);
   if (!binding) return sink.already_reported();
   UnrollOptions options;
@@ -134,6 +135,7 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, TypedModel& model,
   options.max_loop = input.max_loop;
   options.location_samples = input.location_samples;
   options.interleave = input.interleave;
+  options.stop = stop;
   for (const auto& object : model.objects) options.constants.push_back(object.name);
   for (const auto& symbol : model.symbols) {
     if (symbol.kind == SymbolKind::kFluent) options.fluents.push_back(symbol.name);
@@ -281,7 +283,7 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
   auto constraints = check_constraints(input.constraints, *typed, files, sink);
   std::optional<CheckedPlan> plan;
   if (input.plan) {
-    auto checked = check_plan(*input.plan, *typed, files, sink);
+    auto checked = check_plan(*input.plan, input.ground.stop, *typed, files, sink);
     if (checked) plan = *std::move(checked);
     if (plan && !input.horizon) set_horizon(plan->graph, input.plan->max_horizon, *typed);
   }

@@ -35,7 +35,7 @@ BranchId Explorer::one_of(const std::vector<ModelWay>& ways, DatumId form,
     next.owner = owner.index();
     jobs_.push_back(std::move(next));
   };
-  if (ways.size() == 1) {
+  if (ways.size() == 1 && !ways.front().elsewhere) {
     const auto only = branch(ways.front().guard, form);
     add(0, Job::Edge::kFalse, only);
     add(1, Job::Edge::kTrue, only);
@@ -45,15 +45,20 @@ BranchId Explorer::one_of(const std::vector<ModelWay>& ways, DatumId form,
   add(0, Job::Edge::kFalse, some);
   const auto never = terminal(TerminalKind::kNever, {}, std::nullopt);
   std::vector<FormulaTree> guards;
-  std::optional<BranchId> before;
+  std::vector<std::size_t> open;
   for (std::size_t i = 0; i < ways.size(); ++i) {
     guards.push_back(ways[i].guard);
+    if (!ways[i].elsewhere) open.push_back(i);
+  }
+  std::optional<BranchId> before;
+  if (open.empty()) graph_.branches[some].if_true = never;
+  for (const auto i : open) {
     const auto test = branch(ways[i].guard, form);
     graph_.branches[test].if_false = never;
     add(static_cast<std::uint32_t>(i + 1), Job::Edge::kTrue, test);
     PlanTarget here = test;
     std::optional<BranchId> choice;
-    if (i + 1 < ways.size()) {
+    if (i != open.back()) {
       choice = free_branch(fmt::format("{} is meant", ways[i].name), form);
       graph_.branches[*choice].if_true = test;
       here = *choice;

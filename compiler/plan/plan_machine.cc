@@ -168,7 +168,9 @@ bool PlanMachine::run_definitions() {
 
 void PlanMachine::report_full(DatumId at) {
   const auto code = blame_ ? DiagnosticCode::kMacroLimit : DiagnosticCode::kUnrollLimit;
-  if (values_.too_much_text()) {
+  if (stopped()) {
+    sink_.error(DiagnosticCode::kUnrollStopped, data_.source(at));
+  } else if (values_.too_much_text()) {
     report(code, at, static_cast<std::int64_t>(kMaxPlanText), "characters of text");
   } else if (values_.full()) {
     report(code, at, static_cast<std::int64_t>(kMaxPlanValues), "values");
@@ -182,7 +184,7 @@ PlanStop PlanMachine::run(PlanState& state) {
   for (;;) {
     auto& frame = state.frames.back();
     const auto& instruction = code_.units[frame.unit].code[frame.pc];
-    if (values_.full() || ++steps_ + values_.elements_read() > limits_.max_steps) {
+    if (!count_step()) {
       report_full(instruction.source);
       return StopError{};
     }

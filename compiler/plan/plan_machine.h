@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -160,6 +161,7 @@ struct MachineLimits {
   std::int64_t max_loop = 16;
   std::int64_t max_steps = 5000000;
   std::int64_t location_samples = 0;
+  const std::atomic<bool>* stop = nullptr;  // raised to end the unrolling early
 };
 
 /// Executes plan code on one state at a time, silently, up to the next thing that is not silent.
@@ -219,11 +221,21 @@ class PlanMachine {
                         DesignatorLinks links) const;
   /// Prepares the making of designators: an identity that neither the state nor `more` has.
   void refresh_links(PlanState& state, std::span<const ValueId> more) const;
-  /// Counts a step that is made elsewhere; false beyond the limit.
-  bool count_step() { return ++steps_ + values_.elements_read() <= limits_.max_steps; }
+  /// Neither a bound was reached nor was it stopped.
+  bool has_room() const {
+    return !values_.full() && steps_ + values_.elements_read() <= limits_.max_steps && !stopped();
+  }
+  /// Counts a step, also of work that is done elsewhere; false if there is no room for more.
+  bool count_step() {
+    ++steps_;
+    return has_room();
+  }
   /// Says why a built-in has no value.
   void report(const BuiltinFailure& failure, std::uint32_t builtin, DatumId form);
-  /// The bound of values, text or steps that was reached.
+  bool stopped() const {
+    return limits_.stop != nullptr && limits_.stop->load(std::memory_order_relaxed);
+  }
+  /// The bound of values, text or steps that was reached, or that somebody ended it.
   void report_full(DatumId at);
 
  private:

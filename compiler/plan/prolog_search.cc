@@ -23,16 +23,19 @@ std::uint32_t ProofSearch::sequence(const Arguments& goals, std::uint32_t next,
 
 ProofSearch::Choice& ProofSearch::choose(Choice::Kind kind, PrologTermId term, std::uint32_t next,
                                          std::uint32_t number, DatumId at) {
-  choices_.push_back({kind, false, terms.mark(), term, {}, next, number, at, {}});
+  choices_.push_back({kind, false, terms.mark(), term, {}, next, number, at, {}, {}});
   return choices_.back();
 }
 
+std::optional<bool> ProofAnswers::said(const FormulaTree& guard) const {
+  const auto found = known.find(guard.text);
+  return found == known.end() ? std::optional<bool>() : found->second;
+}
+
 std::optional<std::uint32_t> ProofAnswers::take(std::span<const ModelWay> ways) {
-  const auto said = [&](const ModelWay& way) {
-    const auto found = known.find(way.guard.text);
-    return found == known.end() ? std::optional<bool>() : found->second;
-  };
-  if (ways.size() == 1 && said(ways[0])) return *said(ways[0]) ? 1 : 0;
+  if (ways.size() == 1) {
+    if (const auto holds = said(ways[0].guard)) return *holds ? 1 : 0;
+  }
   if (next == given.size()) return std::nullopt;
   const auto answer = given[next++];
   for (std::size_t i = 0; i < ways.size(); ++i) {
@@ -84,7 +87,7 @@ Step ProofSearch::resume(const Choice& choice) {
     case Choice::Kind::kCollected:
       return collected(choice.number, choice.next);
     case Choice::Kind::kModel:
-      return ask(choice.term, choice.used, choice.next, choice.at);
+      return ask(choice.term, &choice, choice.next, choice.at);
     case Choice::Kind::kModelInOrder:
       return ask_in_order(choice.term, choice.number, choice.next, choice.at);
   }
@@ -121,7 +124,7 @@ Step ProofSearch::prove(const Goal& here) {
   if (control != controls().end()) return (this->*control->second)(here, *args);
   if (world.is_query(*name, args->size())) {
     return collects() ? ask_in_order(here.term, 0, here.next, here.at)
-                      : ask(here.term, {}, here.next, here.at);
+                      : ask(here.term, nullptr, here.next, here.at);
   }
   if (const auto* entry = find_goal(*name)) {
     if (args->size() >= entry->min_arguments && args->size() <= entry->max_arguments) {
@@ -244,25 +247,41 @@ bool ProofSearch::collects() const {
 
 /// A query of the binding table: the model answers, and a free variable is any constant for which
 /// it holds. What failed later is tried again with those that are left.
-Step ProofSearch::ask(PrologTermId term, const std::vector<std::string>& used, std::uint32_t next,
-                      DatumId at) {
+///
+/// The model answers in any order, but not every order has to be looked at: what comes of a way
+/// does not depend on those that failed before it, so it is enough to take it first. Only the end
+/// at which all have failed is left, and one order leads there, the ascending one. A designator
+/// that was equated on the way stays so; then what failed does matter.
+Step ProofSearch::ask(PrologTermId term, const Choice* before, std::uint32_t next, DatumId at) {
   auto asked = query(term, at);
   if (!asked) return Step::kStop;
-  std::erase_if(asked->ways, [&](const ModelWay& way) {
-    return std::find(used.begin(), used.end(), way.name) != used.end();
-  });
-  std::erase_if(asked->ways, [&](const ModelWay& way) {
-    const auto known = answers_.known.find(way.guard.text);
-    return known != answers_.known.end() && !known->second;
-  });
-  if (asked->ways.empty()) return Step::kFalse;
-  const auto answer = answers_.take(asked->ways);
-  if (!answer) return stop(ProofQuestion{std::move(asked->ways)});
+  auto& ways = asked->ways;
+  if (before != nullptr) {
+    const auto& used = before->used;
+    const auto is_used = [&](const ModelWay& way) {
+      return std::find(used.begin(), used.end(), way.name) != used.end();
+    };
+    if (before->chains == world.links().chains) {
+      const auto last = std::find_if(ways.rbegin(), ways.rend(), is_used);
+      std::for_each(last, ways.rend(), [](ModelWay& way) { way.elsewhere = true; });
+    }
+    std::erase_if(ways, is_used);
+  }
+  const auto known = [&](const ModelWay& way) { return answers_.said(way.guard); };
+  std::erase_if(ways, [&](const ModelWay& way) { return known(way) == false; });
+  if (ways.empty()) return Step::kFalse;
+  if (std::any_of(ways.begin(), ways.end(),
+                  [&](const ModelWay& way) { return way.elsewhere && known(way) == true; })) {
+    return stop(ProofQuestion{});
+  }
+  const auto answer = answers_.take(ways);
+  if (!answer) return stop(ProofQuestion{std::move(ways)});
   if (*answer == 0) return Step::kFalse;
-  if (asked->ways.size() > 1) {
+  if (ways.size() > 1) {
     auto& choice = choose(Choice::Kind::kModel, term, next, 0, at);
-    choice.used = used;
-    choice.used.push_back(asked->ways[*answer - 1].name);
+    if (before != nullptr) choice.used = before->used;
+    choice.used.push_back(ways[*answer - 1].name);
+    choice.chains = before != nullptr ? before->chains : world.links().chains;
   }
   return hold(*asked, *answer - 1, next);
 }

@@ -24,10 +24,11 @@ struct ModelWay {
   FormulaTree guard;
   std::string name;
   std::vector<ValueId> bound;
+  bool elsewhere = false;  // another order of the answers takes it: here it can only not hold
 };
 
 /// What only the model knows. The answer is 0 if none of the ways holds, else the number of one
-/// that does, counted from 1.
+/// that does, counted from 1. Without ways: other answers cover all that could come of these.
 struct ProofQuestion {
   std::vector<ModelWay> ways;
 };
@@ -48,6 +49,8 @@ struct ProofAnswers {
   std::size_t next = 0;
   std::map<std::string, bool, std::less<>> known;  // by formula: what the answers said of it
 
+  /// What the answers said of a formula.
+  std::optional<bool> said(const FormulaTree& guard) const;
   /// The answer to the question; none: it was not given yet. What is known is not asked again.
   std::optional<std::uint32_t> take(std::span<const ModelWay> ways);
 };
@@ -146,7 +149,8 @@ class ProofSearch {
     // kOr: where `cut` cuts to; kClauses, kModelInOrder: the next one; kCollected: which
     std::uint32_t number = 0;
     DatumId at;
-    std::vector<std::string> used;  // kModel: the ways taken before
+    std::vector<std::string> used;             // kModel: the ways taken before
+    std::vector<std::vector<ValueId>> chains;  // kModel: the links when the first was taken
   };
   struct Collector {
     std::string kind;  // findall, bagof, setof
@@ -178,7 +182,7 @@ class ProofSearch {
   };
   std::optional<Query> query(PrologTermId term, DatumId at);
   Step hold(const Query& query, std::size_t way, std::uint32_t next);
-  Step ask(PrologTermId term, const std::vector<std::string>& used, std::uint32_t next, DatumId at);
+  Step ask(PrologTermId term, const Choice* before, std::uint32_t next, DatumId at);
   Step ask_in_order(PrologTermId term, std::uint32_t from, std::uint32_t next, DatumId at);
   bool collects() const;
   Step collected(std::uint32_t which, std::uint32_t next);

@@ -25,8 +25,11 @@ void RuleProofs::report(DatumId at, std::string_view what, std::string_view text
 }
 
 bool RuleProofs::spend(DatumId at, bool exhausted) {
-  const bool room = !exhausted && !values_.full() && machine_.count_step();
-  if (++spent_ <= kMaxProofSteps && room) return true;
+  if (!machine_.count_step()) {
+    machine_.report_full(at);
+    return false;
+  }
+  if (++spent_ <= kMaxProofSteps && !exhausted) return true;
   sink_.error(DiagnosticCode::kPlanRule, data_.source(at), data_.head(at).value_or("..."),
               fmt::format("the proof takes more than {} steps; does a rule ask for itself?",
                           kMaxProofSteps));

@@ -25,6 +25,7 @@ Explorer::Ruled Explorer::ask_rules(Job& job) {
 
 /// The answer decides which way the proof goes on: it is made again with one answer more.
 Explorer::Ruled Explorer::ask_model(const Job& job, const ProofQuestion& question, DatumId form) {
+  if (question.ways.empty()) return {false, terminal(TerminalKind::kNever, {}, std::nullopt), {}};
   auto key = state_key(job.state, values_, true);
   const bool performs = std::holds_alternative<StopPerform>(*job.proof);
   key.push_back(performs ? std::get<StopPerform>(*job.proof).designator.index()

@@ -276,6 +276,7 @@ base::Result<PlanGraph> Explorer::explore() {
       set(job, *target);
     } else {
       failed_ = true;
+      if (!machine_.has_room()) break;
     }
   }
   if (failed_) return sink_.already_reported();

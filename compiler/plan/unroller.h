@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -31,6 +32,7 @@ struct UnrollOptions {
   std::vector<std::vector<std::vector<std::string>>> query_candidates;
   bool interleave = false;            // explore every order of the performs in branches of `par`
   std::int32_t location_samples = 0;  // further solutions of a location before there is none
+  const std::atomic<bool>* stop = nullptr;  // raised to end it early: CPL054
 };
 
 /// Runs the plan on its static values and forks where the model decides: at the outcome of every

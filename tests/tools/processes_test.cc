@@ -97,6 +97,30 @@ TEST_CASE("so does SIGTERM") {
   cli.check_all_gone();
 }
 
+TEST_CASE("SIGTERM is heard while a plan is unrolled, and says where that was") {
+  const CliFixture cli;
+  std::string items = "I0";
+  for (int i = 1; i < 18; ++i) items += ",I" + std::to_string(i);
+  cli.write("m.e", "range time 0 3\nsort item\nitem " + items +
+                       "\nfluent Held(item)\nfluent Done()\nevent Go()\n"
+                       "[time] Initiates(Go(),Done(),time).\n!HoldsAt(Done(),0).\n");
+  cli.write("p.bind", "motion going -> Go() ok: Done() @t+1\nquery held (?o) ok: Held(?o) @t\n");
+  // Every set of items is an answer of its own, and all of them fail.
+  cli.write("p.lisp",
+            "(def-fact-group none ())\n"
+            "(unless (car (prolog '(and (held ?o) (held ?p) (not (held ?p)))))\n"
+            "  (perform (a motion (type going))))\n");
+  ProcessOptions options;
+  int looks = 0;
+  options.signal_when = [&] { return ++looks > 100 ? SIGTERM : 0; };
+  const auto stopped =
+      cli.parallax({"traces", "m.e", "--plan", "p.lisp", "--bind", "p.bind"}, options);
+  CAPTURE(stopped.err);
+  CHECK(stopped.code == 128 + SIGTERM);
+  CHECK(stopped.err.find("p.lisp:2:") != std::string::npos);
+  CHECK(stopped.err.find("CPL054") != std::string::npos);
+}
+
 TEST_CASE("a simulator that ends by itself leaves nothing behind either") {
   const Leaving cli;
   cli.write("simulator.sh",

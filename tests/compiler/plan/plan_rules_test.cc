@@ -1,4 +1,7 @@
 #include <doctest/doctest.h>
+#include <fmt/ranges.h>
+
+#include <set>
 
 #include "tests/compiler/plan/plan_fixture.h"
 
@@ -250,6 +253,101 @@ TEST_CASE("rules: free variables of prolog") {
   CHECK(all.codes().empty());
   REQUIRE(all.graph.has_value());
   CHECK(all.graph->locations.size() == 3);  // twice, once of two, never
+}
+
+/// The first events, or ends, that control can come to where exactly the atoms of `facts` hold.
+/// Guards are atoms and disjunctions of atoms.
+std::set<std::string> first_events(const Unrolled& plan, const std::set<std::string>& facts) {
+  const auto holds = [&](std::string guard) {
+    std::erase_if(guard, [](char c) { return c == ' '; });
+    for (std::size_t begin = 0; begin <= guard.size();) {
+      const auto end = std::min(guard.find('|', begin), guard.size());
+      auto atom = guard.substr(begin, end - begin);
+      if (atom.starts_with('(')) atom = atom.substr(1, atom.size() - 2);
+      if (facts.contains(atom)) return true;
+      begin = end + 1;
+    }
+    return false;
+  };
+  std::set<std::string> out;
+  std::vector<PlanTarget> open = {plan.graph->entry};
+  while (!open.empty()) {
+    const auto where = open.back();
+    open.pop_back();
+    if (const auto* silent = std::get_if<BranchId>(&where)) {
+      const auto& branch = plan.graph->branches[*silent];
+      const bool truth = branch.free || holds(branch.guard.text);
+      if (truth) open.push_back(branch.if_true);
+      if (branch.free || !truth) open.push_back(branch.if_false);
+    } else if (const auto* id = std::get_if<LocationId>(&where)) {
+      out.insert(plan.graph->locations[*id].event.text);
+    } else if (plan.target(where) != "NEVER") {
+      out.insert(plan.target(where));
+    }
+  }
+  return out;
+}
+
+TEST_CASE("rules: candidates that fail later are tried in one order, and nothing is lost") {
+  const Strings objects = {"o1", "o2", "o3", "o4", "o5", "o6", "o7"};
+  const auto asking = [&](const std::string& goal) {
+    UnrollOptions options;
+    options.query_candidates = {{{"left", "right"}}, {objects, {"left", "right"}}};
+    auto plan = unroll(prelude() + "(let ((b (car (prolog '" + goal + R"())))
+  (if b
+      (with-vars-bound (?o) b
+        (perform (an action (type picking-up) (arm left) (object (an object (name ?o))))))
+      (go1))))",
+                       options, std::string(kBinding) + std::string(kQueries));
+    CHECK(plan.codes().empty());
+    REQUIRE(plan.graph.has_value());
+    return plan;
+  };
+  struct Case {
+    std::string goal;
+    std::set<std::string> fit;      // objects that meet what the plan itself knows
+    std::set<std::string> needed;   // what has to hold besides Holding(left,?o)
+    std::set<std::string> blocked;  // objects that something else rules out
+  };
+  const std::vector<Case> cases = {
+      {"(and (object-in-hand ?o :left) (member ?o (:o2 :o6)))", {"o2", "o6"}, {}, {}},
+      {"(and (object-in-hand ?o :left) (fail))", {}, {}, {}},
+      {"(and (object-in-hand ?o :left) (member ?o (:o1 :o3 :o7)) (robot-free-hand :right))",
+       {"o1", "o3", "o7"},
+       {"HandFree(right)"},
+       {}},
+      {"(and (object-in-hand ?o :left) (not (object-in-hand ?o :right)))",
+       {objects.begin(), objects.end()},
+       {},
+       {"o1", "o2"}},
+  };
+  for (const auto& one : cases) {
+    CAPTURE(one.goal);
+    const auto plan = asking(one.goal);
+    CHECK(plan.graph->branches.size() < 6000);  // orders of seven are 13,700
+    for (std::uint32_t held = 0; held < 128; ++held) {
+      for (const bool further : {false, true}) {
+        std::set<std::string> facts = one.needed;
+        if (!further) facts.clear();
+        std::set<std::string> wanted;
+        for (std::size_t i = 0; i < objects.size(); ++i) {
+          const bool blocked = further && one.blocked.contains(objects[i]);
+          if (blocked) facts.insert("Holding(right," + objects[i] + ")");
+          if ((held >> i & 1U) == 0) continue;
+          facts.insert("Holding(left," + objects[i] + ")");
+          const bool met = one.needed.empty() || further;
+          if (one.fit.contains(objects[i]) && met && !blocked) {
+            wanted.insert("PickUp(left," + objects[i] + ")");
+          }
+        }
+        if (wanted.empty()) wanted.insert("Go(r1)");
+        CAPTURE(held);
+        CAPTURE(further);
+        CHECK(fmt::format("{}", fmt::join(first_events(plan, facts), " ")) ==
+              fmt::format("{}", fmt::join(wanted, " ")));
+      }
+    }
+  }
 }
 
 TEST_CASE("rules: bad ones are located and bounded") {
