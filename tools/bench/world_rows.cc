@@ -6,8 +6,10 @@
 #include <chrono>
 #include <ctime>
 #include <functional>
+#include <utility>
 #include <vector>
 
+#include "harness/campaign/judge.h"
 #include "harness/campaign/sample_runner.h"
 #include "harness/robot/ode_simulator.h"
 #include "harness/simulator/process_simulator.h"
@@ -33,23 +35,35 @@ double seconds_of(const std::function<void()>& work) {
 
 using Acts = std::vector<harness::ActionCall>;
 
-/// What the first trace asks of the simulator.
-Acts acts_of(const ScenarioModel& loaded, Context& context) {
+/// The first trace, what it asks of the simulator, and the model's fluents.
+struct FirstTrace {
+  harness::CampaignTrace trace;
+  Acts acts;
+  harness::ModelFluents fluents;
+};
+
+FirstTrace first_trace(const ScenarioModel& loaded, Context& context) {
   EnumeratedTraces traces(loaded.compilation.model, context);
-  const auto trace = traces.next();
-  return *harness::action_calls(loaded.scenario, **trace, context.sink());
+  auto trace = **traces.next();
+  auto acts = *harness::action_calls(loaded.scenario, trace, context.sink());
+  return {std::move(trace), std::move(acts), harness::ModelFluents(*traces.symbols())};
 }
 
-/// One whole simulation; returns the simulated seconds.
-double simulate(harness::Simulator& simulator, const Acts& acts, const harness::State& start) {
-  double simulated_s = 0.0;
+struct Simulated {
+  double time_s = 0.0;
+  std::vector<harness::State> observations;
+};
+
+/// One whole simulation.
+Simulated simulate(harness::Simulator& simulator, const Acts& acts, const harness::State& start) {
+  Simulated out;
   simulator.reset(start, 1);
-  simulator.observe();
+  out.observations.push_back(simulator.observe());
   for (const auto& act : acts) {
-    simulated_s += simulator.act(act.controller, act.arguments, act.time_limit_s).sim_time_s;
-    simulator.observe();
+    out.time_s += simulator.act(act.controller, act.arguments, act.time_limit_s).sim_time_s;
+    out.observations.push_back(simulator.observe());
   }
-  return simulated_s;
+  return out;
 }
 
 /// Starts that differ from repetition to repetition.
@@ -86,16 +100,23 @@ void measure_scenario_trace(Bench& bench) {
 }
 
 void measure_simulation(Bench& bench, harness::OdeSimulator& simulator, const ScenarioModel& loaded,
-                        const Acts& acts, const Starts& start) {
+                        const FirstTrace& first, const Starts& start) {
   simulator.measure_times(true);
   double simulated_s = 0.0;
+  std::vector<Simulated> runs;
   const double processor_before_s = processor_seconds();
   const double wall_s = seconds_of([&] {
     for (int i = 0; i < kRepetitions; ++i) {
-      simulated_s += simulate(simulator, acts, start(i));
+      runs.push_back(simulate(simulator, first.acts, start(i)));
+      simulated_s += runs.back().time_s;
     }
   });
   const double processor_s = processor_seconds() - processor_before_s;
+  const double judging_before_s = processor_seconds();
+  for (const auto& run : runs) {
+    harness::judge(*loaded.scenario.mapping, first.fluents, first.trace, run.observations);
+  }
+  const double judging_s = processor_seconds() - judging_before_s;
   simulator.measure_times(false);
   const auto& statistics = simulator.statistics();
   const double engine_s = statistics.collide_s + statistics.solve_s;
@@ -106,6 +127,10 @@ void measure_simulation(Bench& bench, harness::OdeSimulator& simulator, const Sc
              fmt::format("{:.1f} % of a run (solver {:.1f} %, collision {:.1f} %)",
                          100 * (1 - engine_s / wall_s), 100 * statistics.solve_s / wall_s,
                          100 * statistics.collide_s / wall_s));
+  add_figure(bench, "every step compared",
+             fmt::format("{:.2f} % of the simulation's processor time, {} states of {} fluents",
+                         100 * judging_s / processor_s, first.trace.points.size(),
+                         first.fluents.ground().size()));
 }
 
 void measure_worker(Bench& bench, harness::OdeSimulator& simulator, const Acts& acts) {
@@ -131,15 +156,16 @@ void measure_world(Bench& bench) {
   measure_scenario_trace(bench);
   Context context;
   const auto loaded = load_scenario_model(kScenario, context);
-  const auto acts = acts_of(*loaded, context);
+  const auto first = first_trace(*loaded, context);
   harness::OdeSimulator simulator(loaded->scenario.world);
-  measure_simulation(bench, simulator, *loaded, acts, box_start);
-  measure_worker(bench, simulator, acts);
+  measure_simulation(bench, simulator, *loaded, first, box_start);
+  measure_worker(bench, simulator, first.acts);
 
   bench.begin("the kitchen, first trace of the repaired plan");
   const auto kitchen = load_scenario_model(kKitchenScenario, context);
   harness::OdeSimulator kitchen_simulator(kitchen->scenario.world);
-  measure_simulation(bench, kitchen_simulator, *kitchen, acts_of(*kitchen, context), kitchen_start);
+  measure_simulation(bench, kitchen_simulator, *kitchen, first_trace(*kitchen, context),
+                     kitchen_start);
 }
 
 void measure_demo(Bench& bench) {
