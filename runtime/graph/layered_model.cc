@@ -49,10 +49,10 @@ class Components {
 
 class Splitter {
  public:
-  Splitter(const CompiledModel& model, Distinct distinct)
+  Splitter(const CompiledModel& model, Distinct distinct, std::vector<std::int8_t> values)
       : model_(model),
         distinct_(distinct),
-        values_(unit_values(model)),
+        values_(std::move(values)),
         components_(static_cast<std::size_t>(model.base())) {}
 
   std::variant<LayeredModel, std::string> run() && {
@@ -323,7 +323,13 @@ class Splitter {
 
 std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model,
                                                            Distinct distinct) {
-  return Splitter(model, distinct).run();
+  return Splitter(model, distinct, unit_values(model)).run();
+}
+
+std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model,
+                                                           Distinct distinct,
+                                                           std::vector<std::int8_t> values) {
+  return Splitter(model, distinct, std::move(values)).run();
 }
 
 }  // namespace parallax::runtime

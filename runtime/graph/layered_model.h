@@ -50,8 +50,12 @@ struct LayeredModel {
 
 /// Splits the model into windows, or says why it cannot be split: "a clause of FILE:LINE spans
 /// timepoints 0 to 3". Fixed variables with a value of their own are replaced by it. Linear in the
-/// clauses.
+/// clauses. `values`, as of unit_values, are those that fixed variables have; without them what
+/// unit propagation over the whole horizon finds.
 std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model,
                                                            Distinct distinct);
+std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model,
+                                                           Distinct distinct,
+                                                           std::vector<std::int8_t> values);
 
 }  // namespace parallax::runtime

@@ -1,0 +1,134 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "runtime/monitor/step_windows.h"
+#include "runtime/monitor/window_query.h"
+
+namespace parallax::runtime {
+
+struct BeliefOptions {
+  std::size_t max_states = 20'000;  // that are possible at once
+  /// Ways from state to state are remembered until so many states are; then from anew.
+  std::size_t remembered = 200'000;
+  std::vector<compiler::EventId> unobserved;  // may happen without being told of
+  const std::atomic<bool>* stop = nullptr;    // outlives the belief
+};
+
+/// What is known of the fluents: by FluentId 1 holds, -1 does not, 0 is not known.
+using Observation = std::vector<std::int8_t>;
+
+/// What is told of one step: exactly these events happen, and of the unobserved ones any. Did the
+/// perform of the plan succeed? Where the plan has none, or there is no plan, that says nothing.
+struct ToldStep {
+  std::vector<compiler::EventId> events;  // sorted
+  std::optional<bool> succeeded = std::nullopt;
+};
+
+enum class Admission : std::uint8_t {
+  kAdmitted,
+  kRefused,    // by every state that was possible: those stay as they were
+  kUndecided,  // and from now on always; undecided_because() says why
+};
+
+/// A fluent that is another one in what was observed than in what is possible.
+struct Disagreement {
+  compiler::FluentId fluent;
+  bool observed = false;
+};
+
+/// The states of a model, with the place of its plan's control, that what was told so far leaves
+/// possible: exactly those in which some trace of any length is that has these events, with
+/// unobserved ones anywhere between and beside them, and agrees with all observations. A step is
+/// one timepoint; without a step time stands still, but for unobserved events.
+///
+/// States are kept one by one, at most `max_states`: beyond that nothing is said any more. Memory
+/// is bounded by the options, however long it goes on. What a step does to a state is asked of the
+/// clauses once and remembered.
+class Belief {
+ public:
+  /// `windows` outlives the belief.
+  Belief(const StepWindows& windows, const BeliefOptions& options);
+
+  Admission observe(const Observation& observed);
+  Admission step(const ToldStep& told);
+  /// Would the step be admitted? Nothing changes.
+  bool admits(const ToldStep& told);
+
+  /// None: there are more than can be kept, which the next observations may change.
+  std::optional<std::size_t> size() const;
+  std::size_t largest() const { return largest_; }  // of all sizes so far
+  const std::string& undecided_because() const { return undecided_; }
+
+  /// Why an observation was refused: the fluents that are as observed in no possible state; if
+  /// there are none, those in which the possible state that is nearest differs.
+  std::vector<Disagreement> disagreement(const Observation& observed);
+  /// Where the plan's control may be: indices into CompiledModel::plan, ascending.
+  std::vector<std::size_t> plan_steps() const;
+  /// May the plan be over?
+  bool plan_may_be_over() const;
+
+ private:
+  using StateId = std::uint32_t;
+  using Words = std::vector<std::uint64_t>;  // phase, bits of `observed`, then of `hidden`
+  struct WordsHash {
+    std::size_t operator()(const Words& words) const;
+  };
+  /// What an observation says of the words of a state.
+  struct Filter {
+    Words mask, value;
+    bool possible = true;  // false: of a fluent that never holds it says that it does
+    bool admits(const Words& state) const;
+  };
+  static constexpr std::uint32_t kUntold = 0;  // the label of a step that nobody tells of
+
+  Filter filter_of(const Observation& observed) const;
+  Admission give_up(const std::string& why);
+  Admission settle();
+  std::optional<std::vector<StateId>> initial_states(const Filter& known);
+  std::optional<std::vector<StateId>> after(const std::vector<StateId>& states,
+                                            const ToldStep& told);
+  std::optional<std::vector<StateId>> closed(std::vector<StateId> states);
+  const std::vector<StateId>* successors(StateId state, std::uint32_t label);
+  std::optional<std::vector<StateId>> ask_step(StateId state, std::uint32_t label);
+  void assume_state(const Words& state, std::vector<Literal>& assumptions) const;
+  bool assume_events(const ToldStep& told, bool is_told, std::vector<Literal>& assumptions) const;
+  StateId intern(Words words);
+  std::uint32_t label_of(const ToldStep& told);
+  void forget();
+  void take(std::vector<StateId> states);
+  bool is_at_perform(const Words& state) const;
+  bool bit(const Words& state, std::size_t place) const;
+
+  const StepWindows& windows_;
+  BeliefOptions options_;
+  std::size_t observed_count_, word_count_;
+  std::vector<std::optional<std::size_t>> fluent_bit_;  // by fluent
+  std::vector<std::optional<std::size_t>> plan_bit_;    // by plan step
+  std::vector<bool> is_unobserved_;                     // by event
+  std::unique_ptr<WindowQuery> start_;
+  std::vector<std::unique_ptr<WindowQuery>> steps_;  // by window
+
+  std::vector<Words> states_;
+  std::unordered_map<Words, StateId, WordsHash> state_ids_;  // for look-up only, as those below
+  std::vector<ToldStep> labels_;
+  std::unordered_map<std::string, std::uint32_t> label_ids_;
+  std::unordered_map<std::uint64_t, std::vector<StateId>> ways_;  // by label and state
+
+  bool is_settled_ = false;  // else `known_` is all that is known of the start
+  Filter known_;
+  std::vector<StateId> possible_;  // sorted
+  std::pair<std::vector<StateId>, std::vector<StateId>> last_closed_;
+  std::size_t largest_ = 0;
+  std::string undecided_, obstacle_;
+};
+
+}  // namespace parallax::runtime
