@@ -136,6 +136,7 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, const std::atomic<b
   options.location_samples = input.location_samples;
   options.interleave = input.interleave;
   options.stop = stop;
+  options.failures_by_reason = input.failures_by_reason;
   for (const auto& object : model.objects) options.constants.push_back(object.name);
   for (const auto& symbol : model.symbols) {
     if (symbol.kind == SymbolKind::kFluent) options.fluents.push_back(symbol.name);
@@ -309,6 +310,7 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
     result.model.plan = plan_steps(plan->graph);
     result.model.plan_cuts = plan_cuts(plan->graph);
     result.plan = std::move(plan->graph);
+    result.plan_formulas = std::make_shared<const PlanFormulas>(std::move(plan->formulas));
   }
   describe(input, files, result.model);
   result.typed = std::make_unique<TypedModel>(*std::move(typed));

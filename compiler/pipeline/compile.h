@@ -18,6 +18,8 @@
 
 namespace parallax::compiler {
 
+struct PlanFormulas;
+
 /// A plan and its binding table, both already read into the source files.
 struct PlanInput {
   std::vector<base::FileId> plan;  // its files in order (load_plan_files)
@@ -28,6 +30,7 @@ struct PlanInput {
   std::int32_t max_loop = 16;
   std::int32_t location_samples = 0;
   bool interleave = false;
+  bool failures_by_reason = false;
   /// Where neither input nor model give a horizon: as many timepoints as the longest path of the
   /// plan has performs, at most so many.
   std::int64_t max_horizon = 50;
@@ -60,7 +63,8 @@ struct Compilation {
   std::unique_ptr<TypedModel> typed;  // the checked model, for an independent evaluation
   std::vector<AxiomCost> costs;       // if asked for
   PassLog passes;                     // what ran, how long, and the text of `emit_pass`
-  std::optional<PlanGraph> plan;      // the unrolled control flow, for dumps
+  std::optional<PlanGraph> plan;      // the unrolled control flow
+  std::shared_ptr<const PlanFormulas> plan_formulas;  // its formulas, checked; part of `typed`
 };
 
 /// The passes of grounding and encoding, in the order in which they run. Plan and constraints are

@@ -27,7 +27,7 @@ bool is_separator(std::string_view line_before, std::string_view after) {
   const auto word = after.find_first_not_of(" \t");
   if (word == std::string_view::npos) return false;
   after.remove_prefix(word);
-  return starts_entry(after) || starts_with_word(after, "else") ||
+  return starts_entry(after) || starts_with_word(after, "else") || starts_with_word(after, "on") ||
          starts_with_word(after, "returns") || after.starts_with("ok:");
 }
 

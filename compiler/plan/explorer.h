@@ -27,6 +27,7 @@ struct Job {
   std::optional<StopPerform> act;  // goes on by performing
   Edge edge = Edge::kEntry;
   std::uint32_t owner = 0;                         // location or branch
+  std::optional<LocationId> failed = {};           // what it goes on by failing
   std::optional<PlanMachine::Ending> ending = {};  // goes on by the end of a `par`
   /// Goes on by asking the rules again: what carries out an action, or whether a goal holds.
   std::optional<std::variant<StopPerform, StopProof>> proof = {};
@@ -66,6 +67,7 @@ class Explorer {
   std::optional<PlanTarget> stopped(PlanState& state, const PlanStop& stop);
   bool has_room(const StateKey& key, DatumId form);
   std::optional<PlanTarget> perform(PlanState& state, const StopPerform& stop);
+  void fail_by_reason(LocationId id, const PlanState& state, DatumId form);
   std::optional<PlanStop> run_plan(PlanState& state, const StopPerform& stop,
                                    const BindingEntry& entry);
   std::optional<PlanTarget> refer(PlanState& state, const StopPerform& stop,

@@ -288,6 +288,19 @@ Result<PlanLocation> PerformResolver::resolve(const BindingEntry& entry, ValueId
                        entry.failure_class);
   }
   location.failure_class = *failure;
+  location.binding = entry.source;
+  for (const auto& bound : entry.reasons) {
+    const auto known = classes_.canonical(bound.failure_class);
+    if (!known) {
+      return sink_.error(DiagnosticCode::kUnknownFailureClass, bound.source, bound.failure_class);
+    }
+    auto& ways = location.failures;
+    const auto same = std::find_if(ways.begin(), ways.end(), [&](const FailureWay& way) {
+      return way.failure_class == *known;
+    });
+    auto& way = same == ways.end() ? ways.emplace_back(FailureWay{*known, {}}) : *same;
+    way.reasons.push_back(bound.reason);
+  }
   location.arguments = arguments(designator);
   return location;
 }

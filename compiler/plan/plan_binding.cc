@@ -50,6 +50,7 @@ class BindingParser {
   bool parse_formula(BindingEntry& entry);
   bool parse_formula_now(BindingEntry& entry);
   bool parse_tail(BindingEntry& entry);
+  bool parse_reason(BindingEntry& entry);
   bool nothing_left();
   bool repeat_mapping(BindingEntry& entry);
   bool check_variables(const BindingEntry& entry);
@@ -134,8 +135,9 @@ void BindingParser::parse_object(std::size_t begin) {
     return;
   }
   if (!at_.variable(object.variable) || !parse_tail(entry)) return;
-  if (entry.returns) {
-    at_.expected("one variable that is returned, not two,");
+  if (entry.returns || !entry.reasons.empty()) {
+    at_.expected(entry.returns ? "one variable that is returned, not two,"
+                               : "no `on`, as nothing is performed yet,");
     return;
   }
   entry.keys.push_back({{}, {}, object.variable});
@@ -271,10 +273,32 @@ bool BindingParser::parse_tail(BindingEntry& entry) {
       const auto begin = (at_.skip_blanks(), at_.position());
       if (!at_.name("a failure class", entry.failure_class)) return false;
       entry.failure_source = at_.range(begin, at_.position());
+    } else if (at_.take_word("on")) {
+      if (!parse_reason(entry)) return false;
     } else {
-      return at_.expected("`returns`, `else` or the next entry");
+      return at_.expected("`returns`, `else`, `on` or the next entry");
     }
   }
+}
+
+/// `REASON CLASS`, behind `on`
+bool BindingParser::parse_reason(BindingEntry& entry) {
+  FailureReason bound;
+  const auto begin = (at_.skip_blanks(), at_.position());
+  if (!at_.name("a reason of the simulator", bound.reason)) return false;
+  const auto end = at_.position();
+  for (const auto& other : entry.reasons) {
+    if (other.reason != bound.reason) continue;
+    failed_ = true;
+    sink_.error(DiagnosticCode::kBindingSyntax, at_.range(begin, end), "a reason once",
+                fmt::format("`{}` a second time", bound.reason));
+    return false;
+  }
+  const auto name = (at_.skip_blanks(), at_.position());
+  if (!at_.name("a failure class", bound.failure_class)) return false;
+  bound.source = at_.range(name, at_.position());
+  entry.reasons.push_back(std::move(bound));
+  return true;
 }
 
 void BindingParser::parse_entry() {

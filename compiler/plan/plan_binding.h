@@ -29,6 +29,13 @@ struct BindingKey {
   std::string variable;                 // "?p"
 };
 
+/// `on REASON CLASS`: a failure for this reason raises this condition where the plan is executed.
+struct FailureReason {
+  std::string reason;  // the word in front of the first colon of what the simulator says
+  std::string failure_class;
+  base::SourceRange source;
+};
+
 /// What one kind of perform means in the model.
 struct BindingEntry {
   PerformKind kind = PerformKind::kMotion;
@@ -40,6 +47,7 @@ struct BindingEntry {
   std::int32_t time_offset = 0;        // @t: 0, @t+1: 1
   std::optional<std::string> returns;  // the quantified variable of the formula that is the result
   std::string failure_class = "simple-plan-failure";
+  std::vector<FailureReason> reasons;       // empty: every failure is of `failure_class`
   std::optional<std::string> plan;          // instead of an event: the plan's function to run
   std::vector<std::string> plan_arguments;  // the variables that it is called with
   base::SourceRange source;                 // the entry's head
@@ -85,6 +93,8 @@ struct PlanBinding {
 ///         ok: exists i. TypeOf(i,?y) & Visible(i) @t
 ///         returns i ; else perception-object-not-found
 ///     action opening|accessing (:arm :object) -> Open(?o)  ok: IsOpen(?o) @t+1
+///         else manipulation-goal-not-reached
+///         on slipped gripper-goal-not-reached  on out-of-reach manipulation-pose-unreachable
 ///     action navigating = going
 ///     action fetching (:object ?o :arm ?a) -> plan fetch(?o,?a)
 ///     object (:type ?y) ok: TypeOf(?o,?y) & Perceived(?o) @t  returns ?o

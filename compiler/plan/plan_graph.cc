@@ -118,6 +118,16 @@ class Reach {
 
 }  // namespace
 
+PlanTarget failure_target(const PlanGraph& graph, const PlanLocation& location, std::size_t way) {
+  auto target = location.on_failure;
+  for (std::size_t i = 0; i + 1 < location.failures.size(); ++i) {
+    const auto& branch = graph.branches[std::get<BranchId>(target)];
+    if (i == way) return branch.if_true;
+    target = branch.if_false;
+  }
+  return target;
+}
+
 std::string to_string(const PlanGraph& graph, const PlanTarget& target,
                       const base::SourceFiles& files) {
   if (const auto* location = std::get_if<LocationId>(&target)) {

@@ -65,6 +65,12 @@ using PlanArgument = std::variant<double, std::int64_t, std::string, ModelValueI
 /// [rad]; a named object under `object` gives `object`.
 using PlanArguments = std::map<std::string, PlanArgument>;
 
+/// A condition that a failed perform can raise where the simulator's reason decides.
+struct FailureWay {
+  std::string failure_class;
+  std::vector<std::string> reasons;
+};
+
 /// One `perform`, reached in one particular state of the plan's variables.
 struct PlanLocation {
   base::SourceRange source;              // the perform form
@@ -73,6 +79,10 @@ struct PlanLocation {
   std::string event_symbol;              // "Go"
   SuccessCondition success;
   std::string failure_class;  // the class of the failure edge
+  /// Explored by reason, and the binding names some: `on_failure` leads to free branches, of which
+  /// number i goes to what way i does (failure_target). Else empty.
+  std::vector<FailureWay> failures;
+  base::SourceRange binding;  // the entry of the binding table
   PlanArguments arguments;
   std::optional<ModelValueId> result;  // bound when it succeeds
   PlanTarget on_success;
@@ -116,6 +126,9 @@ struct PlanGraph {
   base::Store<ModelValueId, ModelValue> values;
   std::vector<PlanHandler> handlers;  // in the order of the text
 };
+
+/// Where control goes when the perform fails the way of this number (0 if it has no ways).
+PlanTarget failure_target(const PlanGraph& graph, const PlanLocation& location, std::size_t way);
 
 /// "L3", "B1", "DONE", "FAILED(navigation-pose-unreachable)", "BOUND(loop at plan.lisp:12)".
 std::string to_string(const PlanGraph& graph, const PlanTarget& target,

@@ -99,6 +99,7 @@ std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform&
   auto resolved = resolver_.resolve(*entry, stop.designator, source);
   if (!resolved) return std::nullopt;
   auto& location = *resolved;
+  if (!options_.failures_by_reason) location.failures.clear();
   location.calls = calls(state);
   const auto macros = macro_calls(data_, stop.form);
   location.calls.insert(location.calls.end(), macros.begin(), macros.end());
@@ -114,10 +115,40 @@ std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform&
   ++state.performs;
   state.missed = 0;
   // The last job is taken first: success.
-  jobs_.push_back({state, failure, {}, Job::Edge::kFailure, id.index()});
+  if (graph_.locations[id].failures.empty()) {
+    jobs_.push_back({state, failure, {}, Job::Edge::kFailure, id.index(), id});
+  } else {
+    fail_by_reason(id, state, stop.form);
+  }
   jobs_.push_back({std::move(state), {}, {}, Job::Edge::kSuccess, id.index()});
   jobs_.back().state.stack.push_back(result);
   return id;
+}
+
+/// The perform fails any way that the binding gives a reason for.
+void Explorer::fail_by_reason(LocationId id, const PlanState& state, DatumId form) {
+  const auto ways = graph_.locations[id].failures;
+  std::vector<Job> jobs;
+  auto edge = Job::Edge::kFailure;
+  auto owner = id.index();
+  for (std::size_t way = 0; way < ways.size(); ++way) {
+    const auto failure = values_.failure(ways[way].failure_class);
+    if (way + 1 < ways.size()) {
+      const auto next = free_branch("it fails with " + ways[way].failure_class, form);
+      if (way == 0) {
+        graph_.locations[id].on_failure = next;
+      } else {
+        graph_.branches[BranchId(owner)].if_false = next;
+      }
+      jobs.push_back({state, failure, {}, Job::Edge::kTrue, next.index(), id});
+      edge = Job::Edge::kFalse;
+      owner = next.index();
+    } else {
+      jobs.push_back({state, failure, {}, edge, owner, id});
+    }
+  }
+  jobs_.insert(jobs_.end(), std::make_move_iterator(jobs.rbegin()),
+               std::make_move_iterator(jobs.rend()));
 }
 
 /// What a perform returns. Where the plan asks for properties, it keeps the description by which it
@@ -195,7 +226,7 @@ std::optional<PlanTarget> Explorer::stopped(PlanState& state, const PlanStop& st
 std::optional<PlanTarget> Explorer::advance(Job& job) {
   if (job.failure) {
     auto stop = machine_.raise(job.state, *job.failure);
-    if (job.edge == Job::Edge::kFailure) note_handlers(LocationId(job.owner));
+    if (job.failed) note_handlers(*job.failed);
     if (stop) return stopped(job.state, *stop);
   }
   if (job.ending) {

@@ -30,6 +30,9 @@ struct UnrollOptions {
   std::vector<std::vector<std::string>> candidates;
   /// The same for each variable of each query.
   std::vector<std::vector<std::vector<std::string>>> query_candidates;
+  /// Explore every condition that the binding table gives a failure by its reason, not `else`
+  /// alone.
+  bool failures_by_reason = false;
   bool interleave = false;            // explore every order of the performs in branches of `par`
   std::int32_t location_samples = 0;  // further solutions of a location before there is none
   const std::atomic<bool>* stop = nullptr;  // raised to end it early: CPL054

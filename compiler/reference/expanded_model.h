@@ -183,6 +183,8 @@ class ExpandedModel {
 
   /// `model` and `budget` outlive the object, which is incomplete when the budget is spent.
   ExpandedModel(const TypedModel& model, ReferenceBudget& budget);
+  /// Nothing yet: for a ModelExpander that expands single formulas.
+  ExpandedModel() = default;
 
   /// Its formulas nest too deep to be expanded; the budget counts as spent.
   bool too_deep() const { return too_deep_; }

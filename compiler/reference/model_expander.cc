@@ -8,6 +8,31 @@ namespace parallax::compiler {
 ModelExpander::ModelExpander(const TypedModel& model, ReferenceBudget& budget, ExpandedModel& out)
     : model_(model), budget_(budget), out_(out), terms_(model, budget) {
   environment_.resize(model.variables.size());
+  bound_.resize(model.variables.size(), false);
+}
+
+void ModelExpander::begin() {
+  out_.too_deep_ = too_deep();
+  if (out_.too_deep_) budget_.spend_all();
+  if (!budget_.spent()) number_atoms();
+}
+
+std::vector<std::string> ModelExpander::values(VariableId variable) const {
+  std::vector<std::string> out;
+  for (const auto value : terms_.domain(model_.variables[variable].sort)) {
+    out.push_back(terms_.text(value));
+  }
+  return out;
+}
+
+bool ModelExpander::bind(VariableId variable, const std::string& value) {
+  for (const auto candidate : terms_.domain(model_.variables[variable].sort)) {
+    if (terms_.text(candidate) != value) continue;
+    environment_[variable.index()] = candidate;
+    bound_[variable.index()] = true;
+    return true;
+  }
+  return false;
 }
 
 void ModelExpander::run() {
@@ -62,6 +87,7 @@ void ModelExpander::for_each(const std::vector<VariableId>& variables,
     return;
   }
   const auto variable = variables[position];
+  if (bound_[variable.index()]) return for_each(variables, visit, position + 1);
   for (const auto value : terms_.domain(model_.variables[variable].sort)) {
     if (budget_.spent()) return;
     environment_[variable.index()] = value;

@@ -20,10 +20,19 @@ class ModelExpander {
   ModelExpander(const TypedModel& model, ReferenceBudget& budget, ExpandedModel& out);
   void run();
 
- private:
   using Value = ReferenceTerms::Value;
   using Node = FormulaTrees::Node;
+  /// Instead of `run`: numbers the atoms alone, for `instance`.
+  void begin();
+  /// What a variable stands for in the formulas expanded from now on, also where one binds it; none
+  /// of its sort has that name: false.
+  bool bind(VariableId variable, const std::string& value);
+  /// What it can stand for.
+  std::vector<std::string> values(VariableId variable) const;
+  /// A formula of the model's stores, written out. None: it does not exist.
+  std::optional<Node> instance(TypedFormulaId formula) { return expand(formula); }
 
+ private:
   bool too_deep() const;
   void number_atoms();
   void expand_effects();
@@ -56,6 +65,7 @@ class ModelExpander {
   ExpandedModel& out_;
   ReferenceTerms terms_;
   ReferenceTerms::Environment environment_;
+  std::vector<bool> bound_;  // by variable
   bool effects_known_ = false;
   /// By kind, event, fluent and timepoint: the number among the expanded model's effects.
   std::map<std::tuple<EffectKind, std::uint32_t, std::uint32_t, std::int64_t>, std::uint32_t>

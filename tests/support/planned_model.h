@@ -48,8 +48,8 @@ class PlannedModel {
  public:
   PlannedModel(const std::string& model, const std::string& plan, const std::string& binding,
                const std::string& constraint, std::optional<std::int64_t> horizon,
-               bool interleave = false)
-      : interleave_(interleave) {
+               bool interleave = false, bool failures_by_reason = false)
+      : interleave_(interleave), failures_by_reason_(failures_by_reason) {
     std::string name = (std::filesystem::temp_directory_path() / "parallax_model_XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) return;
     const auto path = std::filesystem::path(name) / "model.e";
@@ -79,6 +79,7 @@ class PlannedModel {
   }
 
   const compiler::PlanGraph& graph() const { return *compilation_->plan; }
+  const compiler::PlanFormulas& formulas() const { return *compilation_->plan_formulas; }
   bool compiles() const { return compilation_.has_value(); }
 
   struct Found {
@@ -111,6 +112,7 @@ class PlannedModel {
     input.plan = compiler::PlanInput{
         {files_.add("plan.lisp", plan)}, files_.add("plan.bind", binding), std::nullopt, &locator};
     input.plan->interleave = interleave_;
+    input.plan->failures_by_reason = failures_by_reason_;
     const auto text = files_.add("constraint", constraint);
     const base::SourceRange range{text, 0, static_cast<std::uint32_t>(constraint.size())};
     input.constraints = {{range, range}};
@@ -119,6 +121,7 @@ class PlannedModel {
   }
 
   bool interleave_ = false;
+  bool failures_by_reason_ = false;
   base::SourceFiles files_;
   base::DiagnosticSink sink_;
   TwoRooms rooms_;

@@ -213,5 +213,42 @@ TEST_CASE("failures: three nested handlers with counters keep their counts apart
   CHECK(plan.graph->locations.size() == 5);
 }
 
+TEST_CASE("failures: explored by reason, every condition that the table names has its way") {
+  const std::string going =
+      "motion going (:target ?p) -> Go(region(?p)) ok: RobotAt(region(?p)) @t+1 else "
+      "navigation-pose-unreachable";
+  const std::string rest = "\nmotion signalling -> Signal() ok: Signalled() @t+1\n";
+  const std::string reasons =
+      " on blocked navigation-goal-not-reached on lost-way navigation-pose-unreachable"
+      " on stuck navigation-goal-not-reached on flat low-level-failure";
+  const std::string plan = R"(
+(with-failure-handling ((navigation-pose-unreachable (e) (perform (a motion (type signalling))) (return)))
+  (perform (a motion (type going)
+    (target (make-pose-stamped "map" 0 (make-3d-vector 1.5 0 0) (make-identity-rotation))))))
+)";
+  UnrollOptions options;
+  const auto plain = unroll(plan, options, going + rest);
+  const auto named = unroll(plan, options, going + reasons + rest);
+  REQUIRE(plain.graph.has_value());
+  REQUIRE(named.graph.has_value());
+  // Where nothing is executed the reasons change nothing.
+  CHECK(dump_text(*named.graph, named.files) == dump_text(*plain.graph, plain.files));
+  options.failures_by_reason = true;
+  CHECK(dump_text(*unroll(plan, options, going + rest).graph, plain.files) ==
+        dump_text(*plain.graph, plain.files));
+  const auto found = unroll(plan, options, going + reasons + rest);
+  REQUIRE(found.graph.has_value());
+  const auto& graph = *found.graph;
+  const auto& location = graph.locations[LocationId(0)];
+  REQUIRE(location.failures.size() == 3);
+  CHECK(location.failures[0].reasons == Strings{"blocked", "stuck"});
+  CHECK(found.target(failure_target(graph, location, 0)) == "FAILED(navigation-goal-not-reached)");
+  CHECK(found.target(failure_target(graph, location, 1)) == "L1");
+  CHECK(found.target(failure_target(graph, location, 2)) == "FAILED(low-level-failure)");
+  REQUIRE(graph.handlers.size() == 1);
+  CHECK(graph.handlers[0].failures == std::vector{LocationId(0)});
+  CHECK(unroll(plan, options, going + " on blocked no-such-class" + rest).has("CPL041"));
+}
+
 }  // namespace
 }  // namespace parallax::compiler

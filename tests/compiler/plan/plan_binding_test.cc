@@ -131,5 +131,33 @@ TEST_CASE("binding: no prefix of the table crashes the parser") {
   }
 }
 
+TEST_CASE("binding: reasons of the simulator and the conditions that they raise") {
+  const auto bound = read_table(
+      "action picking-up (:object ?o) -> PickUp(?o) ok: Holding(?o) @t+1\n"
+      "  else manipulation-pose-unreachable\n"
+      "  on slipped gripper-goal-not-reached ; on out-of-reach manipulation-pose-unreachable\n"
+      "action opening (:object ?o) -> Open(?o) ok: IsOpen(?o) @t+1 else plan-failure\n");
+  CHECK(errors(bound).empty());
+  REQUIRE(bound.binding.has_value());
+  const auto& reasons = bound.binding->entries[0].reasons;
+  REQUIRE(reasons.size() == 2);
+  CHECK(reasons[0].reason == "slipped");
+  CHECK(reasons[0].failure_class == "gripper-goal-not-reached");
+  CHECK(bound.files.text(reasons[1].source) == "manipulation-pose-unreachable");
+  CHECK(bound.binding->entries[1].reasons.empty());
+}
+
+TEST_CASE("binding: what is wrong with a reason is said at its place") {
+  const std::string head = "motion going -> Go() ok: There() @t+1 else plan-failure ";
+  CHECK(errors(read_table(head + "on\n")) ==
+        "E4001 2:1 expected a reason of the simulator, found the end of the entry\n");
+  CHECK(errors(read_table(head + "on blocked\n")) ==
+        "E4001 2:1 expected a failure class, found the end of the entry\n");
+  CHECK(errors(read_table(head + "on blocked plan-failure on blocked plan-failure\n")) ==
+        "E4001 1:84 expected a reason once, found `blocked` a second time\n");
+  CHECK(errors(read_table("object (:type ?y) ok: Kind(?o,?y) @t returns ?o on x plan-failure\n"))
+            .starts_with("E4001"));
+}
+
 }  // namespace
 }  // namespace parallax::compiler
