@@ -124,7 +124,8 @@ struct Occurrence {
 };
 
 ActionCall call_for(const ActionBinding& binding, const Occurrence& at) {
-  ActionCall call{binding.controller, binding.arguments, binding.time_limit_s};
+  ActionCall call{with_arguments(binding.controller, at.event), binding.arguments,
+                  binding.time_limit_s};
   for (auto& [name, value] : call.arguments) {
     if (auto* text = std::get_if<std::string>(&value)) *text = with_arguments(*text, at.event);
   }
@@ -283,7 +284,7 @@ base::Result<std::vector<ActionCall>> action_calls(const Scenario& scenario,
                                                    const CampaignTrace& trace,
                                                    base::DiagnosticSink& sink) {
   const auto errors_before = sink.error_count();
-  const bool built_in = scenario.simulator.command.empty();
+  const bool built_in = scenario.simulator.is_built_in();
   const ValueChecker values(scenario.world);
   std::vector<ActionCall> calls;
   for (std::size_t t = 0; t < trace.event_count(); ++t) {

@@ -94,7 +94,7 @@ base::DiagnosticBuilder report_rejected(const Scenario& scenario, const Campaign
 base::DiagnosticBuilder report_other_start(const Scenario& scenario, const SampleRecord& record,
                                            const DivergingFluent& fluent,
                                            base::DiagnosticSink& sink) {
-  if (!scenario.simulator.command.empty()) {
+  if (!scenario.simulator.is_built_in()) {
     return sink.error(
         DiagnosticCode::kStartNotTaken, scenario.simulator.source, record.sample, record.trace,
         fmt::format("`{}` {}", fluent.fluent, fluent.observed ? "holds" : "does not hold"));

@@ -133,6 +133,9 @@ std::optional<ActionBinding> read_action(const YamlEntry& entry, bool built_in,
   fields.text(Key::kController, action.controller);
   fields.number(Key::kTimeLimitS, NumberBounds{0.0, kMaxTimeLimitS, true, false},
                 action.time_limit_s);
+  if (!built_in) {
+    action.controller = with_positions(action.controller, *pattern, controller->range, sink);
+  }
   const ControllerSpec* table = nullptr;
   if (built_in && !action.controller.empty()) {
     table = known_controller(action.controller, controller->range, sink);

@@ -161,10 +161,11 @@ std::string read_pattern_text(const YamlFields& fields, std::string_view key,
 }
 
 FlagBinding read_flag(YamlFields& fields, const SymbolPattern& pattern) {
-  fields.only({Key::kFlag, Key::kAtStart, Key::kCompare});
+  fields.only({Key::kFlag, Key::kAtStart, Key::kDrawn, Key::kCompare});
   FlagBinding binding;
   binding.variable = read_pattern_text(fields, Key::kFlag, pattern);
   fields.boolean(Key::kAtStart, binding.at_start);
+  if (fields.find(Key::kDrawn) != nullptr) fields.boolean(Key::kDrawn, binding.drawn.emplace());
   return binding;
 }
 
@@ -358,7 +359,7 @@ void read_sampling(const YamlNode& node, Scenario& scenario, base::DiagnosticSin
       sink.error(DiagnosticCode::kReversedSampling, entry.key_range, name, interval->lower,
                  interval->upper);
     }
-    const bool built_in = scenario.simulator.command.empty();
+    const bool built_in = scenario.simulator.is_built_in();
     if (built_in && entry.key.ends_with(".mass") &&
         !(interval->lower > 0.0 && interval->upper <= kMaxMass_kg)) {
       sink.error(DiagnosticCode::kYamlOutOfBounds, entry.value.range, name,

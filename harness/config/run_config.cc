@@ -87,13 +87,18 @@ SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink) {
     auto error =
         sink.error(DiagnosticCode::kYamlUnknownChoice, node.range, node.text, Key::kSimulator);
     const std::vector<std::string> known = {"ode"};
-    add_suggestion(error, node.text, known, "known, besides `command: [...]`");
+    add_suggestion(error, node.text, known, "known, besides `command: [...]` and `model: FILE`");
     return simulator;
   }
   YamlFields fields(node, key_text(Key::kSimulator), sink);
-  fields.only({Key::kCommand, Key::kHelloTimeoutS, Key::kResetTimeoutS, Key::kActTimeoutS,
-               Key::kObserveTimeoutS, Key::kCloseTimeoutS, Key::kMinRealTimeFactor,
-               Key::kRecycleAfter, Key::kMemoryMb});
+  if (const auto* model = fields.find(Key::kModel)) {
+    fields.only({Key::kModel});
+    simulator.models = located_texts(*model, Key::kModel, sink);
+    return simulator;
+  }
+  fields.only({Key::kCommand, Key::kModel, Key::kHelloTimeoutS, Key::kResetTimeoutS,
+               Key::kActTimeoutS, Key::kObserveTimeoutS, Key::kCloseTimeoutS,
+               Key::kMinRealTimeFactor, Key::kRecycleAfter, Key::kMemoryMb});
   fields.texts(Key::kCommand, simulator.command);
   const auto* command = fields.find(Key::kCommand);
   if (command != nullptr && command->is_list() && command->items.empty()) {

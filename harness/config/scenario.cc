@@ -176,8 +176,9 @@ class ScenarioReader {
     } else {
       scenario.simulator.source = fields_.node().range;
     }
+    for (auto& model : scenario.simulator.models) resolve(model, false);
     // Another simulator has a world of its own; the built-in one needs ours.
-    const bool built_in = scenario.simulator.command.empty();
+    const bool built_in = scenario.simulator.is_built_in();
     const auto* world = built_in ? fields_.require(Key::kWorld) : fields_.find(Key::kWorld);
     if (world != nullptr) {
       scenario.world = read_world(*world, sink_);
@@ -187,16 +188,20 @@ class ScenarioReader {
         }
       }
     }
-    if (const auto* node = fields_.require(Key::kActions)) {
+    // What has names in a world that is a model needs no words of the scenario.
+    by_name_ = !scenario.simulator.models.empty();
+    scenario.actions_source = scenario.simulator.source;
+    if (const auto* node = needed(Key::kActions)) {
       scenario.actions = read_actions(*node, built_in, sink_);
       scenario.actions_source = key_range(Key::kActions);
     }
   }
 
   void read_meaning(Scenario& scenario) {
-    const auto* regions = fields_.require(Key::kRegions);
-    const auto* mapping = fields_.require(Key::kMapping);
+    const auto* regions = needed(Key::kRegions);
+    const auto* mapping = needed(Key::kMapping);
     const auto errors_before = sink_.error_count();
+    scenario.regions_source = scenario.mapping_source = scenario.simulator.source;
     std::vector<RegionSection> sections;
     if (regions != nullptr) {
       sections = read_regions(*regions, scenario.world, sink_);
@@ -226,10 +231,17 @@ class ScenarioReader {
       auto set = RegionSet::make(section.regions, section.gaps_allowed, sink_);
       if (set) families.push_back({section.name, *std::move(set), std::move(section.functions)});
     }
-    if (sink_.error_count() != errors_before || families.empty()) return;
+    if (sink_.error_count() != errors_before) return;
+    if (families.empty()) {
+      if (by_name_) scenario.mapping.emplace(RegionMap(RegionSet()), std::move(bindings));
+      return;
+    }
     scenario.mapping.emplace(RegionMap(std::move(families)), std::move(bindings));
   }
 
+  const YamlNode* needed(std::string_view key) const {
+    return by_name_ ? fields_.find(key) : fields_.require(key);
+  }
   base::SourceRange key_range(std::string_view key) const {
     return fields_.node().find(key)->key_range;
   }
@@ -259,6 +271,7 @@ class ScenarioReader {
   const base::PathGate& gate_;
   const base::SourceFiles& files_;
   base::DiagnosticSink& sink_;
+  bool by_name_ = false;  // the simulator is a model
 };
 
 }  // namespace
@@ -307,10 +320,11 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
   if (!root) return sink.already_reported();
   ScenarioReader(*root, gate, files, sink).read(scenario);
   for (const auto& model : scenario.models) files.note_input(model.text);
+  for (const auto& model : scenario.simulator.models) files.note_input(model.text);
   for (const auto& plan : scenario.plan) note_plan(plan.text, files);
   if (scenario.bind) files.note_input(scenario.bind->text);
   // Of another simulator it is known when it has been started.
-  const bool built_in = scenario.simulator.command.empty();
+  const bool built_in = scenario.simulator.is_built_in();
   if (built_in && scenario.mapping && sink.error_count() == errors_before) {
     const auto parameters = observables(scenario.world);
     if (!check_variables(scenario, parameters, sink)) return sink.already_reported();

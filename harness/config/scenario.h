@@ -43,7 +43,10 @@ struct ActionBinding {
 /// The simulator's command and how long it may take on the clock of the wall. An act may take
 /// `act_timeout_s` if that is positive, else 5 s + its simulated limit / min_real_time_factor.
 struct SimulatorSpec {
-  std::vector<std::string> command;  // empty: the built-in ODE worker
+  std::vector<std::string> command;  // of an external one
+  std::vector<LocatedText> models;   // of a world that is a model
+  /// The built-in engine and its robots, which the world of the scenario is for.
+  bool is_built_in() const { return command.empty() && models.empty(); }
   double hello_timeout_s = 60.0;
   double reset_timeout_s = 10.0;
   double act_timeout_s = 0.0;
@@ -146,6 +149,14 @@ bool may_be_case(const std::filesystem::path& path, bool allow_outside);
 base::Status check_against_model(const Scenario& scenario, const std::vector<std::string>& fluents,
                                  const std::vector<std::string>& events,
                                  base::DiagnosticSink& sink);
+
+/// For a world that is a model (`info`): fluents without a mapping become the fluents of the same
+/// name there, or are ignored where it has none; events without an action become the event of the
+/// same name. Reports kSimulatorLacksEvent and kUnknownController for ground events that the world
+/// does not have.
+base::Status bind_by_name(Scenario& scenario, const std::vector<std::string>& fluents,
+                          const std::vector<std::string>& events, const SimulatorInfo& info,
+                          base::DiagnosticSink& sink);
 
 /// The same against what the simulator says of itself: sampled variables must be settable, the
 /// variables that these fluents are read from observable, controllers known. What the simulator

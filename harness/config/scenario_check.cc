@@ -219,7 +219,7 @@ base::Status check_against_model(const Scenario& scenario, const std::vector<std
     if (event_symbols.insert(event.symbol).second) check_event(scenario, event, sink);
   }
   if (mapped) check_expected_fluents(scenario, ground, sink);
-  if (scenario.simulator.command.empty() && sink.error_count() == errors_before) {
+  if (scenario.simulator.is_built_in() && sink.error_count() == errors_before) {
     check_fluent_variables(scenario, ground, observables(scenario.world), sink);
     check_action_names(scenario, ground_events, sink);
     check_ranges(scenario, ground, sink);
@@ -240,6 +240,8 @@ base::Status check_against_simulator(const Scenario& scenario,
   const auto& known = info.actions;
   for (const auto& action : scenario.actions) {
     if (known.empty()) break;
+    // One that depends on the event was looked at with the events.
+    if (depends_on_event(action.controller)) continue;
     if (std::find(known.begin(), known.end(), action.controller) != known.end()) continue;
     auto error = sink.error(DiagnosticCode::kUnknownController, action.source, action.controller);
     add_suggestion(error, action.controller, known, "controllers");

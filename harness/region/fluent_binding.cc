@@ -36,6 +36,11 @@ std::optional<bool> flag(const State& state, const std::string& variable,
   if (value == nullptr) return std::nullopt;
   if (const auto* boolean = std::get_if<bool>(value)) return *boolean;
   if (const auto* whole = std::get_if<std::int64_t>(value)) return *whole != 0;
+  // Drawn values are numbers.
+  if (const auto* real = std::get_if<double>(value);
+      real != nullptr && (*real == 0 || *real == 1)) {
+    return *real == 1;
+  }
   if (missing != nullptr) missing->insert(variable);
   return std::nullopt;
 }
@@ -180,7 +185,7 @@ std::optional<std::string> reset_conflict(const InsideBinding& kind, const Groun
 
 std::optional<std::string> reset_conflict(const FlagBinding& kind, const GroundFluent& fluent,
                                           bool wanted) {
-  if (wanted == kind.at_start) return std::nullopt;
+  if (kind.drawn.value_or(false) || wanted == kind.at_start) return std::nullopt;
   if (wanted) return needs_flag(kind.variable, fluent);
   return fmt::format("`{}` does not hold, but a reset makes `{}` true", fluent.text,
                      with_arguments(kind.variable, fluent));

@@ -48,6 +48,9 @@ struct InsideBinding {
 struct FlagBinding {
   std::string variable;
   bool at_start = false;  // its value after a reset
+  /// A start sets the variable to what the fluent is to be. None: the scenario does not say; it is
+  /// so where every variable of the simulator is such a one.
+  std::optional<bool> drawn = {};
 };
 
 /// Fluent holds iff a variable lies in one interval, and does not iff it lies in the other one:

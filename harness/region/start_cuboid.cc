@@ -49,7 +49,19 @@ class DemandCollector {
       }
     }
     if (const auto* inside = binding->inside()) add_inside(fluent, wanted, *inside);
+    const auto* flag = std::get_if<FlagBinding>(&binding->condition);
+    if (flag == nullptr || !at_reset_ || !flag->drawn.value_or(false)) return;
+    flags_.push_back({with_arguments(flag->variable, fluent),
+                      {wanted ? 1.0 : 0.0, wanted ? 1.0 : 0.0},
+                      fluent.text});
   }
+  /// A variable that a start sets, to what, and for which fluent.
+  struct Flag {
+    std::string variable;
+    Interval value;
+    std::string fluent;
+  };
+  const std::vector<Flag>& flags() const { return flags_; }
   const Demands& demands() const { return demands_; }
   const std::vector<Problem>& problems() const { return problems_; }
 
@@ -67,6 +79,7 @@ class DemandCollector {
   const StateMapping& mapping_;
   bool at_reset_;
   Demands demands_;
+  std::vector<Flag> flags_;
   std::vector<Problem> problems_;
 };
 
@@ -116,6 +129,10 @@ class StartBuilder {
         narrow(variable(body, axis), *range, fmt::format("region `{}`", first.region->name));
       }
     }
+  }
+
+  void set(const std::string& variable, const Interval& value, const std::string& fluent) {
+    narrow(variable, value, fmt::format("what `{}` asks for", fluent));
   }
 
   const std::vector<std::string>& problems() const { return problems_; }
@@ -213,6 +230,7 @@ base::Result<StartCuboid> StateMapping::start_cuboid(const std::vector<GroundFlu
   }
   StartBuilder builder(extra);
   for (const auto& [body, demand] : collected.demands()) builder.add(body, demand);
+  for (const auto& flag : collected.flags()) builder.set(flag.variable, flag.value, flag.fluent);
   for (const auto& problem : builder.problems()) {
     sink.error(base::DiagnosticCode::kStartNotSampleable, blame, problem);
   }

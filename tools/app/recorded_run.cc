@@ -102,7 +102,8 @@ std::string wrong_calls(const harness::Scenario& scenario, const harness::TraceL
       return binding.event == event.symbol;
     });
     const auto& call = line.calls[t];
-    if (action == actions.end() || action->controller != call.controller ||
+    if (action == actions.end() ||
+        harness::with_arguments(action->controller, event) != call.controller ||
         action->time_limit_s != call.time_limit_s) {
       return fmt::format("`{}` is not what the scenario does for `{}`", call.controller,
                          event.text);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <set>
 
@@ -10,6 +11,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/start_check.h"
+#include "harness/discrete/model_simulator.h"
 #include "harness/robot/ode_simulator.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/app/trace_feed.h"
@@ -140,9 +142,11 @@ void check_before_run(const ScenarioModel& loaded, Context& context) {
   EnumeratedTraces traces(model, context);
   traces.explain_absence_by([&] { return reasons_for_absence(loaded, context); });
   const harness::ModelFluents fluents(*traces.symbols());
-  std::optional<harness::OdeSimulator> simulator;
-  if (scenario.simulator.command.empty()) {
-    simulator.emplace(scenario.world);
+  std::unique_ptr<harness::Simulator> simulator;
+  if (scenario.simulator.is_built_in()) {
+    simulator = std::make_unique<harness::OdeSimulator>(scenario.world);
+  } else if (loaded.world) {
+    simulator = std::make_unique<harness::ModelSimulator>(loaded.world, &context.stop());
   } else {
     context.remark("the simulator was not started: what it observes and takes is not checked");
   }

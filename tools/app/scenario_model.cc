@@ -13,9 +13,11 @@
 #include "compiler/syntax/lexer.h"
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/replay.h"
+#include "harness/discrete/model_simulator.h"
 #include "harness/simulator/process_simulator.h"
 #include "tools/app/file_kind.h"
 #include "tools/app/version.h"
+#include "tools/app/world_model.h"
 
 namespace parallax::tools {
 
@@ -172,6 +174,12 @@ struct Switches {
   }
 };
 
+std::vector<harness::GroundFluent> ground_fluents(const std::vector<std::string>& names) {
+  std::vector<harness::GroundFluent> out;
+  for (const auto& name : names) out.push_back(harness::ground_fluent(name));
+  return out;
+}
+
 base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& context,
                                  const Switches& switches,
                                  const std::optional<std::string>& property = std::nullopt) {
@@ -192,13 +200,25 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
   }
   auto compilation = compiler::compile_model(*input, context.files(), sink);
   if (!compilation) return sink.already_reported();
-  const auto& model = compilation->model;
-  if (!harness::check_against_model(*scenario, compiler::names_of(model.fluents),
-                                    compiler::names_of(model.events), sink)) {
+  const auto fluents = compiler::names_of(compilation->model.fluents);
+  const auto events = compiler::names_of(compilation->model.events);
+  std::shared_ptr<const harness::SteppedModel> world;
+  if (!scenario->simulator.models.empty()) {
+    auto loaded = load_world_model(*scenario, context);
+    if (!loaded) return sink.already_reported();
+    world = *std::move(loaded);
+    const auto info = harness::ModelSimulator::info_of(*world);
+    if (!harness::bind_by_name(*scenario, fluents, events, info, sink) ||
+        !harness::check_against_simulator(*scenario, ground_fluents(fluents), info, sink)) {
+      return sink.already_reported();
+    }
+  }
+  if (!harness::check_against_model(*scenario, fluents, events, sink)) {
     return sink.already_reported();
   }
   return ScenarioModel{*std::move(scenario), *std::move(compilation),
-                       harness::hash_of_sources(context.files(), first), std::move(scenario_hash)};
+                       harness::hash_of_sources(context.files(), first), std::move(scenario_hash),
+                       std::move(world)};
 }
 
 /// Reads plan, binding table and regions; without --regions no pose lies anywhere. `regions` holds
@@ -347,6 +367,11 @@ harness::SimulatorFactory simulator_factory(const ScenarioModel& loaded,
                                             const std::atomic<bool>& stop,
                                             const std::vector<std::string>& supervisor) {
   const auto& spec = loaded.scenario.simulator;
+  if (loaded.world) {
+    return [world = loaded.world, &stop] {
+      return std::make_unique<harness::ModelSimulator>(world, &stop);
+    };
+  }
   harness::ProcessOptions options;
   options.command = spec.command;
   if (options.command.empty()) {

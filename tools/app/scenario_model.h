@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,10 @@
 #include "tools/app/context.h"
 #include "tools/app/model_options.h"
 
+namespace parallax::harness {
+struct SteppedModel;
+}
+
 namespace parallax::tools {
 
 /// A scenario with its compiled model.
@@ -24,6 +29,8 @@ struct ScenarioModel {
   compiler::Compilation compilation;
   std::string sources_hash;   // over every text that was read
   std::string scenario_hash;  // over the scenario and what it includes
+  /// The world, where the simulator is a model.
+  std::shared_ptr<const harness::SteppedModel> world = nullptr;
 };
 
 /// Reads the scenario, compiles model, plan and constraints, and holds the mapping and the actions
@@ -58,7 +65,8 @@ base::Result<compiler::Compilation> compile_plain_models(const ModelOptions& opt
 base::Result<base::SourceRange> formula_argument(const std::string& option, const std::string& text,
                                                  Context& context);
 
-/// Makes the simulator that the scenario asks for, in a process of its own: the command of the
+/// Makes the simulator that the scenario asks for: a world that is a model in this process, any
+/// other in a process of its own, which is the command of the
 /// scenario, or else the built-in one, which is the program `worker` (with its first arguments, as
 /// in {"parallax", "worker"}) started for the scenario. Words of `supervisor` are put before a
 /// command of the scenario: a program that ends with it all that it has started. Raising `stop`,

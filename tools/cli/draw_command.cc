@@ -154,7 +154,7 @@ int draw_run(const DrawOptions& options, Invocation& invocation) {
                                              ScenarioUse::kRun, invocation);
   if (!loaded || !check_recorded_run(*loaded, *run, invocation)) return 0;
   const auto& scenario = loaded->scenario;
-  if (!scenario.simulator.command.empty()) {
+  if (!scenario.simulator.is_built_in()) {
     sink.error_about(DiagnosticCode::kUsage, options.what,
                      "only worlds of the built-in simulator can be drawn");
     return 0;

@@ -140,6 +140,28 @@ TEST_CASE("start: what no reset can make is refused, each fluent once, with its 
   CHECK(found[0].notes[0].range->begin == 3);
 }
 
+TEST_CASE("start: a flag that is drawn is set to what its fluents ask for") {
+  const StateMapping lamps(RegionMap(RegionSet()),
+                           {{"Dark", 0, FlagBinding{"lit(a)", false, true}, {}},
+                            {"Lit", 1, FlagBinding{"lit({0})", false, true}, {}}});
+  const std::vector<GroundFluent> fluents = {ground_fluent("Lit(a)"), ground_fluent("Lit(b)")};
+  base::DiagnosticSink sink;
+  const auto cuboid = lamps.start_cuboid(fluents, {"Lit(b)"}, {}, {}, sink);
+  REQUIRE(cuboid.has_value());
+  REQUIRE(cuboid->dimensions.size() == 2);
+  CHECK(cuboid->dimensions[0].variable == "lit(a)");
+  CHECK(cuboid->dimensions[0].interval.upper == 0.0);
+  CHECK(cuboid->dimensions[1].interval.lower == 1.0);
+  // What is drawn maps back.
+  CHECK(lamps.wrong_at_start(fluents, {"Lit(b)"}, {{"lit(a)", 0.0}, {"lit(b)", 1.0}}).empty());
+  // Two fluents that want different values of one variable.
+  const auto both = lamps.start_cuboid({ground_fluent("Lit(a)"), ground_fluent("Dark()")},
+                                       {"Dark()"}, {}, {}, sink);
+  CHECK_FALSE(both.has_value());
+  CHECK(sink.sorted().front().message.find("outside what `Lit(a)` asks for (0)") !=
+        std::string::npos);
+}
+
 TEST_CASE("start: contradictions name the fluents") {
   auto found = start_errors({"RobotIn(r1)", "RobotIn(r2)", "In(box,r2)"});
   REQUIRE(found.size() == 1);

@@ -1,0 +1,281 @@
+#include "harness/discrete/model_simulator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "compiler/base/contract.h"
+#include "compiler/base/hash.h"
+#include "harness/sampling/sampler.h"
+
+namespace parallax::harness {
+namespace {
+
+using runtime::Literal;
+
+constexpr std::int64_t kNoEvent = -1;
+constexpr double kTimepoint_s = 1.0;
+
+/// What a start says of a fluent; none if it is neither true nor false.
+std::optional<bool> truth_value(const Value& value) {
+  if (const auto* boolean = std::get_if<bool>(&value)) return *boolean;
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) {
+    if (*whole == 0 || *whole == 1) return *whole == 1;
+  }
+  if (const auto* real = std::get_if<double>(&value)) {
+    if (*real == 0.0 || *real == 1.0) return *real == 1.0;
+  }
+  return std::nullopt;
+}
+
+std::uint64_t hash_of(const runtime::Bits& bits, std::uint64_t hash) {
+  for (const bool bit : bits) hash = base::fnv1a64_word(hash, bit ? 2 : 1);
+  return hash;
+}
+
+std::map<std::string, std::uint32_t, std::less<>> numbers_of(
+    const std::vector<compiler::GroundName>& names) {
+  std::map<std::string, std::uint32_t, std::less<>> out;
+  for (std::uint32_t i = 0; i < names.size(); ++i) out.emplace(names[i].name, i);
+  return out;
+}
+
+}  // namespace
+
+ModelSimulator::ModelSimulator(std::shared_ptr<const SteppedModel> world,
+                               const std::atomic<bool>* stop, ModelWorldLimits limits)
+    : world_(std::move(world)),
+      limits_(limits),
+      fluents_(numbers_of(world_->model.fluents)),
+      events_(numbers_of(world_->model.events)),
+      start_(world_->layered, world_->layered.start, true, stop) {
+  std::int64_t place = 0;
+  for (const auto& event : world_->model.events) {
+    event_places_.push_back(event.slot ? place++ : kNoEvent);
+  }
+  for (const auto slot : world_->layered.hidden) {
+    is_release_.push_back(world_->model.slots[slot].kind == compiler::AtomKind::kReleasedAt);
+  }
+  for (const auto& step : world_->layered.steps) {
+    windows_.push_back(std::make_unique<WindowSolver>(world_->layered, step, false, stop));
+  }
+}
+
+SimulatorInfo ModelSimulator::info_of(const SteppedModel& world) {
+  SimulatorInfo info;
+  info.name = "model";
+  info.version = world.model.producer;
+  info.determinism = "bitwise";
+  info.seeds = true;
+  for (const auto& fluent : world.model.fluents)
+    info.parameters.push_back({fluent.name, "1", true});
+  for (const auto& event : world.model.events) info.actions.push_back(event.name);
+  info.timestep_s = kTimepoint_s;
+  return info;
+}
+
+Outcome ModelSimulator::no_list(ListEnd end, const std::string& what) const {
+  if (end == ListEnd::kStopped) return {SimStatus::kLost, "stopped", 0.0, {}};
+  return {SimStatus::kUnsupported,
+          fmt::format("found more than {} {} in `{}`; say more of what is open", limits_.states,
+                      what, world_->name),
+          0.0,
+          {}};
+}
+
+void ModelSimulator::move_to(const std::vector<WorldState>& states) {
+  const CounterRng rng(DrawKey{.campaign_seed = seed_});
+  auto index = std::size_t{0};
+  if (states.size() > 1) {
+    // A product below 2^53 of a number below 1: never the size itself.
+    index = static_cast<std::size_t>(rng.uniform(draws_++) * static_cast<double>(states.size()));
+  }
+  state_ = states[index];
+  digest_ = hash_of(state_.released, hash_of(state_.observed, digest_));
+}
+
+Outcome ModelSimulator::reset(const State& initial, std::uint64_t seed) {
+  timepoint_ = -1;
+  std::vector<Literal> given;
+  std::vector<std::string> said;
+  bool possible = true;
+  for (const auto& [name, value] : initial) {
+    const auto found = fluents_.find(name);
+    if (found == fluents_.end()) {
+      return {SimStatus::kUnsupported,
+              fmt::format("no fluent `{}` in `{}`", name, world_->name),
+              0.0,
+              {}};
+    }
+    const auto wanted = truth_value(value);
+    if (!wanted) {
+      return {SimStatus::kUnsupported, fmt::format("`{}` takes true or false", name), 0.0, {}};
+    }
+    said.push_back((*wanted ? "" : "!") + name);
+    const auto& slot = world_->model.fluents[found->second].slot;
+    if (slot) {
+      const auto literal = start_.after(*slot);
+      given.push_back(*wanted ? literal : ~literal);
+    } else {
+      possible = possible && !*wanted;  // it never holds
+    }
+  }
+  seed_ = seed;
+  draws_ = 0;
+  digest_ = base::kFnvStart;
+  std::vector<runtime::Move> moves;
+  const auto end = possible ? start_.states(given, limits_.states, moves) : ListEnd::kComplete;
+  const auto starts = grouped(std::move(moves), end);
+  if (starts.end != ListEnd::kComplete) return no_list(end, "initial states that fit a start");
+  if (starts.states.empty()) {
+    return {SimStatus::kInvalidStart,
+            fmt::format("`{}` has no initial state with {}", world_->name, fmt::join(said, ", ")),
+            0.0,
+            {}};
+  }
+  move_to(starts.states);
+  timepoint_ = 0;
+  return {};
+}
+
+/// Valuations of one state become one, so that each state counts once where one is drawn.
+ModelSimulator::Answer ModelSimulator::grouped(std::vector<runtime::Move> moves,
+                                               ListEnd end) const {
+  std::map<std::pair<runtime::Bits, runtime::Bits>, std::vector<runtime::Bits>> states;
+  for (auto& move : moves) {
+    runtime::Bits released;
+    for (std::size_t i = 0; i < move.hidden.size(); ++i) {
+      if (is_release_[i]) released.push_back(move.hidden[i]);
+    }
+    states[{std::move(move.observed), std::move(released)}].push_back(std::move(move.hidden));
+  }
+  Answer answer{end, {}};
+  for (auto& [shown, hidden] : states) {
+    std::sort(hidden.begin(), hidden.end());
+    hidden.erase(std::unique(hidden.begin(), hidden.end()), hidden.end());
+    answer.states.push_back({shown.first, shown.second, std::move(hidden)});
+  }
+  if (answer.states.size() > limits_.states) answer.end = ListEnd::kTooMany;
+  return answer;
+}
+
+std::vector<Literal> ModelSimulator::before(const WindowSolver& solver,
+                                            const runtime::Bits& hidden) const {
+  std::vector<Literal> out;
+  const auto assume = [&](const std::vector<std::uint32_t>& slots, const runtime::Bits& values) {
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      out.push_back(values[i] ? solver.before(slots[i]) : ~solver.before(slots[i]));
+    }
+  };
+  assume(world_->layered.observed, state_.observed);
+  assume(world_->layered.hidden, hidden);
+  return out;
+}
+
+ModelSimulator::Answer ModelSimulator::find_steps(std::uint32_t window, std::int64_t event) {
+  auto& solver = *windows_[window];
+  const auto count = world_->layered.events.size();
+  // Which events go with it: no more than the model demands.
+  std::set<std::vector<std::size_t>> sets;
+  for (const auto& hidden : state_.hidden) {
+    auto given = before(solver, hidden);
+    if (event != kNoEvent) given.push_back(solver.event(static_cast<std::size_t>(event)));
+    std::vector<std::vector<std::size_t>> least;
+    const auto end = solver.least_events(given, limits_.event_sets, least);
+    if (end != ListEnd::kComplete) return {end, {}};
+    sets.insert(least.begin(), least.end());
+  }
+  std::vector<runtime::Move> moves;
+  for (const auto& set : sets) {
+    const bool is_least = std::none_of(sets.begin(), sets.end(), [&](const auto& other) {
+      return other != set && std::includes(set.begin(), set.end(), other.begin(), other.end());
+    });
+    if (!is_least) continue;
+    for (const auto& hidden : state_.hidden) {
+      auto given = before(solver, hidden);
+      for (std::size_t i = 0; i < count; ++i) {
+        const bool happens = std::binary_search(set.begin(), set.end(), i);
+        given.push_back(happens ? solver.event(i) : ~solver.event(i));
+      }
+      std::vector<runtime::Move> more;
+      const auto end = solver.states(given, limits_.states, more);
+      if (end != ListEnd::kComplete) return {end, {}};
+      moves.insert(moves.end(), std::make_move_iterator(more.begin()),
+                   std::make_move_iterator(more.end()));
+    }
+  }
+  return grouped(std::move(moves), ListEnd::kComplete);
+}
+
+const ModelSimulator::Answer& ModelSimulator::steps(std::int64_t event) {
+  const auto& at = world_->layered.step_at;
+  const auto window = at[std::min(static_cast<std::size_t>(timepoint_), at.size() - 1)];
+  Question question{window, event, state_};
+  const auto found = known_.find(question);
+  if (found != known_.end()) return found->second;
+  if (known_.size() >= limits_.remembered) known_.clear();
+  auto answer = find_steps(window, event);
+  return known_.emplace(std::move(question), std::move(answer)).first->second;
+}
+
+Outcome ModelSimulator::act(std::string_view action, const State& /*arguments*/,
+                            double /*sim_time_limit_s*/) {
+  PARALLAX_REQUIRE(timepoint_ >= 0, "a successful reset before act");
+  const auto event = events_.find(action);
+  if (event == events_.end()) {
+    return {SimStatus::kUnsupported,
+            fmt::format("no event `{}` in `{}`", action, world_->name),
+            0.0,
+            {}};
+  }
+  // Steps beyond the horizon are as the last one, if what the model says of time ends before it.
+  const auto& at = world_->layered.step_at;
+  const auto last = at.size() - 1;
+  if (static_cast<std::size_t>(timepoint_) > last && at[last] != at[last - 1]) {
+    return {SimStatus::kUnsupported,
+            fmt::format("`{}` speaks of timepoint {}, and was not read beyond it", world_->name,
+                        at.size()),
+            0.0,
+            {}};
+  }
+  const auto place = event_places_[event->second];
+  const auto taken_s = kTimepoint_s;
+  if (place != kNoEvent) {
+    const auto& answer = steps(place);
+    if (answer.end != ListEnd::kComplete) {
+      return no_list(answer.end, fmt::format("outcomes of `{}`", action));
+    }
+    if (!answer.states.empty()) {
+      move_to(answer.states);
+      ++timepoint_;
+      return {SimStatus::kOk, {}, taken_s, {}};
+    }
+  }
+  const auto& idle = steps(kNoEvent);
+  if (idle.end != ListEnd::kComplete)
+    return no_list(idle.end, "outcomes of a step without an event");
+  if (!idle.states.empty()) move_to(idle.states);
+  ++timepoint_;
+  return {SimStatus::kFailed,
+          fmt::format("not-possible: `{}` has no next state in which `{}` has happened",
+                      world_->name, action),
+          taken_s,
+          {}};
+}
+
+State ModelSimulator::observe() {
+  PARALLAX_REQUIRE(timepoint_ >= 0, "a successful reset before observe");
+  State out;
+  std::size_t place = 0;
+  for (const auto& fluent : world_->model.fluents) {
+    out.emplace(fluent.name, fluent.slot ? state_.observed[place++] : false);
+  }
+  out["digest"] = fmt::format("{:016x}", digest_);
+  return out;
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <atomic>
+#include <compare>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "harness/discrete/stepped_model.h"
+#include "harness/discrete/window_solver.h"
+#include "harness/simulator/simulator.h"
+
+namespace parallax::harness {
+
+/// A state of a discrete world: its fluents and what is released. `hidden` has every valuation of
+/// what else one window hands on to the next that belongs to it, as in GraphNode.
+struct WorldState {
+  runtime::Bits observed, released;
+  std::vector<runtime::Bits> hidden;  // as LayeredModel::hidden, ascending
+  friend auto operator<=>(const WorldState&, const WorldState&) = default;
+};
+
+struct ModelWorldLimits {
+  std::size_t states = 4096;        // that one start or one step leaves open
+  std::size_t event_sets = 256;     // by which one event can come about
+  std::size_t remembered = 20'000;  // questions whose answers are kept
+};
+
+/// A discrete world as a simulator. Its parameters are the ground fluents of the model, true or
+/// false, all settable; its actions are the ground events; a timepoint takes a second.
+///
+/// Reset: one of the initial states of the model in which the named fluents are as they were named,
+/// each equally likely; kInvalidStart if there is none. Act: the event happens, and of other events
+/// no more than the model demands; the world moves to one of the states that the model admits then,
+/// each equally likely. If it admits none the action fails, and time alone passes: the world moves
+/// on without the event, or stays where even that is impossible.
+///
+/// Drawn from the seed alone, so that two simulators of one model agree to the last bit.
+class ModelSimulator final : public Simulator {
+ public:
+  /// `stop` may be null, and outlives the simulator: once raised, it answers kLost.
+  explicit ModelSimulator(std::shared_ptr<const SteppedModel> world,
+                          const std::atomic<bool>* stop = nullptr, ModelWorldLimits limits = {});
+
+  SimulatorInfo info() override { return info_of(*world_); }
+  static SimulatorInfo info_of(const SteppedModel& world);
+  Outcome reset(const State& initial, std::uint64_t seed) override;
+  Outcome act(std::string_view action, const State& arguments, double sim_time_limit_s) override;
+  State observe() override;
+
+ private:
+  /// States that a question leaves open, or why there is no list.
+  struct Answer {
+    ListEnd end = ListEnd::kComplete;
+    std::vector<WorldState> states;
+  };
+  using Question = std::tuple<std::uint32_t, std::int64_t, WorldState>;  // window, event, before
+
+  const Answer& steps(std::int64_t event);
+  Answer find_steps(std::uint32_t window, std::int64_t event);
+  /// As assumptions: the state before the window, in one of its valuations.
+  std::vector<runtime::Literal> before(const WindowSolver& solver,
+                                       const runtime::Bits& hidden) const;
+  Answer grouped(std::vector<runtime::Move> moves, ListEnd end) const;
+  void move_to(const std::vector<WorldState>& states);
+  Outcome no_list(ListEnd end, const std::string& what) const;
+
+  std::shared_ptr<const SteppedModel> world_;
+  ModelWorldLimits limits_;
+  std::map<std::string, std::uint32_t, std::less<>> fluents_;  // numbers in the model
+  std::map<std::string, std::uint32_t, std::less<>> events_;
+  std::vector<bool> is_release_;            // by place in LayeredModel::hidden
+  std::vector<std::int64_t> event_places_;  // by number: among LayeredModel::events, or -1
+  WindowSolver start_;
+  std::vector<std::unique_ptr<WindowSolver>> windows_;  // as LayeredModel::steps
+  std::map<Question, Answer> known_;
+  WorldState state_;
+  std::int64_t timepoint_ = -1;  // -1: not reset
+  std::uint64_t seed_ = 0, draws_ = 0, digest_ = 0;
+};
+
+}  // namespace parallax::harness

@@ -1,0 +1,113 @@
+#include "harness/discrete/window_solver.h"
+
+#include <algorithm>
+
+namespace parallax::harness {
+
+using runtime::Literal;
+using runtime::SolveStatus;
+
+WindowSolver::WindowSolver(const runtime::LayeredModel& model, const runtime::WindowClauses& window,
+                           bool is_start, const std::atomic<bool>* stop)
+    : model_(model),
+      is_start_(is_start),
+      solver_(runtime::make_cadical_solver(stop)),
+      next_guard_(window.variables + 1) {
+  std::vector<Literal> clause;
+  for (const auto& written : window.clauses) {
+    clause.clear();
+    for (const auto literal : written) clause.push_back(Literal::from_dimacs(literal));
+    solver_->add_clause(clause);
+  }
+}
+
+SolveStatus WindowSolver::solve(std::span<const Literal> given, std::span<const Literal> more) {
+  for (const auto literal : given) solver_->assume(literal);
+  for (const auto literal : more) solver_->assume(literal);
+  return solver_->solve();
+}
+
+ListEnd WindowSolver::states(std::span<const Literal> given, std::size_t limit,
+                             std::vector<runtime::Move>& out) {
+  std::vector<Literal> projection;
+  for (const auto slot : model_.observed) projection.push_back(after(slot));
+  for (const auto slot : model_.hidden) projection.push_back(after(slot));
+  // What is excluded meanwhile is let go at the end: the guard is never assumed again.
+  const auto guard = new_guard();
+  auto end = ListEnd::kComplete;
+  std::vector<Literal> others;
+  for (;;) {
+    const auto status = solve(given, std::span(&guard, 1));
+    if (status == SolveStatus::kUnsatisfiable) break;
+    if (status == SolveStatus::kUnknown || out.size() == limit) {
+      end = status == SolveStatus::kUnknown ? ListEnd::kStopped : ListEnd::kTooMany;
+      break;
+    }
+    auto& state = out.emplace_back();
+    others = {~guard};
+    for (std::size_t i = 0; i < projection.size(); ++i) {
+      const bool value = solver_->value(projection[i]);
+      (i < model_.observed.size() ? state.observed : state.hidden).push_back(value);
+      others.push_back(value ? ~projection[i] : projection[i]);
+    }
+    solver_->add_clause(others);
+  }
+  solver_->add_clause(std::vector{~guard});
+  std::sort(out.begin(), out.end());
+  return end;
+}
+
+std::vector<std::size_t> WindowSolver::events_at_hand() const {
+  std::vector<std::size_t> happening;
+  for (std::size_t i = 0; i < model_.events.size(); ++i) {
+    if (solver_->value(event(i))) happening.push_back(i);
+  }
+  return happening;
+}
+
+/// Leaves out events of a set that is admitted until none can be: kUnsatisfiable, or kUnknown.
+SolveStatus WindowSolver::shrink(std::span<const Literal> given, std::vector<std::size_t>& events) {
+  for (;;) {
+    const auto guard = new_guard();
+    std::vector<Literal> more = {guard}, fewer = {~guard};
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < model_.events.size(); ++i) {
+      const bool in = next < events.size() && events[next] == i;
+      if (in) ++next;
+      (in ? fewer : more).push_back(~event(i));
+    }
+    solver_->add_clause(fewer);
+    const auto status = solve(given, more);
+    if (status == SolveStatus::kSatisfiable) events = events_at_hand();
+    solver_->add_clause(std::vector{~guard});
+    if (status != SolveStatus::kSatisfiable) return status;
+  }
+}
+
+ListEnd WindowSolver::least_events(std::span<const Literal> given, std::size_t limit,
+                                   std::vector<std::vector<std::size_t>>& out) {
+  const auto guard = new_guard();
+  auto end = ListEnd::kComplete;
+  for (;;) {
+    const auto status = solve(given, std::span(&guard, 1));
+    if (status == SolveStatus::kUnsatisfiable) break;
+    if (status == SolveStatus::kUnknown || out.size() == limit) {
+      end = status == SolveStatus::kUnknown ? ListEnd::kStopped : ListEnd::kTooMany;
+      break;
+    }
+    auto events = events_at_hand();
+    if (shrink(given, events) == SolveStatus::kUnknown) {
+      end = ListEnd::kStopped;
+      break;
+    }
+    std::vector<Literal> others = {~guard};
+    for (const auto i : events) others.push_back(~event(i));
+    solver_->add_clause(others);
+    out.push_back(std::move(events));
+  }
+  solver_->add_clause(std::vector{~guard});
+  std::sort(out.begin(), out.end());
+  return end;
+}
+
+}  // namespace parallax::harness

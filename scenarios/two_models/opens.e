@@ -1,0 +1,5 @@
+; Pulling opens a drawer.
+
+load domain.e
+
+[drawer,time] Initiates(OpenDrawer(drawer),Open(drawer),time).

@@ -1,0 +1,152 @@
+// A world that is a model: two models played against each other, with answers known beforehand.
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/cli_json.h"
+#include "tests/tools/two_models.h"
+
+namespace parallax::test {
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+TEST_CASE("two models that agree: clean, with the claim, and the same bytes for any jobs") {
+  const TwoModels cli;
+  const auto report = json_of(cli, {"run", "two/agree.yaml", "--out", "one"});
+  CHECK(report.at("verdict") == "no-discrepancy");
+  CHECK(report.at("exploration") == "all traces explored");
+  const auto& trace = report.at("traces").at(0);
+  CHECK(trace.at("events") == Json({"OpenDrawer(top)", "CloseDrawer(top)", "Park()"}));
+  CHECK(trace.at("certified").at("epsilon") <= 0.05);
+  CHECK(trace.at("strayed") == 0);
+  CHECK(
+      json_of(cli, {"run", "two/agree.yaml", "--out", "three", "--jobs", "3"}).at("simulations") ==
+      report.at("simulations"));
+  CHECK(cli.read("one/journal.ndjson") == cli.read("three/journal.ndjson"));
+  CHECK(cli.parallax({"replay", "one", "--sample", "1.7"}).code == 0);
+  CHECK(cli.parallax({"check", "two/agree.yaml"}).code == 0);
+
+  // A run that was ended half-way gives the same.
+  const auto journal = cli.read("one/journal.ndjson");
+  fs::create_directory(cli.folder() / "half");
+  cli.write("half/journal.ndjson", journal.substr(0, journal.find('\n', journal.size() / 2) + 1));
+  CHECK(json_of(cli, {"run", "two/agree.yaml", "--out", "half", "--resume"}).at("verdict") ==
+        "no-discrepancy");
+  CHECK(cli.read("half/journal.ndjson") == journal);
+}
+
+TEST_CASE("an effect that the model forgets is found in the first run, where it happens") {
+  const TwoModels cli;
+  const auto report = json_of(cli, {"run", "two/unparks.yaml", "--out", "out"}, 1);
+  CHECK(report.at("simulations") == 1);
+  const auto& found = report.at("discrepancies").at(0);
+  CHECK(found.at("kind") == "transient");
+  CHECK(found.at("first_divergence") == 1);
+  const Json forgotten = {
+      {"fluent", "Parked()"}, {"timepoint", 1}, {"predicted", true}, {"observed", false}};
+  CHECK(found.at("first") == Json::array({forgotten}));
+  CHECK(found.at("cause").at("text") == "OpenDrawer(top): not Parked()");
+  CHECK(cli.read("out/report.txt").find("OpenDrawer(top) (two/open_and_close.lisp:4)") !=
+        std::string::npos);
+  CHECK(cli.parallax({"replay", "out"}).code == 0);
+  const auto why = cli.parallax({"explain", "out"});
+  CHECK(why.code == 1);
+  CHECK(why.out.find("inertia of Parked()") != std::string::npos);
+  // Who says that it is not to be compared gets what was asked for.
+  cli.write("two/rest.yaml", "include: unparks.yaml\nmapping: {Parked(): ignored}\nexpect:\n");
+  CHECK(json_of(cli, {"run", "two/rest.yaml", "--epsilon", "0.3"}).at("verdict") ==
+        "no-discrepancy");
+}
+
+TEST_CASE("an outcome that the world leaves open comes out as often as it should") {
+  const TwoModels cli;
+  const auto half = [&](const std::string& scenario) {
+    const auto rates = json_of(cli, {"rates", scenario, "--runs", "1000", "--seed", "3"});
+    const auto count = rates.at("traces").at(0).at("any").at("count").get<int>();
+    // Binomial(1000, 1/2): beyond 415..585 with probability below 1e-7.
+    CHECK(count >= 415);
+    CHECK(count <= 585);
+    CHECK(json_of(cli, {"rates", scenario, "--runs", "1000", "--seed", "3", "--jobs", "2"})
+              .at("traces") == rates.at("traces"));
+  };
+  half("two/sticks.yaml");
+  half(cli.world("load domain.e\n[drawer,time] Releases(OpenDrawer(drawer),Open(drawer),time).\n"));
+}
+
+TEST_CASE("an action that the world forbids fails with its reason") {
+  const TwoModels cli;
+  const auto scenario = cli.world(
+      "load opens.e\nfluent Locked()\nHoldsAt(Locked(),0).\n"
+      "[drawer,time] Happens(OpenDrawer(drawer),time) -> !HoldsAt(Locked(),time).\n");
+  const auto report = json_of(cli, {"run", scenario, "--out", "out"}, 1);
+  CHECK(report.at("simulations") == 1);
+  const auto& found = report.at("discrepancies").at(0);
+  CHECK(found.at("cause").at("text") == "OpenDrawer(top): not-possible");
+  CHECK(found.at("first_divergence") == 1);
+}
+
+TEST_CASE("names: what the world lacks is not compared, or stands for something else") {
+  const TwoModels cli;
+  const std::string other =
+      "fluent Ajar()\nfluent Parked()\nevent Pull()\nevent Push()\nevent Park()\nevent Reach()\n"
+      "[time] Initiates(Pull(),Ajar(),time).\n[time] Terminates(Push(),Ajar(),time).\n"
+      "[time] Initiates(Park(),Parked(),time).\n";
+  auto scenario = cli.world(
+      other,
+      "actions:\n  OpenDrawer(d): {controller: Pull()}\n  CloseDrawer(d): {controller: Push()}\n");
+  auto report = json_of(cli, {"run", scenario, "--epsilon", "0.3", "--out", "left"});
+  CHECK(report.at("verdict") == "no-discrepancy");
+  CHECK(cli.read("left/report.txt")
+            .find("not compared Open(..): the model of the simulator has no such fluent") !=
+        std::string::npos);
+  scenario = cli.world(other,
+                       "mapping: {Open(d): {flag: Ajar()}}\n"
+                       "actions:\n  OpenDrawer(d): {controller: Pull()}\n"
+                       "  CloseDrawer(d): {controller: Pull()}\n");
+  report = json_of(cli, {"run", scenario, "--epsilon", "0.3", "--out", "right"}, 1);
+  CHECK(report.at("discrepancies").at(0).at("first_divergence") == 2);
+}
+
+TEST_CASE("what is wrong with the world is said at its place, by check and by run") {
+  const TwoModels cli;
+  const auto refused = [&](const std::string& scenario, const std::string& code,
+                           const std::string& place) {
+    for (const std::string command : {"run", "check"}) {
+      const auto result = cli.parallax({command, scenario});
+      CAPTURE(result.err);
+      CHECK(result.code == 3);
+      CHECK(result.err.find("error[" + code + "]") != std::string::npos);
+      CHECK(result.err.find(place) != std::string::npos);
+    }
+  };
+  const std::string whole = "load opens.e\n";
+  cli.write("two/none.yaml", "include: common.yaml\nsimulator: {model: nowhere.e}\n");
+  refused("two/none.yaml", "E0001", "two/none.yaml:2:20-28");
+  cli.write("outside.e", whole);
+  cli.write("two/out.yaml", "include: common.yaml\nsimulator: {model: ../outside.e}\n");
+  refused("two/out.yaml", "E1016", "two/out.yaml:2:20-31");
+  cli.write("two/both.yaml", "include: common.yaml\nsimulator: {model: opens.e, command: [a]}\n");
+  refused("two/both.yaml", "E5102", "two/both.yaml:2:29-35");
+  refused(cli.world(whole + "fluent\n"), "E1007", "two/world.e:2");
+  refused(cli.world("fluent Parked()\nevent Park()\n"), "E5135", "two/own.yaml:2");
+  refused(cli.world(whole, "actions: {Park(): {controller: Parkk()}}\n"), "E5120",
+          "two/own.yaml:3:11-16");
+  refused(cli.world(whole, "mapping: {Parked(): {flag: Parkd()}}\n"), "E5115",
+          "two/own.yaml:3:11-18");
+  refused(cli.world(whole, "sampling: {variables: {Parkd(): 1}}\n"), "E5115", "two/own.yaml:3");
+  refused(cli.world(whole + "HoldsAt(Parked(),0).\n!HoldsAt(Parked(),0).\n"), "E5134",
+          "two/world.e:3");
+  refused(cli.world(whole + "HoldsAt(Parked(),2).\n!HoldsAt(Parked(),2).\n"), "E5134",
+          "it has no execution of 3 steps");
+  refused(cli.world(whole + "completion Happens\n"), "E5134", "two/world.e:2:1");
+  refused(cli.world(whole + "[time] HoldsAt(Parked(),time) -> HoldsAt(Open(top),time+2).\n"),
+          "E5134", "more than two neighbouring timepoints");
+  refused(cli.world(whole + "!HoldsAt(Parked(),0).\n"), "E7105", "two/own.yaml:2");
+}
+
+}  // namespace
+}  // namespace parallax::test
