@@ -162,6 +162,19 @@ class TraceCampaign {
     return std::move(outcome_);
   }
 
+  /// "at any step" is not said of all of them.
+  void add_rest_caveat(TraceResult& result) const {
+    std::vector<std::string> names;
+    for (const auto& fluents :
+         compared_fluents(*context_.scenario.mapping, context_.bench.fluents().ground(),
+                          Comparison::kEveryStep)) {
+      if (fluents.how == ComparedFluents::How::kAtTheEnd) names.push_back(fluents.fluent);
+    }
+    if (names.empty()) return;
+    result.caveats.push_back(fmt::format("compared at the start and in the last state only: {}",
+                                         fmt::join(names, ", ")));
+  }
+
   void add_own_caveats(TraceResult& result) const {
     if (trace().other_outcomes == base::Known::kYes && context_.scenario.match_model) {
       result.caveats.push_back(context_.scenario.comparison() == Comparison::kFinal
@@ -172,6 +185,7 @@ class TraceCampaign {
                                      "count as predicted if the "
                                      "model admits them");
     }
+    if (context_.scenario.comparison() == Comparison::kEveryStep) add_rest_caveat(result);
     if (trace().other_initial_states == base::Known::kYes) {
       result.caveats.push_back(
           "other initial states lead to the same events; only the first, in the model's order, was "

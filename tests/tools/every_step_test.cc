@@ -147,6 +147,12 @@ TEST_CASE("where last states are compared the cause is one that the last state s
   for (const auto& cause : causes("final")) CHECK(cause.at("cause") == "Place(r1): not BoxIn(r1)");
   REQUIRE(causes("every-step").size() == 1);
   CHECK(causes("every-step").at(0).at("cause") == "PickUp(): not Odd()");
+  // A claim about every step says which fluents it leaves out on the way.
+  cli.replace("odd.yaml", "fails: [-5, 4.9]}", "fails: [-5, 4.9], compare: final}");
+  const auto report = json_of(cli, {"run", "odd.yaml", "--seed", "3", "--out", "odd"}, 1);
+  const auto caveats = report.at("traces").at(0).at("caveats").dump();
+  CHECK(caveats.find("compared at the start and in the last state only: Odd()") !=
+        std::string::npos);
 }
 
 TEST_CASE("what is no comparison is refused at its place") {
