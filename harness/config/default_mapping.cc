@@ -51,7 +51,8 @@ void bind_fluents(Scenario& scenario, const std::vector<std::string>& fluents,
     }
     bindings.push_back(std::move(binding));
   }
-  scenario.mapping.emplace(scenario.mapping->regions(), std::move(bindings));
+  auto regions = scenario.mapping->regions();
+  scenario.mapping.emplace(std::move(regions), std::move(bindings));
 }
 
 void bind_events(Scenario& scenario, const std::vector<std::string>& events,

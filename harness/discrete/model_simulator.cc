@@ -78,11 +78,11 @@ SimulatorInfo ModelSimulator::info_of(const SteppedModel& world) {
   return info;
 }
 
-Outcome ModelSimulator::no_list(ListEnd end, const std::string& what) const {
-  if (end == ListEnd::kStopped) return {SimStatus::kLost, "stopped", 0.0, {}};
+Outcome ModelSimulator::no_list(const Answer& answer, const std::string& what) const {
+  if (answer.end == ListEnd::kStopped) return {SimStatus::kLost, "stopped", 0.0, {}};
   return {SimStatus::kUnsupported,
-          fmt::format("found more than {} {} in `{}`; say more of what is open", limits_.states,
-                      what, world_->name),
+          fmt::format("found more than {} {} in `{}`; say more of what is open", answer.limit, what,
+                      world_->name),
           0.0,
           {}};
 }
@@ -130,7 +130,7 @@ Outcome ModelSimulator::reset(const State& initial, std::uint64_t seed) {
   std::vector<runtime::Move> moves;
   const auto end = possible ? start_.states(given, limits_.states, moves) : ListEnd::kComplete;
   const auto starts = grouped(std::move(moves), end);
-  if (starts.end != ListEnd::kComplete) return no_list(end, "initial states that fit a start");
+  if (starts.end != ListEnd::kComplete) return no_list(starts, "initial states that fit a start");
   if (starts.states.empty()) {
     return {SimStatus::kInvalidStart,
             fmt::format("`{}` has no initial state with {}", world_->name, fmt::join(said, ", ")),
@@ -153,7 +153,7 @@ ModelSimulator::Answer ModelSimulator::grouped(std::vector<runtime::Move> moves,
     }
     states[{std::move(move.observed), std::move(released)}].push_back(std::move(move.hidden));
   }
-  Answer answer{end, {}};
+  Answer answer{end, {}, limits_.states};
   for (auto& [shown, hidden] : states) {
     std::sort(hidden.begin(), hidden.end());
     hidden.erase(std::unique(hidden.begin(), hidden.end()), hidden.end());
@@ -186,7 +186,7 @@ ModelSimulator::Answer ModelSimulator::find_steps(std::uint32_t window, std::int
     if (event != kNoEvent) given.push_back(solver.event(static_cast<std::size_t>(event)));
     std::vector<std::vector<std::size_t>> least;
     const auto end = solver.least_events(given, limits_.event_sets, least);
-    if (end != ListEnd::kComplete) return {end, {}};
+    if (end != ListEnd::kComplete) return {end, {}, limits_.event_sets};
     sets.insert(least.begin(), least.end());
   }
   std::vector<runtime::Move> moves;
@@ -203,7 +203,7 @@ ModelSimulator::Answer ModelSimulator::find_steps(std::uint32_t window, std::int
       }
       std::vector<runtime::Move> more;
       const auto end = solver.states(given, limits_.states, more);
-      if (end != ListEnd::kComplete) return {end, {}};
+      if (end != ListEnd::kComplete) return {end, {}, limits_.states};
       moves.insert(moves.end(), std::make_move_iterator(more.begin()),
                    std::make_move_iterator(more.end()));
     }
@@ -247,7 +247,7 @@ Outcome ModelSimulator::act(std::string_view action, const State& /*arguments*/,
   if (place != kNoEvent) {
     const auto& answer = steps(place);
     if (answer.end != ListEnd::kComplete) {
-      return no_list(answer.end, fmt::format("outcomes of `{}`", action));
+      return no_list(answer, fmt::format("outcomes of `{}`", action));
     }
     if (!answer.states.empty()) {
       move_to(answer.states);
@@ -256,8 +256,7 @@ Outcome ModelSimulator::act(std::string_view action, const State& /*arguments*/,
     }
   }
   const auto& idle = steps(kNoEvent);
-  if (idle.end != ListEnd::kComplete)
-    return no_list(idle.end, "outcomes of a step without an event");
+  if (idle.end != ListEnd::kComplete) return no_list(idle, "outcomes of a step without an event");
   if (!idle.states.empty()) move_to(idle.states);
   ++timepoint_;
   return {SimStatus::kFailed,

@@ -56,6 +56,7 @@ class ModelSimulator final : public Simulator {
   struct Answer {
     ListEnd end = ListEnd::kComplete;
     std::vector<WorldState> states;
+    std::size_t limit = 0;  // the one that was hit
   };
   using Question = std::tuple<std::uint32_t, std::int64_t, WorldState>;  // window, event, before
 
@@ -66,7 +67,7 @@ class ModelSimulator final : public Simulator {
                                        const runtime::Bits& hidden) const;
   Answer grouped(std::vector<runtime::Move> moves, ListEnd end) const;
   void move_to(const std::vector<WorldState>& states);
-  Outcome no_list(ListEnd end, const std::string& what) const;
+  Outcome no_list(const Answer& answer, const std::string& what) const;
 
   std::shared_ptr<const SteppedModel> world_;
   ModelWorldLimits limits_;

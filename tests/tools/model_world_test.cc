@@ -89,6 +89,23 @@ TEST_CASE("an action that the world forbids fails with its reason") {
   CHECK(found.at("first_divergence") == 1);
 }
 
+TEST_CASE("the plan's poses lie in regions, whatever the world is") {
+  const TwoModels cli;
+  const std::string common =
+      "plan: fetch.lisp\nbind: robot.bind\nhorizon: 6\nsimulator: {model: domain.e}\n"
+      "regions: {cells: {r1: {x: [0, 1]}, r2: {x: [1, 2]}}}\n"
+      "constraints: \"{region} Happens(Place(region),time-1)\"\n";
+  cli.write("right.yaml", "model: [domain.e, start.e]\n" + common);
+  CHECK(json_of(cli, {"run", "right.yaml", "--epsilon", "0.3", "--out", "r"}).at("verdict") ==
+        "no-discrepancy");
+  // The mistake that physics shows in wrong_model.yaml.
+  cli.write("wrong.yaml",
+            "include: right.yaml\nmodel: [wrong_domain.e, start.e]\nplan: hasty.lisp\n");
+  const auto report = json_of(cli, {"run", "wrong.yaml", "--out", "w"}, 1);
+  CHECK(report.at("simulations") == 1);
+  CHECK(report.at("discrepancies").at(0).at("first_divergence") == 1);
+}
+
 TEST_CASE("names: what the world lacks is not compared, or stands for something else") {
   const TwoModels cli;
   const std::string other =
