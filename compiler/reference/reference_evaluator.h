@@ -43,6 +43,9 @@ class ReferenceSearch {
   /// reasons of completed atoms.
   void run(std::size_t limit, std::int64_t max_reasons);
   const std::vector<ReferenceFinding>& found() const { return found_; }
+  /// The effect axioms, as indices into the typed model's, of which some instance's event happened
+  /// while its condition held.
+  std::set<std::size_t> fired_effects() const;
   bool finished() const { return finished_; }
 
  private:
@@ -143,6 +146,8 @@ class ReferenceEvaluator {
   /// predicates that no formula mentions have no number; any value of theirs is fine unless the
   /// predicate is completed.
   bool accepts(const Values& values) const;
+  Values values_of(const Valuation& valuation) const;
+  const TypedModel& model() const { return model_; }
   const ExpandedModel& expanded() const { return expanded_; }
 
   const std::vector<std::string>& fluents() const { return expanded_.fluents(); }
@@ -156,7 +161,6 @@ class ReferenceEvaluator {
   std::string deciding_atoms(FormulaTrees::Node node, const Values& values) const;
   void note_strange_atoms(const Valuation& valuation, std::size_t limit,
                           std::vector<Violation>& out) const;
-  Values values_of(const Valuation& valuation) const;
 
   const TypedModel& model_;
   ReferenceLimits limits_;

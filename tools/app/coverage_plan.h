@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "compiler/base/source_file.h"
+#include "compiler/plan/plan_graph.h"
+#include "compiler/sema/typed_model.h"
+#include "runtime/trace/trace.h"
+#include "tools/app/coverage.h"
+
+namespace parallax::tools {
+
+CoverageKey coverage_key(CoverageGroup group, const base::SourceRange& source, std::string id,
+                         const base::SourceFiles& files);
+
+/// What there is to cover in a plan, and what a trace covers of it. Performs that no way through
+/// the plan has are not among it.
+class PlanCoverage {
+ public:
+  /// All outlive the object.
+  PlanCoverage(const compiler::PlanGraph& graph, const compiler::TypedModel& model,
+               const base::SourceFiles& files);
+
+  const std::set<CoverageKey>& all() const { return all_; }
+  /// `trace` as an enumerator gave it, with the plan's steps.
+  std::set<CoverageKey> covered_by(const runtime::Trace& trace) const;
+
+ private:
+  using Decision = std::pair<compiler::BranchId, bool>;
+
+  CoverageKey perform(const compiler::PlanLocation& location) const;
+  CoverageKey outcome(const compiler::PlanLocation& location, bool success) const;
+  CoverageKey retry(const compiler::PlanLocation& location) const;
+  CoverageKey decision(const compiler::PlanBranch& branch, bool value) const;
+  CoverageKey handler(const compiler::PlanHandler& handler) const;
+  /// The decisions on the way from a place to the next location; those that are certain.
+  std::set<Decision> way(const compiler::PlanTarget& from, std::optional<compiler::LocationId> next,
+                         const runtime::Trace& trace, std::size_t t) const;
+  void add_ways(const compiler::PlanTarget& from, std::optional<compiler::LocationId> next,
+                const runtime::Trace& trace, std::size_t t, std::vector<Decision>& path,
+                std::vector<std::set<Decision>>& found) const;
+  /// None: it has a quantifier, or speaks of what is not known.
+  std::optional<bool> value(const compiler::FormulaTree& guard, const runtime::Trace& trace,
+                            std::size_t t) const;
+
+  const compiler::PlanGraph& graph_;
+  const compiler::TypedModel& model_;
+  const base::SourceFiles& files_;
+  std::vector<std::vector<compiler::LocationId>> earlier_;
+  std::set<CoverageKey> all_;
+};
+
+}  // namespace parallax::tools
