@@ -1,6 +1,7 @@
 // What the documentation says is what the program does.
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <fstream>
 #include <regex>
@@ -67,6 +68,43 @@ TEST_CASE("every command of the README is one that the program knows") {
   for (const auto& name : seen) {
     CHECK_MESSAGE(help.find("  " + name + " ") != std::string::npos, "README names " << name);
   }
+}
+
+/// With four digits of each number: the last ones depend on the machine.
+std::string rounded(const std::string& text) {
+  const std::regex number("-?[0-9]+\\.[0-9]+");
+  std::string out;
+  auto from = text.begin();
+  for (auto it = std::sregex_iterator(text.begin(), text.end(), number);
+       it != std::sregex_iterator(); ++it) {
+    out.append(from, text.begin() + it->position());
+    out += fmt::format("{:.4g}", std::stod(it->str()));
+    from = text.begin() + it->position() + it->length();
+  }
+  return out.append(from, text.end());
+}
+
+TEST_CASE("the README's first run prints what the README shows") {
+  const CliFixture cli;
+  const auto readme = document("README.md");
+  const std::string prompt = "    $ parallax run scenarios/two_regions/edge.yaml\n";
+  const auto begin = readme.find(prompt);
+  REQUIRE(begin != std::string::npos);
+  std::string shown;
+  std::istringstream lines(readme.substr(begin + prompt.size()));
+  for (std::string line; std::getline(lines, line) && (line.empty() || line.starts_with("    "));) {
+    shown += (line.empty() ? line : line.substr(4)) + '\n';
+  }
+  shown.pop_back();  // the empty line behind the block
+  ProcessOptions options;
+  options.folder = PARALLAX_SOURCE_DIR;
+  const auto folder = (cli.folder() / "edge").string();
+  auto printed =
+      cli.parallax({"run", "scenarios/two_regions/edge.yaml", "--out", folder}, options).out;
+  const auto out = printed.find(folder);
+  REQUIRE(out != std::string::npos);
+  printed.replace(out, folder.size(), "out/edge");
+  CHECK(rounded(printed) == rounded(shown));
 }
 
 }  // namespace
