@@ -151,6 +151,8 @@ class TextReport {
     }
     std::vector<std::vector<std::string>> rows;
     for (const auto& [variable, interval] : trace.start_region) {
+      // A world that is a model has the fluents themselves for variables.
+      if (trace.trace->symbols->fluent(variable)) continue;
       rows.push_back({variable, interval.lower == interval.upper
                                     ? fmt::format("{}", interval.lower)
                                     : fmt::format("{} to {}", interval.lower, interval.upper)});

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/cli_json.h"
+#include "tests/tools/kitchen_copy.h"
 #include "tests/tools/two_models.h"
 
 namespace parallax::test {
@@ -23,6 +24,8 @@ TEST_CASE("two models that agree: clean, with the claim, and the same bytes for 
   CHECK(trace.at("events") == Json({"OpenDrawer(top)", "CloseDrawer(top)", "Park()"}));
   CHECK(trace.at("certified").at("epsilon") <= 0.05);
   CHECK(trace.at("strayed") == 0);
+  // The start is told by its state; its variables are the same once more.
+  CHECK(cli.read("one/report.txt").find("start region") == std::string::npos);
   CHECK(
       json_of(cli, {"run", "two/agree.yaml", "--out", "three", "--jobs", "3"}).at("simulations") ==
       report.at("simulations"));
@@ -104,6 +107,21 @@ TEST_CASE("the plan's poses lie in regions, whatever the world is") {
   const auto report = json_of(cli, {"run", "wrong.yaml", "--out", "w"}, 1);
   CHECK(report.at("simulations") == 1);
   CHECK(report.at("discrepancies").at(0).at("first_divergence") == 1);
+}
+
+TEST_CASE("the kitchen's model is right about a world that is the kitchen's model") {
+  const KitchenCopy cli;
+  // Without what the words mean in physics.
+  const auto common = cli.read("kitchen/common.yaml");
+  cli.write("kitchen/common.yaml", common.substr(0, common.find("\nmapping:") + 1));
+  for (const std::string plan : {"plan1", "plan3"}) {
+    cli.write("kitchen/own.yaml",
+              "include: " + plan + ".yaml\nsimulator: {model: domain.e}\nexpect:\n");
+    const auto report =
+        json_of(cli, {"run", "kitchen/own.yaml", "--epsilon", "0.4", "--out", plan});
+    CHECK(report.at("verdict") == "no-discrepancy");
+    CHECK(report.at("iterations") == 3);
+  }
 }
 
 TEST_CASE("names: what the world lacks is not compared, or stands for something else") {
