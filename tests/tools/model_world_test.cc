@@ -42,6 +42,13 @@ TEST_CASE("two models that agree: clean, with the claim, and the same bytes for 
   CHECK(cli.read("half/journal.ndjson") == journal);
 }
 
+TEST_CASE("the folder as a suite: each scenario gives what it expects") {
+  const TwoModels cli;
+  const auto suite = cli.parallax({"suite", "two"});
+  CHECK_MESSAGE(suite.code == 0, suite.out);
+  CHECK(suite.out.find("3 passed, 0 failed\n") != std::string::npos);
+}
+
 TEST_CASE("an effect that the model forgets is found in the first run, where it happens") {
   const TwoModels cli;
   const auto report = json_of(cli, {"run", "two/unparks.yaml", "--out", "out"}, 1);
@@ -159,12 +166,15 @@ TEST_CASE("what is wrong with the world is said at its place, by check and by ru
     }
   };
   const std::string whole = "load opens.e\n";
-  cli.write("two/none.yaml", "include: common.yaml\nsimulator: {model: nowhere.e}\n");
+  cli.write("two/none.yaml",
+            "include: common.yaml\nsimulator: {model: nowhere.e}\nmodel: start.e\n");
   refused("two/none.yaml", "E0001", "two/none.yaml:2:20-28");
   cli.write("outside.e", whole);
-  cli.write("two/out.yaml", "include: common.yaml\nsimulator: {model: ../outside.e}\n");
+  cli.write("two/out.yaml",
+            "include: common.yaml\nsimulator: {model: ../outside.e}\nmodel: start.e\n");
   refused("two/out.yaml", "E1016", "two/out.yaml:2:20-31");
-  cli.write("two/both.yaml", "include: common.yaml\nsimulator: {model: opens.e, command: [a]}\n");
+  cli.write("two/both.yaml",
+            "include: common.yaml\nsimulator: {model: opens.e, command: [a]}\nmodel: start.e\n");
   refused("two/both.yaml", "E5102", "two/both.yaml:2:29-35");
   refused(cli.world(whole + "fluent\n"), "E1007", "two/world.e:2");
   refused(cli.world("fluent Parked()\nevent Park()\n"), "E5135", "two/own.yaml:2");

@@ -17,7 +17,8 @@ class TwoModels : public CliFixture {
   /// A scenario whose world is this model; `more`: further lines of it.
   std::string world(const std::string& model, const std::string& more = "") const {
     write("two/world.e", model);
-    write("two/own.yaml", "include: common.yaml\nsimulator: {model: world.e}\n" + more);
+    write("two/own.yaml", "include: common.yaml\nsimulator: {model: world.e}\n" + more +
+                              "model: [opens.e, start.e]\n");
     return "two/own.yaml";
   }
 };
