@@ -10,6 +10,7 @@
 #include "harness/campaign/trace_input.h"
 #include "harness/confidence/comparison.h"
 #include "harness/confidence/criterion_spec.h"
+#include "harness/region/start_share.h"
 #include "harness/region/state_mapping.h"
 #include "harness/simulator/simulator.h"
 
@@ -59,6 +60,7 @@ struct TraceResult {
   std::shared_ptr<const CampaignTrace> trace;
   CampaignVerdict verdict = CampaignVerdict::kInconclusive;
   std::vector<SampledDimension> start_region;  // the continuous states that it stands for
+  std::vector<StartShare> start_shares;        // how much of their cells these are
   std::int64_t simulations = 0;  // run and not rejected before they began; lost ones included
   std::int64_t clean = 0;
   std::int64_t admitted = 0;  // of the clean ones: went otherwise, as the model admits

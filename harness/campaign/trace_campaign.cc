@@ -31,6 +31,8 @@ class TraceCampaign {
     auto& result = outcome_.result;
     result.trace = trial_.plan().trace;
     result.start_region = trial_.start().dimensions;
+    result.start_shares =
+        start_shares(*context.scenario.mapping, as_set(result.trace->holds(0)), trial_.start());
   }
 
   base::Result<TraceOutcome> run() {

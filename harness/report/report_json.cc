@@ -27,6 +27,21 @@ Json json_of(const std::vector<SampledDimension>& dimensions) {
   return out;
 }
 
+/// [{"body": "milk1", "region": "pw1", "share": 0.08, "axes": {"x": [0.1, 0.24]}, "fixed": ["z"]}]
+Json json_of(const std::vector<StartShare>& shares) {
+  Json out = Json::array();
+  for (const auto& share : shares) {
+    Json axes = Json::object();
+    for (const auto& axis : share.axes) axes[axis.axis] = {axis.drawn, axis.whole};
+    out.push_back({{"body", share.body},
+                   {"region", share.region},
+                   {"share", share.share},
+                   {"axes", std::move(axes)},
+                   {"fixed", share.fixed}});
+  }
+  return out;
+}
+
 Json json_of(const std::vector<DivergingFluent>& fluents) {
   auto out = Json::array();
   for (const auto& fluent : fluents) {
@@ -74,6 +89,7 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
               {"sources", std::move(sources)},
               {"initial_state", holds_json<Json>(trace, 0)},
               {"start_region", json_of(result.start_region)},
+              {"start_shares", json_of(result.start_shares)},
               {"not_compared", ignored_names(compared)},
               {"simulations", result.simulations},
               {"guided", 0},

@@ -160,6 +160,27 @@ class TextReport {
     if (rows.empty()) return;
     constexpr std::string_view kLabel = "  start region";
     out_ += table(rows, kLabelEnd).replace(0, kLabel.size(), kLabel);
+    start_shares(trace);
+  }
+
+  /// How much of the cells the starts are drawn from: what is claimed is about no more.
+  void start_shares(const TraceResult& trace) {
+    std::vector<std::vector<std::string>> rows;
+    for (const StartShare& share : trace.start_shares) {
+      std::vector<std::string> parts;
+      for (const auto& axis : share.axes) {
+        if (axis.drawn == axis.whole) continue;
+        parts.push_back(fmt::format("{} {:.4g} of {:.4g}", axis.axis, axis.drawn, axis.whole));
+      }
+      if (!share.fixed.empty())
+        parts.push_back("fixed " + fmt::format("{}", fmt::join(share.fixed, " ")));
+      rows.push_back({fmt::format("{} in {}", share.body, share.region),
+                      fmt::format("{:.3g} %", 100.0 * share.share),
+                      fmt::format("{}", fmt::join(parts, ", "))});
+    }
+    if (rows.empty()) return;
+    constexpr std::string_view kLabel = "  of the cells";
+    out_ += table(rows, kLabelEnd).replace(0, kLabel.size(), kLabel);
   }
 
   /// Both confidence figures side by side: what is certified, and what the paper's rule says.

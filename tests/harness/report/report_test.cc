@@ -41,6 +41,7 @@ CampaignResult sample_result() {
   clean.trace = trace(1);
   clean.verdict = CampaignVerdict::kNoDiscrepancy;
   clean.start_region = {{"box.x", {1.0, 2.0, false}}, {"robot.yaw", {0.5, 0.5, true}}};
+  clean.start_shares = {{"box", "r2", 0.25, {{"x", 0.25, 1.0}}, {"yaw"}}};
   clean.simulations = clean.clean = 7;
   clean.certified_level = 0.99;
   clean.certified_epsilon = 0.482053;
@@ -101,6 +102,7 @@ TEST_CASE("the text says events with places, both figures, the claim, and how to
   const auto text = campaign_text(sample_result(), {});
   for (const std::string part :
        {"1  PickUp()  fetch.lisp:10\n",
+        "of the cells box in r2  25 %  x 0.25 of 1, fixed yaw\n",
         "with 99 % confidence p < 48.3 %",
         "satisfied after 3 runs",
         "[not a probability of error]",
@@ -227,6 +229,11 @@ TEST_CASE("the document has the fields that scripts read") {
   CHECK(trace.at("admitted") == 0);
   CHECK(trace.at("initial_state") == Json({"BoxIn(r2)", "RobotIn(r1)"}));
   CHECK(trace.at("start_region") == Json({{"box.x", {1.0, 2.0}}, {"robot.yaw", 0.5}}));
+  CHECK(trace.at("start_shares") == Json::array({Json{{"body", "box"},
+                                                      {"region", "r2"},
+                                                      {"share", 0.25},
+                                                      {"axes", {{"x", {0.25, 1.0}}}},
+                                                      {"fixed", {"yaw"}}}}));
   CHECK(trace.at("not_compared") == Json({"LookingAt(..)", "Happy()", "Tired()"}));
   CHECK(json.at("compare") == "every-step");
   CHECK(json.at("compared").at(2) ==

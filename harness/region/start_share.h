@@ -1,0 +1,30 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "harness/region/state_mapping.h"
+
+namespace parallax::harness {
+
+/// How much of the cell that a body starts in its starts are drawn from.
+struct StartShare {
+  struct Axis {
+    std::string axis;                 // "x"
+    double drawn = 0.0, whole = 0.0;  // widths [m or rad]
+  };
+  std::string body, region;
+  /// Volume drawn from over volume of the cell, on the axes that are drawn.
+  double share = 1.0;
+  std::vector<Axis> axes;          // those that are drawn
+  std::vector<std::string> fixed;  // bounded axes on which all starts have one value
+};
+
+/// Of each body that a fluent of `true_fluents` puts into a region; `start` is their start_cuboid.
+/// By body.
+std::vector<StartShare> start_shares(const StateMapping& mapping,
+                                     const std::set<std::string>& true_fluents,
+                                     const StartCuboid& start);
+
+}  // namespace parallax::harness
