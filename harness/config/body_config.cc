@@ -14,6 +14,10 @@ using base::DiagnosticCode;
 
 namespace {
 
+/// [m, rad]; what is farther off was not detected.
+constexpr NumberBounds kDetectionError{0.0, 0.5, false, false};
+constexpr NumberBounds kUnit{0.0, 1.0, false, false};
+
 BoxShape read_shape(const YamlNode& node, std::string what, base::DiagnosticSink& sink) {
   BoxShape shape;
   YamlFields fields(node, std::move(what), sink);
@@ -132,16 +136,34 @@ void read_pair(const YamlFields& fields, std::string_view key, double& low, doub
   }
 }
 
+DetectionSpec read_detection(const YamlNode& node, base::DiagnosticSink& sink) {
+  DetectionSpec detection;
+  YamlFields fields(node, key_text(Key::kDetection), sink);
+  fields.only({Key::kBiasM, Key::kBiasRad, Key::kNoiseM, Key::kNoiseRad, Key::kMissRate,
+               Key::kConfusionRate});
+  fields.number(Key::kBiasM, kDetectionError, detection.bias_m);
+  fields.number(Key::kBiasRad, kDetectionError, detection.bias_rad);
+  fields.number(Key::kNoiseM, kDetectionError, detection.noise_m);
+  fields.number(Key::kNoiseRad, kDetectionError, detection.noise_rad);
+  fields.number(Key::kMissRate, kUnit, detection.miss_rate);
+  fields.number(Key::kConfusionRate, kUnit, detection.confusion_rate);
+  return detection;
+}
+
 CameraSpec read_camera(const YamlNode& node, base::DiagnosticSink& sink) {
   CameraSpec camera;
   YamlFields fields(node, key_text(Key::kCamera), sink);
-  fields.only({Key::kAtM, Key::kHalfAngleRad, Key::kRangeM, Key::kMaxPanRad, Key::kTiltRad});
+  fields.only({Key::kAtM, Key::kHalfAngleRad, Key::kRangeM, Key::kMaxPanRad, Key::kTiltRad,
+               Key::kDetection});
   fields.require(Key::kAtM);
   read_vector(fields, Key::kAtM, camera.p_BC);
   fields.number(Key::kHalfAngleRad, kPositive, camera.half_angle_rad);
   read_pair(fields, Key::kRangeM, camera.min_range_m, camera.max_range_m);
   fields.number(Key::kMaxPanRad, kPositive, camera.max_pan_rad);
   read_pair(fields, Key::kTiltRad, camera.min_tilt_rad, camera.max_tilt_rad);
+  if (const auto* detection = fields.find(Key::kDetection)) {
+    camera.detection = read_detection(*detection, sink);
+  }
   return camera;
 }
 

@@ -23,6 +23,8 @@ struct Key {
   static constexpr std::string_view kBaseBody = "base_body";
   static constexpr std::string_view kBaseJoint = "base_joint";
   static constexpr std::string_view kBetween = "between";
+  static constexpr std::string_view kBiasM = "bias_m";
+  static constexpr std::string_view kBiasRad = "bias_rad";
   static constexpr std::string_view kBind = "bind";
   static constexpr std::string_view kBodies = "bodies";
   static constexpr std::string_view kBody = "body";
@@ -39,6 +41,7 @@ struct Key {
   static constexpr std::string_view kCompare = "compare";
   static constexpr std::string_view kComplete = "complete";
   static constexpr std::string_view kConfidence = "confidence";
+  static constexpr std::string_view kConfusionRate = "confusion_rate";
   static constexpr std::string_view kConstraints = "constraints";
   static constexpr std::string_view kContactCfm = "contact_cfm";
   static constexpr std::string_view kContactErp = "contact_erp";
@@ -46,6 +49,7 @@ struct Key {
   static constexpr std::string_view kCriterion = "criterion";
   static constexpr std::string_view kDefault = "default";
   static constexpr std::string_view kDefaults = "defaults";
+  static constexpr std::string_view kDetection = "detection";
   static constexpr std::string_view kDiameterM = "diameter_m";
   static constexpr std::string_view kDrawn = "drawn";
   static constexpr std::string_view kEffortN = "effort_n";
@@ -108,9 +112,12 @@ struct Key {
   static constexpr std::string_view kMaxTraces = "max_traces";
   static constexpr std::string_view kMemoryMb = "memory_mb";
   static constexpr std::string_view kMinRealTimeFactor = "min_real_time_factor";
+  static constexpr std::string_view kMissRate = "miss_rate";
   static constexpr std::string_view kModel = "model";
   static constexpr std::string_view kName = "name";
   static constexpr std::string_view kNearPadBody = "near_pad_body";
+  static constexpr std::string_view kNoiseM = "noise_m";
+  static constexpr std::string_view kNoiseRad = "noise_rad";
   static constexpr std::string_view kObserveTimeoutS = "observe_timeout_s";
   static constexpr std::string_view kOnlyIf = "only_if";
   static constexpr std::string_view kOpeningM = "opening_m";
@@ -161,6 +168,8 @@ struct Key {
   static constexpr std::string_view kTraces = "traces";
   static constexpr std::string_view kType = "type";
   static constexpr std::string_view kUnless = "unless";
+  static constexpr std::string_view kUpright = "upright";
+  static constexpr std::string_view kUprightExcept = "upright_except";
   static constexpr std::string_view kVariables = "variables";
   static constexpr std::string_view kVerdict = "verdict";
   static constexpr std::string_view kWallM = "wall_m";

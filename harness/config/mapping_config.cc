@@ -7,6 +7,7 @@
 #include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
+#include "harness/world/density.h"
 #include "harness/world/structure_check.h"
 
 namespace parallax::harness {
@@ -14,6 +15,9 @@ namespace parallax::harness {
 using base::DiagnosticCode;
 
 namespace {
+
+/// [rad]; a body that leans more than a right angle stands on its head.
+constexpr NumberBounds kLean{0.0, 1.5707, true, false};
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -148,6 +152,8 @@ InsideBinding read_inside(const YamlFields& fields, const SymbolPattern& pattern
   read_flag_name(fields, Key::kUnless, pattern, binding.unless);
   read_flag_name(fields, Key::kOnlyIf, pattern, binding.only_if);
   fields.boolean(Key::kDrawn, binding.drawn);
+  fields.number(Key::kUpright, kLean, binding.upright);
+  fields.texts(Key::kUprightExcept, binding.upright_except);
   return binding;
 }
 
@@ -229,7 +235,9 @@ std::optional<FluentBinding> read_binding(const YamlEntry& entry, base::Diagnost
     return binding;
   }
   // Where an observation makes sense at rest only.
-  binding.at_rest_only = read_comparison(fields) == Comparison::kFinal;
+  const auto comparison = read_comparison(fields);
+  binding.at_rest_only = comparison == Comparison::kFinal;
+  binding.asks_for_every_step = comparison == Comparison::kEveryStep;
   if (fields.find(Key::kFlag) != nullptr) {
     binding.condition = read_flag(fields, *pattern);
     return binding;
@@ -242,11 +250,30 @@ std::optional<FluentBinding> read_binding(const YamlEntry& entry, base::Diagnost
     binding.condition = read_equals(fields, *pattern);
     return binding;
   }
-  fields.only({Key::kInside, Key::kBody, Key::kUnless, Key::kOnlyIf, Key::kDrawn, Key::kFlag,
-               Key::kRange, Key::kEquals, Key::kCompare, Key::kIgnored});
+  fields.only({Key::kInside, Key::kBody, Key::kUnless, Key::kOnlyIf, Key::kDrawn, Key::kUpright,
+               Key::kUprightExcept, Key::kFlag, Key::kRange, Key::kEquals, Key::kCompare,
+               Key::kIgnored});
   if (fields.require(Key::kInside) == nullptr) return std::nullopt;
   binding.condition = read_inside(fields, *pattern);
   return binding;
+}
+
+/// A mass that is drawn, at both ends.
+void warn_of_density(const WorldSpec& world, const YamlEntry& entry, const Interval& masses,
+                     base::DiagnosticSink& sink) {
+  constexpr std::string_view kMass = ".mass";
+  if (!entry.key.ends_with(kMass)) return;
+  const auto name = entry.key.substr(0, entry.key.size() - kMass.size());
+  for (const BodySpec& body : world.bodies) {
+    if (body.name != name || body.shapes.empty()) continue;
+    for (const double mass_kg : {masses.lower, masses.upper}) {
+      const auto odd = odd_density(body, mass_kg);
+      if (!odd) continue;
+      sink.warning(DiagnosticCode::kOddDensity, entry.value.range, fmt::format("{:g} kg", mass_kg),
+                   fmt::format("`{}` a thing", name), density_kg_m3(body, mass_kg), *odd);
+      return;
+    }
+  }
 }
 
 /// A symbol may have one entry only, whatever its parameters are called.
@@ -366,6 +393,7 @@ void read_sampling(const YamlNode& node, Scenario& scenario, base::DiagnosticSin
                  fmt::format("from {} to {} kg", interval->lower, interval->upper),
                  fmt::format("above 0 and at most {:g} kg", kMaxMass_kg));
     }
+    if (built_in) warn_of_density(scenario.world, entry, *interval, sink);
     scenario.sampling.push_back({entry.key, *interval});
     scenario.sampled_sources[entry.key] = entry.key_range;
   }

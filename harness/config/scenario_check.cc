@@ -196,6 +196,19 @@ base::Status check_variables(const Scenario& scenario, const std::vector<Paramet
   return base::Unit{};
 }
 
+namespace {
+
+/// Where last states are compared, a fluent that asks for every step would silently not get it.
+void check_comparisons(const Scenario& scenario, base::DiagnosticSink& sink) {
+  if (scenario.comparison() != Comparison::kFinal) return;
+  for (const auto& binding : scenario.mapping->bindings()) {
+    if (!binding.asks_for_every_step) continue;
+    sink.error(DiagnosticCode::kComparisonWithoutEffect, binding.source, binding.fluent);
+  }
+}
+
+}  // namespace
+
 base::Status check_against_model(const Scenario& scenario, const std::vector<std::string>& fluents,
                                  const std::vector<std::string>& events,
                                  base::DiagnosticSink& sink) {
@@ -212,6 +225,7 @@ base::Status check_against_model(const Scenario& scenario, const std::vector<std
     return binding != nullptr && !binding->is_ignored();
   });
   if (mapped && !compares) sink.error(DiagnosticCode::kNothingCompared, scenario.mapping_source);
+  check_comparisons(scenario, sink);
   std::vector<GroundFluent> ground_events;
   for (const auto& text : events) {
     ground_events.push_back(ground_fluent(text));

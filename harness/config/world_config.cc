@@ -6,6 +6,8 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/config/sections.h"
 #include "harness/engine/world_check.h"
+#include "harness/world/density.h"
+#include "harness/world/world_layout.h"
 
 namespace parallax::harness {
 namespace {
@@ -125,6 +127,20 @@ base::SourceRange range_of(const YamlNode& world, std::string_view path) {
   return range;
 }
 
+/// Of what the robot is to move; its own parts and furniture are of the engine's making.
+void warn_of_densities(const YamlNode& node, const WorldSpec& world, base::DiagnosticSink& sink) {
+  const WorldLayout layout = lay_out(world);
+  for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
+    const BodySpec& body = layout.bodies[layout.bodies.id_at(i)];
+    if (!layout.is_free[i]) continue;
+    if (const auto odd = odd_density(body, body.mass_kg)) {
+      const auto path = "bodies/" + body.name + "/mass_kg";
+      sink.warning(DiagnosticCode::kOddDensity, range_of(node, path), path,
+                   fmt::format("`{}` a thing", body.name), density_kg_m3(body, body.mass_kg), *odd);
+    }
+  }
+}
+
 }  // namespace
 
 WorldSpec read_world(const YamlNode& node, base::DiagnosticSink& sink) {
@@ -162,6 +178,7 @@ WorldSpec read_world(const YamlNode& node, base::DiagnosticSink& sink) {
                             problem.message);
     if (!problem.suggestion.empty()) error.fix(fmt::format("write `{}`", problem.suggestion));
   }
+  if (sink.error_count() == errors_before) warn_of_densities(node, world, sink);
   return world;
 }
 

@@ -71,6 +71,17 @@ std::string needs_flag(const std::string& pattern, const GroundFluent& fluent) {
                      with_arguments(pattern, fluent));
 }
 
+/// Leans the body no more than the binding allows?
+bool is_upright(const InsideBinding& kind, const Region& region, const std::string& body,
+                const State& state, std::set<std::string>* missing) {
+  const auto& free = kind.upright_except;
+  if (!kind.upright || std::find(free.begin(), free.end(), region.name) != free.end()) return true;
+  const auto roll = number(state, body + ".roll", missing);
+  const auto pitch = number(state, body + ".pitch", missing);
+  // The cosine of the angle between the two verticals.
+  return roll && pitch && std::cos(*roll) * std::cos(*pitch) >= std::cos(*kind.upright);
+}
+
 // What the kinds of conditions answer about a ground fluent of their symbol. FluentBinding, whose
 // declarations say what is asked, passes each question on to the kind that it has.
 
@@ -93,6 +104,7 @@ std::optional<Reading> read(const InsideBinding& kind, const GroundFluent& fluen
     point[static_cast<std::size_t>(axis)] = value.value_or(0.0);
   }
   if (!region->frame.empty()) into_frame(region->frame, state, missing, point);
+  complete = is_upright(kind, *region, name, state, missing) && complete;
   return reading(kind.flags_allow(fluent, state, missing) && complete &&
                  regions.contains(*region, point));
 }
@@ -148,6 +160,10 @@ std::vector<std::string> variables(const InsideBinding& kind, const GroundFluent
   for (const auto& variable : {kind.unless, kind.only_if}) {
     if (variable) out.push_back(with_arguments(*variable, fluent));
   }
+  if (kind.upright) {
+    const std::string body = with_arguments(kind.body, fluent);
+    out.insert(out.end(), {body + ".roll", body + ".pitch"});
+  }
   return out;
 }
 
@@ -170,6 +186,7 @@ std::vector<std::string> constant_variables(const InsideBinding& kind, const Reg
     });
     if (bounded) out.push_back(fmt::format("{}.{}", kind.body, to_string(axis)));
   }
+  if (kind.upright) out.insert(out.end(), {kind.body + ".roll", kind.body + ".pitch"});
   if (kind.unless) out.push_back(*kind.unless);
   if (kind.only_if) out.push_back(*kind.only_if);
   return out;
@@ -221,6 +238,10 @@ void add_reset_values(const InsideBinding& kind, const GroundFluent& fluent,
                       const RegionMap& regions, State& state) {
   for (const auto& variable : {kind.unless, kind.only_if}) {
     if (variable) state.emplace(with_arguments(*variable, fluent), false);
+  }
+  if (kind.upright) {
+    const std::string body = with_arguments(kind.body, fluent);
+    for (const char* item : {".roll", ".pitch"}) state.emplace(body + item, 0.0);
   }
   const Region* region = kind.region_of(fluent, regions);
   if (!kind.drawn || region == nullptr || region->frame.empty()) return;

@@ -30,12 +30,16 @@ enum class Reading : std::uint8_t { kFails, kHolds, kNeither };
 
 /// Fluent F(.., r, ..) holds iff `body` lies in region r: argument number `region_argument` names
 /// the region. `unless` / `only_if` are boolean variables that must be false / true besides.
+/// `upright` asks for the orientation, too: a carton that lies on its side is not placed.
 struct InsideBinding {
   std::string body;  // "box" reads box.x, box.y, ...; "{0}" stands for argument 0
   std::size_t region_argument = 0;
   std::optional<std::string> unless;  // "box.held"
   std::optional<std::string> only_if;
   bool drawn = true;  // false: a reset puts the body there by itself, nothing is drawn
+  /// So far [rad] the body may lean, or the fluent does not hold: "body.roll" and "body.pitch" say.
+  std::optional<double> upright{};
+  std::vector<std::string> upright_except{};  // regions in which it may lie
 
   /// The region that the fluent names; null if there is none of this name.
   const Region* region_of(const GroundFluent& fluent, const RegionMap& regions) const;
@@ -81,6 +85,8 @@ struct FluentBinding {
   base::SourceRange source;
   /// Compared at the start and at the end only, also where other fluents are at every step.
   bool at_rest_only = false;
+  /// Said of the fluent itself: an error where only last states are compared.
+  bool asks_for_every_step = false;
 
   /// None if the fluent is ignored on purpose.
   std::optional<Reading> read(const GroundFluent& ground, const State& state,

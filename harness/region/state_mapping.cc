@@ -28,21 +28,30 @@ void report_unmapped(const std::string& symbol, const std::vector<std::string>& 
   }
 }
 
+void report_no_region(const FluentBinding& binding, const std::string& asks,
+                      const std::string& name, const RegionMap& regions,
+                      base::DiagnosticSink& sink) {
+  auto report = sink.error(DiagnosticCode::kMappingNoRegion, binding.source, asks, name);
+  if (const auto near = base::nearest_name(name, region_names(regions))) {
+    report.note(fmt::format("there is a region `{}`", *near));
+  }
+}
+
 void check_region(const FluentBinding& binding, const GroundFluent& fluent,
                   const RegionMap& regions, base::DiagnosticSink& sink) {
   const auto* inside = binding.inside();
   if (inside == nullptr) return;
+  for (const auto& name : inside->upright_except) {
+    if (regions.find(name) == nullptr)
+      report_no_region(binding, fluent.symbol, name, regions, sink);
+  }
   if (inside->region_argument >= fluent.arguments.size()) {
     sink.error(DiagnosticCode::kMappingArity, binding.source, binding.fluent,
                inside->region_argument + 1, fluent.text, fluent.arguments.size());
     return;
   }
   const auto& name = fluent.arguments[inside->region_argument];
-  if (regions.find(name) != nullptr) return;
-  auto report = sink.error(DiagnosticCode::kMappingNoRegion, binding.source, fluent.text, name);
-  if (const auto near = base::nearest_name(name, region_names(regions))) {
-    report.note(fmt::format("there is a region `{}`", *near));
-  }
+  if (regions.find(name) == nullptr) report_no_region(binding, fluent.text, name, regions, sink);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace parallax::harness {
 namespace {
 
-constexpr double kSearch_m = 0.004;  // beyond where the near pad should have met the body
+constexpr double kSearch_m = 0.014;  // beyond where the near pad should have met the body
 
 /// Takes hold of a body where it is believed to be, by friction alone, and lifts it.
 class PickUp final : public MobileController {
@@ -36,7 +36,7 @@ class PickUp final : public MobileController {
         grasp_.follows_body ? perception().belief(object_).yaw_rad : heading_rad;
     const Eigen::AngleAxisd turn(frame_rad, Eigen::Vector3d::UnitZ());
     // The near pad passes at the clearance; the far one closes up to it.
-    const double clearance_m = number("clearance_m");
+    const double clearance_m = clearance();
     const double wrist_W = frame_rad + grasp_.wrist_rad;
     // Pads squeeze along y of the palm: a turn by half a circle is the same grasp with the pads
     // exchanged; the smaller turn of the wrist is taken.
@@ -50,6 +50,11 @@ class PickUp final : public MobileController {
     add_phases(wrist, target_ - number("standoff_m") * way_in());
   }
 
+  /// Of each pad before it closes; no more than the gripper opens.
+  double clearance() const {
+    return std::min(number("clearance_m"), 0.5 * (arm().spec().opening_m - grasp_.width_m));
+  }
+
   /// Straight down, or level between the pads, so that neither pad brushes the body on its way.
   Eigen::Vector3d way_in() const {
     if (grasp_.from_above) return -Eigen::Vector3d::UnitZ();
@@ -58,8 +63,7 @@ class PickUp final : public MobileController {
   }
 
   void add_phases(double wrist, const Eigen::Vector3d& standoff) {
-    const double opening_m =
-        std::min(arm().spec().opening_m, grasp_.width_m + 2.0 * number("clearance_m"));
+    const double opening_m = std::min(arm().spec().opening_m, grasp_.width_m + 2.0 * clearance());
     add_wrist(wrist);
     add_opening([opening_m] { return opening_m; });
     add_step([this, standoff] { check_last_stretch(standoff); });
@@ -87,7 +91,7 @@ class PickUp final : public MobileController {
   /// Brings the near pad to the body, so that the far one does not tip it over.
   void add_touching() {
     static constexpr Motion kTouching{0.02, 1.0, 0.0005, 10.0};
-    const double way_m = number("clearance_m") + kSearch_m;
+    const double way_m = clearance() + kSearch_m;
     add_tool_move_until(
         "touching", [this, way_m] { return Eigen::Vector3d(arm().tool() - way_m * to_near_); },
         kTouching, [this] { return world().touch(object_).near_pad(arm().gripper()); });

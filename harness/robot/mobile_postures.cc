@@ -144,25 +144,48 @@ class Detect final : public MobileController {
     const int points = static_cast<int>(number("points"));
     const int needed = static_cast<int>(number("points_needed"));
     int best = 0;
-    std::string hidden_by;
+    std::string hidden_by, overlooked;
     bool found = false;
     for (const BodyId id : perception().bodies_of_kind(kind)) {
       const Sighting sighting = perception().sight(id, points);
       best = std::max(best, sighting.seen);
       if (!sighting.hidden_by.empty()) hidden_by = sighting.hidden_by;
-      if (sighting.seen < needed) {
+      const bool missed = sighting.seen >= needed && perception().errors().missed();
+      if (missed) overlooked = name_of(id);
+      if (sighting.seen < needed || missed) {
         perception().unsee(id);
         continue;
       }
       perception().believe(id, sighting);
       found = true;
     }
+    if (!found) found = confuse(kind, points, needed);
     const State margins{{"points", static_cast<double>(best - needed)}};
     if (found) return {SimStatus::kOk, {}, 0.0, margins};
+    if (!overlooked.empty()) {
+      return failed(kObjectNotFound, fmt::format("`{}` is in sight and was missed", overlooked),
+                    margins);
+    }
     std::string text =
         fmt::format("{} of {} points of a `{}` in sight, {} needed", best, points, kind, needed);
     if (!hidden_by.empty()) text += fmt::format("; `{}` is in the way", hidden_by);
     return failed(kObjectNotFound, text, margins);
+  }
+
+  /// Is something else in sight taken for the first body of the kind?
+  bool confuse(const std::string& kind, int points, int needed) {
+    const auto wanted = perception().bodies_of_kind(kind);
+    const WorldLayout& layout = world().layout();
+    if (wanted.empty() || robot().spec().camera.detection.confusion_rate == 0.0) return false;
+    for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
+      const BodyId id = layout.bodies.id_at(i);
+      if (!layout.is_free[i] || layout.bodies[id].kind_name() == kind) continue;
+      const Sighting sighting = perception().sight(id, points);
+      if (sighting.seen < needed || !perception().errors().confused()) continue;
+      perception().believe(id, sighting, wanted.front());
+      return true;
+    }
+    return false;
   }
 };
 

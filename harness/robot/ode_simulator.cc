@@ -53,6 +53,7 @@ void observe_belief(const Perception& perception, BodyId id, const std::string& 
   out[prefix + "seen.x"] = p.x();
   out[prefix + "seen.y"] = p.y();
   out[prefix + "seen.z"] = p.z();
+  out[prefix + "seen.yaw"] = seen ? perception.belief(id).yaw_rad : 0.0;
   out[prefix + "seen.bottom"] = perception.believed_bottom_m(id).value_or(0.0);
 }
 
@@ -109,11 +110,11 @@ struct OdeSimulator::Impl {
   bool can(const ControllerSpec& controller) const {
     return controller.robot == RobotKind::kLine ? line.has_value() : mobile.has_value();
   }
-  void reset_robot() {
+  void reset_robot(std::uint64_t seed) {
     grasp.reset();
     if (line) line->reset();
     if (mobile) mobile->reset();
-    if (perception) perception->reset();
+    if (perception) perception->reset(seed);
   }
   void drive_motors() {
     if (line) line->drive_motors();
@@ -170,7 +171,7 @@ Outcome OdeSimulator::reset(const State& initial, std::uint64_t seed) {
   if (start.status != SimStatus::kOk) return {start.status, start.reason, 0.0, {}};
 
   const std::optional<Overlap> overlap = impl_->world.reset(start.placements, seed);
-  impl_->reset_robot();
+  impl_->reset_robot(seed);
   if (overlap) {
     return {SimStatus::kInvalidStart,
             fmt::format("`{}` overlaps `{}` by {:.1f} mm", overlap->first, overlap->second,

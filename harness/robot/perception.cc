@@ -63,9 +63,13 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }  // namespace
 
 Perception::Perception(const OdeWorld& world, const MobileRobot& robot)
-    : world_(world), robot_(robot), beliefs_(world.layout().bodies.size()) {}
+    : world_(world),
+      robot_(robot),
+      beliefs_(world.layout().bodies.size()),
+      errors_(robot.spec().camera.detection) {}
 
-void Perception::reset() {
+void Perception::reset(std::uint64_t seed) {
+  errors_.reset(seed);
   gaze_ = PlaceSpec{};
   looking_ = false;
   beliefs_.assign(beliefs_.size(), Belief{});
@@ -152,12 +156,13 @@ Sighting Perception::sight(BodyId id, int points) const {
   return sighting;
 }
 
-void Perception::store(BodyId id, const Eigen::Vector3d& p_W, const std::string& frame) {
+void Perception::store(BodyId id, BodyId like, const Eigen::Vector3d& p_W, double yaw_rad,
+                       const std::string& frame) {
   Belief& belief = beliefs_[id.index()];
   belief.located = true;
   belief.frame = frame;
-  const double below_m = world_.position(id).z() - world_.bounds(id).low.z();
-  belief.yaw_rad = heading_rad(world_.rotation(id));
+  const double below_m = world_.position(like).z() - world_.bounds(like).low.z();
+  belief.yaw_rad = yaw_rad;
   belief.p_F = p_W;
   if (!belief.frame.empty()) {
     const BodyId carrier = *world_.layout().find_body(belief.frame);
@@ -166,12 +171,18 @@ void Perception::store(BodyId id, const Eigen::Vector3d& p_W, const std::string&
   belief.bottom_F_m = belief.p_F.z() - below_m;
 }
 
-void Perception::believe(BodyId id, const Sighting& sighting) {
-  store(id, sighting.p_W, gaze_.frame);
-  beliefs_[id.index()].perceived = true;
+void Perception::believe(BodyId id, const Sighting& sighting, std::optional<BodyId> taken_for) {
+  const DetectionError error = errors_.next();
+  Eigen::Vector3d p_W = sighting.p_W;
+  p_W.head<2>() += error.shift_m;
+  const BodyId believed = taken_for.value_or(id);
+  store(believed, id, p_W, wrapped(heading_rad(world_.rotation(id)) + error.turn_rad), gaze_.frame);
+  beliefs_[believed.index()].perceived = true;
 }
 
-void Perception::believe_as_is(BodyId id) { store(id, world_.position(id), {}); }
+void Perception::believe_as_is(BodyId id) {
+  store(id, id, world_.position(id), heading_rad(world_.rotation(id)), {});
+}
 
 std::optional<Eigen::Vector3d> Perception::believed(BodyId id) const {
   const Belief& belief = beliefs_[id.index()];

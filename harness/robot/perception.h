@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "harness/engine/ode_world.h"
+#include "harness/robot/detection_errors.h"
 #include "harness/robot/mobile_robot.h"
 
 namespace parallax::harness {
@@ -22,10 +23,11 @@ struct Belief {
 
 /// How well a body was seen.
 struct Sighting {
-  int points = 0;                                 // tried
-  int seen = 0;                                   // in the cone and not hidden
-  std::string hidden_by;                          // what hid a point, if something did
-  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  // estimate of the origin; only with seen > 0
+  int points = 0;         // tried
+  int seen = 0;           // in the cone and not hidden
+  std::string hidden_by;  // what hid a point, if something did
+  // Of the origin, exact but for what the view does; only with seen > 0.
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
 };
 
 /// The camera and the point that it was told to look at, in the world.
@@ -35,12 +37,13 @@ struct Gaze {
 
 /// A camera that sees points of bodies by casting rays, and what was made of it. An estimate is the
 /// median of the middles of the stretches that the rays have inside the body: how a body of known
-/// shape is found, with an error that depends on the view.
+/// shape is found, with an error that depends on the view. What is believed of it is off by the
+/// camera's errors of detection besides.
 class Perception {
  public:
   Perception(const OdeWorld& world, const MobileRobot& robot);
 
-  void reset();
+  void reset(std::uint64_t seed = 0);
   /// Turns the gaze to a place; a message instead if the neck does not turn so far.
   std::optional<std::string> look_at(const PlaceSpec& place);
   /// Name of the place that the camera looks at: empty once the robot has turned or driven so far
@@ -53,13 +56,15 @@ class Perception {
 
   /// Casts rays at `points` points spread along the longest side of the body.
   Sighting sight(BodyId id, int points) const;
-  void believe(BodyId id, const Sighting& sighting);
+  /// `taken_for`: the body is believed to be that one, and where `id` was seen.
+  void believe(BodyId id, const Sighting& sighting, std::optional<BodyId> taken_for = {});
   void unsee(BodyId id) { beliefs_[id.index()].perceived = false; }
   void forget(BodyId id) { beliefs_[id.index()].located = false; }
   /// It was put down there.
   void believe_as_is(BodyId id);
 
   const Belief& belief(BodyId id) const { return beliefs_[id.index()]; }
+  DetectionErrors& errors() { return errors_; }
   /// The believed origin, now; nothing if it was never located.
   std::optional<Eigen::Vector3d> believed(BodyId id) const;
   std::optional<double> believed_bottom_m(BodyId id) const;
@@ -74,7 +79,9 @@ class Perception {
   /// Half way between where a ray at `aim` enters a body and where it leaves it.
   Eigen::Vector3d middle_of_chord(const Eigen::Vector3d& from, const Eigen::Vector3d& aim,
                                   BodyId id) const;
-  void store(BodyId id, const Eigen::Vector3d& p_W, const std::string& frame);
+  /// What is believed of `id` where `like` was seen.
+  void store(BodyId id, BodyId like, const Eigen::Vector3d& p_W, double yaw_rad,
+             const std::string& frame);
   Eigen::Vector3d from_frame(const std::string& frame, const Eigen::Vector3d& p_F) const;
 
   const OdeWorld& world_;
@@ -84,6 +91,7 @@ class Perception {
   Eigen::Vector3d neck_B_ = Eigen::Vector3d::UnitX();   // direction of the gaze then
   bool looking_ = false;
   std::vector<Belief> beliefs_;  // by BodyId
+  DetectionErrors errors_;
 };
 
 }  // namespace parallax::harness

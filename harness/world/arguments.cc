@@ -118,7 +118,7 @@ constexpr std::array kPickUp = {
     named("object", "graspable", "the body to pick up"),
     ArgumentSpec{"effort_n", "n", false, kNone, true,
                  "squeezing force; unless given, that of the grasp"},
-    number("clearance_m", "m", 0.005, "of each pad before it closes"),
+    number("clearance_m", "m", 0.015, "of each pad before it closes; less where it opens less"),
     number("standoff_m", "m", 0.10, "of the last, straight stretch"),
     number("max_speed_m_s", "m/s", 0.25, "of the tool"),
     number("approach_speed_m_s", "m/s", 0.15, "on the last stretch"),
@@ -336,8 +336,27 @@ std::optional<ArgumentFault> wrong_together(const ControllerSpec& spec, const St
   return std::nullopt;
 }
 
+namespace {
+
+/// The same of a robot on a line, whose squeeze has another name and no fallback but the robot's.
+std::optional<ArgumentFault> wrong_grip_force(const ControllerSpec& spec, const State& given,
+                                              const WorldSpec& world, const WorldLayout& layout) {
+  constexpr const char* kForce = "grip_force_n";
+  const auto said = given.find(kForce);
+  const auto finger = layout.find_slider(world.robot.finger_joint);
+  if (find_argument(spec, kForce) == nullptr || said == given.end() || !finger) return std::nullopt;
+  const double force = as_number(said->second).value_or(0.0);
+  const double most = layout.sliders[*finger].max_force_n;
+  if (!(force > most)) return std::nullopt;
+  return ArgumentFault{kForce, fmt::format("is {:g} N, more than the {:g} N (max_force_n) of {}",
+                                           force, most, quoted(world.robot.finger_joint))};
+}
+
+}  // namespace
+
 std::optional<ArgumentFault> wrong_effort(const ControllerSpec& spec, const State& given,
                                           const WorldSpec& world, const WorldLayout& layout) {
+  if (spec.robot == RobotKind::kLine) return wrong_grip_force(spec, given, world, layout);
   const ArgumentSpec* effort = find_argument(spec, "effort_n");
   if (effort == nullptr || !world.mobile) return std::nullopt;
   const auto name_of = [&](const char* argument) {

@@ -124,6 +124,7 @@ std::vector<Parameter> mobile_parameters(const WorldSpec& spec, const WorldLayou
     for (const char* item : {".seen.x", ".seen.y", ".seen.z", ".seen.bottom"}) {
       all.push_back({body.name + item, "m"});
     }
+    all.push_back({body.name + ".seen.yaw", "rad"});
   }
   for (const SliderId id : observed_sliders(layout, robot)) {
     const JointSpec& joint = layout.sliders[id];

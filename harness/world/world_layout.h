@@ -61,9 +61,9 @@ WorldLayout lay_out(const WorldSpec& spec);
 /// NAME.x .y .z .roll .pitch .yaw .held for each free body. With a robot on a line: robot.x,
 /// tool.x, tool.z, opening. With a mobile robot: robot.x, .y, .yaw, .lift, .looking_at; ARM.x, .y,
 /// .z, .opening, .parked, .open; for each free body BODY.bottom, BODY.mass, BODY.held_by.ARM,
-/// BODY.perceived, BODY.seen.known and BODY.seen.x, .y, .z, .bottom (where it is believed to be; 0
-/// when unknown); JOINT.q of sliders that are no fingers, and CHILD.x, .y, .z, .yaw of what they
-/// carry. Besides these an observation has "digest". `spec` must pass check_structure.
+/// BODY.perceived, BODY.seen.known and BODY.seen.x, .y, .z, .yaw, .bottom (where it is believed to
+/// be; 0 when unknown); JOINT.q of sliders that are no fingers, and CHILD.x, .y, .z, .yaw of what
+/// they carry. Besides these an observation has "digest". `spec` must pass check_structure.
 std::vector<Parameter> observables(const WorldSpec& spec);
 
 /// Sliders whose position says something: all but the fingers.

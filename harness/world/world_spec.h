@@ -142,12 +142,22 @@ struct ArmSpec {
   double grip_force_n = 20.0;                         // of grasps that name no effort
 };
 
+/// How far estimates of detected bodies are off. They stand on surfaces that the robot knows, so it
+/// is their place on them and their turn about the vertical that is uncertain. Root mean squares.
+struct DetectionSpec {
+  double bias_m = 0.003, bias_rad = 0.021;    // one shift and turn for all detections of a run
+  double noise_m = 0.004, noise_rad = 0.028;  // another for each detection
+  double miss_rate = 0.0;                     // of bodies in sight, each time they are looked for
+  double confusion_rate = 0.0;  // of bodies of another kind in sight where none of the kind is seen
+};
+
 struct CameraSpec {
   Eigen::Vector3d p_BC = Eigen::Vector3d::Zero();  // in the base frame, torso at its lowest [m]
   double half_angle_rad = 0.2;
   double min_range_m = 0.3, max_range_m = 2.5;
   double max_pan_rad = 2.8;
   double min_tilt_rad = -0.4, max_tilt_rad = 1.3;  // positive looks down
+  DetectionSpec detection;
 };
 
 /// A base that drives and turns in the plane, an optional lifting torso, arms and a camera.

@@ -129,16 +129,38 @@ TEST_CASE("grippers that cannot hold what there is to hold") {
                         "overlay.yaml:2:", "lets the pads hold nothing");
 }
 
+TEST_CASE("a mass that no household thing of that size has is warned of, also where it is drawn") {
+  const KitchenCopy cli;
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"world: {bodies: {cereal1: {mass_kg: 25}}}",
+       "bodies/cereal1/mass_kg makes `cereal1` a thing of 1.3e+04 kg/m3: no household thing weighs "
+       "so much"},
+      {"sampling: {variables: {milk1.mass: [0.001, 1]}}",
+       "0.001 kg makes `milk1` a thing of 0.9718 kg/m3: no household thing weighs so little"}};
+  for (const auto& [overlay, text] : cases) {
+    CAPTURE(overlay);
+    cli.write("kitchen/overlay.yaml", "include: plan2.yaml\n" + overlay + "\n");
+    const auto result = cli.parallax({"check", "kitchen/overlay.yaml"});
+    CAPTURE(result.err);
+    CHECK(result.code == 0);
+    CHECK(result.err.find("overlay.yaml:2:") != std::string::npos);
+    CHECK(result.err.find("warning[W5136]") != std::string::npos);
+    CHECK(result.err.find(text) != std::string::npos);
+  }
+}
+
 TEST_CASE("a squeeze that no gripper's motor can exert, or not that of the arm that is to") {
   check_overlay_refused("world: {bodies: {spoon1: {grasp: {effort_n: 1000}}}}", "overlay.yaml:2:",
                         "is 1000 N, but no gripper's motor exerts more than 60 N");
+  check_overlay_refused("world: {robot: {arms: {left: {grip_force_n: 61}}}}", "overlay.yaml:2:",
+                        "is 61 N, more than the 60 N (max_force_n) of `left_finger`");
   const KitchenCopy cli;
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"actions: {\"PickUp(arm, item)\": {effort_n: 61}}",
        "effort_n: is 61 N, more than the 60 N (max_force_n) of `left_finger`"},
       {"world: {joints: {left_finger: {max_force_n: 50}}}",
        "arm: is `left`: the 60 N of `effort_n` are more than the 50 N"},
-      {"world: {joints: {left_finger: {max_force_n: 5}}, "
+      {"world: {joints: {left_finger: {max_force_n: 5}}, robot: {arms: {left: {grip_force_n: 5}}}, "
        "bodies: {spoon1: {grasp: {effort_n: 6}}}}\n"
        "actions: {\"OpenDrawer(arm, drawer)\": {effort_n: 5}}",
        "object: is `spoon1`, whose grasp asks for 6 N (effort_n), more than the 5 N"}};

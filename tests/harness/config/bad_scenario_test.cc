@@ -73,6 +73,8 @@ TEST_CASE("regions, mapping and sampling") {
       {"Holding(): {flag: box.held}", "Holding(: {flag: box.held}", "E5112 at 13:3"},
       {"Holding(): {flag: box.held}", "\"BoxIn(x)\": {flag: box.held}", "E5103 at 13:4"},
       {"Holding(): {flag: box.held}", "Holding(): ignore", "E5107 at 13:14"},
+      {"body: robot}", "body: robot, upright: 2}", "E5109 at 11:59: `upright` is 2, but must be"},
+      {"max_speed_m_s: 0.6", "grip_force_n: 0.6", "E5121 at 15:35"},
       {"box.yaw: [-0.1, 0.1]", "box.yaw: [0.1, -0.1]",
        "E5125 at 18:52: `box.yaw` is reversed: 0.1 is above -0.1"},
       {"box.yaw: [-0.1, 0.1]", "box.roll: [-0.1, 0.1]",
@@ -123,6 +125,7 @@ TEST_CASE("the world: structure by the reader, meaning by the world's own check,
             "`pad-box`) fix: replace `pda` with `pad`"},
            {"axis: x", "axis: w", "E5111 at 11:45: `w` is not a known axis"},
            {"type: fixed", "type: hinge", "E5111 at 14:16"},
+           {"far_pad_body: far}", "far_pad_body: far, grip_force_n: 21}", "E5126 at 17:"},
            {"mass_kg: 30", "mas_kg: 30", "E5102 at 2:35: `mas_kg` is not a key of the body `base`"},
        }) {
     CAPTURE(one.to);

@@ -212,6 +212,41 @@ TEST_CASE("a scenario in which no fluent of the model is compared is refused at 
   CHECK(reports[0] == "E5306 at 10:1: no fluent of the model is compared");
 }
 
+TEST_CASE("a fluent that asks for every step is refused where last states are compared") {
+  Workspace workspace;
+  const auto text =
+      replaced(kScenario, "{flag: box.held}", "{flag: box.held, compare: every-step}");
+  const std::vector<std::string> fluents = {"BoxIn(r1)", "Holding()", "RobotIn(r1)"};
+  const std::vector<std::string> events = {"Go(r1)", "PickUp()", "Place(r1)"};
+  const auto steps = workspace.load(text);
+  REQUIRE(steps.has_value());
+  CHECK(check_against_model(*steps, fluents, events, workspace.sink).has_value());
+  for (const std::string final : {"compare: final\n", "criterion: paper\n"}) {
+    CAPTURE(final);
+    workspace.sink = base::DiagnosticSink();
+    const auto last = workspace.load(text + final);
+    REQUIRE(last.has_value());
+    CHECK_FALSE(check_against_model(*last, fluents, events, workspace.sink).has_value());
+    const auto reports = workspace.reports();
+    REQUIRE_FALSE(reports.empty());
+    CHECK(reports[0] ==
+          "E5137 at 13:3: `compare: every-step` of `Holding` has no effect: only last "
+          "states are compared");
+  }
+}
+
+TEST_CASE("densities that no household thing has are warned of where they stand") {
+  Workspace workspace;
+  CHECK(workspace.load(kScenario).has_value());
+  CHECK(workspace.reports().empty());
+  workspace.write("world.yaml", replaced(kWorld, "mass_kg: 0.3", "mass_kg: 30"));
+  CHECK(workspace.load(kScenario).has_value());
+  REQUIRE(workspace.reports().size() == 1);
+  CAPTURE(workspace.reports()[0]);
+  CHECK(workspace.reports()[0].find("W5136 at 8:46: bodies/box/mass_kg makes `box` a thing of "
+                                    "8.746e+04 kg/m3: no household thing weighs so much") == 0);
+}
+
 TEST_CASE("the scenario is held against what the simulator says of itself") {
   Workspace workspace;
   const auto scenario = workspace.load(std::string(kScenario) + "simulator: {command: [other]}\n");

@@ -46,6 +46,37 @@ TEST_CASE("binding: a body in a region") {
   CHECK(fixed.constant_variables(map) == Names{"robot.x", "robot.y"});
 }
 
+TEST_CASE("binding: a body in a region that has to stand upright there") {
+  const auto map = regions();
+  InsideBinding inside{"{0}", 1, {}, {}};
+  inside.upright = 0.35;
+  inside.upright_except = {"r1"};
+  const FluentBinding binding{"In", 2, inside, {}};
+  const auto fluent = ground_fluent("In(box,r2)");
+  CHECK(binding.variables(fluent, map) == Names{"box.x", "box.y", "box.roll", "box.pitch"});
+  State state = {{"box.x", 1.5}, {"box.y", 0.0}, {"box.roll", 0.0}, {"box.pitch", 0.0}};
+  const auto leaning = [&](double roll, double pitch) {
+    state["box.roll"] = roll;
+    state["box.pitch"] = pitch;
+    return binding.read(fluent, state, map, nullptr);
+  };
+  CHECK(leaning(0.0, 0.0) == Reading::kHolds);
+  CHECK(leaning(0.34, 0.0) == Reading::kHolds);
+  CHECK(leaning(0.36, 0.0) == Reading::kFails);
+  CHECK(leaning(0.0, -0.36) == Reading::kFails);
+  CHECK(leaning(0.3, 0.3) == Reading::kFails);  // 0.42 rad together
+  CHECK(leaning(1.57, 0.0) == Reading::kFails);
+  CHECK(leaning(3.14, 0.0) == Reading::kFails);  // on its head
+  state["box.x"] = 0.5;                          // where it may lie
+  CHECK(binding.read(ground_fluent("In(box,r1)"), state, map, nullptr) == Reading::kHolds);
+  std::set<std::string> missing;
+  CHECK(binding.read(fluent, {{"box.x", 1.5}, {"box.y", 0.0}}, map, &missing) == Reading::kFails);
+  CHECK(missing == std::set<std::string>{"box.pitch", "box.roll"});
+  State start;
+  binding.add_reset_values(fluent, map, start);
+  CHECK(start == State{{"box.pitch", 0.0}, {"box.roll", 0.0}});
+}
+
 TEST_CASE("binding: a flag") {
   const auto map = regions();
   const FluentBinding binding{"Held", 1, FlagBinding{"{0}.held"}, {}};

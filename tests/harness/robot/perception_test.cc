@@ -26,6 +26,7 @@ WorldSpec room() {
   robot.base_joint = "drive";
   robot.base_body = "base";
   robot.camera.p_BC = {0.0, 0.0, 0.8};
+  robot.camera.detection = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   spec.mobile = robot;
   return spec;
 }
