@@ -163,10 +163,12 @@ class TextReport {
     start_shares(trace);
   }
 
-  /// How much of the cells the starts are drawn from: what is claimed is about no more.
+  /// How much of a cell the starts are drawn from, where that is not all of it: what is claimed is
+  /// about no more.
   void start_shares(const TraceResult& trace) {
     std::vector<std::vector<std::string>> rows;
     for (const StartShare& share : trace.start_shares) {
+      if (share.share == 1.0 && share.fixed.empty()) continue;  // the whole cell
       std::vector<std::string> parts;
       for (const auto& axis : share.axes) {
         if (axis.drawn == axis.whole) continue;
