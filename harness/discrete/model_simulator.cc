@@ -52,7 +52,8 @@ ModelSimulator::ModelSimulator(std::shared_ptr<const SteppedModel> world,
       limits_(limits),
       fluents_(numbers_of(world_->model.fluents)),
       events_(numbers_of(world_->model.events)),
-      start_(world_->layered, world_->layered.start, true, stop) {
+      start_(world_->layered, world_->layered.start, true, stop),
+      whole_(world_->model, runtime::make_cadical_solver(stop)) {
   std::int64_t place = 0;
   for (const auto& event : world_->model.events) {
     event_places_.push_back(event.slot ? place++ : kNoEvent);
@@ -129,11 +130,12 @@ Outcome ModelSimulator::reset(const State& initial, std::uint64_t seed) {
   digest_ = base::kFnvStart;
   std::vector<runtime::Move> moves;
   const auto end = possible ? start_.states(given, limits_.states, moves) : ListEnd::kComplete;
-  const auto starts = grouped(std::move(moves), end);
+  const auto starts = grouped(std::move(moves), end, 0);
   if (starts.end != ListEnd::kComplete) return no_list(starts, "initial states that fit a start");
   if (starts.states.empty()) {
     return {SimStatus::kInvalidStart,
-            fmt::format("`{}` has no initial state with {}", world_->name, fmt::join(said, ", ")),
+            fmt::format("`{}` has no execution that starts with {}", world_->name,
+                        fmt::join(said, ", ")),
             0.0,
             {}};
   }
@@ -142,21 +144,42 @@ Outcome ModelSimulator::reset(const State& initial, std::uint64_t seed) {
   return {};
 }
 
+runtime::SolveStatus ModelSimulator::goes_on(const runtime::Bits& observed,
+                                             const runtime::Bits& hidden, compiler::Timepoint t) {
+  const auto& model = world_->model;
+  std::vector<Literal> given;
+  const auto assume = [&](const std::vector<std::uint32_t>& slots, const runtime::Bits& values) {
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      const auto literal = Literal::positive(model.variable(slots[i], t));
+      given.push_back(values[i] ? literal : ~literal);
+    }
+  };
+  assume(world_->layered.observed, observed);
+  assume(world_->layered.hidden, hidden);
+  return whole_.solve(model.horizon, given);
+}
+
 /// Valuations of one state become one, so that each state counts once where one is drawn.
-ModelSimulator::Answer ModelSimulator::grouped(std::vector<runtime::Move> moves,
-                                               ListEnd end) const {
+ModelSimulator::Answer ModelSimulator::grouped(std::vector<runtime::Move> moves, ListEnd end,
+                                               compiler::Timepoint t) {
+  Answer answer{end, {}, limits_.states};
+  if (end != ListEnd::kComplete) return answer;
+  std::sort(moves.begin(), moves.end());
+  moves.erase(std::unique(moves.begin(), moves.end()), moves.end());
   std::map<std::pair<runtime::Bits, runtime::Bits>, std::vector<runtime::Bits>> states;
   for (auto& move : moves) {
+    // Each window by itself does not see that the axioms of the next ones leave nothing.
+    const auto status = t < world_->model.horizon ? goes_on(move.observed, move.hidden, t)
+                                                  : runtime::SolveStatus::kSatisfiable;
+    if (status == runtime::SolveStatus::kUnsatisfiable) continue;
+    if (status == runtime::SolveStatus::kUnknown) return {ListEnd::kStopped, {}, 0};
     runtime::Bits released;
     for (std::size_t i = 0; i < move.hidden.size(); ++i) {
       if (is_release_[i]) released.push_back(move.hidden[i]);
     }
     states[{std::move(move.observed), std::move(released)}].push_back(std::move(move.hidden));
   }
-  Answer answer{end, {}, limits_.states};
   for (auto& [shown, hidden] : states) {
-    std::sort(hidden.begin(), hidden.end());
-    hidden.erase(std::unique(hidden.begin(), hidden.end()), hidden.end());
     answer.states.push_back({shown.first, shown.second, std::move(hidden)});
   }
   if (answer.states.size() > limits_.states) answer.end = ListEnd::kTooMany;
@@ -176,8 +199,9 @@ std::vector<Literal> ModelSimulator::before(const WindowSolver& solver,
   return out;
 }
 
-ModelSimulator::Answer ModelSimulator::find_steps(std::uint32_t window, std::int64_t event) {
-  auto& solver = *windows_[window];
+ModelSimulator::Answer ModelSimulator::find_steps(std::size_t step, std::int64_t event) {
+  const auto& at = world_->layered.step_at;
+  auto& solver = *windows_[at[std::min(step, at.size() - 1)]];
   const auto count = world_->layered.events.size();
   // Which events go with it: no more than the model demands.
   std::set<std::vector<std::size_t>> sets;
@@ -208,17 +232,22 @@ ModelSimulator::Answer ModelSimulator::find_steps(std::uint32_t window, std::int
                    std::make_move_iterator(more.end()));
     }
   }
-  return grouped(std::move(moves), ListEnd::kComplete);
+  return grouped(std::move(moves), ListEnd::kComplete, static_cast<compiler::Timepoint>(step) + 1);
 }
 
 const ModelSimulator::Answer& ModelSimulator::steps(std::int64_t event) {
-  const auto& at = world_->layered.step_at;
-  const auto window = at[std::min(static_cast<std::size_t>(timepoint_), at.size() - 1)];
-  Question question{window, event, state_};
+  // All steps beyond the horizon are alike.
+  const auto step = std::min(static_cast<std::size_t>(timepoint_), world_->layered.step_at.size());
+  Question question{step, event, state_};
   const auto found = known_.find(question);
   if (found != known_.end()) return found->second;
-  if (known_.size() >= limits_.remembered) known_.clear();
-  auto answer = find_steps(window, event);
+  auto answer = find_steps(step, event);
+  const auto states = answer.states.size() + 1;
+  if (known_states_ + states > limits_.remembered) {
+    known_.clear();
+    known_states_ = 0;
+  }
+  known_states_ += states;
   return known_.emplace(std::move(question), std::move(answer)).first->second;
 }
 

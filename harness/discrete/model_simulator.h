@@ -12,6 +12,7 @@
 #include "harness/discrete/stepped_model.h"
 #include "harness/discrete/window_solver.h"
 #include "harness/simulator/simulator.h"
+#include "runtime/session/solver_session.h"
 
 namespace parallax::harness {
 
@@ -26,7 +27,7 @@ struct WorldState {
 struct ModelWorldLimits {
   std::size_t states = 4096;        // that one start or one step leaves open
   std::size_t event_sets = 256;     // by which one event can come about
-  std::size_t remembered = 20'000;  // questions whose answers are kept
+  std::size_t remembered = 50'000;  // states in answers that are kept
 };
 
 /// A discrete world as a simulator. Its parameters are the ground fluents of the model, true or
@@ -37,6 +38,9 @@ struct ModelWorldLimits {
 /// no more than the model demands; the world moves to one of the states that the model admits then,
 /// each equally likely. If it admits none the action fails, and time alone passes: the world moves
 /// on without the event, or stays where even that is impossible.
+///
+/// Within the horizon that the model was read with, a state counts only if some execution goes on
+/// from it to there: the world comes to no state that the model has in no trace.
 ///
 /// Drawn from the seed alone, so that two simulators of one model agree to the last bit.
 class ModelSimulator final : public Simulator {
@@ -58,14 +62,17 @@ class ModelSimulator final : public Simulator {
     std::vector<WorldState> states;
     std::size_t limit = 0;  // the one that was hit
   };
-  using Question = std::tuple<std::uint32_t, std::int64_t, WorldState>;  // window, event, before
+  using Question = std::tuple<std::size_t, std::int64_t, WorldState>;  // step, event, before
 
   const Answer& steps(std::int64_t event);
-  Answer find_steps(std::uint32_t window, std::int64_t event);
+  Answer find_steps(std::size_t step, std::int64_t event);
   /// As assumptions: the state before the window, in one of its valuations.
   std::vector<runtime::Literal> before(const WindowSolver& solver,
                                        const runtime::Bits& hidden) const;
-  Answer grouped(std::vector<runtime::Move> moves, ListEnd end) const;
+  /// The states at `t` that the moves lead to and that go on.
+  Answer grouped(std::vector<runtime::Move> moves, ListEnd end, compiler::Timepoint t);
+  runtime::SolveStatus goes_on(const runtime::Bits& observed, const runtime::Bits& hidden,
+                               compiler::Timepoint t);
   void move_to(const std::vector<WorldState>& states);
   Outcome no_list(const Answer& answer, const std::string& what) const;
 
@@ -77,7 +84,9 @@ class ModelSimulator final : public Simulator {
   std::vector<std::int64_t> event_places_;  // by number: among LayeredModel::events, or -1
   WindowSolver start_;
   std::vector<std::unique_ptr<WindowSolver>> windows_;  // as LayeredModel::steps
+  runtime::SolverSession whole_;
   std::map<Question, Answer> known_;
+  std::size_t known_states_ = 0;
   WorldState state_;
   std::int64_t timepoint_ = -1;  // -1: not reset
   std::uint64_t seed_ = 0, draws_ = 0, digest_ = 0;

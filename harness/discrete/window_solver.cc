@@ -86,6 +86,19 @@ SolveStatus WindowSolver::shrink(std::span<const Literal> given, std::vector<std
 
 ListEnd WindowSolver::least_events(std::span<const Literal> given, std::size_t limit,
                                    std::vector<std::vector<std::size_t>>& out) {
+  // As a rule nothing has to happen but what is given, and then no other set is least.
+  std::vector<Literal> nothing_else;
+  for (std::size_t i = 0; i < model_.events.size(); ++i) {
+    if (std::find(given.begin(), given.end(), event(i)) == given.end()) {
+      nothing_else.push_back(~event(i));
+    }
+  }
+  const auto alone = solve(given, nothing_else);
+  if (alone == SolveStatus::kUnknown) return ListEnd::kStopped;
+  if (alone == SolveStatus::kSatisfiable) {
+    out.push_back(events_at_hand());
+    return ListEnd::kComplete;
+  }
   const auto guard = new_guard();
   auto end = ListEnd::kComplete;
   for (;;) {

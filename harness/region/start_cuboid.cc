@@ -162,7 +162,8 @@ class StartBuilder {
     if (fresh) return;
     Interval& now = at->second;
     if (now.lower == now.upper) {
-      if (by.contains(now.lower)) return;
+      const bool same_point = by.lower == by.upper && by.lower == now.lower;
+      if (same_point || by.contains(now.lower)) return;
     } else if (by.lower == by.upper) {
       if (now.contains(by.lower)) {
         now = by;
