@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <set>
 
 #include "compiler/base/diagnostic_codes.h"
@@ -87,10 +88,12 @@ class TraceCampaign {
       case SampleVerdict::kAsPredicted:
         if (sample.judgement.first_divergence) ++result.strayed;
         add_clean_run(tally_, sample.record.initial, sample.record.observations.back());
+        note_failures(sample.record);
         ++result.clean;
         break;
       case SampleVerdict::kAdmitted:
         tally_.add_clean_elsewhere();
+        note_failures(sample.record);
         ++result.admitted;
         ++result.clean;
         break;
@@ -98,6 +101,17 @@ class TraceCampaign {
     outcome_.consumed.push_back(std::move(sample.record));
     if (sample.verdict == SampleVerdict::kLostTooOften) return TraceEnd::kLostTooOften;
     return std::nullopt;
+  }
+
+  /// Actions that failed in a clean run though the model does not let them.
+  void note_failures(const SampleRecord& record) {
+    for (std::size_t i = 0; i < record.outcomes.size(); ++i) {
+      const auto& point = trace().points[i];
+      const bool may_fail = point.plan_step && !point.succeeded;
+      if (may_fail || record.outcomes[i].status == SimStatus::kOk) continue;
+      auto& noted = failures_[i];
+      if (noted.runs++ == 0) noted.reason = record.outcomes[i].reason;
+    }
   }
 
   /// Repeats the simulation once: a discrepancy that cannot be repeated says so in the report.
@@ -210,6 +224,13 @@ class TraceCampaign {
           "every-step` shows where",
           result.strayed));
     }
+    for (const auto& [event, noted] : failures_) {
+      result.caveats.push_back(
+          fmt::format("event {}, {}, failed in {} of {} clean runs, and the states were as "
+                      "predicted all the same ({})",
+                      event, trace().event(event), noted.runs, result.clean,
+                      noted.reason.empty() ? "no reason given" : noted.reason));
+    }
     if (!context_.bench.simulator().seeds) {
       result.caveats.push_back(
           "the simulator takes no seed, so its own randomness is not under control");
@@ -226,6 +247,11 @@ class TraceCampaign {
 
   const TraceContext& context_;
   Trial trial_;
+  struct Failures {
+    std::int64_t runs = 0;
+    std::string reason;  // of the first
+  };
+  std::map<std::size_t, Failures> failures_;  // by event
   Tally tally_;
   Decision decision_;
   TraceOutcome outcome_;

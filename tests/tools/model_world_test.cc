@@ -49,6 +49,17 @@ TEST_CASE("the folder as a suite: each scenario gives what it expects") {
   CHECK(suite.out.find("3 passed, 0 failed\n") != std::string::npos);
 }
 
+TEST_CASE("an action that the world forbids and that changes nothing compared is told") {
+  const TwoModels cli;
+  const auto forbids =
+      cli.world("load opens.e\n[time] Happens(Park(),time) -> !HoldsAt(Parked(),time).\n");
+  const auto report = json_of(cli, {"run", forbids, "--out", "out"});
+  CHECK(report.at("verdict") == "no-discrepancy");
+  const std::string told = "event 2, Park(), failed in 90 of 90 clean runs";
+  CHECK(report.at("traces").at(0).at("caveats").dump().find(told) != std::string::npos);
+  CHECK(cli.read("out/report.txt").find("not-possible") != std::string::npos);
+}
+
 TEST_CASE("an effect that the model forgets is found in the first run, where it happens") {
   const TwoModels cli;
   const auto report = json_of(cli, {"run", "two/unparks.yaml", "--out", "out"}, 1);
