@@ -56,6 +56,7 @@ struct Key {
   static constexpr std::string_view kEpsilon = "epsilon";
   static constexpr std::string_view kEquals = "equals";
   static constexpr std::string_view kErp = "erp";
+  static constexpr std::string_view kEvents = "events";
   static constexpr std::string_view kExemptInherited = "exempt_inherited";
   static constexpr std::string_view kExpect = "expect";
   static constexpr std::string_view kExtraRuns = "extra_runs";
@@ -170,6 +171,7 @@ struct Key {
   static constexpr std::string_view kUnless = "unless";
   static constexpr std::string_view kUpright = "upright";
   static constexpr std::string_view kUprightExcept = "upright_except";
+  static constexpr std::string_view kUnobserved = "unobserved";
   static constexpr std::string_view kVariables = "variables";
   static constexpr std::string_view kVerdict = "verdict";
   static constexpr std::string_view kWallM = "wall_m";

@@ -115,9 +115,9 @@ class ScenarioReader {
 
   void read(Scenario& scenario) {
     fields_.only({Key::kInclude, Key::kName, Key::kModel, Key::kPlan, Key::kBind, Key::kConstraints,
-                  Key::kHorizon, Key::kWorld, Key::kRegions, Key::kMapping, Key::kActions,
-                  Key::kSampling, Key::kCriterion, Key::kCompare, Key::kMatch, Key::kSimulator,
-                  Key::kLimits, Key::kExpect});
+                  Key::kHorizon, Key::kEvents, Key::kWorld, Key::kRegions, Key::kMapping,
+                  Key::kActions, Key::kSampling, Key::kCriterion, Key::kCompare, Key::kMatch,
+                  Key::kSimulator, Key::kLimits, Key::kExpect});
     static constexpr std::array<std::string_view, 2> kMatches = {"model", "trace"};
     if (fields_.choice(Key::kMatch, "value of " + key_text(Key::kMatch), kMatches) ==
         std::size_t{1}) {
@@ -161,6 +161,11 @@ class ScenarioReader {
     }
     if (const auto* node = fields_.find(Key::kConstraints)) {
       scenario.constraints = located_texts(*node, Key::kConstraints, sink_);
+    }
+    if (const auto* node = fields_.find(Key::kEvents)) {
+      YamlFields events(*node, key_text(Key::kEvents), sink_);
+      events.only({Key::kUnobserved});
+      events.texts(Key::kUnobserved, scenario.unobserved);
     }
     if (const auto* node = fields_.require(Key::kHorizon)) {
       std::int64_t horizon = 0;

@@ -100,6 +100,8 @@ struct Scenario {
   std::vector<LocatedText> constraints;
   std::int32_t horizon = 0;
   base::SourceRange horizon_source;
+  /// Event symbols: they may happen without being told of (`parallax monitor`).
+  std::vector<std::string> unobserved;
   WorldSpec world;
   std::optional<StateMapping> mapping;
   std::vector<ActionBinding> actions;  // sorted by event

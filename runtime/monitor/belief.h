@@ -58,6 +58,8 @@ class Belief {
   /// `windows` outlives the belief.
   Belief(const StepWindows& windows, const BeliefOptions& options);
 
+  /// Another log of the same model; what is known of its steps stays.
+  void restart();
   Admission observe(const Observation& observed);
   Admission step(const ToldStep& told);
   /// Would the step be admitted? Nothing changes.
@@ -86,6 +88,7 @@ class Belief {
   struct Filter {
     Words mask, value;
     bool possible = true;  // false: of a fluent that never holds it says that it does
+    friend bool operator==(const Filter&, const Filter&) = default;
     bool admits(const Words& state) const;
   };
   static constexpr std::uint32_t kUntold = 0;  // the label of a step that nobody tells of
@@ -106,7 +109,13 @@ class Belief {
   void forget();
   void take(std::vector<StateId> states);
   bool is_at_perform(const Words& state) const;
-  bool bit(const Words& state, std::size_t place) const;
+  static constexpr std::size_t kBits = 64;
+  static bool bit(const Words& state, std::size_t place) {
+    return (state[1 + place / kBits] >> (place % kBits) & 1U) != 0;
+  }
+  static void set_bit(Words& state, std::size_t place) {
+    state[1 + place / kBits] |= std::uint64_t{1} << (place % kBits);
+  }
 
   const StepWindows& windows_;
   BeliefOptions options_;
@@ -125,6 +134,7 @@ class Belief {
 
   bool is_settled_ = false;  // else `known_` is all that is known of the start
   Filter known_;
+  bool known_is_open_ = false;     // too many states agree with `known_`
   std::vector<StateId> possible_;  // sorted
   std::pair<std::vector<StateId>, std::vector<StateId>> last_closed_;
   std::size_t largest_ = 0;

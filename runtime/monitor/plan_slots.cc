@@ -63,25 +63,16 @@ class SlotWriter {
     const bool is_step = place % model_.stride() >= static_cast<std::int32_t>(model_.state_slots);
     return place / model_.stride() + (is_step ? 1 : 0);
   }
-  bool needs_anchor(std::size_t c) const {
-    const auto clause = model_.clauses[c];
-    const auto binds = model_.clause_timepoints[c];
-    return !says_where_it_ends(clause) &&
-           std::all_of(clause.begin(), clause.end(),
+  bool needs_anchor(std::span<const Literal> clause, Timepoint binds) const {
+    return std::all_of(clause.begin(), clause.end(),
                        [&](Literal literal) { return needed_by(literal.var()) < binds; });
-  }
-  bool needs_anchor() const {
-    for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
-      if (needs_anchor(c)) return true;
-    }
-    return false;
   }
 
   void name_slots() {
     for (const auto& atom : model_.fixed) {
       if (is_of_state(atom)) places_.try_emplace({atom.kind, atom.plan}, 0);
     }
-    if (needs_anchor()) places_.try_emplace(kAnchor, 0);
+    places_.try_emplace(kAnchor, 0);
     for (auto& [key, place] : places_) {
       place = static_cast<std::uint32_t>(keys_.size());
       keys_.push_back(&key);
@@ -91,11 +82,111 @@ class SlotWriter {
       if (is_of_state(atom)) {
         fixed_.emplace_back(0);
         present_.emplace(places_.at({atom.kind, atom.plan}), *atom.time);
+      } else if (atom.kind == AtomKind::kAuxiliary) {
+        fixed_.emplace_back(0);  // copy()
       } else {
         out_.fixed.push_back(atom);
         fixed_.push_back(static_cast<std::int32_t>(out_.fixed.size()));
       }
     }
+    definitions_.resize(model_.fixed.size());
+    for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
+      if (is_part(c)) definitions_[index(model_.clauses[c].front())].push_back(c);
+    }
+    // The copies of auxiliaries are fixed variables, so all are made before anything is numbered.
+    for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
+      if (!is_part(c) && !says_where_it_ends(model_.clauses[c])) {
+        copy_parts(model_.clauses[c], model_.clause_timepoints[c]);
+      }
+    }
+  }
+
+  static std::size_t index(Literal literal) { return static_cast<std::size_t>(literal.var()) - 1; }
+  bool is_auxiliary(Literal literal) const {
+    return literal.var() <= model_.base() &&
+           model_.fixed[index(literal)].kind == AtomKind::kAuxiliary;
+  }
+  /// Does the clause define a fixed auxiliary? What is defined stands in front.
+  bool is_part(std::size_t c) const {
+    const auto clause = model_.clauses[c];
+    return model_.clause_is_definition[c] && !clause.empty() && is_auxiliary(clause.front());
+  }
+
+  /// A part of a formula may be about one state and used by what binds before it and behind it.
+  /// Each timepoint at which something binds gets auxiliaries of its own, with what defines them:
+  /// they say the same of everything else.
+  void copy_parts(std::span<const Literal> clause, Timepoint binds) {
+    std::vector<std::size_t> todo;
+    const auto note = [&](std::span<const Literal> literals) {
+      for (const auto literal : literals) {
+        if (!is_auxiliary(literal)) continue;
+        if (!copies_.try_emplace({index(literal), binds}, 0).second) continue;
+        todo.push_back(index(literal));
+      }
+    };
+    note(clause);
+    while (!todo.empty()) {
+      const auto auxiliary = todo.back();
+      todo.pop_back();
+      out_.fixed.push_back(model_.fixed[auxiliary]);
+      copies_[{auxiliary, binds}] = static_cast<std::int32_t>(out_.fixed.size());
+      for (const auto c : definitions_[auxiliary]) note(model_.clauses[c]);
+    }
+  }
+
+  /// What an auxiliary stands for at a timepoint, whatever its number is: equal steps are to have
+  /// equal clauses.
+  std::uint64_t shape(std::size_t auxiliary, Timepoint binds) {
+    std::vector<std::size_t> todo = {auxiliary};
+    while (!todo.empty()) {
+      const auto next = todo.back();
+      const auto before = todo.size();
+      if (!shapes_.contains({next, binds})) {
+        for (const auto c : definitions_[next]) {
+          for (const auto literal : model_.clauses[c]) {
+            if (!is_auxiliary(literal) || index(literal) == next) continue;
+            if (!shapes_.contains({index(literal), binds})) todo.push_back(index(literal));
+          }
+        }
+        if (todo.size() != before) continue;  // those that it is made of come first
+        shapes_.emplace(Part(next, binds), shape_of_known(next, binds));
+      }
+      todo.pop_back();
+    }
+    return shapes_.at({auxiliary, binds});
+  }
+  std::uint64_t shape_of_known(std::size_t auxiliary, Timepoint binds) {
+    std::vector<std::uint64_t> parts;
+    for (const auto c : definitions_[auxiliary]) {
+      std::uint64_t sum = 1;
+      for (const auto literal : model_.clauses[c]) {
+        const std::uint64_t sign = literal.is_positive() ? 1 : 0;
+        const bool is_self = is_auxiliary(literal) && index(literal) == auxiliary;
+        sum += is_self ? 3 + sign : mixed(order_of(literal, binds) * 2 + sign);
+      }
+      parts.push_back(mixed(sum));
+    }
+    std::sort(parts.begin(), parts.end());
+    std::uint64_t out = 7;
+    for (const auto part : parts) out = mixed(out ^ part);
+    return out;
+  }
+  static std::uint64_t mixed(std::uint64_t value) {
+    value *= 0x9E3779B97F4A7C15U;
+    value ^= value >> 29U;
+    value *= 0xBF58476D1CE4E5B9U;
+    return value ^ (value >> 32U);
+  }
+  /// A number for the variable as the step to `binds` sees it.
+  std::uint64_t order_of(Literal literal, Timepoint binds) {
+    if (is_auxiliary(literal)) return shape(index(literal), binds) | (std::uint64_t{1} << 63U);
+    const auto variable = moved(literal.var(), binds);
+    if (variable <= out_.base()) return static_cast<std::uint64_t>(variable);
+    const auto place = variable - out_.base() - 1;
+    const auto ahead = place / out_.stride() - binds + out_.horizon + 1;
+    return (std::uint64_t{1} << 62U) +
+           static_cast<std::uint64_t>(ahead) * static_cast<std::uint64_t>(out_.stride()) +
+           static_cast<std::uint64_t>(place % out_.stride());
   }
 
   std::uint32_t added() const { return static_cast<std::uint32_t>(keys_.size()); }
@@ -120,9 +211,12 @@ class SlotWriter {
     out_.plan_cuts = model_.plan_cuts;
   }
 
-  std::int32_t moved(std::int32_t variable) const {
+  std::int32_t moved(std::int32_t variable, Timepoint binds) const {
     if (variable <= model_.base()) {
       const auto& atom = model_.fixed[static_cast<std::size_t>(variable) - 1];
+      if (atom.kind == AtomKind::kAuxiliary) {
+        return copies_.at({static_cast<std::size_t>(variable) - 1, binds});
+      }
       if (!is_of_state(atom)) return fixed_[static_cast<std::size_t>(variable) - 1];
       const auto place = places_.at({atom.kind, atom.plan});
       return out_.variable(model_.state_slots + place, *atom.time);
@@ -142,27 +236,43 @@ class SlotWriter {
   }
 
   void write_clauses() {
-    std::vector<Literal> written;
     for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
-      if (says_where_it_ends(model_.clauses[c])) continue;
-      written.clear();
-      for (const auto literal : model_.clauses[c]) {
-        const auto positive = Literal::positive(moved(literal.var()));
-        written.push_back(literal.is_positive() ? positive : ~positive);
+      if (!is_part(c) && !says_where_it_ends(model_.clauses[c])) {
+        write(c, model_.clause_timepoints[c]);
       }
-      const auto t = model_.clause_timepoints[c];
-      if (needs_anchor(c)) {
-        written.push_back(
-            Literal::positive(out_.variable(model_.state_slots + places_.at(kAnchor), t)));
-      }
-      add(written, t, model_.clause_origins[c]);
     }
     for (std::uint32_t place = 0; place < added(); ++place) {
       for (Timepoint t = 0; t <= model_.horizon; ++t) {
         if (present_.contains({place, t})) continue;
-        written = {~Literal::positive(out_.variable(model_.state_slots + place, t))};
-        add(written, t, 0);
+        add({~Literal::positive(out_.variable(model_.state_slots + place, t))}, t, 0);
       }
+    }
+  }
+
+  /// The clause as it binds at a timepoint, and what defines its parts unless that is there.
+  void write(std::size_t root, Timepoint binds) {
+    std::vector<std::size_t> todo = {root};
+    while (!todo.empty()) {
+      const auto c = todo.back();
+      todo.pop_back();
+      const auto clause = model_.clauses[c];
+      std::vector<std::pair<std::uint64_t, Literal>> ordered;
+      for (const auto literal : clause) ordered.emplace_back(order_of(literal, binds), literal);
+      std::stable_sort(ordered.begin(), ordered.end(),
+                       [](const auto& one, const auto& other) { return one.first < other.first; });
+      std::vector<Literal> written;
+      for (const auto& [order, literal] : ordered) {
+        const auto positive = Literal::positive(moved(literal.var(), binds));
+        written.push_back(literal.is_positive() ? positive : ~positive);
+        if (!is_auxiliary(literal) || !defined_.emplace(index(literal), binds).second) continue;
+        const auto& parts = definitions_[index(literal)];
+        todo.insert(todo.end(), parts.rbegin(), parts.rend());
+      }
+      if (needs_anchor(clause, binds)) {
+        written.push_back(
+            Literal::positive(out_.variable(model_.state_slots + places_.at(kAnchor), binds)));
+      }
+      add(written, binds, model_.clause_origins[c]);
     }
   }
 
@@ -178,6 +288,11 @@ class SlotWriter {
   std::vector<const Key*> keys_;
   std::set<std::pair<std::uint32_t, Timepoint>> present_;
   std::vector<std::int32_t> fixed_;
+  std::vector<std::vector<std::size_t>> definitions_;  // by fixed auxiliary: clauses
+  using Part = std::pair<std::size_t, Timepoint>;      // of a formula, where it is used
+  std::map<Part, std::int32_t> copies_;                // their variables
+  std::map<Part, std::uint64_t> shapes_;
+  std::set<Part> defined_;
   CompiledModel out_;
 };
 

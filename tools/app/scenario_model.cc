@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <system_error>
@@ -162,6 +163,7 @@ struct Switches {
   std::optional<std::int64_t> horizon = std::nullopt;
   bool with_plan = true;
   bool lint = false;
+  bool watched = false;  // nothing is simulated: unobserved events need no action
   void apply(compiler::CompileInput& input) const {
     input.costs = costs;
     input.emit_pass = emit_pass;
@@ -201,7 +203,7 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
   auto compilation = compiler::compile_model(*input, context.files(), sink);
   if (!compilation) return sink.already_reported();
   const auto fluents = compiler::names_of(compilation->model.fluents);
-  const auto events = compiler::names_of(compilation->model.events);
+  auto events = compiler::names_of(compilation->model.events);
   std::shared_ptr<const harness::SteppedModel> world;
   if (!scenario->simulator.models.empty()) {
     auto loaded = load_world_model(*scenario, context);
@@ -212,6 +214,13 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
         !harness::check_against_simulator(*scenario, ground_fluents(fluents), info, sink)) {
       return sink.already_reported();
     }
+  }
+  if (switches.watched) {
+    std::erase_if(events, [&](const std::string& event) {
+      const auto& unobserved = scenario->unobserved;
+      return std::find(unobserved.begin(), unobserved.end(), event.substr(0, event.find('('))) !=
+             unobserved.end();
+    });
   }
   if (!harness::check_against_model(*scenario, fluents, events, sink)) {
     return sink.already_reported();
@@ -325,11 +334,17 @@ base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& pat
   return load(path, context, {.lint = lint});
 }
 
+base::Result<ScenarioModel> load_watched_scenario(const std::filesystem::path& path,
+                                                  Context& context) {
+  return load(path, context, {.watched = true});
+}
+
 std::optional<compiler::CompiledModel> compile_variant(const harness::Scenario& scenario,
                                                        std::int64_t horizon, bool with_plan,
                                                        Context& context) {
   Context own(context.form(), context.stop());
-  auto loaded = load(scenario.file, own, {.horizon = horizon, .with_plan = with_plan});
+  auto loaded =
+      load(scenario.file, own, {.horizon = horizon, .with_plan = with_plan, .watched = true});
   if (!loaded) return std::nullopt;
   return std::move(loaded->compilation.model);
 }

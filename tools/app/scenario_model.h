@@ -38,6 +38,10 @@ struct ScenarioModel {
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path, Context& context,
                                                 bool lint = false);
 
+/// The same where nothing is simulated: the scenario's unobserved events need no action.
+base::Result<ScenarioModel> load_watched_scenario(const std::filesystem::path& path,
+                                                  Context& context);
+
 /// Reads the files of the scenario's plan, in their order.
 base::Result<std::vector<base::FileId>> load_scenario_plan(const harness::Scenario& scenario,
                                                            Context& context);

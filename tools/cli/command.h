@@ -88,6 +88,7 @@ Command rates_command();
 Command draw_command();
 Command explain_command();
 Command diff_command();
+Command monitor_command();
 Command worker_command();
 Command supervise_command();
 

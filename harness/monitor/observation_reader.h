@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "harness/region/state_mapping.h"
+
+namespace parallax::harness {
+
+/// Values of the variables that a mapping asks for, by number; none: not reported.
+using ReportedValues = std::vector<std::optional<Value>>;
+
+/// What a partial observation says of the compared fluents.
+struct SeenState {
+  std::vector<std::int8_t> fluents;  // by number: 1 holds, -1 does not, 0 is not known or ignored
+  /// Fluents that neither hold nor do not, and bodies in none of their regions: a state that no
+  /// state of a model stands for. Numbers of fluents; texts as of StateMapping::outside.
+  std::vector<std::size_t> neither;
+  std::vector<std::string> outside;
+  bool in_no_state() const { return !neither.empty() || !outside.empty(); }
+};
+
+/// m, prepared for many observations that may be partial: a fluent is known where all that it is
+/// read from is reported, or a flag that is reported rules it out. Where everything is reported it
+/// says what StateMapping::read and StateMapping::outside say.
+class ObservationReader {
+ public:
+  enum class Kind : std::uint8_t { kNumber, kFlag, kText };
+
+  /// `mapping` was checked against the fluents and outlives the reader.
+  ObservationReader(const StateMapping& mapping, const std::vector<GroundFluent>& fluents);
+
+  const std::vector<std::string>& variables() const { return variables_; }
+  std::optional<std::size_t> variable(std::string_view name) const;
+  /// What the variable has to be: a number, a flag (also 0 and 1) or a text.
+  Kind kind(std::size_t variable) const { return kinds_[variable]; }
+  bool fits(std::size_t variable, const Value& value) const;
+  /// The variables that a fluent is read from.
+  const std::vector<std::size_t>& variables_of(std::size_t fluent) const {
+    return readers_[fluent].variables;
+  }
+  /// `at_rest`: also the fluents that are compared at rest only. Linear in the fluents.
+  void read(const ReportedValues& values, bool at_rest, SeenState& out) const;
+
+ private:
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  struct FluentReader {
+    const FluentBinding* binding = nullptr;
+    std::vector<std::size_t> variables;
+    const Region* region = nullptr;
+    std::array<std::size_t, kRegionAxes.size()> axes{};  // kNone: not needed
+    std::array<std::size_t, 4> frame{};                  // x, y, z, yaw; kNone: not needed
+    std::size_t roll = kNone, pitch = kNone;             // where the body has to be upright
+    double upright_rad = 0.0;
+    std::size_t unless = kNone, only_if = kNone, variable = kNone;
+    std::string text;
+  };
+  /// A body that one symbol puts into regions.
+  struct Body {
+    std::string outside;
+    bool at_rest_only = true;
+    std::vector<std::size_t> fluents;
+  };
+
+  std::size_t add(const std::string& name, Kind kind, FluentReader& reader);
+  void prepare(const InsideBinding& kind, const GroundFluent& fluent, FluentReader& reader);
+  void prepare(const FlagBinding& kind, const GroundFluent& fluent, FluentReader& reader);
+  void prepare(const RangeBinding& kind, const GroundFluent& fluent, FluentReader& reader);
+  void prepare(const EqualsBinding& kind, const GroundFluent& fluent, FluentReader& reader);
+  void prepare(const IgnoredBinding& kind, const GroundFluent& fluent, FluentReader& reader);
+  std::int8_t allowed(const FluentReader& reader, const ReportedValues& values) const;
+  std::int8_t inside(const FluentReader& reader, const ReportedValues& values) const;
+  static std::int8_t upright(const FluentReader& reader, const ReportedValues& values);
+
+  const StateMapping& mapping_;
+  std::vector<std::string> variables_;
+  std::vector<Kind> kinds_;
+  std::unordered_map<std::string, std::size_t> numbers_;  // for look-up only
+  std::vector<FluentReader> readers_;
+  std::vector<Body> bodies_;
+};
+
+}  // namespace parallax::harness

@@ -1,0 +1,193 @@
+// What a step makes of a state: asked of the clauses once, and remembered.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compiler/base/contract.h"
+#include "runtime/monitor/belief.h"
+
+namespace parallax::runtime {
+
+using compiler::EventId;
+
+Belief::StateId Belief::intern(Words words) {
+  const auto [entry, added] =
+      state_ids_.try_emplace(std::move(words), static_cast<StateId>(states_.size()));
+  if (added) states_.push_back(entry->first);
+  return entry->second;
+}
+
+std::uint32_t Belief::label_of(const ToldStep& told) {
+  std::string key(1, told.succeeded ? (*told.succeeded ? '+' : '-') : ' ');
+  for (const auto event : told.events) key += fmt::format("{} ", event.index());
+  const auto [entry, added] =
+      label_ids_.try_emplace(std::move(key), static_cast<std::uint32_t>(labels_.size()));
+  if (added) labels_.push_back(told);
+  return entry->second;
+}
+
+/// Only what is possible now stays known.
+void Belief::forget() {
+  if (states_.size() <= options_.remembered && labels_.size() <= options_.remembered) return;
+  std::vector<Words> kept;
+  for (const auto state : possible_) kept.push_back(std::move(states_[state]));
+  states_.clear();
+  state_ids_.clear();
+  labels_.resize(1);
+  label_ids_.clear();
+  ways_.clear();
+  last_closed_ = {};
+  possible_.clear();
+  for (auto& words : kept) possible_.push_back(intern(std::move(words)));
+  std::sort(possible_.begin(), possible_.end());
+}
+
+void Belief::assume_state(const Words& state, std::vector<Literal>& assumptions) const {
+  const auto& layered = windows_.layered;
+  std::size_t place = 0;
+  for (const auto* slots : {&layered.observed, &layered.hidden}) {
+    for (const auto slot : *slots) {
+      const auto literal = Literal::positive(static_cast<std::int32_t>(slot) + 1);
+      assumptions.push_back(bit(state, place++) ? literal : ~literal);
+    }
+  }
+}
+
+/// False: one of the events never happens.
+bool Belief::assume_events(const ToldStep& told, bool is_told,
+                           std::vector<Literal>& assumptions) const {
+  const auto& events = windows_.model.events;
+  const auto slots = static_cast<std::int32_t>(windows_.layered.state_slots);
+  std::size_t seen = 0;
+  for (std::uint32_t e = 0; e < events.size(); ++e) {
+    const bool happens =
+        is_told && std::binary_search(told.events.begin(), told.events.end(), EventId(e));
+    if (happens) ++seen;
+    if (!events[e].slot) {
+      if (happens) return false;
+      continue;
+    }
+    if (!happens && is_unobserved_[e]) continue;
+    const auto literal = Literal::positive(slots + static_cast<std::int32_t>(*events[e].slot) + 1);
+    assumptions.push_back(happens ? literal : ~literal);
+  }
+  PARALLAX_REQUIRE(seen == told.events.size(), "events of the model, sorted, each once");
+  return true;
+}
+
+bool Belief::is_at_perform(const Words& state) const {
+  return std::any_of(plan_bit_.begin(), plan_bit_.end(),
+                     [&](const auto& place) { return place && bit(state, *place); });
+}
+
+/// None: there are too many, it was stopped, or nothing is known of what follows.
+std::optional<std::vector<Belief::StateId>> Belief::ask_step(StateId state, std::uint32_t label) {
+  const auto before = states_[state];
+  const auto phase = static_cast<std::uint32_t>(before[0]);
+  const auto next = windows_.next(phase);
+  if (phase >= windows_.window_of.size()) {
+    if (windows_.ends) return std::vector<StateId>();
+    obstacle_ = fmt::format(
+        "the log goes on beyond timepoint {}, and what the model says does not repeat itself "
+        "before "
+        "it: a larger horizon is needed",
+        windows_.layered.horizon);
+    return std::nullopt;
+  }
+  const auto window = windows_.window_of[phase];
+  const auto variables = windows_.layered.steps[window].variables;
+  const auto& told = labels_[label];
+  std::vector<Literal> assumptions;
+  assume_state(before, assumptions);
+  if (!assume_events(told, label != kUntold, assumptions)) return std::vector<StateId>();
+  if (label == kUntold) assumptions.push_back(Literal::positive(variables + 1));
+  if (told.succeeded && is_at_perform(before)) {
+    if (*told.succeeded) {
+      assumptions.push_back(Literal::positive(variables + 2));
+    } else {
+      const auto slots = static_cast<std::int32_t>(windows_.layered.state_slots);
+      for (const auto slot : windows_.outcomes) {
+        assumptions.push_back(~Literal::positive(slots + static_cast<std::int32_t>(slot) + 1));
+      }
+    }
+  }
+  const auto answer = steps_[window]->ask(assumptions, options_.max_states);
+  if (!answer.complete) {
+    obstacle_ = fmt::format("more than {} states are possible", options_.max_states);
+    return std::nullopt;
+  }
+  std::vector<StateId> out;
+  for (const auto& found : answer.found) {
+    Words words(word_count_, 0);
+    words[0] = next.value_or(static_cast<std::uint32_t>(windows_.window_of.size()));
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (found[i]) set_bit(words, i);
+    }
+    out.push_back(intern(std::move(words)));
+  }
+  return out;
+}
+
+const std::vector<Belief::StateId>* Belief::successors(StateId state, std::uint32_t label) {
+  const auto key = (std::uint64_t{label} << 32U) | state;
+  const auto known = ways_.find(key);
+  if (known != ways_.end()) return &known->second;
+  auto found = ask_step(state, label);
+  if (!found) return nullptr;
+  return &ways_.emplace(key, *std::move(found)).first->second;
+}
+
+/// Everything that unobserved steps lead to as well.
+std::optional<std::vector<Belief::StateId>> Belief::closed(std::vector<StateId> states) {
+  if (options_.unobserved.empty()) return states;
+  if (last_closed_.first == states) return last_closed_.second;
+  auto out = states;
+  std::vector<StateId> todo = states;
+  std::unordered_map<StateId, bool> seen;
+  for (const auto state : states) seen[state] = true;
+  while (!todo.empty()) {
+    const auto state = todo.back();
+    todo.pop_back();
+    const auto* next = successors(state, kUntold);
+    if (next == nullptr) return std::nullopt;
+    for (const auto to : *next) {
+      if (!seen.try_emplace(to, true).second) continue;
+      out.push_back(to);
+      todo.push_back(to);
+    }
+    if (out.size() > options_.max_states) {
+      obstacle_ = fmt::format("more than {} states are possible", options_.max_states);
+      return std::nullopt;
+    }
+  }
+  std::sort(out.begin(), out.end());
+  last_closed_ = {std::move(states), out};
+  return out;
+}
+
+std::optional<std::vector<Belief::StateId>> Belief::after(const std::vector<StateId>& states,
+                                                          const ToldStep& told) {
+  const auto label = label_of(told);
+  std::vector<StateId> out;
+  for (const auto state : states) {
+    const auto* next = successors(state, label);
+    if (next == nullptr) return std::nullopt;
+    out.insert(out.end(), next->begin(), next->end());
+    if (out.size() <= 2 * options_.max_states) continue;
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    if (out.size() <= options_.max_states) continue;
+    obstacle_ = fmt::format("more than {} states are possible", options_.max_states);
+    return std::nullopt;
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  if (out.size() > options_.max_states) {
+    obstacle_ = fmt::format("more than {} states are possible", options_.max_states);
+    return std::nullopt;
+  }
+  return out;
+}
+
+}  // namespace parallax::runtime

@@ -1,0 +1,258 @@
+// A log held against model and plan, by the program: files, pipes, run folders, bad input.
+
+#include <doctest/doctest.h>
+#include <sys/stat.h>
+
+#include <fstream>
+#include <map>
+#include <thread>
+
+#include "tests/tools/cli_json.h"
+
+namespace parallax::test {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string state(double t, double robot, double box, bool held) {
+  return Json{{"t", t}, {"state", {{"robot.x", robot}, {"box.x", box}, {"box.held", held}}}}
+             .dump() +
+         "\n";
+}
+
+std::string event(double t, const std::string& name, const std::string& outcome = "ok") {
+  return Json{{"t", t}, {"event", name}, {"outcome", outcome}}.dump() + "\n";
+}
+
+/// What the plan of scenario.yaml does where all goes well.
+std::string fetching() {
+  return state(0, 0.5, 1.5, false) + event(1, "Go(r2)") + state(1.1, 1.5, 1.5, false) +
+         event(2, "PickUp()") + state(2.1, 1.5, 1.5, true) + event(3, "Go(r1)") +
+         state(3.1, 0.5, 0.5, true) + event(4, "Place(r1)") + state(4.1, 0.5, 0.5, false);
+}
+
+TEST_CASE("a log of what the plan does is consistent, as a file, a pipe and CSV") {
+  const CliFixture cli;
+  cli.write("log.jsonl", fetching());
+  const auto result = json_of(cli, {"monitor", "scenario.yaml", "log.jsonl"});
+  CHECK(result.at("verdict") == "consistent");
+  CHECK(result.at("observations") == 5);
+  CHECK(result.at("compared") == 5);
+  CHECK(result.at("events") == 4);
+  CHECK(result.at("states") == Json{{"most", 1}, {"last", 1}});
+  CHECK(result.at("unreported").empty());
+  const auto text = cli.parallax({"monitor", "scenario.yaml", "log.jsonl"});
+  CHECK(text.out ==
+        "consistent: 5 observations (5 compared), 4 steps; at most 1 states possible at "
+        "once, 1 at last\n");
+
+  REQUIRE(::mkfifo((cli.folder() / "fifo").c_str(), 0600) == 0);
+  std::thread writer([&] { std::ofstream(cli.folder() / "fifo") << fetching(); });
+  CHECK(json_of(cli, {"monitor", "scenario.yaml", "fifo"}).at("observations") == 5);
+  writer.join();
+
+  cli.write("log.csv",
+            "t,event,outcome,robot.x,box.x,box.held\n"
+            "0,,,0.5,1.5,false\n1,Go(r2),ok,1.5,1.5,0\n2,PickUp(),ok,1.5,1.5,1\n"
+            "3,Go(r1),,0.5,0.5,true\n4,Place(r1),ok,0.5,0.5,false\n");
+  CHECK(json_of(cli, {"monitor", "scenario.yaml", "log.csv"}).at("observations") == 5);
+}
+
+TEST_CASE("the first observation that no state admits is located, with its values") {
+  const CliFixture cli;
+  cli.write("log.jsonl", state(0, 0.5, 1.5, false) + event(1, "Go(r2)") +
+                             state(1.1, 0.9, 1.5, false) + "what comes after it is not read\n");
+  const auto result = json_of(cli, {"monitor", "scenario.yaml", "log.jsonl"}, 1);
+  CHECK(result.at("verdict") == "inconsistent");
+  const auto& first = result.at("first");
+  CHECK(first.at("line") == 3);
+  CHECK(first.at("t") == 1.1);
+  CHECK(first.at("timepoint") == 1);
+  const Json fluents = {
+      {{"fluent", "RobotIn(r1)"}, {"observed", true}, {"variables", {{"robot.x", 0.9}}}},
+      {{"fluent", "RobotIn(r2)"}, {"observed", false}, {"variables", {{"robot.x", 0.9}}}}};
+  CHECK(first.at("fluents") == fluents);
+  const auto text = cli.parallax({"monitor", "scenario.yaml", "log.jsonl"});
+  CHECK(text.code == 1);
+  CHECK(
+      text.out.find("log.jsonl:3: t = 1.1 s: no state that is still possible agrees with what was "
+                    "seen\n  RobotIn(r1)   (robot.x = 0.9)\n  not RobotIn(r2)") == 0);
+  // Where no state of any model is: a body that is nowhere.
+  cli.write("log.jsonl", state(0, 0.5, 2.5, false));
+  CHECK(json_of(cli, {"monitor", "scenario.yaml", "log.jsonl"}, 1)
+            .at("first")
+            .at("fluents")
+            .at(0)
+            .at("fluent") == "BoxIn(outside)");
+}
+
+TEST_CASE("events follow the plan, unless only the model is asked") {
+  const CliFixture cli;
+  cli.write("log.jsonl", state(0, 0.5, 1.5, false) + event(1, "Go(r2)") + event(2, "Go(r1)"));
+  const auto result = json_of(cli, {"monitor", "scenario.yaml", "log.jsonl"}, 1);
+  const auto& first = result.at("first");
+  CHECK(first.at("line") == 3);
+  CHECK(first.at("event") == "Go(r1)");
+  CHECK(first.at("only_outcome") == false);
+  REQUIRE(first.at("expected").size() == 1);
+  CHECK(first.at("expected").at(0).get<std::string>().find("PickUp() (") == 0);
+  CHECK(json_of(cli, {"monitor", "scenario.yaml", "log.jsonl", "--no-plan"}).at("verdict") ==
+        "consistent");
+  // Going always arrives, so it cannot fail.
+  cli.write("log.jsonl", event(1, "Go(r2)", "failed"));
+  CHECK(json_of(cli, {"monitor", "scenario.yaml", "log.jsonl"}, 1).at("first").at("only_outcome") ==
+        true);
+  // The plan is over, and the model goes on however long the log is.
+  std::string longer = fetching();
+  for (int i = 0; i < 200; ++i) longer += event(5 + i, i % 2 == 0 ? "Go(r2)" : "Go(r1)");
+  cli.write("log.jsonl", longer);
+  CHECK(json_of(cli, {"monitor", "scenario.yaml", "log.jsonl"}, 1)
+            .at("first")
+            .at("plan_may_be_over") == true);
+  CHECK(json_of(cli, {"monitor", "scenario.yaml", "log.jsonl", "--no-plan"}).at("events") == 204);
+}
+
+TEST_CASE("what is not reported is not known, and what is under way is not compared") {
+  const CliFixture cli;
+  cli.write("log.jsonl", R"j({"t": 0, "state": {"robot.x": 0.5, "box.X": 1.5}}
+{"t": 0.5, "started": "Go(r2)"}
+{"t": 0.6, "state": {"robot.x": 7.0}}
+{"t": 1, "event": "Go(r2)"}
+{"t": 1.1, "state": {"robot.x": 1.2}}
+)j");
+  const auto result = json_of(cli, {"monitor", "scenario.yaml", "log.jsonl"});
+  CHECK(result.at("observations") == 3);
+  CHECK(result.at("compared") == 2);
+  CHECK(result.at("under_way") == 1);
+  CHECK(result.at("unreported") == Json::array({"box.x", "box.held"}));
+  const auto text = cli.parallax({"monitor", "scenario.yaml", "log.jsonl"});
+  CHECK(
+      text.out.find("never reported: box.x, box.held\nthe log has `box.X`; is `box.x` meant?\n") !=
+      std::string::npos);
+  // A log that says nothing of the model decides nothing.
+  cli.write("log.jsonl", "{\"t\": 0, \"state\": {\"arm.q\": 1}}\n");
+  CHECK(json_of(cli, {"monitor", "scenario.yaml", "log.jsonl"}, 4).at("verdict") == "undecided");
+  cli.write("log.jsonl", "");
+  CHECK(cli.parallax({"monitor", "scenario.yaml", "log.jsonl"}).code == 4);
+}
+
+TEST_CASE("events that the log does not name may have happened where the scenario says so") {
+  const CliFixture cli;
+  cli.write("slip.e",
+            cli.read("domain.e") +
+                "event Slip()\n"
+                "[time] Terminates(Slip(),Holding(),time).\n"
+                "[region,time] HoldsAt(RobotIn(region),time) & HoldsAt(Holding(),time) -> "
+                "Initiates(Slip(),BoxIn(region),time).\n"
+                "[time] Happens(Slip(),time) -> HoldsAt(Holding(),time).\n");
+  const std::string problem = "model: [slip.e, start.e]\nhorizon: 6\n";
+  cli.write("own.yaml", "include: common.yaml\n" + problem + "events: {unobserved: [Slip]}\n");
+  const std::string lost = state(0, 0.5, 1.5, false) + event(1, "Go(r2)") + event(2, "PickUp()") +
+                           state(2.1, 1.5, 1.5, true) + event(3, "Go(r1)") +
+                           state(3.1, 0.5, 1.5, false);
+  // On the way the box slipped in r2, and the robot went on without it.
+  cli.write("log.jsonl", lost);
+  const auto slipped = json_of(cli, {"monitor", "own.yaml", "log.jsonl"});
+  // Held, or lying where it was picked up or where the robot has gone.
+  CHECK(slipped.at("states").at("most") == 3);
+  CHECK(slipped.at("states").at("last") == 1);
+  // It cannot come back into the hand by itself.
+  cli.write("back.jsonl", lost + state(3.2, 0.5, 0.5, true));
+  CHECK(json_of(cli, {"monitor", "own.yaml", "back.jsonl"}, 1).at("first").at("line") == 7);
+  // Where nothing may happen unseen it does not.
+  cli.write("seen.yaml",
+            "include: own.yaml\nevents: {unobserved: []}\n"
+            "actions: {Slip(): {controller: going}}\n");
+  CHECK(json_of(cli, {"monitor", "seen.yaml", "log.jsonl"}, 1).at("first").at("line") == 6);
+  CHECK(json_of(cli, {"monitor", "seen.yaml", "log.jsonl", "--unobserved", "Slip"}).at("verdict") ==
+        "consistent");
+  const auto unknown = cli.parallax({"monitor", "own.yaml", "log.jsonl", "--unobserved", "Slop"});
+  CHECK(unknown.code == 3);
+  CHECK(unknown.err.find("the model has no event `Slop`") != std::string::npos);
+  CHECK(unknown.err.find("there is an event `Slip`") != std::string::npos);
+}
+
+TEST_CASE("bad lines are located, and what came before them is not lost") {
+  const CliFixture cli;
+  const std::string good = state(0, 0.5, 1.5, false) + event(1, "Go(r2)");
+  const std::pair<std::string, std::string> cases[] = {
+      {event(0.5, "PickUp()"),
+       "log:3:1: error[E7401]: the log cannot be read on: time runs backwards"},
+      {event(2, "PickUP()"), "there is an event `PickUp()`"},
+      {"{\"t\": 2, \"event\": \"Pick", "the log ends in the middle of this line"},
+      {"{\"t\": 2, \"event\": \"Pick\n", "log:3:"},
+      {"{\"t\": 2, \"state\": {\"robot.x\": NaN}}\n", "it is no JSON object as far as it goes"},
+      {"{\"t\": 2, \"state\": {\"robot.x\": \"\xff\"}}\n", "this byte is not of UTF-8 text"},
+      {"{\"t\": 2, \"state\": {\"robot.x\": true}}\n", "`robot.x` is a number"},
+      {std::string(2U << 20U, ' ') + "\n", "the line is longer than 1048576 bytes"}};
+  for (const auto& [bad, wanted] : cases) {
+    CAPTURE(wanted);
+    cli.write("log", good + bad);
+    const auto result = cli.parallax({"monitor", "scenario.yaml", "log"});
+    CHECK(result.code == 3);
+    CHECK(result.err.find(wanted) != std::string::npos);
+    CHECK(result.out.find("consistent as far as the log can be read: 1 observations") == 0);
+    const auto json = json_of(cli, {"monitor", "scenario.yaml", "log"}, 3);
+    CHECK(json.at("status") == "error");
+    CHECK(json.at("diagnostics").size() == 1);
+    CHECK(json.at("events") == 1);
+  }
+  cli.write("log", "t,robot.x\n0,0.5\n1\n");
+  const auto few = cli.parallax({"monitor", "scenario.yaml", "log"});
+  CHECK(few.code == 3);
+  CHECK(few.err.find("log:3:1: error[E7401]: the log cannot be read on: it has 1 cells, and the "
+                     "header 2") != std::string::npos);
+  CHECK(cli.parallax({"monitor", "scenario.yaml", "nothing"}).code == 2);
+  CHECK(cli.parallax({"monitor", "domain.e", "log"}).code == 3);
+  // An axiom that spans three timepoints cannot be followed.
+  cli.write("far.e", cli.read("domain.e") +
+                         "[time] HoldsAt(Holding(),time) -> HoldsAt(Holding(),time+2).\n");
+  cli.write("far.yaml", "include: common.yaml\nmodel: far.e\nhorizon: 6\n");
+  const auto far = cli.parallax({"monitor", "far.yaml", "log"});
+  CHECK(far.code == 3);
+  CHECK(far.err.find("error[E7402]") != std::string::npos);
+}
+
+TEST_CASE("too many possible states are said, not guessed") {
+  const CliFixture cli;
+  cli.write("own.yaml", "include: common.yaml\nmodel: domain.e\nhorizon: 6\n");
+  cli.write("log.jsonl", event(1, "Go(r2)"));
+  const auto result = json_of(cli, {"monitor", "own.yaml", "log.jsonl", "--max-states", "2"}, 4);
+  CHECK(result.at("verdict") == "undecided");
+  CHECK(result.at("because") == "more than 2 initial states are possible");
+  CHECK(json_of(cli, {"monitor", "own.yaml", "log.jsonl"}).at("states").at("most") == 6);
+}
+
+TEST_CASE("every recorded simulation is checked again: discrepancies at their steps, no others") {
+  const CliFixture cli;
+  for (const auto* scenario : {"edge", "scenario", "wrong_model"}) {
+    CAPTURE(scenario);
+    const std::string yaml = std::string(scenario) + ".yaml", out = std::string("out/") + scenario;
+    const auto ran =
+        cli.parallax({"run", yaml, "--out", out, "--keep-going", "--epsilon", "0.3", "--json"});
+    const auto report = Json::parse(ran.out);
+    std::map<std::string, Json> divergences;
+    for (const auto& found : report.at("discrepancies")) {
+      divergences[std::to_string(found.at("trace").get<int>()) + "." +
+                  std::to_string(found.at("sample").get<int>())] = found.at("first_divergence");
+    }
+    CHECK(divergences.empty() == (std::string(scenario) == "scenario"));
+    const auto checked = json_of(cli, {"monitor", yaml, out}, divergences.empty() ? 0 : 1);
+    CHECK(checked.at("runs").size() == report.at("simulations"));
+    for (const auto& run : checked.at("runs")) {
+      const auto found = divergences.find(run.at("sample"));
+      CAPTURE(run.dump());
+      if (found == divergences.end()) {
+        CHECK(run.at("verdict") == "consistent");
+      } else {
+        CHECK(run.at("verdict") == "inconsistent");
+        CHECK(run.at("first").at("timepoint") == found->second);
+      }
+    }
+  }
+  // Only with the scenario that was run.
+  CHECK(cli.parallax({"monitor", "scenario.yaml", "out/edge"}).code == 3);
+}
+
+}  // namespace
+}  // namespace parallax::test

@@ -1,0 +1,287 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <unordered_map>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/suggest.h"
+#include "compiler/base/utf8.h"
+#include "harness/monitor/line_source.h"
+#include "harness/monitor/log_entry.h"
+#include "tools/app/monitor.h"
+
+namespace parallax::tools {
+namespace {
+
+using base::DiagnosticCode;
+using compiler::EventId;
+using harness::LineSource;
+using harness::LogEntry;
+using harness::LogError;
+using runtime::Admission;
+
+using Clock = std::chrono::steady_clock;
+
+/// Lines between two looks at the clock.
+constexpr std::int64_t kLinesPerLook = 256;
+constexpr std::chrono::milliseconds kProgressEvery(500);
+/// So many variables are named in the result.
+constexpr std::size_t kMostNamed = 20;
+
+/// ASCII without NUL, as nearly all lines are.
+bool is_plain(std::string_view line) {
+  return std::all_of(line.begin(), line.end(), [](char c) { return c > 0; });
+}
+
+class LogWatcher {
+ public:
+  LogWatcher(Watch& watch, int fd, const std::string& name, Context& context,
+             const MonitorProgress& progress)
+      : watch_(watch),
+        source_(fd, context.stop()),
+        context_(context),
+        progress_(progress),
+        reported_(watch.reader().variables().size(), false) {
+    result_.log = name;
+    for (std::uint32_t e = 0; e < watch.symbols().event_count(); ++e) {
+      events_.emplace(watch.symbols().name(EventId(e)), EventId(e));
+    }
+  }
+
+  MonitorResult run() && {
+    const auto begun = Clock::now();
+    auto last_progress = begun;
+    watch_.restart();
+    const auto compared_before = watch_.compared();
+    std::string_view line;
+    while (!is_over_) {
+      const auto status = source_.next(line);
+      if (status == LineSource::Status::kEnd) break;
+      if (!take(status, line)) break;
+      if (!progress_ || source_.number() % kLinesPerLook != 0) continue;
+      if (const auto now = Clock::now(); now - last_progress > kProgressEvery) {
+        last_progress = now;
+        result_.wall_s = std::chrono::duration<double>(now - begun).count();
+        progress_(result_);
+      }
+    }
+    if (!is_over_ && !result_.failed && !result_.interrupted) end();
+    result_.lines = source_.number();
+    result_.compared = watch_.compared() - compared_before;
+    finish();
+    result_.wall_s = std::chrono::duration<double>(Clock::now() - begun).count();
+    return std::move(result_);
+  }
+
+ private:
+  /// False: nothing more is read.
+  bool take(LineSource::Status status, std::string_view line) {
+    using Status = LineSource::Status;
+    switch (status) {
+      case Status::kLine:
+      case Status::kCut:
+        break;
+      case Status::kTooLong:
+        return refuse({1, fmt::format("the line is longer than {} bytes", LineSource::kMaxLine)});
+      case Status::kFailed:
+        return refuse({1, std::strerror(source_.error())});
+      case Status::kStopped:
+        result_.interrupted = true;
+        return false;
+      case Status::kEnd:
+        return false;
+    }
+    if (context_.stopped()) {
+      result_.interrupted = true;
+      return false;
+    }
+    if (!is_plain(line)) {
+      const auto invalid = std::min(base::first_invalid_utf8(line), line.find('\0'));
+      if (invalid != line.size()) return refuse({invalid + 1, "this byte is not of UTF-8 text"});
+    }
+    if (line.find_first_not_of(" \t") == std::string_view::npos) return true;
+    if (auto error = parse(line)) {
+      if (status == Status::kCut) error->text = "the log ends in the middle of this line";
+      return refuse(*error);
+    }
+    return is_header_ || follow();
+  }
+
+  std::optional<LogError> parse(std::string_view line) {
+    is_header_ = false;
+    if (!form_) {
+      form_ = line[line.find_first_not_of(" \t")] == '{' ? Form::kJson : Form::kCsv;
+      if (form_ == Form::kCsv) {
+        is_header_ = true;
+        return csv_.read_header(line, watch_.reader(), foreign_);
+      }
+    }
+    if (form_ == Form::kJson) return read_json_line(line, watch_.reader(), entry_, foreign_);
+    return csv_.read_line(line, watch_.reader(), entry_);
+  }
+
+  bool refuse(const LogError& error) {
+    auto report = context_.sink().error_about(
+        DiagnosticCode::kBadLogLine,
+        fmt::format("{}:{}:{}", result_.log, source_.number(), error.column), error.text);
+    for (const auto& note : notes_) report.note(note);
+    result_.failed = true;
+    return false;
+  }
+
+  MonitorPlace here() const { return {source_.number(), result_.events, entry_.t, false}; }
+
+  /// The event of the model; none: reported.
+  std::optional<EventId> event(const std::string& name) {
+    const auto found = events_.find(name);
+    if (found != events_.end()) return found->second;
+    if (const auto near = base::nearest_name(name, watch_.event_names())) {
+      notes_.push_back(fmt::format("there is an event `{}`", *near));
+    }
+    refuse({1, fmt::format("the model has no event `{}`", name)});
+    return std::nullopt;
+  }
+
+  /// What the entry says, in order: a step, an action that is begun, a state.
+  bool follow() {
+    if (any_ && entry_.t < t_) {
+      return refuse({1, fmt::format("time runs backwards: {:.9g} s after {:.9g} s", entry_.t, t_)});
+    }
+    t_ = entry_.t;
+    any_ = true;
+    if (entry_.events && !step()) return false;
+    if (entry_.started) {
+      const auto id = event(*entry_.started);
+      if (!id) return false;
+      under_way_.insert(id->index());
+    }
+    return !entry_.has_state || see();
+  }
+
+  bool step() {
+    runtime::ToldStep told;
+    for (const auto& name : *entry_.events) {
+      const auto id = event(name);
+      if (!id) return false;
+      told.events.push_back(*id);
+      under_way_.erase(id->index());
+    }
+    std::sort(told.events.begin(), told.events.end());
+    told.events.erase(std::unique(told.events.begin(), told.events.end()), told.events.end());
+    told.succeeded = entry_.ok;
+    ++result_.events;
+    unsettled_.reset();
+    return note(watch_.step(told), here());
+  }
+
+  bool see() {
+    ++result_.observations;
+    for (std::size_t v = 0; v < reported_.size(); ++v) {
+      if (entry_.values[v]) reported_[v] = true;
+    }
+    if (!under_way_.empty()) {
+      ++result_.under_way;
+      return true;
+    }
+    const bool at_start = result_.events == 0;
+    if (watch_.compares_at_rest() && !at_start) unsettled_ = {here(), entry_.values};
+    return note(watch_.observe(entry_.values, at_start), here());
+  }
+
+  /// What is compared at rest only is compared with the last thing that was seen.
+  void end() {
+    if (!unsettled_ || !under_way_.empty()) return;
+    auto place = unsettled_->first;
+    place.at_the_end = true;
+    (void)note(watch_.observe(unsettled_->second, true), place);
+  }
+
+  bool note(Admission admission, const MonitorPlace& place) {
+    result_.states = watch_.belief().size();
+    result_.most_states = watch_.belief().largest();
+    if (admission == Admission::kAdmitted) return true;
+    is_over_ = true;
+    if (context_.stopped()) {
+      result_.interrupted = true;
+      return false;
+    }
+    result_.first = place;
+    if (admission == Admission::kRefused) {
+      result_.verdict = MonitorVerdict::kInconsistent;
+      result_.refusal = watch_.refusal();
+    } else {
+      result_.verdict = MonitorVerdict::kUndecided;
+      result_.undecided_because = watch_.belief().undecided_because();
+    }
+    return false;
+  }
+
+  void finish() {
+    if (result_.observations > 0) {
+      for (std::size_t v = 0; v < reported_.size() && result_.unreported.size() < kMostNamed; ++v) {
+        if (reported_[v]) continue;
+        const auto& name = watch_.reader().variables()[v];
+        result_.unreported.push_back(name);
+        const std::vector<std::string> foreign(foreign_.begin(), foreign_.end());
+        if (const auto near = base::nearest_name(name, foreign)) {
+          result_.hints.push_back(fmt::format("the log has `{}`; is `{}` meant?", *near, name));
+        }
+      }
+    }
+    if (result_.verdict != MonitorVerdict::kConsistent) return;
+    if (result_.interrupted) {
+      result_.verdict = MonitorVerdict::kUndecided;
+      result_.undecided_because = "it was stopped";
+    } else if (!result_.failed && result_.events == 0 && result_.compared == 0) {
+      result_.verdict = MonitorVerdict::kUndecided;
+      result_.undecided_because =
+          "the log says nothing of the model: no event, and no variable "
+          "that a compared fluent is read from";
+    }
+  }
+
+  enum class Form : std::uint8_t { kJson, kCsv };
+
+  Watch& watch_;
+  LineSource source_;
+  Context& context_;
+  const MonitorProgress& progress_;
+  MonitorResult result_;
+  std::unordered_map<std::string, EventId> events_;  // for look-up only
+  std::optional<Form> form_;
+  harness::CsvLog csv_;
+  bool is_header_ = false;
+  LogEntry entry_;
+  harness::ForeignNames foreign_;
+  std::vector<bool> reported_;  // by variable
+  std::set<std::uint32_t> under_way_;
+  std::vector<std::string> notes_;
+  std::optional<std::pair<MonitorPlace, harness::ReportedValues>> unsettled_;
+  double t_ = 0.0;
+  bool any_ = false, is_over_ = false;
+};
+
+}  // namespace
+
+std::string_view to_string(MonitorVerdict verdict) {
+  switch (verdict) {
+    case MonitorVerdict::kConsistent:
+      return "consistent";
+    case MonitorVerdict::kInconsistent:
+      return "inconsistent";
+    case MonitorVerdict::kUndecided:
+      return "undecided";
+  }
+  return {};
+}
+
+MonitorResult monitor_log(Watch& watch, int fd, const std::string& name, Context& context,
+                          const MonitorProgress& progress) {
+  return LogWatcher(watch, fd, name, context, progress).run();
+}
+
+}  // namespace parallax::tools

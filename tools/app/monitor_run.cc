@@ -1,0 +1,129 @@
+#include <fmt/format.h>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/json.h"
+#include "harness/campaign/journal.h"
+#include "tools/app/monitor.h"
+
+namespace parallax::tools {
+namespace {
+
+using harness::SampleRecord;
+using runtime::Admission;
+
+harness::ReportedValues reported(const harness::ObservationReader& reader,
+                                 const harness::State& state) {
+  harness::ReportedValues out;
+  for (const auto& name : reader.variables()) {
+    const auto found = state.find(name);
+    out.push_back(found == state.end() ? std::nullopt : std::optional(found->second));
+  }
+  return out;
+}
+
+/// What the run compared, whatever the scenario says by itself.
+std::optional<harness::Comparison> comparison_of(const harness::JournalHeader& header) {
+  const auto options = nlohmann::json::parse(header.options, nullptr, false);
+  const auto* compare = base::json_member(options, "compare");
+  if (compare == nullptr) return std::nullopt;
+  const bool is_final = *compare == harness::to_string(harness::Comparison::kFinal);
+  return is_final ? harness::Comparison::kFinal : harness::Comparison::kEveryStep;
+}
+
+class RunWatcher {
+ public:
+  RunWatcher(Watch& watch, const harness::CampaignTrace& trace, const SampleRecord& record)
+      : watch_(watch), trace_(trace), record_(record) {}
+
+  MonitorResult run() && {
+    result_.log = fmt::format("{}.{}", record_.trace, record_.sample);
+    watch_.restart();
+    const auto compared_before = watch_.compared();
+    const auto last = record_.observations.size() - 1;
+    double t_s = 0.0;
+    for (std::size_t t = 0; t <= last; ++t) {
+      const MonitorPlace place{0, static_cast<std::int64_t>(t), t_s, false};
+      if (t > 0 && !note(step(t - 1), place)) break;
+      if (t > 0) t_s += record_.outcomes[t - 1].sim_time_s;
+      ++result_.observations;
+      const auto values = reported(watch_.reader(), record_.observations[t]);
+      if (!note(watch_.observe(values, t == 0 || t == last), {0, place.timepoint, t_s, false})) {
+        break;
+      }
+    }
+    result_.compared = watch_.compared() - compared_before;
+    return std::move(result_);
+  }
+
+ private:
+  Admission step(std::size_t t) {
+    ++result_.events;
+    runtime::ToldStep told;
+    const auto event = watch_.symbols().event(trace_.event(t));
+    PARALLAX_REQUIRE(event.has_value(), "the trace is one of the scenario's model");
+    told.events.push_back(*event);
+    return watch_.step(told);
+  }
+
+  bool note(Admission admission, const MonitorPlace& place) {
+    result_.states = watch_.belief().size();
+    result_.most_states = watch_.belief().largest();
+    if (admission == Admission::kAdmitted) return true;
+    result_.first = place;
+    if (admission == Admission::kRefused) {
+      result_.verdict = MonitorVerdict::kInconsistent;
+      result_.refusal = watch_.refusal();
+    } else {
+      result_.verdict = MonitorVerdict::kUndecided;
+      result_.undecided_because = watch_.belief().undecided_because();
+    }
+    return false;
+  }
+
+  Watch& watch_;
+  const harness::CampaignTrace& trace_;
+  const SampleRecord& record_;
+  MonitorResult result_;
+};
+
+}  // namespace
+
+base::Result<std::vector<MonitorResult>> monitor_run(const RunFolderOptions& run,
+                                                     const WatchOptions& options,
+                                                     Context& context) {
+  auto& sink = context.sink();
+  const auto journal = harness::read_journal(run.folder, context.files(), sink);
+  if (!journal) return sink.already_reported();
+  if (!journal->header) {
+    return sink.error_about(base::DiagnosticCode::kNoJournal, run.folder);
+  }
+  const auto loaded = load_recorded_scenario(run, *journal->header, ScenarioUse::kRun, context);
+  if (!loaded) return sink.already_reported();
+  auto as_recorded = options;
+  as_recorded.comparison = comparison_of(*journal->header);
+  auto watch = Watch::make(*loaded, as_recorded, context);
+  if (!watch) return sink.already_reported();
+  std::vector<MonitorResult> out;
+  for (const auto& [key, record] : journal->samples) {
+    if (context.stopped()) break;
+    if (record.phase == harness::DrawPhase::kConfirm) continue;
+    if (record.status != harness::SampleStatus::kOk) continue;
+    const auto line = journal->traces.find(record.trace);
+    if (line == journal->traces.end() ||
+        record.observations.size() != line->second.trace->points.size() ||
+        record.outcomes.size() + 1 != record.observations.size()) {
+      return sink.error(base::DiagnosticCode::kForeignJournalLine, journal->places.at(key),
+                        "its observations are not those of its trace");
+    }
+    const auto& trace = *line->second.trace;
+    for (std::size_t t = 0; t < trace.event_count(); ++t) {
+      if ((*watch)->symbols().event(trace.event(t))) continue;
+      return sink.error(base::DiagnosticCode::kForeignJournalLine,
+                        journal->trace_places.at(record.trace), "it names what the model has not");
+    }
+    out.push_back(RunWatcher(**watch, trace, record).run());
+  }
+  return out;
+}
+
+}  // namespace parallax::tools

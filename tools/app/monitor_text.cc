@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compiler/base/diagnostic_printer.h"
+#include "compiler/base/json.h"
+#include "tools/app/monitor.h"
+
+namespace parallax::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// So many fluents and plan steps are spelled out in the text.
+constexpr std::size_t kMostShown = 8;
+
+std::string value_text(const harness::Value& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return fmt::format("\"{}\"", *text);
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const auto* real = std::get_if<double>(&value)) return fmt::format("{:.6g}", *real);
+  return fmt::format("{}", std::get<std::int64_t>(value));
+}
+
+std::string fluent_text(const RefusedFluent& fluent) {
+  std::string out = fmt::format(
+      "  {}{}", fluent.neither ? "neither so nor so: " : (fluent.observed ? "" : "not "),
+      fluent.fluent);
+  std::vector<std::string> values;
+  for (const auto& [name, value] : fluent.variables) {
+    values.push_back(fmt::format("{} = {}", name, value_text(value)));
+  }
+  if (!values.empty()) out += fmt::format("   ({})", fmt::join(values, ", "));
+  return out + "\n";
+}
+
+std::string place_text(const MonitorResult& result) {
+  const auto& place = *result.first;
+  if (place.line == 0) {
+    return fmt::format("{}: timepoint {}, t = {:.6g} s", result.log, place.timepoint, place.t);
+  }
+  return fmt::format("{}:{}: t = {:.6g} s", result.log, place.line, place.t);
+}
+
+std::string refusal_text(const MonitorResult& result) {
+  const auto& refusal = result.refusal;
+  std::string out = place_text(result);
+  if (refusal.event.empty() && refusal.fluents.empty()) {
+    return out + ": no state that is still possible lets a step without events happen\n";
+  }
+  if (refusal.event.empty()) {
+    out += fmt::format(": no state that is still possible agrees with what was seen{}\n",
+                       result.first->at_the_end ? " at the end" : "");
+    for (std::size_t i = 0; i < refusal.fluents.size() && i < kMostShown; ++i) {
+      out += fluent_text(refusal.fluents[i]);
+    }
+    if (refusal.fluents.size() > kMostShown) {
+      out += fmt::format("  and {} more\n", refusal.fluents.size() - kMostShown);
+    }
+    return out;
+  }
+  out += refusal.only_outcome
+             ? fmt::format(": `{}` can happen, but not with this outcome\n", refusal.event)
+             : fmt::format(": `{}` cannot happen in any state that is still possible\n",
+                           refusal.event);
+  if (refusal.only_outcome) return out;
+  for (std::size_t i = 0; i < refusal.expected.size() && i < kMostShown; ++i) {
+    out += fmt::format("  the plan would perform {}\n", refusal.expected[i]);
+  }
+  if (refusal.plan_is_over) out += "  the plan may be over\n";
+  return out;
+}
+
+std::string first_text(const MonitorResult& result) {
+  if (!result.first) return {};
+  if (result.verdict == MonitorVerdict::kInconsistent) return refusal_text(result);
+  return fmt::format("{}: {}\n", place_text(result), result.undecided_because);
+}
+
+Json value_json(const harness::Value& value) {
+  return std::visit([](const auto& plain) { return Json(plain); }, value);
+}
+
+Json first_json(const MonitorResult& result) {
+  Json out = Json::object();
+  const auto& place = *result.first;
+  if (place.line > 0) out["line"] = place.line;
+  out["t"] = place.t;
+  out["timepoint"] = place.timepoint;
+  const auto& refusal = result.refusal;
+  if (result.verdict == MonitorVerdict::kUndecided) {
+    out["because"] = result.undecided_because;
+    return out;
+  }
+  if (!refusal.event.empty()) {
+    out["event"] = refusal.event;
+    out["only_outcome"] = refusal.only_outcome;
+    out["expected"] = refusal.expected;
+    out["plan_may_be_over"] = refusal.plan_is_over;
+  }
+  out["fluents"] = Json::array();
+  for (const auto& fluent : refusal.fluents) {
+    Json variables = Json::object();
+    for (const auto& [name, value] : fluent.variables) variables[name] = value_json(value);
+    Json entry{{"fluent", fluent.fluent}};
+    entry["observed"] = fluent.neither ? Json("neither") : Json(fluent.observed);
+    entry["variables"] = std::move(variables);
+    out["fluents"].push_back(std::move(entry));
+  }
+  return out;
+}
+
+Json fields(const MonitorResult& result) {
+  Json out{{"verdict", to_string(result.verdict)},
+           {"observations", result.observations},
+           {"compared", result.compared},
+           {"under_way", result.under_way},
+           {"events", result.events}};
+  out["states"] = Json{{"most", result.most_states}};
+  if (result.states) out["states"]["last"] = *result.states;
+  if (result.verdict == MonitorVerdict::kUndecided) out["because"] = result.undecided_because;
+  if (result.first) out["first"] = first_json(result);
+  return out;
+}
+
+}  // namespace
+
+MonitorVerdict verdict_of(const std::vector<MonitorResult>& runs) {
+  bool decided = !runs.empty();
+  for (const auto& run : runs) {
+    if (run.verdict == MonitorVerdict::kInconsistent) return run.verdict;
+    decided = decided && run.verdict == MonitorVerdict::kConsistent;
+  }
+  return decided ? MonitorVerdict::kConsistent : MonitorVerdict::kUndecided;
+}
+
+std::string monitor_text(const MonitorResult& result) {
+  std::string out = first_text(result);
+  out += fmt::format("{}{}: {} observations ({} compared", to_string(result.verdict),
+                     result.failed && result.verdict == MonitorVerdict::kConsistent
+                         ? " as far as the log can be read"
+                         : "",
+                     result.observations, result.compared);
+  if (result.under_way > 0)
+    out += fmt::format(", {} while an action was under way", result.under_way);
+  out += fmt::format("), {} steps; at most {} states possible at once", result.events,
+                     result.most_states);
+  if (result.states) out += fmt::format(", {} at last", *result.states);
+  out += "\n";
+  if (result.verdict == MonitorVerdict::kUndecided && !result.first) {
+    out += fmt::format("undecided: {}\n", result.undecided_because);
+  }
+  if (!result.unreported.empty()) {
+    out += fmt::format("never reported: {}\n", fmt::join(result.unreported, ", "));
+  }
+  for (const auto& hint : result.hints) out += hint + "\n";
+  return out;
+}
+
+std::string monitor_text(const std::vector<MonitorResult>& runs) {
+  std::string out;
+  std::size_t consistent = 0;
+  for (const auto& run : runs) {
+    if (run.verdict == MonitorVerdict::kConsistent) ++consistent;
+    out += first_text(run);
+  }
+  return out + fmt::format("{}: {} of {} simulations are consistent with the model\n",
+                           to_string(verdict_of(runs)), consistent, runs.size());
+}
+
+std::string monitor_json(const MonitorResult& result, const std::string& scenario) {
+  Json out{{"status", result.failed ? "error" : "ok"},
+           {"scenario", base::printable(scenario)},
+           {"log", base::printable(result.log)}};
+  out.update(fields(result));
+  out["unreported"] = result.unreported;
+  out["timing"] = Json{{"wall_s", result.wall_s}};
+  return base::json_text(out) + "\n";
+}
+
+std::string monitor_json(const std::vector<MonitorResult>& runs, const std::string& scenario) {
+  Json out{{"status", "ok"},
+           {"scenario", base::printable(scenario)},
+           {"verdict", to_string(verdict_of(runs))},
+           {"runs", Json::array()}};
+  for (const auto& run : runs) {
+    Json entry{{"sample", run.log}};
+    entry.update(fields(run));
+    out["runs"].push_back(std::move(entry));
+  }
+  return base::json_text(out) + "\n";
+}
+
+}  // namespace parallax::tools

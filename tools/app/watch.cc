@@ -1,0 +1,205 @@
+#include "tools/app/watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/suggest.h"
+#include "compiler/plan/plan_graph.h"
+
+namespace parallax::tools {
+namespace {
+
+using base::DiagnosticCode;
+using compiler::CompiledModel;
+using compiler::EventId;
+using runtime::Admission;
+using runtime::StepWindows;
+
+/// A model is compiled for at most so many timepoints more than its scenario asks for, so that what
+/// repeats itself is seen to.
+constexpr std::int64_t kMostTimepoints = 120;
+
+std::string symbol_of(std::string_view printed) {
+  return std::string(printed.substr(0, printed.find('(')));
+}
+
+/// The events of these symbols.
+base::Result<std::vector<EventId>> events_of(const std::vector<std::string>& symbols,
+                                             const CompiledModel& model, Context& context) {
+  std::vector<std::string> known;
+  for (const auto& event : model.events) known.push_back(symbol_of(event.name));
+  std::vector<EventId> out;
+  for (const auto& symbol : symbols) {
+    bool found = false;
+    for (std::uint32_t e = 0; e < known.size(); ++e) {
+      if (known[e] != symbol) continue;
+      found = true;
+      out.emplace_back(e);
+    }
+    if (found) continue;
+    auto error = context.sink().error_about(DiagnosticCode::kNoSuchEvent, "unobserved", symbol);
+    if (const auto near = base::nearest_name(symbol, known)) {
+      error.note(fmt::format("there is an event `{}`", *near));
+    }
+    return error;
+  }
+  return out;
+}
+
+/// The horizon at which it can be seen that a plan is over, or comes round again.
+std::int64_t wanted_horizon(const ScenarioModel& loaded) {
+  const auto& plan = loaded.compilation.plan;
+  const std::int64_t horizon = loaded.scenario.horizon;
+  const auto longest = plan ? compiler::longest_path(*plan) : std::optional<std::int64_t>(0);
+  return std::max<std::int64_t>(horizon, longest ? *longest + 3 : 2 * horizon);
+}
+
+}  // namespace
+
+base::Result<std::unique_ptr<Watch>> Watch::make(const ScenarioModel& loaded,
+                                                 const WatchOptions& options, Context& context) {
+  auto& sink = context.sink();
+  std::unique_ptr<Watch> out(new Watch());
+  out->loaded_ = &loaded;
+  out->context_ = &context;
+  const bool has_plan = !loaded.scenario.plan.empty();
+  std::vector<std::int64_t> horizons = {loaded.scenario.horizon};
+  if (options.with_plan && has_plan) horizons.push_back(wanted_horizon(loaded));
+  horizons.push_back(std::max<std::int64_t>(4, 2 * loaded.scenario.horizon));
+  for (const auto horizon : horizons) {
+    if (out->windows_ != nullptr &&
+        (out->windows_->comes_after || horizon > kMostTimepoints + loaded.scenario.horizon)) {
+      break;
+    }
+    const CompiledModel* model = &loaded.compilation.model;
+    std::optional<CompiledModel> compiled;
+    if (horizon != loaded.scenario.horizon || (has_plan && !options.with_plan)) {
+      compiled = compile_variant(loaded.scenario, horizon, options.with_plan && has_plan, context);
+      if (!compiled && out->windows_ != nullptr) break;
+      if (!compiled) {
+        return sink.error_about(DiagnosticCode::kNoSteps, loaded.scenario.name,
+                                "it cannot be compiled without its plan");
+      }
+      model = &*compiled;
+    }
+    auto made = runtime::step_windows(*model);
+    if (const auto* why = std::get_if<std::string>(&made)) {
+      if (out->windows_ != nullptr) break;
+      return sink.error_about(DiagnosticCode::kNoSteps, loaded.scenario.name, *why);
+    }
+    out->windows_ = std::get<std::unique_ptr<StepWindows>>(std::move(made));
+  }
+  const auto& model = out->windows_->model;
+  auto names = loaded.scenario.unobserved;
+  names.insert(names.end(), options.unobserved.begin(), options.unobserved.end());
+  auto unobserved = events_of(names, model, context);
+  if (!unobserved) return sink.already_reported();
+
+  out->symbols_ = std::make_unique<compiler::SymbolTable>(model);
+  out->fluents_.emplace(*out->symbols_);
+  out->number_of_.resize(model.fluents.size());
+  const auto& ground = out->fluents_->ground();
+  for (std::size_t i = 0; i < ground.size(); ++i) {
+    out->number_of_[out->fluents_->id(i).index()] = i;
+  }
+  const auto& mapping = *loaded.scenario.mapping;
+  out->reader_ = std::make_unique<harness::ObservationReader>(mapping, ground);
+  out->only_at_rest_ =
+      options.comparison.value_or(loaded.scenario.comparison()) == harness::Comparison::kFinal;
+  out->compares_at_rest_ =
+      out->only_at_rest_ ||
+      std::any_of(mapping.bindings().begin(), mapping.bindings().end(),
+                  [](const harness::FluentBinding& binding) { return binding.at_rest_only; });
+  out->belief_ = std::make_unique<runtime::Belief>(
+      *out->windows_, runtime::BeliefOptions{options.max_states, 10 * options.max_states,
+                                             *std::move(unobserved), &context.stop()});
+  return out;
+}
+
+std::vector<std::string> Watch::event_names() const {
+  return compiler::names_of(windows_->model.events);
+}
+
+void Watch::restart() {
+  belief_->restart();
+  refusal_ = {};
+}
+
+Admission Watch::observe(const harness::ReportedValues& values, bool at_rest) {
+  if (only_at_rest_ && !at_rest) return Admission::kAdmitted;
+  reader_->read(values, at_rest, seen_);
+  observation_.assign(seen_.fluents.size(), 0);
+  bool says_something = seen_.in_no_state();
+  for (std::size_t i = 0; i < seen_.fluents.size(); ++i) {
+    observation_[fluents_->id(i).index()] = seen_.fluents[i];
+    says_something = says_something || seen_.fluents[i] != 0;
+  }
+  if (says_something) ++compared_;
+  if (!belief_->undecided_because().empty()) return Admission::kUndecided;
+  const auto admission = seen_.in_no_state() ? Admission::kRefused : belief_->observe(observation_);
+  if (admission == Admission::kRefused) explain(values);
+  return admission;
+}
+
+RefusedFluent Watch::refused(std::size_t number, const harness::ReportedValues& values) const {
+  RefusedFluent out;
+  out.fluent = fluents_->ground()[number].text;
+  for (const auto variable : reader_->variables_of(number)) {
+    if (values[variable])
+      out.variables.emplace_back(reader_->variables()[variable], *values[variable]);
+  }
+  return out;
+}
+
+void Watch::explain(const harness::ReportedValues& values) {
+  refusal_ = {};
+  for (const auto number : seen_.neither) {
+    refusal_.fluents.push_back(refused(number, values));
+    refusal_.fluents.back().neither = true;
+  }
+  for (const auto& text : seen_.outside) {
+    RefusedFluent outside;
+    outside.fluent = text;
+    outside.observed = true;
+    // All fluents about the body are read from much the same variables.
+    for (std::size_t i = 0; i < fluents_->ground().size() && outside.variables.empty(); ++i) {
+      const auto& fluent = fluents_->ground()[i];
+      if (loaded_->scenario.mapping->outside_text(fluent) != text) continue;
+      outside.variables = refused(i, values).variables;
+    }
+    refusal_.fluents.push_back(std::move(outside));
+  }
+  if (!refusal_.fluents.empty()) return;
+  for (const auto& [fluent, observed] : belief_->disagreement(observation_)) {
+    refusal_.fluents.push_back(refused(number_of_[fluent.index()], values));
+    refusal_.fluents.back().observed = observed;
+  }
+}
+
+Admission Watch::step(const runtime::ToldStep& told) {
+  const auto admission = belief_->step(told);
+  if (admission != Admission::kRefused) return admission;
+  refusal_ = {};
+  for (const auto event : told.events) {
+    if (!refusal_.event.empty()) refusal_.event += '+';
+    refusal_.event += symbols_->name(event);
+  }
+  refusal_.only_outcome = told.succeeded && belief_->admits({told.events, std::nullopt});
+  for (const auto step : belief_->plan_steps()) {
+    const auto& performed = windows_->model.plan[step];
+    const auto place = performed.place.file.empty()
+                           ? context_->files().place(performed.source)
+                           : fmt::format("{}:{}", performed.place.file, performed.place.begin.line);
+    auto text = fmt::format("{} ({})", performed.event, place);
+    if (std::find(refusal_.expected.begin(), refusal_.expected.end(), text) ==
+        refusal_.expected.end()) {
+      refusal_.expected.push_back(std::move(text));
+    }
+  }
+  refusal_.plan_is_over = belief_->plan_may_be_over();
+  return admission;
+}
+
+}  // namespace parallax::tools

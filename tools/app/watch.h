@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "compiler/artifact/symbol_table.h"
+#include "compiler/base/result.h"
+#include "harness/campaign/trace_input.h"
+#include "harness/monitor/observation_reader.h"
+#include "runtime/monitor/belief.h"
+#include "tools/app/context.h"
+#include "tools/app/scenario_model.h"
+
+namespace parallax::tools {
+
+struct WatchOptions {
+  bool with_plan = true;
+  std::size_t max_states = 20'000;
+  std::vector<std::string> unobserved;  // event symbols, besides those of the scenario
+  std::optional<harness::Comparison> comparison = std::nullopt;  // none: as the scenario says
+};
+
+/// A fluent for which an observation was refused.
+struct RefusedFluent {
+  std::string fluent;
+  bool observed = false;
+  bool neither = false;                                           // it neither holds nor does not
+  std::vector<std::pair<std::string, harness::Value>> variables;  // that it was read from
+};
+
+/// What no state that was still possible admits.
+struct Refusal {
+  std::vector<RefusedFluent> fluents;  // of an observation
+  std::string event;                   // of a step: `Go(r2)`, several joined by `+`
+  bool only_outcome = false;           // it may happen, but not come to this
+  std::vector<std::string> expected;   // what the plan may perform now, with its places
+  bool plan_is_over = false;
+};
+
+/// Holds what is told of a robot, or of another simulator, against the model and the plan of a
+/// scenario.
+class Watch {
+ public:
+  /// `loaded` and `context` outlive the watch. Reports kNoSteps, kNoSuchEvent, and what compiling
+  /// reports.
+  static base::Result<std::unique_ptr<Watch>> make(const ScenarioModel& loaded,
+                                                   const WatchOptions& options, Context& context);
+
+  const harness::ObservationReader& reader() const { return *reader_; }
+  const compiler::SymbolTable& symbols() const { return *symbols_; }
+  std::vector<std::string> event_names() const;
+  /// Are there fluents that are compared at the start and at the end only?
+  bool compares_at_rest() const { return compares_at_rest_; }
+
+  void restart();
+  /// `at_rest`: at the start or at the end.
+  runtime::Admission observe(const harness::ReportedValues& values, bool at_rest);
+  runtime::Admission step(const runtime::ToldStep& told);
+  const runtime::Belief& belief() const { return *belief_; }
+  /// Of what was refused last.
+  const Refusal& refusal() const { return refusal_; }
+  /// So many observations that said something of a fluent were held against the model.
+  std::int64_t compared() const { return compared_; }
+
+ private:
+  Watch() = default;
+  void explain(const harness::ReportedValues& values);
+  RefusedFluent refused(std::size_t number, const harness::ReportedValues& values) const;
+
+  const ScenarioModel* loaded_ = nullptr;
+  const Context* context_ = nullptr;
+  std::unique_ptr<compiler::SymbolTable> symbols_;
+  std::optional<harness::ModelFluents> fluents_;
+  std::vector<std::size_t> number_of_;  // by FluentId: number among `fluents_`
+  std::unique_ptr<harness::ObservationReader> reader_;
+  std::unique_ptr<runtime::StepWindows> windows_;
+  std::unique_ptr<runtime::Belief> belief_;
+  bool only_at_rest_ = false, compares_at_rest_ = false;
+  harness::SeenState seen_;
+  runtime::Observation observation_;
+  Refusal refusal_;
+  std::int64_t compared_ = 0;
+};
+
+}  // namespace parallax::tools

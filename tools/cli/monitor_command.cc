@@ -1,0 +1,144 @@
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "compiler/base/descriptor.h"
+#include "compiler/base/diagnostic_codes.h"
+#include "tools/app/file_kind.h"
+#include "tools/app/monitor.h"
+#include "tools/cli/command.h"
+#include "tools/cli/shared_options.h"
+
+namespace parallax::tools {
+namespace {
+
+struct MonitorOptions {
+  std::string scenario, log;
+  std::vector<std::string> unobserved;
+  bool no_plan = false;
+  std::int64_t max_states = 20'000;
+};
+
+int exit_code(MonitorVerdict verdict) {
+  switch (verdict) {
+    case MonitorVerdict::kConsistent:
+      return 0;
+    case MonitorVerdict::kInconsistent:
+      return 1;
+    case MonitorVerdict::kUndecided:
+      return 4;
+  }
+  return 5;
+}
+
+WatchOptions watch_options(const MonitorOptions& options) {
+  WatchOptions out;
+  out.with_plan = !options.no_plan;
+  out.max_states = static_cast<std::size_t>(options.max_states);
+  out.unobserved = options.unobserved;
+  return out;
+}
+
+int check_run(const MonitorOptions& options, Invocation& invocation) {
+  const auto runs =
+      monitor_run({options.log, options.scenario}, watch_options(options), invocation);
+  if (!runs) return 0;
+  if (invocation.options().json) {
+    invocation.document(monitor_json(*runs, options.scenario));
+  } else {
+    invocation.result(monitor_text(*runs));
+  }
+  return exit_code(verdict_of(*runs));
+}
+
+MonitorProgress progress_of(const Invocation& invocation) {
+  if (invocation.options().quiet || isatty(STDERR_FILENO) == 0) return {};
+  return [](const MonitorResult& result) {
+    const double rate =
+        result.wall_s > 0 ? static_cast<double>(result.observations) / result.wall_s : 0.0;
+    write_error(fmt::format("\r{} observations, {} steps, {:.0f} observations/s \x1b[K",
+                            result.observations, result.events, rate));
+  };
+}
+
+/// Files, FIFOs and devices are all logs.
+base::Result<base::Descriptor> open_log(const std::string& name, base::DiagnosticSink& sink) {
+  base::Descriptor file(name == "-" ? ::dup(STDIN_FILENO)
+                                    : ::open(name.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() >= 0) return file;
+  return sink.error_about(
+      errno == ENOENT ? base::DiagnosticCode::kFileNotFound : base::DiagnosticCode::kFileUnreadable,
+      name, std::strerror(errno));
+}
+
+int monitor(const MonitorOptions& options, Invocation& invocation) {
+  if (!expect_kind(options.scenario, {FileKind::kScenario}, "a scenario", invocation)) return 0;
+  std::error_code error;
+  if (options.log != "-" && std::filesystem::is_directory(options.log, error)) {
+    if (!expect_kind(options.log, {FileKind::kRun}, "a log or the folder of a run", invocation)) {
+      return 0;
+    }
+    return check_run(options, invocation);
+  }
+  auto file = open_log(options.log, invocation.sink());
+  if (!file) return 0;
+  const auto loaded = load_watched_scenario(options.scenario, invocation);
+  if (!loaded) return 0;
+  const auto watch = Watch::make(*loaded, watch_options(options), invocation);
+  if (!watch) return 0;
+  const auto progress = progress_of(invocation);
+  const auto name = options.log == "-" ? std::string("<stdin>") : options.log;
+  const auto result = monitor_log(**watch, file->get(), name, invocation, progress);
+  if (progress) write_error("\r\x1b[K");
+  if (invocation.options().json) {
+    invocation.document(monitor_json(result, options.scenario));
+  } else {
+    invocation.result(monitor_text(result));
+  }
+  if (invocation.options().verbosity > 0) {
+    invocation.remark(fmt::format(
+        "{:.0f} observations/s",
+        result.wall_s > 0 ? static_cast<double>(result.observations) / result.wall_s : 0.0));
+  }
+  return exit_code(result.verdict);
+}
+
+}  // namespace
+
+Command monitor_command() {
+  auto options = std::make_shared<MonitorOptions>();
+  OptionTable command("monitor", "Hold a robot's log, as it comes, against the model and the plan");
+  command.footer(
+      "Examples:\n"
+      "  parallax monitor kitchen.yaml robot.jsonl\n"
+      "  tail -f robot.jsonl | parallax monitor kitchen.yaml -\n"
+      "  parallax monitor kitchen.yaml log.csv --no-plan --unobserved Slip\n"
+      "  parallax monitor kitchen.yaml out/kitchen      every simulation of a run\n"
+      "Lines of a log: {\"t\": 1.5, \"event\": \"Go(bTable)\", \"outcome\": \"ok\"}\n"
+      "                {\"t\": 1.6, \"state\": {\"robot.x\": 0.1}}\n"
+      "Exit codes: 0 consistent, 1 not, 3 a line cannot be read, 4 undecided.");
+  command.option("scenario", options->scenario, "Scenario file (YAML)").required();
+  command
+      .option("log", options->log,
+              "Log (JSON lines or CSV), - for standard input, or the folder of a run")
+      .required();
+  command
+      .option("--unobserved", options->unobserved,
+              "Event that may happen without being logged; may be given again")
+      .list(ListForm::kOneEachTime);
+  command.flag("--no-plan", options->no_plan, "Against the model alone: any events may happen");
+  command
+      .option("--max-states", options->max_states,
+              "States that may be possible at once; with more the answer is `undecided`")
+      .check(WholeNumber{1, 1'000'000})
+      .show_default();
+  return {std::move(command),
+          [options](Invocation& invocation) { return monitor(*options, invocation); }};
+}
+
+}  // namespace parallax::tools
