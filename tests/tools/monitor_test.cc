@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tests/tools/cli_json.h"
+#include "tests/tools/kitchen_copy.h"
 
 namespace parallax::test {
 namespace {
@@ -211,6 +212,25 @@ TEST_CASE("bad lines are located, and what came before them is not lost") {
   const auto far = cli.parallax({"monitor", "far.yaml", "log"});
   CHECK(far.code == 3);
   CHECK(far.err.find("error[E7402]") != std::string::npos);
+}
+
+TEST_CASE("a plan of the kitchen is followed: what a search came to tells where the spoon is not") {
+  const KitchenCopy cli;
+  const auto check = [&](const std::string& log, int code) {
+    cli.write("log.jsonl", log);
+    return json_of(cli, {"monitor", "kitchen/plan2.yaml", "log.jsonl"}, code);
+  };
+  const std::string opened = event(1, "OpenDrawer(left,dTop)") + event(2, "LookAt(dTop)");
+  // Six ways to lay milk, cereal and bowl out, and three drawers.
+  CHECK(check(opened, 0).at("states") == Json{{"most", 18}, {"last", 18}});
+  CHECK(check(opened + event(3, "Detect(spoon)"), 0).at("states").at("last") == 6);
+  const std::string missed = opened + event(3, "Detect(spoon)", "failed");
+  CHECK(check(missed, 0).at("states").at("last") == 12);
+  CHECK(check(missed + event(4, "CloseDrawer(left,dTop)"), 0).at("states").at("last") == 12);
+  const auto first = check(missed + event(4, "PickUp(left,spoon1)"), 1).at("first");
+  CHECK(first.at("line") == 4);
+  REQUIRE(first.at("expected").size() == 1);
+  CHECK(first.at("expected").at(0).get<std::string>().find("CloseDrawer(left,dTop) (") == 0);
 }
 
 TEST_CASE("too many possible states are said, not guessed") {
