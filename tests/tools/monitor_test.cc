@@ -214,6 +214,18 @@ TEST_CASE("bad lines are located, and what came before them is not lost") {
   CHECK(far.err.find("error[E7402]") != std::string::npos);
 }
 
+TEST_CASE("with compare: final what is seen before the last line does not count") {
+  const CliFixture cli;
+  cli.write("final.yaml", "include: scenario.yaml\ncompare: final\n");
+  const std::string odd =
+      state(0, 0.5, 1.5, false) + event(1, "Go(r2)") + state(1.1, 0.5, 1.5, false);
+  cli.write("log.jsonl", odd + state(1.2, 1.5, 1.5, false));
+  CHECK(json_of(cli, {"monitor", "scenario.yaml", "log.jsonl"}, 1).at("first").at("line") == 3);
+  CHECK(json_of(cli, {"monitor", "final.yaml", "log.jsonl"}).at("compared") == 2);
+  cli.write("log.jsonl", odd);
+  CHECK(json_of(cli, {"monitor", "final.yaml", "log.jsonl"}, 1).at("first").at("line") == 3);
+}
+
 TEST_CASE("a plan of the kitchen is followed: what a search came to tells where the spoon is not") {
   const KitchenCopy cli;
   const auto check = [&](const std::string& log, int code) {
