@@ -8,6 +8,22 @@
 
 namespace parallax::compiler {
 
+std::string event_text(const PlanLocation& location, const RegisterObjects& registers) {
+  const auto object = [&](const FormulaNode& node) -> std::optional<FormulaTree> {
+    if (node.leaf != LeafKind::kRegister) return std::nullopt;
+    return constant_term(registers.at(ModelValueId(node.number)));
+  };
+  return with_leaves(location.event, object).text;
+}
+
+PlanArguments arguments_of(const PlanLocation& location, const RegisterObjects& registers) {
+  auto arguments = location.arguments;
+  for (auto& [name, value] : arguments) {
+    if (const auto* id = std::get_if<ModelValueId>(&value)) value = registers.at(*id);
+  }
+  return arguments;
+}
+
 PlanWalk::PlanWalk(const PlanGraph& graph) : graph_(&graph), at_(graph.entry) {}
 
 /// How many ways lead from here to a perform or an end that an execution can come to. Guards are
@@ -62,20 +78,7 @@ const PlanTerminal* PlanWalk::end() const {
 }
 
 std::string PlanWalk::event() const {
-  const auto& event = graph_->locations[std::get<LocationId>(at_)].event;
-  const auto object = [&](const FormulaNode& node) -> std::optional<FormulaTree> {
-    if (node.leaf != LeafKind::kRegister) return std::nullopt;
-    return constant_term(registers_.at(ModelValueId(node.number)));
-  };
-  return with_leaves(event, object).text;
-}
-
-PlanArguments PlanWalk::arguments() const {
-  auto arguments = graph_->locations[std::get<LocationId>(at_)].arguments;
-  for (auto& [name, value] : arguments) {
-    if (const auto* id = std::get_if<ModelValueId>(&value)) value = registers_.at(*id);
-  }
-  return arguments;
+  return event_text(graph_->locations[std::get<LocationId>(at_)], registers_);
 }
 
 void PlanWalk::succeed(const std::string& returned) {

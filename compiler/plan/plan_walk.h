@@ -14,6 +14,11 @@ namespace parallax::compiler {
 /// What the registers of a plan hold: names of objects.
 using RegisterObjects = std::map<ModelValueId, std::string>;
 
+/// What a location performs: "PickUp(left,spoon1)", without blanks, and what its designator gives a
+/// controller; registers by what they hold.
+std::string event_text(const PlanLocation& location, const RegisterObjects& registers);
+PlanArguments arguments_of(const PlanLocation& location, const RegisterObjects& registers);
+
 /// What a plan asks on its way from one perform to the next.
 class PlanSurroundings {
  public:
@@ -46,10 +51,8 @@ class PlanWalk {
   /// Where it has ended; none else.
   const PlanTerminal* end() const;
   const RegisterObjects& registers() const { return registers_; }
-  /// Of the location: "PickUp(left,spoon1)", without blanks.
+  /// Of the location.
   std::string event() const;
-  /// Of the location: what the designator gives a controller, with objects by their names.
-  PlanArguments arguments() const;
 
   /// The perform has succeeded, and found that object if it returns one.
   void succeed(const std::string& returned);

@@ -10,6 +10,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/hash.h"
 #include "harness/campaign/journal.h"
+#include "harness/campaign/run_setup.h"
 #include "harness/campaign/trace_campaign.h"
 #include "harness/confidence/clean_runs.h"
 #include "harness/sampling/sampler.h"
@@ -19,26 +20,6 @@ namespace {
 
 using base::DiagnosticCode;
 using Clock = std::chrono::steady_clock;
-
-constexpr std::int64_t kLeastRunLimit = 300;
-
-/// How many simulations a trace may take, and how many the criterion asks for if all are clean.
-struct RunLimit {
-  std::int64_t max_runs = 0;
-  std::int64_t needed = 0;  // 0: it cannot tell
-};
-
-/// `limits: max_runs`, or twice what the criterion needs and at least 300 where none is given: room
-/// for a lost run, after which more are needed.
-RunLimit run_limit(const Scenario& scenario) {
-  const auto& criterion = scenario.criterion;
-  RunLimit limit{scenario.limits.max_runs, 0};
-  if (criterion.kind == CriterionKind::kCleanRuns) {
-    limit.needed = runs_needed(criterion.confidence_level, criterion.epsilon);
-  }
-  if (limit.max_runs == 0) limit.max_runs = std::max(kLeastRunLimit, 2 * limit.needed);
-  return limit;
-}
 
 class Campaign {
  public:
@@ -56,15 +37,7 @@ class Campaign {
         bench_(
             scenario, traces, make_simulator, {options.seed, options.jobs, options.stop},
             [this](const SampleRecord& record) { keep(record); }, sink) {
-    result_.scenario = scenario.name;
-    result_.title = scenario.title;
-    result_.seed = options.seed;
-    result_.criterion = scenario.criterion;
-    result_.comparison = scenario.comparison();
-    result_.compared =
-        compared_fluents(*scenario.mapping, bench_.fluents().ground(), result_.comparison);
-    result_.tool_version = options.tool_version;
-    result_.replay_folder = options.run_dir.string();
+    describe_run(scenario, options, bench_.fluents().ground(), result_);
     result_.exploration = "stopped";
   }
 
@@ -236,32 +209,15 @@ std::string_view to_string(CampaignVerdict verdict) {
   return "inconclusive";
 }
 
-void warn_of_low_limit(const Scenario& scenario, const base::SourceFiles& files,
-                       base::DiagnosticSink& sink) {
-  const auto limit = run_limit(scenario);
-  if (limit.max_runs >= limit.needed) return;
-  const auto& source = scenario.limits.max_runs_source;
-  const bool written = source && files.text(*source) == std::to_string(limit.max_runs);
-  sink.warning(DiagnosticCode::kRunLimitTooLow,
-               written ? *source : base::SourceRange{scenario.source, 0, 0}, limit.max_runs,
-               limit.needed);
-}
-
 base::Result<CampaignResult> run_campaign(const Scenario& scenario, TraceFeed& traces,
                                           const SimulatorFactory& make_simulator,
                                           const CampaignOptions& options, base::SourceFiles& files,
                                           base::DiagnosticSink& sink) {
   PARALLAX_REQUIRE(scenario.mapping.has_value(), "a scenario that was loaded without errors");
-  // Before any worker starts: a folder that is in use must cost nothing, and nobody its report.
-  auto folder = RunFolder::claim(options.run_dir, options.resume, sink);
-  if (!folder) return sink.already_reported();
-  // A continuation of another run must not start anything either; the simulator is compared later.
-  auto recorded =
-      read_for_continuation(*folder, journal_header(scenario, options, {}), files, sink);
-  if (!recorded) return sink.already_reported();
-  warn_of_low_limit(scenario, files, sink);
-  return Campaign(scenario, std::move(*folder), std::move(*recorded), traces, make_simulator,
-                  options, files, sink)
+  auto claimed = claim_run(scenario, options, files, sink);
+  if (!claimed) return sink.already_reported();
+  return Campaign(scenario, std::move(claimed->folder), std::move(claimed->recorded), traces,
+                  make_simulator, options, files, sink)
       .run();
 }
 

@@ -64,6 +64,19 @@ base::Result<CampaignResult> run_campaign(const Scenario& scenario, TraceFeed& t
                                           const CampaignOptions& options, base::SourceFiles& files,
                                           base::DiagnosticSink& sink);
 
+class LoopFeed;
+
+/// The same for a plan that is executed: one stream of samples, each an execution of the plan from
+/// any of the model's initial states (LoopSamples), held against all executions that the model has
+/// (judge_path). It ends with the criterion, the first discrepancy, or the first execution that a
+/// limit ended: of what would have followed nothing can be said. Reports besides what kLoopStates
+/// and its neighbours say, before anything is simulated, and ends of executions that are errors.
+base::Result<CampaignResult> run_loop_campaign(const Scenario& scenario, LoopFeed& feed,
+                                               const SimulatorFactory& make_simulator,
+                                               const CampaignOptions& options,
+                                               base::SourceFiles& files,
+                                               base::DiagnosticSink& sink);
+
 /// Reports kRunLimitTooLow where the criterion can never be met, at the scenario's number unless
 /// another one took its place.
 void warn_of_low_limit(const Scenario& scenario, const base::SourceFiles& files,

@@ -42,6 +42,33 @@ enum class DiscrepancyKind : std::uint8_t { kLasting, kTransient };
 /// "lasting", "transient"
 std::string_view to_string(DiscrepancyKind kind);
 
+/// Where an executed plan left the paths of the model.
+struct PathDivergence {
+  std::int64_t event = 0;   // number of the last one of the shortest prefix that cannot go on
+  bool impossible = false;  // the model has no such event there
+  bool outcome = false;     // it lets the event end otherwise only
+  /// None of the fluents is impossible by itself: no state has these values together.
+  bool together = false;
+};
+
+/// Runs that went the same way: the same events with the same outcomes.
+struct PathCount {
+  std::vector<std::string> events;    // "Detect(cup)=cup1"
+  std::vector<std::string> outcomes;  // "ok", or the condition
+  PathEnd end = PathEnd::kDone;
+  std::string detail;
+  std::int64_t runs = 0;
+  std::int64_t example = 0;  // the first such sample
+};
+
+/// What is said of executions of a plan beside what is said of any stream of samples.
+struct LoopResult {
+  std::int64_t initial_states = 0;
+  std::int64_t unfinished = 0;   // runs that a limit ended, or the end of the unrolling
+  std::string why_unfinished;    // of the first
+  std::vector<PathCount> paths;  // in the order in which they came
+};
+
 struct Discrepancy {
   DiscrepancyKind kind = DiscrepancyKind::kLasting;
   std::int64_t trace = 0;
@@ -52,6 +79,7 @@ struct Discrepancy {
   std::vector<DivergingFluent> fluents;  // what differs at the last timepoint; empty if transient
   Cause cause;
   Confirmation confirmation = Confirmation::kBitEqual;
+  std::optional<PathDivergence> path;  // of an executed plan
   SampleRecord record;
   State end;  // the variables that were compared, as last observed
 };
@@ -74,6 +102,7 @@ struct TraceResult {
   std::optional<std::int64_t> paper_stopped_at;
   std::string paper_variant;             // "paper-literal, n = 2"
   std::vector<std::string> not_covered;  // fluents without regression evidence
+  std::optional<LoopResult> loop;        // of executed plans, which have no trace
   std::string claim;                     // exactly what is claimed, one sentence
   std::vector<std::string> caveats;      // what weakens the claim, one sentence each
 };
@@ -91,6 +120,7 @@ struct CampaignResult {
   bool journal_open = false;  // if not, the run folder is not this run's, or holds nothing of it
   CriterionSpec criterion;
   Comparison comparison = Comparison::kEveryStep;
+  Execution execution = Execution::kOpenLoop;
   std::vector<ComparedFluents> compared;  // by symbol
   SimulatorInfo simulator;
   std::string tool_version;

@@ -75,8 +75,10 @@ class JournalReader {
 
   std::optional<std::string> take_record(SampleRecord record) {
     const auto trace = journal_.traces.find(record.trace);
-    if (trace == journal_.traces.end()) return "its trace was not announced before it";
-    const auto events = trace->second.calls.size();
+    if (trace == journal_.traces.end() && !record.path) {
+      return "its trace was not announced before it";
+    }
+    const auto events = record.path ? record.path->steps.size() : trace->second.calls.size();
     const bool whole = record.observations.size() == events + 1 && record.outcomes.size() == events;
     if (record.status == SampleStatus::kOk && !whole) {
       return "it has not one observation for every timepoint of its trace";
@@ -320,6 +322,8 @@ base::Status Journal::rewrite(const std::vector<TraceLine>& traces,
       text += encode(*record) + '\n';
     }
   }
+  // Executions of a plan have no trace.
+  for (; record != consumed.end(); ++record) text += encode(*record) + '\n';
   return base::write_file_atomically(path_, text, sink);
 }
 

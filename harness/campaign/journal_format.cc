@@ -125,6 +125,28 @@ TraceLine trace_line_of(const Json& object, const std::shared_ptr<compiler::Symb
   return line;
 }
 
+/// What an executed plan did.
+ExecutedPath path_of(const Json& object) {
+  ExecutedPath path;
+  path.start = count_of(object, "start_state", 1);
+  for (const auto& step : list(object, "path")) {
+    path.steps.push_back(
+        {count_of(step, "step", 0),
+         get<std::string>(step, "event"),
+         get<std::string>(step, "source"),
+         {get<std::string>(step, "controller"), state_of(field(step, "arguments"), "arguments"),
+          duration_of(step, "time_limit_s")},
+         get<bool>(step, "succeeded"),
+         get<std::string>(step, "object"),
+         get<std::string>(step, "condition")});
+  }
+  path.end = word_of(object, "end",
+                     {PathEnd::kDone, PathEnd::kFailed, PathEnd::kPerformLimit, PathEnd::kTimeLimit,
+                      PathEnd::kCut});
+  path.detail = get<std::string>(object, "detail");
+  return path;
+}
+
 SampleRecord record_of(const Json& object) {
   SampleRecord record;
   record.trace = count_of(object, "trace", 1);
@@ -145,9 +167,11 @@ SampleRecord record_of(const Json& object) {
   for (const auto& outcome : list(object, "outcomes")) {
     record.outcomes.push_back(
         {word_of(outcome, "status", {SimStatus::kOk, SimStatus::kFailed, SimStatus::kTruncated}),
-         get<std::string>(outcome, "reason"), duration_of(outcome, "sim_time_s")});
+         get<std::string>(outcome, "reason"), duration_of(outcome, "sim_time_s"),
+         outcome.contains("object") ? get<std::string>(outcome, "object") : std::string()});
   }
   record.digest = get<std::string>(object, "digest");
+  if (object.contains("path")) record.path = path_of(object);
   return record;
 }
 
@@ -206,14 +230,19 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
   header.simulator = simulator;
   header.simulator.parameters.clear();
   header.simulator.actions.clear();
-  const OrderedJson json = {{"criterion", OrderedJson::parse(criterion_json(scenario.criterion))},
-                            {"limits",
-                             {{"max_traces", scenario.limits.max_traces},
-                              {"max_rejected_starts", scenario.limits.max_rejected_starts},
-                              {"max_lost_in_a_row", scenario.limits.max_lost_in_a_row}}},
-                            {"keep_going", options.keep_going},
-                            {"compare", to_string(scenario.comparison())},
-                            {"match", scenario.match_model ? "model" : "trace"}};
+  OrderedJson json = {{"criterion", OrderedJson::parse(criterion_json(scenario.criterion))},
+                      {"limits",
+                       {{"max_traces", scenario.limits.max_traces},
+                        {"max_rejected_starts", scenario.limits.max_rejected_starts},
+                        {"max_lost_in_a_row", scenario.limits.max_lost_in_a_row}}},
+                      {"keep_going", options.keep_going},
+                      {"compare", to_string(scenario.comparison())},
+                      {"match", scenario.match_model ? "model" : "trace"}};
+  if (scenario.execution == Execution::kClosedLoop) {
+    json["execution"] = to_string(scenario.execution);
+    json["limits"]["max_performs"] = scenario.limits.max_performs;
+    json["limits"]["max_simulated_s"] = scenario.limits.max_simulated_s;
+  }
   header.options = json.dump();
   return header;
 }
@@ -279,9 +308,23 @@ std::string encode(const SampleRecord& record) {
     outcomes.push_back({{"status", to_string(outcome.status)},
                         {"reason", outcome.reason},
                         {"sim_time_s", outcome.sim_time_s}});
+    if (!outcome.object.empty()) outcomes.back()["object"] = outcome.object;
   }
   out["outcomes"] = std::move(outcomes);
   out["digest"] = record.digest;
+  if (!record.path) return out.dump();
+  out["start_state"] = record.path->start;
+  auto path = OrderedJson::array();
+  for (const auto& step : record.path->steps) {
+    OrderedJson entry = {{"step", step.step}, {"event", step.event}, {"source", step.source}};
+    entry.update(json_of(step.call));
+    entry.update(OrderedJson{
+        {"succeeded", step.succeeded}, {"object", step.object}, {"condition", step.condition}});
+    path.push_back(std::move(entry));
+  }
+  out["path"] = std::move(path);
+  out["end"] = to_string(record.path->end);
+  out["detail"] = record.path->detail;
   return out.dump();
 }
 

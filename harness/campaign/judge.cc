@@ -35,6 +35,27 @@ bool only_at_rest(const StateMapping& mapping, const ModelFluents& fluents,
 
 }  // namespace
 
+LoopState loop_state(const StateMapping& mapping, const ModelFluents& fluents,
+                     const State& observation, bool at_rest, std::set<std::string>* missing) {
+  LoopState seen;
+  for (std::size_t i = 0; i < fluents.ground().size(); ++i) {
+    const auto& fluent = fluents.ground()[i];
+    if (!at_rest && compared_at_rest(mapping, fluent)) continue;
+    const auto reading = mapping.read(fluent, observation, missing);
+    if (!reading) continue;  // ignored on purpose
+    if (*reading == Reading::kNeither) {
+      seen.neither.push_back(fluents.id(i));
+    } else {
+      seen.state.holds[fluents.id(i)] = *reading == Reading::kHolds;
+    }
+  }
+  for (auto& text : mapping.outside(fluents.ground(), observation)) {
+    if (at_rest || !only_at_rest(mapping, fluents, text)) seen.outside.push_back(std::move(text));
+  }
+  seen.state.in_no_state = !seen.neither.empty() || !seen.outside.empty();
+  return seen;
+}
+
 Judgement judge(const StateMapping& mapping, const ModelFluents& fluents,
                 const CampaignTrace& trace, const std::vector<State>& observations) {
   PARALLAX_REQUIRE(observations.size() == trace.points.size(), "one observation per timepoint");

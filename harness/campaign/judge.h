@@ -20,6 +20,16 @@ struct ObservedState {
   bool in_no_state = false;  // one that no state of a model stands for
 };
 
+/// One observation as the compared fluents read it. `at_rest`: those that are compared at rest only
+/// count, too.
+struct LoopState {
+  ObservedState state;
+  std::vector<compiler::FluentId> neither;  // what is neither so nor so; not in `state.holds`
+  std::vector<std::string> outside;         // bodies in none of their regions: "RobotAt(outside)"
+};
+LoopState loop_state(const StateMapping& mapping, const ModelFluents& fluents,
+                     const State& observation, bool at_rest, std::set<std::string>* missing);
+
 /// What the observations of one simulation say about the trace, on every fluent with a mapping: at
 /// every timepoint, or at the start and the last one where the mapping says so.
 struct Judgement {

@@ -99,9 +99,40 @@ std::optional<SampleId> default_sample(const JournalText& journal) {
   return first;
 }
 
+namespace {
+
+/// The performs of an executed plan as a trace: its events and what was asked of the simulator.
+TraceLine line_of(const SampleRecord& record) {
+  auto symbols = std::make_shared<compiler::SymbolTable>();
+  auto trace = std::make_shared<CampaignTrace>();
+  TraceLine line;
+  trace->number = record.trace;
+  for (std::size_t t = 0; t <= record.outcomes.size(); ++t) {
+    std::vector<std::string> happens;
+    if (t < record.outcomes.size()) {
+      const auto& step = record.path->steps[t];
+      happens.push_back(step.event);
+      trace->plan.push_back({step.source, {}});
+      trace->key += step.event + ";";
+      line.calls.push_back(step.call);
+    }
+    trace->points.push_back(runtime::point_of_names({}, happens, *symbols));
+  }
+  trace->symbols = std::move(symbols);
+  line.trace = std::move(trace);
+  return line;
+}
+
+}  // namespace
+
 RecordedRun recorded_run(const JournalText& journal, SampleId id) {
   PARALLAX_REQUIRE(journal.header.has_value(), "a journal with records has a header");
   const SampleKey key(id.trace, id.sample, DrawPhase::kCertify);
+  const auto& record = journal.samples.at(key);
+  if (record.path) {
+    const auto place = journal.places.at(key);
+    return {*journal.header, id, record, line_of(record), place, place};
+  }
   return {*journal.header,         id,
           journal.samples.at(key), journal.traces.at(id.trace),
           journal.places.at(key),  journal.trace_places.at(id.trace)};

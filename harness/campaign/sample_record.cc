@@ -15,6 +15,7 @@ std::optional<RecordDifference> differing_outcome(const ActionOutcome& a, const 
                             std::string(to_string(b.status))};
   }
   if (a.reason != b.reason) return RecordDifference{timepoint, "act: reason", a.reason, b.reason};
+  if (a.object != b.object) return RecordDifference{timepoint, "act: object", a.object, b.object};
   if (!bit_equal(a.sim_time_s, b.sim_time_s)) {
     return RecordDifference{timepoint, "act: sim_time_s", exact_text(a.sim_time_s),
                             exact_text(b.sim_time_s)};
@@ -45,6 +46,19 @@ std::optional<RecordDifference> differing_state(const State& a, const State& b,
 }
 
 }  // namespace
+
+std::string reason_word(const ActionOutcome& outcome) {
+  if (outcome.reason.empty() || outcome.status == SimStatus::kTruncated) {
+    return std::string(to_string(outcome.status));
+  }
+  return outcome.reason.substr(0, outcome.reason.find(':'));
+}
+
+std::string_view to_string(PathEnd end) {
+  static constexpr std::string_view kWords[] = {
+      "done", "failed", "perform-limit", "time-limit", "cut", "unbound-reason", "unnamed-object"};
+  return kWords[static_cast<std::size_t>(end)];
+}
 
 std::string digest_of(const SampleRecord& record) {
   if (record.observations.empty()) return {};

@@ -29,7 +29,47 @@ struct ActionOutcome {
   SimStatus status = SimStatus::kOk;
   std::string reason;
   double sim_time_s = 0.0;
+  std::string object = {};  // what it found; kept of executed plans only
   friend bool operator==(const ActionOutcome&, const ActionOutcome&) = default;
+};
+
+/// The word by which a binding table knows why an action failed: what stands in front of the first
+/// colon of the reason; without a reason the status, as for an action that its time limit ended.
+std::string reason_word(const ActionOutcome& outcome);
+
+/// How the execution of a plan ended. The last two are no results but errors: the plan knows no
+/// condition for a failure's reason, or was not told what a perform found.
+enum class PathEnd : std::uint8_t {
+  kDone,
+  kFailed,        // a condition that nothing handled
+  kPerformLimit,  // it would go on
+  kTimeLimit,     // likewise
+  kCut,           // it came to where its unrolling ended
+  kUnboundReason,
+  kUnnamedObject,
+};
+/// "done", "failed", "perform-limit", "time-limit", "cut", ...
+std::string_view to_string(PathEnd end);
+
+/// One perform of an executed plan, and what the plan was told of it.
+struct PathStep {
+  std::int64_t step = 0;  // number of the plan's location
+  std::string event;      // "Go(r2)"
+  std::string source;     // "fetch.lisp:4"
+  ActionCall call;
+  bool succeeded = false;
+  std::string object;     // what it found
+  std::string condition;  // what its failure raised
+  friend bool operator==(const PathStep&, const PathStep&) = default;
+};
+
+/// What an executed plan did.
+struct ExecutedPath {
+  std::int64_t start = 0;  // number of the initial state, from 1
+  std::vector<PathStep> steps;
+  PathEnd end = PathEnd::kDone;
+  std::string detail;  // kFailed: the class; kCut: the form
+  friend bool operator==(const ExecutedPath&, const ExecutedPath&) = default;
 };
 
 /// One finished simulation: the line of the journal, and all that a replay needs besides the calls.
@@ -47,6 +87,7 @@ struct SampleRecord {
   std::vector<State> observations;      // per timepoint; fewer when lost
   std::vector<ActionOutcome> outcomes;  // per event; fewer when lost
   std::string digest;                   // of the last observation
+  std::optional<ExecutedPath> path;     // of a plan that was executed
   friend bool operator==(const SampleRecord&, const SampleRecord&) = default;
 };
 

@@ -19,8 +19,8 @@ namespace {
 /// One attempt at a start that is given. Fills what was seen as far as it came.
 class Attempt {
  public:
-  Attempt(const std::vector<ActionCall>& calls, Simulator& simulator, SampleRecord& record)
-      : calls_(calls), simulator_(simulator), record_(record) {}
+  Attempt(ActionSource& actions, Simulator& simulator, SampleRecord& record)
+      : actions_(actions), simulator_(simulator), record_(record) {}
 
   /// kInvalidStart, kLost, kUnsupported, or kOk; none when abandoned.
   std::optional<SimStatus> run(const std::function<bool()>& abandoned) {
@@ -34,9 +34,10 @@ class Attempt {
     }
     if (reset.status != SimStatus::kOk) return ended(reset.status, reset.reason);
     if (const auto lost = observe()) return lost;
-    for (const auto& call : calls_) {
+    actions_.begin(record_);
+    while (const auto* call = actions_.next(record_)) {
       if (abandoned()) return std::nullopt;
-      const auto outcome = simulator_.act(call.controller, call.arguments, call.time_limit_s);
+      const auto outcome = simulator_.act(call->controller, call->arguments, call->time_limit_s);
       if (outcome.status == SimStatus::kInvalidStart) {
         return ended(SimStatus::kLost, "an action answered invalid_start");
       }
@@ -44,7 +45,8 @@ class Attempt {
         return ended(outcome.status, outcome.reason);
       }
       record_.outcomes.push_back(
-          {outcome.status, base::with_invalid_utf8_replaced(outcome.reason), outcome.sim_time_s});
+          {outcome.status, base::with_invalid_utf8_replaced(outcome.reason), outcome.sim_time_s,
+           record_.path ? base::with_invalid_utf8_replaced(outcome.object) : std::string()});
       if (const auto lost = observe()) return lost;
     }
     record_.digest = digest_of(record_);
@@ -71,41 +73,24 @@ class Attempt {
     return std::nullopt;
   }
 
-  const std::vector<ActionCall>& calls_;
+  ActionSource& actions_;
   Simulator& simulator_;
   SampleRecord& record_;
 };
 
-/// A loss may be an accident of the machine: where the same start and seed give the same run, they
-/// get a second chance.
-std::optional<SimStatus> attempt_start(const std::vector<ActionCall>& calls, bool repeats_losses,
-                                       Simulator& simulator, SampleRecord& record,
-                                       const std::function<bool()>& abandoned) {
-  Attempt attempt(calls, simulator, record);
-  auto status = attempt.run(abandoned);
-  if (status == SimStatus::kLost && repeats_losses && !abandoned()) {
-    ++record.retries;
-    status = attempt.run(abandoned);
+/// Actions that are known from the start.
+class CallList final : public ActionSource {
+ public:
+  explicit CallList(const std::vector<ActionCall>& calls) : calls_(calls) {}
+  void begin(SampleRecord& /*record*/) override { next_ = 0; }
+  const ActionCall* next(SampleRecord& /*record*/) override {
+    return next_ < calls_.size() ? &calls_[next_++] : nullptr;
   }
-  if (status == SimStatus::kLost && abandoned()) return std::nullopt;
-  return status;
-}
 
-SampleStatus sample_status(SimStatus status) {
-  switch (status) {
-    case SimStatus::kLost:
-      return SampleStatus::kLost;
-    case SimStatus::kInvalidStart:
-      return SampleStatus::kRejected;
-    case SimStatus::kUnsupported:
-      return SampleStatus::kRefused;
-    case SimStatus::kOk:
-    case SimStatus::kFailed:
-    case SimStatus::kTruncated:
-      break;
-  }
-  return SampleStatus::kOk;
-}
+ private:
+  const std::vector<ActionCall>& calls_;
+  std::size_t next_ = 0;
+};
 
 /// What the controller calls an argument of the plan; none if it is not taken.
 std::optional<std::string> taken_as(const ActionBinding& binding, const std::string& name) {
@@ -217,7 +202,53 @@ class ValueChecker {
   WorldLayout layout_;
 };
 
+const ActionBinding* action_of(const Scenario& scenario, const GroundFluent& event) {
+  const auto found =
+      std::find_if(scenario.actions.begin(), scenario.actions.end(),
+                   [&](const ActionBinding& action) { return action.event == event.symbol; });
+  return found == scenario.actions.end() ? nullptr : &*found;
+}
+
 }  // namespace
+
+/// A loss may be an accident of the machine: where the same start and seed give the same run, they
+/// get a second chance.
+std::optional<SimStatus> simulate_start(ActionSource& actions, bool repeats_losses,
+                                        Simulator& simulator, SampleRecord& record,
+                                        const std::function<bool()>& abandoned) {
+  Attempt attempt(actions, simulator, record);
+  auto status = attempt.run(abandoned);
+  if (status == SimStatus::kLost && repeats_losses && !abandoned()) {
+    ++record.retries;
+    status = attempt.run(abandoned);
+  }
+  if (status == SimStatus::kLost && abandoned()) return std::nullopt;
+  return status;
+}
+
+SampleStatus sample_status(SimStatus status) {
+  switch (status) {
+    case SimStatus::kLost:
+      return SampleStatus::kLost;
+    case SimStatus::kInvalidStart:
+      return SampleStatus::kRejected;
+    case SimStatus::kUnsupported:
+      return SampleStatus::kRefused;
+    case SimStatus::kOk:
+    case SimStatus::kFailed:
+    case SimStatus::kTruncated:
+      break;
+  }
+  return SampleStatus::kOk;
+}
+
+std::optional<ActionCall> call_of(const Scenario& scenario, const GroundFluent& event,
+                                  const State& planned) {
+  const auto* binding = action_of(scenario, event);
+  if (binding == nullptr) return std::nullopt;
+  const PlannedEvent said{{}, planned};
+  return call_for(*binding, {event, said});
+}
 
 std::string_view to_string(SampleStatus status) {
   switch (status) {
@@ -255,11 +286,11 @@ std::optional<SampleRecord> run_sample(const TracePlan& plan, std::int64_t sampl
   record.sample = sample;
   DrawKey key{plan.campaign_seed, plan.trace_key, DrawPhase::kCertify,
               static_cast<std::uint64_t>(sample), 0};
+  CallList calls(plan.calls);
   for (;; ++record.attempt, ++key.attempt) {
     record.initial = plan.sampler.draw(key);
     record.seed = simulator_seed(key);
-    const auto status =
-        attempt_start(plan.calls, plan.repeats_losses, simulator, record, abandoned);
+    const auto status = simulate_start(calls, plan.repeats_losses, simulator, record, abandoned);
     if (!status) return std::nullopt;
     record.status = sample_status(*status);
     if (record.status != SampleStatus::kRejected) return record;
@@ -268,13 +299,24 @@ std::optional<SampleRecord> run_sample(const TracePlan& plan, std::int64_t sampl
   }
 }
 
+std::optional<SampleRecord> TraceSamples::make(std::int64_t sample, Simulator& simulator,
+                                               const std::function<bool()>& abandoned) const {
+  return run_sample(*plan_, sample, simulator, abandoned);
+}
+
+std::optional<SampleRecord> TraceSamples::repeat(const SampleRecord& record, Simulator& simulator,
+                                                 const std::function<bool()>& abandoned) const {
+  return repeat_sample(plan_->calls, plan_->repeats_losses, record, simulator, abandoned);
+}
+
 std::optional<SampleRecord> repeat_sample(const std::vector<ActionCall>& calls, bool repeats_losses,
                                           const SampleRecord& record, Simulator& simulator,
                                           const std::function<bool()>& abandoned) {
   SampleRecord again = record;
   again.phase = DrawPhase::kConfirm;
   again.retries = 0;
-  const auto status = attempt_start(calls, repeats_losses, simulator, again, abandoned);
+  CallList again_calls(calls);
+  const auto status = simulate_start(again_calls, repeats_losses, simulator, again, abandoned);
   if (!status) return std::nullopt;
   again.status = sample_status(*status);
   return again;
@@ -289,10 +331,8 @@ base::Result<std::vector<ActionCall>> action_calls(const Scenario& scenario,
   std::vector<ActionCall> calls;
   for (std::size_t t = 0; t < trace.event_count(); ++t) {
     const Occurrence at{ground_fluent(trace.event(t)), trace.plan[t]};
-    const auto binding =
-        std::find_if(scenario.actions.begin(), scenario.actions.end(),
-                     [&](const ActionBinding& a) { return a.event == at.event.symbol; });
-    if (binding == scenario.actions.end()) {
+    const auto* binding = action_of(scenario, at.event);
+    if (binding == nullptr) {
       sink.error(base::DiagnosticCode::kEventWithoutAction, scenario.actions_source,
                  at.event.symbol);
       continue;

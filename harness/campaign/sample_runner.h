@@ -5,8 +5,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "harness/campaign/sample_maker.h"
 #include "harness/campaign/sample_record.h"
 #include "harness/campaign/trace_input.h"
 #include "harness/config/scenario.h"
@@ -35,6 +37,19 @@ struct TracePlan {
 /// would hide the very runs that are looked for. The first loss counts then.
 bool may_repeat_losses(const SimulatorInfo& simulator);
 
+/// The samples of a trace.
+class TraceSamples final : public SampleMaker {
+ public:
+  explicit TraceSamples(std::shared_ptr<const TracePlan> plan) : plan_(std::move(plan)) {}
+  std::optional<SampleRecord> make(std::int64_t sample, Simulator& simulator,
+                                   const std::function<bool()>& abandoned) const override;
+  std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
+                                     const std::function<bool()>& abandoned) const override;
+
+ private:
+  std::shared_ptr<const TracePlan> plan_;
+};
+
 /// Draws sample `sample` and simulates it: reset, observe, then act and observe per event. A failed
 /// action does not end the sequence: the plan does not know. Invalid starts are drawn again; a
 /// simulator that is lost gets the same start and seed once more if the plan says so. None when
@@ -53,6 +68,10 @@ std::string wrong_draw(const SampleRecord& record, const Sampler& sampler,
 std::optional<SampleRecord> repeat_sample(const std::vector<ActionCall>& calls, bool repeats_losses,
                                           const SampleRecord& record, Simulator& simulator,
                                           const std::function<bool()>& abandoned);
+
+/// What carries out one event of the scenario's actions; none if no action is of that event.
+std::optional<ActionCall> call_of(const Scenario& scenario, const GroundFluent& event,
+                                  const State& planned);
 
 /// The calls for the events of a trace: each action's own arguments, with "{0}" replaced by the
 /// event's argument 0, and what the plan says laid over them. Reports kMissingArgument and

@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
-#include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/judge.h"
+#include "harness/campaign/run_setup.h"
 #include "harness/campaign/sample_record.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/regression.h"
@@ -16,7 +16,6 @@
 namespace parallax::harness {
 namespace {
 
-using base::DiagnosticCode;
 using Clock = std::chrono::steady_clock;
 
 std::set<std::string> as_set(const runtime::Names& names) { return {names.begin(), names.end()}; }
@@ -44,7 +43,9 @@ class TraceCampaign {
       if (tally_.runs() >= context_.max_runs) return finished(TraceEnd::kRunLimit);
       trial_.submit_to(last_wanted());
       auto sample = trial_.next();
-      if (!sample || !check_journal()) return context_.sink.already_reported();
+      if (!sample || !check_written(context_.journal, context_.options, context_.sink)) {
+        return context_.sink.already_reported();
+      }
       if (!*sample) return finished(TraceEnd::kStopped);
       if (const auto end = consume(**std::move(sample))) return finished(*end);
     }
@@ -60,13 +61,6 @@ class TraceCampaign {
     const auto next = trial_.next_sample();
     const auto needed = std::max(decision_.runs_needed.value_or(context_.max_runs), next);
     return std::min({next + window - 1, needed, context_.max_runs});
-  }
-
-  base::Status check_journal() const {
-    const auto error = context_.journal.write_error();
-    if (error.empty()) return base::Unit{};
-    const auto path = context_.options.run_dir / kJournalName;
-    return context_.sink.error_about(DiagnosticCode::kFileNotWritable, path.string(), error);
   }
 
   /// What the sample ends, if anything.
@@ -130,11 +124,7 @@ class TraceCampaign {
     found.fluents = judgement.last;
     if (judgement.last.empty()) found.kind = DiscrepancyKind::kTransient;
     found.cause = cause_of(trace(), judgement, context_.scenario.comparison(), record.outcomes);
-    if (again->status == SampleStatus::kLost) {
-      found.confirmation = Confirmation::kLost;
-    } else if (first_difference(record, *again)) {
-      found.confirmation = Confirmation::kDiffers;
-    }
+    found.confirmation = confirmation_of(record, *again);
     found.record = record;
     found.end = mapped_part(*context_.scenario.mapping, context_.bench.fluents().ground(),
                             record.observations.back());
@@ -213,17 +203,7 @@ class TraceCampaign {
           "the probability of a false stop",
           context_.criterion.name()));
     }
-    if (result.retried > 0) {
-      result.caveats.push_back(fmt::format(
-          "{} lost at first and observed when repeated with the same start and seed",
-          result.retried == 1 ? "1 run was" : fmt::format("{} runs were", result.retried)));
-    }
-    if (result.strayed > 0) {
-      result.caveats.push_back(fmt::format(
-          "{} of the clean runs left the trace on the way and ended as predicted; `--compare "
-          "every-step` shows where",
-          result.strayed));
-    }
+    add_loss_caveats(result);
     for (const auto& [event, noted] : failures_) {
       result.caveats.push_back(
           fmt::format("event {}, {}, failed in {} of {} clean runs, and the states were as "
@@ -231,18 +211,8 @@ class TraceCampaign {
                       event, trace().event(event), noted.runs, result.clean,
                       noted.reason.empty() ? "no reason given" : noted.reason));
     }
-    if (!context_.bench.simulator().seeds) {
-      result.caveats.push_back(
-          "the simulator takes no seed, so its own randomness is not under control");
-    }
     const auto& found = outcome_.discrepancy;
-    if (found && found->confirmation == Confirmation::kDiffers) {
-      result.caveats.push_back(
-          "the simulator is not deterministic: the same start and seed gave another result");
-    }
-    if (found && found->confirmation == Confirmation::kLost) {
-      result.caveats.push_back("the simulator was lost when the discrepancy was repeated");
-    }
+    add_simulator_caveats(context_.bench.simulator(), found ? &*found : nullptr, result);
   }
 
   const TraceContext& context_;

@@ -59,16 +59,33 @@ TrialBench::TrialBench(const Scenario& scenario, TraceFeed& feed,
                        const SimulatorFactory& make_simulator, const TrialOptions& options,
                        std::function<void(const SampleRecord&)> finished,
                        base::DiagnosticSink& sink)
+    : SimulatorBench(scenario, *feed.symbols(), make_simulator, options, std::move(finished), sink),
+      feed_(feed) {}
+
+SimulatorBench::SimulatorBench(const Scenario& scenario, const compiler::SymbolTable& symbols,
+                               const SimulatorFactory& make_simulator, const TrialOptions& options,
+                               std::function<void(const SampleRecord&)> finished,
+                               base::DiagnosticSink& sink)
     : scenario_(scenario),
-      feed_(feed),
       options_(options),
       sink_(sink),
-      fluents_(*feed.symbols()),
+      fluents_(symbols),
       pool_(options.jobs, make_simulator, std::move(finished), options.stop) {
   PARALLAX_REQUIRE(scenario.mapping.has_value(), "a scenario that was loaded without errors");
 }
 
-base::Result<bool> TrialBench::start() {
+bool SimulatorBench::lost_too_often(const SampleRecord& record, bool on_record) {
+  if (++lost_in_a_row_ < scenario_.limits.max_lost_in_a_row) return false;
+  if (on_record) {
+    lost_in_a_row_ = 0;  // such a row on record has ended a run, which somebody continues
+    return false;
+  }
+  sink_.error(DiagnosticCode::kSimulatorLost, scenario_.simulator.source, lost_in_a_row_,
+              record.reason);
+  return true;
+}
+
+base::Result<bool> SimulatorBench::start() {
   auto info = pool_.info();
   if (!info) return false;
   if (info->name.empty()) {
@@ -99,7 +116,7 @@ base::Result<Trial> Trial::prepare(TrialBench& bench, CampaignTrace trace) {
 void Trial::submit_to(std::int64_t last) {
   while (submitted_ < last) {
     if (recorded(++submitted_, DrawPhase::kCertify) == nullptr) {
-      bench_->pool_.submit(plan_, submitted_);
+      bench_->pool_.submit(samples_, submitted_);
     }
   }
 }
@@ -137,17 +154,11 @@ base::Result<std::optional<TrialSample>> Trial::next() {
 }
 
 TrialSample Trial::lost(SampleRecord record) {
-  const auto& scenario = bench_->scenario_;
-  auto& in_a_row = ++bench_->lost_in_a_row_;
   TrialSample sample{std::move(record), SampleVerdict::kLost, {}};
-  if (in_a_row < scenario.limits.max_lost_in_a_row) return sample;
-  if (recorded(sample.record.sample, sample.record.phase) != nullptr) {
-    in_a_row = 0;  // such a row on record has ended a run, which somebody continues knowing of it
-    return sample;
+  const bool on_record = recorded(sample.record.sample, sample.record.phase) != nullptr;
+  if (bench_->lost_too_often(sample.record, on_record)) {
+    sample.verdict = SampleVerdict::kLostTooOften;
   }
-  bench_->sink_.error(DiagnosticCode::kSimulatorLost, scenario.simulator.source, in_a_row,
-                      sample.record.reason);
-  sample.verdict = SampleVerdict::kLostTooOften;
   return sample;
 }
 
@@ -246,7 +257,7 @@ std::optional<SampleRecord> Trial::repeat(const SampleRecord& record) {
   if (recorded(record.sample, DrawPhase::kConfirm) == nullptr) {
     bench_->pool_.abandon();  // nothing that ran ahead is needed any more
     submitted_ = record.sample;
-    bench_->pool_.submit_repeat(plan_, record);
+    bench_->pool_.submit_repeat(samples_, record);
   }
   return result_of(record.sample, DrawPhase::kConfirm);
 }

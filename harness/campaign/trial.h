@@ -37,15 +37,16 @@ base::Result<PreparedTrace> prepare_trace(const Scenario& scenario,
                                           const SimulatorInfo& simulator,
                                           const CampaignTrace& trace, base::DiagnosticSink& sink);
 
-/// What the trials of one command share: workers with a simulator each, what that says of itself,
-/// the model's fluents, and the count of losses in a row, which goes on from trace to trace.
-class TrialBench {
+/// What the simulations of one command share: workers with a simulator each, what that says of
+/// itself, the model's fluents, and the count of losses in a row, which goes on from trace to
+/// trace.
+class SimulatorBench {
  public:
   /// Begins to make the first simulator. `finished` is called in a worker's thread for each
-  /// simulation, before `Trial::next` gives it. Everything that is referred to must outlive this.
-  TrialBench(const Scenario& scenario, TraceFeed& feed, const SimulatorFactory& make_simulator,
-             const TrialOptions& options, std::function<void(const SampleRecord&)> finished,
-             base::DiagnosticSink& sink);
+  /// simulation, before the pool gives it. Everything that is referred to must outlive this.
+  SimulatorBench(const Scenario& scenario, const compiler::SymbolTable& symbols,
+                 const SimulatorFactory& make_simulator, const TrialOptions& options,
+                 std::function<void(const SampleRecord&)> finished, base::DiagnosticSink& sink);
 
   /// Waits for what the first simulator says of itself; no trial may be prepared before. False when
   /// stopped. Reports kSimulatorNotStarted and what check_against_simulator reports.
@@ -55,22 +56,38 @@ class TrialBench {
   const ModelFluents& fluents() const { return fluents_; }
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
+  WorkerPool& pool() { return pool_; }
+  /// Counts a loss. Is it one too many in a row? Then it is reported, unless it was `on_record`.
+  bool lost_too_often(const SampleRecord& record, bool on_record);
+  /// A simulation was observed.
+  void end_row_of_losses() { lost_in_a_row_ = 0; }
+
   /// Ends the workers. Nothing may be simulated afterwards.
   void close() { pool_.close(); }
   std::int64_t runs_made() const { return pool_.runs_made(); }
   double simulated_s() const { return pool_.simulated_s(); }
 
- private:
-  friend class Trial;
-
+ protected:
   const Scenario& scenario_;
-  TraceFeed& feed_;
   TrialOptions options_;
   base::DiagnosticSink& sink_;
   ModelFluents fluents_;
   SimulatorInfo simulator_;
   std::int64_t lost_in_a_row_ = 0;
   WorkerPool pool_;
+};
+
+/// The same for trials of traces.
+class TrialBench : public SimulatorBench {
+ public:
+  TrialBench(const Scenario& scenario, TraceFeed& feed, const SimulatorFactory& make_simulator,
+             const TrialOptions& options, std::function<void(const SampleRecord&)> finished,
+             base::DiagnosticSink& sink);
+
+ private:
+  friend class Trial;
+
+  TraceFeed& feed_;
 };
 
 enum class SampleVerdict : std::uint8_t {
@@ -129,7 +146,10 @@ class Trial {
 
  private:
   Trial(TrialBench& bench, std::shared_ptr<const TracePlan> plan, StartCuboid start)
-      : bench_(&bench), plan_(std::move(plan)), start_(std::move(start)) {}
+      : bench_(&bench),
+        plan_(std::move(plan)),
+        samples_(std::make_shared<const TraceSamples>(plan_)),
+        start_(std::move(start)) {}
 
   const SampleRecord* recorded(std::int64_t sample, DrawPhase phase) const;
   std::optional<SampleRecord> result_of(std::int64_t sample, DrawPhase phase);
@@ -142,6 +162,7 @@ class Trial {
   TrialBench* bench_;
   const Journal* journal_ = nullptr;
   std::shared_ptr<const TracePlan> plan_;
+  std::shared_ptr<const SampleMaker> samples_;
   StartCuboid start_;
   std::int64_t next_ = 1;       // the sample that `next` waits for
   std::int64_t submitted_ = 0;  // the last one that the workers were given or the journal has

@@ -57,13 +57,13 @@ void WorkerPool::submit(Job job) {
   changed_.notify_all();
 }
 
-void WorkerPool::submit(std::shared_ptr<const TracePlan> plan, std::int64_t sample) {
-  submit(Job{std::move(plan), sample, std::nullopt, 0});
+void WorkerPool::submit(std::shared_ptr<const SampleMaker> maker, std::int64_t sample) {
+  submit(Job{std::move(maker), sample, std::nullopt, 0});
 }
 
-void WorkerPool::submit_repeat(std::shared_ptr<const TracePlan> plan, SampleRecord record) {
+void WorkerPool::submit_repeat(std::shared_ptr<const SampleMaker> maker, SampleRecord record) {
   const auto sample = record.sample;
-  submit(Job{std::move(plan), sample, std::move(record), 0});
+  submit(Job{std::move(maker), sample, std::move(record), 0});
 }
 
 /// The flag is raised by a signal handler, which cannot notify; so it is looked at now and then.
@@ -135,9 +135,8 @@ void WorkerPool::serve_jobs(Simulator* simulator) {
 
 void WorkerPool::simulate(const Job& job, Simulator& simulator) {
   const auto abandoned = [&] { return closing_ || generation_ != job.generation || stopped(); };
-  auto record = job.repeat ? repeat_sample(job.plan->calls, job.plan->repeats_losses, *job.repeat,
-                                           simulator, abandoned)
-                           : run_sample(*job.plan, job.sample, simulator, abandoned);
+  auto record = job.repeat ? job.maker->repeat(*job.repeat, simulator, abandoned)
+                           : job.maker->make(job.sample, simulator, abandoned);
   if (!record) return;
   finished_(*record);
   ++runs_made_;

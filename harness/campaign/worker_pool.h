@@ -18,7 +18,7 @@
 
 namespace parallax::harness {
 
-/// Threads that own one simulator each and simulate samples of one trace at a time. Which worker
+/// Threads that own one simulator each and make samples of one stream at a time. Which worker
 /// simulates a sample, and when, shows nowhere: the caller waits for samples in its own order.
 class WorkerPool {
  public:
@@ -32,9 +32,9 @@ class WorkerPool {
   /// Of the first worker's simulator. None when stopped.
   std::optional<SimulatorInfo> info();
 
-  void submit(std::shared_ptr<const TracePlan> plan, std::int64_t sample);
+  void submit(std::shared_ptr<const SampleMaker> maker, std::int64_t sample);
   /// Simulates the start of `record` again; wait for it with DrawPhase::kConfirm.
-  void submit_repeat(std::shared_ptr<const TracePlan> plan, SampleRecord record);
+  void submit_repeat(std::shared_ptr<const SampleMaker> maker, SampleRecord record);
   /// The result of a submitted sample. None when the stop flag was raised. What a worker threw is
   /// thrown again here.
   std::optional<SampleRecord> wait(std::int64_t sample, DrawPhase phase);
@@ -49,7 +49,7 @@ class WorkerPool {
  private:
   using Key = std::pair<std::int64_t, DrawPhase>;
   struct Job {
-    std::shared_ptr<const TracePlan> plan;
+    std::shared_ptr<const SampleMaker> maker;
     std::int64_t sample = 0;
     std::optional<SampleRecord> repeat;
     std::uint64_t generation = 0;

@@ -19,6 +19,14 @@ constexpr std::string_view to_string(Comparison comparison) {
   return kComparisons[static_cast<std::size_t>(comparison)];
 }
 
+/// What is simulated: the events of the model's traces one after the other, whatever comes of them,
+/// or the plan itself, which goes on as it does on the robot.
+enum class Execution : std::uint8_t { kOpenLoop, kClosedLoop };
+inline constexpr std::array<std::string_view, 2> kExecutions = {"open-loop", "closed-loop"};
+constexpr std::string_view to_string(Execution execution) {
+  return kExecutions[static_cast<std::size_t>(execution)];
+}
+
 /// How the fluents of one symbol are compared.
 struct ComparedFluents {
   enum class How : std::uint8_t { kEveryStep, kAtTheEnd, kIgnored };

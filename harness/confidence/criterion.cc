@@ -128,7 +128,11 @@ std::string percent_up(double probability) {
   return fmt::format("{:.{}g} %", std::ceil(value * scale * (1.0 - kNoise)) / scale, kDigits + 1);
 }
 
-std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison) {
+namespace {
+
+/// `what` gives a discrepancy with a small probability, or what else can be said.
+std::string claim_about(const Tally& tally, const CriterionSpec& spec, std::string_view what,
+                        std::string_view does) {
   if (tally.mismatch() > 0) {
     return fmt::format("{} of {} gave a discrepancy", tally.mismatch(),
                        counted(tally.runs(), "run", "runs"));
@@ -140,11 +144,34 @@ std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comp
   // Runs that were planned for an epsilon support that one; the bound itself is a little smaller.
   const bool as_planned = spec.kind == CriterionKind::kCleanRuns && bound.epsilon <= spec.epsilon;
   return fmt::format(
-      "with {} confidence, fewer than {} of {}start states drawn uniformly from the start region "
-      "give a discrepancy {} ({})",
-      level_text(bound.confidence_level), percent_up(as_planned ? spec.epsilon : bound.epsilon),
-      tally.rejected() > 0 ? "valid " : "",
-      comparison == Comparison::kFinal ? "in the last state" : "at any step", runs_text(tally));
+      "with {} confidence, fewer than {} of {} {} ({})", level_text(bound.confidence_level),
+      percent_up(as_planned ? spec.epsilon : bound.epsilon), what, does, runs_text(tally));
+}
+
+std::string_view when(Comparison comparison) {
+  return comparison == Comparison::kFinal ? "in the last state" : "at any step";
+}
+
+}  // namespace
+
+std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison) {
+  return claim_about(tally, spec,
+                     fmt::format("{}start states drawn uniformly from the start region",
+                                 tally.rejected() > 0 ? "valid " : ""),
+                     fmt::format("give a discrepancy {}", when(comparison)));
+}
+
+std::string loop_claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,
+                       std::int64_t initial_states) {
+  const std::string_view valid = tally.rejected() > 0 ? "the valid part of " : "";
+  const auto from =
+      initial_states == 1
+          ? fmt::format("the only initial state, drawn uniformly from {}its region,", valid)
+          : fmt::format(
+                "{} initial states, each equally likely and drawn uniformly from {}its region,",
+                initial_states, valid);
+  return claim_about(tally, spec, fmt::format("executions of the plan from {}", from),
+                     fmt::format("leave what the model admits {}", when(comparison)));
 }
 
 std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec,

@@ -39,6 +39,7 @@ struct Key {
   static constexpr std::string_view kCollides = "collides";
   static constexpr std::string_view kCommand = "command";
   static constexpr std::string_view kCompare = "compare";
+  static constexpr std::string_view kExecution = "execution";
   static constexpr std::string_view kComplete = "complete";
   static constexpr std::string_view kConfidence = "confidence";
   static constexpr std::string_view kConfusionRate = "confusion_rate";
@@ -111,6 +112,8 @@ struct Key {
   static constexpr std::string_view kMaxSimulations = "max_simulations";
   static constexpr std::string_view kMaxTorqueNm = "max_torque_nm";
   static constexpr std::string_view kMaxTraces = "max_traces";
+  static constexpr std::string_view kMaxPerforms = "max_performs";
+  static constexpr std::string_view kMaxSimulatedS = "max_simulated_s";
   static constexpr std::string_view kMemoryMb = "memory_mb";
   static constexpr std::string_view kMinRealTimeFactor = "min_real_time_factor";
   static constexpr std::string_view kMissRate = "miss_rate";

@@ -12,6 +12,7 @@ namespace {
 using base::DiagnosticCode;
 
 constexpr std::int64_t kMaxRuns = 1'000'000;
+constexpr std::int64_t kMaxPerforms = 10'000;
 constexpr double kMaxTimeoutS = 86400.0;
 constexpr NumberBounds kTimeout{0.0, kMaxTimeoutS, true, false};
 
@@ -119,12 +120,15 @@ SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink) {
 Limits read_limits(const YamlNode& node, base::DiagnosticSink& sink) {
   Limits limits;
   YamlFields fields(node, key_text(Key::kLimits), sink);
-  fields.only({Key::kMaxRuns, Key::kMaxTraces, Key::kMaxRejectedStarts, Key::kMaxLostInARow});
+  fields.only({Key::kMaxRuns, Key::kMaxTraces, Key::kMaxRejectedStarts, Key::kMaxLostInARow,
+               Key::kMaxPerforms, Key::kMaxSimulatedS});
   fields.integer(Key::kMaxRuns, 0, kMaxRuns, limits.max_runs);
   if (const auto* max_runs = fields.find(Key::kMaxRuns)) limits.max_runs_source = max_runs->range;
   fields.integer(Key::kMaxTraces, 0, kMaxRuns, limits.max_traces);
   fields.integer(Key::kMaxRejectedStarts, 1, kMaxRuns, limits.max_rejected_starts);
   fields.integer(Key::kMaxLostInARow, 1, kMaxRuns, limits.max_lost_in_a_row);
+  fields.integer(Key::kMaxPerforms, 0, kMaxPerforms, limits.max_performs);
+  fields.number(Key::kMaxSimulatedS, kPositive, limits.max_simulated_s);
   return limits;
 }
 

@@ -65,6 +65,10 @@ struct Limits {
   std::int64_t max_traces = 0;             // 0: all
   std::int64_t max_rejected_starts = 100;  // in a row, for one sample
   std::int64_t max_lost_in_a_row = 3;
+  /// Of one execution of the plan in closed loop: performs (0: as many as its longest path has, at
+  /// most 50) and simulated seconds.
+  std::int64_t max_performs = 0;
+  double max_simulated_s = 3600.0;
 };
 
 /// What `parallax suite` and the tests hold the result against.
@@ -119,6 +123,8 @@ struct Scenario {
   /// An end state that the model admits for the start and events of a trace is no discrepancy, even
   /// if it is not the trace's; false: only the trace's own counts.
   bool match_model = true;
+  Execution execution = Execution::kOpenLoop;
+  base::SourceRange execution_source;
   std::optional<Comparison> compare;  // none: by the criterion
   /// The paper's rule is about last states; every other claim about every step.
   Comparison comparison() const {

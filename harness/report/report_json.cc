@@ -104,6 +104,19 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
   out["paper"] = {{"stopped_at", nullptr}, {"variant", result.paper_variant}};
   if (result.paper_stopped_at) out["paper"]["stopped_at"] = *result.paper_stopped_at;
   out["not_covered"] = result.not_covered;
+  if (result.loop) {
+    out["initial_states"] = result.loop->initial_states;
+    out["unfinished"] = result.loop->unfinished;
+    out["paths"] = Json::array();
+    for (const auto& path : result.loop->paths) {
+      out["paths"].push_back({{"events", path.events},
+                              {"outcomes", path.outcomes},
+                              {"end", to_string(path.end)},
+                              {"detail", path.detail},
+                              {"simulations", path.runs},
+                              {"example", path.example}});
+    }
+  }
   out["claim"] = result.claim;
   out["caveats"] = result.caveats;
   return out;
@@ -121,6 +134,28 @@ std::string_view word(Confirmation confirmation) {
   return "lost";
 }
 
+/// The path of an executed plan, and where the model cannot follow it.
+void add_path(const Discrepancy& found, Json& out) {
+  const auto& record = found.record;
+  auto steps = Json::array();
+  for (std::size_t i = 0; i < record.outcomes.size(); ++i) {
+    const auto& step = record.path->steps[i];
+    steps.push_back({{"event", step.event},
+                     {"source", step.source},
+                     {"outcome", step.succeeded ? "ok" : "failed"},
+                     {"object", step.object},
+                     {"condition", step.condition}});
+  }
+  const auto& differs = *found.path;
+  out["path"] = std::move(steps);
+  out["path_end"] = to_string(record.path->end);
+  out["start_state"] = record.path->start;
+  out["differs"] = {{"event", differs.event},
+                    {"impossible", differs.impossible},
+                    {"outcome", differs.outcome},
+                    {"together", differs.together}};
+}
+
 Json json_of(const Discrepancy& found, const std::string& folder) {
   auto outcomes = Json::array();
   for (const auto& outcome : found.record.outcomes) {
@@ -128,19 +163,21 @@ Json json_of(const Discrepancy& found, const std::string& folder) {
                         {"reason", outcome.reason},
                         {"sim_time_s", outcome.sim_time_s}});
   }
-  return {{"trace", found.trace},
-          {"sample", found.sample},
-          {"seed", found.seed},
-          {"kind", to_string(found.kind)},
-          {"first_divergence", found.first_divergence},
-          {"cause", {{"text", found.cause.text}, {"reason", found.cause.reason}}},
-          {"first", json_of(found.first)},
-          {"fluents", json_of(found.fluents)},
-          {"repeated", word(found.confirmation)},
-          {"start", state_json<Json>(found.record.initial)},
-          {"end", state_json<Json>(found.end)},
-          {"outcomes", std::move(outcomes)},
-          {"replay", replay_command(folder, found)}};
+  Json out = {{"trace", found.trace},
+              {"sample", found.sample},
+              {"seed", found.seed},
+              {"kind", to_string(found.kind)},
+              {"first_divergence", found.first_divergence},
+              {"cause", {{"text", found.cause.text}, {"reason", found.cause.reason}}},
+              {"first", json_of(found.first)},
+              {"fluents", json_of(found.fluents)},
+              {"repeated", word(found.confirmation)},
+              {"start", state_json<Json>(found.record.initial)},
+              {"end", state_json<Json>(found.end)},
+              {"outcomes", std::move(outcomes)},
+              {"replay", replay_command(folder, found)}};
+  if (found.path) add_path(found, out);
+  return out;
 }
 
 Json json_of(const CampaignResult& result, bool with_timing) {
@@ -156,6 +193,7 @@ Json json_of(const CampaignResult& result, bool with_timing) {
                       {"determinism", result.simulator.determinism},
                       {"timestep_s", result.simulator.timestep_s}};
   out["criterion"] = Json::parse(criterion_json(result.criterion));
+  out["execution"] = to_string(result.execution);
   out["compare"] = to_string(result.comparison);
   out["compared"] = json_of(result.compared);
   out["traces"] = Json::array();

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "compiler/base/diagnostic_printer.h"
 #include "harness/campaign/result_json.h"
@@ -10,7 +9,6 @@
 #include "harness/confidence/criterion.h"
 #include "harness/report/report.h"
 #include "harness/report/text_layout.h"
-#include "harness/simulator/state_json.h"
 
 namespace parallax::harness {
 namespace {
@@ -79,6 +77,9 @@ class TextReport {
                        runs_needed(criterion.confidence_level, criterion.epsilon),
                        percent_up(criterion.epsilon), level(criterion.confidence_level)));
     }
+    if (result_.execution == Execution::kClosedLoop) {
+      line("execution", "closed-loop: the plan goes on by what the simulator reports");
+    }
     compared();
   }
 
@@ -110,14 +111,22 @@ class TextReport {
   }
 
   void one_trace(const TraceResult& trace) {
-    out_ += fmt::format("\ntrace {}: {}\n", trace.trace->number, verdict_word(trace.verdict));
-    events(trace);
-    start(trace);
+    if (trace.loop) {
+      out_ += fmt::format("\nexecutions: {}\n", verdict_word(trace.verdict));
+      paths(*trace.loop);
+    } else {
+      out_ += fmt::format("\ntrace {}: {}\n", trace.trace->number, verdict_word(trace.verdict));
+      events(trace);
+      start(trace);
+    }
     auto runs = fmt::format("{} ({} clean", trace.simulations, trace.clean);
     if (trace.admitted > 0) {
       runs += fmt::format(", {} of them otherwise, as the model admits", trace.admitted);
     }
     if (trace.lost > 0) runs += fmt::format(", {} lost", trace.lost);
+    if (trace.loop && trace.loop->unfinished > 0) {
+      runs += fmt::format(", {} not ended", trace.loop->unfinished);
+    }
     runs += ')';
     if (trace.rejected > 0) {
       runs += fmt::format("; {} drawn again",
@@ -125,7 +134,11 @@ class TextReport {
     }
     line("simulations", runs);
     line("claimed", trace.claim);
-    figures(trace);
+    if (trace.loop) {
+      certified(trace);
+    } else {
+      figures(trace);
+    }
     for (const auto& caveat : trace.caveats) line("note", caveat);
     for (const auto& found : result_.discrepancies) {
       if (found.trace == trace.trace->number) discrepancy(found, trace);
@@ -185,14 +198,56 @@ class TextReport {
     out_ += table(rows, kLabelEnd).replace(0, kLabel.size(), kLabel);
   }
 
-  /// Both confidence figures side by side: what is certified, and what the paper's rule says.
-  void figures(const TraceResult& trace) {
+  /// Where executions begin, and which ways they went.
+  void paths(const LoopResult& loop) {
+    line("start states", fmt::format("{}, each equally likely", loop.initial_states));
+    constexpr std::size_t kMaxPaths = 5;
+    for (std::size_t i = 0; i < loop.paths.size() && i < kMaxPaths; ++i) {
+      const auto& path = loop.paths[i];
+      std::vector<std::string> steps;
+      for (std::size_t t = 0; t < path.events.size(); ++t) {
+        const bool ok = path.outcomes[t] == "ok";
+        steps.push_back(ok ? path.events[t]
+                           : fmt::format("{} ({})", path.events[t], path.outcomes[t]));
+      }
+      line("path",
+           fmt::format("{}, such as 1.{}: {}; {}", counted(path.runs, "run", "runs"), path.example,
+                       fmt::join(steps, ", "), end_of(path.end, path.detail)));
+    }
+    if (loop.paths.size() > kMaxPaths) {
+      line("path", fmt::format("and {} others", loop.paths.size() - kMaxPaths));
+    }
+  }
+
+  static std::string end_of(PathEnd end, const std::string& detail) {
+    switch (end) {
+      case PathEnd::kDone:
+        return "the plan is done";
+      case PathEnd::kFailed:
+        return fmt::format("the plan fails with {}", detail);
+      case PathEnd::kCut:
+        return fmt::format("unrolled no further: {}", detail);
+      case PathEnd::kPerformLimit:
+      case PathEnd::kTimeLimit:
+      case PathEnd::kUnboundReason:
+      case PathEnd::kUnnamedObject:
+        break;
+    }
+    return fmt::format("ended by {}", to_string(end));
+  }
+
+  void certified(const TraceResult& trace) {
     if (trace.verdict != CampaignVerdict::kDiscrepancy) {
       line("certified", trace.certified_epsilon < 1.0
                             ? fmt::format("with {} confidence p < {}", level(trace.certified_level),
                                           percent_up(trace.certified_epsilon))
                             : std::string("nothing"));
     }
+  }
+
+  /// Both confidence figures side by side: what is certified, and what the paper's rule says.
+  void figures(const TraceResult& trace) {
+    certified(trace);
     if (trace.admitted > 0) {
       return line("paper's rule", "not evaluated: it supposes a single end state");
     }
@@ -210,6 +265,7 @@ class TextReport {
     out_ += fmt::format("\n  {} in simulation {}, seed {}, {}\n", painted("discrepancy", "1;31"),
                         id, found.seed, confirmation(found));
     line("cause", cause(found), 4);
+    if (found.path) return path_discrepancy(found);
     const bool on_the_way =
         found.first_divergence < static_cast<std::int64_t>(trace.trace->event_count());
     if (on_the_way) parting(found, trace);
@@ -226,7 +282,57 @@ class TextReport {
     unusual_outcomes(found, trace);
     line("start", values(found.record.initial), 4);
     line("end", values(found.end), 4);
-    // Not wrapped: the command is to be copied.
+    replay(found);
+  }
+
+  /// What an executed plan did, and the first event that the model cannot follow.
+  void path_discrepancy(const Discrepancy& found) {
+    const auto& path = *found.record.path;
+    const auto& differs = *found.path;
+    std::vector<std::vector<std::string>> steps;
+    for (std::size_t i = 0; i < found.record.outcomes.size(); ++i) {
+      const auto& step = path.steps[i];
+      steps.push_back({static_cast<std::int64_t>(i) == differs.event ? "*" : "",
+                       fmt::format("{}", i),
+                       step.object.empty() ? step.event : step.event + " = " + step.object,
+                       step.source, step.succeeded ? "ok" : step.condition});
+    }
+    out_ += table(steps, 4);
+    line("path ends", end_of(path.end, path.detail), 4);
+    const auto event = static_cast<std::size_t>(differs.event);
+    if (differs.event >= 0) {
+      const auto& step = path.steps[event];
+      const auto at = fmt::format("event {}, {}{}", differs.event, step.event,
+                                  step.source.empty() ? "" : fmt::format(" ({})", step.source));
+      line("the model",
+           differs.impossible ? fmt::format("has no such event after these: {}", at)
+           : differs.outcome
+               ? fmt::format("has no such outcome: {}, {}", at,
+                             !step.succeeded ? "which cannot fail there"
+                             : step.object.empty()
+                                 ? "which cannot succeed there"
+                                 : fmt::format("which cannot find {} there", step.object))
+               : fmt::format("has no such state after {}", at),
+           4);
+      const auto& outcome = found.record.outcomes[event];
+      if (outcome.status != SimStatus::kOk && !outcome.reason.empty()) {
+        line("reason", outcome.reason, 4);
+      }
+    }
+    if (found.kind == DiscrepancyKind::kTransient) {
+      line("transient", "it has these events, outcomes and the last state", 4);
+    }
+    if (differs.together) line("together", "each of these is possible, all of them are not", 4);
+    std::vector<std::vector<std::string>> rows = {{"fluent", "timepoint", "predicted", "observed"}};
+    for (const auto& fluent : found.first) rows.push_back(row(fluent));
+    if (rows.size() > 1) out_ += table(rows, 4);
+    line("start", values(found.record.initial), 4);
+    line("end", values(found.end), 4);
+    replay(found);
+  }
+
+  /// Not wrapped: the command is to be copied.
+  void replay(const Discrepancy& found) {
     out_ += fmt::format("    {:<{}}{}\n", "replay", kLabelEnd - 4,
                         base::printable(replay_command(result_.replay_folder, found)));
   }
@@ -309,7 +415,9 @@ class TextReport {
 
   void foot() {
     out_ += fmt::format("\nverdict: {}\n", verdict_word(result_.verdict));
-    line("traces", fmt::format("{}, {}", result_.traces.size(), exploration()));
+    if (result_.execution == Execution::kOpenLoop) {
+      line("traces", fmt::format("{}, {}", result_.traces.size(), exploration()));
+    }
     for (const auto& bound : result_.bounds) line("bound", bound);
     line("simulations", fmt::format("{}", result_.simulations));
     if (result_.traces.empty() && !result_.interrupted) {
@@ -337,25 +445,6 @@ class TextReport {
   const ReportStyle& style_;
   std::string out_;
 };
-
-using Json = nlohmann::ordered_json;
-
-Json rate_object(const CauseRate& rate) {
-  Json object = {{"cause", rate.cause},
-                 {"count", rate.count},
-                 {"rate", rate.rate},
-                 {"lower", rate.lower},
-                 {"upper", rate.upper}};
-  if (rate.example > 0) object["example"] = rate.example;
-  if (!rate.reason.empty()) object["reason"] = rate.reason;
-  if (!rate.start.empty()) object["start"] = state_json<Json>(rate.start);
-  return object;
-}
-
-std::string percent(const CauseRate& rate) {
-  return fmt::format("{:5.1f} %  [{:.1f}, {:.1f}]", 100.0 * rate.rate, 100.0 * rate.lower,
-                     100.0 * rate.upper);
-}
 
 }  // namespace
 
@@ -394,51 +483,6 @@ std::string replay_text(const ReplayResult& result, const ReportStyle& style) {
   return head + paint("differs", "1;31") +
          fmt::format(" first at timepoint {} in {}\n", difference.timepoint, difference.variable) +
          table({{"recorded", difference.recorded}, {"repeated", difference.repeated}}, 2);
-}
-
-std::string rates_text(const RatesResult& result) {
-  std::string out =
-      fmt::format("{}, seed {}; {} compared; intervals with {:g} % confidence (Clopper-Pearson)\n",
-                  result.scenario, result.seed,
-                  result.comparison == Comparison::kFinal ? "last states" : "every step",
-                  100.0 * result.confidence);
-  for (const TraceRates& trace : result.traces) {
-    out += fmt::format("\ntrace {}: {} runs, {} starts rejected, {} lost\n  {}\n", trace.number,
-                       trace.runs, trace.rejected, trace.lost, trace.trace);
-    out += fmt::format("  {:>6} of {:<6} {:<26} any discrepancy\n", trace.any.count, trace.runs,
-                       percent(trace.any));
-    for (const CauseRate& rate : trace.causes) {
-      out += fmt::format("  {:>6} of {:<6} {:<26} {}\n", rate.count, trace.runs, percent(rate),
-                         rate.cause);
-      out += fmt::format("{:46}first in sample {}{}{}\n", "", rate.example,
-                         rate.reason.empty() ? "" : ": ", rate.reason);
-    }
-  }
-  if (result.complete && result.traces.empty()) out += "\nno trace, so nothing was simulated\n";
-  if (!result.complete) out += "\nstopped before all runs were made\n";
-  return out;
-}
-
-std::string rates_json(const RatesResult& result) {
-  Json document = {{"status", "ok"},
-                   {"scenario", result.scenario},
-                   {"seed", result.seed},
-                   {"confidence", result.confidence},
-                   {"compare", to_string(result.comparison)},
-                   {"complete", result.complete},
-                   {"traces", Json::array()}};
-  for (const TraceRates& trace : result.traces) {
-    Json causes = Json::array();
-    for (const CauseRate& rate : trace.causes) causes.push_back(rate_object(rate));
-    document["traces"].push_back({{"trace", trace.number},
-                                  {"events", trace.trace},
-                                  {"runs", trace.runs},
-                                  {"rejected", trace.rejected},
-                                  {"lost", trace.lost},
-                                  {"any", rate_object(trace.any)},
-                                  {"causes", std::move(causes)}});
-  }
-  return document.dump() + "\n";
 }
 
 }  // namespace parallax::harness

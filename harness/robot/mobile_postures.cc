@@ -161,7 +161,7 @@ class Detect final : public MobileController {
     }
     if (!found) found = confuse(kind, points, needed);
     const State margins{{"points", static_cast<double>(best - needed)}};
-    if (found) return {SimStatus::kOk, {}, 0.0, margins};
+    if (found) return {SimStatus::kOk, {}, 0.0, margins, first_perceived(kind)};
     if (!overlooked.empty()) {
       return failed(kObjectNotFound, fmt::format("`{}` is in sight and was missed", overlooked),
                     margins);
@@ -186,6 +186,14 @@ class Detect final : public MobileController {
       return true;
     }
     return false;
+  }
+
+  /// The first of the kind that this look found.
+  std::string first_perceived(const std::string& kind) {
+    for (const BodyId id : perception().bodies_of_kind(kind)) {
+      if (perception().belief(id).perceived) return context().world.layout().bodies[id].name;
+    }
+    return {};
   }
 };
 

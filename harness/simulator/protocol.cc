@@ -41,6 +41,7 @@ OrderedJson outcome_to_json(const Outcome& outcome) {
   if (!outcome.reason.empty()) json["reason"] = outcome.reason;
   json["sim_time"] = outcome.sim_time_s;
   if (!outcome.margins.empty()) json["margins"] = state_json<OrderedJson>(outcome.margins);
+  if (!outcome.object.empty()) json["object"] = outcome.object;
   return json;
 }
 
@@ -278,6 +279,7 @@ OutcomeReply read_outcome(FieldReader& reader, const Json& result) {
     reader.fail("no status `" + word + "`");
   }
   reply.outcome.reason = reader.string(result, "reason", false);
+  reply.outcome.object = reader.string(result, "object", false);
   reply.outcome.sim_time_s = reader.number(result, "sim_time", false);
   // Sums of it are printed, so a time beyond all simulations is nonsense too.
   const bool sane = reply.outcome.sim_time_s >= 0.0 && reply.outcome.sim_time_s <= 1e9;

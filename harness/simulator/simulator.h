@@ -38,6 +38,7 @@ struct Outcome {
   std::string reason;       // "target unreachable: 0.71 m, reach 0.60 m"
   double sim_time_s = 0.0;  // simulated time that the request took
   State margins;            // graded companions of the verdict, for guided search
+  std::string object = {};  // the thing that it found, where it looked for one
 };
 
 /// One variable of the continuous state: its name, unit, and whether reset takes it.

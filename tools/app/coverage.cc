@@ -190,6 +190,11 @@ class Collector {
       return sink.error_about(DiagnosticCode::kUsage, folder,
                               "the run was made in closed loop; coverage is of open-loop runs");
     }
+    for (const auto& [key, record] : journal->samples) {
+      const auto run = harness::recorded_run(*journal, {std::get<0>(key), std::get<1>(key)});
+      if (!require_trace(folder, run, sink)) return sink.already_reported();
+      break;
+    }
     const auto loaded = load_recorded_scenario({folder, options_.scenario}, *journal->header,
                                                ScenarioUse::kRun, context_);
     if (!loaded || !check(*loaded, *journal)) return sink.already_reported();

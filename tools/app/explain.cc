@@ -335,6 +335,7 @@ base::Result<std::optional<ObservedDiscrepancy>> load_discrepancy(const RunFolde
         .note("report.json tells of it, the journal does not");
   }
   const auto recorded = harness::recorded_run(*journal, id);
+  if (!require_trace(folder.folder, recorded, sink)) return sink.already_reported();
   auto loaded = load_recorded_scenario(folder, recorded.header, ScenarioUse::kExplain, context);
   if (!loaded) return sink.already_reported();
   const auto trace = check_recorded_run(*loaded, recorded, context);

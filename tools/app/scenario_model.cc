@@ -164,6 +164,8 @@ struct Switches {
   bool with_plan = true;
   bool lint = false;
   bool watched = false;  // nothing is simulated: unobserved events need no action
+  bool as_run = false;   // in closed loop, if the scenario or `execution` says so
+  std::optional<harness::Execution> execution = std::nullopt;
   void apply(compiler::CompileInput& input) const {
     input.costs = costs;
     input.emit_pass = emit_pass;
@@ -182,6 +184,14 @@ std::vector<harness::GroundFluent> ground_fluents(const std::vector<std::string>
   return out;
 }
 
+/// A plan that is executed goes on to its end, whatever holds on its way.
+void execute(const harness::Scenario& scenario, compiler::CompileInput& input) {
+  input.plan->failures_by_reason = true;
+  input.constraints.clear();
+  input.horizon.reset();
+  if (scenario.limits.max_performs > 0) input.horizon = scenario.limits.max_performs;
+}
+
 base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& context,
                                  const Switches& switches,
                                  const std::optional<std::string>& property = std::nullopt) {
@@ -197,11 +207,23 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
   auto input = compile_input(*scenario, locator, context);
   if (!input) return sink.already_reported();
   switches.apply(*input);
+  if (switches.execution) scenario->execution = *switches.execution;
+  const bool closed = switches.as_run && scenario->execution == harness::Execution::kClosedLoop;
+  if (closed) {
+    if (!input->plan) {
+      const auto& key = scenario->execution_source;
+      const bool written = !switches.execution;
+      return sink.error(DiagnosticCode::kNoPlanToExecute,
+                        written ? key : base::SourceRange{scenario->source, 0, 0});
+    }
+    execute(*scenario, *input);
+  }
   if (property && !look_for_violations(*property, *input, context)) {
     return sink.already_reported();
   }
   auto compilation = compiler::compile_model(*input, context.files(), sink);
   if (!compilation) return sink.already_reported();
+  if (closed) scenario->horizon = compilation->model.horizon;
   const auto fluents = compiler::names_of(compilation->model.fluents);
   auto events = compiler::names_of(compilation->model.events);
   std::shared_ptr<const harness::SteppedModel> world;
@@ -337,6 +359,12 @@ base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& pat
 base::Result<ScenarioModel> load_watched_scenario(const std::filesystem::path& path,
                                                   Context& context) {
   return load(path, context, {.watched = true});
+}
+
+base::Result<ScenarioModel> load_scenario_run(const std::filesystem::path& path,
+                                              std::optional<harness::Execution> execution,
+                                              Context& context) {
+  return load(path, context, {.as_run = true, .execution = execution});
 }
 
 std::optional<compiler::CompiledModel> compile_variant(const harness::Scenario& scenario,

@@ -33,6 +33,13 @@ struct ScenarioModel {
   std::shared_ptr<const harness::SteppedModel> world = nullptr;
 };
 
+/// The scenario to be run in the way that it asks for, or `execution`: for closed loop the model is
+/// compiled without constraints, for as many timepoints as an execution of the plan may take, and
+/// with a way for each reason of a failure. Reports kNoPlanToExecute.
+base::Result<ScenarioModel> load_scenario_run(const std::filesystem::path& path,
+                                              std::optional<harness::Execution> execution,
+                                              Context& context);
+
 /// Reads the scenario, compiles model, plan and constraints, and holds the mapping and the actions
 /// against the model. `lint`: also reports what is legal but hardly meant.
 base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path, Context& context,

@@ -6,6 +6,7 @@
 #include "compiler/base/file_io.h"
 #include "harness/campaign/campaign.h"
 #include "harness/report/report.h"
+#include "tools/app/closed_loop.h"
 #include "tools/app/scenario_check.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_feed.h"
@@ -55,6 +56,7 @@ struct RunOptions {
   bool keep_going = false;
   std::string criterion;
   JudgingOptions judging;
+  std::string execution;    // empty: as the scenario says
   double confidence = 0.0;  // 0: as the scenario says
   double epsilon = 0.0;
   std::int64_t max_runs = 0;
@@ -96,30 +98,81 @@ harness::CampaignOptions campaign_options(const RunOptions& options, const Scena
   return campaign;
 }
 
-int run_scenario(const RunOptions& options, Invocation& invocation) {
+/// What a run came to, and the solver calls that it took.
+struct Ran {
+  base::Result<harness::CampaignResult> result;
+  std::int64_t solve_calls = 0;
+};
+
+Ran run_open(const RunOptions& options, const ScenarioModel& loaded,
+             const harness::SimulatorFactory& simulator, const harness::CampaignOptions& campaign,
+             Invocation& invocation) {
   auto& sink = invocation.sink();
-  auto loaded = load_scenario_model(options.scenario, invocation);
-  if (!loaded) return 0;
-  apply(options, loaded->scenario);
-  const auto& model = loaded->compilation.model;
+  const auto& model = loaded.compilation.model;
   if (!model.has_constraints) {
-    sink.error(base::DiagnosticCode::kNothingToSimulate,
-               base::SourceRange{loaded->scenario.source, 0, 0});
-    return 0;
+    return {sink.error(base::DiagnosticCode::kNothingToSimulate,
+                       base::SourceRange{loaded.scenario.source, 0, 0})};
   }
-  const auto simulator =
-      permitted_simulator(*loaded, options.commands.allow || !options.commands.refuse, invocation);
-  if (!simulator) return 0;
   EnumeratedTraces traces(
       model, invocation,
       {.all_hits = options.hits == "all", .split_initial = options.split_initial});
-  traces.explain_absence_by([&] { return reasons_for_absence(*loaded, invocation); });
+  traces.explain_absence_by([&] { return reasons_for_absence(loaded, invocation); });
+  auto result =
+      harness::run_campaign(loaded.scenario, traces, simulator, campaign, invocation.files(), sink);
+  return {std::move(result), traces.solve_calls()};
+}
+
+/// What is about traces has no meaning for a plan that is executed.
+base::Status check_closed(const RunOptions& options, const harness::Scenario& scenario,
+                          base::DiagnosticSink& sink) {
+  if (scenario.criterion.kind == harness::CriterionKind::kPaper) {
+    return sink.error(base::DiagnosticCode::kCriterionNotOfLoop,
+                      base::SourceRange{scenario.source, 0, 0});
+  }
+  std::string option;
+  if (options.hits != "first") option = "--hits";
+  if (options.split_initial) option = "--split-initial";
+  if (options.keep_going) option = "--keep-going";
+  if (options.judging.match == "trace") option = "--match=trace";
+  if (option.empty()) return base::Unit{};
+  return sink.error_about(base::DiagnosticCode::kUsage, option,
+                          "it is about traces, and in closed loop the plan is executed");
+}
+
+Ran run_closed(const RunOptions& options, const ScenarioModel& loaded,
+               const harness::SimulatorFactory& simulator, const harness::CampaignOptions& campaign,
+               Invocation& invocation) {
+  auto& sink = invocation.sink();
+  if (!check_closed(options, loaded.scenario, sink)) return {sink.already_reported()};
+  auto loop = ClosedLoop::make(loaded, invocation);
+  if (!loop) return {sink.already_reported()};
+  auto result = harness::run_loop_campaign(loaded.scenario, **loop, simulator, campaign,
+                                           invocation.files(), sink);
+  return {std::move(result), (*loop)->solve_calls()};
+}
+
+int run_scenario(const RunOptions& options, Invocation& invocation) {
+  auto& sink = invocation.sink();
+  using harness::Execution;
+  std::optional<Execution> execution;
+  for (const auto one : {Execution::kOpenLoop, Execution::kClosedLoop}) {
+    if (options.execution == to_string(one)) execution = one;
+  }
+  auto loaded = load_scenario_run(options.scenario, execution, invocation);
+  if (!loaded) return 0;
+  apply(options, loaded->scenario);
+  const auto& model = loaded->compilation.model;
   const auto campaign = campaign_options(options, *loaded, invocation);
+  const auto simulator =
+      permitted_simulator(*loaded, options.commands.allow || !options.commands.refuse, invocation);
+  if (!simulator) return 0;
   for (const auto* name : {"report.txt", "report.json"}) {
     if (!base::check_output(campaign.run_dir / name, invocation.files(), sink)) return 0;
   }
-  const auto result = harness::run_campaign(loaded->scenario, traces, *simulator, campaign,
-                                            invocation.files(), sink);
+  const bool closed = loaded->scenario.execution == Execution::kClosedLoop;
+  const auto ran = closed ? run_closed(options, *loaded, *simulator, campaign, invocation)
+                          : run_open(options, *loaded, *simulator, campaign, invocation);
+  const auto& result = ran.result;
   if (campaign.progress) write_error("\r\x1b[K");
   if (!result) return 0;
   if (result->journal_open && !harness::write_report(*result, campaign.run_dir, sink)) return 0;
@@ -133,8 +186,7 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
                                 result->timing.simulated_s));
   if (invocation.options().verbosity > 0) {
     invocation.remark(fmt::format("model: {} variables, {} clauses, {} solver calls",
-                                  model.variable_count(), model.clauses.size(),
-                                  traces.solve_calls()));
+                                  model.variable_count(), model.clauses.size(), ran.solve_calls));
   }
   if (result->journal_open) {
     invocation.remark(fmt::format("report: {}", (campaign.run_dir / "report.txt").string()));
@@ -153,6 +205,7 @@ Command run_command() {
       "Examples:\n"
       "  parallax run scenarios/two_regions/scenario.yaml\n"
       "  parallax run edge.yaml --jobs 2 --seed 7 --out out/edge7\n"
+      "  parallax run edge.yaml --execution closed-loop\n"
       "  parallax run edge.yaml --seed 7 --out out/edge7 --resume\n"
       "Exit codes: 0 no discrepancy, 1 discrepancy, 4 inconclusive, as without a trace.");
   command.option("scenario", options->scenario, "Scenario file (YAML)").required();
@@ -169,6 +222,11 @@ Command run_command() {
   command.option("--criterion", options->criterion, "When a trace has been tried enough")
       .check(OneOf{{"clean-runs", "paper"}});
   add_judging_options(command, options->judging);
+  command
+      .option("--execution", options->execution,
+              "What is simulated: open-loop (the events of traces) or closed-loop (the plan "
+              "itself, which goes on by what the simulator reports)")
+      .check(OneOf{{"open-loop", "closed-loop"}});
   command.option("--confidence", options->confidence, "Confidence level C of the claim")
       .check(FiniteNumber{0.5, 0.999999});
   command.option("--epsilon", options->epsilon, "Discrepancy probability to exclude")

@@ -1,0 +1,301 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "compiler/base/contract.h"
+#include "compiler/base/diagnostic_codes.h"
+#include "harness/campaign/campaign.h"
+#include "harness/campaign/loop_counts.h"
+#include "harness/campaign/loop_judge.h"
+#include "harness/campaign/loop_stream.h"
+#include "harness/campaign/run_setup.h"
+#include "harness/campaign/start_check.h"
+#include "harness/confidence/criterion.h"
+
+namespace parallax::harness {
+namespace {
+
+using base::DiagnosticCode;
+using LoopClock = std::chrono::steady_clock;
+
+class LoopCampaign {
+ public:
+  LoopCampaign(const Scenario& scenario, ClaimedRun claimed, LoopFeed& feed,
+               const SimulatorFactory& make_simulator, const CampaignOptions& options,
+               base::SourceFiles& files, base::DiagnosticSink& sink)
+      : scenario_(scenario),
+        claimed_(std::move(claimed)),
+        feed_(feed),
+        options_(options),
+        files_(files),
+        sink_(sink),
+        criterion_(make_criterion(scenario.criterion)),
+        limit_(run_limit(scenario)),
+        tally_(RegressionFrame{}),
+        samples_(scenario, feed, bench_, options.seed, sink),
+        bench_(
+            scenario, *feed.symbols(), make_simulator, {options.seed, options.jobs, options.stop},
+            [this](const SampleRecord& record) { keep(record); }, sink) {
+    describe_run(scenario, options, bench_.fluents().ground(), result_);
+    result_.execution = Execution::kClosedLoop;
+    result_.exploration = "stopped";
+    stream_.loop.emplace();
+    stream_.trace = LoopStream::start_state(feed, {});
+  }
+
+  base::Result<CampaignResult> run() {
+    const auto started = bench_.start();
+    if (!started) return sink_.already_reported();
+    if (!*started) return finished(true);
+    result_.simulator = bench_.simulator();
+    const auto prepared = samples_.prepare();
+    if (!prepared) return sink_.already_reported();
+    if (!*prepared) return finished(true);
+    auto journal = Journal::open(
+        std::move(claimed_.folder), journal_header(scenario_, options_, result_.simulator),
+        std::move(claimed_.recorded), scenario_.limits.max_lost_in_a_row, files_, sink_);
+    if (!journal) return sink_.already_reported();
+    journal_ = std::move(*journal);
+    result_.journal_open = true;
+    stream_.loop->initial_states = samples_.initial_states();
+    if (!samples_.continue_from(*journal_)) return sink_.already_reported();
+    const auto ended = sample();
+    result_.failed = !ended;
+    if (result_.failed && tally_.runs() == 0) return sink_.already_reported();
+    return finished(!ended || *ended == End::kStopped);
+  }
+
+ private:
+  enum class End : std::uint8_t { kDecided, kDiscrepancy, kRunLimit, kUnfinished, kLost, kStopped };
+
+  /// Called in a worker's thread; by then the journal is open.
+  void keep(const SampleRecord& record) {
+    const bool is_result =
+        record.status == SampleStatus::kOk || record.status == SampleStatus::kLost;
+    if (is_result) journal_->append(record);
+  }
+
+  base::Result<End> sample() {
+    for (;;) {
+      const auto decision = criterion_->decide(tally_);
+      report_progress(decision);
+      if (decision.stop) return End::kDecided;
+      if (tally_.runs() >= limit_.max_runs) return End::kRunLimit;
+      samples_.submit_to(last_wanted(decision));
+      auto record = samples_.next();
+      if (!check_written(*journal_, options_, sink_)) return sink_.already_reported();
+      if (!record) return End::kStopped;
+      auto end = consume(*std::move(record));
+      if (!end) return sink_.already_reported();
+      if (*end) return **end;
+    }
+  }
+
+  /// Workers run ahead of what is consumed, but not beyond what the criterion still asks for.
+  std::int64_t last_wanted(const Decision& decision) const {
+    const std::int64_t window = options_.jobs == 1 ? 1 : 2 * options_.jobs;
+    const auto needed =
+        std::max(decision.runs_needed.value_or(limit_.max_runs), samples_.next_sample());
+    return std::min({samples_.next_sample() + window - 1, needed, limit_.max_runs});
+  }
+
+  /// What the sample ends, if anything.
+  base::Result<std::optional<End>> consume(SampleRecord record) {
+    const auto& start = samples_.start_of(record);
+    if (record.status == SampleStatus::kRejected) {
+      return report_rejected(scenario_, *start.state, record.rejected, record.sample, record.reason,
+                             sink_);
+    }
+    if (record.status == SampleStatus::kRefused) return report_refused(record);
+    if (record.status == SampleStatus::kLost) return lost(std::move(record));
+    const auto& mapping = *scenario_.mapping;
+    const auto first = judge(mapping, bench_.fluents(), *start.state, {record.observations[0]});
+    if (first.missing.empty() && first.first_divergence) {
+      return report_other_start(scenario_, record, first.first.front(), sink_);
+    }
+    const auto judgement =
+        judge_path(mapping, bench_.fluents(), feed_, record, scenario_.comparison());
+    if (!judgement.missing.empty()) {
+      return sink_.error(DiagnosticCode::kSimulatorRefused, scenario_.mapping_source,
+                         fmt::format("does not show what is compared in simulation {}.{}",
+                                     record.trace, record.sample),
+                         fmt::format("its observations lack `{}`", judgement.missing));
+    }
+    if (judgement.admitted == base::Known::kUndecided || bench_.stopped()) {
+      return std::optional(End::kStopped);
+    }
+    bench_.end_row_of_losses();
+    count(record);
+    if (judgement.admitted == base::Known::kNo) return accept(record, judgement);
+    const auto unfinished = why_unfinished(*record.path, scenario_);
+    if (unfinished.empty()) {
+      tally_.add_clean_elsewhere();
+      ++stream_.clean;
+    } else {
+      auto& loop = *stream_.loop;
+      if (loop.unfinished++ == 0) loop.why_unfinished = unfinished;
+    }
+    consumed_.push_back(std::move(record));
+    if (unfinished.empty()) return std::optional<End>();
+    return std::optional(End::kUnfinished);
+  }
+
+  base::DiagnosticBuilder report_refused(const SampleRecord& record) {
+    const auto& path = *record.path;
+    if (path.end == PathEnd::kUnboundReason || path.end == PathEnd::kUnnamedObject) {
+      return feed_.report_end(path, record.reason);
+    }
+    const auto in = fmt::format("in simulation {}.{}", record.trace, record.sample);
+    const auto code = DiagnosticCode::kSimulatorRefused;
+    if (record.observations.empty() || path.steps.empty()) {
+      return sink_.error(code, scenario_.sampling_source, fmt::format("refused the start {}", in),
+                         record.reason);
+    }
+    const auto event = ground_fluent(path.steps.back().event);
+    const auto action =
+        std::find_if(scenario_.actions.begin(), scenario_.actions.end(),
+                     [&](const auto& binding) { return binding.event == event.symbol; });
+    return sink_.error(code, action->source,
+                       fmt::format("refused the action of `{}` {}", event.text, in), record.reason);
+  }
+
+  std::optional<End> lost(SampleRecord record) {
+    tally_.add_rejected(record.rejected);
+    stream_.rejected += record.rejected;
+    tally_.add_lost();
+    ++stream_.lost;
+    lost_too_often_ = bench_.lost_too_often(record, samples_.on_record(record));
+    consumed_.push_back(std::move(record));
+    return lost_too_often_ ? std::optional(End::kLost) : std::nullopt;
+  }
+
+  void count(const SampleRecord& record) {
+    tally_.add_rejected(record.rejected);
+    stream_.rejected += record.rejected;
+    if (record.retries > 0) ++stream_.retried;
+    count_path(record, *stream_.loop);
+  }
+
+  /// Repeats the simulation once: a discrepancy that cannot be repeated says so in the report.
+  std::optional<End> accept(const SampleRecord& record, const LoopJudgement& judgement) {
+    const auto again = samples_.repeat(record);
+    if (!again) return End::kStopped;
+    tally_.add_mismatch();
+    Discrepancy found;
+    found.kind = judgement.kind;
+    found.trace = record.trace;
+    found.sample = record.sample;
+    found.seed = record.seed;
+    found.first_divergence = judgement.divergence.event + 1;
+    found.first = judgement.fluents;
+    if (judgement.kind == DiscrepancyKind::kLasting) found.fluents = judgement.fluents;
+    found.cause = judgement.cause;
+    found.confirmation = confirmation_of(record, *again);
+    found.path = judgement.divergence;
+    found.record = record;
+    found.end =
+        mapped_part(*scenario_.mapping, bench_.fluents().ground(), record.observations.back());
+    consumed_.push_back(record);
+    consumed_.push_back(*again);
+    result_.discrepancies.push_back(std::move(found));
+    return End::kDiscrepancy;
+  }
+
+  void report_progress(const Decision& decision) const {
+    if (!options_.progress) return;
+    const std::chrono::duration<double> elapsed = LoopClock::now() - started_;
+    CampaignProgress progress;
+    progress.trace = 1;
+    progress.done = tally_.runs();
+    progress.needed = std::min(decision.runs_needed.value_or(limit_.max_runs), limit_.max_runs);
+    const auto made = static_cast<double>(bench_.runs_made());
+    progress.runs_per_s = elapsed.count() > 0.0 ? made / elapsed.count() : 0.0;
+    options_.progress(progress);
+  }
+
+  void fill_stream() {
+    const auto& criterion = scenario_.criterion;
+    auto& stream = stream_;
+    const bool decided = criterion_->decide(tally_).stop && stream.loop->unfinished == 0;
+    stream.verdict = !result_.discrepancies.empty() ? CampaignVerdict::kDiscrepancy
+                     : decided                      ? CampaignVerdict::kNoDiscrepancy
+                                                    : CampaignVerdict::kInconclusive;
+    stream.simulations = tally_.runs() + stream.loop->unfinished;
+    const auto bound = certified_bound(tally_, criterion.confidence_level);
+    stream.certified_level = bound.confidence_level;
+    stream.certified_epsilon = bound.epsilon;
+    stream.claim =
+        loop_claim(tally_, criterion, scenario_.comparison(), stream.loop->initial_states);
+    stream.caveats = caveats(tally_, criterion, std::nullopt);
+    if (stream.loop->unfinished > 0) {
+      stream.certified_epsilon = 1.0;
+      stream.claim = "nothing is claimed: an execution did not end";
+      stream.caveats.push_back(stream.loop->why_unfinished);
+    }
+    const auto* found = result_.discrepancies.empty() ? nullptr : &result_.discrepancies.front();
+    add_loss_caveats(stream);
+    add_simulator_caveats(result_.simulator, found, stream);
+  }
+
+  base::Result<CampaignResult> finished(bool interrupted) {
+    bench_.close();
+    if (lost_too_often_ && may_repeat_losses(result_.simulator)) {
+      // Left in the journal they would end every continuation where this run ended.
+      while (!consumed_.empty() && consumed_.back().status == SampleStatus::kLost) {
+        consumed_.pop_back();
+      }
+    }
+    if (!interrupted && !result_.failed) {
+      if (!journal_->rewrite({}, std::move(consumed_), sink_)) return sink_.already_reported();
+    }
+    fill_stream();
+    result_.interrupted = interrupted;
+    result_.verdict = interrupted && stream_.verdict != CampaignVerdict::kDiscrepancy
+                          ? CampaignVerdict::kInconclusive
+                          : stream_.verdict;
+    result_.simulations = stream_.simulations;
+    result_.traces.push_back(std::move(stream_));
+    result_.timing.wall_s = std::chrono::duration<double>(LoopClock::now() - started_).count();
+    result_.timing.runs_made = bench_.runs_made();
+    result_.timing.simulated_s = bench_.simulated_s();
+    return std::move(result_);
+  }
+
+  const Scenario& scenario_;
+  ClaimedRun claimed_;  // until the journal takes it over
+  LoopFeed& feed_;
+  const CampaignOptions& options_;
+  base::SourceFiles& files_;
+  base::DiagnosticSink& sink_;
+  LoopClock::time_point started_ = LoopClock::now();
+  std::unique_ptr<ConfidenceCriterion> criterion_;
+  RunLimit limit_;
+  Tally tally_;
+  std::unique_ptr<Journal> journal_;
+  CampaignResult result_;
+  TraceResult stream_;
+  std::vector<SampleRecord> consumed_;
+  bool lost_too_often_ = false;
+  LoopStream samples_;
+  SimulatorBench bench_;  // last, so that its threads end before what they use
+};
+
+}  // namespace
+
+base::Result<CampaignResult> run_loop_campaign(const Scenario& scenario, LoopFeed& feed,
+                                               const SimulatorFactory& make_simulator,
+                                               const CampaignOptions& options,
+                                               base::SourceFiles& files,
+                                               base::DiagnosticSink& sink) {
+  PARALLAX_REQUIRE(scenario.mapping.has_value(), "a scenario that was loaded without errors");
+  auto claimed = claim_run(scenario, options, files, sink);
+  if (!claimed) return sink.already_reported();
+  return LoopCampaign(scenario, std::move(*claimed), feed, make_simulator, options, files, sink)
+      .run();
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,154 @@
+#include "harness/campaign/loop_samples.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "compiler/base/contract.h"
+#include "compiler/base/hash.h"
+
+namespace parallax::harness {
+namespace {
+
+// What takes the place of a trace's key in the draws of executions.
+constexpr std::string_view kStartStream = "closed loop: start";
+constexpr std::string_view kStateStream = "closed loop: initial state";
+constexpr std::string_view kChoiceStream = "closed loop: choices of the plan";
+
+/// Asks the plan for one perform after the other and tells it what came of each.
+class PlanSource final : public ActionSource {
+ public:
+  struct Bounds {
+    std::int64_t performs;
+    double simulated_s;
+  };
+  PlanSource(const Scenario& scenario, const ExecutablePlan& plan, const DrawKey& choices,
+             const Bounds& bounds)
+      : scenario_(scenario), plan_(plan), choices_(choices), bounds_(bounds) {}
+
+  void begin(SampleRecord& record) override {
+    record.path->steps.clear();
+    record.path->end = PathEnd::kDone;
+    record.path->detail.clear();
+    execution_ = plan_.begin(choices_);
+    simulated_s_ = 0.0;
+  }
+
+  const ActionCall* next(SampleRecord& record) override {
+    auto& path = *record.path;
+    if (!path.steps.empty() && !tell(record)) return nullptr;
+    const auto perform = execution_->next(record.observations.back());
+    if (!perform) {
+      path.end = execution_->end(path.detail);
+      return nullptr;
+    }
+    if (std::ssize(path.steps) >= bounds_.performs) {
+      path.end = PathEnd::kPerformLimit;
+      return nullptr;
+    }
+    if (simulated_s_ >= bounds_.simulated_s) {
+      path.end = PathEnd::kTimeLimit;
+      return nullptr;
+    }
+    auto call = call_of(scenario_, ground_fluent(perform->event), perform->arguments);
+    PARALLAX_REQUIRE(call.has_value(), "every perform was held against the scenario's actions");
+    path.steps.push_back(
+        {perform->step, perform->event, perform->source, *std::move(call), false, {}, {}});
+    return &path.steps.back().call;
+  }
+
+ private:
+  bool tell(SampleRecord& record) {
+    auto& path = *record.path;
+    const auto& after = record.observations.back();
+    const auto& before = record.observations[record.observations.size() - 2];
+    simulated_s_ += record.outcomes.back().sim_time_s;
+    const auto end = execution_->tell(record.outcomes.back(), before, after, path.steps.back());
+    if (end) path.end = *end;
+    return !end;
+  }
+
+  const Scenario& scenario_;
+  const ExecutablePlan& plan_;
+  DrawKey choices_;
+  Bounds bounds_;
+  std::unique_ptr<PlanExecution> execution_;
+  double simulated_s_ = 0.0;
+};
+
+}  // namespace
+
+LoopSamples::LoopSamples(const Scenario& scenario, const ExecutablePlan& plan,
+                         std::vector<LoopStart> starts, std::uint64_t campaign_seed,
+                         std::int64_t max_performs, bool repeats_losses)
+    : scenario_(scenario),
+      plan_(plan),
+      starts_(std::move(starts)),
+      campaign_seed_(campaign_seed),
+      max_performs_(max_performs),
+      repeats_losses_(repeats_losses) {
+  PARALLAX_REQUIRE(!starts_.empty(), "a model can begin somewhere");
+}
+
+DrawKey LoopSamples::key_of(std::int64_t sample) const {
+  return {campaign_seed_, base::fnv1a64(kStartStream), DrawPhase::kCertify,
+          static_cast<std::uint64_t>(sample), 0};
+}
+
+std::int64_t LoopSamples::draw_state(std::int64_t sample) const {
+  auto key = key_of(sample);
+  key.trace_key = base::fnv1a64(kStateStream);
+  const auto count = starts_.size();
+  const auto drawn =
+      static_cast<std::size_t>(CounterRng(key).uniform(0) * static_cast<double>(count));
+  return static_cast<std::int64_t>(std::min(drawn, count - 1)) + 1;
+}
+
+const LoopStart& LoopSamples::start_of(const SampleRecord& record) const {
+  return starts_[static_cast<std::size_t>(record.path->start - 1)];
+}
+
+std::optional<SampleRecord> LoopSamples::make(std::int64_t sample, Simulator& simulator,
+                                              const std::function<bool()>& abandoned) const {
+  SampleRecord record;
+  record.trace = 1;
+  record.sample = sample;
+  record.path.emplace();
+  record.path->start = draw_state(sample);
+  auto key = key_of(sample);
+  auto choices = key;
+  choices.trace_key = base::fnv1a64(kChoiceStream);
+  PlanSource actions(scenario_, plan_, choices, {max_performs_, scenario_.limits.max_simulated_s});
+  for (;; ++record.attempt, ++key.attempt) {
+    record.initial = start_of(record).sampler.draw(key);
+    record.seed = simulator_seed(key);
+    const auto status = simulate_start(actions, repeats_losses_, simulator, record, abandoned);
+    if (!status) return std::nullopt;
+    record.status = sample_status(*status);
+    const auto end = record.path->end;
+    const bool is_error = end == PathEnd::kUnboundReason || end == PathEnd::kUnnamedObject;
+    if (record.status == SampleStatus::kOk && is_error) {
+      record.status = SampleStatus::kRefused;
+      record.reason = reason_word(record.outcomes.back());
+    }
+    if (record.status != SampleStatus::kRejected) return record;
+    if (++record.rejected >= scenario_.limits.max_rejected_starts) return record;
+    if (abandoned()) return std::nullopt;
+  }
+}
+
+std::optional<SampleRecord> LoopSamples::repeat(const SampleRecord& record, Simulator& simulator,
+                                                const std::function<bool()>& abandoned) const {
+  std::vector<ActionCall> calls;
+  for (const auto& step : record.path->steps) calls.push_back(step.call);
+  return repeat_sample(calls, repeats_losses_, record, simulator, abandoned);
+}
+
+std::string LoopSamples::wrong_draw(const SampleRecord& record) const {
+  if (!record.path || record.path->start != draw_state(record.sample)) {
+    return "its initial state is not that of its number";
+  }
+  const auto key = key_of(record.sample);
+  return harness::wrong_draw(record, start_of(record).sampler, campaign_seed_, key.trace_key);
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/campaign/loop_input.h"
+#include "harness/campaign/sample_maker.h"
+#include "harness/campaign/sample_runner.h"
+#include "harness/config/scenario.h"
+#include "harness/sampling/sampler.h"
+
+namespace parallax::harness {
+
+/// An initial state of the model as executions begin in it.
+struct LoopStart {
+  std::shared_ptr<const CampaignTrace> state;  // one timepoint, no events
+  Sampler sampler;
+};
+
+/// Executions of a plan. Sample n begins in an initial state that its number draws, each equally
+/// likely, at a point drawn uniformly from that state's cuboid; a start that is not valid is drawn
+/// again in the same state. Then each perform of the plan runs its controller, and the plan goes on
+/// by what came of it, until it ends or a limit ends it.
+class LoopSamples final : public SampleMaker {
+ public:
+  /// `scenario` and `plan` outlive the object; `starts` is not empty.
+  LoopSamples(const Scenario& scenario, const ExecutablePlan& plan, std::vector<LoopStart> starts,
+              std::uint64_t campaign_seed, std::int64_t max_performs, bool repeats_losses);
+
+  std::optional<SampleRecord> make(std::int64_t sample, Simulator& simulator,
+                                   const std::function<bool()>& abandoned) const override;
+  /// The recorded actions, one after the other; the plan is not asked again.
+  std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
+                                     const std::function<bool()>& abandoned) const override;
+
+  const std::vector<LoopStart>& starts() const { return starts_; }
+  const LoopStart& start_of(const SampleRecord& record) const;
+  /// As the wrong_draw of traces.
+  std::string wrong_draw(const SampleRecord& record) const;
+
+ private:
+  DrawKey key_of(std::int64_t sample) const;
+  std::int64_t draw_state(std::int64_t sample) const;
+
+  const Scenario& scenario_;
+  const ExecutablePlan& plan_;
+  std::vector<LoopStart> starts_;
+  std::uint64_t campaign_seed_;
+  std::int64_t max_performs_;
+  bool repeats_losses_;
+};
+
+}  // namespace parallax::harness

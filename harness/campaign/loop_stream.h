@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "harness/campaign/journal.h"
+#include "harness/campaign/loop_input.h"
+#include "harness/campaign/loop_samples.h"
+#include "harness/campaign/trial.h"
+#include "harness/config/scenario.h"
+
+namespace parallax::harness {
+
+/// What Trial is for a trace: the executions of a plan, simulated by workers that may run ahead, or
+/// taken from the journal, in the order of their numbers.
+class LoopStream {
+ public:
+  /// Everything outlives the object; `bench` has been started.
+  LoopStream(const Scenario& scenario, LoopFeed& feed, SimulatorBench& bench, std::uint64_t seed,
+             base::DiagnosticSink& sink)
+      : scenario_(scenario), feed_(feed), bench_(bench), seed_(seed), sink_(sink) {}
+
+  /// The state with these fluents as a trace without events.
+  static std::shared_ptr<const CampaignTrace> start_state(const LoopFeed& feed,
+                                                          std::vector<compiler::FluentId> holds);
+
+  /// Before anything is simulated: every perform of the plan has a controller that takes what it
+  /// says, and every initial state has a start. False when stopped. Reports what these report.
+  base::Result<bool> prepare();
+  /// Reports kForeignJournalLine for a start that is not that of its number.
+  base::Status continue_from(const Journal& journal);
+
+  std::int64_t initial_states() const { return std::ssize(samples_->starts()); }
+  const LoopStart& start_of(const SampleRecord& record) const { return samples_->start_of(record); }
+  std::int64_t next_sample() const { return next_; }  // from 1
+  /// Lets the workers simulate all samples up to this one.
+  void submit_to(std::int64_t last);
+  /// Waits for the next sample. None when stopped.
+  std::optional<SampleRecord> next();
+  /// Simulates the record's actions once more. None when stopped.
+  std::optional<SampleRecord> repeat(const SampleRecord& record);
+  bool on_record(const SampleRecord& record) const {
+    return recorded(record.sample, DrawPhase::kCertify) != nullptr;
+  }
+
+ private:
+  base::Status check_performs();
+  const SampleRecord* recorded(std::int64_t sample, DrawPhase phase) const {
+    return journal_->find(1, sample, phase);
+  }
+  std::optional<SampleRecord> result_of(std::int64_t sample, DrawPhase phase);
+
+  const Scenario& scenario_;
+  LoopFeed& feed_;
+  SimulatorBench& bench_;
+  std::uint64_t seed_;
+  base::DiagnosticSink& sink_;
+  const Journal* journal_ = nullptr;
+  std::shared_ptr<const LoopSamples> samples_;
+  std::int64_t next_ = 1;       // the sample that is waited for
+  std::int64_t submitted_ = 0;  // the last one that the workers were given or the journal has
+};
+
+}  // namespace parallax::harness

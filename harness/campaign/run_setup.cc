@@ -1,0 +1,111 @@
+#include "harness/campaign/run_setup.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "harness/campaign/judge.h"
+#include "harness/confidence/clean_runs.h"
+
+namespace parallax::harness {
+
+using base::DiagnosticCode;
+
+namespace {
+
+constexpr std::int64_t kLeastRunLimit = 300;
+
+}  // namespace
+
+RunLimit run_limit(const Scenario& scenario) {
+  const auto& criterion = scenario.criterion;
+  RunLimit limit{scenario.limits.max_runs, 0};
+  if (criterion.kind == CriterionKind::kCleanRuns) {
+    limit.needed = runs_needed(criterion.confidence_level, criterion.epsilon);
+  }
+  if (limit.max_runs == 0) limit.max_runs = std::max(kLeastRunLimit, 2 * limit.needed);
+  return limit;
+}
+
+base::Result<ClaimedRun> claim_run(const Scenario& scenario, const CampaignOptions& options,
+                                   base::SourceFiles& files, base::DiagnosticSink& sink) {
+  // Before any worker starts: a folder that is in use must cost nothing, and nobody its report.
+  auto folder = RunFolder::claim(options.run_dir, options.resume, sink);
+  if (!folder) return sink.already_reported();
+  // A continuation of another run must not start anything either; the simulator is compared later.
+  auto recorded =
+      read_for_continuation(*folder, journal_header(scenario, options, {}), files, sink);
+  if (!recorded) return sink.already_reported();
+  warn_of_low_limit(scenario, files, sink);
+  return ClaimedRun{std::move(*folder), std::move(*recorded)};
+}
+
+void describe_run(const Scenario& scenario, const CampaignOptions& options,
+                  const std::vector<GroundFluent>& fluents, CampaignResult& result) {
+  result.scenario = scenario.name;
+  result.title = scenario.title;
+  result.seed = options.seed;
+  result.criterion = scenario.criterion;
+  result.comparison = scenario.comparison();
+  result.compared = compared_fluents(*scenario.mapping, fluents, result.comparison);
+  result.tool_version = options.tool_version;
+  result.replay_folder = options.run_dir.string();
+}
+
+base::Status check_written(const Journal& journal, const CampaignOptions& options,
+                           base::DiagnosticSink& sink) {
+  const auto error = journal.write_error();
+  if (error.empty()) return base::Unit{};
+  const auto path = options.run_dir / kJournalName;
+  return sink.error_about(DiagnosticCode::kFileNotWritable, path.string(), error);
+}
+
+Confirmation confirmation_of(const SampleRecord& record, const SampleRecord& again) {
+  if (again.status == SampleStatus::kLost) return Confirmation::kLost;
+  return first_difference(record, again) ? Confirmation::kDiffers : Confirmation::kBitEqual;
+}
+
+void add_loss_caveats(TraceResult& result) {
+  if (result.retried > 0) {
+    result.caveats.push_back(fmt::format(
+        "{} lost at first and observed when repeated with the same start and seed",
+        result.retried == 1 ? "1 run was" : fmt::format("{} runs were", result.retried)));
+  }
+  if (result.strayed > 0) {
+    result.caveats.push_back(fmt::format(
+        "{} of the clean runs left the trace on the way and ended as predicted; `--compare "
+        "every-step` shows where",
+        result.strayed));
+  }
+}
+
+void add_simulator_caveats(const SimulatorInfo& simulator, const Discrepancy* found,
+                           TraceResult& result) {
+  if (!simulator.seeds) {
+    result.caveats.push_back(
+        "the simulator takes no seed, so its own randomness is not under control");
+  }
+  if (found != nullptr && found->confirmation == Confirmation::kDiffers) {
+    result.caveats.push_back(
+        "the simulator is not deterministic: the same start and seed gave another result");
+  }
+  if (found != nullptr && found->confirmation == Confirmation::kLost) {
+    result.caveats.push_back("the simulator was lost when the discrepancy was repeated");
+  }
+}
+
+void warn_of_low_limit(const Scenario& scenario, const base::SourceFiles& files,
+                       base::DiagnosticSink& sink) {
+  const auto limit = run_limit(scenario);
+  if (limit.max_runs >= limit.needed) return;
+  const auto& source = scenario.limits.max_runs_source;
+  const bool written = source && files.text(*source) == std::to_string(limit.max_runs);
+  sink.warning(DiagnosticCode::kRunLimitTooLow,
+               written ? *source : base::SourceRange{scenario.source, 0, 0}, limit.max_runs,
+               limit.needed);
+}
+
+}  // namespace parallax::harness

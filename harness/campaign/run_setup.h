@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "harness/campaign/campaign.h"
+#include "harness/campaign/campaign_result.h"
+#include "harness/campaign/journal.h"
+#include "harness/config/scenario.h"
+
+namespace parallax::harness {
+
+// What runs have in common, whether they simulate traces or execute a plan.
+
+/// How many simulations a stream of samples may take, and how many the criterion asks for if all
+/// are clean.
+struct RunLimit {
+  std::int64_t max_runs = 0;
+  std::int64_t needed = 0;  // 0: it cannot tell
+};
+
+/// `limits: max_runs`, or twice what the criterion needs and at least 300 where none is given: room
+/// for a lost run, after which more are needed.
+RunLimit run_limit(const Scenario& scenario);
+
+/// The folder of a run, and what it has on record.
+struct ClaimedRun {
+  RunFolder folder;
+  JournalText recorded;
+};
+/// Before anything is simulated: claims the folder, reads what is to be continued, and warns of a
+/// limit that is too low. Reports what these report.
+base::Result<ClaimedRun> claim_run(const Scenario& scenario, const CampaignOptions& options,
+                                   base::SourceFiles& files, base::DiagnosticSink& sink);
+
+/// Fills in what is known from the start.
+void describe_run(const Scenario& scenario, const CampaignOptions& options,
+                  const std::vector<GroundFluent>& fluents, CampaignResult& result);
+
+/// Reports that the journal could not be written, if so.
+base::Status check_written(const Journal& journal, const CampaignOptions& options,
+                           base::DiagnosticSink& sink);
+
+/// What the repetition of a discrepancy showed.
+Confirmation confirmation_of(const SampleRecord& record, const SampleRecord& again);
+
+/// Caveats about losses that were repeated and runs that strayed.
+void add_loss_caveats(TraceResult& result);
+
+/// Caveats about a simulator without seeds, and a discrepancy that could not be repeated (null:
+/// there is none).
+void add_simulator_caveats(const SimulatorInfo& simulator, const Discrepancy* found,
+                           TraceResult& result);
+
+}  // namespace parallax::harness

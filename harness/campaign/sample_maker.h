@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "harness/campaign/sample_record.h"
+#include "harness/simulator/simulator.h"
+
+namespace parallax::harness {
+
+/// Makes the simulations of one stream of samples: those of a trace, or executions of a plan.
+/// Shared by the workers' threads and never changed.
+class SampleMaker {
+ public:
+  virtual ~SampleMaker() = default;
+  /// Draws and simulates the sample of this number. None when `abandoned` says so before the end.
+  virtual std::optional<SampleRecord> make(std::int64_t sample, Simulator& simulator,
+                                           const std::function<bool()>& abandoned) const = 0;
+  /// Simulates the start, seed and actions of `record` once more.
+  virtual std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
+                                             const std::function<bool()>& abandoned) const = 0;
+};
+
+/// What is done next in a simulation.
+class ActionSource {
+ public:
+  virtual ~ActionSource() = default;
+  /// A simulation begins, perhaps not the first one.
+  virtual void begin(SampleRecord& record) = 0;
+  /// The next action, after what `record` has of outcomes and observations; none: that was all.
+  /// What it points to lasts until the next call.
+  virtual const ActionCall* next(SampleRecord& record) = 0;
+};
+
+/// Puts the simulator into the record's start and takes one action after the other: reset, observe,
+/// then act and observe. A start that is lost gets a second chance with `repeats_losses`. kOk,
+/// kInvalidStart, kLost or kUnsupported; none when abandoned.
+std::optional<SimStatus> simulate_start(ActionSource& actions, bool repeats_losses,
+                                        Simulator& simulator, SampleRecord& record,
+                                        const std::function<bool()>& abandoned);
+
+/// What the record says of a simulation that ended so.
+SampleStatus sample_status(SimStatus status);
+
+}  // namespace parallax::harness

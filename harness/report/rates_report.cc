@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/report/report.h"
+#include "harness/simulator/state_json.h"
+
+namespace parallax::harness {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json rate_object(const CauseRate& rate) {
+  Json object = {{"cause", rate.cause},
+                 {"count", rate.count},
+                 {"rate", rate.rate},
+                 {"lower", rate.lower},
+                 {"upper", rate.upper}};
+  if (rate.example > 0) object["example"] = rate.example;
+  if (!rate.reason.empty()) object["reason"] = rate.reason;
+  if (!rate.start.empty()) object["start"] = state_json<Json>(rate.start);
+  return object;
+}
+
+std::string percent(const CauseRate& rate) {
+  return fmt::format("{:5.1f} %  [{:.1f}, {:.1f}]", 100.0 * rate.rate, 100.0 * rate.lower,
+                     100.0 * rate.upper);
+}
+
+}  // namespace
+
+std::string rates_text(const RatesResult& result) {
+  std::string out =
+      fmt::format("{}, seed {}; {} compared; intervals with {:g} % confidence (Clopper-Pearson)\n",
+                  result.scenario, result.seed,
+                  result.comparison == Comparison::kFinal ? "last states" : "every step",
+                  100.0 * result.confidence);
+  for (const TraceRates& trace : result.traces) {
+    out += fmt::format("\ntrace {}: {} runs, {} starts rejected, {} lost\n  {}\n", trace.number,
+                       trace.runs, trace.rejected, trace.lost, trace.trace);
+    out += fmt::format("  {:>6} of {:<6} {:<26} any discrepancy\n", trace.any.count, trace.runs,
+                       percent(trace.any));
+    for (const CauseRate& rate : trace.causes) {
+      out += fmt::format("  {:>6} of {:<6} {:<26} {}\n", rate.count, trace.runs, percent(rate),
+                         rate.cause);
+      out += fmt::format("{:46}first in sample {}{}{}\n", "", rate.example,
+                         rate.reason.empty() ? "" : ": ", rate.reason);
+    }
+  }
+  if (result.complete && result.traces.empty()) out += "\nno trace, so nothing was simulated\n";
+  if (!result.complete) out += "\nstopped before all runs were made\n";
+  return out;
+}
+
+std::string rates_json(const RatesResult& result) {
+  Json document = {{"status", "ok"},
+                   {"scenario", result.scenario},
+                   {"seed", result.seed},
+                   {"confidence", result.confidence},
+                   {"compare", to_string(result.comparison)},
+                   {"complete", result.complete},
+                   {"traces", Json::array()}};
+  for (const TraceRates& trace : result.traces) {
+    Json causes = Json::array();
+    for (const CauseRate& rate : trace.causes) causes.push_back(rate_object(rate));
+    document["traces"].push_back({{"trace", trace.number},
+                                  {"events", trace.trace},
+                                  {"runs", trace.runs},
+                                  {"rejected", trace.rejected},
+                                  {"lost", trace.lost},
+                                  {"any", rate_object(trace.any)},
+                                  {"causes", std::move(causes)}});
+  }
+  return document.dump() + "\n";
+}
+
+}  // namespace parallax::harness

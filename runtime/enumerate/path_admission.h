@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/base/known.h"
+#include "runtime/session/solver_session.h"
+
+namespace parallax::runtime {
+
+/// What became of one perform of a plan that was executed.
+struct ExecutedPerform {
+  compiler::PlanStepId step;
+  std::string event;  // printed: "Go(r2)"
+  bool succeeded = false;
+  std::string returned;  // the object that it found; may be empty
+};
+
+/// Asks a model with a plan whether it has the path that an execution took.
+class PathAdmission {
+ public:
+  /// The value of some fluents at one timepoint.
+  using State = std::map<compiler::FluentId, bool>;
+
+  /// `session` outlives the object.
+  explicit PathAdmission(SolverSession& session);
+
+  /// Has the model an execution that performs this from timepoint 0 on, whose first `outcomes`
+  /// performs end like that, and that goes through these states? `observed` begins at timepoint 0
+  /// and may end early. One solver call; undecided if the solver was stopped.
+  base::Known admits(std::span<const ExecutedPerform> performs, std::size_t outcomes,
+                     std::span<const State> observed);
+
+ private:
+  SolverSession* session_;
+  compiler::AtomIndex index_;
+  std::map<std::string, std::uint32_t, std::less<>> events_;
+};
+
+/// The states at timepoint 0 that the axioms about it admit, each as the true ones of `fluents`,
+/// ascending; states that agree on these are one. `solver` is fresh.
+struct InitialStates {
+  std::vector<std::vector<compiler::FluentId>> states;  // in the order of their members
+  bool more = false;                                    // there are more than `limit`
+  bool stopped = false;                                 // the solver was
+};
+InitialStates initial_states(const CompiledModel& model, std::unique_ptr<SatSolver> solver,
+                             std::span<const compiler::FluentId> fluents, std::size_t limit);
+
+/// What a user's predicate without time says, by its printed name; undecided if the model leaves it
+/// open or the solver was stopped. At most two solver calls.
+base::Known predicate_value(SolverSession& session, std::string_view name);
+
+}  // namespace parallax::runtime

@@ -1,0 +1,99 @@
+#include "tools/app/closed_loop.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <string>
+#include <utility>
+
+#include "compiler/base/contract.h"
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/suggest.h"
+#include "tools/app/trace_feed.h"
+
+namespace parallax::tools {
+
+using base::DiagnosticCode;
+
+namespace {
+
+constexpr std::size_t kMaxInitialStates = 10'000;
+
+}  // namespace
+
+ClosedLoop::ClosedLoop(const ScenarioModel& loaded, Context& context)
+    : loaded_(loaded),
+      context_(context),
+      symbols_(runtime::symbols_of(loaded.compilation.model)),
+      session_(loaded.compilation.model, runtime::make_cadical_solver(&context.stop())),
+      admission_(session_),
+      plan_(std::make_unique<ScenarioPlan>(loaded, context)) {}
+
+base::Result<std::unique_ptr<ClosedLoop>> ClosedLoop::make(const ScenarioModel& loaded,
+                                                           Context& context) {
+  auto out = std::unique_ptr<ClosedLoop>(new ClosedLoop(loaded, context));
+  const auto value = [&](const std::string& predicate) {
+    return runtime::predicate_value(out->session_, predicate);
+  };
+  if (!out->plan_->settle(value, context.sink())) return context.sink().already_reported();
+  return out;
+}
+
+std::int64_t ClosedLoop::max_performs() const { return loaded_.compilation.model.horizon; }
+
+base::Result<std::optional<std::vector<std::vector<compiler::FluentId>>>>
+ClosedLoop::initial_states(std::span<const compiler::FluentId> fluents) {
+  auto& sink = context_.sink();
+  const auto& model = loaded_.compilation.model;
+  auto found = runtime::initial_states(model, runtime::make_cadical_solver(&context_.stop()),
+                                       fluents, kMaxInitialStates);
+  if (found.stopped) return std::optional<std::vector<std::vector<compiler::FluentId>>>();
+  if (found.more) {
+    return sink.error(DiagnosticCode::kTooManyInitialStates,
+                      base::SourceRange{loaded_.scenario.source, 0, 0}, kMaxInitialStates);
+  }
+  if (found.states.empty()) {
+    (void)report_if_unsatisfiable(model, 0, context_);
+    return sink.already_reported();
+  }
+  return std::optional(std::move(found.states));
+}
+
+base::Known ClosedLoop::admits(std::span<const harness::PathStep> performs, std::size_t outcomes,
+                               std::span<const ObservedFluents> observed) {
+  std::vector<runtime::ExecutedPerform> executed;
+  for (const auto& step : performs) {
+    executed.push_back({compiler::PlanStepId(static_cast<std::uint32_t>(step.step)), step.event,
+                        step.succeeded, step.object});
+  }
+  return admission_.admits(executed, outcomes, observed);
+}
+
+base::DiagnosticBuilder ClosedLoop::report_end(const harness::ExecutedPath& path,
+                                               const std::string& reason) {
+  auto& sink = context_.sink();
+  const auto& graph = *loaded_.compilation.plan;
+  const auto& step = path.steps.back();
+  const compiler::LocationId id(static_cast<std::uint32_t>(step.step));
+  const auto& location = graph.locations[id];
+  if (path.end == harness::PathEnd::kUnnamedObject) {
+    auto why = plan_->unseen(id);
+    if (why.empty()) why = "it holds of nothing";
+    auto error = sink.error(DiagnosticCode::kUnnamedObject, location.binding, step.event, why);
+    error.note(location.source, "performed here");
+    return error;
+  }
+  auto error = sink.error(DiagnosticCode::kUnboundReason, location.binding, step.event, reason);
+  error.note(location.source, "performed here");
+  std::vector<std::string> known;
+  for (const auto& [failure_class, reasons] : location.failures) {
+    for (const auto& bound : reasons) known.push_back(bound);
+  }
+  if (const auto near = base::nearest_name(reason, known, 4)) {
+    error.note(fmt::format("the nearest reason that is bound: `{}`", *near));
+  }
+  error.note(fmt::format("bound here: {}", fmt::join(known, ", ")));
+  return error;
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "harness/campaign/loop_input.h"
+#include "runtime/enumerate/path_admission.h"
+#include "tools/app/context.h"
+#include "tools/app/executable_plan.h"
+#include "tools/app/scenario_model.h"
+
+namespace parallax::tools {
+
+/// A scenario's model and plan for closed loop: what the plan does is a walk through its unrolled
+/// graph, what the model admits is asked of the solver.
+class ClosedLoop final : public harness::LoopFeed {
+ public:
+  /// `loaded`, of load_scenario_run, and `context` outlive the object. Reports
+  /// kQuestionNotObserved.
+  static base::Result<std::unique_ptr<ClosedLoop>> make(const ScenarioModel& loaded,
+                                                        Context& context);
+
+  const harness::ExecutablePlan& plan() const override { return *plan_; }
+  runtime::Symbols symbols() const override { return symbols_; }
+  std::int64_t max_performs() const override;
+  base::Result<std::optional<std::vector<std::vector<compiler::FluentId>>>> initial_states(
+      std::span<const compiler::FluentId> fluents) override;
+  base::Known admits(std::span<const harness::PathStep> performs, std::size_t outcomes,
+                     std::span<const ObservedFluents> observed) override;
+  base::DiagnosticBuilder report_end(const harness::ExecutedPath& path,
+                                     const std::string& reason) override;
+  std::int64_t solve_calls() const { return session_.solve_calls(); }
+
+ private:
+  ClosedLoop(const ScenarioModel& loaded, Context& context);
+
+  const ScenarioModel& loaded_;
+  Context& context_;
+  runtime::Symbols symbols_;
+  runtime::SolverSession session_;
+  runtime::PathAdmission admission_;
+  std::unique_ptr<ScenarioPlan> plan_;
+};
+
+}  // namespace parallax::tools
