@@ -34,7 +34,8 @@ base::Status require_trace(const std::string& folder, const harness::RecordedRun
 
 /// Can the scenario have had this simulation? Its trace must be one of the model, its calls those
 /// of the actions, its start and seed what is drawn for its number; of an executed plan the calls
-/// alone are looked at. What was observed is not. Reports kForeignJournalLine. The trace in the ids of the model; nothing if it was stopped.
+/// alone are looked at. What was observed is not. Gives the trace in the ids of the model. Reports
+/// kForeignJournalLine.
 base::Result<harness::CampaignTrace> check_recorded_run(const ScenarioModel& loaded,
                                                         const harness::RecordedRun& run,
                                                         Context& context);
