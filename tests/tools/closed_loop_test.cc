@@ -111,6 +111,19 @@ TEST_CASE("a forgotten effect is found in the first execution, with event, place
           .at("verdict") == "no-discrepancy");
 }
 
+TEST_CASE("executions on record are checked by the monitor, outcomes too") {
+  const TwoModels cli;
+  json_of(cli, {"run", "two/sticks.yaml", "--execution", "closed-loop", "--out", "out"}, 1);
+  const auto checked = json_of(cli, {"monitor", "two/sticks.yaml", "out"}, 1);
+  std::vector<std::string> verdicts;
+  for (const auto& run : checked.at("runs")) verdicts.push_back(run.at("verdict"));
+  REQUIRE_FALSE(verdicts.empty());
+  CHECK(verdicts.back() == "inconsistent");
+  CHECK(std::count(verdicts.begin(), verdicts.end(), "inconsistent") == 1);
+  json_of(cli, {"run", "two/agree.yaml", "--execution", "closed-loop", "--out", "good"});
+  json_of(cli, {"monitor", "two/agree.yaml", "good"});
+}
+
 TEST_CASE("a retry that succeeds only in the world") {
   const TwoModels cli;
   const auto scenario =

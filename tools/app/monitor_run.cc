@@ -30,10 +30,29 @@ std::optional<harness::Comparison> comparison_of(const harness::JournalHeader& h
   return is_final ? harness::Comparison::kFinal : harness::Comparison::kEveryStep;
 }
 
+struct RecordedStep {
+  std::string event;
+  std::optional<bool> succeeded;  // as an executed plan was told
+};
+
+/// Those of the executed plan, or of the trace.
+std::vector<RecordedStep> steps_of(const SampleRecord& record, const harness::JournalText& journal) {
+  std::vector<RecordedStep> out;
+  if (record.path) {
+    for (const auto& step : record.path->steps) out.push_back({step.event, step.succeeded});
+    return out;
+  }
+  const auto line = journal.traces.find(record.trace);
+  if (line == journal.traces.end()) return out;
+  const auto& trace = *line->second.trace;
+  for (std::size_t t = 0; t < trace.event_count(); ++t) out.push_back({trace.event(t), {}});
+  return out;
+}
+
 class RunWatcher {
  public:
-  RunWatcher(Watch& watch, const harness::CampaignTrace& trace, const SampleRecord& record)
-      : watch_(watch), trace_(trace), record_(record) {}
+  RunWatcher(Watch& watch, const std::vector<RecordedStep>& steps, const SampleRecord& record)
+      : watch_(watch), steps_(steps), record_(record) {}
 
   MonitorResult run() && {
     result_.log = fmt::format("{}.{}", record_.trace, record_.sample);
@@ -59,9 +78,10 @@ class RunWatcher {
   Admission step(std::size_t t) {
     ++result_.events;
     runtime::ToldStep told;
-    const auto event = watch_.symbols().event(trace_.event(t));
-    PARALLAX_REQUIRE(event.has_value(), "the trace is one of the scenario's model");
+    const auto event = watch_.symbols().event(steps_[t].event);
+    PARALLAX_REQUIRE(event.has_value(), "the events are those of the scenario's model");
     told.events.push_back(*event);
+    told.succeeded = steps_[t].succeeded;
     return watch_.step(told);
   }
 
@@ -81,7 +101,7 @@ class RunWatcher {
   }
 
   Watch& watch_;
-  const harness::CampaignTrace& trace_;
+  const std::vector<RecordedStep>& steps_;
   const SampleRecord& record_;
   MonitorResult result_;
 };
@@ -108,20 +128,20 @@ base::Result<std::vector<MonitorResult>> monitor_run(const RunFolderOptions& run
     if (context.stopped()) break;
     if (record.phase == harness::DrawPhase::kConfirm) continue;
     if (record.status != harness::SampleStatus::kOk) continue;
-    const auto line = journal->traces.find(record.trace);
-    if (line == journal->traces.end() ||
-        record.observations.size() != line->second.trace->points.size() ||
-        record.outcomes.size() + 1 != record.observations.size()) {
+    const auto steps = steps_of(record, *journal);
+    if ((!record.path && !journal->traces.contains(record.trace)) ||
+        record.observations.size() != steps.size() + 1 || record.outcomes.size() != steps.size()) {
       return sink.error(base::DiagnosticCode::kForeignJournalLine, journal->places.at(key),
                         "its observations are not those of its trace");
     }
-    const auto& trace = *line->second.trace;
-    for (std::size_t t = 0; t < trace.event_count(); ++t) {
-      if ((*watch)->symbols().event(trace.event(t))) continue;
-      return sink.error(base::DiagnosticCode::kForeignJournalLine,
-                        journal->trace_places.at(record.trace), "it names what the model has not");
+    for (const auto& step : steps) {
+      if ((*watch)->symbols().event(step.event)) continue;
+      const auto& place =
+          record.path ? journal->places.at(key) : journal->trace_places.at(record.trace);
+      return sink.error(base::DiagnosticCode::kForeignJournalLine, place,
+                        "it names what the model has not");
     }
-    out.push_back(RunWatcher(**watch, trace, record).run());
+    out.push_back(RunWatcher(**watch, steps, record).run());
   }
   return out;
 }
