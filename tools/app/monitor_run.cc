@@ -36,7 +36,8 @@ struct RecordedStep {
 };
 
 /// Those of the executed plan, or of the trace.
-std::vector<RecordedStep> steps_of(const SampleRecord& record, const harness::JournalText& journal) {
+std::vector<RecordedStep> steps_of(const SampleRecord& record,
+                                   const harness::JournalText& journal) {
   std::vector<RecordedStep> out;
   if (record.path) {
     for (const auto& step : record.path->steps) out.push_back({step.event, step.succeeded});
