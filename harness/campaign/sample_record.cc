@@ -48,6 +48,7 @@ std::optional<RecordDifference> differing_state(const State& a, const State& b,
 }  // namespace
 
 std::string reason_word(const ActionOutcome& outcome) {
+  if (outcome.status == SimStatus::kOk) return "failed";
   if (outcome.reason.empty() || outcome.status == SimStatus::kTruncated) {
     return std::string(to_string(outcome.status));
   }

@@ -34,7 +34,8 @@ struct ActionOutcome {
 };
 
 /// The word by which a binding table knows why an action failed: what stands in front of the first
-/// colon of the reason; without a reason the status, as for an action that its time limit ended.
+/// colon of the reason; without a reason the status, as for an action that its time limit ended;
+/// "failed" where the simulator says nothing of a failure and the formula of success does not hold.
 std::string reason_word(const ActionOutcome& outcome);
 
 /// How the execution of a plan ended. The last two are no results but errors: the plan knows no

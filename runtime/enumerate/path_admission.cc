@@ -10,7 +10,31 @@ namespace parallax::runtime {
 using base::Known;
 using compiler::AtomKind;
 
-PathAdmission::PathAdmission(SolverSession& session) : session_(&session), index_(session.model()) {
+namespace {
+
+/// The events that no axiom can demand, by slot: in the clauses of axioms they stand under a
+/// negation only. That something else would explain a change of state (frame axioms) is no demand.
+std::vector<std::uint32_t> undemanded_events(const CompiledModel& model) {
+  std::vector<bool> demanded(model.slots.size(), false);
+  for (std::size_t c = 0; c < model.clauses.size(); ++c) {
+    if (model.origins[model.clause_origins[c]].kind != compiler::OriginKind::kAxiom) continue;
+    for (const auto literal : model.clauses[c]) {
+      if (!literal.is_positive() || literal.var() <= model.base()) continue;
+      const auto place = literal.var() - model.base() - 1;
+      demanded[static_cast<std::size_t>(place % model.stride())] = true;
+    }
+  }
+  std::vector<std::uint32_t> out;
+  for (const auto& event : model.events) {
+    if (event.slot && !demanded[*event.slot]) out.push_back(*event.slot);
+  }
+  return out;
+}
+
+}  // namespace
+
+PathAdmission::PathAdmission(SolverSession& session)
+    : session_(&session), index_(session.model()), undemanded_(undemanded_events(session.model())) {
   const auto& events = session.model().events;
   for (std::uint32_t i = 0; i < events.size(); ++i) events_.emplace(events[i].name, i);
 }
@@ -31,8 +55,12 @@ Known PathAdmission::admits(std::span<const ExecutedPerform> performs, std::size
     const auto& perform = performs[static_cast<std::size_t>(t)];
     const auto event = events_.find(perform.event);
     if (event == events_.end() || !model.events[event->second].slot) return Known::kNo;
-    const auto happens = model.variable(*model.events[event->second].slot, t);
-    assumptions.push_back(Literal::positive(happens));
+    const auto performed = *model.events[event->second].slot;
+    assumptions.push_back(Literal::positive(model.variable(performed, t)));
+    // Else anything that might happen by itself would excuse any difference.
+    for (const auto slot : undemanded_) {
+      if (slot != performed) assumptions.push_back(~Literal::positive(model.variable(slot, t)));
+    }
     if (!assume(index_.at(perform.step, t), true)) return Known::kNo;
     if (static_cast<std::size_t>(t) >= outcomes) continue;
     if (!assume(index_.succeeded(perform.step, t + 1), perform.succeeded)) return Known::kNo;

@@ -31,7 +31,8 @@ class PathAdmission {
   /// `session` outlives the object.
   explicit PathAdmission(SolverSession& session);
 
-  /// Has the model an execution that performs this from timepoint 0 on, whose first `outcomes`
+  /// Has the model an execution that performs this from timepoint 0 on, while no other event
+  /// happens that no axiom can demand, whose first `outcomes`
   /// performs end like that, and that goes through these states? `observed` begins at timepoint 0
   /// and may end early. One solver call; undecided if the solver was stopped.
   base::Known admits(std::span<const ExecutedPerform> performs, std::size_t outcomes,
@@ -41,6 +42,7 @@ class PathAdmission {
   SolverSession* session_;
   compiler::AtomIndex index_;
   std::map<std::string, std::uint32_t, std::less<>> events_;
+  std::vector<std::uint32_t> undemanded_;  // slots of events
 };
 
 /// The states at timepoint 0 that the axioms about it admit, each as the true ones of `fluents`,

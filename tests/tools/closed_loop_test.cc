@@ -111,6 +111,30 @@ TEST_CASE("a forgotten effect is found in the first execution, with event, place
           .at("verdict") == "no-discrepancy");
 }
 
+TEST_CASE("an event that nobody performed and nothing demands excuses no difference") {
+  const TwoModels cli;
+  const std::string bump = "event Bump()\n";
+  cli.write("two/opens_u.e",
+            "load opens.e\n" + bump + "[time] Terminates(Bump(),Parked(),time).\n");
+  cli.write("two/unparks_u.e", "load unparks.e\n" + bump);
+  cli.write("two/bump.yaml",
+            "include: common.yaml\nmodel: [opens_u.e, start.e]\n"
+            "simulator: {model: unparks_u.e}\n");
+  const auto report =
+      json_of(cli, {"run", "two/bump.yaml", "--execution", "closed-loop", "--out", "out"}, 1);
+  CHECK(report.at("simulations") == 1);
+  CHECK(report.at("discrepancies").at(0).at("cause").at("text") == "OpenDrawer(top): not Parked()");
+  // What an axiom demands goes with what is performed.
+  const std::string slam =
+      "event Slam()\n[time] Happens(Park(),time) -> Happens(Slam(),time).\n"
+      "[drawer,time] Terminates(Slam(),Open(drawer),time).\n";
+  cli.write("two/opens_u.e", "load opens.e\n" + slam);
+  cli.write("two/bump.yaml",
+            "include: common.yaml\nmodel: [opens_u.e, start.e]\n"
+            "simulator: {model: opens_u.e}\n");
+  json_of(cli, {"run", "two/bump.yaml", "--execution", "closed-loop", "--out", "demanded"});
+}
+
 TEST_CASE("executions on record are checked by the monitor, outcomes too") {
   const TwoModels cli;
   json_of(cli, {"run", "two/sticks.yaml", "--execution", "closed-loop", "--out", "out"}, 1);
@@ -242,6 +266,16 @@ TEST_CASE("each reason of a failure raises its condition; one that is bound to n
         std::string::npos);
   CHECK(unbound.err.find("the nearest reason that is bound: `not-posible`") != std::string::npos);
   CHECK(unbound.err.find("two/plan.lisp:7") != std::string::npos);
+  // The world carries it out and the formula of success does not hold: the word for it is `failed`.
+  const auto unparks =
+      executed(cli, "load opens.e\n", plan,
+               "sort drawer\ndrawer top\nfluent Open(drawer)\nfluent Parked()\n"
+               "event OpenDrawer(drawer)\nevent CloseDrawer(drawer)\nevent Park()\n"
+               "event Reach()\n[time] Terminates(Park(),Parked(),time).\n");
+  const auto unparked = cli.parallax({"run", unparks});
+  CHECK(unparked.code == 3);
+  CHECK(unparked.err.find("failed for the reason `failed`") != std::string::npos);
+  executed(cli, "load opens.e\n", plan, forbids);
 
   cli.replace("two/robot.bind", "not-posible", "not-possible");
   const auto report = json_of(cli, {"run", scenario}, 1);

@@ -17,9 +17,6 @@ using compiler::RegisterObjects;
 
 namespace {
 
-/// The reason of a failure that only the formula of success tells.
-constexpr std::string_view kUnsuccessful = "failed";
-
 harness::State state_of(const compiler::PlanArguments& arguments) {
   harness::State out;
   for (const auto& [name, value] : arguments) {
@@ -69,8 +66,7 @@ class ScenarioPlanExecution final : public harness::PlanExecution,
       walk_.succeed(step.object);
       return std::nullopt;
     }
-    const bool reported = outcome.status != harness::SimStatus::kOk;
-    const auto condition = walk_.fail(reported ? reason_word(outcome) : std::string(kUnsuccessful));
+    const auto condition = walk_.fail(reason_word(outcome));
     if (!condition) return harness::PathEnd::kUnboundReason;
     step.condition = *condition;
     return std::nullopt;
