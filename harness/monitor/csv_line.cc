@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 
+#include "compiler/base/ascii.h"
 #include "harness/monitor/log_entry.h"
 
 namespace parallax::harness {
@@ -32,9 +35,23 @@ std::optional<Value> value_of(const std::string& text, ObservationReader::Kind k
   return std::nullopt;
 }
 
+constexpr std::string_view kColumns[] = {"t", "event", "outcome", "reason", "started"};
+
 bool is_key(std::string_view name) {
-  return name == "t" || name == "event" || name == "outcome" || name == "reason" ||
-         name == "started";
+  return std::find(std::begin(kColumns), std::end(kColumns), name) != std::end(kColumns);
+}
+
+/// The key that a column of another spelling is meant to be: taken for somebody's own column, a
+/// `Event` would leave out every event without a word.
+std::optional<std::string_view> meant_key(std::string_view name) {
+  std::string letters;
+  for (const char c : name) {
+    if (c != ' ' && c != '\t') letters += base::to_lower(c);
+  }
+  for (const auto key : kColumns) {
+    if (letters == key && name != key) return key;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -85,6 +102,11 @@ std::optional<LogError> CsvLog::read_header(std::string_view line, const Observa
     if (!variables_.back() && !is_key(cell.text) && foreign.size() < kMaxForeignNames) {
       foreign.insert(cell.text);
     }
+  }
+  for (const auto& cell : cells_) {
+    const auto key = meant_key(cell.text);
+    if (!key || std::find(names_.begin(), names_.end(), *key) != names_.end()) continue;
+    return LogError{cell.column, fmt::format("write the column `{}` as `{}`", cell.text, *key)};
   }
   if (!has_t) {
     return LogError{

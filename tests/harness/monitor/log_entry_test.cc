@@ -135,6 +135,10 @@ TEST_CASE("a row of CSV that does not fit is refused in its words") {
   CsvFixture f;
   CHECK(f.header("time,event") ==
         "neither a JSON object nor a header of CSV with a column `t`, the time in seconds");
+  // Taken for a column of somebody's own, it would leave out every event without a word.
+  CHECK(CsvFixture().header("t,Event,door.q") == "write the column `Event` as `event`");
+  CHECK(CsvFixture().header("t, event,door.q") == "write the column ` event` as `event`");
+  CHECK(CsvFixture().header("t,T,event,door.q") == "");
   CsvFixture twice;
   CHECK(twice.header("t,door.q,door.q") == "the column `door.q` is there twice");
   CsvFixture g;
