@@ -168,9 +168,7 @@ class Campaign {
                std::all_of(traces.begin(), traces.end(), is(CampaignVerdict::kNoDiscrepancy))) {
       result_.verdict = CampaignVerdict::kNoDiscrepancy;
     }
-    result_.timing.wall_s = std::chrono::duration<double>(Clock::now() - started_).count();
-    result_.timing.runs_made = bench_.runs_made();
-    result_.timing.simulated_s = bench_.simulated_s();
+    note_timing(bench_, started_, result_);
     return std::move(result_);
   }
 

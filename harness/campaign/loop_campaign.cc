@@ -259,9 +259,7 @@ class LoopCampaign {
                           : stream_.verdict;
     result_.simulations = stream_.simulations;
     result_.traces.push_back(std::move(stream_));
-    result_.timing.wall_s = std::chrono::duration<double>(LoopClock::now() - started_).count();
-    result_.timing.runs_made = bench_.runs_made();
-    result_.timing.simulated_s = bench_.simulated_s();
+    note_timing(bench_, started_, result_);
     return std::move(result_);
   }
 

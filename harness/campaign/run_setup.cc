@@ -68,6 +68,14 @@ Confirmation confirmation_of(const SampleRecord& record, const SampleRecord& aga
   return first_difference(record, again) ? Confirmation::kDiffers : Confirmation::kBitEqual;
 }
 
+void note_timing(const SimulatorBench& bench, std::chrono::steady_clock::time_point started,
+                 CampaignResult& result) {
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - started;
+  result.timing.wall_s = wall.count();
+  result.timing.runs_made = bench.runs_made();
+  result.timing.simulated_s = bench.simulated_s();
+}
+
 void add_loss_caveats(TraceResult& result) {
   if (result.retried > 0) {
     result.caveats.push_back(fmt::format(

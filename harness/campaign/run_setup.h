@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/campaign_result.h"
 #include "harness/campaign/journal.h"
+#include "harness/campaign/trial.h"
 #include "harness/config/scenario.h"
 
 namespace parallax::harness {
@@ -45,6 +47,10 @@ base::Status check_written(const Journal& journal, const CampaignOptions& option
 
 /// What the repetition of a discrepancy showed.
 Confirmation confirmation_of(const SampleRecord& record, const SampleRecord& again);
+
+/// What it took, once no worker simulates any more.
+void note_timing(const SimulatorBench& bench, std::chrono::steady_clock::time_point started,
+                 CampaignResult& result);
 
 /// Caveats about losses that were repeated and runs that strayed.
 void add_loss_caveats(TraceResult& result);

@@ -215,13 +215,14 @@ class TraceCampaign {
     add_simulator_caveats(context_.bench.simulator(), found ? &*found : nullptr, result);
   }
 
-  const TraceContext& context_;
-  Trial trial_;
   struct Failures {
     std::int64_t runs = 0;
     std::string reason;  // of the first
   };
-  std::map<std::size_t, Failures> failures_;  // by event
+
+  const TraceContext& context_;
+  Trial trial_;
+  std::map<std::size_t, Failures> failures_;  // in clean runs, by event
   Tally tally_;
   Decision decision_;
   TraceOutcome outcome_;

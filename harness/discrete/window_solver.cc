@@ -11,6 +11,7 @@ WindowSolver::WindowSolver(const runtime::LayeredModel& model, const runtime::Wi
                            bool is_start, const std::atomic<bool>* stop)
     : model_(model),
       is_start_(is_start),
+      query_(window, {}, window.variables, states_after(), stop),
       solver_(runtime::make_cadical_solver(stop)),
       next_guard_(window.variables + 1) {
   std::vector<Literal> clause;
@@ -21,6 +22,13 @@ WindowSolver::WindowSolver(const runtime::LayeredModel& model, const runtime::Wi
   }
 }
 
+std::vector<Literal> WindowSolver::states_after() const {
+  std::vector<Literal> out;
+  for (const auto slot : model_.observed) out.push_back(after(slot));
+  for (const auto slot : model_.hidden) out.push_back(after(slot));
+  return out;
+}
+
 SolveStatus WindowSolver::solve(std::span<const Literal> given, std::span<const Literal> more) {
   for (const auto literal : given) solver_->assume(literal);
   for (const auto literal : more) solver_->assume(literal);
@@ -29,32 +37,16 @@ SolveStatus WindowSolver::solve(std::span<const Literal> given, std::span<const 
 
 ListEnd WindowSolver::states(std::span<const Literal> given, std::size_t limit,
                              std::vector<runtime::Move>& out) {
-  std::vector<Literal> projection;
-  for (const auto slot : model_.observed) projection.push_back(after(slot));
-  for (const auto slot : model_.hidden) projection.push_back(after(slot));
-  // What is excluded meanwhile is let go at the end: the guard is never assumed again.
-  const auto guard = new_guard();
-  auto end = ListEnd::kComplete;
-  std::vector<Literal> others;
-  for (;;) {
-    const auto status = solve(given, std::span(&guard, 1));
-    if (status == SolveStatus::kUnsatisfiable) break;
-    if (status == SolveStatus::kUnknown || out.size() == limit) {
-      end = status == SolveStatus::kUnknown ? ListEnd::kStopped : ListEnd::kTooMany;
-      break;
-    }
-    auto& state = out.emplace_back();
-    others = {~guard};
-    for (std::size_t i = 0; i < projection.size(); ++i) {
-      const bool value = solver_->value(projection[i]);
-      (i < model_.observed.size() ? state.observed : state.hidden).push_back(value);
-      others.push_back(value ? ~projection[i] : projection[i]);
-    }
-    solver_->add_clause(others);
+  const auto answer = query_.ask(given, limit);
+  const auto observed = static_cast<std::ptrdiff_t>(model_.observed.size());
+  for (const auto& state : answer.found) {
+    auto& move = out.emplace_back();
+    move.observed.assign(state.begin(), state.begin() + observed);
+    move.hidden.assign(state.begin() + observed, state.end());
   }
-  solver_->add_clause(std::vector{~guard});
   std::sort(out.begin(), out.end());
-  return end;
+  if (answer.complete) return ListEnd::kComplete;
+  return answer.found.size() == limit ? ListEnd::kTooMany : ListEnd::kStopped;
 }
 
 std::vector<std::size_t> WindowSolver::events_at_hand() const {

@@ -10,6 +10,7 @@
 
 #include "runtime/graph/layered_model.h"
 #include "runtime/graph/trace_graph.h"
+#include "runtime/graph/window_query.h"
 #include "runtime/solver/sat_solver.h"
 
 namespace parallax::harness {
@@ -49,6 +50,7 @@ class WindowSolver {
   static runtime::Literal at(std::uint32_t offset, std::uint32_t slot) {
     return runtime::Literal::positive(static_cast<std::int32_t>(offset + slot) + 1);
   }
+  std::vector<runtime::Literal> states_after() const;
   runtime::SolveStatus solve(std::span<const runtime::Literal> given,
                              std::span<const runtime::Literal> more);
   runtime::Literal new_guard() { return runtime::Literal::positive(next_guard_++); }
@@ -58,7 +60,8 @@ class WindowSolver {
 
   const runtime::LayeredModel& model_;
   bool is_start_;
-  std::unique_ptr<runtime::SatSolver> solver_;
+  runtime::WindowQuery query_;                  // for states
+  std::unique_ptr<runtime::SatSolver> solver_;  // for events
   std::int32_t next_guard_;
 };
 

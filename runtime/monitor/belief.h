@@ -10,8 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "runtime/graph/window_query.h"
 #include "runtime/monitor/step_windows.h"
-#include "runtime/monitor/window_query.h"
 
 namespace parallax::runtime {
 

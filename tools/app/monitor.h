@@ -41,6 +41,10 @@ struct MonitorResult {
   double wall_s = 0.0;
 };
 
+/// Takes into the result what the watch said of the log at `place`; false: it ends there.
+bool take_admission(Watch& watch, runtime::Admission admission, const MonitorPlace& place,
+                    MonitorResult& result);
+
 using MonitorProgress = std::function<void(const MonitorResult& so_far)>;
 
 /// Reads a log from an open file, line by line as it comes, up to the first line that the model

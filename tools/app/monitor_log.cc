@@ -17,6 +17,11 @@
 namespace parallax::tools {
 namespace {
 
+void take_size(Watch& watch, MonitorResult& result) {
+  result.states = watch.belief().size();
+  result.most_states = watch.belief().largest();
+}
+
 using base::DiagnosticCode;
 using compiler::EventId;
 using harness::LineSource;
@@ -201,22 +206,12 @@ class LogWatcher {
   }
 
   bool note(Admission admission, const MonitorPlace& place) {
-    result_.states = watch_.belief().size();
-    result_.most_states = watch_.belief().largest();
-    if (admission == Admission::kAdmitted) return true;
-    is_over_ = true;
-    if (context_.stopped()) {
-      result_.interrupted = true;
-      return false;
+    is_over_ = admission != Admission::kAdmitted;
+    if (!is_over_ || !context_.stopped()) {
+      return take_admission(watch_, admission, place, result_);
     }
-    result_.first = place;
-    if (admission == Admission::kRefused) {
-      result_.verdict = MonitorVerdict::kInconsistent;
-      result_.refusal = watch_.refusal();
-    } else {
-      result_.verdict = MonitorVerdict::kUndecided;
-      result_.undecided_because = watch_.belief().undecided_because();
-    }
+    take_size(watch_, result_);
+    result_.interrupted = true;
     return false;
   }
 
@@ -266,6 +261,21 @@ class LogWatcher {
 };
 
 }  // namespace
+
+bool take_admission(Watch& watch, Admission admission, const MonitorPlace& place,
+                    MonitorResult& result) {
+  take_size(watch, result);
+  if (admission == Admission::kAdmitted) return true;
+  result.first = place;
+  if (admission == Admission::kRefused) {
+    result.verdict = MonitorVerdict::kInconsistent;
+    result.refusal = watch.refusal();
+  } else {
+    result.verdict = MonitorVerdict::kUndecided;
+    result.undecided_because = watch.belief().undecided_because();
+  }
+  return false;
+}
 
 std::string_view to_string(MonitorVerdict verdict) {
   switch (verdict) {

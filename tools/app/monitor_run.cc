@@ -87,18 +87,7 @@ class RunWatcher {
   }
 
   bool note(Admission admission, const MonitorPlace& place) {
-    result_.states = watch_.belief().size();
-    result_.most_states = watch_.belief().largest();
-    if (admission == Admission::kAdmitted) return true;
-    result_.first = place;
-    if (admission == Admission::kRefused) {
-      result_.verdict = MonitorVerdict::kInconsistent;
-      result_.refusal = watch_.refusal();
-    } else {
-      result_.verdict = MonitorVerdict::kUndecided;
-      result_.undecided_because = watch_.belief().undecided_because();
-    }
-    return false;
+    return take_admission(watch_, admission, place, result_);
   }
 
   Watch& watch_;

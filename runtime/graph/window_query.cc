@@ -1,4 +1,4 @@
-#include "runtime/monitor/window_query.h"
+#include "runtime/graph/window_query.h"
 
 #include <algorithm>
 #include <utility>
@@ -7,7 +7,7 @@ namespace parallax::runtime {
 namespace {
 
 /// A question that meets more conflicts than this is left to the solver, and so are those after it.
-constexpr std::int64_t kSearchConflicts = 2000;
+constexpr std::int64_t kQueryConflicts = 2000;
 
 std::vector<std::vector<Literal>> all_clauses(const WindowClauses& window,
                                               std::vector<std::vector<Literal>> more) {
@@ -49,7 +49,7 @@ std::vector<bool> WindowQuery::read(const Value& value) const {
 WindowQuery::Answer WindowQuery::ask(std::span<const Literal> assumptions, std::size_t limit) {
   if (solver_ == nullptr) {
     Answer answer;
-    const auto last = search_.conflicts() + kSearchConflicts;
+    const auto last = search_.conflicts() + kQueryConflicts;
     search_.begin(assumptions);
     while (true) {
       const auto status = search_.next(last - search_.conflicts());
