@@ -33,47 +33,63 @@ std::vector<std::uint32_t> undemanded_events(const CompiledModel& model) {
 
 }  // namespace
 
-PathAdmission::PathAdmission(SolverSession& session)
-    : session_(&session), index_(session.model()), undemanded_(undemanded_events(session.model())) {
-  const auto& events = session.model().events;
-  for (std::uint32_t i = 0; i < events.size(); ++i) events_.emplace(events[i].name, i);
+PathAdmission::PathAdmission(SolverSession& session) : PathAdmission(session.model()) {
+  session_ = &session;
+}
+
+PathAdmission::PathAdmission(const CompiledModel& model)
+    : model_(&model), index_(model), undemanded_(undemanded_events(model)) {
+  for (std::uint32_t i = 0; i < model.events.size(); ++i) {
+    events_.emplace(model.events[i].name, i);
+    if (model.events[i].slot) event_slots_.push_back(*model.events[i].slot);
+  }
+}
+
+std::optional<std::vector<Literal>> PathAdmission::facts(std::span<const ExecutedPerform> performs,
+                                                         std::size_t outcomes,
+                                                         std::span<const State> observed) const {
+  const auto& model = *model_;
+  std::vector<Literal> out;
+  // What has no atom is false in every execution.
+  const auto state = [&](const std::optional<Literal>& literal, bool wanted) {
+    if (literal) out.push_back(wanted ? *literal : ~*literal);
+    return literal.has_value() || !wanted;
+  };
+  for (std::size_t i = 0; i < performs.size(); ++i) {
+    const auto t = static_cast<Timepoint>(i);
+    const auto& perform = performs[i];
+    const auto event = events_.find(perform.event);
+    if (event == events_.end() || !model.events[event->second].slot) return std::nullopt;
+    const auto performed = *model.events[event->second].slot;
+    out.push_back(Literal::positive(model.variable(performed, t)));
+    // Else anything that might happen by itself would excuse any difference.
+    for (const auto slot : perform.step ? undemanded_ : event_slots_) {
+      if (slot != performed) out.push_back(~Literal::positive(model.variable(slot, t)));
+    }
+    if (!perform.step) continue;
+    if (!state(index_.at(*perform.step, t), true)) return std::nullopt;
+    if (i >= outcomes) continue;
+    if (!state(index_.succeeded(*perform.step, t + 1), perform.succeeded)) return std::nullopt;
+    if (!perform.succeeded || perform.returned.empty()) continue;
+    const compiler::PlanAtom object = compiler::ReturnedObject{perform.returned};
+    if (!state(index_.plan(AtomKind::kResult, object, t + 1), true)) return std::nullopt;
+  }
+  for (std::size_t t = 0; t < observed.size(); ++t) {
+    for (const auto& [fluent, holds] : observed[t]) {
+      if (!state(model.holds_at(fluent, static_cast<Timepoint>(t)), holds)) return std::nullopt;
+    }
+  }
+  return out;
 }
 
 Known PathAdmission::admits(std::span<const ExecutedPerform> performs, std::size_t outcomes,
                             std::span<const State> observed) {
-  const auto& model = session_->model();
+  PARALLAX_REQUIRE(session_ != nullptr, "a session that can be asked");
   const auto n = static_cast<Timepoint>(performs.size());
-  PARALLAX_REQUIRE(n <= model.horizon && observed.size() <= performs.size() + 1,
+  PARALLAX_REQUIRE(n <= model_->horizon && observed.size() <= performs.size() + 1,
                    "a path within the horizon");
-  std::vector<Literal> assumptions;
-  // What has no atom is false in every execution.
-  const auto assume = [&](const std::optional<Literal>& literal, bool wanted) {
-    if (literal) assumptions.push_back(wanted ? *literal : ~*literal);
-    return literal.has_value() || !wanted;
-  };
-  for (Timepoint t = 0; t < n; ++t) {
-    const auto& perform = performs[static_cast<std::size_t>(t)];
-    const auto event = events_.find(perform.event);
-    if (event == events_.end() || !model.events[event->second].slot) return Known::kNo;
-    const auto performed = *model.events[event->second].slot;
-    assumptions.push_back(Literal::positive(model.variable(performed, t)));
-    // Else anything that might happen by itself would excuse any difference.
-    for (const auto slot : undemanded_) {
-      if (slot != performed) assumptions.push_back(~Literal::positive(model.variable(slot, t)));
-    }
-    if (!assume(index_.at(perform.step, t), true)) return Known::kNo;
-    if (static_cast<std::size_t>(t) >= outcomes) continue;
-    if (!assume(index_.succeeded(perform.step, t + 1), perform.succeeded)) return Known::kNo;
-    if (!perform.succeeded || perform.returned.empty()) continue;
-    const compiler::PlanAtom object = compiler::ReturnedObject{perform.returned};
-    if (!assume(index_.plan(AtomKind::kResult, object, t + 1), true)) return Known::kNo;
-  }
-  for (std::size_t t = 0; t < observed.size(); ++t) {
-    for (const auto& [fluent, holds] : observed[t]) {
-      if (!assume(model.holds_at(fluent, static_cast<Timepoint>(t)), holds)) return Known::kNo;
-    }
-  }
-  return possible(session_->solve(n, assumptions));
+  const auto assumptions = facts(performs, outcomes, observed);
+  return assumptions ? possible(session_->solve(n, *assumptions)) : Known::kNo;
 }
 
 InitialStates initial_states(const CompiledModel& model, std::unique_ptr<SatSolver> solver,

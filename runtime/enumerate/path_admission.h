@@ -14,10 +14,10 @@
 
 namespace parallax::runtime {
 
-/// What became of one perform of a plan that was executed.
+/// What became of one perform of a plan that was executed, or of one event of a trace.
 struct ExecutedPerform {
-  compiler::PlanStepId step;
-  std::string event;  // printed: "Go(r2)"
+  std::optional<compiler::PlanStepId> step;  // none: of a trace, and nothing else happens then
+  std::string event;                         // printed: "Go(r2)"
   bool succeeded = false;
   std::string returned;  // the object that it found; may be empty
 };
@@ -30,7 +30,14 @@ class PathAdmission {
 
   /// `session` outlives the object.
   explicit PathAdmission(SolverSession& session);
+  /// To be asked for facts only. `model` outlives the object.
+  explicit PathAdmission(const CompiledModel& model);
 
+  /// What is the case in an execution that `admits` asks for. None: something that is false in
+  /// every execution.
+  std::optional<std::vector<Literal>> facts(std::span<const ExecutedPerform> performs,
+                                            std::size_t outcomes,
+                                            std::span<const State> observed) const;
   /// Has the model an execution that performs this from timepoint 0 on, while no other event
   /// happens that no axiom can demand, whose first `outcomes`
   /// performs end like that, and that goes through these states? `observed` begins at timepoint 0
@@ -39,10 +46,12 @@ class PathAdmission {
                      std::span<const State> observed);
 
  private:
-  SolverSession* session_;
+  SolverSession* session_ = nullptr;
+  const CompiledModel* model_;
   compiler::AtomIndex index_;
   std::map<std::string, std::uint32_t, std::less<>> events_;
-  std::vector<std::uint32_t> undemanded_;  // slots of events
+  std::vector<std::uint32_t> undemanded_;   // slots of events
+  std::vector<std::uint32_t> event_slots_;  // of all
 };
 
 /// The states at timepoint 0 that the axioms about it admit, each as the true ones of `fluents`,

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include "compiler/base/diagnostic_codes.h"
-#include "compiler/base/json.h"
 #include "harness/campaign/journal.h"
 #include "tools/app/monitor.h"
 
@@ -19,15 +18,6 @@ harness::ReportedValues reported(const harness::ObservationReader& reader,
     out.push_back(found == state.end() ? std::nullopt : std::optional(found->second));
   }
   return out;
-}
-
-/// What the run compared, whatever the scenario says by itself.
-std::optional<harness::Comparison> comparison_of(const harness::JournalHeader& header) {
-  const auto options = nlohmann::json::parse(header.options, nullptr, false);
-  const auto* compare = base::json_member(options, "compare");
-  if (compare == nullptr) return std::nullopt;
-  const bool is_final = *compare == harness::to_string(harness::Comparison::kFinal);
-  return is_final ? harness::Comparison::kFinal : harness::Comparison::kEveryStep;
 }
 
 struct RecordedStep {
@@ -110,7 +100,7 @@ base::Result<std::vector<MonitorResult>> monitor_run(const RunFolderOptions& run
   const auto loaded = load_recorded_scenario(run, *journal->header, ScenarioUse::kRun, context);
   if (!loaded) return sink.already_reported();
   auto as_recorded = options;
-  as_recorded.comparison = comparison_of(*journal->header);
+  as_recorded.comparison = recorded_comparison(*journal->header);
   auto watch = Watch::make(*loaded, as_recorded, context);
   if (!watch) return sink.already_reported();
   std::vector<MonitorResult> out;

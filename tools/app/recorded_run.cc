@@ -10,6 +10,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/hash.h"
+#include "compiler/base/json.h"
 #include "harness/sampling/sampler.h"
 #include "runtime/replay/trace_replay.h"
 
@@ -140,6 +141,32 @@ fs::path scenario_path(const harness::JournalHeader& header) {
   return is_file(start / named) || !is_file(named) ? start / named : named;
 }
 
+namespace {
+
+/// Is this what the option was when the run was started? None: it is not on record.
+std::optional<bool> option_is(const harness::JournalHeader& header, const char* name,
+                              std::string_view word) {
+  const auto options = nlohmann::json::parse(header.options, nullptr, false);
+  const auto* value = base::json_member(options, name);
+  if (value == nullptr) return std::nullopt;
+  return *value == word;
+}
+
+}  // namespace
+
+std::optional<harness::Comparison> recorded_comparison(const harness::JournalHeader& header) {
+  using harness::Comparison;
+  const auto is_final = option_is(header, "compare", harness::to_string(Comparison::kFinal));
+  if (!is_final) return std::nullopt;
+  return *is_final ? Comparison::kFinal : Comparison::kEveryStep;
+}
+
+harness::Execution recorded_execution(const harness::JournalHeader& header) {
+  using harness::Execution;
+  const auto closed = option_is(header, "execution", harness::to_string(Execution::kClosedLoop));
+  return closed.value_or(false) ? Execution::kClosedLoop : Execution::kOpenLoop;
+}
+
 base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& options,
                                                    const harness::JournalHeader& header,
                                                    ScenarioUse use, Context& context) {
@@ -153,8 +180,9 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
     return refuse(fmt::format("there is no scenario `{}`", base::printable(path.string())));
   }
   const auto before = sink;
-  auto loaded = use == ScenarioUse::kRun ? load_scenario_model(path, context)
-                                         : load_plain_scenario(path, context);
+  auto loaded = use == ScenarioUse::kRun
+                    ? load_scenario_model(path, context)
+                    : load_plain_run(path, recorded_execution(header), context);
   const auto change =
       loaded ? harness::scenario_change(header, loaded->sources_hash) : std::string();
   if (loaded && change.empty()) {

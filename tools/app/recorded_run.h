@@ -17,7 +17,12 @@ struct RunFolderOptions {
 /// in, or in the current folder if nothing lies there.
 std::filesystem::path scenario_path(const harness::JournalHeader& header);
 
-/// How a scenario is compiled: to be run, or to be explained (load_plain_scenario).
+/// What the run compared, and how it went, whatever the scenario says by itself. The first is none
+/// where the journal does not say.
+std::optional<harness::Comparison> recorded_comparison(const harness::JournalHeader& header);
+harness::Execution recorded_execution(const harness::JournalHeader& header);
+
+/// How a scenario is compiled: to be run, or to be explained (load_plain_run).
 enum class ScenarioUse : std::uint8_t { kRun, kExplain };
 
 /// Loads the scenario of a run, which must be the one that was run: kReplayImpossible if it is not,

@@ -377,9 +377,9 @@ std::optional<compiler::CompiledModel> compile_variant(const harness::Scenario& 
   return std::move(loaded->compilation.model);
 }
 
-base::Result<ScenarioModel> load_plain_scenario(const std::filesystem::path& path,
-                                                Context& context) {
-  return load(path, context, {false, true});
+base::Result<ScenarioModel> load_plain_run(const std::filesystem::path& path,
+                                           harness::Execution execution, Context& context) {
+  return load(path, context, {.plain = true, .as_run = true, .execution = execution});
 }
 
 base::Result<compiler::Compilation> compile_models(const ModelOptions& options, Context& context) {

@@ -63,11 +63,11 @@ std::optional<compiler::CompiledModel> compile_variant(const harness::Scenario& 
 /// been compiled before and brings neither the checked model nor the plan's graph.
 base::Result<compiler::Compilation> compile_models(const ModelOptions& options, Context& context);
 
-/// As load_scenario_model and compile_models, with a model that was grounded without settling
+/// As load_scenario_run and compile_models, with a model that was grounded without settling
 /// anything in advance, so that every axiom's clauses say what it says: for explanations. Models
 /// that were compiled before are taken as they are.
-base::Result<ScenarioModel> load_plain_scenario(const std::filesystem::path& path,
-                                                Context& context);
+base::Result<ScenarioModel> load_plain_run(const std::filesystem::path& path,
+                                           harness::Execution execution, Context& context);
 base::Result<compiler::Compilation> compile_plain_models(const ModelOptions& options,
                                                          Context& context);
 
