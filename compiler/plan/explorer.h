@@ -28,6 +28,7 @@ struct Job {
   Edge edge = Edge::kEntry;
   std::uint32_t owner = 0;                         // location or branch
   std::optional<LocationId> failed = {};           // what it goes on by failing
+  std::size_t way = 0;                             // likewise: the reason, if it goes by reasons
   std::optional<PlanMachine::Ending> ending = {};  // goes on by the end of a `par`
   /// Goes on by asking the rules again: what carries out an action, or whether a goal holds.
   std::optional<std::variant<StopPerform, StopProof>> proof = {};
@@ -61,7 +62,7 @@ class Explorer {
  private:
   using StateKey = std::vector<std::uint32_t>;
   void set(const Job& job, PlanTarget target);
-  void note_handlers(std::optional<LocationId> failed);
+  void note_handlers(std::optional<LocationId> failed, std::size_t way = 0);
   void write_handlers();
   std::optional<PlanTarget> advance(Job& job);
   std::optional<PlanTarget> stopped(PlanState& state, const PlanStop& stop);

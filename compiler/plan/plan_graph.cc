@@ -128,6 +128,17 @@ PlanTarget failure_target(const PlanGraph& graph, const PlanLocation& location, 
   return target;
 }
 
+std::vector<PlanDecision> decisions_of_way(const PlanGraph& graph, const PlanLocation& location,
+                                           std::size_t way) {
+  std::vector<PlanDecision> out;
+  auto target = location.on_failure;
+  for (std::size_t i = 0; i <= way && i + 1 < location.failures.size(); ++i) {
+    out.emplace_back(std::get<BranchId>(target), i == way);
+    target = graph.branches[out.back().first].if_false;
+  }
+  return out;
+}
+
 std::string to_string(const PlanGraph& graph, const PlanTarget& target,
                       const base::SourceFiles& files) {
   if (const auto* location = std::get_if<LocationId>(&target)) {

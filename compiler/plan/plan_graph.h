@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -115,7 +116,9 @@ struct PlanHandler {
   std::vector<std::string> failure_classes;
   base::SourceRange source;
   std::vector<LocationId> failures;  // what it takes up: these performs, failing; sorted
-  bool otherwise = false;            // failures that the plan itself signals or hands on as well
+  /// Of those that fail by reason: the way, a place in their `failures`; sorted.
+  std::vector<std::pair<LocationId, std::size_t>> ways;
+  bool otherwise = false;  // failures that the plan itself signals or hands on as well
 };
 
 struct PlanGraph {
@@ -129,6 +132,12 @@ struct PlanGraph {
 
 /// Where control goes when the perform fails the way of this number (0 if it has no ways).
 PlanTarget failure_target(const PlanGraph& graph, const PlanLocation& location, std::size_t way);
+
+/// A branch, and whether its true side was taken.
+using PlanDecision = std::pair<BranchId, bool>;
+/// The free branches that lead there, and which way.
+std::vector<PlanDecision> decisions_of_way(const PlanGraph& graph, const PlanLocation& location,
+                                           std::size_t way);
 
 /// "L3", "B1", "DONE", "FAILED(navigation-pose-unreachable)", "BOUND(loop at plan.lisp:12)".
 std::string to_string(const PlanGraph& graph, const PlanTarget& target,

@@ -57,12 +57,15 @@ void PlanWalk::go_on(PlanSurroundings& surroundings) {
     const auto& branch = graph_->branches[*id];
     if (!branch.free) {
       // Asked before: the way that was counted is the one.
-      at_ = surroundings.holds(*id, registers_) ? branch.if_true : branch.if_false;
+      const bool holds = surroundings.holds(*id, registers_);
+      passed_.emplace_back(*id, holds);
+      at_ = holds ? branch.if_true : branch.if_false;
       continue;
     }
     const auto first = ways(branch.if_true, surroundings, known);
     const bool take = number < first;
     if (!take) number -= first;
+    passed_.emplace_back(*id, take);
     at_ = take ? branch.if_true : branch.if_false;
   }
 }
@@ -84,12 +87,14 @@ std::string PlanWalk::event() const {
 void PlanWalk::succeed(const std::string& returned) {
   const auto& location = graph_->locations[std::get<LocationId>(at_)];
   if (location.result) registers_[*location.result] = returned;
+  passed_.clear();
   at_ = location.on_success;
 }
 
 std::optional<std::string> PlanWalk::fail(std::string_view reason) {
   const auto& location = graph_->locations[std::get<LocationId>(at_)];
   if (location.failures.empty()) {
+    passed_.clear();
     at_ = location.on_failure;
     return location.failure_class;
   }
@@ -97,6 +102,7 @@ std::optional<std::string> PlanWalk::fail(std::string_view reason) {
     const auto& [failure_class, reasons] = location.failures[way];
     if (std::find(reasons.begin(), reasons.end(), reason) == reasons.end()) continue;
     auto raised = failure_class;
+    passed_ = decisions_of_way(*graph_, location, way);
     at_ = failure_target(*graph_, location, way);
     return raised;
   }

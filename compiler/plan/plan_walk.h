@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/plan/plan_graph.h"
@@ -53,6 +54,8 @@ class PlanWalk {
   const RegisterObjects& registers() const { return registers_; }
   /// Of the location.
   std::string event() const;
+  /// The branches that control has passed since the last perform began, and which way.
+  const std::vector<PlanDecision>& passed() const { return passed_; }
 
   /// The perform has succeeded, and found that object if it returns one.
   void succeed(const std::string& returned);
@@ -67,6 +70,7 @@ class PlanWalk {
   const PlanGraph* graph_;
   PlanTarget at_;
   RegisterObjects registers_;
+  std::vector<PlanDecision> passed_;
 };
 
 }  // namespace parallax::compiler

@@ -140,11 +140,11 @@ void Explorer::fail_by_reason(LocationId id, const PlanState& state, DatumId for
       } else {
         graph_.branches[BranchId(owner)].if_false = next;
       }
-      jobs.push_back({state, failure, {}, Job::Edge::kTrue, next.index(), id});
+      jobs.push_back({state, failure, {}, Job::Edge::kTrue, next.index(), id, way});
       edge = Job::Edge::kFalse;
       owner = next.index();
     } else {
-      jobs.push_back({state, failure, {}, edge, owner, id});
+      jobs.push_back({state, failure, {}, edge, owner, id, way});
     }
   }
   jobs_.insert(jobs_.end(), std::make_move_iterator(jobs.rbegin()),
@@ -226,7 +226,7 @@ std::optional<PlanTarget> Explorer::stopped(PlanState& state, const PlanStop& st
 std::optional<PlanTarget> Explorer::advance(Job& job) {
   if (job.failure) {
     auto stop = machine_.raise(job.state, *job.failure);
-    if (job.failed) note_handlers(*job.failed);
+    if (job.failed) note_handlers(*job.failed, job.way);
     if (stop) return stopped(job.state, *stop);
   }
   if (job.ending) {
@@ -265,11 +265,12 @@ std::optional<PlanTarget> Explorer::advance(Job& job) {
 }
 
 /// Whose failure the handlers took up that began to run just now.
-void Explorer::note_handlers(std::optional<LocationId> failed) {
+void Explorer::note_handlers(std::optional<LocationId> failed, std::size_t way) {
   for (const auto unit : machine_.take_handlers_run()) {
     auto& handler = handlers_[unit];
     if (failed) {
       handler.failures.push_back(*failed);
+      if (!graph_.locations[*failed].failures.empty()) handler.ways.emplace_back(*failed, way);
     } else {
       handler.otherwise = true;
     }
@@ -288,6 +289,7 @@ void Explorer::write_handlers() {
         handler = handlers_[clause.unit];
         handler.source = source;
         std::sort(handler.failures.begin(), handler.failures.end());
+        std::sort(handler.ways.begin(), handler.ways.end());
       }
       handler.failure_classes.push_back(clause.failure_class);
     }

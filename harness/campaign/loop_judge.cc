@@ -22,15 +22,9 @@ class PathJudge {
         feed_(feed),
         record_(record),
         performs_(record.path->steps) {
-    const auto last = record.observations.size() - 1;
     std::set<std::string> missing;
-    for (std::size_t t = 0; t <= last; ++t) {
-      const bool at_rest = t == 0 || t == last;
-      auto& seen = seen_.emplace_back(
-          loop_state(mapping, fluents, record.observations[t], at_rest, &missing));
-      if (!at_rest && comparison == Comparison::kFinal) seen = {};
-      states_.push_back(seen.state.holds);
-    }
+    seen_ = path_states(mapping, fluents, record, comparison, missing);
+    for (const auto& seen : seen_) states_.push_back(seen.state.holds);
     if (!missing.empty()) out_.missing = *missing.begin();
   }
 
@@ -184,6 +178,20 @@ class PathJudge {
 };
 
 }  // namespace
+
+std::vector<LoopState> path_states(const StateMapping& mapping, const ModelFluents& fluents,
+                                   const SampleRecord& record, Comparison comparison,
+                                   std::set<std::string>& missing) {
+  std::vector<LoopState> states;
+  const auto last = record.observations.size() - 1;
+  for (std::size_t t = 0; t <= last; ++t) {
+    const bool at_rest = t == 0 || t == last;
+    auto& seen = states.emplace_back(
+        loop_state(mapping, fluents, record.observations[t], at_rest, &missing));
+    if (!at_rest && comparison == Comparison::kFinal) seen = {};
+  }
+  return states;
+}
 
 LoopJudgement judge_path(const StateMapping& mapping, const ModelFluents& fluents, LoopFeed& feed,
                          const SampleRecord& record, Comparison comparison) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,12 @@ struct LoopJudgement {
   DiscrepancyKind kind = DiscrepancyKind::kLasting;
   Cause cause;
 };
+
+/// What the record's observations say of the compared fluents, by timepoint; `missing` gets the
+/// variables that the mapping asks for in vain.
+std::vector<LoopState> path_states(const StateMapping& mapping, const ModelFluents& fluents,
+                                   const SampleRecord& record, Comparison comparison,
+                                   std::set<std::string>& missing);
 
 /// Holds the events, outcomes and observed states of the record, which begins in a state of the
 /// model, against the executions of the model and its plan. One solver call for a clean path; for

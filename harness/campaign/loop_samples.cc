@@ -94,6 +94,11 @@ DrawKey LoopSamples::key_of(std::int64_t sample) const {
           static_cast<std::uint64_t>(sample), 0};
 }
 
+DrawKey LoopSamples::choices_key(std::uint64_t campaign_seed, std::int64_t sample) {
+  return {campaign_seed, base::fnv1a64(kChoiceStream), DrawPhase::kCertify,
+          static_cast<std::uint64_t>(sample), 0};
+}
+
 std::int64_t LoopSamples::draw_state(std::int64_t sample) const {
   auto key = key_of(sample);
   key.trace_key = base::fnv1a64(kStateStream);
@@ -115,8 +120,7 @@ std::optional<SampleRecord> LoopSamples::make(std::int64_t sample, Simulator& si
   record.path.emplace();
   record.path->start = draw_state(sample);
   auto key = key_of(sample);
-  auto choices = key;
-  choices.trace_key = base::fnv1a64(kChoiceStream);
+  const auto choices = choices_key(campaign_seed_, sample);
   PlanSource actions(scenario_, plan_, choices, {max_performs_, scenario_.limits.max_simulated_s});
   for (;; ++record.attempt, ++key.attempt) {
     record.initial = start_of(record).sampler.draw(key);

@@ -36,6 +36,9 @@ class LoopSamples final : public SampleMaker {
   std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
                                      const std::function<bool()>& abandoned) const override;
 
+  /// What the plan leaves open in the sample is drawn from this key's stream.
+  static DrawKey choices_key(std::uint64_t campaign_seed, std::int64_t sample);
+
   const std::vector<LoopStart>& starts() const { return starts_; }
   const LoopStart& start_of(const SampleRecord& record) const;
   /// As the wrong_draw of traces.

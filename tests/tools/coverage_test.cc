@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -16,6 +17,7 @@ namespace parallax::test {
 namespace {
 
 using Json = nlohmann::json;
+namespace fs = std::filesystem;
 
 /// A plan with a handler, a retry and a condition, over a model whose drawer may stick. The world's
 /// drawer does not, so that two of the three traces differ from it.
@@ -222,6 +224,19 @@ TEST_CASE("coverage: what was not simulated is told from what no trace does") {
   CHECK(both.at("runs") == 2);
   CHECK(both.at("simulations") == 2);
   CHECK(counts_of(both.at("performs")).at("two/cover.lisp:8 OpenDrawer") == std::pair(2, 3));
+  // The same run twice, or a copy of it, is no more than once.
+  fs::copy(cli.folder() / "out", cli.folder() / "copy");
+  const auto twice = cli.parallax({"coverage", "out", "out", "copy"});
+  CHECK(twice.code == 0);
+  CHECK(twice.out.find("3 runs, 1 simulation\n") != std::string::npos);
+  CHECK(twice.err.find("copy: 1 of its simulations count once") != std::string::npos);
+  // The tracefile on the standard output, and nothing else.
+  REQUIRE(cli.parallax({"coverage", "out", "--lcov", "out.info"}).code == 0);
+  const auto standard = cli.parallax({"coverage", "out", "--lcov", "-"});
+  CHECK(standard.code == 0);
+  CHECK(standard.out == cli.read("out.info"));
+  CHECK_FALSE(fs::exists(cli.folder() / "-"));
+  CHECK(cli.parallax({"coverage", "out", "--lcov", "-", "--json"}).code == 2);
 }
 
 TEST_CASE("coverage: folders are held against their scenario as replay does it") {
@@ -241,8 +256,9 @@ TEST_CASE("coverage: folders are held against their scenario as replay does it")
   cli.replace("out/journal.ndjson", "\"keep_going\":false",
               "\"execution\":\"closed-loop\",\"keep_going\":false");
   const auto closed = cli.parallax({"coverage", "out"});
-  CHECK(closed.code == 2);
-  CHECK(closed.err.find("closed loop") != std::string::npos);
+  CHECK(closed.code == 3);
+  CHECK(closed.err.find("error[E7103]") != std::string::npos);
+  CHECK(closed.err.find("`path` is missing") != std::string::npos);
   cli.write("out/journal.ndjson", journal);
   CHECK(cli.parallax({"coverage", "out"}).code == 0);
   cli.write("two/opens.e", cli.read("two/opens.e") + "; changed\n");

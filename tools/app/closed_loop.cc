@@ -69,6 +69,15 @@ base::Known ClosedLoop::admits(std::span<const harness::PathStep> performs, std:
   return admission_.admits(executed, outcomes, observed);
 }
 
+std::optional<runtime::Trace> ClosedLoop::trace_of(std::span<const harness::PathStep> performs,
+                                                   std::size_t outcomes,
+                                                   std::span<const ObservedFluents> observed) {
+  if (admits(performs, outcomes, observed) != base::Known::kYes) return std::nullopt;
+  const auto length = static_cast<compiler::Timepoint>(performs.size());
+  return runtime::decode_trace(loaded_.compilation.model, symbols_, length,
+                               [&](compiler::Literal literal) { return session_.value(literal); });
+}
+
 base::DiagnosticBuilder ClosedLoop::report_end(const harness::ExecutedPath& path,
                                                const std::string& reason) {
   auto& sink = context_.sink();

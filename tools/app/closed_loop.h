@@ -28,6 +28,11 @@ class ClosedLoop final : public harness::LoopFeed {
       std::span<const compiler::FluentId> fluents) override;
   base::Known admits(std::span<const harness::PathStep> performs, std::size_t outcomes,
                      std::span<const ObservedFluents> observed) override;
+  /// A trace of the model that goes as `admits` asks; none if it has none, or was stopped.
+  std::optional<runtime::Trace> trace_of(std::span<const harness::PathStep> performs,
+                                         std::size_t outcomes,
+                                         std::span<const ObservedFluents> observed);
+  const ScenarioPlan& scenario_plan() const { return *plan_; }
   base::DiagnosticBuilder report_end(const harness::ExecutedPath& path,
                                      const std::string& reason) override;
   std::int64_t solve_calls() const { return session_.solve_calls(); }

@@ -1,127 +1,28 @@
 #include "tools/app/coverage.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
-#include "compiler/reference/reference_use.h"
+#include "compiler/base/diagnostic_printer.h"
+#include "compiler/base/json.h"
 #include "harness/campaign/journal.h"
+#include "tools/app/coverage_loop.h"
+#include "tools/app/coverage_model.h"
 #include "tools/app/coverage_plan.h"
 #include "tools/app/file_kind.h"
-#include "tools/app/trace_check.h"
 #include "tools/app/trace_feed.h"
 
 namespace parallax::tools {
 namespace {
 
 using base::DiagnosticCode;
-using compiler::FormulaKind;
-using compiler::TypedFormulaId;
-
-/// One line, as the file has it; long ones are cut.
-std::string one_line(std::string_view text) {
-  constexpr std::size_t kMost = 100;
-  std::string out;
-  for (const char c : text) {
-    const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
-    if (!blank) out += c;
-    if (blank && !out.empty() && out.back() != ' ') out += ' ';
-    if (out.size() > kMost) return out + "...";
-  }
-  return out;
-}
-
-/// What there is to cover in a model, and what a trace covers of it.
-class ModelCoverage {
- public:
-  /// Both outlive the object, and so does the evaluator.
-  ModelCoverage(const compiler::TypedModel& model, const compiler::ReferenceEvaluator& evaluator,
-                const base::SourceFiles& files)
-      : model_(model), files_(files), use_(evaluator) {
-    for (std::size_t i = 0; i < model.symbols.size(); ++i) {
-      const auto& symbol = model.symbols[model.symbols.id_at(i)];
-      if (symbol.kind == compiler::SymbolKind::kEvent) all_.emplace(event(symbol), "");
-    }
-    for (std::size_t i = 0; i < model.effects.size(); ++i) all_.emplace(effect(i), effect_text(i));
-    for (std::size_t i = 0; i < model.axioms.size(); ++i) {
-      axioms_.push_back(axiom(i));
-      if (axioms_[i]) all_.emplace(*axioms_[i], text(model.axioms[i].source));
-    }
-  }
-
-  const std::map<CoverageKey, std::string>& all() const { return all_; }
-
-  std::set<CoverageKey> covered_by(const runtime::Trace& trace) const {
-    std::set<CoverageKey> covered;
-    for (std::size_t t = 0; t < trace.points.size(); ++t) {
-      for (const auto name : trace.happens(t)) {
-        const auto symbol = model_.find_symbol(name.substr(0, name.find('(')));
-        if (symbol) covered.insert(event(model_.symbols[*symbol]));
-      }
-    }
-    const auto used = use_.of(valuation_of(trace));
-    for (const auto i : used.effects) covered.insert(effect(i));
-    for (const auto i : used.axioms) {
-      if (axioms_[i]) covered.insert(*axioms_[i]);
-    }
-    return covered;
-  }
-
- private:
-  std::string text(const base::SourceRange& range) const { return one_line(files_.text(range)); }
-  std::string effect_text(std::size_t i) const { return text(model_.effects[i].source); }
-
-  CoverageKey event(const compiler::Symbol& symbol) const {
-    return coverage_key(CoverageGroup::kEvents, symbol.declared, symbol.name, files_);
-  }
-  CoverageKey effect(std::size_t i) const {
-    const auto& axiom = model_.effects[i];
-    const auto* kind = "releases";
-    if (axiom.kind == compiler::EffectKind::kInitiates) kind = "initiates";
-    if (axiom.kind == compiler::EffectKind::kTerminates) kind = "terminates";
-    return coverage_key(CoverageGroup::kAxioms, axiom.source, kind, files_);
-  }
-
-  bool speaks_of_events(TypedFormulaId root) const {
-    std::vector<TypedFormulaId> open = {root};
-    while (!open.empty()) {
-      const auto& formula = model_.formulas[open.back()];
-      open.pop_back();
-      if (formula.kind == FormulaKind::kAtom && formula.predicate == model_.core.happens) {
-        return true;
-      }
-      open.insert(open.end(), formula.children.begin(), formula.children.end());
-    }
-    return false;
-  }
-
-  std::optional<CoverageKey> axiom(std::size_t i) const {
-    const auto& axiom = model_.axioms[i];
-    if (axiom.is_foundation || !speaks_of_events(axiom.formula)) return std::nullopt;
-    auto root = axiom.formula;
-    while (model_.formulas[root].kind == FormulaKind::kForall) {
-      root = model_.formulas[root].children.front();
-    }
-    const auto& formula = model_.formulas[root];
-    const bool conditional = formula.kind == FormulaKind::kImplies;
-    const bool asks = conditional && speaks_of_events(formula.children.front());
-    const bool brings = conditional && !asks;
-    return coverage_key(CoverageGroup::kAxioms, axiom.source,
-                        asks     ? "precondition"
-                        : brings ? "trigger"
-                                 : "events",
-                        files_);
-  }
-
-  const compiler::TypedModel& model_;
-  const base::SourceFiles& files_;
-  compiler::ReferenceUse use_;
-  std::vector<std::optional<CoverageKey>> axioms_;  // none: it says nothing of events
-  std::map<CoverageKey, std::string> all_;
-};
 
 bool same_trace(const harness::CampaignTrace& a, const harness::CampaignTrace& b) {
   if (a.key != b.key || a.points.size() != b.points.size()) return false;
@@ -173,37 +74,146 @@ std::optional<ListedTraces> list_traces(const compiler::CompiledModel& model,
   return std::nullopt;
 }
 
+/// The folder of a run, as far as it can be read without its scenario.
+struct RunRecord {
+  std::string folder;
+  harness::JournalText journal;
+  bool executed = false;  // the plan itself, in closed loop
+  LoopCoverage::RunTerms terms;
+};
+
+/// The scenario of executions; several runs may have the same.
+struct ExecutedScenario {
+  ScenarioModel loaded;
+  std::unique_ptr<LoopCoverage> loop;
+};
+
 class Collector {
  public:
   Collector(const CoverageOptions& options, Context& context)
       : options_(options), context_(context) {}
 
-  base::Status add(const std::string& folder) {
+  base::Status read(const std::string& folder) {
     auto& sink = context_.sink();
     if (!expect_kind(folder, {FileKind::kRun}, "the folder of a run", context_)) {
       return sink.already_reported();
     }
-    const auto journal = harness::read_journal(folder, context_.files(), sink);
+    auto journal = harness::read_journal(folder, context_.files(), sink);
     if (!journal) return sink.already_reported();
     if (!journal->header) return sink.error_about(DiagnosticCode::kNoJournal, folder);
-    if (journal->header->options.find("\"execution\":\"closed-loop\"") != std::string::npos) {
-      return sink.error_about(DiagnosticCode::kUsage, folder,
-                              "the run was made in closed loop; coverage is of open-loop runs");
+    RunRecord run{folder, *std::move(journal), false, {}};
+    const auto& header = *run.journal.header;
+    run.executed = recorded_execution(header) == harness::Execution::kClosedLoop;
+    run.terms.comparison = recorded_comparison(header).value_or(harness::Comparison::kEveryStep);
+    const auto options = nlohmann::json::parse(header.options);
+    if (const auto* criterion = base::json_member(options, "criterion")) {
+      const auto* level = base::json_member(*criterion, "confidence");
+      run.terms.confidence = level ? base::json_as<double>(*level).value_or(0.0) : 0.0;
     }
-    for (const auto& [key, record] : journal->samples) {
-      const auto run = harness::recorded_run(*journal, {std::get<0>(key), std::get<1>(key)});
-      if (!require_trace(folder, run, sink)) return sink.already_reported();
-      break;
+    for (const auto& [key, record] : run.journal.samples) {
+      if (record.path.has_value() == run.executed) continue;
+      return sink.error(DiagnosticCode::kForeignJournalLine, run.journal.places.at(key),
+                        run.executed ? "`path` is missing" : "no plan was executed");
     }
-    const auto loaded = load_recorded_scenario({folder, options_.scenario}, *journal->header,
-                                               ScenarioUse::kRun, context_);
-    if (!loaded || !check(*loaded, *journal)) return sink.already_reported();
-    return add(*loaded, *journal);
+    runs_.push_back(std::move(run));
+    return base::Unit{};
+  }
+
+  base::Status add_all() {
+    for (const auto& run : runs_) {
+      if (!(run.executed ? add_executed(run) : add_open(run))) {
+        return context_.sink().already_reported();
+      }
+      ++coverage_.runs;
+    }
+    for (const auto& [hash, scenario] : executed_) scenario.loop->write(coverage_);
+    return base::Unit{};
   }
 
   Coverage take() { return std::move(coverage_); }
 
  private:
+  /// The simulations that show something, and nothing that was counted before: losses show nothing,
+  /// repetitions nothing new, and one draw of one scenario is one simulation, however often it is
+  /// on record.
+  std::vector<harness::SampleKey> to_count(const RunRecord& run) {
+    std::vector<harness::SampleKey> out;
+    std::int64_t known = 0;
+    const auto& header = *run.journal.header;
+    for (const auto& [key, record] : run.journal.samples) {
+      if (std::get<2>(key) != harness::DrawPhase::kCertify ||
+          record.status != harness::SampleStatus::kOk) {
+        continue;
+      }
+      const auto trace =
+          run.executed ? std::string() : run.journal.traces.at(record.trace).trace->key;
+      const bool is_new =
+          counted_.emplace(header.scenario_hash, run.executed, header.seed, trace, record.sample)
+              .second;
+      if (is_new) out.push_back(key);
+      if (!is_new) ++known;
+    }
+    if (known > 0) {
+      context_.remark(
+          fmt::format("{}: {} of its simulations count once, with the same ones of a "
+                      "run before it",
+                      base::printable(run.folder), known));
+    }
+    return out;
+  }
+
+  bool note_scenario(const std::string& name) {
+    auto& names = coverage_.scenarios;
+    const bool is_new = std::find(names.begin(), names.end(), name) == names.end();
+    if (is_new) names.push_back(name);
+    return is_new;
+  }
+
+  base::Status add_executed(const RunRecord& run) {
+    auto& sink = context_.sink();
+    const auto& header = *run.journal.header;
+    auto& scenario = executed_[header.scenario_hash];
+    if (!scenario.loop) {
+      auto loaded = load_recorded_scenario({run.folder, options_.scenario}, header,
+                                           ScenarioUse::kExecute, context_);
+      if (!loaded) return sink.already_reported();
+      scenario.loaded = *std::move(loaded);
+      auto loop = LoopCoverage::make(scenario.loaded, longest(header.scenario_hash), context_);
+      if (!loop) return sink.already_reported();
+      scenario.loop = *std::move(loop);
+    }
+    note_scenario(scenario.loaded.scenario.name);
+    for (const auto& key : to_count(run)) {
+      if (context_.stopped()) break;
+      const auto& place = run.journal.places.at(key);
+      if (!scenario.loop->add(run.journal.samples.at(key), header.seed, run.terms, place)) {
+        return sink.already_reported();
+      }
+      ++coverage_.simulations;
+      ++coverage_.executions;
+    }
+    return base::Unit{};
+  }
+
+  /// Performs of any execution of the scenario.
+  std::int64_t longest(const std::string& hash) const {
+    std::int64_t most = 0;
+    for (const auto& run : runs_) {
+      if (!run.executed || run.journal.header->scenario_hash != hash) continue;
+      for (const auto& [key, record] : run.journal.samples) {
+        most = std::max(most, static_cast<std::int64_t>(record.path->steps.size()));
+      }
+    }
+    return most;
+  }
+
+  base::Status add_open(const RunRecord& run) {
+    const auto loaded = load_recorded_scenario({run.folder, options_.scenario}, *run.journal.header,
+                                               ScenarioUse::kRun, context_);
+    if (!loaded || !check(*loaded, run.journal)) return context_.sink().already_reported();
+    return add_traces(*loaded, run);
+  }
+
   /// One simulation of each trace, as `replay` looks at it.
   base::Status check(const ScenarioModel& loaded, const harness::JournalText& journal) {
     std::set<std::int64_t> seen;
@@ -215,8 +225,9 @@ class Collector {
     return base::Unit{};
   }
 
-  base::Status add(const ScenarioModel& loaded, const harness::JournalText& journal) {
+  base::Status add_traces(const ScenarioModel& loaded, const RunRecord& run) {
     auto& sink = context_.sink();
+    const auto& journal = run.journal;
     const auto& compilation = loaded.compilation;
     const auto listed = list_traces(compilation.model, journal, options_.limit, context_);
     if (!listed) {
@@ -236,46 +247,42 @@ class Collector {
 
     // The same scenario may have several runs: its traces count once.
     const auto& name = loaded.scenario.name;
-    const bool is_new = std::find(coverage_.scenarios.begin(), coverage_.scenarios.end(), name) ==
-                        coverage_.scenarios.end();
-    if (is_new) coverage_.scenarios.push_back(name);
-    for (const auto& [key, text] : model.all()) coverage_.items[key].text = text;
+    const bool is_new = note_scenario(name);
+    const auto list = [this](const CoverageKey& key) -> CoverageCount& {
+      auto& count = coverage_.items[key];
+      if (!count.traces) count.traces = 0;
+      return count;
+    };
+    for (const auto& [key, text] : model.all()) list(key).text = text;
     if (plan) {
-      for (const auto& key : plan->all()) coverage_.items[key];
+      for (const auto& key : plan->all()) list(key);
     }
-    ++coverage_.runs;
     coverage_.all_traces = coverage_.all_traces && listed->all;
-    const auto simulated = simulations(journal);
+    std::map<std::int64_t, std::int64_t> simulated;  // by trace
+    for (const auto& key : to_count(run)) ++simulated[std::get<0>(key)];
     for (const auto& trace : listed->traces) {
       if (context_.stopped()) break;
       auto covered = model.covered_by(trace);
-      if (plan) covered.merge(plan->covered_by(trace));
+      if (plan) covered.merge(plan->covered_by(plan->path_of(trace)));
       covered.insert({CoverageGroup::kTraces, name, 1, 1, trace.key});
       const auto found = simulated.find(trace.number);
       const auto hits = found == simulated.end() ? 0 : found->second;
       coverage_.simulations += hits;
       for (const auto& key : covered) {
-        auto& count = coverage_.items[key];
+        auto& count = list(key);
         count.hits += hits;
-        if (is_new) ++count.traces;
+        if (is_new) ++*count.traces;
       }
     }
     return base::Unit{};
   }
 
-  /// By trace. Losses show nothing, and repetitions nothing new.
-  static std::map<std::int64_t, std::int64_t> simulations(const harness::JournalText& journal) {
-    std::map<std::int64_t, std::int64_t> counts;
-    for (const auto& [key, record] : journal.samples) {
-      const bool counts_as_one = std::get<2>(key) == harness::DrawPhase::kCertify &&
-                                 record.status == harness::SampleStatus::kOk;
-      if (counts_as_one) ++counts[std::get<0>(key)];
-    }
-    return counts;
-  }
-
   const CoverageOptions& options_;
   Context& context_;
+  std::vector<RunRecord> runs_;
+  /// Scenario, execution, seed, trace and number of every simulation that was counted.
+  std::set<std::tuple<std::string, bool, std::uint64_t, std::string, std::int64_t>> counted_;
+  std::map<std::string, ExecutedScenario> executed_;  // by hash
   Coverage coverage_;
 };
 
@@ -284,8 +291,9 @@ class Collector {
 base::Result<Coverage> coverage_of(const CoverageOptions& options, Context& context) {
   Collector collector(options, context);
   for (const auto& folder : options.folders) {
-    if (!collector.add(folder)) return context.sink().already_reported();
+    if (!collector.read(folder)) return context.sink().already_reported();
   }
+  if (!collector.add_all()) return context.sink().already_reported();
   return collector.take();
 }
 

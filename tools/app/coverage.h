@@ -4,6 +4,7 @@
 #include <compare>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,15 +35,48 @@ struct CoverageKey {
   friend auto operator<=>(const CoverageKey&, const CoverageKey&) = default;
 };
 struct CoverageCount {
-  std::string text;         // what stands there, on one line; may be empty
-  std::int64_t hits = 0;    // simulations that went through it
-  std::int64_t traces = 0;  // traces of the model that do
+  std::string text;       // what stands there, on one line; may be empty
+  std::int64_t hits = 0;  // simulations that went through it
+  /// Traces of the model that do; none where plans were executed only.
+  std::optional<std::int64_t> traces;
+};
+
+/// How a perform of an executed plan may end, as the model has it.
+struct ModelBehaviour {
+  std::string file;  // of the perform
+  std::uint32_t line = 0, column = 0;
+  std::string event;    // "OpenDrawer(top)"
+  std::string outcome;  // "succeeds", "fails", "fails with navigation-pose-unreachable"
+  friend auto operator<=>(const ModelBehaviour&, const ModelBehaviour&) = default;
+};
+/// One that no execution showed.
+struct NeverShown {
+  std::string scenario;
+  ModelBehaviour behaviour;
+  std::int64_t possible = 0;    // executions in which the model had it possible
+  std::int64_t executions = 0;  // all of the scenario
+  double confidence = 0.0;
+  /// At this confidence it comes in fewer of the executions in which it is possible.
+  double bound = 1.0;
+};
+/// What executions did and the model has not.
+struct WorldBehaviour {
+  std::string scenario;
+  std::string place;  // of the perform; empty at the start
+  std::string event, outcome;
+  std::string what;                  // "event", "outcome", "state": what the model lacks
+  std::vector<std::string> fluents;  // as they were observed
+  std::int64_t runs = 0;
+  std::int64_t example = 0;  // a sample
 };
 
 struct Coverage {
   std::map<CoverageKey, CoverageCount> items;
   std::vector<std::string> scenarios;
   std::int64_t runs = 0, simulations = 0;
+  std::int64_t executions = 0;  // of the simulations, those in which the plan itself was executed
+  std::vector<NeverShown> never_shown;
+  std::vector<WorldBehaviour> lacking;
   /// The model's traces that were looked at are all that it has, up to its bound.
   bool all_traces = true;
 };
@@ -53,7 +87,7 @@ struct CoverageOptions {
   std::int64_t limit = 1000;  // traces of each model that are looked at; 0: all
 };
 
-/// What recorded runs, open loop, went through of their plans and models. Every folder is held
+/// What recorded runs went through of their plans and models. Every folder is held
 /// against its scenario as `replay` does it: reports what read_journal, load_recorded_scenario and
 /// check_recorded_run report, and kCheckGivenUp for a model that is too large for the evaluator.
 base::Result<Coverage> coverage_of(const CoverageOptions& options, Context& context);

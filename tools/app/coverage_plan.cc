@@ -202,38 +202,50 @@ std::set<PlanCoverage::Decision> PlanCoverage::way(const PlanTarget& from,
   return certain;
 }
 
-std::set<CoverageKey> PlanCoverage::covered_by(const runtime::Trace& trace) const {
-  std::set<CoverageKey> covered;
-  std::set<LocationId> failed;
+PlanPath PlanCoverage::path_of(const runtime::Trace& trace) const {
+  PlanPath path;
   const auto step = [&](std::size_t t) -> std::optional<LocationId> {
     if (t + 1 >= trace.points.size() || !trace.points[t].plan_step) return std::nullopt;
     return graph_.locations.id_at(*trace.points[t].plan_step);
   };
   const auto follow = [&](const PlanTarget& from, std::size_t t) {
-    for (const auto& [branch, side] : way(from, step(t), trace, t)) {
-      covered.insert(decision(graph_.branches[branch], side));
-    }
+    const auto decisions = way(from, step(t), trace, t);
+    path.decisions.insert(path.decisions.end(), decisions.begin(), decisions.end());
   };
   follow(graph_.entry, 0);
   for (std::size_t t = 0; step(t); ++t) {
-    const auto id = *step(t);
-    const auto& location = graph_.locations[id];
+    const auto& location = graph_.locations[*step(t)];
     const bool success = trace.points[t].succeeded;
+    path.steps.push_back({*step(t), success});
+    follow(success ? location.on_success : location.on_failure, t + 1);
+  }
+  return path;
+}
+
+std::set<CoverageKey> PlanCoverage::covered_by(const PlanPath& path) const {
+  std::set<CoverageKey> covered;
+  for (const auto& [branch, side] : path.decisions) {
+    covered.insert(decision(graph_.branches[branch], side));
+  }
+  std::set<LocationId> failed;
+  for (const auto& step : path.steps) {
+    const auto id = step.location;
+    const auto& location = graph_.locations[id];
     covered.insert(perform(location));
-    covered.insert(outcome(location, success));
+    covered.insert(outcome(location, step.succeeded));
     const auto& earlier = earlier_[id.index()];
     if (std::any_of(earlier.begin(), earlier.end(),
                     [&](LocationId other) { return failed.contains(other); })) {
       covered.insert(retry(location));
     }
-    if (!success) {
-      failed.insert(id);
-      for (const auto& one : graph_.handlers) {
-        const auto& takes = one.failures;
-        if (std::binary_search(takes.begin(), takes.end(), id)) covered.insert(handler(one));
-      }
+    if (step.succeeded) continue;
+    failed.insert(id);
+    for (const auto& one : graph_.handlers) {
+      const bool takes =
+          step.way ? std::binary_search(one.ways.begin(), one.ways.end(), std::pair(id, *step.way))
+                   : std::binary_search(one.failures.begin(), one.failures.end(), id);
+      if (takes) covered.insert(handler(one));
     }
-    follow(success ? location.on_success : location.on_failure, t + 1);
   }
   return covered;
 }

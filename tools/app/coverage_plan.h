@@ -12,6 +12,7 @@
 #include "compiler/sema/typed_model.h"
 #include "runtime/trace/trace.h"
 #include "tools/app/coverage.h"
+#include "tools/app/plan_path.h"
 
 namespace parallax::tools {
 
@@ -27,11 +28,12 @@ class PlanCoverage {
                const base::SourceFiles& files);
 
   const std::set<CoverageKey>& all() const { return all_; }
+  std::set<CoverageKey> covered_by(const PlanPath& path) const;
   /// `trace` as an enumerator gave it, with the plan's steps.
-  std::set<CoverageKey> covered_by(const runtime::Trace& trace) const;
+  PlanPath path_of(const runtime::Trace& trace) const;
 
  private:
-  using Decision = std::pair<compiler::BranchId, bool>;
+  using Decision = compiler::PlanDecision;
 
   CoverageKey perform(const compiler::PlanLocation& location) const;
   CoverageKey outcome(const compiler::PlanLocation& location, bool success) const;

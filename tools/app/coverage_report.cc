@@ -1,6 +1,7 @@
 #include "tools/app/coverage_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -37,10 +38,11 @@ std::string plain(std::string text) {
 std::string uncovered_line(const Entry& entry) {
   const auto& [key, count] = entry;
   const auto& what = count.text.empty() ? key.id : count.text;
-  const auto why = count.traces > 0 ? fmt::format("in {} of the model's traces", count.traces)
-                                    : std::string("in no trace that was looked at");
   if (key.group == CoverageGroup::kTraces) return fmt::format("    {}\n", key.id);
-  return fmt::format("    {}:{}  {}  ({})\n", key.file, key.line, what, why);
+  std::string why;
+  if (count.traces > 0) why = fmt::format("  (in {} of the model's traces)", *count.traces);
+  if (count.traces == 0) why = "  (in no trace that was looked at)";
+  return fmt::format("    {}:{}  {}{}\n", key.file, key.line, what, why);
 }
 
 void add_group(const Coverage& coverage, CoverageGroup group, std::string& out) {
@@ -48,13 +50,16 @@ void add_group(const Coverage& coverage, CoverageGroup group, std::string& out) 
   if (entries.empty()) return;
   std::vector<const Entry*> missed;
   std::int64_t in_traces = 0;
+  bool has_traces = false;
   for (const auto* entry : entries) {
     if (entry->second.hits == 0) missed.push_back(entry);
     if (entry->second.traces > 0) ++in_traces;
+    has_traces = has_traces || entry->second.traces.has_value();
   }
   out += fmt::format("  {:<10}{} of {} simulated", name_of(group), entries.size() - missed.size(),
                      entries.size());
-  if (group != CoverageGroup::kTraces) out += fmt::format(", {} in traces", in_traces);
+  if (has_traces && group != CoverageGroup::kTraces)
+    out += fmt::format(", {} in traces", in_traces);
   out += missed.empty() ? "\n" : "; not simulated:\n";
   for (std::size_t i = 0; i < std::min(missed.size(), kMostListed); ++i) {
     out += uncovered_line(*missed[i]);
@@ -70,8 +75,71 @@ nlohmann::ordered_json json_of(const Entry& entry) {
       {"id", key.id}, {"file", key.file}, {"line", key.line}, {"column", key.column}};
   if (!count.text.empty()) out["text"] = count.text;
   out["hits"] = count.hits;
-  out["traces"] = count.traces;
+  if (count.traces) out["traces"] = *count.traces;
   return out;
+}
+
+std::string_view lacking_text(const WorldBehaviour& one) {
+  if (one.what == "event") return "no such event is possible there";
+  if (one.what == "outcome") return "it cannot end so there";
+  return one.event == "start" ? "it does not begin so" : "it has no such state after it";
+}
+
+/// What model and world have of each other, where plans were executed.
+void add_differences(const Coverage& coverage, std::string& out) {
+  const auto more = [&](std::size_t count) {
+    if (count <= kMostListed) return;
+    out += fmt::format("    and {} more (--json lists them)\n", count - kMostListed);
+  };
+  const auto& never = coverage.never_shown;
+  if (!never.empty()) {
+    out += "  model behaviours that the world never showed\n";
+    for (std::size_t i = 0; i < std::min(never.size(), kMostListed); ++i) {
+      const auto& [scenario, one, possible, executions, confidence, bound] = never[i];
+      out += fmt::format(
+          "    {}:{}  {} {}: possible in {} of {} executions; with confidence {:g} % in fewer than "
+          "{:.3g} % of such\n",
+          one.file, one.line, one.event, one.outcome, possible, executions, 100.0 * confidence,
+          100.0 * bound);
+    }
+    more(never.size());
+    out +=
+        "    (such: executions from a start drawn as these were, in which the model has it "
+        "possible;"
+        "\n    each bound holds by itself)\n";
+  }
+  const auto& lacking = coverage.lacking;
+  if (lacking.empty()) return;
+  out += "  world behaviours that the model lacks\n";
+  for (std::size_t i = 0; i < std::min(lacking.size(), kMostListed); ++i) {
+    const auto& one = lacking[i];
+    out += fmt::format("    {}{}{} {}: {}{}{} ({} execution{}, the first 1.{})\n", one.place,
+                       one.place.empty() ? "" : "  ", one.event, one.outcome, lacking_text(one),
+                       one.fluents.empty() ? "" : "; observed: ", fmt::join(one.fluents, ", "),
+                       one.runs, one.runs == 1 ? "" : "s", one.example);
+  }
+  more(lacking.size());
+}
+
+nlohmann::ordered_json json_of(const NeverShown& one) {
+  const auto& what = one.behaviour;
+  return {{"scenario", one.scenario},
+          {"file", what.file},
+          {"line", what.line},
+          {"column", what.column},
+          {"event", what.event},
+          {"outcome", what.outcome},
+          {"possible", one.possible},
+          {"executions", one.executions},
+          {"confidence", one.confidence},
+          {"bound", one.bound}};
+}
+
+nlohmann::ordered_json json_of(const WorldBehaviour& one) {
+  return {{"scenario", one.scenario}, {"source", one.place},
+          {"event", one.event},       {"outcome", one.outcome},
+          {"lacks", one.what},        {"observed", one.fluents},
+          {"executions", one.runs},   {"example", fmt::format("1.{}", one.example)}};
 }
 
 /// The record of one file.
@@ -155,6 +223,7 @@ std::string coverage_text(const Coverage& coverage) {
   for (std::size_t i = 0; i < kCoverageGroups.size(); ++i) {
     add_group(coverage, static_cast<CoverageGroup>(i), out);
   }
+  add_differences(coverage, out);
   if (!coverage.all_traces) {
     out += "  there are more traces than were looked at (--limit)\n";
   }
@@ -166,6 +235,7 @@ std::string coverage_json(const Coverage& coverage) {
                                 {"runs", coverage.runs},
                                 {"simulations", coverage.simulations},
                                 {"scenarios", coverage.scenarios},
+                                {"executions", coverage.executions},
                                 {"all_traces", coverage.all_traces}};
   for (const auto name : kCoverageGroups) {
     out[std::string(name)] = nlohmann::ordered_json::array();
@@ -173,6 +243,11 @@ std::string coverage_json(const Coverage& coverage) {
   for (const auto& entry : coverage.items) {
     out[std::string(name_of(entry.first.group))].push_back(json_of(entry));
   }
+  for (const auto* name : {"never_shown", "not_in_model"}) {
+    out[name] = nlohmann::ordered_json::array();
+  }
+  for (const auto& one : coverage.never_shown) out["never_shown"].push_back(json_of(one));
+  for (const auto& one : coverage.lacking) out["not_in_model"].push_back(json_of(one));
   return base::json_text(out);
 }
 

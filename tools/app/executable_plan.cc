@@ -80,6 +80,8 @@ class ScenarioPlanExecution final : public harness::PlanExecution,
     return cut ? harness::PathEnd::kCut : harness::PathEnd::kDone;
   }
 
+  const std::vector<compiler::PlanDecision>& passed() const { return walk_.passed(); }
+
  private:
   bool holds(compiler::BranchId branch, const RegisterObjects& registers) override {
     return plan_.questions_.holds(branch, registers,
@@ -173,6 +175,39 @@ base::Status ScenarioPlan::settle(const std::function<base::Known(const std::str
 
 std::unique_ptr<harness::PlanExecution> ScenarioPlan::begin(const harness::DrawKey& key) const {
   return std::make_unique<ScenarioPlanExecution>(*this, key);
+}
+
+std::optional<PlanPath> ScenarioPlan::retrace(const harness::DrawKey& key,
+                                              const harness::SampleRecord& record) const {
+  const auto& steps = record.path->steps;
+  const auto& seen = record.observations;
+  if (seen.size() != steps.size() + 1 || record.outcomes.size() != steps.size()) {
+    return std::nullopt;
+  }
+  ScenarioPlanExecution execution(*this, key);
+  PlanPath path;
+  for (std::size_t i = 0;; ++i) {
+    const auto perform = execution.next(seen[i]);
+    path.decisions.insert(path.decisions.end(), execution.passed().begin(),
+                          execution.passed().end());
+    // A limit may have ended it where the plan goes on.
+    if (i == steps.size()) return path;
+    if (!perform || perform->step != steps[i].step || perform->event != steps[i].event) {
+      return std::nullopt;
+    }
+    harness::PathStep told;
+    if (execution.tell(record.outcomes[i], seen[i], seen[i + 1], told)) return std::nullopt;
+    if (told.succeeded != steps[i].succeeded || told.object != steps[i].object ||
+        told.condition != steps[i].condition) {
+      return std::nullopt;
+    }
+    PlanPath::Step step{LocationId(static_cast<std::uint32_t>(perform->step)), told.succeeded};
+    const auto& ways = graph_.locations[step.location].failures;
+    for (std::size_t way = 0; way < ways.size() && !told.succeeded; ++way) {
+      if (ways[way].failure_class == told.condition) step.way = way;
+    }
+    path.steps.push_back(step);
+  }
 }
 
 harness::PlannedPerform ScenarioPlan::perform(LocationId id,

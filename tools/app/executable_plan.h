@@ -12,6 +12,7 @@
 #include "harness/campaign/loop_input.h"
 #include "harness/region/state_mapping.h"
 #include "tools/app/context.h"
+#include "tools/app/plan_path.h"
 #include "tools/app/scenario_model.h"
 
 namespace parallax::tools {
@@ -33,6 +34,10 @@ class ScenarioPlan final : public harness::ExecutablePlan {
 
   std::unique_ptr<harness::PlanExecution> begin(const harness::DrawKey& key) const override;
   std::vector<harness::PlannedPerform> performs() const override;
+  /// The way that a recorded execution took; `key` as `begin` was given it. None: the plan does not
+  /// go so in what was observed.
+  std::optional<PlanPath> retrace(const harness::DrawKey& key,
+                                  const harness::SampleRecord& record) const;
   /// Why the formula of success cannot tell what the perform found; empty: it can.
   std::string unseen(compiler::LocationId location) const;
 

@@ -180,9 +180,10 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
     return refuse(fmt::format("there is no scenario `{}`", base::printable(path.string())));
   }
   const auto before = sink;
-  auto loaded = use == ScenarioUse::kRun
-                    ? load_scenario_model(path, context)
-                    : load_plain_run(path, recorded_execution(header), context);
+  const auto execution = recorded_execution(header);
+  auto loaded = use == ScenarioUse::kExplain   ? load_plain_run(path, execution, context)
+                : use == ScenarioUse::kExecute ? load_scenario_run(path, execution, context)
+                                               : load_scenario_model(path, context);
   const auto change =
       loaded ? harness::scenario_change(header, loaded->sources_hash) : std::string();
   if (loaded && change.empty()) {

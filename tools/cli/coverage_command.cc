@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "tools/app/coverage_report.h"
 #include "tools/cli/command.h"
@@ -14,8 +15,19 @@ struct CoverageCommandOptions {
 };
 
 int cover(const CoverageCommandOptions& options, Invocation& invocation) {
+  const bool to_stdout = options.lcov == "-";
+  if (to_stdout && invocation.options().json) {
+    invocation.sink().error_about(base::DiagnosticCode::kUsage, "--lcov",
+                                  "the tracefile and the document of --json cannot both go to the "
+                                  "standard output; name a file for one of them");
+    return 0;
+  }
   const auto coverage = coverage_of(options.coverage, invocation);
   if (!coverage || invocation.stopped()) return 0;
+  if (to_stdout) {
+    invocation.result(coverage_lcov(*coverage));
+    return 0;
+  }
   if (!options.lcov.empty() && !base::write_output(options.lcov, coverage_lcov(*coverage),
                                                    invocation.files(), invocation.sink())) {
     return 0;
@@ -47,7 +59,10 @@ Command coverage_command() {
           "Look at so many traces of each model at most, but at all that were simulated; 0: all")
       .check(NonNegative{})
       .show_default();
-  command.option("--lcov", options->lcov, "Write a tracefile for genhtml, editors and CI services");
+  command.option(
+      "--lcov", options->lcov,
+      "Write a tracefile for genhtml, editors and CI services; -: on the standard output, "
+      "instead of the text");
   return {std::move(command),
           [options](Invocation& invocation) { return cover(*options, invocation); }};
 }
