@@ -34,6 +34,16 @@ struct Cause {
   std::string reason;  // in the simulator's words; empty where no action failed
 };
 
+/// How often one cause was the first to lead a simulation away from what was predicted.
+struct CauseRate {
+  std::string cause;  // "Go(bTable): navigation-pose-unreachable"
+  std::int64_t count = 0;
+  double rate = 0.0, lower = 0.0, upper = 0.0;  // Clopper and Pearson 1934
+  std::int64_t example = 0;                     // number of the first such sample
+  std::string reason;                           // what that one said
+  State start;                                  // how that one began
+};
+
 /// What the one repetition of a discrepancy showed before it was accepted.
 enum class Confirmation : std::uint8_t { kBitEqual, kDiffers, kLost };
 
@@ -67,6 +77,9 @@ struct LoopResult {
   std::int64_t unfinished = 0;   // runs that a limit ended, or the end of the unrolling
   std::string why_unfinished;    // of the first
   std::vector<PathCount> paths;  // in the order in which they came
+  /// With --keep-going: how often each cause ended what the model admits, most frequent first.
+  std::vector<CauseRate> causes;
+  double causes_level = 0.0;  // confidence of their intervals
 };
 
 struct Discrepancy {

@@ -22,6 +22,8 @@ namespace {
 using base::DiagnosticCode;
 using LoopClock = std::chrono::steady_clock;
 
+constexpr double kRateLevel = 0.95;  // of the intervals of rates, as of `parallax rates`
+
 class LoopCampaign {
  public:
   LoopCampaign(const Scenario& scenario, ClaimedRun claimed, LoopFeed& feed,
@@ -70,7 +72,15 @@ class LoopCampaign {
   }
 
  private:
-  enum class End : std::uint8_t { kDecided, kDiscrepancy, kRunLimit, kUnfinished, kLost, kStopped };
+  enum class End : std::uint8_t {
+    kDecided,
+    kDiscrepancy,
+    kRunLimit,
+    kPlanned,
+    kUnfinished,
+    kLost,
+    kStopped
+  };
 
   /// Called in a worker's thread; by then the journal is open.
   void keep(const SampleRecord& record) {
@@ -85,6 +95,7 @@ class LoopCampaign {
       report_progress(decision);
       if (decision.stop) return End::kDecided;
       if (tally_.runs() >= limit_.max_runs) return End::kRunLimit;
+      if (goes_on_anyway() && executions() >= planned()) return End::kPlanned;
       samples_.submit_to(last_wanted(decision));
       auto record = samples_.next();
       if (!check_written(*journal_, options_, sink_)) return sink_.already_reported();
@@ -95,11 +106,21 @@ class LoopCampaign {
     }
   }
 
+  /// Something was found that ends other runs.
+  bool goes_on_anyway() const {
+    return options_.keep_going && (tally_.mismatch() > 0 || stream_.loop->unfinished > 0);
+  }
+  std::int64_t executions() const { return tally_.runs() + stream_.loop->unfinished; }
+  /// With --keep-going and a discrepancy: as many as if all had been clean, so that the number does
+  /// not depend on what is found, and rates are rates.
+  std::int64_t planned() const { return std::min(limit_.needed, limit_.max_runs); }
+
   /// Workers run ahead of what is consumed, but not beyond what the criterion still asks for.
   std::int64_t last_wanted(const Decision& decision) const {
     const std::int64_t window = options_.jobs == 1 ? 1 : 2 * options_.jobs;
-    const auto needed =
-        std::max(decision.runs_needed.value_or(limit_.max_runs), samples_.next_sample());
+    const auto asked =
+        goes_on_anyway() ? planned() : decision.runs_needed.value_or(limit_.max_runs);
+    const auto needed = std::max(asked, samples_.next_sample());
     return std::min({samples_.next_sample() + window - 1, needed, limit_.max_runs});
   }
 
@@ -130,7 +151,7 @@ class LoopCampaign {
     }
     bench_.end_row_of_losses();
     count(record);
-    if (judgement.admitted == base::Known::kNo) return accept(record, judgement);
+    if (judgement.admitted == base::Known::kNo) return accept(std::move(record), judgement);
     const auto unfinished = why_unfinished(*record.path, scenario_);
     if (unfinished.empty()) {
       tally_.add_clean_elsewhere();
@@ -140,7 +161,7 @@ class LoopCampaign {
       if (loop.unfinished++ == 0) loop.why_unfinished = unfinished;
     }
     consumed_.push_back(std::move(record));
-    if (unfinished.empty()) return std::optional<End>();
+    if (unfinished.empty() || options_.keep_going) return std::optional<End>();
     return std::optional(End::kUnfinished);
   }
 
@@ -180,11 +201,26 @@ class LoopCampaign {
     count_path(record, *stream_.loop);
   }
 
-  /// Repeats the simulation once: a discrepancy that cannot be repeated says so in the report.
-  std::optional<End> accept(const SampleRecord& record, const LoopJudgement& judgement) {
-    const auto again = samples_.repeat(record);
+  /// Repeats the first simulation of each cause once: a discrepancy that cannot be repeated says so
+  /// in the report.
+  std::optional<End> accept(SampleRecord record, const LoopJudgement& judgement) {
+    auto& causes = stream_.loop->causes;
+    const auto known = std::find_if(causes.begin(), causes.end(), [&](const CauseRate& rate) {
+      return rate.cause == judgement.cause.text;
+    });
+    if (known != causes.end()) {
+      tally_.add_mismatch();
+      ++known->count;
+      consumed_.push_back(std::move(record));
+      return std::nullopt;
+    }
+    const auto again = samples_.repeat(record, options_.keep_going);
     if (!again) return End::kStopped;
     tally_.add_mismatch();
+    if (options_.keep_going) {
+      causes.push_back({judgement.cause.text, 1, 0.0, 0.0, 0.0, record.sample,
+                        judgement.cause.reason, record.initial});
+    }
     Discrepancy found;
     found.kind = judgement.kind;
     found.trace = record.trace;
@@ -199,10 +235,10 @@ class LoopCampaign {
     found.record = record;
     found.end =
         mapped_part(*scenario_.mapping, bench_.fluents().ground(), record.observations.back());
-    consumed_.push_back(record);
+    consumed_.push_back(std::move(record));
     consumed_.push_back(*again);
     result_.discrepancies.push_back(std::move(found));
-    return End::kDiscrepancy;
+    return options_.keep_going ? std::nullopt : std::optional(End::kDiscrepancy);
   }
 
   void report_progress(const Decision& decision) const {
@@ -211,7 +247,9 @@ class LoopCampaign {
     CampaignProgress progress;
     progress.trace = 1;
     progress.done = tally_.runs();
-    progress.needed = std::min(decision.runs_needed.value_or(limit_.max_runs), limit_.max_runs);
+    progress.needed = goes_on_anyway() ? planned()
+                                       : std::min(decision.runs_needed.value_or(limit_.max_runs),
+                                                  limit_.max_runs);
     const auto made = static_cast<double>(bench_.runs_made());
     progress.runs_per_s = elapsed.count() > 0.0 ? made / elapsed.count() : 0.0;
     options_.progress(progress);
@@ -236,6 +274,11 @@ class LoopCampaign {
       stream.claim = "nothing is claimed: an execution did not end";
       stream.caveats.push_back(stream.loop->why_unfinished);
     }
+    auto& causes = stream.loop->causes;
+    stream.loop->causes_level = kRateLevel;
+    for (auto& rate : causes) set_interval(rate, tally_.runs(), kRateLevel);
+    std::stable_sort(causes.begin(), causes.end(),
+                     [](const auto& a, const auto& b) { return a.count > b.count; });
     const auto* found = result_.discrepancies.empty() ? nullptr : &result_.discrepancies.front();
     add_loss_caveats(stream);
     add_simulator_caveats(result_.simulator, found, stream);

@@ -94,9 +94,9 @@ std::optional<SampleRecord> LoopStream::next() {
   return record;
 }
 
-std::optional<SampleRecord> LoopStream::repeat(const SampleRecord& record) {
+std::optional<SampleRecord> LoopStream::repeat(const SampleRecord& record, bool goes_on) {
   if (recorded(record.sample, DrawPhase::kConfirm) == nullptr) {
-    bench_.pool().abandon();  // nothing that ran ahead is needed any more
+    if (!goes_on) bench_.pool().abandon();
     bench_.pool().submit_repeat(samples_, record);
   }
   return result_of(record.sample, DrawPhase::kConfirm);

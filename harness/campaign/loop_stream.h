@@ -38,8 +38,9 @@ class LoopStream {
   void submit_to(std::int64_t last);
   /// Waits for the next sample. None when stopped.
   std::optional<SampleRecord> next();
-  /// Simulates the record's actions once more. None when stopped.
-  std::optional<SampleRecord> repeat(const SampleRecord& record);
+  /// Simulates the record's actions once more. None when stopped. Unless the stream `goes_on`, what
+  /// ran ahead is forgotten.
+  std::optional<SampleRecord> repeat(const SampleRecord& record, bool goes_on);
   bool on_record(const SampleRecord& record) const {
     return recorded(record.sample, DrawPhase::kCertify) != nullptr;
   }

@@ -8,21 +8,13 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/judge.h"
+#include "harness/campaign/run_setup.h"
 #include "harness/campaign/trial.h"
-#include "harness/confidence/quantiles.h"
 
 namespace parallax::harness {
 namespace {
 
 using base::DiagnosticCode;
-
-void set_interval(CauseRate& rate, std::int64_t runs, double confidence) {
-  const auto k = static_cast<double>(rate.count), n = static_cast<double>(runs);
-  const double tail = 0.5 * (1.0 - confidence);
-  rate.rate = runs == 0 ? 0.0 : k / n;
-  rate.lower = rate.count == 0 ? 0.0 : beta_quantile(tail, k, n - k + 1.0);
-  rate.upper = rate.count == runs ? 1.0 : beta_quantile(1.0 - tail, k + 1.0, n - k);
-}
 
 class Estimator {
  public:

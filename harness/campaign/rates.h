@@ -8,16 +8,6 @@
 
 namespace parallax::harness {
 
-/// How often one cause was the first to lead a simulation away from its trace for good.
-struct CauseRate {
-  std::string cause;  // "Go(bTable): navigation-pose-unreachable"
-  std::int64_t count = 0;
-  double rate = 0.0, lower = 0.0, upper = 0.0;  // Clopper and Pearson 1934
-  std::int64_t example = 0;                     // number of the first such sample
-  std::string reason;                           // what that one said
-  State start;                                  // how that one began
-};
-
 struct TraceRates {
   std::int64_t number = 0;
   std::string trace;  // its events

@@ -9,6 +9,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/judge.h"
 #include "harness/confidence/clean_runs.h"
+#include "harness/confidence/quantiles.h"
 
 namespace parallax::harness {
 
@@ -74,6 +75,14 @@ void note_timing(const SimulatorBench& bench, std::chrono::steady_clock::time_po
   result.timing.wall_s = wall.count();
   result.timing.runs_made = bench.runs_made();
   result.timing.simulated_s = bench.simulated_s();
+}
+
+void set_interval(CauseRate& rate, std::int64_t runs, double confidence) {
+  const auto k = static_cast<double>(rate.count), n = static_cast<double>(runs);
+  const double tail = 0.5 * (1.0 - confidence);
+  rate.rate = runs == 0 ? 0.0 : k / n;
+  rate.lower = rate.count == 0 ? 0.0 : beta_quantile(tail, k, n - k + 1.0);
+  rate.upper = rate.count == runs ? 1.0 : beta_quantile(1.0 - tail, k + 1.0, n - k);
 }
 
 void add_loss_caveats(TraceResult& result) {

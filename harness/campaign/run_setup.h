@@ -52,6 +52,9 @@ Confirmation confirmation_of(const SampleRecord& record, const SampleRecord& aga
 void note_timing(const SimulatorBench& bench, std::chrono::steady_clock::time_point started,
                  CampaignResult& result);
 
+/// Fills in the rate among so many runs, and its interval.
+void set_interval(CauseRate& rate, std::int64_t runs, double confidence);
+
 /// Caveats about losses that were repeated and runs that strayed.
 void add_loss_caveats(TraceResult& result);
 

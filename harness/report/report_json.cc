@@ -117,6 +117,18 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
                               {"example", path.example}});
     }
   }
+  if (result.loop && !result.loop->causes.empty()) {
+    out["causes"] = Json::array();
+    for (const auto& rate : result.loop->causes) {
+      out["causes"].push_back({{"cause", rate.cause},
+                               {"count", rate.count},
+                               {"rate", rate.rate},
+                               {"lower", rate.lower},
+                               {"upper", rate.upper},
+                               {"example", rate.example},
+                               {"reason", rate.reason}});
+    }
+  }
   out["claim"] = result.claim;
   out["caveats"] = result.caveats;
   return out;

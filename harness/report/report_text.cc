@@ -139,6 +139,7 @@ class TextReport {
     } else {
       figures(trace);
     }
+    if (trace.loop) causes(*trace.loop);
     for (const auto& caveat : trace.caveats) line("note", caveat);
     for (const auto& found : result_.discrepancies) {
       if (found.trace == trace.trace->number) discrepancy(found, trace);
@@ -216,6 +217,16 @@ class TextReport {
     }
     if (loop.paths.size() > kMaxPaths) {
       line("path", fmt::format("and {} others", loop.paths.size() - kMaxPaths));
+    }
+  }
+
+  void causes(const LoopResult& loop) {
+    for (const auto& rate : loop.causes) {
+      line("cause",
+           fmt::format("{}: {}, {:.1f} % ({:g} % interval {:.1f} to {:.1f} %), first in 1.{}",
+                       rate.cause, counted(rate.count, "run", "runs"), 100.0 * rate.rate,
+                       100.0 * loop.causes_level, 100.0 * rate.lower, 100.0 * rate.upper,
+                       rate.example));
     }
   }
 

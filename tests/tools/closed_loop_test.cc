@@ -111,6 +111,69 @@ TEST_CASE("a forgotten effect is found in the first execution, with event, place
           .at("verdict") == "no-discrepancy");
 }
 
+TEST_CASE("with --keep-going every cause is found once, and counted") {
+  const TwoModels cli;
+  // The drawer sticks every other time, and jams every other time that it is open.
+  const auto scenario =
+      executed(cli, "load opens.e\n", cli.read("two/open_and_close.lisp"), "load opens.e\n");
+  cli.write(
+      "two/world.e",
+      "sort drawer\ndrawer top\nfluent Open(drawer)\nfluent Parked()\nevent OpenDrawer(drawer)\n"
+      "event CloseDrawer(drawer)\nevent Park()\nevent Reach()\nfluent Sticks()\n"
+      "fluent Jams()\nnoninertial Sticks, Jams\n"
+      "[drawer,time] !HoldsAt(Sticks(),time) ->\n"
+      "  Initiates(OpenDrawer(drawer),Open(drawer),time).\n"
+      "[drawer,time] !HoldsAt(Jams(),time) ->\n"
+      "  Terminates(CloseDrawer(drawer),Open(drawer),time).\n"
+      "[time] Initiates(Park(),Parked(),time).\n");
+  const std::vector<std::string> run = {"run", scenario, "--keep-going", "--out", "out"};
+  const auto report = json_of(cli, run, 1);
+  const auto& stream = report.at("traces").at(0);
+  CHECK(stream.at("simulations") == 90);
+  REQUIRE(stream.at("causes").size() == 2);
+  REQUIRE(report.at("discrepancies").size() == 2);
+  std::int64_t differing = 0;
+  for (const auto& cause : stream.at("causes")) {
+    const auto count = cause.at("count").get<std::int64_t>();
+    differing += count;
+    const bool opens = cause.at("cause") == "OpenDrawer(top): fails";
+    CHECK((opens || cause.at("cause") == "CloseDrawer(top): fails"));
+    // Binomial(90, 1/2) and (90, 1/4): beyond with probability below 1e-6 each.
+    CHECK(count >= (opens ? 22 : 4));
+    CHECK(count <= (opens ? 68 : 44));
+    CHECK(cause.at("rate").get<double>() == doctest::Approx(static_cast<double>(count) / 90.0));
+    CHECK(cause.at("lower") < cause.at("rate"));
+    CHECK(cause.at("upper") > cause.at("rate"));
+    // Its first simulation is the one that is told in full.
+    const auto& found = report.at("discrepancies");
+    CHECK(std::any_of(found.begin(), found.end(), [&](const Json& one) {
+      return one.at("cause").at("text") == cause.at("cause") &&
+             one.at("sample") == cause.at("example") && one.at("repeated") == "bit-equal";
+    }));
+  }
+  CHECK(stream.at("clean") == 90 - differing);
+  CHECK(cli.read("out/report.txt").find("% interval") != std::string::npos);
+  const auto journal = cli.read("out/journal.ndjson");
+  const auto account = cli.read("out/report.json");
+  fs::rename(cli.folder() / "out", cli.folder() / "first");
+  auto more = run;
+  more.insert(more.end(), {"--jobs", "3"});
+  json_of(cli, more, 1);
+  CHECK(cli.read("out/journal.ndjson") == journal);
+  CHECK(cli.read("out/report.json") == account);
+  for (const auto& found : report.at("discrepancies")) {
+    CHECK(cli.parallax({"replay", "first", "--sample",
+                        "1." + std::to_string(found.at("sample").get<int>())})
+              .code == 0);
+  }
+  // Ended half-way and continued.
+  cli.write("out/journal.ndjson", journal.substr(0, journal.find('\n', journal.size() / 2) + 1));
+  more.emplace_back("--resume");
+  json_of(cli, more, 1);
+  CHECK(cli.read("out/journal.ndjson") == journal);
+  CHECK(cli.read("out/report.json") == account);
+}
+
 TEST_CASE("an event that nobody performed and nothing demands excuses no difference") {
   const TwoModels cli;
   const std::string bump = "event Bump()\n";
@@ -359,9 +422,13 @@ TEST_CASE("what closed loop has no use for is refused") {
     CHECK(result.err.find(text) != std::string::npos);
   };
   refused({"--criterion", "paper"}, 2, "E7125");
-  refused({"--keep-going"}, 2, "--keep-going");
-  refused({"--split-initial"}, 2, "--split-initial");
+  refused({"--split-initial"}, 2, "executions begin in every initial state; leave it out");
   refused({"--match", "trace"}, 2, "--match=trace");
+  refused({"--hits", "all"}, 2, "lasts until the plan ends; leave it out, or simulate traces");
+  cli.write("two/strict.yaml", "include: agree.yaml\nmatch: trace\nexecution: closed-loop\n");
+  const auto strict = cli.parallax({"run", "two/strict.yaml"});
+  CHECK(strict.code == 2);
+  CHECK(strict.err.find("match: trace") != std::string::npos);
   cli.write("two/bare.yaml",
             "model: [opens.e, start.e]\nhorizon: 3\nsimulator: {model: opens.e}\n"
             "constraints: \"Happens(Park(),time-1)\"\nexecution: closed-loop\n");

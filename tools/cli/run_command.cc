@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -129,14 +131,22 @@ base::Status check_closed(const RunOptions& options, const harness::Scenario& sc
     return sink.error(base::DiagnosticCode::kCriterionNotOfLoop,
                       base::SourceRange{scenario.source, 0, 0});
   }
-  std::string option;
-  if (options.hits != "first") option = "--hits";
-  if (options.split_initial) option = "--split-initial";
-  if (options.keep_going) option = "--keep-going";
-  if (options.judging.match == "trace") option = "--match=trace";
-  if (option.empty()) return base::Unit{};
-  return sink.error_about(base::DiagnosticCode::kUsage, option,
-                          "it is about traces, and in closed loop the plan is executed");
+  const auto refuse = [&](const char* option, const char* why) {
+    return sink.error_about(
+        base::DiagnosticCode::kUsage, option,
+        fmt::format("{}; leave it out, or simulate traces with --execution open-loop", why));
+  };
+  if (options.hits != "first") {
+    return refuse("--hits", "in closed loop an execution lasts until the plan ends");
+  }
+  if (options.split_initial) {
+    return refuse("--split-initial", "in closed loop executions begin in every initial state");
+  }
+  if (!scenario.match_model) {
+    return refuse(options.judging.match == "trace" ? "--match=trace" : "match: trace",
+                  "in closed loop there is no trace to hold observations against, only the model");
+  }
+  return base::Unit{};
 }
 
 Ran run_closed(const RunOptions& options, const ScenarioModel& loaded,
@@ -218,7 +228,8 @@ Command run_command() {
       .show_default();
   command.flag("--resume", options->resume, "Continue the run in the run folder");
   command.flag("--keep-going", options->keep_going,
-               "Go on with the next trace after a discrepancy");
+               "Go on after a discrepancy: with the next trace; in closed loop with the next "
+               "execution, and count how often each cause comes up");
   command.option("--criterion", options->criterion, "When a trace has been tried enough")
       .check(OneOf{{"clean-runs", "paper"}});
   add_judging_options(command, options->judging);
