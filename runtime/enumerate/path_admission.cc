@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "compiler/base/contract.h"
+#include "runtime/enumerate/demanded_events.h"
 
 namespace parallax::runtime {
 
@@ -12,21 +13,15 @@ using compiler::AtomKind;
 
 namespace {
 
-/// The events that no axiom can demand, by slot: in the clauses of axioms they stand under a
-/// negation only. That something else would explain a change of state (frame axioms) is no demand.
+/// The others, by slot.
 std::vector<std::uint32_t> undemanded_events(const CompiledModel& model) {
-  std::vector<bool> demanded(model.slots.size(), false);
-  for (std::size_t c = 0; c < model.clauses.size(); ++c) {
-    if (model.origins[model.clause_origins[c]].kind != compiler::OriginKind::kAxiom) continue;
-    for (const auto literal : model.clauses[c]) {
-      if (!literal.is_positive() || literal.var() <= model.base()) continue;
-      const auto place = literal.var() - model.base() - 1;
-      demanded[static_cast<std::size_t>(place % model.stride())] = true;
-    }
-  }
+  const auto demandable = demandable_events(model);
   std::vector<std::uint32_t> out;
-  for (const auto& event : model.events) {
-    if (event.slot && !demanded[*event.slot]) out.push_back(*event.slot);
+  for (std::uint32_t e = 0; e < model.events.size(); ++e) {
+    const auto slot = model.events[e].slot;
+    if (slot && !std::binary_search(demandable.begin(), demandable.end(), compiler::EventId(e))) {
+      out.push_back(*slot);
+    }
   }
   return out;
 }

@@ -21,12 +21,6 @@ std::vector<Literal> state_literals(const LayeredModel& model, std::int32_t offs
   return out;
 }
 
-/// Further variables of a step: `assumed` makes one of `any` true.
-std::vector<Literal> one_of(std::int32_t assumed, std::vector<Literal> any) {
-  any.push_back(~Literal::positive(assumed));
-  return any;
-}
-
 }  // namespace
 
 std::size_t Belief::WordsHash::operator()(const Words& words) const {
@@ -56,35 +50,60 @@ Belief::Belief(const StepWindows& windows, const BeliefOptions& options)
     fluent_bit_.push_back(fluent.slot ? std::optional(next++) : std::nullopt);
   }
   PARALLAX_REQUIRE(next == observed_count_, "the observed slots are those of the fluents");
-  for (const auto slot : windows.locations) {
+  const auto bit_of = [&](std::uint32_t slot) {
     const auto found = std::find(layered.hidden.begin(), layered.hidden.end(), slot);
-    plan_bit_.push_back(found == layered.hidden.end()
-                            ? std::nullopt
-                            : std::optional(observed_count_ + static_cast<std::size_t>(
-                                                                  found - layered.hidden.begin())));
+    return found == layered.hidden.end()
+               ? std::nullopt
+               : std::optional(observed_count_ +
+                               static_cast<std::size_t>(found - layered.hidden.begin()));
+  };
+  for (const auto slot : windows.locations) plan_bit_.push_back(bit_of(slot));
+  for (const auto slot : windows.cuts) cut_bit_.push_back(bit_of(slot));
+  for (auto slot = windows.first_plan_slot; slot < windows.last_plan_slot; ++slot) {
+    if (const auto place = bit_of(slot)) control_bits_.push_back(*place);
   }
-  is_unobserved_.assign(model.events.size(), false);
-  for (const auto event : options.unobserved) is_unobserved_[event.index()] = true;
+  unseen_.assign(model.events.size(), Unseen::kNever);
+  for (const auto event : options.unobserved) unseen_[event.index()] = Unseen::kUnobserved;
+  for (const auto event : options.performed) {
+    auto& unseen = unseen_[event.index()];
+    if (unseen == Unseen::kUnobserved) unseen = Unseen::kPerformed;
+  }
+  demanded_.assign(model.events.size(), 0);
+  for (const auto event : options.demanded) {
+    PARALLAX_REQUIRE(unseen_[event.index()] == Unseen::kNever, "demanded, or unobserved");
+    if (!model.events[event.index()].slot) continue;
+    unseen_[event.index()] = Unseen::kDemanded;
+    demanded_[event.index()] = static_cast<std::uint32_t>(literals_.demanded.size());
+    const auto literal = event_literals({event});
+    literals_.demanded.push_back(literal.front());
+  }
   known_ = filter_of(Observation(model.fluents.size(), 0));
 
   start_ = std::make_unique<WindowQuery>(layered.start, std::vector<std::vector<Literal>>{}, 0,
                                          state_literals(layered, 0), options.stop);
   const auto slots = static_cast<std::int32_t>(layered.state_slots);
-  std::vector<Literal> untold, succeeded;
+  literals_.after = state_literals(layered, slots);
+  literals_.unobserved = event_literals(options.unobserved);
+  std::vector<EventId> alone;
   for (const auto event : options.unobserved) {
-    const auto slot = model.events[event.index()].slot;
-    if (slot) untold.push_back(Literal::positive(slots + static_cast<std::int32_t>(*slot) + 1));
+    if (unseen_[event.index()] == Unseen::kUnobserved) alone.push_back(event);
   }
+  literals_.alone = event_literals(alone);
   for (const auto slot : windows.outcomes) {
-    succeeded.push_back(Literal::positive(slots + static_cast<std::int32_t>(slot) + 1));
+    literals_.succeeded.push_back(Literal::positive(slots + static_cast<std::int32_t>(slot) + 1));
   }
-  for (const auto& window : layered.steps) {
-    std::vector<std::vector<Literal>> more = {one_of(window.variables + 1, untold),
-                                              one_of(window.variables + 2, succeeded)};
-    steps_.push_back(std::make_unique<WindowQuery>(window, std::move(more), window.variables + 2,
-                                                   state_literals(layered, slots), options.stop));
+  labels_.resize(kToldFrom);
+}
+
+/// Of those that happen at all.
+std::vector<Literal> Belief::event_literals(const std::vector<EventId>& events) const {
+  const auto slots = static_cast<std::int32_t>(windows_.layered.state_slots);
+  std::vector<Literal> out;
+  for (const auto event : events) {
+    const auto slot = windows_.model.events[event.index()].slot;
+    if (slot) out.push_back(Literal::positive(slots + static_cast<std::int32_t>(*slot) + 1));
   }
-  labels_.emplace_back();  // kUntold
+  return out;
 }
 
 Belief::Filter Belief::filter_of(const Observation& observed) const {
@@ -148,8 +167,32 @@ Admission Belief::settle() {
   }
   if (states->empty()) return Admission::kRefused;
   is_settled_ = true;
-  take(*std::move(states));
-  return Admission::kAdmitted;
+  return admit(*std::move(states));
+}
+
+std::string Belief::cut_text() const {
+  const auto& cuts = windows_.model.plan_cuts;
+  std::string where;
+  for (const auto& cut : cuts) {
+    if (!where.empty()) where += ", ";
+    where += fmt::format("`{}`", cut.form);
+    if (!cut.place.file.empty()) {
+      where += fmt::format(" at {}:{}", cut.place.file, cut.place.begin.line);
+    }
+  }
+  return fmt::format(
+      "the plan goes on where its unrolling was cut ({}): nothing is known of what it does there",
+      where);
+}
+
+/// Takes what is possible, of which there is some.
+Admission Belief::admit(std::vector<StateId> states) {
+  take(std::move(states));
+  if (std::any_of(possible_.begin(), possible_.end(),
+                  [&](StateId state) { return is_known(state); })) {
+    return Admission::kAdmitted;
+  }
+  return give_up(cut_text());
 }
 
 void Belief::restart() {
@@ -202,8 +245,7 @@ Admission Belief::observe(const Observation& observed) {
   if (left.size() == possible_.size()) return Admission::kAdmitted;
   auto states = closed(std::move(left));
   if (!states) return give_up(obstacle_);
-  take(*std::move(states));
-  return Admission::kAdmitted;
+  return admit(*std::move(states));
 }
 
 Admission Belief::step(const ToldStep& told) {
@@ -215,8 +257,7 @@ Admission Belief::step(const ToldStep& told) {
   if (states && states->empty()) return Admission::kRefused;
   if (states) states = closed(*std::move(states));
   if (!states) return give_up(obstacle_);
-  take(*std::move(states));
-  return Admission::kAdmitted;
+  return admit(*std::move(states));
 }
 
 bool Belief::admits(const ToldStep& told) {

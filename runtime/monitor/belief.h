@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "runtime/graph/window_query.h"
+#include "runtime/monitor/step_query.h"
 #include "runtime/monitor/step_windows.h"
 
 namespace parallax::runtime {
@@ -20,7 +21,12 @@ struct BeliefOptions {
   /// Ways from state to state are remembered until so many states are; then from anew.
   std::size_t remembered = 200'000;
   std::vector<compiler::EventId> unobserved;  // may happen without being told of
-  const std::atomic<bool>* stop = nullptr;    // outlives the belief
+  /// Happen without being told of where the axioms demand them, and only there: in a state, and
+  /// beside what else happens, a least set of them. None of them is unobserved.
+  std::vector<compiler::EventId> demanded;
+  /// Happen where the plan performs them, and nowhere else.
+  std::vector<compiler::EventId> performed;
+  const std::atomic<bool>* stop = nullptr;  // outlives the belief
 };
 
 /// What is known of the fluents: by FluentId 1 holds, -1 does not, 0 is not known.
@@ -48,7 +54,11 @@ struct Disagreement {
 /// The states of a model, with the place of its plan's control, that what was told so far leaves
 /// possible: exactly those in which some trace of any length is that has these events, with
 /// unobserved ones anywhere between and beside them, and agrees with all observations. A step is
-/// one timepoint; without a step time stands still, but for unobserved events.
+/// one timepoint; without a step time stands still, but for unobserved events, which the plan's
+/// control may be waiting for.
+///
+/// Where the plan's unrolling was cut anything that the axioms admit may follow; once nothing else
+/// is possible, nothing is said any more.
 ///
 /// States are kept one by one, at most `max_states`: beyond that nothing is said any more. Memory
 /// is bounded by the options, however long it goes on. What a step does to a state is asked of the
@@ -80,7 +90,7 @@ class Belief {
 
  private:
   using StateId = std::uint32_t;
-  using Words = std::vector<std::uint64_t>;  // phase, bits of `observed`, then of `hidden`
+  using Words = std::vector<std::uint64_t>;  // phases, bits of `observed`, then of `hidden`
   struct WordsHash {
     std::size_t operator()(const Words& words) const;
   };
@@ -91,7 +101,19 @@ class Belief {
     friend bool operator==(const Filter&, const Filter&) = default;
     bool admits(const Words& state) const;
   };
-  static constexpr std::uint32_t kUntold = 0;  // the label of a step that nobody tells of
+  // The labels of steps that nobody tells of: of model and plan, and of the model alone.
+  static constexpr std::uint32_t kUntold = 0, kAlone = 1, kToldFrom = 2;
+  /// The plan's phase behind a cut.
+  static constexpr std::uint32_t kUnknownPlan = 0xFFFFFFFF;
+  static std::uint32_t axiom_phase(const Words& state) {
+    return static_cast<std::uint32_t>(state[0]);
+  }
+  static std::uint32_t plan_phase(const Words& state) {
+    return static_cast<std::uint32_t>(state[0] >> 32U);
+  }
+  static std::uint64_t phases(std::uint32_t axioms, std::uint32_t plan) {
+    return (std::uint64_t{plan} << 32U) | axioms;
+  }
 
   Filter filter_of(const Observation& observed) const;
   Admission give_up(const std::string& why);
@@ -102,13 +124,20 @@ class Belief {
   std::optional<std::vector<StateId>> closed(std::vector<StateId> states);
   const std::vector<StateId>* successors(StateId state, std::uint32_t label);
   std::optional<std::vector<StateId>> ask_step(StateId state, std::uint32_t label);
+  StepQuery& query(std::uint32_t axiom_phase, std::optional<std::uint32_t> plan_phase);
   void assume_state(const Words& state, std::vector<Literal>& assumptions) const;
-  bool assume_events(const ToldStep& told, bool is_told, std::vector<Literal>& assumptions) const;
+  bool assume_events(const ToldStep& told, std::uint32_t label, StepQuestion& question) const;
+  void assume_plan_after(const Words* as_before, std::vector<Literal>& assumptions) const;
+  std::vector<Literal> event_literals(const std::vector<compiler::EventId>& events) const;
+  Admission admit(std::vector<StateId> states);
+  std::string cut_text() const;
   StateId intern(Words words);
   std::uint32_t label_of(const ToldStep& told);
   void forget();
   void take(std::vector<StateId> states);
   bool is_at_perform(const Words& state) const;
+  bool is_at_cut(const Words& state) const;
+  bool is_known(StateId state) const { return plan_phase(states_[state]) != kUnknownPlan; }
   static constexpr std::size_t kBits = 64;
   static bool bit(const Words& state, std::size_t place) {
     return (state[1 + place / kBits] >> (place % kBits) & 1U) != 0;
@@ -122,9 +151,15 @@ class Belief {
   std::size_t observed_count_, word_count_;
   std::vector<std::optional<std::size_t>> fluent_bit_;  // by fluent
   std::vector<std::optional<std::size_t>> plan_bit_;    // by plan step
-  std::vector<bool> is_unobserved_;                     // by event
+  std::vector<std::optional<std::size_t>> cut_bit_;     // by cut of the plan
+  std::vector<std::size_t> control_bits_;               // all of the plan's control
+  enum class Unseen : std::uint8_t { kNever, kUnobserved, kPerformed, kDemanded };
+  std::vector<Unseen> unseen_;           // by event; performed: unobserved, by the plan alone
+  std::vector<std::uint32_t> demanded_;  // by event: its index in literals_.demanded
+  StepLiterals literals_;
   std::unique_ptr<WindowQuery> start_;
-  std::vector<std::unique_ptr<WindowQuery>> steps_;  // by window
+  /// By window of the axioms, and of the plan; -1: of the axioms alone.
+  std::map<std::pair<std::uint32_t, std::int64_t>, std::unique_ptr<StepQuery>> steps_;
 
   std::vector<Words> states_;
   std::unordered_map<Words, StateId, WordsHash> state_ids_;  // for look-up only, as those below

@@ -34,7 +34,7 @@ void Belief::forget() {
   for (const auto state : possible_) kept.push_back(std::move(states_[state]));
   states_.clear();
   state_ids_.clear();
-  labels_.resize(1);
+  labels_.resize(kToldFrom);
   label_ids_.clear();
   ways_.clear();
   last_closed_ = {};
@@ -54,25 +54,39 @@ void Belief::assume_state(const Words& state, std::vector<Literal>& assumptions)
   }
 }
 
+/// The plan's control after a step that is none of the plan: as it was, or nowhere.
+void Belief::assume_plan_after(const Words* as_before, std::vector<Literal>& assumptions) const {
+  for (const auto place : control_bits_) {
+    const bool stays = as_before != nullptr && bit(*as_before, place);
+    assumptions.push_back(stays ? literals_.after[place] : ~literals_.after[place]);
+  }
+}
+
 /// False: one of the events never happens.
-bool Belief::assume_events(const ToldStep& told, bool is_told,
-                           std::vector<Literal>& assumptions) const {
+bool Belief::assume_events(const ToldStep& told, std::uint32_t label,
+                           StepQuestion& question) const {
   const auto& events = windows_.model.events;
   const auto slots = static_cast<std::int32_t>(windows_.layered.state_slots);
   std::size_t seen = 0;
   for (std::uint32_t e = 0; e < events.size(); ++e) {
-    const bool happens =
-        is_told && std::binary_search(told.events.begin(), told.events.end(), EventId(e));
+    const bool happens = label >= kToldFrom &&
+                         std::binary_search(told.events.begin(), told.events.end(), EventId(e));
     if (happens) ++seen;
     if (!events[e].slot) {
       if (happens) return false;
       continue;
     }
-    if (!happens && is_unobserved_[e]) continue;
+    if (!happens && unseen_[e] == Unseen::kDemanded) {
+      question.demanded.push_back(demanded_[e]);
+      continue;
+    }
+    if (!happens && unseen_[e] == Unseen::kUnobserved) continue;
+    if (!happens && unseen_[e] == Unseen::kPerformed && label != kAlone) continue;
     const auto literal = Literal::positive(slots + static_cast<std::int32_t>(*events[e].slot) + 1);
-    assumptions.push_back(happens ? literal : ~literal);
+    question.given.push_back(happens ? literal : ~literal);
   }
   PARALLAX_REQUIRE(seen == told.events.size(), "events of the model, sorted, each once");
+  std::sort(question.demanded.begin(), question.demanded.end());
   return true;
 }
 
@@ -81,51 +95,71 @@ bool Belief::is_at_perform(const Words& state) const {
                      [&](const auto& place) { return place && bit(state, *place); });
 }
 
+bool Belief::is_at_cut(const Words& state) const {
+  return std::any_of(cut_bit_.begin(), cut_bit_.end(),
+                     [&](const auto& place) { return place && bit(state, *place); });
+}
+
+/// What axioms and plan make of a step in these phases; without one of the plan the axioms alone.
+StepQuery& Belief::query(std::uint32_t axioms, std::optional<std::uint32_t> plan) {
+  const auto axiom_window = windows_.axioms.window_of[axioms];
+  const auto plan_window =
+      plan ? static_cast<std::int64_t>(windows_.plan.window_of[*plan]) : std::int64_t{-1};
+  auto& out = steps_[{axiom_window, plan_window}];
+  if (out == nullptr) {
+    out = std::make_unique<StepQuery>(
+        plan ? windows_.joined(axioms, *plan) : windows_.axioms.windows[axiom_window], literals_,
+        options_.stop);
+  }
+  return *out;
+}
+
 /// None: there are too many, it was stopped, or nothing is known of what follows.
 std::optional<std::vector<Belief::StateId>> Belief::ask_step(StateId state, std::uint32_t label) {
   const auto before = states_[state];
-  const auto phase = static_cast<std::uint32_t>(before[0]);
-  const auto next = windows_.next(phase);
-  if (phase >= windows_.window_of.size()) {
-    if (windows_.ends) return std::vector<StateId>();
+  const auto axioms = axiom_phase(before), plan = plan_phase(before);
+  if (!windows_.axioms.knows(axioms) && windows_.ends) return std::vector<StateId>();
+  const bool is_unknown = plan == kUnknownPlan || (is_at_cut(before) && label != kAlone);
+  const bool is_of_plan = !is_unknown && label != kAlone;
+  if (!windows_.axioms.knows(axioms) || (is_of_plan && !windows_.plan.knows(plan))) {
     obstacle_ = fmt::format(
         "the log goes on beyond timepoint {}, and what the model says does not repeat itself "
-        "before "
-        "it: a larger horizon is needed",
+        "before it: a larger horizon is needed",
         windows_.layered.horizon);
     return std::nullopt;
   }
-  const auto window = windows_.window_of[phase];
-  const auto variables = windows_.layered.steps[window].variables;
+  auto& step = query(axioms, is_of_plan ? std::optional(plan) : std::nullopt);
   const auto& told = labels_[label];
-  std::vector<Literal> assumptions;
-  assume_state(before, assumptions);
-  if (!assume_events(told, label != kUntold, assumptions)) return std::vector<StateId>();
-  if (label == kUntold) assumptions.push_back(Literal::positive(variables + 1));
-  if (told.succeeded && is_at_perform(before)) {
+  StepQuestion question;
+  assume_state(before, question.given);
+  if (!assume_events(told, label, question)) return std::vector<StateId>();
+  if (label == kUntold) question.given.push_back(step.some_unobserved());
+  if (label == kAlone) question.given.push_back(step.some_alone());
+  if (!is_of_plan) assume_plan_after(is_unknown ? nullptr : &before, question.after);
+  if (told.succeeded && is_of_plan && is_at_perform(before)) {
     if (*told.succeeded) {
-      assumptions.push_back(Literal::positive(variables + 2));
+      question.after.push_back(step.some_succeeded());
     } else {
-      const auto slots = static_cast<std::int32_t>(windows_.layered.state_slots);
-      for (const auto slot : windows_.outcomes) {
-        assumptions.push_back(~Literal::positive(slots + static_cast<std::int32_t>(slot) + 1));
-      }
+      for (const auto succeeded : literals_.succeeded) question.after.push_back(~succeeded);
     }
   }
-  const auto answer = steps_[window]->ask(assumptions, options_.max_states);
+  const auto answer = step.ask(question, options_.max_states);
   if (!answer.complete) {
     obstacle_ = fmt::format("more than {} states are possible", options_.max_states);
     return std::nullopt;
   }
+  const auto plan_after = is_unknown ? kUnknownPlan : is_of_plan ? windows_.plan.next(plan) : plan;
   std::vector<StateId> out;
   for (const auto& found : answer.found) {
     Words words(word_count_, 0);
-    words[0] = next.value_or(static_cast<std::uint32_t>(windows_.window_of.size()));
+    words[0] = phases(windows_.axioms.next(axioms), plan_after);
     for (std::size_t i = 0; i < found.size(); ++i) {
       if (found[i]) set_bit(words, i);
     }
     out.push_back(intern(std::move(words)));
   }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 
@@ -149,12 +183,18 @@ std::optional<std::vector<Belief::StateId>> Belief::closed(std::vector<StateId> 
   while (!todo.empty()) {
     const auto state = todo.back();
     todo.pop_back();
-    const auto* next = successors(state, kUntold);
-    if (next == nullptr) return std::nullopt;
-    for (const auto to : *next) {
-      if (!seen.try_emplace(to, true).second) continue;
-      out.push_back(to);
-      todo.push_back(to);
+    // The plan takes part in a step if it performs what is not observed, or is over.
+    const bool waits =
+        is_known(state) && (is_at_perform(states_[state]) || is_at_cut(states_[state]));
+    for (const auto label : {kUntold, kAlone}) {
+      if (label == kAlone && !waits) continue;
+      const auto* next = successors(state, label);
+      if (next == nullptr) return std::nullopt;
+      for (const auto to : *next) {
+        if (!seen.try_emplace(to, true).second) continue;
+        out.push_back(to);
+        todo.push_back(to);
+      }
     }
     if (out.size() > options_.max_states) {
       obstacle_ = fmt::format("more than {} states are possible", options_.max_states);

@@ -244,7 +244,7 @@ class SlotWriter {
     for (std::uint32_t place = 0; place < added(); ++place) {
       for (Timepoint t = 0; t <= model_.horizon; ++t) {
         if (present_.contains({place, t})) continue;
-        add({~Literal::positive(out_.variable(model_.state_slots + place, t))}, t, 0);
+        add({~Literal::positive(out_.variable(model_.state_slots + place, t))}, t, 0, false);
       }
     }
   }
@@ -258,7 +258,9 @@ class SlotWriter {
       const auto clause = model_.clauses[c];
       std::vector<std::pair<std::uint64_t, Literal>> ordered;
       for (const auto literal : clause) ordered.emplace_back(order_of(literal, binds), literal);
-      std::stable_sort(ordered.begin(), ordered.end(),
+      // What is defined stays in front.
+      const bool is_definition = model_.clause_is_definition[c];
+      std::stable_sort(ordered.begin() + (is_definition ? 1 : 0), ordered.end(),
                        [](const auto& one, const auto& other) { return one.first < other.first; });
       std::vector<Literal> written;
       for (const auto& [order, literal] : ordered) {
@@ -272,15 +274,16 @@ class SlotWriter {
         written.push_back(
             Literal::positive(out_.variable(model_.state_slots + places_.at(kAnchor), binds)));
       }
-      add(written, binds, model_.clause_origins[c]);
+      add(written, binds, model_.clause_origins[c], is_definition);
     }
   }
 
-  void add(const std::vector<Literal>& clause, Timepoint t, std::uint32_t origin) {
+  void add(const std::vector<Literal>& clause, Timepoint t, std::uint32_t origin,
+           bool is_definition) {
     out_.clauses.add(clause);
     out_.clause_timepoints.push_back(t);
     out_.clause_origins.push_back(origin);
-    out_.clause_is_definition.push_back(false);
+    out_.clause_is_definition.push_back(is_definition);
   }
 
   const CompiledModel& model_;

@@ -12,24 +12,41 @@
 
 namespace parallax::runtime {
 
-/// A model, with its plan if it has one, as what one step can do. A step begins in a phase: a
-/// timepoint at first, and where the axioms (and the places that the plan's control can be at)
-/// repeat themselves from some timepoint on, the phases do, so that there is a next step however
-/// many there were.
+/// What the axioms, or the plan, say of a step. A step begins in a phase: a timepoint at first, and
+/// where what they say repeats itself from some timepoint on, the phases do, so that there is a
+/// next step however many there were.
+struct StepPart {
+  std::vector<WindowClauses> windows;    // those that differ
+  std::vector<std::uint32_t> window_of;  // by phase
+  std::optional<std::uint32_t>
+      comes_after;  // the phase behind the last one; none: nothing is known
+
+  /// Behind the last phase, if nothing comes after it: one that does not exist.
+  std::uint32_t next(std::uint32_t phase) const {
+    return phase + 1 < window_of.size()
+               ? phase + 1
+               : comes_after.value_or(static_cast<std::uint32_t>(window_of.size()));
+  }
+  bool knows(std::uint32_t phase) const { return phase < window_of.size(); }
+};
+
+/// A model, with its plan if it has one, as what one step can do. Axioms and plan are kept apart: a
+/// step may be one of the model alone, while the plan's control stands still. A step that both take
+/// has the clauses of both.
 struct StepWindows {
   compiler::CompiledModel model;  // with_plan_slots
-  LayeredModel layered;
-  std::vector<std::uint32_t> window_of;  // by phase: index into layered.steps
-  std::optional<std::uint32_t>
-      comes_after;                       // the phase behind the last one; none: nothing is known
-  bool ends = false;                     // no trace is longer than the phases
-  std::vector<std::uint32_t> outcomes;   // state slots: that a perform succeeded
-  std::vector<std::uint32_t> locations;  // state slots of plan steps, by PlanStepId where known
+  LayeredModel layered;           // of both together
+  StepPart axioms, plan;          // without a plan that says nothing
+  bool ends = false;              // no trace is longer than the phases of the axioms
+  /// State slots of the plan's control, [first, last): none without a plan.
+  std::uint32_t first_plan_slot = 0, last_plan_slot = 0;
+  std::vector<std::uint32_t> outcomes;   // of those: that a perform succeeded
+  std::vector<std::uint32_t> locations;  // of those, by PlanStepId where known
+  std::vector<std::uint32_t> cuts;       // of those, by PlanCutId where known
 
-  std::optional<std::uint32_t> next(std::uint32_t phase) const {
-    if (phase + 1 < window_of.size()) return phase + 1;
-    return comes_after;
-  }
+  bool goes_on() const { return axioms.comes_after && plan.comes_after; }
+  /// The clauses of a step that the axioms take from one phase and the plan from another.
+  WindowClauses joined(std::uint32_t axiom_phase, std::uint32_t plan_phase) const;
 };
 
 /// What there is behind the horizon of a model.

@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
 #include "compiler/base/suggest.h"
+#include "compiler/plan/plan_binding.h"
 #include "compiler/plan/plan_graph.h"
+#include "runtime/enumerate/demanded_events.h"
 
 namespace parallax::tools {
 namespace {
@@ -48,6 +52,40 @@ base::Result<std::vector<EventId>> events_of(const std::vector<std::string>& sym
   return out;
 }
 
+/// The symbols of events that the plan's binding table names.
+std::set<std::string> performable(const harness::Scenario& scenario) {
+  std::set<std::string> out;
+  if (!scenario.bind) return out;
+  base::SourceFiles files;
+  base::DiagnosticSink unread;  // it was read before
+  const auto text = base::load_text(scenario.bind->text, files, unread);
+  if (!text) return out;
+  const auto binding = compiler::parse_plan_binding(files, *text, unread);
+  if (!binding) return out;
+  for (const auto& entry : binding->entries) {
+    if (!entry.plan) out.insert(entry.event_symbol);
+  }
+  return out;
+}
+
+/// Who can know of an event: the plan performs it, or the log may be silent about it. The rest
+/// happens only where axioms demand it.
+void note_unseen(const harness::Scenario& scenario, const CompiledModel& model,
+                 runtime::BeliefOptions& options) {
+  if (scenario.plan.empty()) return;
+  const auto symbols = performable(scenario);
+  for (std::uint32_t e = 0; e < model.events.size(); ++e) {
+    if (symbols.contains(symbol_of(model.events[e].name))) options.performed.emplace_back(e);
+  }
+  const auto is_in = [](const std::vector<EventId>& events, EventId event) {
+    return std::find(events.begin(), events.end(), event) != events.end();
+  };
+  for (const auto event : runtime::demandable_events(model)) {
+    if (is_in(options.performed, event) || is_in(options.unobserved, event)) continue;
+    options.demanded.push_back(event);
+  }
+}
+
 /// The horizon at which it can be seen that a plan is over, or comes round again.
 std::int64_t wanted_horizon(const ScenarioModel& loaded) {
   const auto& plan = loaded.compilation.plan;
@@ -70,7 +108,7 @@ base::Result<std::unique_ptr<Watch>> Watch::make(const ScenarioModel& loaded,
   horizons.push_back(std::max<std::int64_t>(4, 2 * loaded.scenario.horizon));
   for (const auto horizon : horizons) {
     if (out->windows_ != nullptr &&
-        (out->windows_->comes_after || horizon > kMostTimepoints + loaded.scenario.horizon)) {
+        (out->windows_->goes_on() || horizon > kMostTimepoints + loaded.scenario.horizon)) {
       break;
     }
     const CompiledModel* model = &loaded.compilation.model;
@@ -92,6 +130,11 @@ base::Result<std::unique_ptr<Watch>> Watch::make(const ScenarioModel& loaded,
     out->windows_ = std::get<std::unique_ptr<StepWindows>>(std::move(made));
   }
   const auto& model = out->windows_->model;
+  if (options.with_plan && has_plan && model.plan.empty()) {
+    context.remark(
+        "the plan performs nothing, so no event that the binding table names can happen; "
+        "--no-plan asks the model alone");
+  }
   auto names = loaded.scenario.unobserved;
   names.insert(names.end(), options.unobserved.begin(), options.unobserved.end());
   auto unobserved = events_of(names, model, context);
@@ -112,9 +155,14 @@ base::Result<std::unique_ptr<Watch>> Watch::make(const ScenarioModel& loaded,
       out->only_at_rest_ ||
       std::any_of(mapping.bindings().begin(), mapping.bindings().end(),
                   [](const harness::FluentBinding& binding) { return binding.at_rest_only; });
-  out->belief_ = std::make_unique<runtime::Belief>(
-      *out->windows_, runtime::BeliefOptions{options.max_states, 10 * options.max_states,
-                                             *std::move(unobserved), &context.stop()});
+  runtime::BeliefOptions belief;
+  belief.max_states = options.max_states;
+  belief.remembered = 10 * options.max_states;
+  belief.unobserved = *std::move(unobserved);
+  belief.stop = &context.stop();
+  note_unseen(loaded.scenario, model, belief);
+  if (!options.with_plan) belief.performed.clear();
+  out->belief_ = std::make_unique<runtime::Belief>(*out->windows_, belief);
   return out;
 }
 
