@@ -269,6 +269,9 @@ class LoopCampaign {
     stream.claim =
         loop_claim(tally_, criterion, scenario_.comparison(), stream.loop->initial_states);
     stream.caveats = caveats(tally_, criterion, std::nullopt);
+    if (feed_.plan().performs().empty()) {
+      stream.caveats.emplace_back("the plan performs nothing: initial states alone were compared");
+    }
     if (stream.loop->unfinished > 0) {
       stream.certified_epsilon = 1.0;
       stream.claim = "nothing is claimed: an execution did not end";

@@ -1,5 +1,7 @@
 #include "harness/campaign/loop_samples.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -75,7 +77,43 @@ class PlanSource final : public ActionSource {
   double simulated_s_ = 0.0;
 };
 
+/// The same, wherever the plan's file lies.
+bool is_same(const PathStep& a, const PathStep& b) {
+  return a.step == b.step && a.event == b.event && a.call == b.call && a.succeeded == b.succeeded &&
+         a.object == b.object && a.condition == b.condition;
+}
+
 }  // namespace
+
+std::string wrong_path(const Scenario& scenario, const ExecutablePlan& plan,
+                       const LoopBounds& bounds, const SampleRecord& record) {
+  if (record.status != SampleStatus::kOk || record.phase != DrawPhase::kCertify) return {};
+  const auto& path = *record.path;
+  if (path.steps.size() != record.outcomes.size() ||
+      record.observations.size() != record.outcomes.size() + 1) {
+    return "its observations are not those of its path";
+  }
+  SampleRecord again;
+  again.path.emplace();
+  PlanSource source(scenario, plan, LoopSamples::choices_key(bounds.campaign_seed, record.sample),
+                    {bounds.max_performs, scenario.limits.max_simulated_s});
+  source.begin(again);
+  again.observations = {record.observations.front()};
+  while (source.next(again) != nullptr) {
+    const auto told = again.outcomes.size();
+    if (told == record.outcomes.size()) break;
+    again.outcomes.push_back(record.outcomes[told]);
+    again.observations.push_back(record.observations[told + 1]);
+  }
+  const auto& steps = again.path->steps;
+  for (std::size_t i = 0; i < std::max(steps.size(), path.steps.size()); ++i) {
+    if (i < steps.size() && i < path.steps.size() && is_same(steps[i], path.steps[i])) continue;
+    return fmt::format("perform {} is not what the plan makes of what was seen and reported",
+                       i + 1);
+  }
+  if (again.path->end == path.end && again.path->detail == path.detail) return {};
+  return "the plan does not end like that after what was seen and reported";
+}
 
 LoopSamples::LoopSamples(const Scenario& scenario, const ExecutablePlan& plan,
                          std::vector<LoopStart> starts, std::uint64_t campaign_seed,
@@ -152,7 +190,9 @@ std::string LoopSamples::wrong_draw(const SampleRecord& record) const {
     return "its initial state is not that of its number";
   }
   const auto key = key_of(record.sample);
-  return harness::wrong_draw(record, start_of(record).sampler, campaign_seed_, key.trace_key);
+  auto why = harness::wrong_draw(record, start_of(record).sampler, campaign_seed_, key.trace_key);
+  if (why.empty()) why = wrong_path(scenario_, plan_, {campaign_seed_, max_performs_}, record);
+  return why;
 }
 
 }  // namespace parallax::harness

@@ -20,6 +20,18 @@ struct LoopStart {
   Sampler sampler;
 };
 
+/// What bounds one execution of a plan, and what its open choices are drawn from.
+struct LoopBounds {
+  std::uint64_t campaign_seed = 0;
+  std::int64_t max_performs = 0;
+};
+
+/// Why the plan did not do what is on record, told what the record says became of its performs and
+/// was seen; empty: it did, or the simulation did not come to its end. What the simulator said is
+/// believed.
+std::string wrong_path(const Scenario& scenario, const ExecutablePlan& plan,
+                       const LoopBounds& bounds, const SampleRecord& record);
+
 /// Executions of a plan. Sample n begins in an initial state that its number draws, each equally
 /// likely, at a point drawn uniformly from that state's cuboid; a start that is not valid is drawn
 /// again in the same state. Then each perform of the plan runs its controller, and the plan goes on
@@ -41,7 +53,7 @@ class LoopSamples final : public SampleMaker {
 
   const std::vector<LoopStart>& starts() const { return starts_; }
   const LoopStart& start_of(const SampleRecord& record) const;
-  /// As the wrong_draw of traces.
+  /// As the wrong_draw of traces; also what wrong_path says.
   std::string wrong_draw(const SampleRecord& record) const;
 
  private:

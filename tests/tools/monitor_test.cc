@@ -9,6 +9,7 @@
 
 #include "tests/tools/cli_json.h"
 #include "tests/tools/kitchen_copy.h"
+#include "tests/tools/two_models.h"
 
 namespace parallax::test {
 namespace {
@@ -137,6 +138,41 @@ TEST_CASE("what is not reported is not known, and what is under way is not compa
   CHECK(cli.parallax({"monitor", "scenario.yaml", "log.jsonl"}).code == 4);
 }
 
+TEST_CASE("an action that never ends is told, and what it leaves uncompared decides nothing") {
+  const CliFixture cli;
+  const std::string begun = state(0, 0.5, 1.5, false) + R"j({"t": 0.5, "started": "Go(r2)"}
+)j";
+  cli.write("log.jsonl", begun + state(0.6, 7.0, 1.5, false));
+  const auto result = json_of(cli, {"monitor", "scenario.yaml", "log.jsonl"}, 4);
+  CHECK(result.at("verdict") == "undecided");
+  CHECK(result.at("first").at("line") == 2);
+  CHECK(result.at("because") ==
+        "`Go(r2)` is begun and no `event` ends it: 1 later observation was not compared");
+  CHECK(result.at("unended") == Json::array({Json{{"event", "Go(r2)"}, {"line", 2}, {"t", 0.5}}}));
+  const auto text = cli.parallax({"monitor", "scenario.yaml", "log.jsonl"});
+  CHECK(text.out.find("log.jsonl:2: t = 0.5 s: `Go(r2)` is begun") == 0);
+  CHECK(text.out.find("not ended: Go(r2) (line 2, t = 0.5 s)\n") != std::string::npos);
+  // Nothing was seen since.
+  cli.write("log.jsonl", begun);
+  CHECK(json_of(cli, {"monitor", "scenario.yaml", "log.jsonl"}).at("unended").size() == 1);
+  cli.write("log.jsonl", begun + event(1, "Go(r2)"));
+  CHECK(json_of(cli, {"monitor", "scenario.yaml", "log.jsonl"}).at("unended").empty());
+}
+
+TEST_CASE("a byte order mark is no part of a log") {
+  const CliFixture cli;
+  const std::string mark = "\xEF\xBB\xBF";
+  cli.write("log", mark + fetching());
+  CHECK(json_of(cli, {"monitor", "scenario.yaml", "log"}).at("events") == 4);
+  cli.write("log", mark + "t,robot.x\r\n0,0.5\r\n");
+  CHECK(json_of(cli, {"monitor", "scenario.yaml", "log"}).at("compared") == 1);
+  cli.write("log", mark + "t,t\n");
+  CHECK(cli.parallax({"monitor", "scenario.yaml", "log"}).err.find("log:1:6: error[E7401]") == 0);
+  // Elsewhere it is a text that nobody asked for.
+  cli.write("log", "t,robot.x\n" + mark + "0,0.5\n");
+  CHECK(cli.parallax({"monitor", "scenario.yaml", "log"}).code == 3);
+}
+
 TEST_CASE("events that the log does not name may have happened where the scenario says so") {
   const CliFixture cli;
   cli.write("slip.e",
@@ -165,12 +201,81 @@ TEST_CASE("events that the log does not name may have happened where the scenari
             "include: own.yaml\nevents: {unobserved: []}\n"
             "actions: {Slip(): {controller: going}}\n");
   CHECK(json_of(cli, {"monitor", "seen.yaml", "log.jsonl"}, 1).at("first").at("line") == 6);
+  // An action for what is not observed is one for an event of the model all the same.
+  cli.write("both.yaml", "include: own.yaml\nactions: {Slip(): {controller: going}}\n");
+  CHECK(cli.parallax({"monitor", "both.yaml", "log.jsonl"}).err.empty());
   CHECK(json_of(cli, {"monitor", "seen.yaml", "log.jsonl", "--unobserved", "Slip"}).at("verdict") ==
         "consistent");
   const auto unknown = cli.parallax({"monitor", "own.yaml", "log.jsonl", "--unobserved", "Slop"});
   CHECK(unknown.code == 3);
   CHECK(unknown.err.find("the model has no event `Slop`") != std::string::npos);
   CHECK(unknown.err.find("there is an event `Slip`") != std::string::npos);
+}
+
+TEST_CASE("what axioms demand beside a perform happens, though nobody tells of it") {
+  const TwoModels cli;
+  cli.write("two/slams.e",
+            "load opens.e\nevent Slam()\n[time] Happens(Park(),time) -> Happens(Slam(),time).\n"
+            "[drawer,time] Terminates(Slam(),Open(drawer),time).\n");
+  cli.write("two/slams.yaml",
+            "include: common.yaml\nmodel: [slams.e, start.e]\nsimulator: {model: slams.e}\n");
+  json_of(cli, {"run", "two/slams.yaml", "--execution", "closed-loop", "--out", "out"});
+  for (const auto& run : json_of(cli, {"monitor", "two/slams.yaml", "out"}).at("runs")) {
+    CHECK(run.at("verdict") == "consistent");
+  }
+  // Not where nothing demands it, so the drawer stays open until then.
+  const std::string opened = event(1, "OpenDrawer(top)");
+  const std::string shut = R"j({"t": 2, "state": {"Open(top)": false}})j";
+  cli.write("log.jsonl", opened + shut + "\n");
+  CHECK(json_of(cli, {"monitor", "two/slams.yaml", "log.jsonl"}, 1).at("first").at("line") == 2);
+  cli.write("log.jsonl", opened + event(2, "Park()") + shut + "\n");
+  json_of(cli, {"monitor", "two/slams.yaml", "log.jsonl", "--no-plan"});
+}
+
+TEST_CASE("unobserved events happen while the plan waits, and nothing is known behind a cut") {
+  const TwoModels cli;
+  cli.write("two/slams.e",
+            "load opens.e\nevent Slam()\n[drawer,time] Terminates(Slam(),Open(drawer),time).\n");
+  cli.write("two/slams.yaml",
+            "include: common.yaml\nmodel: [slams.e, start.e]\nsimulator: {model: slams.e}\n"
+            "events: {unobserved: [Slam]}\n");
+  const std::string shuts = event(1, "OpenDrawer(top)") +
+                            R"j({"t": 2, "state": {"Open(top)": true}}
+{"t": 3, "state": {"Open(top)": false}}
+)j";
+  cli.write("log.jsonl", shuts + event(4, "CloseDrawer(top)") + event(5, "Park()"));
+  CHECK(json_of(cli, {"monitor", "two/slams.yaml", "log.jsonl"}).at("events") == 3);
+  // The plan has not gone on meanwhile.
+  cli.write("log.jsonl", shuts + event(4, "Park()"));
+  CHECK(json_of(cli, {"monitor", "two/slams.yaml", "log.jsonl"}, 1).at("first").at("line") == 4);
+
+  cli.write("two/many.lisp", R"((def-cram-function many ()
+  (let ((n 0))
+    (loop (setf n (+ n 1))
+          (perform (an action (type opening) (object (an object (name top)))))
+          (perform (an action (type closing) (object (an object (name top))))))))
+(many)
+)");
+  cli.write("two/many.yaml",
+            "include: slams.yaml\nplan: many.lisp\nconstraints: \"HoldsAt(Open(top),time)\"\n");
+  std::string log;
+  for (int i = 0; i < 32; ++i) {
+    log += event(i, i % 2 == 0 ? "OpenDrawer(top)" : "CloseDrawer(top)");
+  }
+  cli.write("log.jsonl", log);
+  json_of(cli, {"monitor", "two/many.yaml", "log.jsonl"});
+  cli.write("log.jsonl", log + event(40, "OpenDrawer(top)"));
+  const auto cut = json_of(cli, {"monitor", "two/many.yaml", "log.jsonl"}, 4);
+  CHECK(cut.at("verdict") == "undecided");
+  CHECK(cut.at("first").at("line") == 33);
+  CHECK(cut.at("because").get<std::string>().find("`loop` at two/many.lisp:3") !=
+        std::string::npos);
+  // What the axioms rule out is inconsistent there as well.
+  cli.write("two/closed.e",
+            "[drawer,time] Happens(CloseDrawer(drawer),time) -> HoldsAt(Open(drawer),time).\n");
+  cli.write("two/closed.yaml", "include: many.yaml\nmodel: [slams.e, start.e, closed.e]\n");
+  cli.write("log.jsonl", log + event(40, "CloseDrawer(top)"));
+  CHECK(json_of(cli, {"monitor", "two/closed.yaml", "log.jsonl"}, 1).at("first").at("line") == 33);
 }
 
 TEST_CASE("bad lines are located, and what came before them is not lost") {
@@ -197,6 +302,9 @@ TEST_CASE("bad lines are located, and what came before them is not lost") {
     CHECK(json.at("status") == "error");
     CHECK(json.at("diagnostics").size() == 1);
     CHECK(json.at("events") == 1);
+    CHECK(json.at("verdict") == "undecided");
+    CHECK(json.at("because").get<std::string>().find(
+              "line 3 cannot be read; what comes before it is consistent") == 0);
   }
   cli.write("log", "t,robot.x\n0,0.5\n1\n");
   const auto few = cli.parallax({"monitor", "scenario.yaml", "log"});
@@ -282,6 +390,18 @@ TEST_CASE("every recorded simulation is checked again: discrepancies at their st
       }
     }
   }
+  // What no simulator of the scenario says is no observation.
+  auto journal = cli.read("out/scenario/journal.ndjson");
+  const std::string held = R"j("box.held":false)j";
+  const auto at = journal.find(held, journal.find(R"j("observations":[)j"));
+  REQUIRE(at != std::string::npos);
+  cli.write("out/scenario/journal.ndjson",
+            journal.replace(at, held.size(), R"j("box.held":"no")j"));
+  const auto odd = cli.parallax({"monitor", "scenario.yaml", "out/scenario"});
+  CHECK(odd.code == 3);
+  CHECK(odd.err.find("out/scenario/journal.ndjson:3:") == 0);
+  CHECK(odd.err.find("error[E7103]") != std::string::npos);
+  CHECK(odd.err.find("`box.held` at timepoint 0") != std::string::npos);
   // Only with the scenario that was run.
   CHECK(cli.parallax({"monitor", "scenario.yaml", "out/edge"}).code == 3);
 }

@@ -175,7 +175,7 @@ class Collector {
     auto& scenario = executed_[header.scenario_hash];
     if (!scenario.loop) {
       auto loaded = load_recorded_scenario({run.folder, options_.scenario}, header,
-                                           ScenarioUse::kExecute, context_);
+                                           ScenarioUse::kRun, context_);
       if (!loaded) return sink.already_reported();
       scenario.loaded = *std::move(loaded);
       auto loop = LoopCoverage::make(scenario.loaded, longest(header.scenario_hash), context_);

@@ -25,6 +25,12 @@ struct MonitorPlace {
   bool at_the_end = false;     // of fluents that are compared at rest only
 };
 
+/// An action that the log begins and never ends.
+struct UnendedAction {
+  std::string event;
+  MonitorPlace place;
+};
+
 struct MonitorResult {
   MonitorVerdict verdict = MonitorVerdict::kConsistent;
   std::string log;                    // as the user named it; of a recorded simulation "1.4"
@@ -38,6 +44,7 @@ struct MonitorResult {
   std::size_t most_states = 0;
   std::vector<std::string> unreported;  // variables that the mapping asks for in vain
   std::vector<std::string> hints;       // about those
+  std::vector<UnendedAction> unended;   // in the order in which they were begun
   double wall_s = 0.0;
 };
 

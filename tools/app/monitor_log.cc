@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <set>
+#include <map>
 #include <unordered_map>
 
 #include "compiler/base/diagnostic_codes.h"
@@ -36,6 +36,9 @@ constexpr std::int64_t kLinesPerLook = 256;
 constexpr std::chrono::milliseconds kProgressEvery(500);
 /// So many variables are named in the result.
 constexpr std::size_t kMostNamed = 20;
+
+/// Editors of some systems begin a text with it.
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// ASCII without NUL, as nearly all lines are.
 bool is_plain(std::string_view line) {
@@ -104,6 +107,12 @@ class LogWatcher {
       result_.interrupted = true;
       return false;
     }
+    if (source_.number() == 1 && line.starts_with(kByteOrderMark)) {
+      line.remove_prefix(kByteOrderMark.size());
+      skipped_ = kByteOrderMark.size();
+    } else {
+      skipped_ = 0;
+    }
     if (!is_plain(line)) {
       const auto invalid = std::min(base::first_invalid_utf8(line), line.find('\0'));
       if (invalid != line.size()) return refuse({invalid + 1, "this byte is not of UTF-8 text"});
@@ -132,7 +141,8 @@ class LogWatcher {
   bool refuse(const LogError& error) {
     auto report = context_.sink().error_about(
         DiagnosticCode::kBadLogLine,
-        fmt::format("{}:{}:{}", result_.log, source_.number(), error.column), error.text);
+        fmt::format("{}:{}:{}", result_.log, source_.number(), error.column + skipped_),
+        error.text);
     for (const auto& note : notes_) report.note(note);
     result_.failed = true;
     return false;
@@ -162,7 +172,7 @@ class LogWatcher {
     if (entry_.started) {
       const auto id = event(*entry_.started);
       if (!id) return false;
-      under_way_.insert(id->index());
+      under_way_.try_emplace(id->index(), Begun{here(), result_.under_way});
     }
     return !entry_.has_state || see();
   }
@@ -199,10 +209,30 @@ class LogWatcher {
 
   /// What is compared at rest only is compared with the last thing that was seen.
   void end() {
-    if (!unsettled_ || !under_way_.empty()) return;
+    if (!under_way_.empty()) return note_unended();
+    if (!unsettled_) return;
     auto place = unsettled_->first;
     place.at_the_end = true;
     (void)note(watch_.observe(unsettled_->second, true), place);
+  }
+
+  /// The log ends, and actions do not: what was seen since was not compared.
+  void note_unended() {
+    auto unseen = result_.under_way;
+    for (const auto& [event, begun] : under_way_) {
+      result_.unended.push_back({watch_.symbols().name(EventId(event)), begun.place});
+      unseen = std::min(unseen, begun.uncompared);
+    }
+    std::sort(result_.unended.begin(), result_.unended.end(),
+              [](const auto& a, const auto& b) { return a.place.line < b.place.line; });
+    const auto count = result_.under_way - unseen;
+    if (count == 0) return;
+    const auto& first = result_.unended.front();
+    result_.verdict = MonitorVerdict::kUndecided;
+    result_.first = first.place;
+    result_.undecided_because =
+        fmt::format("`{}` is begun and no `event` ends it: {} later observation{} not compared",
+                    first.event, count, count == 1 ? " was" : "s were");
   }
 
   bool note(Admission admission, const MonitorPlace& place) {
@@ -228,10 +258,14 @@ class LogWatcher {
       }
     }
     if (result_.verdict != MonitorVerdict::kConsistent) return;
-    if (result_.interrupted) {
+    if (result_.failed) {
+      result_.verdict = MonitorVerdict::kUndecided;
+      result_.undecided_because = fmt::format(
+          "line {} cannot be read; what comes before it is consistent", source_.number());
+    } else if (result_.interrupted) {
       result_.verdict = MonitorVerdict::kUndecided;
       result_.undecided_because = "it was stopped";
-    } else if (!result_.failed && result_.events == 0 && result_.compared == 0) {
+    } else if (result_.events == 0 && result_.compared == 0) {
       result_.verdict = MonitorVerdict::kUndecided;
       result_.undecided_because =
           "the log says nothing of the model: no event, and no variable "
@@ -250,10 +284,15 @@ class LogWatcher {
   std::optional<Form> form_;
   harness::CsvLog csv_;
   bool is_header_ = false;
+  std::size_t skipped_ = 0;  // bytes of the line that are no part of its text
   LogEntry entry_;
   harness::ForeignNames foreign_;
   std::vector<bool> reported_;  // by variable
-  std::set<std::uint32_t> under_way_;
+  struct Begun {
+    MonitorPlace place;
+    std::int64_t uncompared = 0;  // observations by then
+  };
+  std::map<std::uint32_t, Begun> under_way_;  // by event
   std::vector<std::string> notes_;
   std::optional<std::pair<MonitorPlace, harness::ReportedValues>> unsettled_;
   double t_ = 0.0;

@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
+#include <memory>
+
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/journal.h"
+#include "harness/campaign/loop_samples.h"
+#include "tools/app/closed_loop.h"
 #include "tools/app/monitor.h"
 
 namespace parallax::tools {
@@ -18,6 +22,19 @@ harness::ReportedValues reported(const harness::ObservationReader& reader,
     out.push_back(found == state.end() ? std::nullopt : std::optional(found->second));
   }
   return out;
+}
+
+/// A variable that is no such thing as the mapping asks for; empty: there is none.
+std::string misfit(const harness::ObservationReader& reader, const SampleRecord& record) {
+  for (std::size_t t = 0; t < record.observations.size(); ++t) {
+    for (std::size_t v = 0; v < reader.variables().size(); ++v) {
+      const auto found = record.observations[t].find(reader.variables()[v]);
+      if (found == record.observations[t].end() || reader.fits(v, found->second)) continue;
+      return fmt::format("`{}` at timepoint {} is no such value as the mapping asks for",
+                         found->first, t);
+    }
+  }
+  return {};
 }
 
 struct RecordedStep {
@@ -103,6 +120,12 @@ base::Result<std::vector<MonitorResult>> monitor_run(const RunFolderOptions& run
   as_recorded.comparison = recorded_comparison(*journal->header);
   auto watch = Watch::make(*loaded, as_recorded, context);
   if (!watch) return sink.already_reported();
+  std::unique_ptr<ClosedLoop> loop;
+  if (loaded->scenario.execution == harness::Execution::kClosedLoop) {
+    auto made = ClosedLoop::make(*loaded, context);
+    if (!made) return sink.already_reported();
+    loop = *std::move(made);
+  }
   std::vector<MonitorResult> out;
   for (const auto& [key, record] : journal->samples) {
     if (context.stopped()) break;
@@ -120,6 +143,17 @@ base::Result<std::vector<MonitorResult>> monitor_run(const RunFolderOptions& run
           record.path ? journal->places.at(key) : journal->trace_places.at(record.trace);
       return sink.error(base::DiagnosticCode::kForeignJournalLine, place,
                         "it names what the model has not");
+    }
+    auto why = misfit((*watch)->reader(), record);
+    if (why.empty() && record.path.has_value() != (loop != nullptr)) {
+      why = "it is of another way of execution than the run";
+    }
+    if (why.empty() && loop != nullptr) {
+      why = harness::wrong_path(loaded->scenario, loop->plan(),
+                                {journal->header->seed, loop->max_performs()}, record);
+    }
+    if (!why.empty()) {
+      return sink.error(base::DiagnosticCode::kForeignJournalLine, journal->places.at(key), why);
     }
     out.push_back(RunWatcher(**watch, steps, record).run());
   }

@@ -135,18 +135,21 @@ MonitorVerdict verdict_of(const std::vector<MonitorResult>& runs) {
 
 std::string monitor_text(const MonitorResult& result) {
   std::string out = first_text(result);
-  out += fmt::format("{}{}: {} observations ({} compared", to_string(result.verdict),
-                     result.failed && result.verdict == MonitorVerdict::kConsistent
-                         ? " as far as the log can be read"
-                         : "",
-                     result.observations, result.compared);
+  out += fmt::format(
+      "{}: {} observations ({} compared",
+      result.failed ? "consistent as far as the log can be read" : to_string(result.verdict),
+      result.observations, result.compared);
   if (result.under_way > 0)
     out += fmt::format(", {} while an action was under way", result.under_way);
   out += fmt::format("), {} steps; at most {} states possible at once", result.events,
                      result.most_states);
   if (result.states) out += fmt::format(", {} at last", *result.states);
   out += "\n";
-  if (result.verdict == MonitorVerdict::kUndecided && !result.first) {
+  for (const auto& action : result.unended) {
+    out += fmt::format("not ended: {} (line {}, t = {:.6g} s)\n", action.event, action.place.line,
+                       action.place.t);
+  }
+  if (result.verdict == MonitorVerdict::kUndecided && !result.first && !result.failed) {
     out += fmt::format("undecided: {}\n", result.undecided_because);
   }
   if (!result.unreported.empty()) {
@@ -173,6 +176,11 @@ std::string monitor_json(const MonitorResult& result, const std::string& scenari
            {"log", base::printable(result.log)}};
   out.update(fields(result));
   out["unreported"] = result.unreported;
+  out["unended"] = Json::array();
+  for (const auto& action : result.unended) {
+    out["unended"].push_back(
+        Json{{"event", action.event}, {"line", action.place.line}, {"t", action.place.t}});
+  }
   out["timing"] = Json{{"wall_s", result.wall_s}};
   return base::json_text(out) + "\n";
 }

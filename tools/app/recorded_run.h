@@ -22,9 +22,9 @@ std::filesystem::path scenario_path(const harness::JournalHeader& header);
 std::optional<harness::Comparison> recorded_comparison(const harness::JournalHeader& header);
 harness::Execution recorded_execution(const harness::JournalHeader& header);
 
-/// How a scenario is compiled: as a trace is simulated, to be explained (load_plain_run), or as it
-/// was run (load_scenario_run).
-enum class ScenarioUse : std::uint8_t { kRun, kExplain, kExecute };
+/// How a scenario is compiled: as it was run (load_scenario_run), or to be explained
+/// (load_plain_run).
+enum class ScenarioUse : std::uint8_t { kRun, kExplain };
 
 /// Loads the scenario of a run, which must be the one that was run: kReplayImpossible if it is not,
 /// or cannot be read any more. A journal may name any file, so of one that is not the scenario of

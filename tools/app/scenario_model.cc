@@ -163,8 +163,10 @@ struct Switches {
   std::optional<std::int64_t> horizon = std::nullopt;
   bool with_plan = true;
   bool lint = false;
-  bool watched = false;  // nothing is simulated: unobserved events need no action
-  bool as_run = false;   // in closed loop, if the scenario or `execution` says so
+  /// Nothing is simulated: unobserved events need no action, and where the plan is executed its
+  /// failures raise what their reasons are bound to.
+  bool watched = false;
+  bool as_run = false;  // in closed loop, if the scenario or `execution` says so
   std::optional<harness::Execution> execution = std::nullopt;
   void apply(compiler::CompileInput& input) const {
     input.costs = costs;
@@ -217,6 +219,8 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
                         written ? key : base::SourceRange{scenario->source, 0, 0});
     }
     execute(*scenario, *input);
+  } else if (switches.watched && input->plan) {
+    input->plan->failures_by_reason = scenario->execution == harness::Execution::kClosedLoop;
   }
   if (property && !look_for_violations(*property, *input, context)) {
     return sink.already_reported();
@@ -239,9 +243,12 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
   }
   if (switches.watched) {
     std::erase_if(events, [&](const std::string& event) {
+      const auto symbol = event.substr(0, event.find('('));
       const auto& unobserved = scenario->unobserved;
-      return std::find(unobserved.begin(), unobserved.end(), event.substr(0, event.find('('))) !=
-             unobserved.end();
+      const auto& actions = scenario->actions;
+      return std::find(unobserved.begin(), unobserved.end(), symbol) != unobserved.end() &&
+             std::none_of(actions.begin(), actions.end(),
+                          [&](const auto& action) { return action.event == symbol; });
     });
   }
   if (!harness::check_against_model(*scenario, fluents, events, sink)) {
@@ -371,8 +378,11 @@ std::optional<compiler::CompiledModel> compile_variant(const harness::Scenario& 
                                                        std::int64_t horizon, bool with_plan,
                                                        Context& context) {
   Context own(context.form(), context.stop());
-  auto loaded =
-      load(scenario.file, own, {.horizon = horizon, .with_plan = with_plan, .watched = true});
+  auto loaded = load(scenario.file, own,
+                     {.horizon = horizon,
+                      .with_plan = with_plan,
+                      .watched = true,
+                      .execution = scenario.execution});
   if (!loaded) return std::nullopt;
   return std::move(loaded->compilation.model);
 }
