@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "compiler/base/contract.h"
@@ -174,6 +175,24 @@ std::string loop_claim(const Tally& tally, const CriterionSpec& spec, Comparison
                      fmt::format("leave what the model admits {}", when(comparison)));
 }
 
+namespace {
+
+/// Names a few fluents, counts many by their symbols.
+std::string not_covered_text(const std::vector<std::string>& fluents) {
+  constexpr std::size_t kFew = 6;
+  if (fluents.size() <= kFew) {
+    return fmt::format("no regression evidence for: {}", fmt::join(fluents, ", "));
+  }
+  std::map<std::string, std::size_t> counts;
+  for (const auto& fluent : fluents) ++counts[fluent.substr(0, fluent.find('('))];
+  std::vector<std::string> parts;
+  for (const auto& [symbol, count] : counts) parts.push_back(fmt::format("{} {}", count, symbol));
+  return fmt::format("no regression evidence for {} fluents: {}", fluents.size(),
+                     fmt::join(parts, ", "));
+}
+
+}  // namespace
+
 std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec,
                                  std::optional<std::int64_t> paper_stopped_at) {
   std::vector<std::string> result;
@@ -187,8 +206,7 @@ std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec,
         level_text(spec.confidence_level)));
   }
   if (paper_stopped_at && !tally.frame().not_covered.empty()) {
-    result.push_back(
-        fmt::format("no regression evidence for: {}", fmt::join(tally.frame().not_covered, ", ")));
+    result.push_back(not_covered_text(tally.frame().not_covered));
   }
   return result;
 }

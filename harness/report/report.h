@@ -18,6 +18,10 @@ struct ReportStyle {
 /// confidence figures and what exactly is claimed; then the verdict. 100 columns.
 std::string campaign_text(const CampaignResult& result, const ReportStyle& style);
 
+/// The same on one screen, under 40 lines: the verdict with its cause or claim first, what happened
+/// at the discrepancy, what is claimed of each trace, and which command looks further.
+std::string campaign_summary(const CampaignResult& result, const ReportStyle& style);
+
 /// The document of `parallax run --json`, one line with a newline; `timing` only if asked for.
 std::string campaign_json(const CampaignResult& result, bool with_timing);
 

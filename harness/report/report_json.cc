@@ -3,6 +3,7 @@
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "harness/campaign/result_json.h"
+#include "harness/report/discrepancy_summary.h"
 #include "harness/report/report.h"
 #include "harness/report/text_layout.h"
 #include "harness/simulator/state_json.h"
@@ -168,7 +169,7 @@ void add_path(const Discrepancy& found, Json& out) {
                     {"together", differs.together}};
 }
 
-Json json_of(const Discrepancy& found, const std::string& folder) {
+Json json_of(const CampaignResult& result, const Discrepancy& found) {
   auto outcomes = Json::array();
   for (const auto& outcome : found.record.outcomes) {
     outcomes.push_back({{"status", to_string(outcome.status)},
@@ -187,7 +188,8 @@ Json json_of(const Discrepancy& found, const std::string& folder) {
               {"start", state_json<Json>(found.record.initial)},
               {"end", state_json<Json>(found.end)},
               {"outcomes", std::move(outcomes)},
-              {"replay", replay_command(folder, found)}};
+              {"words", discrepancy_sentence(result, found)},
+              {"replay", replay_command(result.replay_folder, found)}};
   if (found.path) add_path(found, out);
   return out;
 }
@@ -212,7 +214,7 @@ Json json_of(const CampaignResult& result, bool with_timing) {
   for (const auto& trace : result.traces) out["traces"].push_back(json_of(trace, result.compared));
   out["discrepancies"] = Json::array();
   for (const auto& found : result.discrepancies) {
-    out["discrepancies"].push_back(json_of(found, result.replay_folder));
+    out["discrepancies"].push_back(json_of(result, found));
   }
   out["exploration"] = result.exploration;
   if (!result.bounds.empty()) out["bounds"] = result.bounds;

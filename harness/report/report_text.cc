@@ -8,18 +8,13 @@
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/criterion.h"
 #include "harness/report/report.h"
+#include "harness/report/report_words.h"
 #include "harness/report/text_layout.h"
 
 namespace parallax::harness {
 namespace {
 
 constexpr std::size_t kLabelEnd = 15;  // column at which what stands beside a label begins
-
-std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-
-std::string level(double confidence) { return fmt::format("{:.6g} %", 100.0 * confidence); }
 
 class TextReport {
  public:
@@ -34,21 +29,7 @@ class TextReport {
   }
 
  private:
-  std::string painted(std::string_view text, const char* color) const {
-    return style_.color ? fmt::format("\x1b[{}m{}\x1b[0m", color, text) : std::string(text);
-  }
-
-  std::string verdict_word(CampaignVerdict verdict) const {
-    switch (verdict) {
-      case CampaignVerdict::kNoDiscrepancy:
-        return painted("no discrepancy found", "1;32");
-      case CampaignVerdict::kDiscrepancy:
-        return painted("discrepancy", "1;31");
-      case CampaignVerdict::kInconclusive:
-        break;
-    }
-    return painted("inconclusive", "1;33");
-  }
+  std::string verdict(CampaignVerdict verdict) const { return verdict_word(verdict, style_.color); }
 
   void line(std::string_view label, std::string_view text, std::size_t indent = 2) {
     const auto end = std::max(kLabelEnd, indent + label.size() + 1);
@@ -67,16 +48,7 @@ class TextReport {
     }
     line("simulator", text);
     line("seed", fmt::format("{}", result_.seed));
-    const auto& criterion = result_.criterion;
-    if (criterion.kind == CriterionKind::kPaper) {
-      line("criterion", fmt::format("paper ({}) at C = {}; not a probability of error",
-                                    criterion.paper.preset, level(criterion.confidence_level)));
-    } else {
-      line("criterion",
-           fmt::format("clean-runs: {} clean runs exclude p >= {} with {} confidence",
-                       runs_needed(criterion.confidence_level, criterion.epsilon),
-                       percent_up(criterion.epsilon), level(criterion.confidence_level)));
-    }
+    line("criterion", criterion_text(result_.criterion));
     if (result_.execution == Execution::kClosedLoop) {
       line("execution", "closed-loop: the plan goes on by what the simulator reports");
     }
@@ -112,10 +84,10 @@ class TextReport {
 
   void one_trace(const TraceResult& trace) {
     if (trace.loop) {
-      out_ += fmt::format("\nexecutions: {}\n", verdict_word(trace.verdict));
+      out_ += fmt::format("\nexecutions: {}\n", verdict(trace.verdict));
       paths(*trace.loop);
     } else {
-      out_ += fmt::format("\ntrace {}: {}\n", trace.trace->number, verdict_word(trace.verdict));
+      out_ += fmt::format("\ntrace {}: {}\n", trace.trace->number, verdict(trace.verdict));
       events(trace);
       start(trace);
     }
@@ -230,23 +202,6 @@ class TextReport {
     }
   }
 
-  static std::string end_of(PathEnd end, const std::string& detail) {
-    switch (end) {
-      case PathEnd::kDone:
-        return "the plan is done";
-      case PathEnd::kFailed:
-        return fmt::format("the plan fails with {}", detail);
-      case PathEnd::kCut:
-        return fmt::format("unrolled no further: {}", detail);
-      case PathEnd::kPerformLimit:
-      case PathEnd::kTimeLimit:
-      case PathEnd::kUnboundReason:
-      case PathEnd::kUnnamedObject:
-        break;
-    }
-    return fmt::format("ended by {}", to_string(end));
-  }
-
   void certified(const TraceResult& trace) {
     if (trace.verdict != CampaignVerdict::kDiscrepancy) {
       line("certified", trace.certified_epsilon < 1.0
@@ -273,8 +228,9 @@ class TextReport {
 
   void discrepancy(const Discrepancy& found, const TraceResult& trace) {
     const auto id = fmt::format("{}.{}", found.trace, found.sample);
-    out_ += fmt::format("\n  {} in simulation {}, seed {}, {}\n", painted("discrepancy", "1;31"),
-                        id, found.seed, confirmation(found));
+    out_ += fmt::format("\n  {} in simulation {}, seed {}, {}\n",
+                        painted("discrepancy", "1;31", style_.color), id, found.seed,
+                        confirmation(found));
     line("cause", cause(found), 4);
     if (found.path) return path_discrepancy(found);
     const bool on_the_way =
@@ -369,18 +325,6 @@ class TextReport {
             fluent.observed ? "true" : "false"};
   }
 
-  static std::string confirmation(const Discrepancy& found) {
-    switch (found.confirmation) {
-      case Confirmation::kBitEqual:
-        return "repeated bit for bit";
-      case Confirmation::kDiffers:
-        return "NOT repeatable: the simulator is not deterministic";
-      case Confirmation::kLost:
-        break;
-    }
-    return "not repeated: the simulator was lost";
-  }
-
   /// Where the run left the trace, if that was before the end.
   void parting(const Discrepancy& found, const TraceResult& trace) {
     const auto t = static_cast<std::size_t>(found.first_divergence);
@@ -390,15 +334,9 @@ class TextReport {
           fmt::format("{} is {} instead of {}", fluent.fluent, fluent.observed, fluent.predicted));
     }
     line("first seen",
-         fmt::format("at timepoint {}, after {}: {}", t, t > 0 ? event(trace, t - 1) : "reset",
-                     fmt::join(parts, ", ")),
+         fmt::format("at timepoint {}, after {}: {}", t,
+                     t > 0 ? event_at(*trace.trace, t - 1) : "reset", fmt::join(parts, ", ")),
          4);
-  }
-
-  /// "Go(r2) (fetch.lisp:4)"
-  static std::string event(const TraceResult& trace, std::size_t t) {
-    const auto& source = trace.trace->plan[t].source;
-    return trace.trace->event(t) + (source.empty() ? "" : fmt::format(" ({})", source));
   }
 
   /// Actions that ended otherwise than the model says: a failure that it predicts is none of them.
@@ -425,9 +363,9 @@ class TextReport {
   }
 
   void foot() {
-    out_ += fmt::format("\nverdict: {}\n", verdict_word(result_.verdict));
+    out_ += fmt::format("\nverdict: {}\n", verdict(result_.verdict));
     if (result_.execution == Execution::kOpenLoop) {
-      line("traces", fmt::format("{}, {}", result_.traces.size(), exploration()));
+      line("traces", fmt::format("{}, {}", result_.traces.size(), exploration_text(result_)));
     }
     for (const auto& bound : result_.bounds) line("bound", bound);
     line("simulations", fmt::format("{}", result_.simulations));
@@ -445,11 +383,6 @@ class TextReport {
       line("note", fmt::format("interrupted; `--resume --out {}` continues",
                                shell_word(result_.replay_folder)));
     }
-  }
-
-  std::string exploration() const {
-    if (result_.exploration == "stopped") return "stopped before all were explored";
-    return result_.exploration;
   }
 
   const CampaignResult& result_;

@@ -46,6 +46,10 @@ TEST_CASE(
   CHECK(holds(result.err, "ok    wrong_model.yaml ("));
   CHECK(holds(result.err, "FAIL  two.yaml ("));
   CHECK(holds(result.err, "verdict discrepancy, expected no-discrepancy"));
+  // Why, and where to read on, without opening anything.
+  CHECK(holds(result.err, "\n       1.1: PickUp() fails (out of reach: `box` lies "));
+  CHECK(holds(result.err, "\n       report: out/suite/two.yaml/report.txt"));
+  CHECK(std::filesystem::exists(cli.folder() / "out/suite/two.yaml/report.txt"));
 
   const auto junit = parse_xml(cli.read("junit.xml"));
   CHECK(junit.name == "testsuites");

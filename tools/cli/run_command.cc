@@ -189,7 +189,10 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
   if (invocation.options().json) {
     invocation.document(harness::campaign_json(*result, true));
   } else {
-    invocation.result(harness::campaign_text(*result, {invocation.color_on(STDOUT_FILENO)}));
+    const harness::ReportStyle style{invocation.color_on(STDOUT_FILENO)};
+    invocation.result(invocation.options().verbosity > 0
+                          ? harness::campaign_text(*result, style)
+                          : harness::campaign_summary(*result, style));
   }
   invocation.remark(fmt::format("{} simulations in {:.1f} s ({:.0f} s simulated)",
                                 result->timing.runs_made, result->timing.wall_s,

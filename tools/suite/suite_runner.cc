@@ -166,6 +166,16 @@ std::string first_error(const std::string& document) {
   return {};
 }
 
+/// What the first discrepancy of a run is, in words; empty without one.
+std::string first_discrepancy(const std::string& run_document) {
+  const auto run = nlohmann::json::parse(run_document, nullptr, false);
+  for (const auto& found : run.value("discrepancies", nlohmann::json::array())) {
+    return fmt::format("{}.{}: {}", found.value("trace", std::int64_t{0}),
+                       found.value("sample", std::int64_t{0}), found.value("words", ""));
+  }
+  return {};
+}
+
 constexpr std::size_t kMaxMessageBytes = std::size_t{64} << 10U;
 
 /// What this program is run with. Files are named by others: one of the name `--certify=m.e` is a
@@ -272,7 +282,13 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
   // Exit code 1 is a finding and 4 a verdict that may be the expected one; both give a document.
   const bool answered = child.code == 0 || child.code == 1 || child.code == 4;
   if (!answered || has_failed(child.out)) return report_no_answer(child, result);
-  for (auto& problem : unmet(expect, child.out)) result.problems.push_back(std::move(problem));
+  auto problems = unmet(expect, child.out);
+  if (problems.empty()) return;
+  for (auto& problem : problems) result.problems.push_back(std::move(problem));
+  if (auto why = first_discrepancy(child.out); !why.empty()) {
+    result.problems.push_back(std::move(why));
+  }
+  result.problems.push_back("report: " + (folder / "report.txt").string());
 }
 
 CommandWords traces_command(const harness::ManifestCase& one, const RunnerOptions& options) {

@@ -87,5 +87,18 @@ TEST_CASE("caveats: rejected starts with their rate, lost runs, what the paper's
   CHECK(caveats_of(tally_of(1)).empty());
 }
 
+TEST_CASE("caveats: many fluents without evidence are counted by their symbols") {
+  std::vector<std::string> fluents;
+  for (const std::string room : {"a", "b", "c", "d"}) {
+    fluents.push_back("Lit(" + room + ")");
+    fluents.push_back("Open(" + room + ",door)");
+  }
+  Tally tally({{"x"}, {{3, 4}}, {"y"}, {Interval{0, 1}}, fluents});
+  tally.add_clean(std::vector<double>{3.5}, std::vector<double>{0.5});
+  const auto found = caveats(tally, {}, 1);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0] == "no regression evidence for 8 fluents: 4 Lit, 4 Open");
+}
+
 }  // namespace
 }  // namespace parallax::harness

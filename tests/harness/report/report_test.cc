@@ -129,6 +129,101 @@ TEST_CASE("the text says events with places, both figures, the claim, and how to
   }
 }
 
+/// With one blank wherever the text has blanks or begins a new line.
+std::string unwrapped(const std::string& text) {
+  std::istringstream stream(text);
+  std::string out;
+  for (std::string word; stream >> word;) out += (out.empty() ? "" : " ") + word;
+  return out;
+}
+
+TEST_CASE("the summary says first what parted them, then where and how often") {
+  auto result = sample_result();
+  result.journal_open = true;
+  result.simulator.parameters = {{"box.x", "m", true}};
+  const auto summary = [&] { return campaign_summary(result, {}); };
+  const auto text = summary();
+  CHECK(
+      text.starts_with("discrepancy: at the start RobotIn(r2) is false, and the model says true"));
+  for (const std::string part :
+       {"     0  Go(r2)    fetch.lisp:4   ok\n", "     1  PickUp()  fetch.lisp:10  ",
+        "    RobotIn(r2)  true       false     at the start\n",
+        "      BoxIn(r1)  true       false     and so at the end\n", "  start     box.x = 1.25 m\n",
+        "  trace 1  no discrepancy found  7 clean of 7  p < 48.3 % with 99 % confidence\n",
+        "  trace 2  discrepancy           3 clean of 4\n",
+        "trace 1: no regression evidence for: Holding()", "seed 7, compared",
+        "  next      parallax replay out/two --sample 2.4\n",
+        "            parallax explain out/two\n"}) {
+    CAPTURE(part);
+    CHECK(text.find(part) != std::string::npos);
+  }
+  auto& found = result.discrepancies[0];
+  found.cause = {"PickUp(): box-lost", "box-lost: nothing in the gripper"};
+  found.first_divergence = 2;
+  found.first = found.fluents;
+  CHECK(
+      summary().starts_with("discrepancy: PickUp() fails (nothing between the pads \\u001b[31m), "
+                            "and the model says that it\n"
+                            "  succeeds\n"));
+  CHECK(summary().find("  *  1  PickUp()  fetch.lisp:10  failed: nothing between the pads") !=
+        std::string::npos);
+  CHECK(summary().find("and so at the end") == std::string::npos);
+  // No action failed: what the event should have done and has not.
+  found.record.outcomes[1] = {SimStatus::kOk, "", 1.5};
+  CHECK(
+      summary().starts_with("discrepancy: after PickUp() BoxIn(r1) is false, and the model says "
+                            "true (1 other fluent differs)\n"));
+  found.kind = DiscrepancyKind::kTransient;
+
+  CHECK(unwrapped(summary()).find("; it ends as predicted 0 Go(r2)") != std::string::npos);
+  result.comparison = Comparison::kFinal;
+  CHECK(unwrapped(summary()).find("compared at the end criterion") != std::string::npos);
+  // Without differences everything is claimed first.
+  result = sample_result();
+  result.verdict = CampaignVerdict::kNoDiscrepancy;
+  result.traces.pop_back();
+  result.discrepancies.clear();
+  CHECK(summary().starts_with("no discrepancy found\n  claim     with 99 % confidence, fewer"));
+  CHECK(summary().find("  events    Go(r2), PickUp()\n") != std::string::npos);
+}
+
+TEST_CASE("the summary fits a screen whatever there is to say") {
+  auto result = sample_result();
+  result.journal_open = true;
+  auto found = result.discrepancies[0];
+  found.first_divergence = 60;
+  found.cause = {"Go(r30): not BoxIn(r30)", {}};
+  std::vector<test::NamedEvent> events;
+  for (int i = 0; i < 80; ++i) {
+    events.push_back({"Go(r" + std::to_string(i) + ")", {"a/folder/fetch.lisp:4", {}}});
+    found.record.initial["body" + std::to_string(i) + ".x"] = 1.0 / (i + 3);
+    found.first.push_back({"BoxIn(r" + std::to_string(i) + ")", 60, true, false});
+    found.fluents.push_back({"RobotIn(r" + std::to_string(i) + ")", 80, true, false});
+  }
+  found.record.outcomes.assign(80, {SimStatus::kOk, "", 1.0});
+  auto long_one = result.traces[1];
+  for (int i = 0; i < 80; ++i) {
+    long_one.start_region.push_back({"body" + std::to_string(i) + ".x", {0.0, 1.0, false}});
+  }
+  std::vector<std::vector<std::string>> states(events.size() + 1);
+  result.traces.clear();
+  result.discrepancies.clear();
+  for (int i = 1; i <= 50; ++i) {
+    long_one.trace =
+        std::make_shared<const CampaignTrace>(test::named_trace(i, {}, states, events));
+    long_one.caveats = {std::string(2000, 'x') + " " + std::to_string(i), "a common one"};
+    result.traces.push_back(long_one);
+    found.trace = i;
+    result.discrepancies.push_back(found);
+  }
+  const auto lines = lines_of(campaign_summary(result, {}));
+  CHECK(lines.size() < 50);
+  for (const auto& line : lines) {
+    CAPTURE(line);
+    CHECK(base::count_code_points(line) <= 100);
+  }
+}
+
 TEST_CASE("the paper's figure stands in a trace's account once") {
   const auto text = campaign_text(sample_result(), {});
   const auto first = text.find("satisfied after 3 runs");

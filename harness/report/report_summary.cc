@@ -1,0 +1,286 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+#include "compiler/base/diagnostic_printer.h"
+#include "compiler/base/utf8.h"
+#include "harness/confidence/criterion.h"
+#include "harness/report/discrepancy_summary.h"
+#include "harness/report/report.h"
+#include "harness/report/report_words.h"
+#include "harness/report/text_layout.h"
+
+namespace parallax::harness {
+namespace {
+
+// A screen has some forty lines; what does not fit is in report.txt.
+constexpr std::size_t kMaxEvents = 10, kMaxTraces = 6, kMaxNotes = 3, kMaxFurther = 3;
+
+class Summary {
+ public:
+  Summary(const CampaignResult& result, const ReportStyle& style)
+      : result_(result), style_(style) {}
+
+  std::string write() {
+    headline();
+    if (!result_.discrepancies.empty()) {
+      out_ += discrepancy_summary(result_, result_.discrepancies.front(), style_);
+      further_discrepancies();
+      out_ += '\n';
+    }
+    traces();
+    paths();
+    causes();
+    notes();
+    context();
+    pointers();
+    return std::move(out_);
+  }
+
+ private:
+  void line(std::string_view label, std::string_view text) {
+    auto first = "  " + std::string(label) + ' ';
+    first.resize(std::max(first.size(), kSummaryColumn), ' ');
+    out_ += wrapped(first, text, kSummaryColumn);
+  }
+
+  /// Two lines of it.
+  static std::string shortened(std::string text) {
+    constexpr std::size_t kLongest = 160;
+    if (base::count_code_points(text) <= kLongest) return text;
+    auto end = text.rfind(' ', kLongest);
+    if (end == std::string::npos) end = kLongest;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+    return text.substr(0, end) + " ...";
+  }
+
+  // The verdict in a sentence.
+
+  void headline() {
+    const auto word = verdict_word(result_.verdict, style_.color);
+    std::string text;
+    if (result_.verdict == CampaignVerdict::kDiscrepancy && !result_.discrepancies.empty()) {
+      text = discrepancy_sentence(result_, result_.discrepancies.front());
+    } else if (result_.traces.empty()) {
+      text = result_.interrupted ? "interrupted before anything was compared"
+                                 : "no trace, so nothing was compared";
+    } else if (result_.failed) {
+      text = "an error ended the run";
+    } else if (result_.interrupted) {
+      text = "interrupted";
+    } else if (result_.verdict == CampaignVerdict::kInconclusive) {
+      text = why_inconclusive();
+    }
+    // The word carries its colour, of which the width knows nothing.
+    const auto plain = std::string(verdict_word(result_.verdict, false));
+    auto lines = wrapped(plain + (text.empty() ? "" : ": "), text, 2);
+    out_ += lines.replace(0, plain.size(), word);
+    if (result_.traces.size() == 1) line("claim", result_.traces.front().claim);
+    out_ += '\n';
+  }
+
+  std::string why_inconclusive() const {
+    const auto open = std::count_if(
+        result_.traces.begin(), result_.traces.end(),
+        [](const auto& trace) { return trace.verdict == CampaignVerdict::kInconclusive; });
+    if (open == 0) return "nothing differs so far, and there are more traces than a limit admits";
+    const auto& first = result_.traces.front();
+    if (first.loop && first.loop->unfinished > 0) {
+      return fmt::format("{} (of the first: {})",
+                         counted(first.loop->unfinished, "run did not end", "runs did not end"),
+                         first.loop->why_unfinished);
+    }
+    return first.loop ? std::string("fewer runs than the criterion asks for")
+                      : fmt::format("fewer runs than the criterion asks for of {} of {}", open,
+                                    counted(static_cast<std::int64_t>(result_.traces.size()),
+                                            "trace", "traces"));
+  }
+
+  /// With --keep-going: a line each.
+  void further_discrepancies() {
+    const auto& all = result_.discrepancies;
+    for (std::size_t i = 1; i < all.size() && i <= kMaxFurther; ++i) {
+      line(fmt::format("{}.{}", all[i].trace, all[i].sample),
+           discrepancy_sentence(result_, all[i]));
+    }
+    if (all.size() > 1 + kMaxFurther) {
+      line("", fmt::format("and {} more discrepancies", all.size() - 1 - kMaxFurther));
+    }
+  }
+
+  // How often, and what is claimed.
+
+  static std::string bound_of(const TraceResult& trace) {
+    if (trace.verdict == CampaignVerdict::kDiscrepancy) return {};
+    return trace.certified_epsilon < 1.0
+               ? fmt::format("p < {} with {} confidence", percent_up(trace.certified_epsilon),
+                             level(trace.certified_level))
+               : std::string("nothing certified");
+  }
+
+  static std::string runs_of(const TraceResult& trace) {
+    auto text = fmt::format("{} clean of {}", trace.clean, trace.simulations);
+    if (trace.lost > 0) text += fmt::format(", {} lost", trace.lost);
+    return text;
+  }
+
+  void traces() {
+    const auto& all = result_.traces;
+    if (all.size() == 1) {
+      const auto& trace = all.front();
+      line("runs", runs_of(trace) +
+                       (trace.rejected > 0 ? fmt::format("; {} drawn again", trace.rejected) : ""));
+      if (result_.discrepancies.empty() && !trace.loop && trace.trace->event_count() > 0) {
+        line("events", events_of(trace));
+      }
+    }
+    if (all.size() < 2) return;
+    // Where there are many, those that are not clean are what is looked for.
+    const auto is_clean = [](const TraceResult* one) {
+      return one->verdict == CampaignVerdict::kNoDiscrepancy;
+    };
+    std::vector<const TraceResult*> shown;
+    for (const auto& trace : all) shown.push_back(&trace);
+    std::stable_partition(shown.begin(), shown.end(), std::not_fn(is_clean));
+    shown.resize(std::min(shown.size(), kMaxTraces));
+    std::sort(shown.begin(), shown.end(),
+              [](const auto* a, const auto* b) { return a->trace->number < b->trace->number; });
+    std::vector<std::vector<std::string>> rows;
+    for (const auto* trace : shown) {
+      rows.push_back({fmt::format("trace {}", trace->trace->number),
+                      verdict_word(trace->verdict, false), runs_of(*trace), bound_of(*trace)});
+    }
+    const auto left_out = all.size() - shown.size();
+    out_ += table(rows, 2);
+    if (left_out > 0) out_ += fmt::format("  and {} more traces\n", left_out);
+    if (result_.verdict == CampaignVerdict::kNoDiscrepancy) {
+      line("claim",
+           "each holds for its trace alone: that all of them hold together is less certain");
+    }
+  }
+
+  static std::string events_of(const TraceResult& trace) {
+    std::vector<std::string> events;
+    for (std::size_t i = 0; i < trace.trace->event_count(); ++i) {
+      if (i == kMaxEvents) {
+        events.push_back(fmt::format("{} more", trace.trace->event_count() - i));
+        break;
+      }
+      events.push_back(trace.trace->event(i));
+    }
+    return fmt::format("{}", fmt::join(events, ", "));
+  }
+
+  void paths() {
+    if (result_.traces.empty() || !result_.traces.front().loop) return;
+    const auto& loop = *result_.traces.front().loop;
+    std::map<std::string, std::int64_t> ends;
+    for (const auto& path : loop.paths) ends[end_of(path.end, path.detail)] += path.runs;
+    std::vector<std::string> parts;
+    for (const auto& [end, runs] : ends) {
+      parts.push_back(fmt::format("{} in {}", end, counted(runs, "run", "runs")));
+    }
+    line("paths", fmt::format("{} from {}: {}",
+                              counted(static_cast<std::int64_t>(loop.paths.size()), "way", "ways"),
+                              counted(loop.initial_states, "start state", "start states"),
+                              fmt::join(parts, "; ")));
+  }
+
+  /// Of executed plans with --keep-going: how often each cause led away from the model.
+  void causes() {
+    if (result_.traces.empty() || !result_.traces.front().loop) return;
+    const auto& loop = *result_.traces.front().loop;
+    for (std::size_t i = 0; i < loop.causes.size() && i <= kMaxFurther; ++i) {
+      const auto& rate = loop.causes[i];
+      line("cause", fmt::format("{}: {}, {:.1f} % ({:g} % interval {:.1f} to {:.1f} %)", rate.cause,
+                                counted(rate.count, "run", "runs"), 100.0 * rate.rate,
+                                100.0 * loop.causes_level, 100.0 * rate.lower, 100.0 * rate.upper));
+    }
+    if (loop.causes.size() > kMaxFurther + 1) {
+      line("cause", fmt::format("{} more", loop.causes.size() - kMaxFurther - 1));
+    }
+  }
+
+  /// What weakens a claim is not left to the long account.
+  void notes() {
+    std::map<std::string, std::vector<std::string>> traces_of;
+    std::vector<std::string> order;
+    for (const auto& trace : result_.traces) {
+      for (const auto& caveat : trace.caveats) {
+        auto& list = traces_of[caveat];
+        if (list.empty()) order.push_back(caveat);
+        list.push_back(fmt::format("{}", trace.trace->number));
+      }
+    }
+    for (std::size_t i = 0; i < order.size() && i < kMaxNotes; ++i) {
+      const auto& list = traces_of[order[i]];
+      const bool some = list.size() < result_.traces.size();
+      auto text = some ? fmt::format("trace {}: {}", fmt::join(list, ", "), order[i]) : order[i];
+      line("note", shortened(std::move(text)));
+    }
+    if (order.size() > kMaxNotes) line("note", fmt::format("{} more", order.size() - kMaxNotes));
+    const auto& bounds = result_.bounds;
+    for (std::size_t i = 0; i < bounds.size() && i < kMaxNotes; ++i) {
+      line("bound", shortened(bounds[i]));
+    }
+    if (bounds.size() > kMaxNotes) line("bound", fmt::format("{} more", bounds.size() - kMaxNotes));
+  }
+
+  // Of what.
+
+  void context() {
+    auto text = result_.scenario;
+    if (!result_.title.empty()) text += ": " + result_.title;
+    line("scenario", text);
+    const auto& simulator = result_.simulator;
+    text = counted(result_.simulations, "simulation", "simulations");
+    if (result_.execution == Execution::kOpenLoop) {
+      text +=
+          fmt::format(" of {} ({})",
+                      counted(static_cast<std::int64_t>(result_.traces.size()), "trace", "traces"),
+                      exploration_text(result_));
+    } else {
+      text += " in closed loop";
+    }
+    text += fmt::format(", {} {}, seed {}, {}", simulator.name, simulator.version, result_.seed,
+                        result_.comparison == Comparison::kFinal ? "compared at the end"
+                                                                 : "compared at every step");
+    line("made", text);
+    line("criterion", criterion_text(result_.criterion));
+  }
+
+  /// Not wrapped: commands are to be copied.
+  void pointers() {
+    if (!result_.journal_open) return;
+    const auto folder = shell_word(result_.replay_folder);
+    std::vector<std::string> commands;
+    if (!result_.discrepancies.empty()) {
+      const auto& found = result_.discrepancies.front();
+      commands.push_back(replay_command(result_.replay_folder, found));
+      if (result_.execution == Execution::kOpenLoop) {
+        commands.push_back(fmt::format("parallax explain {}", folder));
+      }
+    } else if (result_.interrupted && !result_.failed) {
+      commands.push_back(
+          fmt::format("parallax run {} --resume --out {}", shell_word(result_.scenario), folder));
+    }
+    for (std::size_t i = 0; i < commands.size(); ++i) {
+      out_ += fmt::format("  {:<{}}{}\n", i == 0 ? "next" : "", kSummaryColumn - 2,
+                          base::printable(commands[i]));
+    }
+  }
+
+  const CampaignResult& result_;
+  const ReportStyle& style_;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string campaign_summary(const CampaignResult& result, const ReportStyle& style) {
+  return Summary(result, style).write();
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,80 @@
+#include "harness/report/report_words.h"
+
+#include <fmt/format.h>
+
+#include "harness/confidence/clean_runs.h"
+#include "harness/confidence/criterion.h"
+
+namespace parallax::harness {
+
+std::string painted(std::string_view text, const char* color, bool is_on) {
+  return is_on ? fmt::format("\x1b[{}m{}\x1b[0m", color, text) : std::string(text);
+}
+
+std::string verdict_word(CampaignVerdict verdict, bool color) {
+  switch (verdict) {
+    case CampaignVerdict::kNoDiscrepancy:
+      return painted("no discrepancy found", "1;32", color);
+    case CampaignVerdict::kDiscrepancy:
+      return painted("discrepancy", "1;31", color);
+    case CampaignVerdict::kInconclusive:
+      break;
+  }
+  return painted("inconclusive", "1;33", color);
+}
+
+std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string level(double confidence) { return fmt::format("{:.6g} %", 100.0 * confidence); }
+
+std::string criterion_text(const CriterionSpec& criterion) {
+  if (criterion.kind == CriterionKind::kPaper) {
+    return fmt::format("paper ({}) at C = {}; not a probability of error", criterion.paper.preset,
+                       level(criterion.confidence_level));
+  }
+  return fmt::format("clean-runs: {} clean runs exclude p >= {} with {} confidence",
+                     runs_needed(criterion.confidence_level, criterion.epsilon),
+                     percent_up(criterion.epsilon), level(criterion.confidence_level));
+}
+
+std::string end_of(PathEnd end, const std::string& detail) {
+  switch (end) {
+    case PathEnd::kDone:
+      return "the plan is done";
+    case PathEnd::kFailed:
+      return fmt::format("the plan fails with {}", detail);
+    case PathEnd::kCut:
+      return fmt::format("unrolled no further: {}", detail);
+    case PathEnd::kPerformLimit:
+    case PathEnd::kTimeLimit:
+    case PathEnd::kUnboundReason:
+    case PathEnd::kUnnamedObject:
+      break;
+  }
+  return fmt::format("ended by {}", to_string(end));
+}
+
+std::string confirmation(const Discrepancy& found) {
+  switch (found.confirmation) {
+    case Confirmation::kBitEqual:
+      return "repeated bit for bit";
+    case Confirmation::kDiffers:
+      return "NOT repeatable: the simulator is not deterministic";
+    case Confirmation::kLost:
+      break;
+  }
+  return "not repeated: the simulator was lost";
+}
+
+std::string exploration_text(const CampaignResult& result) {
+  return result.exploration == "stopped" ? "stopped before all were explored" : result.exploration;
+}
+
+std::string event_at(const CampaignTrace& trace, std::size_t t) {
+  const auto& source = trace.plan[t].source;
+  return trace.event(t) + (source.empty() ? "" : fmt::format(" ({})", source));
+}
+
+}  // namespace parallax::harness

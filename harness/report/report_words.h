@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "harness/campaign/campaign_result.h"
+
+namespace parallax::harness {
+
+/// What the accounts of a run for people have in common.
+
+/// `text` in a colour of the terminal, as an SGR code: "1;31".
+std::string painted(std::string_view text, const char* color, bool is_on);
+/// "no discrepancy found", "discrepancy", "inconclusive", in its colour.
+std::string verdict_word(CampaignVerdict verdict, bool color);
+/// "1 run", "2 runs"
+std::string counted(std::int64_t count, std::string_view one, std::string_view many);
+/// "99 %"
+std::string level(double confidence);
+/// "clean-runs: 90 clean runs exclude p >= 5 % with 99 % confidence"
+std::string criterion_text(const CriterionSpec& criterion);
+/// "the plan fails with grasp-failed"
+std::string end_of(PathEnd end, const std::string& detail);
+/// "repeated bit for bit"
+std::string confirmation(const Discrepancy& found);
+/// "stopped before all were explored"
+std::string exploration_text(const CampaignResult& result);
+/// "Go(r2) (fetch.lisp:4)"
+std::string event_at(const CampaignTrace& trace, std::size_t t);
+
+}  // namespace parallax::harness
