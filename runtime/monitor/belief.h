@@ -18,7 +18,8 @@ namespace parallax::runtime {
 
 struct BeliefOptions {
   std::size_t max_states = 20'000;  // that are possible at once
-  /// Ways from state to state are remembered until so many states are; then from anew.
+  /// Ways from state to state are remembered until so many states are, or ten times as many ways;
+  /// then from anew.
   std::size_t remembered = 200'000;
   std::vector<compiler::EventId> unobserved;  // may happen without being told of
   /// Happen without being told of where the axioms demand them, and only there: in a state, and
@@ -78,6 +79,7 @@ class Belief {
   /// None: there are more than can be kept, which the next observations may change.
   std::optional<std::size_t> size() const;
   std::size_t largest() const { return largest_; }  // of all sizes so far
+  std::size_t remembered_ways() const { return way_count_; }
   const std::string& undecided_because() const { return undecided_; }
 
   /// Why an observation was refused: the fluents that are as observed in no possible state; if
@@ -166,6 +168,7 @@ class Belief {
   std::vector<ToldStep> labels_;
   std::unordered_map<std::string, std::uint32_t> label_ids_;
   std::unordered_map<std::uint64_t, std::vector<StateId>> ways_;  // by label and state
+  std::size_t way_count_ = 0;  // those that lead nowhere count, too
 
   bool is_settled_ = false;  // else `known_` is all that is known of the start
   Filter known_;

@@ -11,6 +11,12 @@ namespace parallax::runtime {
 
 using compiler::EventId;
 
+namespace {
+
+constexpr std::size_t kWaysPerState = 10;
+
+}  // namespace
+
 Belief::StateId Belief::intern(Words words) {
   const auto [entry, added] =
       state_ids_.try_emplace(std::move(words), static_cast<StateId>(states_.size()));
@@ -29,7 +35,10 @@ std::uint32_t Belief::label_of(const ToldStep& told) {
 
 /// Only what is possible now stays known.
 void Belief::forget() {
-  if (states_.size() <= options_.remembered && labels_.size() <= options_.remembered) return;
+  if (states_.size() <= options_.remembered && labels_.size() <= options_.remembered &&
+      way_count_ <= kWaysPerState * options_.remembered) {
+    return;
+  }
   std::vector<Words> kept;
   for (const auto state : possible_) kept.push_back(std::move(states_[state]));
   states_.clear();
@@ -37,6 +46,8 @@ void Belief::forget() {
   labels_.resize(kToldFrom);
   label_ids_.clear();
   ways_.clear();
+  way_count_ = 0;
+  steps_.clear();  // what their solvers have learned goes as well
   last_closed_ = {};
   possible_.clear();
   for (auto& words : kept) possible_.push_back(intern(std::move(words)));
@@ -169,6 +180,7 @@ const std::vector<Belief::StateId>* Belief::successors(StateId state, std::uint3
   if (known != ways_.end()) return &known->second;
   auto found = ask_step(state, label);
   if (!found) return nullptr;
+  way_count_ += 1 + found->size();
   return &ways_.emplace(key, *std::move(found)).first->second;
 }
 

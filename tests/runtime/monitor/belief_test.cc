@@ -254,6 +254,35 @@ TEST_CASE("more states than may be kept are not told apart: nothing is said any 
   CHECK(other.observe(seen) == Admission::kUndecided);
 }
 
+TEST_CASE("what is remembered is bounded, in few states with many different steps as well") {
+  std::string text = "range time 0 3\nfluent F()\n";
+  for (int e = 0; e < 8; ++e) text += "event E" + std::to_string(e) + "()\n";
+  text += "[time] Initiates(E0(),F(),time).\n";
+  for (int e = 1; e < 8; ++e) {
+    text += "[time] Happens(E" + std::to_string(e) +
+            "(),time) -> HoldsAt(F(),time) | !HoldsAt(F(),time).\n";
+    text += "[time] HoldsAt(F(),time) -> Terminates(E" + std::to_string(e) + "(),F(),time).\n";
+  }
+  const TextModel model(text);
+  REQUIRE(model.ground != nullptr);
+  const auto windows = windows_of(model.compiled);
+  REQUIRE(windows != nullptr);
+  BeliefOptions options;
+  options.remembered = 5;
+  Belief belief(*windows, options);
+  std::size_t most = 0;
+  for (unsigned told = 0; told < 256; told += 2) {
+    runtime::ToldStep step;
+    for (std::uint32_t e = 0; e < 8; ++e) {
+      if ((told >> e & 1U) != 0) step.events.emplace_back(e);
+    }
+    REQUIRE(belief.step(step) == Admission::kAdmitted);
+    most = std::max(most, belief.remembered_ways());
+  }
+  CHECK(most > 10);
+  CHECK(most <= 60);
+}
+
 TEST_CASE("axioms about more than two neighbouring timepoints make no steps") {
   const TextModel model(
       "range time 0 4\nfluent F()\nevent E()\n[time] HoldsAt(F(),time) -> HoldsAt(F(),time+2).\n");

@@ -64,6 +64,8 @@ struct World {
   std::array<Literal, 2> never;  // never both, unless one is none
   std::array<Literal, 2> good;   // by action: what makes it a success
   std::vector<int> plan;         // events, in order
+  int when = 0;                  // a timepoint at which `then` holds; 0: none
+  Literal then;
   static constexpr int kOver = -1;
 
   explicit World(FuzzRandom& random) {
@@ -80,6 +82,10 @@ struct World {
       preconditions.push_back({static_cast<int>(random.below(kEvents)), literal(random, false)});
     }
     if (random.chance(40)) never = {literal(random, false), literal(random, false)};
+    if (random.chance(40)) {
+      when = 1 + static_cast<int>(random.below(3));
+      then = literal(random, false);
+    }
     good = {literal(random, false), literal(random, false)};
     for (auto n = 1 + random.below(3); n > 0; --n) plan.push_back(random.chance(50) ? 0 : 1);
   }
@@ -88,14 +94,14 @@ struct World {
     std::string out = "range time 0 3\n";
     for (int f = 0; f < kFluents; ++f) out += "fluent F" + std::to_string(f) + "()\n";
     for (const auto& name : kNames) out += "event " + name + "\n";
-    const auto when = [](const Literal& condition) {
+    const auto provided = [](const Literal& condition) {
       return condition.fluent < 0 ? std::string() : condition.print() + " -> ";
     };
     for (const auto& effect : effects) {
       auto made = effect.makes;
       made.holds = true;
       const auto text = made.print();
-      out += "[time] " + when(effect.condition) +
+      out += "[time] " + provided(effect.condition) +
              (effect.makes.holds ? "Initiates(" : "Terminates(") +
              kNames[static_cast<std::size_t>(effect.event)] + "," +
              text.substr(8, text.find(',') - 8) + ",time).\n";
@@ -116,6 +122,7 @@ struct World {
     for (const auto& needs : preconditions) {
       out += "[time] " + happens(needs.event) + " -> " + needs.condition.print() + ".\n";
     }
+    if (when > 0) out += then.print(std::to_string(when)) + ".\n";
     if (never[0].fluent >= 0) {
       out += "[time] !(" + never[0].print() + " & " + never[1].print() + ").\n";
     }
@@ -141,11 +148,12 @@ struct World {
   static std::string happens(int event) {
     return "Happens(" + kNames[static_cast<std::size_t>(event)] + ",time)";
   }
-  bool is_state(unsigned state) const {
+  bool is_state(unsigned state, int time) const {
+    if (time == when && when > 0 && !then.of(state)) return false;
     return never[0].fluent < 0 || !(never[0].of(state) && never[1].of(state));
   }
   /// The state behind; none: they cannot happen together here.
-  std::optional<unsigned> after(unsigned state, unsigned events) const {
+  std::optional<unsigned> after(unsigned state, unsigned events, int time) const {
     const auto happens = [&](int e) {
       return e < 0 || (events >> static_cast<unsigned>(e) & 1U) != 0;
     };
@@ -163,11 +171,17 @@ struct World {
     }
     if ((made & ended) != 0) return {};
     const auto out = (state | made) & ~ended;
-    return is_state(out) ? std::optional(out) : std::nullopt;
+    return is_state(out, time + 1) ? std::optional(out) : std::nullopt;
   }
 };
 
-using Place = std::pair<unsigned, int>;  // state, next perform of the plan or kOver
+/// A state, the next perform of the plan or kOver, and the timepoint as far as it matters.
+struct Place {
+  unsigned state = 0;
+  int next = 0, time = 0;
+  auto operator<=>(const Place&) const = default;
+};
+constexpr int kLate = 4;  // nothing is said of a single timepoint from here on
 using Places = std::set<Place>;
 
 struct Line {
@@ -185,7 +199,7 @@ class Account {
   Places begin() const {
     Places out;
     for (unsigned state = 0; state < (1U << kFluents); ++state) {
-      if (world_.is_state(state)) out.insert({state, 0});
+      if (world_.is_state(state, 0)) out.insert({state, 0, 0});
     }
     return out;
   }
@@ -193,12 +207,13 @@ class Account {
   Places closed(Places places) const {
     std::vector<Place> todo(places.begin(), places.end());
     while (!todo.empty()) {
-      const auto [state, next] = todo.back();
+      const auto [state, next, time] = todo.back();
       todo.pop_back();
       for (const auto events : subsets(unobserved_)) {
         if (events == 0) continue;
-        for (const auto to : least(state, events)) {
-          if (places.insert({to, next}).second) todo.emplace_back(to, next);
+        for (const auto to : least(state, events, time)) {
+          const Place place{to, next, std::min(time + 1, kLate)};
+          if (places.insert(place).second) todo.push_back(place);
         }
       }
     }
@@ -209,22 +224,22 @@ class Account {
     for (const auto& place : places) {
       if (line.is_step) {
         step(place, line, out);
-      } else if (agrees(place.first, line.seen)) {
+      } else if (agrees(place.state, line.seen)) {
         out.insert(place);
       }
     }
     return out;
   }
   /// What beside these events, and the states behind.
-  std::vector<unsigned> least(unsigned state, unsigned events) const {
+  std::vector<unsigned> least(unsigned state, unsigned events, int time) const {
     std::vector<unsigned> sets, out;
     for (const auto demanded : subsets(demanded_ & ~events)) {
-      if (world_.after(state, events | demanded)) sets.push_back(demanded);
+      if (world_.after(state, events | demanded, time)) sets.push_back(demanded);
     }
     for (const auto set : sets) {
       bool is_least = true;
       for (const auto other : sets) is_least = is_least && (other == set || (other & ~set) != 0);
-      if (is_least) out.push_back(*world_.after(state, events | set));
+      if (is_least) out.push_back(*world_.after(state, events | set, time));
     }
     return out;
   }
@@ -244,20 +259,21 @@ class Account {
     return true;
   }
   void step(const Place& place, const Line& line, Places& out) const {
-    const auto [state, next] = place;
+    const auto [state, next, time] = place;
+    const int later = std::min(time + 1, kLate);
     const int performed = next == World::kOver ? -1 : world_.plan[static_cast<std::size_t>(next)];
     if ((line.told & kOfPlan) != (performed < 0 ? 0U : 1U << static_cast<unsigned>(performed)))
       return;
     for (const auto more : subsets(unobserved_ & ~line.told)) {
-      for (const auto to : least(state, line.told | more)) {
+      for (const auto to : least(state, line.told | more, time)) {
         if (performed < 0) {
-          out.insert({to, next});
+          out.insert({to, next, later});
           continue;
         }
         const bool ok = world_.good[static_cast<std::size_t>(performed)].of(to);
         if (line.ok && *line.ok != ok) continue;
         const bool is_last = static_cast<std::size_t>(next) + 1 == world_.plan.size();
-        out.insert({to, ok && !is_last ? next + 1 : World::kOver});
+        out.insert({to, ok && !is_last ? next + 1 : World::kOver, later});
       }
     }
   }
@@ -270,19 +286,18 @@ std::vector<Line> random_log(const Account& account, const World& world, unsigne
   std::vector<Line> out;
   auto places = account.begin();
   for (auto n = 2 + random.below(8); n > 0 && !places.empty(); --n) {
-    auto it = account.closed(places).begin();
     const auto all = account.closed(places);
-    it = all.begin();
+    auto it = all.begin();
     std::advance(it, static_cast<std::ptrdiff_t>(random.below(all.size())));
     Line line;
     line.is_step = random.chance(50);
     line.seen.assign(kFluents, 0);
     if (!line.is_step) {
       for (unsigned f = 0; f < kFluents; ++f) {
-        if (random.chance(50)) line.seen[f] = ((it->first >> f) & 1U) != 0 ? 1 : -1;
+        if (random.chance(50)) line.seen[f] = ((it->state >> f) & 1U) != 0 ? 1 : -1;
       }
     } else {
-      const auto next = it->second;
+      const auto next = it->next;
       if (next != World::kOver)
         line.told = 1U << static_cast<unsigned>(world.plan[static_cast<std::size_t>(next)]);
       if (random.chance(15))
