@@ -269,6 +269,25 @@ TEST_CASE("executions on record are what the plan does with what was seen and re
   }
 }
 
+TEST_CASE("a run of which some was not checked is not consistent") {
+  const TwoModels cli;
+  const auto report =
+      json_of(cli, {"run", "two/agree.yaml", "--execution", "closed-loop", "--out", "out"});
+  for (const auto* limit : {"0.01", "0.02", "0.03", "0.05", "0.08", "20"}) {
+    const auto answer =
+        cli.parallax({"monitor", "two/agree.yaml", "out", "--json", "--time-limit", limit});
+    CAPTURE(answer.out);
+    const auto checked = Json::parse(answer.out);
+    if (checked.at("status") == "error") continue;  // not even the model was read
+    std::size_t consistent = 0;
+    for (const auto& run : checked.at("runs")) {
+      if (run.at("verdict") == "consistent") ++consistent;
+    }
+    CHECK((checked.at("verdict") == "consistent") == (consistent == report.at("simulations")));
+    CHECK(answer.code == (checked.at("verdict") == "consistent" ? 0 : 4));
+  }
+}
+
 TEST_CASE("a plan that performs nothing is told of") {
   const TwoModels cli;
   const auto scenario = executed(cli, "load opens.e\n", "(def-cram-function idle () nil)\n(idle)\n",

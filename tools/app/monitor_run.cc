@@ -24,6 +24,19 @@ harness::ReportedValues reported(const harness::ObservationReader& reader,
   return out;
 }
 
+std::string name_of(const SampleRecord& record) {
+  return fmt::format("{}.{}", record.trace, record.sample);
+}
+
+MonitorResult not_checked(const SampleRecord& record) {
+  MonitorResult out;
+  out.log = name_of(record);
+  out.verdict = MonitorVerdict::kUndecided;
+  out.undecided_because = "it was stopped";
+  out.interrupted = true;
+  return out;
+}
+
 /// A variable that is no such thing as the mapping asks for; empty: there is none.
 std::string misfit(const harness::ObservationReader& reader, const SampleRecord& record) {
   for (std::size_t t = 0; t < record.observations.size(); ++t) {
@@ -63,7 +76,7 @@ class RunWatcher {
       : watch_(watch), steps_(steps), record_(record) {}
 
   MonitorResult run() && {
-    result_.log = fmt::format("{}.{}", record_.trace, record_.sample);
+    result_.log = name_of(record_);
     watch_.restart();
     const auto compared_before = watch_.compared();
     const auto last = record_.observations.size() - 1;
@@ -128,9 +141,12 @@ base::Result<std::vector<MonitorResult>> monitor_run(const RunFolderOptions& run
   }
   std::vector<MonitorResult> out;
   for (const auto& [key, record] : journal->samples) {
-    if (context.stopped()) break;
     if (record.phase == harness::DrawPhase::kConfirm) continue;
     if (record.status != harness::SampleStatus::kOk) continue;
+    if (context.stopped()) {
+      out.push_back(not_checked(record));
+      continue;
+    }
     const auto steps = steps_of(record, *journal);
     if ((!record.path && !journal->traces.contains(record.trace)) ||
         record.observations.size() != steps.size() + 1 || record.outcomes.size() != steps.size()) {

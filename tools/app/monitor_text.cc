@@ -161,11 +161,14 @@ std::string monitor_text(const MonitorResult& result) {
 
 std::string monitor_text(const std::vector<MonitorResult>& runs) {
   std::string out;
-  std::size_t consistent = 0;
+  std::size_t consistent = 0, unchecked = 0;
   for (const auto& run : runs) {
     if (run.verdict == MonitorVerdict::kConsistent) ++consistent;
+    if (run.interrupted) ++unchecked;
     out += first_text(run);
   }
+  if (unchecked > 0)
+    out += fmt::format("not checked: {} simulations, as it was stopped\n", unchecked);
   return out + fmt::format("{}: {} of {} simulations are consistent with the model\n",
                            to_string(verdict_of(runs)), consistent, runs.size());
 }
