@@ -1,0 +1,122 @@
+#include "harness/cause/cause_kind.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace parallax::harness {
+namespace {
+
+/// So many runs of one kind and none of the other are taken for all, so many of each for chance.
+constexpr std::int64_t kEnough = 5;
+
+std::int64_t contradictory_starts(const std::vector<CauseRun>& runs) {
+  struct Ends {
+    bool failed = false, clean = false;
+  };
+  std::map<std::vector<double>, Ends> by_start;
+  for (const auto& run : runs) {
+    auto& ends = by_start[run.start];
+    (run.failed ? ends.failed : ends.clean) = true;
+  }
+  return std::count_if(by_start.begin(), by_start.end(),
+                       [](const auto& entry) { return entry.second.failed && entry.second.clean; });
+}
+
+std::string share(std::int64_t part, std::int64_t whole) {
+  const double percent =
+      whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+  return fmt::format("{} % of the", std::lround(percent));
+}
+
+std::string runs_text(std::int64_t count) {
+  return fmt::format("{} run{}", count, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::string_view to_string(CauseKind kind) {
+  static constexpr std::string_view kWords[] = {"unknown", "always", "region", "random",
+                                                "simulator"};
+  return kWords[static_cast<std::size_t>(kind)];
+}
+
+CauseFinding tell_cause(const std::vector<CauseRun>& runs, bool is_model) {
+  CauseFinding out;
+  out.runs = static_cast<std::int64_t>(runs.size());
+  out.failures =
+      std::count_if(runs.begin(), runs.end(), [](const auto& run) { return run.failed; });
+  out.contradictory_starts = contradictory_starts(runs);
+  out.rule = failure_rule(runs);
+  const auto clean = out.runs - out.failures;
+  if (clean == 0 && out.failures >= kEnough) {
+    out.kind = CauseKind::kAlways;
+  } else if (out.rule) {
+    out.kind = CauseKind::kRegion;
+  } else if (out.contradictory_starts > 0) {
+    out.kind = is_model ? CauseKind::kRandom : CauseKind::kSimulator;
+  } else if (out.failures >= kEnough && clean >= kEnough) {
+    out.kind = CauseKind::kRandom;
+  }
+  return out;
+}
+
+std::string rule_text(const std::vector<Border>& borders,
+                      const std::vector<std::string>& parameters) {
+  std::string out;
+  for (const auto& border : borders) {
+    out += fmt::format("{}`{}` {} {}", out.empty() ? "" : " and ", parameters[border.parameter],
+                       border.above ? ">" : "<=", border.value);
+  }
+  return out;
+}
+
+std::string cause_words(const CauseFinding& finding, const std::vector<std::string>& parameters) {
+  std::string out;
+  if (finding.contradictory_starts > 0) {
+    out = fmt::format(
+        "From one and the same start some runs go wrong like that and others do not: "
+        "it is {}. ",
+        finding.kind == CauseKind::kSimulator ? "the simulator or chance" : "chance");
+  }
+  switch (finding.kind) {
+    case CauseKind::kAlways:
+      return out + fmt::format("It happens always, in each of {} of this trace: an axiom is wrong.",
+                               runs_text(finding.runs));
+    case CauseKind::kRegion: {
+      const auto& rule = *finding.rule;
+      return out + fmt::format(
+                       "It depends on the start, and the region is too coarse: {} failures "
+                       "({} of {}) have {}, and {} clean runs ({} of {}); cross-validated "
+                       "accuracy {:.2f}.",
+                       share(rule.failures_inside, rule.failures), rule.failures_inside,
+                       rule.failures, rule_text(rule.borders, parameters),
+                       share(rule.clean_inside, rule.clean), rule.clean_inside, rule.clean,
+                       rule.accuracy);
+    }
+    case CauseKind::kRandom:
+      if (finding.contradictory_starts > 0) {
+        return out + fmt::format("It happened in {} of {}: the outcome is open.", finding.failures,
+                                 runs_text(finding.runs));
+      }
+      return out + fmt::format(
+                       "It happens at random, in {} of {}, and no border of one or two "
+                       "start parameters tells in which: the outcome is open.",
+                       finding.failures, runs_text(finding.runs));
+    case CauseKind::kSimulator:
+      return out + fmt::format(
+                       "It happens in {} of {}, with some seeds of the simulator and not "
+                       "with others.",
+                       finding.failures, runs_text(finding.runs));
+    case CauseKind::kUnknown:
+      break;
+  }
+  return out + fmt::format(
+                   "It happened in {} of {} of this trace, too few to tell whether always, "
+                   "in a part of the start region or at random.",
+                   finding.failures, runs_text(finding.runs));
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/cause/failure_rule.h"
+
+namespace parallax::harness {
+
+/// What kind of thing makes simulations of one trace fail in one way.
+enum class CauseKind : std::uint8_t {
+  kUnknown,    // too few runs to tell
+  kAlways,     // every run fails: an axiom is wrong
+  kRegion,     // runs fail in a part of the start region
+  kRandom,     // the outcome is open
+  kSimulator,  // one and the same start ends so and so, by the simulator's seed alone
+};
+/// "unknown", "always", "region", "random", "simulator"
+std::string_view to_string(CauseKind kind);
+
+struct CauseFinding {
+  CauseKind kind = CauseKind::kUnknown;
+  std::int64_t runs = 0, failures = 0;
+  /// Starts, equal to the last bit, from which some runs fail and others do not.
+  std::int64_t contradictory_starts = 0;
+  std::optional<FailureRule> rule;
+};
+
+/// `is_model`: the world is a model, so that what differs from one start is its open outcome.
+CauseFinding tell_cause(const std::vector<CauseRun>& runs, bool is_model);
+
+/// "`milk1.mass` > 0.98 and `robot.x` <= 0.7"
+std::string rule_text(const std::vector<Border>& borders,
+                      const std::vector<std::string>& parameters);
+
+/// What was found, with the counts behind it, in one or two sentences; contradictory runs first.
+std::string cause_words(const CauseFinding& finding, const std::vector<std::string>& parameters);
+
+}  // namespace parallax::harness
