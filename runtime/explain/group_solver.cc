@@ -155,9 +155,9 @@ IndexSet GroupSolver::satisfied() const {
 }
 
 GroupSolver load_axioms(ExecutionFormula& formula, const AxiomGroups& groups,
-                        std::unique_ptr<SatSolver> fresh) {
+                        std::unique_ptr<SatSolver> fresh, std::size_t more) {
   const auto& model = formula.model();
-  GroupSolver solver(formula.variables(), groups.size(), std::move(fresh));
+  GroupSolver solver(formula.variables(), groups.size() + more, std::move(fresh));
   formula.for_each_always([&](std::span<const Literal> clause) { solver.add_definition(clause); });
   for (std::size_t i = 0; i < model.clauses.size(); ++i) {
     const auto group = groups.group_of[model.clause_origins[i]];

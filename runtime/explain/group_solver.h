@@ -114,8 +114,9 @@ class GroupSolver {
   std::vector<Literal> clause_;
 };
 
-/// The axioms of a model, by group. `solver` is fresh.
+/// The axioms of a model, by group, and behind them `more` groups that are empty yet. `solver` is
+/// fresh.
 GroupSolver load_axioms(ExecutionFormula& formula, const AxiomGroups& groups,
-                        std::unique_ptr<SatSolver> solver);
+                        std::unique_ptr<SatSolver> solver, std::size_t more = 0);
 
 }  // namespace parallax::runtime

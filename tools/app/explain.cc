@@ -4,23 +4,15 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
-#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "compiler/artifact/symbol_table.h"
 #include "compiler/base/diagnostic_codes.h"
-#include "compiler/base/file_io.h"
-#include "compiler/base/json.h"
-#include "harness/campaign/journal.h"
-#include "harness/campaign/judge.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/graph/model_traces.h"
-#include "tools/app/recorded_run.h"
 
 namespace parallax::tools {
 
@@ -35,149 +27,6 @@ runtime::Effort effort_of(double time_limit_s) {
   constexpr double kMost = 100'000, kEachSecond = 5'000;  // conflicts
   const auto most = time_limit_s > 0 ? std::min(kMost, kEachSecond * time_limit_s) : kMost;
   return runtime::Effort(static_cast<std::int64_t>(most));
-}
-
-using nlohmann::json;
-
-/// A discrepancy as report.json has it.
-struct ReportedDiscrepancy {
-  struct Fluent {
-    std::string name;
-    std::int64_t timepoint = 0;
-    bool observed = false;
-  };
-  std::int64_t trace = 0, sample = 0, first_divergence = 0;
-  std::vector<Fluent> first;  // that differed there
-
-  std::string id() const { return fmt::format("{}.{}", trace, sample); }
-};
-
-/// None if an entry is none that `parallax run` writes.
-std::optional<ReportedDiscrepancy> decode(const json& entry) {
-  const auto integer = [](const json& object, const char* name) {
-    const auto* value = base::json_member(object, name);
-    return value == nullptr ? std::nullopt : base::json_as<std::int64_t>(*value);
-  };
-  const auto trace = integer(entry, "trace"), sample = integer(entry, "sample"),
-             divergence = integer(entry, "first_divergence");
-  const auto* first = base::json_member(entry, "first");
-  if (!trace || !sample || !divergence || *divergence < 0 || first == nullptr ||
-      !first->is_array()) {
-    return std::nullopt;
-  }
-  ReportedDiscrepancy out{*trace, *sample, *divergence, {}};
-  for (const auto& fluent : *first) {
-    const auto time = integer(fluent, "timepoint");
-    const auto *name = base::json_member(fluent, "fluent"),
-               *observed = base::json_member(fluent, "observed");
-    if (!time || name == nullptr || !name->is_string() || observed == nullptr ||
-        !observed->is_boolean()) {
-      return std::nullopt;
-    }
-    out.first.push_back({name->get<std::string>(), *time, observed->get<bool>()});
-  }
-  return out;
-}
-
-/// One discrepancy of report.json; none if the run has none. Reports one that is not there.
-base::Result<std::optional<ReportedDiscrepancy>> find_discrepancy(const std::string& run_dir,
-                                                                  const std::string& sample,
-                                                                  base::DiagnosticSink& sink) {
-  const auto path = (std::filesystem::path(run_dir) / "report.json").string();
-  const auto text = base::read_file_of(run_dir, "report.json", sink);
-  if (!text) return sink.already_reported();
-  const auto report = json::parse(*text, nullptr, false);
-  const auto refuse = [&] {
-    return sink.error_about(base::DiagnosticCode::kUsage, path, "this is no report of a run");
-  };
-  const auto* list = base::json_member(report, "discrepancies");
-  if (list == nullptr || !list->is_array()) return refuse();
-  std::string others;
-  for (const auto& entry : *list) {
-    auto found = decode(entry);
-    if (!found) return refuse();
-    if (sample.empty() || sample == found->id()) return std::optional(*std::move(found));
-    others += (others.empty() ? "" : ", ") + found->id();
-  }
-  if (sample.empty()) return std::optional<ReportedDiscrepancy>();
-  return sink
-      .error_about(base::DiagnosticCode::kNoSuchSample, run_dir, sample + " with a discrepancy")
-      .note(others.empty() ? "the run found no discrepancy"
-                           : "it found discrepancies in " + others);
-}
-
-/// The start and the events of the trace, as far as the divergence, and what was seen there.
-class Observation {
- public:
-  Observation(const compiler::CompiledModel& model, const harness::TraceLine& trace)
-      : model_(model), trace_(*trace.trace), index_(model) {}
-
-  ObservedRun make(const ReportedDiscrepancy& discrepancy) {
-    run_.observed.length = static_cast<Timepoint>(
-        std::min(discrepancy.first_divergence, std::int64_t{model_.horizon}));
-    read_trace();
-    for (std::size_t t = 0; t < events_.size(); ++t) {
-      run_.lines.push_back(fmt::format("{} happens at {}", trace_.event(t), t));
-    }
-    model_.for_each_atom([&](const compiler::AtomRef& atom) {
-      if (!atom.time || *atom.time >= run_.observed.length) return;
-      const auto t = static_cast<std::size_t>(*atom.time);
-      if (atom.kind == AtomKind::kHappens && t < events_.size()) {
-        state(atom.variable, events_[t] == atom.event());
-      }
-      if (atom.kind == AtomKind::kHoldsAt && t == 0) {
-        state(atom.variable, holds_.contains(atom.fluent()));
-      }
-    });
-    for (const auto& fluent : discrepancy.first) see(fluent);
-    return std::move(run_);
-  }
-
- private:
-  /// Its start and events as far as the divergence, in the model's ids: the journal has its own.
-  void read_trace() {
-    const compiler::SymbolTable symbols(model_);
-    for (const auto name : trace_.holds(0)) {
-      if (const auto fluent = symbols.fluent(name)) holds_.insert(*fluent);
-    }
-    const auto length = static_cast<std::size_t>(run_.observed.length);
-    for (std::size_t t = 0; t < std::min(length, trace_.event_count()); ++t) {
-      events_.push_back(symbols.event(trace_.event(t)));
-    }
-  }
-  void state(std::int32_t variable, bool value) {
-    const auto literal = Literal::positive(variable);
-    run_.observed.facts.push_back(value ? literal : ~literal);
-  }
-  void see(const ReportedDiscrepancy::Fluent& fluent) {
-    const auto time = run_.observed.length;
-    if (fluent.timepoint != time) return;
-    run_.lines.push_back(
-        fmt::format("{} {} at {}", fluent.name, fluent.observed ? "holds" : "does not hold", time));
-    const auto atom = index_.find(AtomKind::kHoldsAt, fluent.name, time);
-    if (atom) run_.observed.facts.push_back(fluent.observed ? *atom : ~*atom);
-  }
-
-  const compiler::CompiledModel& model_;
-  const harness::CampaignTrace& trace_;
-  compiler::AtomIndex index_;
-  std::set<compiler::FluentId> holds_;                    // at the start
-  std::vector<std::optional<compiler::EventId>> events_;  // by timepoint
-  ObservedRun run_;
-};
-
-/// Does the journal show what the report tells?
-bool is_what_was_seen(const ReportedDiscrepancy& reported, const harness::StateMapping& mapping,
-                      const harness::CampaignTrace& trace, const harness::SampleRecord& record) {
-  if (record.status != harness::SampleStatus::kOk) return false;
-  const harness::ModelFluents fluents(*trace.symbols);
-  const auto judgement = harness::judge(mapping, fluents, trace, record.observations);
-  return judgement.first_divergence == reported.first_divergence &&
-         std::equal(judgement.first.begin(), judgement.first.end(), reported.first.begin(),
-                    reported.first.end(), [](const auto& seen, const auto& told) {
-                      return seen.fluent == told.name && seen.timepoint == told.timepoint &&
-                             seen.observed == told.observed;
-                    });
 }
 
 /// A trace with a valuation of every variable.
@@ -291,6 +140,20 @@ base::Result<runtime::MinimalSets> ContradictionSearch::sets(const SetOptions& o
   return found;
 }
 
+base::Result<runtime::MinimalSets> ContradictionSearch::within(
+    const runtime::IndexSet& contradiction) {
+  auto found = sets({});
+  if (!found || found->sets.empty()) return found;
+  auto solver =
+      runtime::load_axioms(formula_, axioms_, runtime::make_cadical_solver(&context_.stop()));
+  if (solver.solve(contradiction) != runtime::SolveStatus::kUnsatisfiable) return found;
+  auto set = solver.core();
+  if (!runtime::shrink(solver, set)) return found;
+  if (found->proven) found->lower_bound = found->sets.front().size();
+  found->sets = {std::move(set)};
+  return found;
+}
+
 Contradiction ContradictionSearch::look_at(const runtime::IndexSet& set) {
   runtime::ProofLimits limits;
   limits.stop = &context_.stop();
@@ -298,7 +161,7 @@ Contradiction ContradictionSearch::look_at(const runtime::IndexSet& set) {
   if (ground.proof.verdict == runtime::ProofVerdict::kRejected) {
     context_.sink().error_about(base::DiagnosticCode::kProofRejected, "", ground.proof.reason);
   }
-  Contradiction out{{}, ground.minimal, ground.proof.verdict};
+  Contradiction out{{}, ground.minimal, ground.proof.verdict, ground.clauses};
   for (const auto group : set) {
     out.axioms.push_back({axioms_.origins[group].front(), instances_of(group, ground.clauses)});
   }
@@ -317,36 +180,6 @@ std::vector<std::string> ContradictionSearch::instances_of(
   std::vector<std::string> out;
   for (auto& [time, text] : found) out.push_back(std::move(text));
   return out;
-}
-
-base::Result<std::optional<ObservedDiscrepancy>> load_discrepancy(const RunFolderOptions& folder,
-                                                                  const std::string& sample,
-                                                                  Context& context) {
-  auto& sink = context.sink();
-  const auto journal = harness::read_journal(folder.folder, context.files(), sink);
-  if (!journal) return sink.already_reported();
-  const auto discrepancy = find_discrepancy(folder.folder, sample, sink);
-  if (!discrepancy) return sink.already_reported();
-  if (!*discrepancy || !journal->header) return std::optional<ObservedDiscrepancy>();
-  const harness::SampleId id{(*discrepancy)->trace, (*discrepancy)->sample};
-  if (!journal->samples.contains({id.trace, id.sample, harness::DrawPhase::kCertify})) {
-    return sink
-        .error_about(base::DiagnosticCode::kNoSuchSample, folder.folder, (*discrepancy)->id())
-        .note("report.json tells of it, the journal does not");
-  }
-  const auto recorded = harness::recorded_run(*journal, id);
-  if (!require_trace(folder.folder, recorded, sink)) return sink.already_reported();
-  auto loaded = load_recorded_scenario(folder, recorded.header, ScenarioUse::kExplain, context);
-  if (!loaded) return sink.already_reported();
-  const auto trace = check_recorded_run(*loaded, recorded, context);
-  if (!trace) return sink.already_reported();
-  const auto& mapping = *loaded->scenario.mapping;
-  if (!is_what_was_seen(**discrepancy, mapping, *trace, recorded.record)) {
-    return sink.error(base::DiagnosticCode::kForeignJournalLine, recorded.source,
-                      "what it observed is not the discrepancy that report.json tells of");
-  }
-  auto run = Observation(loaded->compilation.model, recorded.line).make(**discrepancy);
-  return std::optional(ObservedDiscrepancy{*std::move(loaded), std::move(run)});
 }
 
 base::Result<FactExplanation> explain_why(const compiler::CompiledModel& model,

@@ -11,8 +11,6 @@
 #include "runtime/explain/group_solver.h"
 #include "runtime/explain/why.h"
 #include "tools/app/context.h"
-#include "tools/app/recorded_run.h"
-#include "tools/app/scenario_model.h"
 #include "tools/app/trace_fact.h"
 
 namespace parallax::tools {
@@ -26,6 +24,7 @@ struct SetOptions {
 struct ObservedRun {
   runtime::Observed observed;
   std::vector<std::string> lines;  // how it is told: "RobotAt(bTable) does not hold at 6"
+  std::size_t shown_from = 0;      // the lines before are told to those who ask for more
 };
 
 /// An axiom of a contradiction, with those of its ground instances that take part.
@@ -39,6 +38,7 @@ struct Contradiction {
   std::vector<BlamedAxiom> axioms;
   bool instances_minimal = false;  // none of the instances can go
   runtime::ProofVerdict proof = runtime::ProofVerdict::kNotFinished;  // that they contradict
+  std::vector<std::size_t> clauses;  // the instances, as GroundContradiction has them
 };
 
 /// Why has a model no trace, or none that is like a run that was observed? First the minimal sets
@@ -52,6 +52,9 @@ class ContradictionSearch {
   /// Sets of groups of axioms; none if there is no contradiction. Reports kExplanationCutShort if
   /// the search was stopped before that was known.
   base::Result<runtime::MinimalSets> sets(const SetOptions& options);
+  /// A minimal set within one that is contradictory; the lower bound is the size of a smallest one.
+  /// Reports as `sets` does.
+  base::Result<runtime::MinimalSets> within(const runtime::IndexSet& contradiction);
   /// Which instances of the set's axioms it takes, and a proof. Reports kProofRejected if the
   /// checker does not follow the solver.
   Contradiction look_at(const runtime::IndexSet& set);
@@ -66,19 +69,6 @@ class ContradictionSearch {
   runtime::ClauseText texts_;
   runtime::Effort effort_;  // for the instances of all sets together
 };
-
-/// A discrepancy of a recorded run: the events of its trace and the start as they were, and what
-/// was observed at the first divergence, for a ContradictionSearch in the scenario's model.
-struct ObservedDiscrepancy {
-  ScenarioModel loaded;
-  ObservedRun run;
-};
-
-/// `sample`: TRACE.SAMPLE, or empty for the first discrepancy. None if the run found none. Reports
-/// what is wrong with the run folder, and a scenario that has changed since.
-base::Result<std::optional<ObservedDiscrepancy>> load_discrepancy(const RunFolderOptions& folder,
-                                                                  const std::string& sample,
-                                                                  Context& context);
 
 struct WhyQuery {
   std::string fact;        // `HoldsAt(F,3)`, `!HoldsAt(F(a),3)`, `Happens(E(),2)`

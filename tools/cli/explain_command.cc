@@ -1,9 +1,13 @@
+#include <unistd.h>
+
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "tools/app/discrepancy.h"
+#include "tools/app/evidence.h"
 #include "tools/app/explain.h"
 #include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
@@ -19,6 +23,8 @@ struct ExplainOptions {
   WhyQuery why;
   bool asks_why = false;
   std::string sample, scenario;  // of a run folder
+  FurtherRunsOptions further;
+  CommandPermission commands;
 };
 
 /// The model with every axiom's clauses as it says them, whatever other axioms settle; if it is too
@@ -36,33 +42,150 @@ std::optional<compiler::CompiledModel> compile(const ExplainOptions& options,
   return std::move(usual->model);
 }
 
+void report_cut_short(const runtime::MinimalSets& found, Invocation& invocation) {
+  invocation.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
+                                found.proven ? "not every instance shown is needed"
+                                             : "the sets may not be what was asked for");
+}
+
 /// Minimal sets of contradictory axioms, each printed as soon as it was looked at.
-int explain_contradiction(const compiler::CompiledModel& model,
-                          const std::optional<ObservedRun>& run, const SetOptions& options,
+int explain_contradiction(const compiler::CompiledModel& model, const SetOptions& options,
                           Invocation& invocation) {
   const bool as_json = invocation.options().json;
-  const auto* observed = run ? &*run : nullptr;
-  ContradictionSearch search(model, run, invocation);
+  ContradictionSearch search(model, std::nullopt, invocation);
   const auto found = search.sets(options);
   if (!found) return 0;
   if (found->sets.empty()) {
     as_json ? invocation.document(no_contradiction_json())
-            : invocation.result(no_contradiction_text(model, observed));
+            : invocation.result(no_contradiction_text(model, nullptr));
     return 0;
   }
-  if (!as_json) invocation.result(contradiction_head(*found, options, observed));
+  if (!as_json) invocation.result(contradiction_head(*found, options, nullptr));
   std::vector<Contradiction> sets;
   for (const auto& set : found->sets) {
     sets.push_back(search.look_at(set));
     if (!as_json) invocation.result(contradiction_text(model, sets.size(), sets.back()));
   }
   if (as_json) {
-    invocation.document(contradictions_json(model, *found, options, observed, sets));
+    invocation.document(contradictions_json(model, *found, options, nullptr, sets));
   }
   if (!invocation.stopped()) return 1;
-  invocation.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
-                                found->proven ? "not every instance shown is needed"
-                                              : "the sets may not be what was asked for");
+  report_cut_short(*found, invocation);
+  return 0;
+}
+
+/// Makes further simulations of the trace, if they may be made and are needed; why not is told.
+base::Result<std::vector<harness::SampleRecord>> make_further_runs(const ExplainOptions& options,
+                                                                   const RecordedDiscrepancy& found,
+                                                                   std::string& not_made,
+                                                                   Invocation& invocation) {
+  const auto& sink = invocation.sink();
+  std::vector<harness::SampleRecord> none;
+  if (options.further.runs == 0) return none;
+  if (found.path.executed) {
+    not_made = "of executed plans none are made";
+    return none;
+  }
+  const RunFolderOptions folder{options.model.models.front(), options.scenario};
+  const auto loaded =
+      load_recorded_scenario(folder, *found.journal.header, ScenarioUse::kRun, invocation);
+  if (!loaded) return sink.already_reported();
+  if (!loaded->scenario.simulator.command.empty() && !options.commands.allow) {
+    not_made = "the simulator is a command; --allow-commands permits it";
+    return none;
+  }
+  std::error_code ignored;
+  const auto place = std::filesystem::path(folder.folder) / kFurtherRuns;
+  if (::access(folder.folder.c_str(), W_OK) != 0 || std::filesystem::is_symlink(place, ignored)) {
+    not_made = "nothing can be written into the folder";
+    return none;
+  }
+  const auto simulator = permitted_simulator(*loaded, true, invocation);
+  if (!simulator) return sink.already_reported();
+  auto further = options.further;
+  further.progress = progress_on_terminal(invocation.options());
+  auto made = further_runs(folder.folder, found, *loaded, *simulator, further, invocation);
+  if (further.progress) write_error("\r\x1b[K");
+  return made;
+}
+
+/// What kind of cause it is: by the runs on record, and where these say too little by further ones.
+base::Result<CauseEvidence> with_further_runs(const ExplainOptions& options,
+                                              const RecordedDiscrepancy& found,
+                                              CauseEvidence evidence, Invocation& invocation) {
+  const auto& finding = evidence.finding;
+  if (is_enough(options.further, finding.failures, finding.runs - finding.failures) ||
+      finding.contradictory_starts > 0 || invocation.stopped()) {
+    return evidence;
+  }
+  std::string not_made;
+  const auto further = make_further_runs(options, found, not_made, invocation);
+  if (!further) return invocation.sink().already_reported();
+  evidence.not_made = not_made;
+  if (invocation.stopped()) {
+    evidence.not_made = "stopped before there were enough";
+    return evidence;
+  }
+  return further->empty() ? evidence : gather_evidence(found, *further, invocation);
+}
+
+/// Why the model excludes what was seen: in words first, then the sets, then the kind of cause.
+int explain_discrepancy(const RecordedDiscrepancy& found, const ExplainOptions& all_options,
+                        Invocation& invocation) {
+  const auto& options = all_options.sets;
+  const bool as_json = invocation.options().json, verbose = invocation.options().verbosity > 0;
+  const auto& model = found.loaded.compilation.model;
+  const auto run = observed_run(found);
+  ContradictionSearch search(model, run, invocation);
+  const auto sets_found = found.parting
+                              ? blamed_sets(found, options, search)
+                              : base::Result<runtime::MinimalSets>(runtime::MinimalSets{});
+  if (!sets_found) return 0;
+  if (sets_found->sets.empty()) {
+    if (as_json) {
+      invocation.document(no_contradiction_json());
+      return 0;
+    }
+    if (found.parting) {
+      invocation.result(run_words_text(found, blame_words(model, found.path, *found.parting, {})));
+    }
+    invocation.result(no_contradiction_text(model, &run));
+    return 0;
+  }
+  const auto recorded = gather_evidence(found, {}, invocation);
+  if (!recorded) return 0;
+  // Contradictory runs are told of first: then it is no axiom that has to change at once.
+  const bool cause_first = recorded->finding.contradictory_starts > 0;
+  if (cause_first && !as_json) invocation.result(cause_text(*recorded) + '\n');
+  std::vector<Contradiction> sets;
+  std::vector<std::string> words;
+  for (const auto& set : sets_found->sets) {
+    sets.push_back(search.look_at(set));
+    words.push_back(blame_words(model, found.path, *found.parting, sets.back().clauses));
+    if (as_json) continue;
+    const bool is_first = sets.size() == 1;
+    if (is_first) {
+      invocation.result(run_words_text(found, words.front()));
+      invocation.result(contradiction_head(*sets_found, options, &run, verbose));
+    }
+    invocation.result(contradiction_text(model, sets.size(), sets.back(),
+                                         verbose ? Instances::kShort : Instances::kNone,
+                                         is_first ? std::string() : words.back()));
+  }
+  const bool was_cut_short = invocation.stopped();
+  const auto cause = with_further_runs(all_options, found, *recorded, invocation);
+  if (!cause) return 0;
+  if (as_json) {
+    invocation.document(
+        run_contradictions_json(found, *sets_found, options, run, sets, words, *cause));
+  } else if (!cause_first) {
+    invocation.result('\n' + cause_text(*cause));
+  }
+  if (!was_cut_short) {
+    invocation.answered();
+    return 1;
+  }
+  report_cut_short(*sets_found, invocation);
   return 0;
 }
 
@@ -79,11 +202,13 @@ int explain_run(const ExplainOptions& options, Invocation& invocation) {
   if (!*found) {
     invocation.options().json
         ? invocation.document(no_contradiction_json())
-        : invocation.result("The run found no discrepancy: there is nothing to explain.\n");
+        : invocation.result(
+              "The run found no discrepancy: there is nothing to explain. A run "
+              "with --seed or --epsilon looks further; why a fact holds in a trace "
+              "is told by `parallax explain SCENARIO --why FACT`.\n");
     return 0;
   }
-  const auto& [loaded, run] = **found;
-  return explain_contradiction(loaded.compilation.model, run, options.sets, invocation);
+  return explain_discrepancy(**found, options, invocation);
 }
 
 int explain(const ExplainOptions& options, Invocation& invocation) {
@@ -98,7 +223,7 @@ int explain(const ExplainOptions& options, Invocation& invocation) {
   const auto model = compile(options, invocation);
   if (!model) return 0;
   if (!options.asks_why) {
-    return explain_contradiction(*model, std::nullopt, options.sets, invocation);
+    return explain_contradiction(*model, options.sets, invocation);
   }
   auto why = options.why;
   why.all = options.sets.all;
@@ -139,6 +264,16 @@ Command explain_command() {
   command.option("--sample", options->sample,
                  "Of a run folder: TRACE.SAMPLE; default: the first discrepancy");
   add_recorded_scenario_option(command, options->scenario);
+  command
+      .option("--runs", options->further.runs,
+              "Of a run folder: make at most so many further simulations of the trace, until ten "
+              "have failed and ten (or none) have not, to tell the kind of cause; 0: none")
+      .check(WholeNumber{0, 1'000'000})
+      .show_default();
+  command.option("-j,--jobs", options->further.jobs, "Of --runs: simulations at the same time")
+      .check(WholeNumber{1, 256})
+      .show_default();
+  add_command_options(command, options->commands, false);
   return {std::move(command),
           [options](Invocation& invocation) { return explain(*options, invocation); }};
 }

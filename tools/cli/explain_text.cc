@@ -3,20 +3,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
-#include <set>
 
+#include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/json.h"
+#include "harness/report/text_layout.h"
 
 namespace parallax::tools {
+
+std::string origin_place(const compiler::Origin& origin) {
+  if (origin.place.file.empty()) return {};
+  return origin.place.file + ':' + std::to_string(origin.place.begin.line);
+}
+
+std::string axiom_text(const compiler::Origin& origin) {
+  if (origin.kind == compiler::OriginKind::kFrameAxiom) return "inertia of " + origin.text;
+  return origin.text.empty() ? std::string(to_string(origin.kind)) : origin.text;
+}
+
 namespace {
 
-using compiler::AtomKind;
-using compiler::Literal;
 using nlohmann::ordered_json;
 using runtime::ProofVerdict;
-using runtime::WhyKind;
-using runtime::WhyStep;
 
 constexpr std::size_t kShownInstances = 6;  // of one axiom, in text
 
@@ -24,22 +31,18 @@ std::string counted(std::size_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-/// `domain.e:14`; empty for what no text says.
-std::string origin_place(const compiler::Origin& origin) {
-  if (origin.place.file.empty()) return {};
-  return origin.place.file + ':' + std::to_string(origin.place.begin.line);
-}
-
-/// The text of an axiom; of a frame axiom what its declaration stands for.
-std::string axiom_text(const compiler::Origin& origin) {
-  if (origin.kind == compiler::OriginKind::kFrameAxiom) return "inertia of " + origin.text;
-  return origin.text.empty() ? std::string(to_string(origin.kind)) : origin.text;
+bool is_smallest(const runtime::MinimalSets& found) {
+  return found.proven && (found.sets.empty() || found.lower_bound == 0 ||
+                          found.sets.front().size() <= found.lower_bound);
 }
 
 /// What is known of the sets that are not shown.
 std::string claim(const runtime::MinimalSets& found, const SetOptions& options) {
   if (options.all) {
     return found.proven ? "these are all minimal sets" : "stopped: there may be further sets";
+  }
+  if (found.proven && !is_smallest(found)) {
+    return fmt::format("none of its axioms can go; a smallest set has {}", found.lower_bound);
   }
   if (found.proven) return "no fewer axioms do";
   return fmt::format("stopped: fewer may do, but at least {}",
@@ -59,243 +62,49 @@ const char* proof_word(ProofVerdict verdict) {
 }
 
 /// What the sets are held against.
-std::string observed_text(const ObservedRun* run) {
+std::string observed_text(const ObservedRun* run, bool verbose = true) {
   std::string out;
   if (run == nullptr) return out;
-  for (const auto& line : run->lines) out += "  observed: " + line + '\n';
-  return out;
-}
-
-/// Tells a chain of facts in words, earliest first, each with the axiom that it rests on.
-class WhyText {
- public:
-  /// `model` outlives the object.
-  explicit WhyText(const compiler::CompiledModel& model)
-      : model_(model), index_(model), clauses_(model) {}
-
-  std::string text(const FactExplanation& explanation) const;
-  std::string json(const FactExplanation& explanation) const;
-
- private:
-  std::string state(Literal literal) const;
-  std::string when(Literal literal, std::optional<compiler::Timepoint> now) const;
-  std::string reason(const WhyStep& step) const;
-  std::string inertia(const WhyStep& step) const;
-  std::string premises(const WhyStep& step) const;
-  std::string line(const WhyStep& step) const;
-
-  const compiler::CompiledModel& model_;
-  compiler::AtomIndex index_;
-  runtime::ClauseText clauses_;
-};
-
-constexpr std::size_t kShownEvents = 4;
-
-const char* kind_word(WhyKind kind) {
-  switch (kind) {
-    case WhyKind::kStated:
-      return "stated";
-    case WhyKind::kEffect:
-      return "effect";
-    case WhyKind::kInertia:
-      return "inertia";
-    case WhyKind::kAxiom:
-      return "axiom";
-    case WhyKind::kCompletion:
-      return "completion";
-    case WhyKind::kForced:
-      return "forced";
-    case WhyKind::kChosen:
-      return "chosen";
-    case WhyKind::kUndecided:
-      return "undecided";
-  }
-  return "";
-}
-
-/// `Filled(cup) holds`, `Pour(cup) does not happen`.
-std::string WhyText::state(Literal literal) const {
-  const auto atom = model_.atom(literal.var());
-  const bool is = literal.is_positive();
-  switch (atom.kind) {
-    case AtomKind::kHoldsAt:
-      return atom.name + (is ? " holds" : " does not hold");
-    case AtomKind::kHappens:
-      return atom.name + (is ? " happens" : " does not happen");
-    case AtomKind::kReleasedAt:
-      return atom.name + (is ? " is released from inertia" : " is subject to inertia");
-    case AtomKind::kLocation:
-      return (is ? "the plan is at " : "the plan is not at ") + printed(atom);
-    case AtomKind::kHit:
-      return is ? "the state constraints hold" : "the state constraints do not hold";
-    case AtomKind::kRunning:
-      return is ? "the plan goes on" : "the plan has ended";
-    case AtomKind::kSucceeded:
-      return "the perform at " + printed(atom) + (is ? " succeeded" : " did not succeed");
-    case AtomKind::kResult:
-      return "the perform before " + std::string(is ? "returned " : "did not return ") +
-             printed(atom);
-    case AtomKind::kRegister:
-      return std::string(is ? "the plan knows " : "the plan does not know ") + printed(atom);
-    case AtomKind::kPredicate:
-    case AtomKind::kAuxiliary:
-    case AtomKind::kUnused:
-      break;
-  }
-  return atom.name + (is ? " is true" : " is false");
-}
-
-std::string WhyText::when(Literal literal, std::optional<compiler::Timepoint> now) const {
-  const auto time = model_.atom(literal.var()).time;
-  if (!time || time == now) return state(literal);
-  return fmt::format("{} at {}", state(literal), *time);
-}
-
-std::string WhyText::premises(const WhyStep& step) const {
-  std::string out;
-  for (std::size_t i = 0; i < step.premises.size(); ++i) {
-    if (i > 0) out += i + 1 == step.premises.size() ? " and " : ", ";
-    out += when(step.premises[i], std::nullopt);
+  for (std::size_t i = verbose ? 0 : run->shown_from; i < run->lines.size(); ++i) {
+    out += "  observed: " + base::printable(run->lines[i]) + '\n';
   }
   return out;
 }
 
-std::string WhyText::inertia(const WhyStep& step) const {
-  const auto fluent = index_.fluent(step.fact.var());
-  const bool holds = step.fact.is_positive();
-  auto out = fmt::format("as it {} since {}", holds ? "has" : "has not", step.since);
-  std::string others;
-  for (const auto premise : step.premises) {
-    const auto other = model_.atom(premise.var());
-    if (other.kind == AtomKind::kHoldsAt && index_.fluent(premise.var()) == fluent) continue;
-    others += (others.empty() ? "" : ", ") + when(premise, std::nullopt);
-  }
-  if (!others.empty()) out += ", because " + others;
-  std::set<std::string> absent;
-  for (const auto literal : step.absent) absent.insert(model_.atom(literal.var()).name);
-  if (absent.empty()) {
-    if (others.empty()) out += holds ? ": no event can end it" : ": no event can begin it";
-    return out;
-  }
-  std::string names;
-  for (const auto& name : absent) names += (names.empty() ? "" : " nor ") + name;
-  if (absent.size() > kShownEvents) {
-    return out + fmt::format(": none of the {} events that could {} it happened", absent.size(),
-                             holds ? "end" : "begin");
-  }
-  return out + (absent.size() == 1 ? ": " + names + " did not happen"
-                                   : ": neither " + names + " happened");
-}
-
-std::string WhyText::reason(const WhyStep& step) const {
-  switch (step.kind) {
-    case WhyKind::kStated:
-      return "stated";
-    case WhyKind::kEffect:
-    case WhyKind::kAxiom:
-      return "because " + premises(step);
-    case WhyKind::kInertia:
-      return inertia(step);
-    case WhyKind::kCompletion:
-      return step.premises.empty() ? "nothing could bring it about"
-                                   : "nothing else could be the reason, as " + premises(step);
-    case WhyKind::kForced:
-      return "open so far, but what comes later admits nothing else";
-    case WhyKind::kChosen:
-      return (step.premises.empty() ? "" : "as " + premises(step) + ", ") +
-             std::string("the model leaves it open; this trace has it so");
-    case WhyKind::kUndecided:
-      return "open so far; stopped before it was known whether what comes later admits anything "
-             "else";
-  }
-  return {};
-}
-
-std::string WhyText::line(const WhyStep& step) const {
-  const auto time = model_.atom(step.fact.var()).time;
-  const auto head = time ? fmt::format("{:>4}  ", *time) : std::string("      ");
-  auto out = fmt::format("{}{}: {}\n", head, state(step.fact), reason(step));
-  const auto note = [&](const compiler::Origin& origin, const char* word) {
-    const auto place = origin_place(origin);
-    out += fmt::format("          {}{}{}\n", word, place.empty() ? "" : place + "  ",
-                       axiom_text(origin));
-  };
-  if (step.origin) note(model_.origins[*step.origin], "");
-  for (const auto clause : step.also) {
-    out += "          also: " + clauses_.clause(clause) + '\n';
-    note(model_.origins[model_.clause_origins[clause]], "  ");
-  }
-  return out;
-}
-
-std::string WhyText::text(const FactExplanation& explanation) const {
-  if (!explanation.asked) {
-    return fmt::format("{} is false in trace {} and in every other: nothing can make it true.\n",
-                       explanation.fact.name, explanation.trace);
-  }
-  auto out =
-      fmt::format("{} in trace {}:\n", when(*explanation.asked, std::nullopt), explanation.trace);
-  for (const auto& step : explanation.steps) out += line(step);
-  return out;
-}
-
-std::string WhyText::json(const FactExplanation& explanation) const {
-  const auto place = [](const compiler::Origin& origin) {
-    return ordered_json{{"file", origin.place.file},
-                        {"line", origin.place.begin.line},
-                        {"what", to_string(origin.kind)},
-                        {"text", origin.text}};
-  };
-  const auto names = [&](const std::vector<Literal>& literals) {
-    auto list = ordered_json::array();
-    for (const auto literal : literals) list.push_back(clauses_.literal(literal));
-    return list;
-  };
-  auto list = ordered_json::array();
-  for (const auto& step : explanation.steps) {
-    ordered_json entry = {{"fact", clauses_.literal(step.fact)}, {"why", kind_word(step.kind)}};
-    if (step.kind == WhyKind::kInertia) entry["since"] = step.since;
-    if (step.origin) entry["axiom"] = place(model_.origins[*step.origin]);
-    entry["premises"] = names(step.premises);
-    if (!step.absent.empty()) entry["absent"] = names(step.absent);
-    auto also = ordered_json::array();
-    for (const auto clause : step.also) {
-      auto other = place(model_.origins[model_.clause_origins[clause]]);
-      other["instance"] = clauses_.clause(clause);
-      also.push_back(std::move(other));
-    }
-    if (!also.empty()) entry["also"] = std::move(also);
-    list.push_back(std::move(entry));
-  }
-  const auto& asked = explanation.asked;
-  ordered_json document = {{"status", "ok"}, {"trace", explanation.trace}};
-  document["fact"] = asked ? clauses_.literal(*asked) : "!" + explanation.fact.name;
-  document["steps"] = std::move(list);
-  return base::json_text(document) + '\n';
+/// An instance on a line of its own.
+std::string shortened(const std::string& instance) {
+  constexpr std::size_t kMost = 160;
+  if (instance.size() <= kMost) return instance;
+  const auto end = instance.rfind(' ', kMost);
+  return instance.substr(0, end == std::string::npos ? kMost : end) + " ...";
 }
 
 }  // namespace
 
 std::string contradiction_head(const runtime::MinimalSets& found, const SetOptions& options,
-                               const ObservedRun* run) {
+                               const ObservedRun* run, bool verbose) {
   return fmt::format(
       "The model has no trace{}; {} of axioms that contradict {} ({}):\n{}",
       run != nullptr ? " in which this happens" : "", counted(found.sets.size(), "minimal set"),
-      run != nullptr ? "it" : "each other", claim(found, options), observed_text(run));
+      run != nullptr ? "it" : "each other", claim(found, options), observed_text(run, verbose));
 }
 
 std::string contradiction_text(const compiler::CompiledModel& model, std::size_t number,
-                               const Contradiction& set) {
+                               const Contradiction& set, Instances shown,
+                               const std::string& words) {
   auto out = fmt::format("set {}: {} (proof {}{})\n", number, counted(set.axioms.size(), "axiom"),
                          proof_word(set.proof),
                          set.instances_minimal ? "" : "; instances not minimal: stopped");
+  if (!words.empty()) out += harness::wrapped("  ", words, 2);
   for (const auto& axiom : set.axioms) {
     const auto& origin = model.origins[axiom.origin];
     const auto place = origin_place(origin);
     out += fmt::format("  {}{}\n", place.empty() ? "" : place + "  ", axiom_text(origin));
+    if (shown == Instances::kNone) continue;
     const auto& instances = axiom.instances;
     for (std::size_t i = 0; i < instances.size() && i < kShownInstances; ++i) {
-      out += "      " + instances[i] + '\n';
+      const auto text = shown == Instances::kShort ? shortened(instances[i]) : instances[i];
+      out += "      " + text + '\n';
     }
     if (instances.size() > kShownInstances) {
       out += fmt::format("      ... and {}\n",
@@ -305,12 +114,23 @@ std::string contradiction_text(const compiler::CompiledModel& model, std::size_t
   return out;
 }
 
-std::string contradictions_json(const compiler::CompiledModel& model,
-                                const runtime::MinimalSets& found, const SetOptions& options,
-                                const ObservedRun* run, const std::vector<Contradiction>& sets) {
+std::string run_words_text(const RecordedDiscrepancy& found, const std::string& words) {
+  auto out = harness::wrapped("", words, 0);
+  if (!found.parting) return out;
+  const auto more = consequence_words(found.path, *found.parting);
+  if (!more.empty()) out += harness::wrapped("", more, 0);
+  return out + '\n';
+}
+
+namespace {
+
+ordered_json contradictions_document(const compiler::CompiledModel& model,
+                                     const runtime::MinimalSets& found, const SetOptions& options,
+                                     const ObservedRun* run,
+                                     const std::vector<Contradiction>& sets) {
   ordered_json document = {{"status", "ok"},
                            {"satisfiable", false},
-                           {"smallest", !options.all && found.proven},
+                           {"smallest", !options.all && is_smallest(found)},
                            {"complete", options.all && found.proven}};
   if (run != nullptr) document["observed"] = run->lines;
   auto list = ordered_json::array();
@@ -331,7 +151,94 @@ std::string contradictions_json(const compiler::CompiledModel& model,
                     {"axioms", std::move(axioms)}});
   }
   document["sets"] = std::move(list);
+  return document;
+}
+
+ordered_json rule_json(const harness::FailureRule& rule,
+                       const std::vector<std::string>& parameters) {
+  auto borders = ordered_json::array();
+  for (const auto& border : rule.borders) {
+    borders.push_back({{"parameter", parameters[border.parameter]},
+                       {"side", border.above ? "above" : "at-most"},
+                       {"value", border.value}});
+  }
+  return {{"borders", std::move(borders)},
+          {"text", harness::rule_text(rule.borders, parameters)},
+          {"failures_inside", rule.failures_inside},
+          {"failures", rule.failures},
+          {"clean_inside", rule.clean_inside},
+          {"clean", rule.clean},
+          {"accuracy", rule.accuracy}};
+}
+
+const char* role_word(Difference::Role role) {
+  switch (role) {
+    case Difference::Role::kFirst:
+      return "first";
+    case Difference::Role::kFollows:
+      return "follows";
+    case Difference::Role::kSameAction:
+      return "same-action";
+    case Difference::Role::kFurther:
+      return "further";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string contradictions_json(const compiler::CompiledModel& model,
+                                const runtime::MinimalSets& found, const SetOptions& options,
+                                const ObservedRun* run, const std::vector<Contradiction>& sets) {
+  return base::json_text(contradictions_document(model, found, options, run, sets)) + '\n';
+}
+
+std::string run_contradictions_json(const RecordedDiscrepancy& found,
+                                    const runtime::MinimalSets& sets_found,
+                                    const SetOptions& options, const ObservedRun& run,
+                                    const std::vector<Contradiction>& sets,
+                                    const std::vector<std::string>& words,
+                                    const CauseEvidence& cause) {
+  auto document =
+      contradictions_document(found.loaded.compilation.model, sets_found, options, &run, sets);
+  for (std::size_t i = 0; i < words.size(); ++i) document["sets"][i]["words"] = words[i];
+  document["sample"] = fmt::format("{}.{}", found.path.id.trace, found.path.id.sample);
+  document["timepoint"] = found.parting->after;
+  auto differences = ordered_json::array();
+  for (const auto& difference : found.parting->differences) {
+    differences.push_back({{"fluent", difference.name},
+                           {"timepoint", found.parting->after},
+                           {"predicted", !difference.observed},
+                           {"observed", difference.observed},
+                           {"role", role_word(difference.role)}});
+  }
+  document["differences"] = std::move(differences);
+  const auto& finding = cause.finding;
+  document["cause"] = to_string(finding.kind);
+  document["cause_words"] = cause.words();
+  if (finding.rule) document["rule"] = rule_json(*finding.rule, cause.parameters);
+  document["evidence"] = {{"runs", finding.runs},
+                          {"failures", finding.failures},
+                          {"contradictory_starts", finding.contradictory_starts},
+                          {"otherwise", cause.otherwise},
+                          {"further", cause.further}};
   return base::json_text(document) + '\n';
+}
+
+std::string cause_text(const CauseEvidence& cause) {
+  auto out = cause.words();
+  if (cause.otherwise > 0) {
+    out += fmt::format(" {} went wrong otherwise and {} left out.",
+                       counted(static_cast<std::size_t>(cause.otherwise), "run"),
+                       cause.otherwise == 1 ? "is" : "are");
+  }
+  if (cause.further > 0) {
+    out += fmt::format(" {} made for this.",
+                       cause.further == 1 ? "1 further run was"
+                                          : fmt::format("{} further runs were", cause.further));
+  }
+  if (!cause.not_made.empty()) out += fmt::format(" No further runs: {}.", cause.not_made);
+  return harness::wrapped("", out, 0);
 }
 
 std::string no_contradiction_text(const compiler::CompiledModel& model, const ObservedRun* run) {
@@ -343,14 +250,6 @@ std::string no_contradiction_text(const compiler::CompiledModel& model, const Ob
 
 std::string no_contradiction_json() {
   return "{\"status\":\"ok\",\"satisfiable\":true,\"sets\":[]}\n";
-}
-
-std::string why_text(const compiler::CompiledModel& model, const FactExplanation& explanation) {
-  return WhyText(model).text(explanation);
-}
-
-std::string why_json(const compiler::CompiledModel& model, const FactExplanation& explanation) {
-  return WhyText(model).json(explanation);
 }
 
 }  // namespace parallax::tools

@@ -1,0 +1,131 @@
+#include "tools/app/evidence.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "runtime/session/solver_session.h"
+
+namespace parallax::tools {
+namespace {
+
+/// A number, also of a flag; none of a text.
+std::optional<double> number_of(const harness::Value& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? 1.0 : 0.0;
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  return std::nullopt;
+}
+
+/// The start parameters that are numbers in every run, and not always the same.
+std::vector<std::string> varying_parameters(const std::vector<const ObservedPath*>& paths) {
+  std::vector<std::string> out;
+  if (paths.empty()) return out;
+  for (const auto& [name, value] : paths.front()->start) {
+    std::set<double> seen;
+    const bool is_number = std::all_of(paths.begin(), paths.end(), [&](const auto* path) {
+      const auto found = path->start.find(name);
+      const auto number = found == path->start.end() ? std::nullopt : number_of(found->second);
+      if (number) seen.insert(*number);
+      return number.has_value();
+    });
+    if (is_number && seen.size() > 1) out.push_back(name);
+  }
+  return out;
+}
+
+/// How a simulation bears on a discrepancy.
+enum class Bearing : std::uint8_t { kSame, kClean, kOther };
+
+class EvidenceReader {
+ public:
+  EvidenceReader(const RecordedDiscrepancy& found, Context& context)
+      : found_(found),
+        model_(found.loaded.compilation.model),
+        facts_(model_),
+        session_(model_, runtime::make_cadical_solver(&context.stop())) {}
+
+  Bearing bearing(const ObservedPath& path) {
+    const auto after = found_.parting->after;
+    if (path.steps.size() < after || !goes_the_same_way(path, after)) return Bearing::kOther;
+    const auto here = parting_of(path, facts_, session_);
+    if (here.undecided) return Bearing::kOther;
+    if (!here.after || *here.after > after) return Bearing::kClean;
+    if (*here.after < after) return Bearing::kOther;
+    const auto& differences = found_.parting->differences;
+    if (differences.empty() || differences.front().neither) return Bearing::kSame;
+    const auto& first = differences.front();
+    const auto seen = path.states[after].find(first.fluent);
+    const bool same = seen != path.states[after].end() && seen->second == first.observed;
+    return same ? Bearing::kSame : Bearing::kOther;
+  }
+
+ private:
+  bool goes_the_same_way(const ObservedPath& path, std::size_t after) const {
+    for (std::size_t t = 0; t < after; ++t) {
+      if (path.steps[t].event != found_.path.steps[t].event) return false;
+    }
+    return true;
+  }
+
+  const RecordedDiscrepancy& found_;
+  const compiler::CompiledModel& model_;
+  PathFacts facts_;
+  runtime::SolverSession session_;
+};
+
+}  // namespace
+
+base::Result<CauseEvidence> gather_evidence(const RecordedDiscrepancy& found,
+                                            const std::vector<harness::SampleRecord>& further,
+                                            Context& context) {
+  const harness::SampleId id = found.path.id;
+  const harness::SampleKey known(id.trace, id.sample, harness::DrawPhase::kCertify);
+  harness::JournalText journal;
+  journal.header = found.journal.header;
+  journal.traces = found.journal.traces;
+  journal.trace_places = found.journal.trace_places;
+  const auto add = [&](const harness::SampleKey& key, const harness::SampleRecord& record) {
+    if (record.trace != id.trace) return false;
+    journal.places[key] = found.journal.places.at(known);
+    return journal.samples.emplace(key, record).second;
+  };
+  for (const auto& [key, record] : found.journal.samples) {
+    if (add(key, record)) journal.places[key] = found.journal.places.at(key);
+  }
+  CauseEvidence out;
+  for (const auto& record : further) {
+    if (add({record.trace, record.sample, record.phase}, record)) ++out.further;
+  }
+  const auto paths = observed_paths(found.loaded, journal, context);
+  if (!paths) return context.sink().already_reported();
+  EvidenceReader reader(found, context);
+  std::vector<const ObservedPath*> bearing;
+  std::vector<bool> failed;
+  for (const auto& path : *paths) {
+    const auto how = reader.bearing(path);
+    if (how == Bearing::kOther) {
+      ++out.otherwise;
+      continue;
+    }
+    bearing.push_back(&path);
+    failed.push_back(how == Bearing::kSame);
+  }
+  if (context.stopped()) {
+    out.not_made = "stopped before those on record were looked at";
+    return out;
+  }
+  out.parameters = varying_parameters(bearing);
+  std::vector<harness::CauseRun> runs;
+  for (std::size_t i = 0; i < bearing.size(); ++i) {
+    auto& run = runs.emplace_back();
+    run.failed = failed[i];
+    for (const auto& name : out.parameters) {
+      run.start.push_back(*number_of(bearing[i]->start.find(name)->second));
+    }
+  }
+  out.finding = harness::tell_cause(runs, found.loaded.world != nullptr);
+  return out;
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/base/result.h"
+#include "harness/campaign/campaign.h"
+#include "harness/campaign/sample_runner.h"
+#include "harness/cause/cause_kind.h"
+#include "tools/app/context.h"
+#include "tools/app/discrepancy.h"
+
+namespace parallax::tools {
+
+/// What all recorded simulations of a trace say of the kind of cause.
+struct CauseEvidence {
+  harness::CauseFinding finding;
+  std::vector<std::string> parameters;  // of the start, those that differ from run to run
+  std::int64_t otherwise = 0;  // runs that went wrong earlier or otherwise, and say nothing of this
+  std::int64_t further = 0;    // runs that were made for it, now or earlier
+  /// Why no further ones were made; empty: as many as were asked for.
+  std::string not_made;
+
+  std::string words() const { return harness::cause_words(finding, parameters); }
+};
+
+/// Those of the journal (and `further`, of the same trace) that get as far as the discrepancy: does
+/// it happen there again? Reports as observed_paths does.
+base::Result<CauseEvidence> gather_evidence(const RecordedDiscrepancy& found,
+                                            const std::vector<harness::SampleRecord>& further,
+                                            Context& context);
+
+struct FurtherRunsOptions {
+  std::int64_t runs = 60;    // at most so many, counted with those made earlier
+  std::int64_t enough = 10;  // until so many have failed, and as many or none at all have not
+  std::int64_t jobs = 1;
+  std::function<void(const harness::CampaignProgress&)> progress;
+};
+
+/// Do so many failed and clean runs say enough?
+inline bool is_enough(const FurtherRunsOptions& options, std::int64_t failures,
+                      std::int64_t clean) {
+  return failures >= options.enough && (clean == 0 || clean >= options.enough);
+}
+
+/// The folder in a run folder that has them.
+inline constexpr const char* kFurtherRuns = "further";
+
+/// Simulates the discrepancy's trace from further starts, those that the run would have drawn next,
+/// and records them in RUN_DIR/further, where they are found the next time; the run itself stays as
+/// it is, also for --resume. `as_run`: the scenario as it is run. Of a trace only; reports as
+/// estimate_rates does, and what claiming a folder reports.
+base::Result<std::vector<harness::SampleRecord>> further_runs(
+    const std::string& run_dir, const RecordedDiscrepancy& found, const ScenarioModel& as_run,
+    const harness::SimulatorFactory& make_simulator, const FurtherRunsOptions& options,
+    Context& context);
+
+}  // namespace parallax::tools

@@ -1,0 +1,140 @@
+#include <chrono>
+#include <filesystem>
+#include <utility>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "harness/campaign/trial.h"
+#include "tools/app/evidence.h"
+#include "tools/app/trace_feed.h"
+
+namespace parallax::tools {
+namespace {
+
+using harness::DrawPhase;
+using harness::SampleRecord;
+
+class FurtherRuns {
+ public:
+  FurtherRuns(const RecordedDiscrepancy& found, const ScenarioModel& as_run,
+              const FurtherRunsOptions& options, Context& context)
+      : found_(found),
+        scenario_(as_run.scenario),
+        options_(options),
+        context_(context),
+        feed_(as_run.compilation.model, context) {
+    // Judged as the run was.
+    scenario_.compare = recorded_comparison(*found.journal.header).value_or(scenario_.comparison());
+  }
+
+  base::Result<std::vector<SampleRecord>> run(const std::string& run_dir,
+                                              const harness::SimulatorFactory& make_simulator) {
+    auto& sink = context_.sink();
+    auto journal = open(run_dir);
+    if (!journal) return sink.already_reported();
+    harness::TrialBench bench(
+        scenario_, feed_, make_simulator,
+        {found_.journal.header->seed, options_.jobs, &context_.stop()},
+        [&](const SampleRecord& record) { (*journal)->append(record); }, sink);
+    const auto started = bench.start();
+    if (!started) return sink.already_reported();
+    if (!*started) return std::vector<SampleRecord>();
+    auto trace = this_trace();
+    if (!trace) return sink.already_reported();
+    if (!*trace) return std::vector<SampleRecord>();
+    auto trial = harness::Trial::prepare(bench, *std::move(*trace));
+    if (!trial) return sink.already_reported();
+    trial->continue_from(**journal);
+    if ((*journal)->find(found_.path.id.trace) == nullptr) {
+      (*journal)->append(found_.journal.traces.at(found_.path.id.trace));
+    }
+    if (!sample(**journal, bench, *trial)) return sink.already_reported();
+    trial->end();
+    bench.close();
+    const auto error = (*journal)->write_error();
+    if (!error.empty()) {
+      return sink.error_about(base::DiagnosticCode::kFileNotWritable, run_dir, error);
+    }
+    return std::move(made_);
+  }
+
+ private:
+  /// What the run has on record is there already, so that it is not made again.
+  base::Result<std::unique_ptr<harness::Journal>> open(const std::string& run_dir) {
+    auto& sink = context_.sink();
+    const auto& header = *found_.journal.header;
+    auto folder =
+        harness::RunFolder::claim(std::filesystem::path(run_dir) / kFurtherRuns, true, sink);
+    if (!folder) return sink.already_reported();
+    auto recorded = harness::read_for_continuation(*folder, header, context_.files(), sink);
+    if (!recorded) return sink.already_reported();
+    for (const auto& [key, record] : found_.journal.samples) {
+      if (record.status != harness::SampleStatus::kOk) continue;
+      if (record.trace != found_.path.id.trace || record.phase != DrawPhase::kCertify) continue;
+      recorded->samples[key] = record;
+    }
+    return harness::Journal::open(*std::move(folder), header, *std::move(recorded),
+                                  scenario_.limits.max_lost_in_a_row, context_.files(), sink);
+  }
+
+  /// None if it is not found again: it was one of a run with other options.
+  base::Result<std::optional<harness::CampaignTrace>> this_trace() {
+    const auto& id = found_.path.id;
+    while (true) {
+      auto trace = feed_.next();
+      if (!trace || !*trace) return trace;
+      if ((*trace)->key == found_.journal.traces.at(id.trace).trace->key) {
+        (*trace)->number = id.trace;
+        return trace;
+      }
+      if ((*trace)->number >= id.trace) return std::optional<harness::CampaignTrace>();
+    }
+  }
+
+  bool is_recorded(const SampleRecord& record) const {
+    return found_.journal.samples.contains({record.trace, record.sample, record.phase});
+  }
+
+  base::Status sample(const harness::Journal& journal, const harness::TrialBench& bench,
+                      harness::Trial& trial) {
+    const auto started = std::chrono::steady_clock::now();
+    std::int64_t failures = 0, clean = 0, made = 0;
+    while (!is_enough(options_, failures, clean) && made < options_.runs) {
+      // Samples on record cost nothing and count as failures only.
+      const auto ahead = std::min(options_.jobs == 1 ? 1 : 2 * options_.jobs, options_.runs - made);
+      trial.submit_to(trial.next_sample() + ahead - 1);
+      auto sample = trial.next();
+      if (!sample) return context_.sink().already_reported();
+      if (!*sample || (*sample)->verdict == harness::SampleVerdict::kLostTooOften) break;
+      const auto verdict = (*sample)->verdict;
+      const bool is_lost = verdict == harness::SampleVerdict::kLost;
+      if (!is_lost) ++(verdict == harness::SampleVerdict::kDiscrepancy ? failures : clean);
+      if (is_recorded((*sample)->record)) continue;
+      ++made;
+      if (!journal.write_error().empty()) break;
+      if (!is_lost) made_.push_back(std::move((*sample)->record));
+      if (!options_.progress) continue;
+      const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started;
+      const auto rate = static_cast<double>(bench.runs_made()) / std::max(elapsed.count(), 1e-9);
+      options_.progress({found_.path.id.trace, made, options_.runs, rate});
+    }
+    return base::Unit{};
+  }
+
+  const RecordedDiscrepancy& found_;
+  harness::Scenario scenario_;
+  const FurtherRunsOptions& options_;
+  Context& context_;
+  EnumeratedTraces feed_;
+  std::vector<SampleRecord> made_;
+};
+
+}  // namespace
+
+base::Result<std::vector<SampleRecord>> further_runs(
+    const std::string& run_dir, const RecordedDiscrepancy& found, const ScenarioModel& as_run,
+    const harness::SimulatorFactory& make_simulator, const FurtherRunsOptions& options,
+    Context& context) {
+  return FurtherRuns(found, as_run, options, context).run(run_dir, make_simulator);
+}
+
+}  // namespace parallax::tools
