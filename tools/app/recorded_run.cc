@@ -201,14 +201,6 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
       "the scenario `{}` cannot be loaded any more; `parallax check {}` says why", name, name));
 }
 
-base::Status require_trace(const std::string& folder, const harness::RecordedRun& run,
-                           base::DiagnosticSink& sink) {
-  if (!run.record.path) return base::Unit{};
-  return sink.error_about(DiagnosticCode::kReplayImpossible, folder,
-                          "it executed the plan (closed-loop), so there is no trace to compare "
-                          "it with; its report says what the model cannot follow");
-}
-
 base::Result<harness::CampaignTrace> check_recorded_run(const ScenarioModel& loaded,
                                                         const harness::RecordedRun& run,
                                                         Context& context) {

@@ -34,10 +34,6 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
                                                    const harness::JournalHeader& header,
                                                    ScenarioUse use, Context& context);
 
-/// Reports that what is to be done needs a trace, and the run is one of a plan that was executed.
-base::Status require_trace(const std::string& folder, const harness::RecordedRun& run,
-                           base::DiagnosticSink& sink);
-
 /// Can the scenario have had this simulation? Its trace must be one of the model, its calls those
 /// of the actions, its start and seed what is drawn for its number; of an executed plan the calls
 /// alone are looked at. What was observed is not. Gives the trace in the ids of the model. Reports

@@ -86,7 +86,9 @@ base::Result<std::vector<harness::SampleRecord>> make_further_runs(const Explain
     not_made = "of executed plans none are made";
     return none;
   }
-  const RunFolderOptions folder{options.model.models.front(), options.scenario};
+  // By the name that was found, which has been told.
+  const RunFolderOptions folder{options.model.models.front(),
+                                std::filesystem::path(found.loaded.scenario.file).string()};
   const auto loaded =
       load_recorded_scenario(folder, *found.journal.header, ScenarioUse::kRun, invocation);
   if (!loaded) return sink.already_reported();
