@@ -66,11 +66,43 @@ std::optional<fs::path> marked_root(fs::path real, const std::vector<fs::path>& 
 
 }  // namespace
 
-fs::path real_path(const fs::path& path) {
+namespace {
+
+/// A link that leads to nothing, as far as the path exists; what stands behind it goes to `rest`.
+std::optional<fs::path> dangling_link(const fs::path& path, fs::path& rest) {
   std::error_code error;
-  const auto whole = fs::absolute(path.empty() ? fs::path(".") : path, error);
-  auto real = fs::weakly_canonical(whole, error);
-  if (error) real = whole.lexically_normal();
+  std::optional<fs::path> link;
+  fs::path before;
+  for (const auto& part : path) {
+    if (link) {
+      rest /= part;
+      continue;
+    }
+    before /= part;
+    if (fs::is_symlink(fs::symlink_status(before, error))) link = before;
+  }
+  return link;
+}
+
+}  // namespace
+
+fs::path real_path(const fs::path& path) {
+  constexpr int kMaxLinks = 40;  // as Linux follows
+  std::error_code error;
+  auto whole = fs::absolute(path.empty() ? fs::path(".") : path, error);
+  fs::path real;
+  for (int links = 0; links < kMaxLinks; ++links) {
+    real = fs::weakly_canonical(whole, error);
+    if (error) real = whole.lexically_normal();
+    // Where a link leads does not depend on whether anything is there.
+    fs::path rest;
+    const auto link = error ? std::nullopt : dangling_link(real, rest);
+    if (!link) break;
+    const auto target = fs::read_symlink(*link, error);
+    if (error) break;
+    whole = link->parent_path() / target;
+    if (!rest.empty()) whole /= rest;
+  }
   // A folder that is named with a final slash is the same folder.
   if (!real.has_filename() && real.has_relative_path()) real = real.parent_path();
   return real;

@@ -123,6 +123,11 @@ void check_first_start(const Scenario& scenario, const CampaignTrace& trace,
   if (record->status == SampleStatus::kRejected) {
     report_rejected(scenario, trace, record->rejected, record->sample, record->reason, sink);
   }
+  if (record->status == SampleStatus::kRefused && record->observations.empty()) {
+    sink.error(DiagnosticCode::kSimulatorRefused, scenario.sampling_source,
+               fmt::format("refused the start in simulation {}.{}", trace.number, record->sample),
+               record->reason);
+  }
   if (record->status != SampleStatus::kOk) return;
   const auto judgement = judge(*scenario.mapping, fluents, *start, record->observations);
   if (!judgement.missing.empty() || judgement.first_divergence != 0) return;

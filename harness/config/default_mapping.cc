@@ -27,13 +27,25 @@ Signature signature_of(const GroundFluent& ground) {
   return {ground.symbol, ground.arguments.size()};
 }
 
+/// Variables of a model are true or false: numbers and texts are asked for in vain.
+void check_condition(const FluentBinding& binding, base::DiagnosticSink& sink) {
+  const bool range = std::holds_alternative<RangeBinding>(binding.condition);
+  if (!range && !std::holds_alternative<EqualsBinding>(binding.condition)) return;
+  sink.error(
+      DiagnosticCode::kWrongYamlKind, binding.source,
+      fmt::format("the mapping of `{}`", binding.fluent),
+      fmt::format("`{}`", range ? Key::kRange : Key::kEquals),
+      fmt::format("`{}` or `{}`: what a model shows is true or false", Key::kFlag, Key::kIgnored));
+}
+
 /// What stands for each fluent of the model that the scenario says nothing of.
 void bind_fluents(Scenario& scenario, const std::vector<std::string>& fluents,
-                  const std::set<Signature>& known) {
+                  const std::set<Signature>& known, base::DiagnosticSink& sink) {
   auto bindings = scenario.mapping->bindings();
   std::set<std::string> mapped;
   for (auto& binding : bindings) {
     mapped.insert(binding.fluent);
+    check_condition(binding, sink);
     auto* flag = std::get_if<FlagBinding>(&binding.condition);
     if (flag != nullptr && !flag->drawn) flag->drawn = true;
   }
@@ -59,7 +71,13 @@ void bind_events(Scenario& scenario, const std::vector<std::string>& events,
                  const std::vector<std::string>& known, base::DiagnosticSink& sink) {
   const std::set<std::string> index(known.begin(), known.end());
   std::set<std::string> own, reported;
-  for (const auto& action : scenario.actions) own.insert(action.event);
+  for (const auto& action : scenario.actions) {
+    own.insert(action.event);
+    for (const auto& [name, source] : action.argument_sources) {
+      sink.error(DiagnosticCode::kUnknownArgument, source, action.controller, name)
+          .note("an event of a model takes the arguments that stand in its brackets");
+    }
+  }
   for (const auto& text : events) {
     const auto event = ground_fluent(text);
     auto action = std::find_if(scenario.actions.begin(), scenario.actions.end(),
@@ -99,7 +117,7 @@ base::Status bind_by_name(Scenario& scenario, const std::vector<std::string>& fl
   for (const auto& parameter : info.parameters) {
     known.insert(signature_of(ground_fluent(parameter.name)));
   }
-  bind_fluents(scenario, fluents, known);
+  bind_fluents(scenario, fluents, known, sink);
   bind_events(scenario, events, info.actions, sink);
   if (sink.error_count() != errors_before) return sink.already_reported();
   return base::Unit{};

@@ -183,14 +183,17 @@ class ScenarioReader {
   }
 
   void read_simulation(Scenario& scenario) {
+    const auto errors_before = sink_.error_count();
     if (const auto* node = fields_.find(Key::kSimulator)) {
       scenario.simulator = read_simulator(*node, sink_);
     } else {
       scenario.simulator.source = fields_.node().range;
     }
+    // What a simulator needs is not asked for where it is not known which one it is.
+    const bool unknown = sink_.error_count() != errors_before;
     for (auto& model : scenario.simulator.models) resolve(model, false);
     // Another simulator has a world of its own; the built-in one needs ours.
-    const bool built_in = scenario.simulator.is_built_in();
+    const bool built_in = !unknown && scenario.simulator.is_built_in();
     const auto* world = built_in ? fields_.require(Key::kWorld) : fields_.find(Key::kWorld);
     if (world != nullptr) {
       scenario.world = read_world(*world, sink_);
@@ -201,7 +204,7 @@ class ScenarioReader {
       }
     }
     // What has names in a world that is a model needs no words of the scenario.
-    by_name_ = !scenario.simulator.models.empty();
+    by_name_ = unknown || !scenario.simulator.models.empty();
     scenario.actions_source = scenario.simulator.source;
     if (const auto* node = needed(Key::kActions)) {
       scenario.actions = read_actions(*node, built_in, sink_);
@@ -283,7 +286,7 @@ class ScenarioReader {
   const base::PathGate& gate_;
   const base::SourceFiles& files_;
   base::DiagnosticSink& sink_;
-  bool by_name_ = false;  // the simulator is a model
+  bool by_name_ = false;  // the simulator is a model, or not known
 };
 
 }  // namespace

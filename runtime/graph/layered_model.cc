@@ -151,11 +151,50 @@ class Splitter {
       first = v;
     }
     if (fits) return true;
-    const auto& origin = model_.origins[model_.clause_origins[c]];
-    reason_ =
-        fmt::format("the clauses of `{}` look at more than two neighbouring timepoints",
-                    origin.text.empty() ? to_string(origin.kind) : std::string_view(origin.text));
+    reason_ = window ? why_tied(c, *window, *first) : why_too_far(c);
     return false;
+  }
+
+  std::string_view text_of(std::size_t c) const {
+    const auto& origin = model_.origins[model_.clause_origins[c]];
+    return origin.text.empty() ? to_string(origin.kind) : std::string_view(origin.text);
+  }
+
+  /// Of a clause that fits into no window.
+  std::string why_too_far(std::size_t c) const {
+    std::vector<std::int64_t> times;  // of its events
+    for (const auto literal : model_.clauses[c]) {
+      if (is_fixed(literal)) continue;
+      const auto place = literal.var() - model_.base() - 1;
+      const bool is_state = slot_of(literal) < static_cast<std::int32_t>(model_.state_slots);
+      if (!is_state) times.push_back(place / model_.stride());
+    }
+    const auto [least, most] = std::minmax_element(times.begin(), times.end());
+    if (least != times.end() && *most - *least == 1) {
+      return fmt::format("`{}` ties the events of one timepoint to those of the next", text_of(c));
+    }
+    return fmt::format("the clauses of `{}` look at more than two neighbouring timepoints",
+                       text_of(c));
+  }
+
+  /// Of a clause that has a window, and a variable without a timepoint that belongs to another one:
+  /// the first clause that put it there takes part.
+  std::string why_tied(std::size_t c, std::int64_t window, std::size_t v) {
+    for (std::size_t other = 0; other < c; ++other) {
+      const auto there = window_of(model_.clauses[other]);
+      if (!there || *there == kNoWindow || *there == window || is_satisfied(other)) continue;
+      for (const auto literal : model_.clauses[other]) {
+        if (!is_fixed(literal)) continue;
+        const auto w = static_cast<std::size_t>(literal.var()) - 1;
+        if (components_.find(w) != components_.find(v)) continue;
+        const auto& atom = model_.fixed[w];
+        const auto by = atom.name.empty() ? std::string() : fmt::format(" by `{}`", atom.name);
+        return fmt::format(
+            "`{}` and `{}` are tied together{}, and look at more than two neighbouring timepoints",
+            text_of(other), text_of(c), by);
+      }
+    }
+    return why_too_far(c);
   }
 
   /// Does the clause speak of one state only? Its timepoint then.

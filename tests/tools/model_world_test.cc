@@ -202,6 +202,69 @@ TEST_CASE("what is wrong with the world is said at its place, by check and by ru
   refused(cli.world(whole + "[time] HoldsAt(Parked(),time) -> HoldsAt(Open(top),time+2).\n"),
           "E5134", "more than two neighbouring timepoints");
   refused(cli.world(whole + "!HoldsAt(Parked(),0).\n"), "E7105", "two/own.yaml:2");
+  refused(cli.world(whole + "[time] Happens(Park(),time) -> Happens(Reach(),time+1).\n"), "E5134",
+          "Happens(Reach(),time+1)` ties the events of one timepoint to those of the next");
+  refused(
+      cli.world(whole + "predicate Late()\nLate() -> HoldsAt(Parked(),3).\n"
+                        "!Late() -> HoldsAt(Parked(),0).\n"),
+      "E5134",
+      "`Late() -> HoldsAt(Parked(),3)` and `!Late() -> HoldsAt(Parked(),0)` are tied together by "
+      "`Late()`");
+  refused(cli.world(whole,
+                    "mapping: {Open(d): {range: \"Open({d})\", holds: [1, 2], fails: [-1, 0]}}\n"),
+          "E5107", "two/own.yaml:3:11-17");
+  refused(cli.world(whole, "mapping: {Parked(): {equals: \"Parked()\", text: yes}}\n"), "E5107",
+          "two/own.yaml:3:11-18");
+  refused(cli.world(whole, "actions: {Park(): {controller: Park(), force_n: 3}}\n"), "E5121",
+          "two/own.yaml:3:49");
+  // 2^13 initial states fit what the mapping says of the start.
+  std::string open_fluents = whole;
+  for (int i = 0; i < 13; ++i) open_fluents += "fluent Open" + std::to_string(i) + "()\n";
+  refused(cli.world(open_fluents), "E7109", "more than 4096 initial states");
+}
+
+TEST_CASE("two scenarios that differ in their worlds alone differ") {
+  const TwoModels cli;
+  const auto diff = cli.parallax({"diff", "two/agree.yaml", "two/unparks.yaml"});
+  CHECK(diff.code == 1);
+  CHECK(diff.out.find("world: [drawer,time] Terminates(OpenDrawer(drawer),Parked(),time)") !=
+        std::string::npos);
+  CHECK(cli.parallax({"diff", "two/agree.yaml", "two/agree.yaml"}).code == 0);
+}
+
+TEST_CASE("a mistake in `simulator` is told alone") {
+  const TwoModels cli;
+  cli.write("two/wrong.yaml",
+            "model: [opens.e, start.e]\nplan: open_and_close.lisp\nbind: robot.bind\nhorizon: 3\n"
+            "simulator: {modle: opens.e}\n");
+  const auto result = cli.parallax({"check", "two/wrong.yaml"});
+  CHECK(result.code == 3);
+  CHECK(result.err.find("two/wrong.yaml:5:13-17: error[E5102]") != std::string::npos);
+  CHECK(result.err.find("error[") == result.err.rfind("error["));
+}
+
+TEST_CASE("a link out of the folder is refused alike, whether it leads to a file or not") {
+  const TwoModels cli;
+  cli.write("outside.e", "load opens.e\n");
+  cli.write("two/own.yaml",
+            "include: common.yaml\nsimulator: {model: link.e}\nmodel: [opens.e, start.e]\n");
+  for (const std::string target : {"../outside.e", "../nowhere.e", "../nowhere/at/all.e"}) {
+    fs::remove(cli.folder() / "two/link.e");
+    fs::create_symlink(target, cli.folder() / "two/link.e");
+    const auto result = cli.parallax({"check", "two/own.yaml"});
+    CHECK(result.code == 3);
+    CHECK(result.err.find("E1016") != std::string::npos);
+    CHECK(result.err.find("E0001") == std::string::npos);
+  }
+  // Also where the link is a folder on the way.
+  fs::create_directory_symlink("../nowhere", cli.folder() / "two/elsewhere");
+  cli.replace("two/own.yaml", "link.e", "elsewhere/link.e");
+  CHECK(cli.parallax({"check", "two/own.yaml"}).err.find("E1016") != std::string::npos);
+  // One that stays inside is told to lead nowhere.
+  fs::remove(cli.folder() / "two/link.e");
+  fs::create_symlink("nothing.e", cli.folder() / "two/link.e");
+  cli.replace("two/own.yaml", "elsewhere/link.e", "link.e");
+  CHECK(cli.parallax({"check", "two/own.yaml"}).err.find("E0001") != std::string::npos);
 }
 
 }  // namespace

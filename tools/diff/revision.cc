@@ -63,6 +63,23 @@ base::Result<ModelRevision> load_compiled(const std::string& path, const LoadRev
   return out;
 }
 
+/// What a world that is a model says, each fact marked as the world's. It has no part in the
+/// traces.
+void add_world_facts(const harness::Scenario& scenario, const compiler::LoadOptions& load,
+                     std::vector<Fact>& facts) {
+  std::vector<std::string> models;
+  for (const auto& model : scenario.simulator.models) models.push_back(model.text);
+  if (models.empty()) return;
+  std::vector<Fact> world;
+  add_text_facts(models, load, world);
+  for (auto& fact : world) {
+    for (auto* text : {&fact.key, &fact.text, &fact.shown}) {
+      if (!text->empty()) text->insert(0, "world: ");
+    }
+    facts.push_back(std::move(fact));
+  }
+}
+
 base::Result<ModelRevision> load_scenario_revision(const std::string& path, Context& context) {
   ModelRevision out{path, RevisionKind::kScenario, {}, std::nullopt, false};
   auto loaded = load_scenario_model(path, context);
@@ -93,6 +110,7 @@ base::Result<ModelRevision> load_scenario_revision(const std::string& path, Cont
                          "constraint " + constraint.text,
                          {file.name(), file.position(constraint.source.begin).line}});
   }
+  add_world_facts(scenario, load, out.facts);
   out.compiled = std::move(loaded->compilation.model);
   return out;
 }

@@ -15,7 +15,7 @@ namespace parallax::tools {
 enum class RevisionKind : std::uint8_t {
   kModel,     // .e
   kArtifact,  // .dec.cnf
-  kScenario,  // .yaml: its models, plan, binding table and constraints
+  kScenario,  // .yaml: its models, plan, binding table, constraints and world model
   kPlan,      // .lisp
   kBinding,   // .bind
   kTraces,    // .jsonl, .ndjson
