@@ -74,6 +74,9 @@ struct PathCount {
 /// What is said of executions of a plan beside what is said of any stream of samples.
 struct LoopResult {
   std::int64_t initial_states = 0;
+  /// Runs that began where the start was chosen, not drawn: no claim is about them. None: all were
+  /// to be drawn.
+  std::optional<std::int64_t> guided;
   std::int64_t unfinished = 0;   // runs that a limit ended, or the end of the unrolling
   std::string why_unfinished;    // of the first
   std::vector<PathCount> paths;  // in the order in which they came

@@ -129,6 +129,7 @@ TraceLine trace_line_of(const Json& object, const std::shared_ptr<compiler::Symb
 ExecutedPath path_of(const Json& object) {
   ExecutedPath path;
   path.start = count_of(object, "start_state", 1);
+  if (object.contains("target")) path.target = get<std::string>(object, "target");
   for (const auto& step : list(object, "path")) {
     path.steps.push_back(
         {count_of(step, "step", 0),
@@ -240,6 +241,7 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
                       {"match", scenario.match_model ? "model" : "trace"}};
   if (scenario.execution == Execution::kClosedLoop) {
     json["execution"] = to_string(scenario.execution);
+    if (scenario.starts == Starts::kGuided) json["starts"] = to_string(scenario.starts);
     json["limits"]["max_performs"] = scenario.limits.max_performs;
     json["limits"]["max_simulated_s"] = scenario.limits.max_simulated_s;
   }
@@ -314,6 +316,7 @@ std::string encode(const SampleRecord& record) {
   out["digest"] = record.digest;
   if (!record.path) return out.dump();
   out["start_state"] = record.path->start;
+  if (!record.path->target.empty()) out["target"] = record.path->target;
   auto path = OrderedJson::array();
   for (const auto& step : record.path->steps) {
     OrderedJson entry = {{"step", step.step}, {"event", step.event}, {"source", step.source}};

@@ -46,6 +46,7 @@ class LoopCampaign {
     result_.execution = Execution::kClosedLoop;
     result_.exploration = "stopped";
     stream_.loop.emplace();
+    if (scenario.starts == Starts::kGuided) stream_.loop->guided = 0;
     stream_.trace = LoopStream::start_state(feed, {});
   }
 
@@ -97,10 +98,10 @@ class LoopCampaign {
       if (tally_.runs() >= limit_.max_runs) return End::kRunLimit;
       if (goes_on_anyway() && executions() >= planned()) return End::kPlanned;
       samples_.submit_to(last_wanted(decision));
-      auto record = samples_.next();
-      if (!check_written(*journal_, options_, sink_)) return sink_.already_reported();
-      if (!record) return End::kStopped;
-      auto end = consume(*std::move(record));
+      auto next = samples_.next();
+      if (!next || !check_written(*journal_, options_, sink_)) return sink_.already_reported();
+      if (!*next) return End::kStopped;
+      auto end = consume(**std::move(next));
       if (!end) return sink_.already_reported();
       if (*end) return **end;
     }
@@ -118,10 +119,11 @@ class LoopCampaign {
   /// Workers run ahead of what is consumed, but not beyond what the criterion still asks for.
   std::int64_t last_wanted(const Decision& decision) const {
     const std::int64_t window = options_.jobs == 1 ? 1 : 2 * options_.jobs;
+    const auto guided = stream_.loop->guided.value_or(0);
     const auto asked =
         goes_on_anyway() ? planned() : decision.runs_needed.value_or(limit_.max_runs);
-    const auto needed = std::max(asked, samples_.next_sample());
-    return std::min({samples_.next_sample() + window - 1, needed, limit_.max_runs});
+    const auto needed = std::max(asked + guided, samples_.next_sample());
+    return std::min({samples_.next_sample() + window - 1, needed, limit_.max_runs + guided});
   }
 
   /// What the sample ends, if anything.
@@ -154,7 +156,7 @@ class LoopCampaign {
     if (judgement.admitted == base::Known::kNo) return accept(std::move(record), judgement);
     const auto unfinished = why_unfinished(*record.path, scenario_);
     if (unfinished.empty()) {
-      tally_.add_clean_elsewhere();
+      is_guided(record) ? note_guided() : tally_.add_clean_elsewhere();
       ++stream_.clean;
     } else {
       auto& loop = *stream_.loop;
@@ -184,10 +186,18 @@ class LoopCampaign {
                        fmt::format("refused the action of `{}` {}", event.text, in), record.reason);
   }
 
+  /// Claims are about starts that were drawn; of others only what is found counts.
+  static bool is_guided(const SampleRecord& record) { return !record.path->target.empty(); }
+  void note_guided() { ++*stream_.loop->guided; }
+
   std::optional<End> lost(SampleRecord record) {
-    tally_.add_rejected(record.rejected);
     stream_.rejected += record.rejected;
-    tally_.add_lost();
+    if (is_guided(record)) {
+      note_guided();
+    } else {
+      tally_.add_rejected(record.rejected);
+      tally_.add_lost();
+    }
     ++stream_.lost;
     lost_too_often_ = bench_.lost_too_often(record, samples_.on_record(record));
     consumed_.push_back(std::move(record));
@@ -195,7 +205,7 @@ class LoopCampaign {
   }
 
   void count(const SampleRecord& record) {
-    tally_.add_rejected(record.rejected);
+    if (!is_guided(record)) tally_.add_rejected(record.rejected);
     stream_.rejected += record.rejected;
     if (record.retries > 0) ++stream_.retried;
     count_path(record, *stream_.loop);
@@ -216,7 +226,7 @@ class LoopCampaign {
     }
     const auto again = samples_.repeat(record, options_.keep_going);
     if (!again) return End::kStopped;
-    tally_.add_mismatch();
+    is_guided(record) ? note_guided() : tally_.add_mismatch();
     if (options_.keep_going) {
       causes.push_back({judgement.cause.text, 1, 0.0, 0.0, 0.0, record.sample,
                         judgement.cause.reason, record.initial});
@@ -262,7 +272,8 @@ class LoopCampaign {
     stream.verdict = !result_.discrepancies.empty() ? CampaignVerdict::kDiscrepancy
                      : decided                      ? CampaignVerdict::kNoDiscrepancy
                                                     : CampaignVerdict::kInconclusive;
-    stream.simulations = tally_.runs() + stream.loop->unfinished;
+    const auto guided = stream.loop->guided.value_or(0);
+    stream.simulations = tally_.runs() + stream.loop->unfinished + guided;
     const auto bound = certified_bound(tally_, criterion.confidence_level);
     stream.certified_level = bound.confidence_level;
     stream.certified_epsilon = bound.epsilon;
@@ -276,6 +287,12 @@ class LoopCampaign {
       stream.certified_epsilon = 1.0;
       stream.claim = "nothing is claimed: an execution did not end";
       stream.caveats.push_back(stream.loop->why_unfinished);
+    }
+    if (guided > 0) {
+      stream.caveats.push_back(fmt::format(
+          "{} of the executions began in states that were chosen for what they lead to; "
+          "the claim is about the others alone, whose starts were drawn",
+          guided));
     }
     auto& causes = stream.loop->causes;
     stream.loop->causes_level = kRateLevel;

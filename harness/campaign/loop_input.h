@@ -12,6 +12,7 @@
 #include "compiler/base/known.h"
 #include "compiler/base/result.h"
 #include "harness/campaign/sample_record.h"
+#include "harness/campaign/start_guide.h"
 #include "harness/sampling/sampler.h"
 #include "harness/simulator/simulator.h"
 #include "runtime/trace/trace.h"
@@ -65,6 +66,9 @@ class LoopFeed {
   /// Reports that there are too many, or none; nothing if it was stopped.
   virtual base::Result<std::optional<std::vector<std::vector<compiler::FluentId>>>> initial_states(
       std::span<const compiler::FluentId> fluents) = 0;
+  /// Chooses where executions begin that are drawn from this seed; null: all are drawn. To be asked
+  /// for once, behind initial_states.
+  virtual StartGuide* guide(std::uint64_t seed) = 0;
   /// Has the model an execution that begins with these performs, goes through these states (from
   /// timepoint 0 on, perhaps not to the end), and ends the first `outcomes` of the performs as they
   /// ended? Undecided where the stop flag is raised meanwhile.

@@ -152,11 +152,19 @@ const LoopStart& LoopSamples::start_of(const SampleRecord& record) const {
 
 std::optional<SampleRecord> LoopSamples::make(std::int64_t sample, Simulator& simulator,
                                               const std::function<bool()>& abandoned) const {
+  return make_from(sample, std::nullopt, simulator, abandoned);
+}
+
+std::optional<SampleRecord> LoopSamples::make_from(std::int64_t sample,
+                                                   const std::optional<GuidedStart>& guided,
+                                                   Simulator& simulator,
+                                                   const std::function<bool()>& abandoned) const {
   SampleRecord record;
   record.trace = 1;
   record.sample = sample;
   record.path.emplace();
-  record.path->start = draw_state(sample);
+  record.path->start = guided ? guided->start : draw_state(sample);
+  if (guided) record.path->target = guided->target;
   auto key = key_of(sample);
   const auto choices = choices_key(campaign_seed_, sample);
   PlanSource actions(scenario_, plan_, choices, {max_performs_, scenario_.limits.max_simulated_s});
@@ -186,7 +194,8 @@ std::optional<SampleRecord> LoopSamples::repeat(const SampleRecord& record, Simu
 }
 
 std::string LoopSamples::wrong_draw(const SampleRecord& record) const {
-  if (!record.path || record.path->start != draw_state(record.sample)) {
+  if (!record.path || record.path->start > std::ssize(starts_) ||
+      (record.path->target.empty() && record.path->start != draw_state(record.sample))) {
     return "its initial state is not that of its number";
   }
   const auto key = key_of(record.sample);

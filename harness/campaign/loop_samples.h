@@ -9,6 +9,7 @@
 #include "harness/campaign/loop_input.h"
 #include "harness/campaign/sample_maker.h"
 #include "harness/campaign/sample_runner.h"
+#include "harness/campaign/start_guide.h"
 #include "harness/config/scenario.h"
 #include "harness/sampling/sampler.h"
 
@@ -44,6 +45,11 @@ class LoopSamples final : public SampleMaker {
 
   std::optional<SampleRecord> make(std::int64_t sample, Simulator& simulator,
                                    const std::function<bool()>& abandoned) const override;
+  /// The same from a state that was chosen.
+  std::optional<SampleRecord> make_from(std::int64_t sample,
+                                        const std::optional<GuidedStart>& guided,
+                                        Simulator& simulator,
+                                        const std::function<bool()>& abandoned) const;
   /// The recorded actions, one after the other; the plan is not asked again.
   std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
                                      const std::function<bool()>& abandoned) const override;

@@ -1,5 +1,6 @@
 #include "harness/campaign/loop_stream.h"
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <utility>
@@ -9,6 +10,34 @@
 namespace parallax::harness {
 
 using base::DiagnosticCode;
+
+namespace {
+
+/// What is chosen goes by all executions but the last ones before it, so that some can be simulated
+/// at the same time; how many may not depend on the number of workers.
+constexpr std::int64_t kChosenAhead = 4;
+
+/// One execution from a start that was chosen.
+class GuidedSample final : public SampleMaker {
+ public:
+  GuidedSample(std::shared_ptr<const LoopSamples> samples, GuidedStart start)
+      : samples_(std::move(samples)), start_(std::move(start)) {}
+
+  std::optional<SampleRecord> make(std::int64_t sample, Simulator& simulator,
+                                   const std::function<bool()>& abandoned) const override {
+    return samples_->make_from(sample, start_, simulator, abandoned);
+  }
+  std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
+                                     const std::function<bool()>& abandoned) const override {
+    return samples_->repeat(record, simulator, abandoned);
+  }
+
+ private:
+  std::shared_ptr<const LoopSamples> samples_;
+  GuidedStart start_;
+};
+
+}  // namespace
 
 std::shared_ptr<const CampaignTrace> LoopStream::start_state(
     const LoopFeed& feed, std::vector<compiler::FluentId> holds) {
@@ -58,7 +87,15 @@ base::Result<bool> LoopStream::prepare() {
   samples_ = std::make_shared<const LoopSamples>(scenario_, feed_.plan(), std::move(starts), seed_,
                                                  feed_.max_performs(),
                                                  may_repeat_losses(bench_.simulator()));
+  guide_ = feed_.guide(seed_);
+  for (std::int64_t i = 0; i < kChosenAhead; ++i) choose();
   return true;
+}
+
+void LoopStream::choose() {
+  ++decided_;
+  if (guide_ == nullptr) return;
+  if (auto start = guide_->next(decided_)) chosen_.emplace(decided_, *std::move(start));
 }
 
 base::Status LoopStream::continue_from(const Journal& journal) {
@@ -72,9 +109,15 @@ base::Status LoopStream::continue_from(const Journal& journal) {
 }
 
 void LoopStream::submit_to(std::int64_t last) {
+  if (guide_ != nullptr) last = std::min(last, decided_);
   while (submitted_ < last) {
-    if (recorded(++submitted_, DrawPhase::kCertify) == nullptr) {
+    if (recorded(++submitted_, DrawPhase::kCertify) != nullptr) continue;
+    const auto chosen = chosen_.find(submitted_);
+    if (chosen == chosen_.end()) {
       bench_.pool().submit(samples_, submitted_);
+    } else {
+      bench_.pool().submit(std::make_shared<const GuidedSample>(samples_, chosen->second),
+                           submitted_);
     }
   }
 }
@@ -87,10 +130,21 @@ std::optional<SampleRecord> LoopStream::result_of(std::int64_t sample, DrawPhase
   return bench_.pool().wait(sample, phase);
 }
 
-std::optional<SampleRecord> LoopStream::next() {
+base::Result<std::optional<SampleRecord>> LoopStream::next() {
   submit_to(next_);
   auto record = result_of(next_, DrawPhase::kCertify);
-  if (record) ++next_;
+  if (!record) return record;
+  const auto chosen = chosen_.find(next_);
+  const bool is_chosen = chosen != chosen_.end();
+  if (record->path->target != (is_chosen ? chosen->second.target : std::string()) ||
+      (is_chosen && record->path->start != chosen->second.start)) {
+    const SampleKey key(1, next_, DrawPhase::kCertify);
+    return sink_.error(DiagnosticCode::kForeignJournalLine, journal_->recorded().places.at(key),
+                       "its initial state is not the one that was chosen for its number");
+  }
+  ++next_;
+  if (guide_ != nullptr) guide_->tell(*record);
+  choose();
   return record;
 }
 

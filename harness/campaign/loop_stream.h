@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -36,8 +37,9 @@ class LoopStream {
   std::int64_t next_sample() const { return next_; }  // from 1
   /// Lets the workers simulate all samples up to this one.
   void submit_to(std::int64_t last);
-  /// Waits for the next sample. None when stopped.
-  std::optional<SampleRecord> next();
+  /// Waits for the next sample. None when stopped. Reports kForeignJournalLine for one on record
+  /// whose start is not the one that is chosen now.
+  base::Result<std::optional<SampleRecord>> next();
   /// Simulates the record's actions once more. None when stopped. Unless the stream `goes_on`, what
   /// ran ahead is forgotten.
   std::optional<SampleRecord> repeat(const SampleRecord& record, bool goes_on);
@@ -47,6 +49,7 @@ class LoopStream {
 
  private:
   base::Status check_performs();
+  void choose();
   const SampleRecord* recorded(std::int64_t sample, DrawPhase phase) const {
     return journal_->find(1, sample, phase);
   }
@@ -59,7 +62,10 @@ class LoopStream {
   base::DiagnosticSink& sink_;
   const Journal* journal_ = nullptr;
   std::shared_ptr<const LoopSamples> samples_;
-  std::int64_t next_ = 1;       // the sample that is waited for
+  StartGuide* guide_ = nullptr;
+  std::map<std::int64_t, GuidedStart> chosen_;  // by sample; of the others the start is drawn
+  std::int64_t decided_ = 0;                    // the last sample of which it is known
+  std::int64_t next_ = 1;                       // the sample that is waited for
   std::int64_t submitted_ = 0;  // the last one that the workers were given or the journal has
 };
 

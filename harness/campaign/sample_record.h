@@ -67,6 +67,8 @@ struct PathStep {
 /// What an executed plan did.
 struct ExecutedPath {
   std::int64_t start = 0;  // number of the initial state, from 1
+  /// What the start was chosen for; empty: it was drawn.
+  std::string target;
   std::vector<PathStep> steps;
   PathEnd end = PathEnd::kDone;
   std::string detail;  // kFailed: the class; kCut: the form

@@ -27,6 +27,14 @@ constexpr std::string_view to_string(Execution execution) {
   return kExecutions[static_cast<std::size_t>(execution)];
 }
 
+/// Where executions of a plan begin: in any initial state, each equally likely, or at first in
+/// those from which the solver finds a way to what no execution went through yet.
+enum class Starts : std::uint8_t { kUniform, kGuided };
+inline constexpr std::array<std::string_view, 2> kStartsWords = {"uniform", "guided"};
+constexpr std::string_view to_string(Starts starts) {
+  return kStartsWords[static_cast<std::size_t>(starts)];
+}
+
 /// How the fluents of one symbol are compared.
 struct ComparedFluents {
   enum class How : std::uint8_t { kEveryStep, kAtTheEnd, kIgnored };

@@ -40,6 +40,7 @@ struct Key {
   static constexpr std::string_view kCommand = "command";
   static constexpr std::string_view kCompare = "compare";
   static constexpr std::string_view kExecution = "execution";
+  static constexpr std::string_view kStarts = "starts";
   static constexpr std::string_view kComplete = "complete";
   static constexpr std::string_view kConfidence = "confidence";
   static constexpr std::string_view kConfusionRate = "confusion_rate";

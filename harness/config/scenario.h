@@ -125,6 +125,7 @@ struct Scenario {
   bool match_model = true;
   Execution execution = Execution::kOpenLoop;
   base::SourceRange execution_source;
+  Starts starts = Starts::kUniform;
   std::optional<Comparison> compare;  // none: by the criterion
   /// The paper's rule is about last states; every other claim about every step.
   Comparison comparison() const {

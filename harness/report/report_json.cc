@@ -108,6 +108,7 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
   if (result.loop) {
     out["initial_states"] = result.loop->initial_states;
     out["unfinished"] = result.loop->unfinished;
+    if (result.loop->guided) out["chosen_starts"] = *result.loop->guided;
     out["paths"] = Json::array();
     for (const auto& path : result.loop->paths) {
       out["paths"].push_back({{"events", path.events},

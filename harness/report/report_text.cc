@@ -173,7 +173,10 @@ class TextReport {
 
   /// Where executions begin, and which ways they went.
   void paths(const LoopResult& loop) {
-    line("start states", fmt::format("{}, each equally likely", loop.initial_states));
+    const auto guided = loop.guided ? fmt::format(", but in {} chosen for what they lead to",
+                                                  counted(*loop.guided, "execution", "executions"))
+                                    : std::string();
+    line("start states", fmt::format("{}, each equally likely{}", loop.initial_states, guided));
     constexpr std::size_t kMaxPaths = 5;
     for (std::size_t i = 0; i < loop.paths.size() && i < kMaxPaths; ++i) {
       const auto& path = loop.paths[i];

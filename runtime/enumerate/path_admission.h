@@ -45,6 +45,9 @@ class PathAdmission {
   base::Known admits(std::span<const ExecutedPerform> performs, std::size_t outcomes,
                      std::span<const State> observed);
 
+  /// The slots of the events that no axiom can demand.
+  const std::vector<std::uint32_t>& undemanded() const { return undemanded_; }
+
  private:
   SolverSession* session_ = nullptr;
   const CompiledModel* model_;

@@ -9,6 +9,7 @@
 #include "compiler/base/contract.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
+#include "tools/app/start_guide.h"
 #include "tools/app/trace_feed.h"
 
 namespace parallax::tools {
@@ -56,7 +57,19 @@ ClosedLoop::initial_states(std::span<const compiler::FluentId> fluents) {
     (void)report_if_unsatisfiable(model, 0, context_);
     return sink.already_reported();
   }
+  compared_.assign(fluents.begin(), fluents.end());
+  states_ = found.states;
   return std::optional(std::move(found.states));
+}
+
+harness::StartGuide* ClosedLoop::guide(std::uint64_t seed) {
+  if (loaded_.scenario.starts != harness::Starts::kGuided) return nullptr;
+  plan_coverage_ = std::make_unique<PlanCoverage>(*loaded_.compilation.plan,
+                                                  *loaded_.compilation.typed, context_.files());
+  guide_ = std::make_unique<ScenarioStartGuide>(
+      start_candidates(loaded_, *this, *plan_coverage_, states_, compared_), *plan_coverage_,
+      *plan_, seed);
+  return guide_.get();
 }
 
 base::Known ClosedLoop::admits(std::span<const harness::PathStep> performs, std::size_t outcomes,

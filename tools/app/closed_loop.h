@@ -7,6 +7,7 @@
 #include "harness/campaign/loop_input.h"
 #include "runtime/enumerate/path_admission.h"
 #include "tools/app/context.h"
+#include "tools/app/coverage_plan.h"
 #include "tools/app/executable_plan.h"
 #include "tools/app/scenario_model.h"
 
@@ -26,6 +27,7 @@ class ClosedLoop final : public harness::LoopFeed {
   std::int64_t max_performs() const override;
   base::Result<std::optional<std::vector<std::vector<compiler::FluentId>>>> initial_states(
       std::span<const compiler::FluentId> fluents) override;
+  harness::StartGuide* guide(std::uint64_t seed) override;
   base::Known admits(std::span<const harness::PathStep> performs, std::size_t outcomes,
                      std::span<const ObservedFluents> observed) override;
   /// A trace of the model that goes as `admits` asks; none if it has none, or was stopped.
@@ -33,6 +35,8 @@ class ClosedLoop final : public harness::LoopFeed {
                                          std::size_t outcomes,
                                          std::span<const ObservedFluents> observed);
   const ScenarioPlan& scenario_plan() const { return *plan_; }
+  runtime::SolverSession& session() { return session_; }
+  const runtime::PathAdmission& admission() const { return admission_; }
   base::DiagnosticBuilder report_end(const harness::ExecutedPath& path,
                                      const std::string& reason) override;
   std::int64_t solve_calls() const { return session_.solve_calls(); }
@@ -46,6 +50,11 @@ class ClosedLoop final : public harness::LoopFeed {
   runtime::SolverSession session_;
   runtime::PathAdmission admission_;
   std::unique_ptr<ScenarioPlan> plan_;
+  // What initial_states was asked, and answered.
+  std::vector<compiler::FluentId> compared_;
+  std::vector<std::vector<compiler::FluentId>> states_;
+  std::unique_ptr<PlanCoverage> plan_coverage_;
+  std::unique_ptr<harness::StartGuide> guide_;
 };
 
 }  // namespace parallax::tools

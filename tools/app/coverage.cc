@@ -145,8 +145,8 @@ class Collector {
           record.status != harness::SampleStatus::kOk) {
         continue;
       }
-      const auto trace =
-          run.executed ? std::string() : run.journal.traces.at(record.trace).trace->key;
+      const auto trace = run.executed ? std::to_string(record.path->start)
+                                      : run.journal.traces.at(record.trace).trace->key;
       const bool is_new =
           counted_.emplace(header.scenario_hash, run.executed, header.seed, trace, record.sample)
               .second;
@@ -280,7 +280,8 @@ class Collector {
   const CoverageOptions& options_;
   Context& context_;
   std::vector<RunRecord> runs_;
-  /// Scenario, execution, seed, trace and number of every simulation that was counted.
+  /// Scenario, execution, seed, trace or initial state, and number of every simulation that was
+  /// counted.
   std::set<std::tuple<std::string, bool, std::uint64_t, std::string, std::int64_t>> counted_;
   std::map<std::string, ExecutedScenario> executed_;  // by hash
   Coverage coverage_;

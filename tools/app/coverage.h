@@ -53,8 +53,9 @@ struct ModelBehaviour {
 struct NeverShown {
   std::string scenario;
   ModelBehaviour behaviour;
-  std::int64_t possible = 0;    // executions in which the model had it possible
-  std::int64_t executions = 0;  // all of the scenario
+  // Of the scenario's executions whose start was drawn: those in which the model had it possible,
+  // and all.
+  std::int64_t possible = 0, executions = 0;
   double confidence = 0.0;
   /// At this confidence it comes in fewer of the executions in which it is possible.
   double bound = 1.0;

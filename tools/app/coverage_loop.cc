@@ -94,7 +94,11 @@ base::Status LoopCoverage::add(const SampleRecord& record, std::uint64_t seed,
                            : judged_.emplace(text, judge(record, terms.comparison)).first->second;
   for (const auto& item : plan_.covered_by(*path)) ++hits_[item];
   for (const auto& item : judged.covered) ++hits_[item];
-  for (const auto& one : judged.possible) ++possible_[one];
+  // A bound is about starts that were drawn; what a chosen one shows is shown all the same.
+  const bool drawn = record.path->target.empty();
+  if (drawn) {
+    for (const auto& one : judged.possible) ++possible_[one];
+  }
   shown_.insert(judged.shown.begin(), judged.shown.end());
   if (judged.lacking) {
     const auto& lacking = *judged.lacking;
@@ -103,7 +107,7 @@ base::Status LoopCoverage::add(const SampleRecord& record, std::uint64_t seed,
     ++lacking_.try_emplace(std::move(name), lacking).first->second.runs;
   }
   confidence_ = std::min(confidence_, terms.confidence);
-  ++executions_;
+  if (drawn) ++drawn_;
   return base::Unit{};
 }
 
@@ -198,8 +202,7 @@ void LoopCoverage::write(Coverage& coverage) const {
   for (const auto& [one, runs] : possible_) {
     if (shown_.contains(one)) continue;
     const auto bound = 1.0 - std::pow(1.0 - confidence_, 1.0 / static_cast<double>(runs));
-    coverage.never_shown.push_back(
-        {loaded_.scenario.name, one, runs, executions_, confidence_, bound});
+    coverage.never_shown.push_back({loaded_.scenario.name, one, runs, drawn_, confidence_, bound});
   }
   for (const auto& [name, one] : lacking_) {
     coverage.lacking.push_back(one);

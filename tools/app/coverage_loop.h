@@ -68,7 +68,7 @@ class LoopCoverage {
   std::set<ModelBehaviour> shown_;
   std::map<std::string, WorldBehaviour> lacking_;  // by what it is
   double confidence_ = 1.0;
-  std::int64_t executions_ = 0;
+  std::int64_t drawn_ = 0;  // executions with a start that was drawn
 };
 
 }  // namespace parallax::tools

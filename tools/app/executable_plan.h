@@ -38,6 +38,7 @@ class ScenarioPlan final : public harness::ExecutablePlan {
   /// go so in what was observed.
   std::optional<PlanPath> retrace(const harness::DrawKey& key,
                                   const harness::SampleRecord& record) const;
+  const compiler::PlanQuestions& questions() const { return questions_; }
   /// Why the formula of success cannot tell what the perform found; empty: it can.
   std::string unseen(compiler::LocationId location) const;
 

@@ -79,6 +79,7 @@ void measure_plan_folder(Bench& bench);
 void measure_world(Bench& bench);
 void measure_demo(Bench& bench);
 void measure_monitor(Bench& bench);
+void measure_starts(Bench& bench);
 void measure_build(Bench& bench);
 
 /// Compiles a model file in this process and prints one line: processor time of reading and

@@ -27,6 +27,7 @@ const std::vector<Section>& sections() {
       {"plan-folder", "a folder of plans of 3,000 lines", measure_plan_folder},
       {"world", "the two-region world", measure_world},
       {"monitor", "a log of the kitchen held against its model", measure_monitor},
+      {"starts", "executions until a plan is covered, uniform and guided", measure_starts},
       {"demo", "the demo", measure_demo},
       {"build", "building the program; measured only if it is named", measure_build, true},
   };

@@ -59,6 +59,7 @@ struct RunOptions {
   std::string criterion;
   JudgingOptions judging;
   std::string execution;    // empty: as the scenario says
+  std::string starts;       // likewise
   double confidence = 0.0;  // 0: as the scenario says
   double epsilon = 0.0;
   std::int64_t max_runs = 0;
@@ -74,6 +75,9 @@ void apply(const RunOptions& options, harness::Scenario& scenario) {
   if (options.criterion == "clean-runs") criterion.kind = harness::CriterionKind::kCleanRuns;
   apply(options.judging, scenario);
   if (options.confidence > 0) criterion.confidence_level = options.confidence;
+  for (const auto one : {harness::Starts::kUniform, harness::Starts::kGuided}) {
+    if (options.starts == to_string(one)) scenario.starts = one;
+  }
   if (options.epsilon > 0) criterion.epsilon = options.epsilon;
   if (options.max_runs > 0) scenario.limits.max_runs = options.max_runs;
 }
@@ -142,6 +146,11 @@ base::Status check_closed(const RunOptions& options, const harness::Scenario& sc
   if (options.split_initial) {
     return refuse("--split-initial", "in closed loop executions begin in every initial state");
   }
+  if (options.keep_going && scenario.starts == harness::Starts::kGuided) {
+    return sink.error_about(base::DiagnosticCode::kUsage, "--keep-going",
+                            "it counts rates, which are about starts that are drawn; leave it out, "
+                            "or begin anywhere with --starts uniform");
+  }
   if (!scenario.match_model) {
     return refuse(options.judging.match == "trace" ? "--match=trace" : "match: trace",
                   "in closed loop there is no trace to hold observations against, only the model");
@@ -171,6 +180,11 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
   auto loaded = load_scenario_run(options.scenario, execution, invocation);
   if (!loaded) return 0;
   apply(options, loaded->scenario);
+  if (!options.starts.empty() && loaded->scenario.execution == Execution::kOpenLoop) {
+    sink.error_about(base::DiagnosticCode::kUsage, "--starts",
+                     "it is about executions of the plan; add --execution closed-loop");
+    return 0;
+  }
   const auto& model = loaded->compilation.model;
   const auto campaign = campaign_options(options, *loaded, invocation);
   const auto simulator =
@@ -241,6 +255,11 @@ Command run_command() {
               "What is simulated: open-loop (the events of traces) or closed-loop (the plan "
               "itself, which goes on by what the simulator reports)")
       .check(OneOf{{"open-loop", "closed-loop"}});
+  command
+      .option("--starts", options->starts,
+              "Closed loop: where executions begin: uniform (in any initial state), or guided (at "
+              "first where the model has a way to what no execution went through yet)")
+      .check(OneOf{{"uniform", "guided"}});
   command.option("--confidence", options->confidence, "Confidence level C of the claim")
       .check(FiniteNumber{0.5, 0.999999});
   command.option("--epsilon", options->epsilon, "Discrepancy probability to exclude")

@@ -1,0 +1,152 @@
+// Closed loop with starts that the solver chooses: they lead where drawn ones hardly come, no claim
+// is about them, and nothing depends on the number of workers.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "tests/tools/cli_fixture.h"
+#include "tests/tools/cli_json.h"
+
+namespace parallax::test {
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+/// Eight lamps; only where all are on something is done. One start of 256.
+class Lamps : public CliFixture {
+ public:
+  Lamps() {
+    write("lamps.e",
+          "sort lamp\nlamp a, b, c, d, e, f, g, h\nfluent On(lamp)\nfluent Parked()\n"
+          "event Park()\n[time] Initiates(Park(),Parked(),time).\n!HoldsAt(Parked(),0).\n");
+    std::string guards, ends;
+    for (const char lamp : std::string("abcdefgh")) {
+      guards += std::string("  (when (holds (list 'on '") + lamp + "))\n";
+      ends += ")";
+    }
+    write("lamps.lisp", "(def-cram-function look ()\n" + guards +
+                            "  (perform (an action (type parking-arms)))" + ends + ")\n(look)\n");
+    write("lamps.bind",
+          "action parking-arms -> Park() ok: Parked() @t+1 else plan-failure\n"
+          "query on (?l) ok: On(?l) @t\n");
+    write("lamps.yaml",
+          "model: lamps.e\nplan: lamps.lisp\nbind: lamps.bind\nhorizon: 2\n"
+          "execution: closed-loop\nsimulator: {model: lamps.e}\n"
+          "mapping: {On(l): {flag: \"On({l})\", drawn: true}}\n");
+  }
+};
+
+std::vector<Json> samples_of(const std::string& journal) {
+  std::vector<Json> out;
+  std::istringstream in(journal);
+  std::string line;
+  while (std::getline(in, line)) {
+    auto object = Json::parse(line);
+    if (object.contains("sample")) out.push_back(std::move(object));
+  }
+  return out;
+}
+
+TEST_CASE("guided starts come where drawn ones hardly do, and no claim is about them") {
+  const Lamps cli;
+  const std::vector<std::string> run = {"run", "lamps.yaml", "--starts", "guided", "--out", "out"};
+  const auto report = json_of(cli, run);
+  const auto& stream = report.at("traces").at(0);
+  const int guided = stream.at("chosen_starts"), all = stream.at("simulations");
+  CHECK(stream.at("initial_states") == 256);
+  // The one start with the deepest branch, and one for each branch that is not taken there; those
+  // that drawn starts took meanwhile need none.
+  CHECK(guided >= 2);
+  CHECK(guided <= 9);
+  CHECK(all - guided == 90);
+  CHECK(stream.at("certified").at("epsilon") <= 0.05);
+  const auto caveats = stream.at("caveats").dump();
+  CHECK(caveats.find(std::to_string(guided) + " of the executions began in states that were "
+                                              "chosen") != std::string::npos);
+  CHECK(stream.at("claim").get<std::string>().find("90 clean runs of 90") != std::string::npos);
+  const auto samples = samples_of(cli.read("out/journal.ndjson"));
+  CHECK(samples.front().at("path").size() == 1);
+  CHECK(samples.front().at("target").get<std::string>().find("lamps.lisp:") == 0);
+  CHECK(std::count_if(samples.begin(), samples.end(),
+                      [](const Json& sample) { return sample.contains("target"); }) == guided);
+  const auto coverage = json_of(cli, {"coverage", "out"});
+  for (const auto& item : coverage.at("branches")) {
+    // Parking cannot fail.
+    CHECK((item.at("hits") > 0) == (item.at("id") != "Park fails"));
+  }
+  // Drawn starts: with probability (255/256)^90, or 0.7, none is the one. Here none is.
+  const auto uniform = json_of(cli, {"run", "lamps.yaml", "--out", "uniform", "--seed", "1"});
+  CHECK_FALSE(uniform.at("traces").at(0).contains("chosen_starts"));
+  CHECK(json_of(cli, {"coverage", "uniform"}).at("performs").at(0).at("hits") == 0);
+  // What is bounded is about drawn starts: those that were chosen do not count.
+  for (const auto& never : coverage.at("never_shown")) CHECK(never.at("executions") == 90);
+
+  // The same bytes for any number of workers, and for a run that was ended half-way.
+  const auto journal = cli.read("out/journal.ndjson");
+  fs::rename(cli.folder() / "out", cli.folder() / "first");
+  auto more = run;
+  more.insert(more.end(), {"--jobs", "3"});
+  json_of(cli, more);
+  CHECK(cli.read("out/journal.ndjson") == journal);
+  CHECK(cli.read("out/report.json") == cli.read("first/report.json"));
+  auto cut = journal.find('\n');
+  for (int i = 0; i < 7; ++i) cut = journal.find('\n', cut + 1);
+  fs::create_directory(cli.folder() / "half");
+  cli.write("half/journal.ndjson", journal.substr(0, cut + 1));
+  auto resume = run;
+  resume.back() = "half";
+  resume.emplace_back("--resume");
+  json_of(cli, resume);
+  CHECK(cli.read("half/journal.ndjson") == journal);
+  // Not with drawn ones, and not from another state than the one that is chosen.
+  CHECK(cli.parallax({"run", "lamps.yaml", "--out", "half", "--resume"}).code == 3);
+  auto wrong = journal.substr(0, cut + 1);
+  const auto target = wrong.find("\"target\":\"lamps.lisp");
+  wrong.replace(target, 10, "\"target\":\"x");
+  fs::remove_all(cli.folder() / "half");
+  fs::create_directory(cli.folder() / "half");
+  cli.write("half/journal.ndjson", wrong);
+  const auto refused = cli.parallax(resume);
+  CHECK(refused.code == 3);
+  CHECK(refused.err.find("error[E7103]") != std::string::npos);
+  CHECK(refused.err.find("not the one that was chosen") != std::string::npos);
+}
+
+TEST_CASE("guided starts: a discrepancy that one leads to is found at once") {
+  const Lamps cli;
+  // In the world parking puts a lamp out.
+  cli.write("world.e",
+            "load lamps.e\n[time] HoldsAt(On(a),time) -> Terminates(Park(),On(h),time).\n");
+  cli.replace("lamps.yaml", "simulator: {model: lamps.e}",
+              "simulator: {model: world.e}\nstarts: guided");
+  const auto report = json_of(cli, {"run", "lamps.yaml", "--out", "out"}, 1);
+  CHECK(report.at("simulations") == 1);
+  CHECK(report.at("traces").at(0).at("chosen_starts") == 1);
+  CHECK(cli.parallax({"replay", "out"}).code == 0);
+  // Rates are about starts that are drawn.
+  const auto rates = cli.parallax({"run", "lamps.yaml", "--keep-going"});
+  CHECK(rates.code == 2);
+  CHECK(rates.err.find("--starts uniform") != std::string::npos);
+}
+
+TEST_CASE("guided starts: open loop has no use for them") {
+  const Lamps cli;
+  const auto open =
+      cli.parallax({"run", "lamps.yaml", "--execution", "open-loop", "--starts", "guided"});
+  CHECK(open.code == 2);
+  CHECK(open.err.find("--execution closed-loop") != std::string::npos);
+  cli.replace("lamps.yaml", "horizon: 2", "horizon: 2\nstarts: gided");
+  const auto misspelt = cli.parallax({"run", "lamps.yaml"});
+  CHECK(misspelt.code == 3);
+  CHECK(misspelt.err.find("`guided`") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace parallax::test

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "runtime/trace/trace.h"
+#include "tools/app/closed_loop.h"
+#include "tools/app/coverage_plan.h"
+
+namespace parallax::tools {
+
+/// An execution of the model, as far as is needed to go through something of the plan.
+struct ReachingTrace {
+  runtime::Trace trace;
+  PlanPath path;
+};
+
+/// What of a plan the executions of its model go through, and a shortest one for each. The model
+/// is asked for more and more steps which ways between two performs are open that nothing has gone
+/// through yet; one solver call for each answer and each number of steps.
+class PlanReach {
+ public:
+  /// All outlive the object.
+  PlanReach(const ScenarioModel& loaded, ClosedLoop& loop, const PlanCoverage& plan);
+
+  /// Looks until nothing is left or the horizon is reached. False if the solver was stopped.
+  bool run();
+  /// The items that some execution goes through, with the first that was found.
+  const std::map<CoverageKey, std::shared_ptr<const ReachingTrace>>& found() const {
+    return found_;
+  }
+  /// An execution to the end of the plan, or to the horizon, that begins in this state: the true
+  /// ones of `fluents`. None: the model has none, or the solver was stopped.
+  std::optional<ReachingTrace> whole(const std::vector<compiler::FluentId>& state,
+                                     const std::vector<compiler::FluentId>& fluents);
+
+ private:
+  /// From where a perform leaves, or from the entry, through branches to what comes next.
+  struct Way {
+    std::optional<compiler::LocationId> from;  // none: the entry
+    bool succeeded = false;
+    std::vector<compiler::PlanDecision> decisions;
+    std::optional<compiler::LocationId> to;  // none: an end
+    std::set<CoverageKey> items;
+  };
+  struct OpenWay {
+    const Way* way;
+    std::vector<compiler::Literal> literals;
+    compiler::Literal goes;
+    int other_ways = 0;  // answers that went another way between the same performs
+  };
+  void add_ways(Way way, const compiler::PlanTarget& target, std::size_t& left);
+  std::optional<std::vector<compiler::Literal>> literals(const Way& way,
+                                                         compiler::Timepoint n) const;
+  std::optional<compiler::Literal> choice(compiler::BranchId branch, compiler::Timepoint t) const;
+  bool wanted(const Way& way) const;
+  /// All new ways that executions of `n` steps end with. False if the solver was stopped.
+  bool look_at(compiler::Timepoint n);
+  ReachingTrace read(compiler::Timepoint n);
+  std::vector<compiler::Literal> nothing_idle(compiler::Timepoint n) const;
+  bool holds(compiler::BranchId branch, const runtime::TracePoint& point) const;
+  /// Forbids the way what made a guard on it decide otherwise. False: it is settled.
+  bool refine(OpenWay& open, const ReachingTrace& answer, compiler::Timepoint n);
+  PlanPath path_of(const runtime::Trace& trace);
+
+  const ScenarioModel& loaded_;
+  const compiler::PlanGraph& graph_;
+  ClosedLoop& loop_;
+  const PlanCoverage& plan_;
+  compiler::AtomIndex index_;
+  std::vector<compiler::FluentId> fluents_;  // by number in the plan's questions; those it knows
+  std::vector<bool> known_;                  // likewise: the model has the fluent
+  std::vector<std::uint32_t> idle_;  // slots of events that nobody performs and nothing demands
+  std::vector<Way> ways_;
+  std::map<CoverageKey, std::shared_ptr<const ReachingTrace>> found_;
+  compiler::RegisterObjects registers_;  // at the end of the path that was read last
+};
+
+}  // namespace parallax::tools
