@@ -266,7 +266,8 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
   if (input.ground.meaning == Meaning::kDecreasoner) {
     for (const auto code : reproduced_differences()) sink.mute(code);
   }
-  const auto ast = load_model(input.models, input.load, files, sink);
+  const auto ast = input.text ? load_model_text(*input.text, ".", input.load, files, sink)
+                              : load_model(input.models, input.load, files, sink);
   if (!ast) return sink.already_reported();
   CheckOptions check;
   if (input.horizon) {

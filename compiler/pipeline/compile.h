@@ -46,6 +46,7 @@ struct ConstraintText {
 
 struct CompileInput {
   std::vector<std::filesystem::path> models;
+  std::optional<base::FileId> text;  // instead of the models: one that is among the files
   LoadOptions load;
   std::optional<std::int64_t> horizon;  // replaces the range of `time`
   std::optional<PlanInput> plan;

@@ -11,9 +11,6 @@ namespace parallax::runtime {
 using base::Known;
 using compiler::AtomKind;
 
-namespace {
-
-/// The others, by slot.
 std::vector<std::uint32_t> undemanded_events(const CompiledModel& model) {
   const auto demandable = demandable_events(model);
   std::vector<std::uint32_t> out;
@@ -25,8 +22,6 @@ std::vector<std::uint32_t> undemanded_events(const CompiledModel& model) {
   }
   return out;
 }
-
-}  // namespace
 
 PathAdmission::PathAdmission(SolverSession& session) : PathAdmission(session.model()) {
   session_ = &session;

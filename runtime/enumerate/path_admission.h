@@ -22,6 +22,9 @@ struct ExecutedPerform {
   std::string returned;  // the object that it found; may be empty
 };
 
+/// The events that no axiom can demand (demandable_events), by slot.
+std::vector<std::uint32_t> undemanded_events(const CompiledModel& model);
+
 /// Asks a model with a plan whether it has the path that an execution took.
 class PathAdmission {
  public:

@@ -387,6 +387,19 @@ std::optional<compiler::CompiledModel> compile_variant(const harness::Scenario& 
   return std::move(loaded->compilation.model);
 }
 
+base::Result<compiler::Compilation> compile_with_model(const harness::Scenario& scenario,
+                                                       std::string model,
+                                                       harness::Execution execution,
+                                                       bool constraints, Context& context) {
+  const RegionLocator locator(scenario.mapping->regions());
+  auto input = compile_input(scenario, locator, context);
+  if (!input) return context.sink().already_reported();
+  input->text = context.files().add("edited.e", std::move(model));
+  if (execution == harness::Execution::kClosedLoop && input->plan) execute(scenario, *input);
+  if (!constraints) input->constraints.clear();
+  return compiler::compile_model(*input, context.files(), context.sink());
+}
+
 base::Result<ScenarioModel> load_plain_run(const std::filesystem::path& path,
                                            harness::Execution execution, Context& context) {
   return load(path, context, {.plain = true, .as_run = true, .execution = execution});

@@ -59,6 +59,13 @@ std::optional<compiler::CompiledModel> compile_variant(const harness::Scenario& 
                                                        std::int64_t horizon, bool with_plan,
                                                        Context& context);
 
+/// The scenario's plan with another text for its model, as it is run in this way; `constraints`:
+/// with those of the scenario. `context` has the texts afterwards.
+base::Result<compiler::Compilation> compile_with_model(const harness::Scenario& scenario,
+                                                       std::string model,
+                                                       harness::Execution execution,
+                                                       bool constraints, Context& context);
+
 /// What the models on the command line compile to; a single .yaml is a scenario, a single .cnf has
 /// been compiled before and brings neither the checked model nor the plan's graph.
 base::Result<compiler::Compilation> compile_models(const ModelOptions& options, Context& context);

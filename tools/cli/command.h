@@ -75,6 +75,7 @@ inline constexpr std::int64_t kMaxSeed = (std::int64_t{1} << 53U) - 1;
 void add_common_options(OptionTable& table, CommonOptions& options);
 
 Command run_command();
+Command repair_command();
 Command replay_command();
 Command check_command();
 Command coverage_command();

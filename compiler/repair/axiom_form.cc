@@ -1,0 +1,194 @@
+#include "compiler/repair/axiom_form.h"
+
+#include <algorithm>
+#include <set>
+
+#include "compiler/base/ascii.h"
+
+namespace parallax::compiler {
+namespace {
+
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+/// The first character from `at` on that is neither blank nor part of a comment.
+std::uint32_t skip(std::string_view text, std::uint32_t at) {
+  while (at < text.size()) {
+    if (text[at] == ';') {
+      while (at < text.size() && text[at] != '\n') ++at;
+    } else if (is_space(text[at])) {
+      ++at;
+    } else {
+      break;
+    }
+  }
+  return at;
+}
+
+std::uint32_t end_of(const ModelAst& model, const base::SourceFiles& files,
+                     const ModelAst::Place& place) {
+  const auto& statement = model.statement(place);
+  if (statement.kind != StatementKind::kFormula) return statement.source.end;
+  return end_of_formula(files[model.ast(place).file()].text(), statement.source.end);
+}
+
+void flatten(const Ast& ast, NodeId node, std::vector<NodeId>& out) {
+  if (ast[node].kind != NodeKind::kBinary || ast[node].op != Operator::kAnd) {
+    out.push_back(node);
+    return;
+  }
+  for (std::uint32_t i = 0; i < ast[node].child_count; ++i) {
+    flatten(ast, ast.child(ast[node], i), out);
+  }
+}
+
+std::vector<NodeId> conjuncts_of(const Ast& ast, NodeId node) {
+  std::vector<NodeId> out;
+  flatten(ast, node, out);
+  return out;
+}
+
+bool is_call(const Ast& ast, NodeId node, std::string_view name, std::uint32_t arguments) {
+  return ast[node].kind == NodeKind::kApply && ast[node].child_count == arguments &&
+         ast.name(ast[node]) == name;
+}
+
+/// Event, and time as a variable, of the form; false if they are anything else.
+bool name_event(const Ast& ast, NodeId event, NodeId time, AxiomForm& form) {
+  if (ast[event].kind != NodeKind::kApply || ast[time].kind != NodeKind::kName) return false;
+  const std::string variable(ast.name(ast[time]));
+  if (std::find(form.variables.begin(), form.variables.end(), variable) == form.variables.end()) {
+    return false;
+  }
+  const std::string symbol(ast.name(ast[event]));
+  if (!form.event_symbol.empty() && (form.event_symbol != symbol || form.time != variable)) {
+    return false;
+  }
+  form.event = event;
+  form.event_symbol = symbol;
+  form.time = variable;
+  return true;
+}
+
+bool read_effects(const Ast& ast, AxiomForm& form) {
+  form.effects = conjuncts_of(ast, form.head);
+  return std::all_of(form.effects.begin(), form.effects.end(), [&](NodeId effect) {
+    const auto parts = effect_parts(ast, effect);
+    return parts && name_event(ast, parts->event, parts->time, form);
+  });
+}
+
+bool read_precondition(const Ast& ast, AxiomForm& form) {
+  if (!form.condition) return false;
+  for (const auto conjunct : form.conjuncts) {
+    if (!is_call(ast, conjunct, "Happens", 2)) continue;
+    const auto& node = ast[conjunct];
+    if (!name_event(ast, ast.child(node, 0), ast.child(node, 1), form)) return false;
+  }
+  form.kind = AxiomForm::Kind::kPrecondition;
+  return !form.event_symbol.empty();
+}
+
+std::optional<AxiomForm> read_form(const Ast& ast, const Statement& statement) {
+  AxiomForm form;
+  auto node = statement.formula;
+  while (ast[node].kind == NodeKind::kForall) {
+    const auto count = ast[node].child_count;
+    for (std::uint32_t i = 0; i + 1 < count; ++i) {
+      form.variables.emplace_back(ast.name(ast[ast.child(ast[node], i)]));
+    }
+    node = ast.child(ast[node], count - 1);
+  }
+  form.head = node;
+  if (ast[node].kind == NodeKind::kBinary && ast[node].op == Operator::kImplies) {
+    form.condition = ast.child(ast[node], 0);
+    form.conjuncts = conjuncts_of(ast, *form.condition);
+    form.head = ast.child(ast[node], 1);
+  }
+  if (read_effects(ast, form)) return form;
+  form.event_symbol.clear();
+  if (read_precondition(ast, form)) return form;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<EffectParts> effect_parts(const Ast& ast, NodeId atom) {
+  if (!is_call(ast, atom, "Initiates", 3) && !is_call(ast, atom, "Terminates", 3) &&
+      !is_call(ast, atom, "Releases", 3)) {
+    return std::nullopt;
+  }
+  const auto& node = ast[atom];
+  return EffectParts{ast.child(node, 0), ast.child(node, 1), ast.child(node, 2)};
+}
+
+std::uint32_t end_of_formula(std::string_view text, std::uint32_t end) {
+  auto at = end;
+  while (true) {
+    at = skip(text, at);
+    if (at >= text.size() || (text[at] != ')' && text[at] != '.')) return end;
+    end = ++at;
+    if (text[at - 1] == '.') return end;
+  }
+}
+
+std::vector<AxiomForm> axiom_forms(const ModelAst& model, const base::SourceFiles& files) {
+  std::vector<AxiomForm> out;
+  for (const auto& place : model.order) {
+    const auto& statement = model.statement(place);
+    if (model.files[place.file].built_in || statement.kind != StatementKind::kFormula) continue;
+    auto form = read_form(model.ast(place), statement);
+    if (!form) continue;
+    form->place = place;
+    form->begin = statement.source.begin;
+    form->end = end_of(model, files, place);
+    out.push_back(*std::move(form));
+  }
+  return out;
+}
+
+std::string changed_text(std::string_view text, base::FileId file,
+                         std::vector<TextChange> changes) {
+  std::erase_if(changes, [&](const auto& change) { return change.file != file; });
+  std::stable_sort(changes.begin(), changes.end(), [](const auto& a, const auto& b) {
+    return a.begin != b.begin ? a.begin < b.begin : a.end < b.end;
+  });
+  std::string out;
+  std::size_t at = 0;
+  for (const auto& change : changes) {
+    const auto begin = std::max<std::size_t>(at, change.begin);
+    out += text.substr(at, begin - at);
+    out += change.text;
+    at = std::max<std::size_t>(begin, change.end);
+  }
+  return out.append(text.substr(at));
+}
+
+std::string flat_text(const ModelAst& model, const base::SourceFiles& files,
+                      const std::vector<TextChange>& changes) {
+  std::string out;
+  std::set<std::uint32_t> foundations;
+  for (const auto& place : model.order) {
+    const auto& ast = model.ast(place);
+    const auto& source = model.statement(place).source;
+    if (model.files[place.file].built_in) {
+      if (foundations.insert(place.file).second) {
+        out += "load " + files[ast.file()].name() + "\n";
+      }
+      continue;
+    }
+    const auto end = end_of(model, files, place);
+    // Moved to the statement's own text; a change may take the line's end with it.
+    std::vector<TextChange> own;
+    for (auto change : changes) {
+      if (change.file != ast.file() || change.begin < source.begin || change.begin > end) continue;
+      change.begin -= source.begin;
+      change.end = std::min(change.end, end) - source.begin;
+      own.push_back(std::move(change));
+    }
+    const auto text = files[ast.file()].text().substr(source.begin, end - source.begin);
+    out += changed_text(text, ast.file(), std::move(own)) + "\n";
+  }
+  return out;
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/base/source_file.h"
+#include "compiler/syntax/ast.h"
+#include "compiler/syntax/loader.h"
+
+namespace parallax::compiler {
+
+/// A part of a text gives way to another one; nothing is replaced where `begin == end`.
+struct TextChange {
+  base::FileId file;
+  std::uint32_t begin = 0, end = 0;
+  std::string text;
+  friend bool operator==(const TextChange&, const TextChange&) = default;
+};
+
+/// A formula of a model whose parts an edit can name: effects of one event,
+/// `[variables] condition -> Initiates(E,F,time) & ...`, or what an event needs,
+/// `[variables] Happens(E,time) & ... -> ...`.
+struct AxiomForm {
+  enum class Kind : std::uint8_t { kEffects, kPrecondition };
+  Kind kind = Kind::kEffects;
+  ModelAst::Place place;
+  std::uint32_t begin = 0, end = 0;    // of its text, with label and period
+  std::vector<std::string> variables;  // universally quantified
+  std::optional<NodeId> condition;     // what stands in front of `->`
+  std::vector<NodeId> conjuncts;       // of the condition
+  NodeId head;
+  std::vector<NodeId> effects;  // kEffects: the conjuncts of the head
+  NodeId event;                 // the term
+  std::string event_symbol;
+  std::string time;  // the variable
+};
+
+/// The formulas of the model's own files (not of the foundations) that have such a form, in order.
+/// Formulas of other forms are left alone.
+std::vector<AxiomForm> axiom_forms(const ModelAst& model, const base::SourceFiles& files);
+
+/// The event, fluent and time of `Initiates(E,F,time)` and its like.
+struct EffectParts {
+  NodeId event, fluent, time;
+};
+std::optional<EffectParts> effect_parts(const Ast& ast, NodeId atom);
+
+/// The end of a formula with the parentheses that close it and its period.
+std::uint32_t end_of_formula(std::string_view text, std::uint32_t end);
+
+/// The text of a model: every file's statements in the order in which they act, those of the
+/// foundations as `load`. What `changes` do within a statement, or right behind it, is done.
+std::string flat_text(const ModelAst& model, const base::SourceFiles& files,
+                      const std::vector<TextChange>& changes);
+
+/// The text with the changes, which do not overlap.
+std::string changed_text(std::string_view text, base::FileId file, std::vector<TextChange> changes);
+
+}  // namespace parallax::compiler

@@ -1,0 +1,199 @@
+#include "compiler/repair/condition_literal.h"
+
+#include <algorithm>
+
+namespace parallax::compiler {
+namespace {
+
+using Arguments = std::vector<LiteralArgument>;
+using Kind = LiteralArgument::Kind;
+
+/// What can stand at a place of this sort.
+Arguments choices(const TypedModel& model, SortId sort,
+                  const std::vector<SortedVariable>& variables, bool constants) {
+  Arguments out;
+  for (const auto& variable : variables) {
+    if (model.sorts_overlap(variable.sort, sort)) out.push_back({Kind::kVariable, variable.name});
+  }
+  out.push_back({Kind::kSome, model.sorts[sort].name});
+  if (!constants) return out;
+  for (auto& name : constants_of(model, sort)) out.push_back({Kind::kConstant, std::move(name)});
+  return out;
+}
+
+std::vector<Arguments> product(const std::vector<Arguments>& places) {
+  std::vector<Arguments> out = {{}};
+  for (const auto& place : places) {
+    std::vector<Arguments> next;
+    for (const auto& begun : out) {
+      for (const auto& choice : place) {
+        next.push_back(begun);
+        next.back().push_back(choice);
+      }
+    }
+    out = std::move(next);
+  }
+  return out;
+}
+
+std::size_t product_size(const std::vector<Arguments>& places) {
+  std::size_t out = 1;
+  for (const auto& place : places) out = std::min<std::size_t>(out * place.size(), 1'000'000);
+  return out;
+}
+
+void add_both(ConditionLiteral literal, std::vector<ConditionLiteral>& out) {
+  literal.negated = false;
+  out.push_back(literal);
+  literal.negated = true;
+  out.push_back(std::move(literal));
+}
+
+void add_symbol(const TypedModel& model, const Symbol& symbol, std::vector<SortId> sorts,
+                const std::vector<SortedVariable>& variables, std::size_t most_each,
+                std::vector<ConditionLiteral>& out) {
+  for (const bool constants : {true, false}) {
+    std::vector<Arguments> places;
+    for (const auto sort : sorts) places.push_back(choices(model, sort, variables, constants));
+    if (product_size(places) > most_each) continue;
+    for (auto& arguments : product(places)) {
+      ConditionLiteral literal;
+      literal.kind = symbol.kind == SymbolKind::kFluent ? ConditionLiteral::Kind::kFluent
+                                                        : ConditionLiteral::Kind::kPredicate;
+      literal.symbol = symbol.name;
+      literal.arguments = std::move(arguments);
+      add_both(std::move(literal), out);
+    }
+    return;
+  }
+}
+
+void add_equations(const TypedModel& model, const std::vector<SortedVariable>& variables,
+                   std::size_t most_each, std::vector<ConditionLiteral>& out) {
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    const LiteralArgument left{Kind::kVariable, variables[i].name};
+    for (std::size_t j = i + 1; j < variables.size(); ++j) {
+      if (!model.sorts_overlap(variables[i].sort, variables[j].sort)) continue;
+      const LiteralArgument right{Kind::kVariable, variables[j].name};
+      add_both({ConditionLiteral::Kind::kEqual, false, "", {left, right}}, out);
+    }
+    const auto constants = constants_of(model, variables[i].sort);
+    if (constants.size() > most_each) continue;
+    for (const auto& name : constants) {
+      add_both({ConditionLiteral::Kind::kEqual, false, "", {left, {Kind::kConstant, name}}}, out);
+    }
+  }
+}
+
+}  // namespace
+
+std::size_t ConditionLiteral::count(LiteralArgument::Kind of) const {
+  return static_cast<std::size_t>(std::count_if(arguments.begin(), arguments.end(),
+                                                [&](const auto& each) { return each.kind == of; }));
+}
+
+std::string print(const ConditionLiteral& literal, const std::string& time,
+                  const std::vector<std::string>& taken) {
+  if (literal.kind == ConditionLiteral::Kind::kEqual) {
+    return literal.arguments[0].name + (literal.negated ? "!=" : "=") + literal.arguments[1].name;
+  }
+  std::string quantified, arguments;
+  auto names = taken;
+  for (const auto& argument : literal.arguments) {
+    auto name = argument.name;
+    if (argument.kind == Kind::kSome) {
+      for (int i = 1; std::find(names.begin(), names.end(), name) != names.end(); ++i) {
+        name = argument.name + std::to_string(i);
+      }
+      names.push_back(name);
+      quantified += (quantified.empty() ? "" : ",") + name;
+    }
+    arguments += (arguments.empty() ? "" : ",") + name;
+  }
+  auto atom = literal.symbol + "(" + arguments + ")";
+  if (literal.kind == ConditionLiteral::Kind::kFluent) atom = "HoldsAt(" + atom + "," + time + ")";
+  if (!quantified.empty()) atom = "({" + quantified + "} " + atom + ")";
+  return (literal.negated ? "!" : "") + atom;
+}
+
+ConditionLiteral renamed(ConditionLiteral literal,
+                         const std::map<std::string, std::string>& names) {
+  for (auto& argument : literal.arguments) {
+    const auto found = names.find(argument.name);
+    if (argument.kind == Kind::kVariable && found != names.end()) argument.name = found->second;
+  }
+  return literal;
+}
+
+std::string atom_pattern(const ConditionLiteral& literal,
+                         const std::map<std::string, std::string>& values) {
+  if (literal.kind == ConditionLiteral::Kind::kEqual) return {};
+  std::string out = literal.symbol + "(";
+  for (std::size_t i = 0; i < literal.arguments.size(); ++i) {
+    const auto& argument = literal.arguments[i];
+    const auto value = values.find(argument.name);
+    out += i == 0 ? "" : ",";
+    if (argument.kind == Kind::kConstant) {
+      out += argument.name;
+    } else if (argument.kind == Kind::kVariable && value != values.end()) {
+      out += value->second;
+    } else {
+      out += "*";
+    }
+  }
+  return out + ")";
+}
+
+bool matches(std::string_view atom, std::string_view pattern) {
+  while (!atom.empty() && !pattern.empty()) {
+    if (pattern.front() == '*') {
+      pattern.remove_prefix(1);
+      int depth = 0;
+      while (!atom.empty() && (depth > 0 || (atom.front() != ',' && atom.front() != ')'))) {
+        if (atom.front() == '(') ++depth;
+        if (atom.front() == ')') --depth;
+        atom.remove_prefix(1);
+      }
+      continue;
+    }
+    if (atom.front() != pattern.front()) return false;
+    atom.remove_prefix(1);
+    pattern.remove_prefix(1);
+  }
+  return atom.empty() && pattern.empty();
+}
+
+std::optional<SortId> sort_of_variable(const TypedModel& model, std::string_view name) {
+  while (!name.empty() && name.back() >= '0' && name.back() <= '9') name.remove_suffix(1);
+  return model.find_sort(name);
+}
+
+std::vector<std::string> constants_of(const TypedModel& model, SortId sort) {
+  std::vector<std::string> out;
+  for (const auto& object : model.objects) {
+    const auto fits = [&](SortId of) { return model.is_subsort(of, sort); };
+    if (std::any_of(object.sorts.begin(), object.sorts.end(), fits)) out.push_back(object.name);
+  }
+  return out;
+}
+
+std::vector<ConditionLiteral> condition_literals(const TypedModel& model,
+                                                 const std::vector<SortedVariable>& variables,
+                                                 std::size_t most_each) {
+  std::vector<ConditionLiteral> out;
+  for (const auto& symbol : model.symbols) {
+    const bool is_fluent = symbol.kind == SymbolKind::kFluent;
+    if (!is_fluent && symbol.kind != SymbolKind::kPredicate) continue;
+    const auto uses = [&](std::optional<SortId> sort) {
+      return sort && std::find(symbol.arguments.begin(), symbol.arguments.end(), *sort) !=
+                         symbol.arguments.end();
+    };
+    // Predicates of the calculus, and those about timepoints, are not what a condition lacks.
+    if (uses(model.core.time) || uses(model.core.event) || uses(model.core.fluent)) continue;
+    add_symbol(model, symbol, symbol.arguments, variables, most_each, out);
+  }
+  add_equations(model, variables, most_each, out);
+  return out;
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/sema/typed_model.h"
+
+namespace parallax::compiler {
+
+/// A variable or constant, or "there is one of this sort".
+struct LiteralArgument {
+  enum class Kind : std::uint8_t { kVariable, kConstant, kSome };
+  Kind kind = Kind::kVariable;
+  std::string name;  // of a variable or constant, or of the sort
+  friend bool operator==(const LiteralArgument&, const LiteralArgument&) = default;
+};
+
+/// What an edit may add to a condition: a fluent at the event's time, a predicate without time, or
+/// an equation, each perhaps negated.
+struct ConditionLiteral {
+  enum class Kind : std::uint8_t { kFluent, kPredicate, kEqual };
+  Kind kind = Kind::kFluent;
+  bool negated = false;
+  std::string symbol;  // of a fluent or predicate
+  std::vector<LiteralArgument> arguments;
+  friend bool operator==(const ConditionLiteral&, const ConditionLiteral&) = default;
+
+  std::size_t count(LiteralArgument::Kind of) const;
+};
+
+/// As the language writes it; `time` is the name of the variable. Quantified variables are called
+/// by their sort, with a digit where `taken` has the name.
+std::string print(const ConditionLiteral& literal, const std::string& time,
+                  const std::vector<std::string>& taken);
+
+/// The literal with other names for its variables: terms of the axiom that it is put into.
+ConditionLiteral renamed(ConditionLiteral literal, const std::map<std::string, std::string>& names);
+
+/// The printed atoms of which the literal is about one, "F(a,b)" or "F(a,*)": a place that is open
+/// is `*`, as is a variable without a value. Of an equation: empty.
+std::string atom_pattern(const ConditionLiteral& literal,
+                         const std::map<std::string, std::string>& values);
+
+/// Does a printed atom fit the pattern?
+bool matches(std::string_view atom, std::string_view pattern);
+
+/// A variable with its sort.
+struct SortedVariable {
+  std::string name;
+  SortId sort;
+};
+/// Its sort is its name without the trailing digits. None: there is no such sort.
+std::optional<SortId> sort_of_variable(const TypedModel& model, std::string_view name);
+/// The constants of a sort and of all sorts below it, in order of declaration.
+std::vector<std::string> constants_of(const TypedModel& model, SortId sort);
+
+/// Every literal over the model's fluents and predicates with these variables, constants, and
+/// places that are left open; equations between variables, and between one and a constant. Terms
+/// are not nested. Symbols with more than `most_each` literals have none with constants.
+std::vector<ConditionLiteral> condition_literals(const TypedModel& model,
+                                                 const std::vector<SortedVariable>& variables,
+                                                 std::size_t most_each);
+
+}  // namespace parallax::compiler

@@ -1,0 +1,499 @@
+#include "compiler/repair/edit_grammar.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "compiler/repair/edit_relevance.h"
+#include "compiler/syntax/printer.h"
+
+namespace parallax::compiler {
+namespace {
+
+constexpr std::size_t kMostEach = 160;  // literals of a symbol on one axiom
+
+class EditMaker {
+ public:
+  EditMaker(const ModelAst& model, const TypedModel& typed, const std::vector<AxiomForm>& forms,
+            const EditScope& scope)
+      : model_(model),
+        typed_(typed),
+        forms_(forms),
+        scope_(scope),
+        relevance_(model, forms, scope) {
+    for (const auto& step : scope.steps) {
+      events_.insert(symbol_of(step.event));
+      for (const auto& [fluent, holds] : step.differing) fluents_.insert(symbol_of(fluent));
+    }
+    events_.insert(scope.more_events.begin(), scope.more_events.end());
+    fluents_.insert(scope.more_fluents.begin(), scope.more_fluents.end());
+  }
+
+  std::vector<Edit> make() {
+    for (std::size_t i = 0; i < forms_.size(); ++i) {
+      if (!events_.contains(forms_[i].event_symbol)) continue;
+      if (forms_[i].kind == AxiomForm::Kind::kEffects) {
+        edit_effects(i);
+      } else {
+        drop(i);
+        edit_conditions(i);
+      }
+    }
+    for (const auto& event : events_) {
+      const auto symbol = typed_.find_symbol(event);
+      if (!symbol || typed_.symbols[*symbol].kind != SymbolKind::kEvent) continue;
+      edit_event(event, typed_.symbols[*symbol].arguments);
+      add_effects(event, typed_.symbols[*symbol].arguments);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  const Ast& ast(const AxiomForm& form) const { return model_.ast(form.place); }
+
+  std::vector<SortedVariable> sorted(const std::vector<std::string>& names,
+                                     const std::string& time) const {
+    std::vector<SortedVariable> out;
+    for (const auto& name : names) {
+      const auto sort = sort_of_variable(typed_, name);
+      if (sort && name != time) out.push_back({name, *sort});
+    }
+    return out;
+  }
+
+  std::vector<std::string> event_arguments(const AxiomForm& form) const {
+    std::vector<std::string> out;
+    const auto& node = ast(form)[form.event];
+    for (std::uint32_t i = 0; i < node.child_count; ++i) {
+      out.push_back(print_formula(ast(form), ast(form).child(node, i)));
+    }
+    return out;
+  }
+
+  // --- edits of one axiom ---
+
+  void drop(std::size_t i) {
+    Edit edit;
+    edit.kind = Edit::Kind::kDropAxiom;
+    edit.axioms = {i};
+    edit.event = forms_[i].event_symbol;
+    edit.oddity = 3;
+    out_.push_back(std::move(edit));
+  }
+
+  void edit_effects(std::size_t i) {
+    const auto& form = forms_[i];
+    bool relevant = false;
+    for (const auto effect : form.effects) {
+      const auto parts = effect_parts(ast(form), effect);
+      const auto& fluent = ast(form)[parts->fluent];
+      const bool named = fluent.kind == NodeKind::kApply;
+      const bool differs = !named || fluents_.contains(std::string(ast(form).name(fluent)));
+      relevant = relevant || differs;
+      replace_effect(i, effect, differs);
+    }
+    if (!relevant) return;
+    drop(i);
+    edit_conditions(i);
+    const auto variables = sorted(form.variables, form.time);
+    for (const auto& literal : condition_literals(typed_, variables, kMostEach)) {
+      if (!relevance_.in_some_step(literal, false, event_arguments(form), form.event_symbol,
+                                   form.variables)) {
+        continue;
+      }
+      Edit edit;
+      edit.kind = Edit::Kind::kNarrow;
+      edit.axioms = {i};
+      edit.literal = literal;
+      edit.event = form.event_symbol;
+      edit.oddity = 2 + relevance_.oddity(literal, form.event_symbol);
+      out_.push_back(std::move(edit));
+    }
+  }
+
+  void edit_conditions(std::size_t i) {
+    const auto& form = forms_[i];
+    for (const auto conjunct : form.conjuncts) {
+      const auto& node = ast(form)[conjunct];
+      const bool is_event =
+          node.kind == NodeKind::kApply && ast(form).name(node) == std::string_view("Happens");
+      if (is_event) continue;
+      Edit edit;
+      edit.kind = Edit::Kind::kDropCondition;
+      edit.axioms = {i};
+      edit.node = conjunct;
+      edit.event = form.event_symbol;
+      edit.oddity = 1;
+      out_.push_back(edit);
+      const auto text = print_formula(ast(form), conjunct);
+      const bool negated = node.kind == NodeKind::kUnary && node.op == Operator::kNot;
+      if (negated) {
+        replace(i, conjunct, print_formula(ast(form), ast(form).child(node, 0)), 2);
+      } else if (node.kind == NodeKind::kApply) {
+        replace(i, conjunct, "!" + text, 2);
+      }
+      auto inner = negated ? ast(form).child(node, 0) : conjunct;
+      if (ast(form)[inner].kind == NodeKind::kApply &&
+          ast(form).name(ast(form)[inner]) == "HoldsAt") {
+        for (const auto& [term, oddity] : other_terms(form, ast(form).child(ast(form)[inner], 0))) {
+          replace(i, conjunct, (negated ? "!HoldsAt(" : "HoldsAt(") + term + "," + form.time + ")",
+                  oddity);
+        }
+      }
+    }
+  }
+
+  void replace(std::size_t i, NodeId node, std::string text, int oddity) {
+    if (text == print_formula(ast(forms_[i]), node)) return;
+    Edit edit;
+    edit.kind = Edit::Kind::kReplace;
+    edit.axioms = {i};
+    edit.node = node;
+    edit.text = std::move(text);
+    edit.event = forms_[i].event_symbol;
+    edit.oddity = oddity;
+    out_.push_back(std::move(edit));
+  }
+
+  void replace_effect(std::size_t i, NodeId effect, bool differs) {
+    const auto& form = forms_[i];
+    const auto& tree = ast(form);
+    const auto parts = *effect_parts(tree, effect);
+    const std::string kind(tree.name(tree[effect]));
+    const auto event = print_formula(tree, parts.event), fluent = print_formula(tree, parts.fluent);
+    const auto atom = [&](const std::string& name, const std::string& e, const std::string& f) {
+      return name + "(" + e + "," + f + "," + form.time + ")";
+    };
+    if (differs && kind != "Releases") {
+      replace(i, effect, atom(kind == "Initiates" ? "Terminates" : "Initiates", event, fluent), 1);
+    }
+    if (differs && tree[parts.fluent].kind == NodeKind::kApply) {
+      for (const auto& [term, oddity] : other_terms(form, parts.fluent)) {
+        replace(i, effect, atom(kind, event, term), oddity);
+      }
+      for (const auto& [e, f] : exchanged(form, parts)) replace(i, effect, atom(kind, e, f), 2);
+    }
+    for (const auto& name : fluents_) {
+      const auto symbol = typed_.find_symbol(name);
+      if (!symbol || typed_.symbols[*symbol].kind != SymbolKind::kFluent) continue;
+      if (tree[parts.fluent].kind == NodeKind::kApply && tree.name(tree[parts.fluent]) == name) {
+        continue;
+      }
+      const auto variables = sorted(form.variables, form.time);
+      for (const auto& [term, oddity] : terms(name, typed_.symbols[*symbol].arguments, variables)) {
+        replace(i, effect, atom(kind, event, term), 2 + oddity);
+      }
+    }
+  }
+
+  /// Terms of a symbol with these variables and with constants.
+  std::vector<std::pair<std::string, int>> terms(
+      const std::string& symbol, const std::vector<SortId>& sorts,
+      const std::vector<SortedVariable>& variables) const {
+    std::vector<std::pair<std::string, int>> out = {{"", 0}};
+    for (const auto sort : sorts) {
+      std::vector<std::pair<std::string, int>> next;
+      for (const auto& [begun, oddity] : out) {
+        const auto comma = begun.empty() ? "" : begun + ",";
+        for (const auto& variable : variables) {
+          if (typed_.sorts_overlap(variable.sort, sort)) {
+            next.emplace_back(comma + variable.name, oddity);
+          }
+        }
+        for (const auto& name : constants_of(typed_, sort)) {
+          next.emplace_back(comma + name, oddity + 2);
+        }
+      }
+      out = std::move(next);
+      if (out.size() > kMostEach) return {};
+    }
+    for (auto& [text, oddity] : out) text = symbol + "(" + text + ")";
+    return out;
+  }
+
+  /// The term with one argument that is another one.
+  std::vector<std::pair<std::string, int>> other_terms(const AxiomForm& form, NodeId term) const {
+    const auto& tree = ast(form);
+    const auto& node = tree[term];
+    std::vector<std::pair<std::string, int>> out;
+    if (node.kind != NodeKind::kApply) return out;
+    const auto symbol = typed_.find_symbol(tree.name(node));
+    if (!symbol || typed_.symbols[*symbol].arguments.size() != node.child_count) return out;
+    std::vector<std::string> arguments;
+    for (std::uint32_t i = 0; i < node.child_count; ++i) {
+      arguments.push_back(print_formula(tree, tree.child(node, i)));
+    }
+    const auto print = [&](const std::vector<std::string>& with) {
+      std::string text(tree.name(node));
+      for (std::size_t i = 0; i < with.size(); ++i) text += (i == 0 ? "(" : ",") + with[i];
+      return text + ")";
+    };
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      const auto sort = typed_.symbols[*symbol].arguments[i];
+      auto with = arguments;
+      for (const auto& variable : sorted(form.variables, form.time)) {
+        if (variable.name == arguments[i] || !typed_.sorts_overlap(variable.sort, sort)) continue;
+        with[i] = variable.name;
+        out.emplace_back(print(with), 1);
+      }
+      const auto constants = constants_of(typed_, sort);
+      if (constants.size() > kMostEach) continue;
+      for (const auto& name : constants) {
+        if (name == arguments[i]) continue;
+        with[i] = name;
+        out.emplace_back(print(with), 3);
+      }
+      for (std::size_t j = i + 1; j < arguments.size(); ++j) {
+        auto swapped = arguments;
+        std::swap(swapped[i], swapped[j]);
+        if (swapped != arguments &&
+            typed_.sorts_overlap(sort, typed_.symbols[*symbol].arguments[j])) {
+          out.emplace_back(print(swapped), 1);
+        }
+      }
+    }
+    return out;
+  }
+
+  /// Event and fluent with one argument of each exchanged.
+  std::vector<std::pair<std::string, std::string>> exchanged(const AxiomForm& form,
+                                                             const EffectParts& parts) const {
+    const auto& tree = ast(form);
+    std::vector<std::pair<std::string, std::string>> out;
+    const auto arguments = [&](NodeId term) {
+      std::vector<std::string> names;
+      for (std::uint32_t i = 0; i < tree[term].child_count; ++i) {
+        names.push_back(print_formula(tree, tree.child(tree[term], i)));
+      }
+      return names;
+    };
+    const auto print = [&](NodeId term, const std::vector<std::string>& with) {
+      std::string text(tree.name(tree[term]));
+      text += "(";
+      for (std::size_t i = 0; i < with.size(); ++i) text += (i == 0 ? "" : ",") + with[i];
+      return text + ")";
+    };
+    const auto event = arguments(parts.event), fluent = arguments(parts.fluent);
+    for (std::size_t i = 0; i < event.size(); ++i) {
+      for (std::size_t j = 0; j < fluent.size(); ++j) {
+        const auto a = sort_of_variable(typed_, event[i]), b = sort_of_variable(typed_, fluent[j]);
+        if (event[i] == fluent[j] || !a || !b || !typed_.sorts_overlap(*a, *b)) continue;
+        auto e = event, f = fluent;
+        std::swap(e[i], f[j]);
+        out.emplace_back(print(parts.event, e), print(parts.fluent, f));
+      }
+    }
+    return out;
+  }
+
+  // --- edits of an event ---
+
+  /// Names for variables of these sorts: "base", "item1", "item2".
+  std::vector<std::string> variables_for(const std::vector<SortId>& sorts) const {
+    std::vector<std::string> out;
+    for (std::size_t i = 0; i < sorts.size(); ++i) {
+      const auto& name = typed_.sorts[sorts[i]].name;
+      const auto same = std::count(sorts.begin(), sorts.end(), sorts[i]);
+      const auto before =
+          std::count(sorts.begin(), sorts.begin() + static_cast<std::ptrdiff_t>(i), sorts[i]);
+      out.push_back(same > 1 ? name + std::to_string(before + 1) : name);
+    }
+    return out;
+  }
+
+  void edit_event(const std::string& event, const std::vector<SortId>& sorts) {
+    const auto names = variables_for(sorts);
+    std::vector<SortedVariable> variables;
+    for (std::size_t i = 0; i < names.size(); ++i) variables.push_back({names[i], sorts[i]});
+    std::vector<std::size_t> axioms;
+    for (std::size_t i = 0; i < forms_.size(); ++i) {
+      if (forms_[i].event_symbol == event && forms_[i].kind == AxiomForm::Kind::kEffects) {
+        axioms.push_back(i);
+      }
+    }
+    if (scope_.open_outcomes) open_event(event, names, axioms);
+    bool refused = false, not_possible = false;
+    for (const auto& step : scope_.steps) {
+      if (symbol_of(step.event) != event) continue;
+      refused = refused || step.refused;
+      not_possible = not_possible || step.not_possible;
+    }
+    for (const auto& literal : condition_literals(typed_, variables, kMostEach)) {
+      if (!relevance_.in_some_step(literal, false, names, event, names)) continue;
+      Edit edit;
+      edit.literal = literal;
+      edit.event = event;
+      edit.variables = names;
+      edit.event_arity = names.size();
+      const int oddity = relevance_.oddity(literal, event);
+      if (axioms.size() > 1) {
+        edit.kind = Edit::Kind::kNarrowEvent;
+        edit.axioms = axioms;
+        edit.oddity = (refused ? 1 : 3) + oddity;
+        out_.push_back(edit);
+      }
+      if (refused) {
+        edit.kind = Edit::Kind::kRequire;
+        edit.axioms = {};
+        edit.oddity = (not_possible ? 0 : 3) + oddity;
+        out_.push_back(edit);
+      }
+    }
+  }
+
+  /// What the event does to the fluents that differed is left open.
+  void open_event(const std::string& event, const std::vector<std::string>& names,
+                  const std::vector<std::size_t>& axioms) {
+    Edit edit;
+    edit.kind = Edit::Kind::kOpenEvent;
+    edit.event = event;
+    edit.variables = names;
+    edit.event_arity = names.size();
+    edit.oddity = 1;
+    for (const auto i : axioms) {
+      for (const auto effect : forms_[i].effects) {
+        const auto& tree = ast(forms_[i]);
+        const auto& fluent = tree[effect_parts(tree, effect)->fluent];
+        if (fluent.kind != NodeKind::kApply || tree.name(tree[effect]) == "Releases") continue;
+        if (!fluents_.contains(std::string(tree.name(fluent)))) continue;
+        edit.nodes.emplace_back(i, effect);
+        if (edit.axioms.empty() || edit.axioms.back() != i) edit.axioms.push_back(i);
+      }
+    }
+    if (!edit.nodes.empty()) out_.push_back(std::move(edit));
+  }
+
+  void add_effects(const std::string& event, const std::vector<SortId>& sorts) {
+    for (const auto& name : fluents_) {
+      const auto symbol = typed_.find_symbol(name);
+      if (!symbol || typed_.symbols[*symbol].kind != SymbolKind::kFluent) continue;
+      if (typed_.symbols[*symbol].noninertial) continue;
+      auto all = sorts;
+      const auto& places = typed_.symbols[*symbol].arguments;
+      all.insert(all.end(), places.begin(), places.end());
+      const auto names = variables_for(all);
+      std::vector<std::string> kinds = {"Initiates", "Terminates"};
+      if (scope_.open_outcomes) kinds.emplace_back("Releases");
+      for (const auto& kind : kinds) {
+        add_effects_of(kind, event, sorts.size(), name, all, names);
+      }
+    }
+  }
+
+  /// Each place of the fluent is a variable of the event, one of its own, or a constant.
+  void add_effects_of(const std::string& kind, const std::string& event, std::size_t arity,
+                      const std::string& fluent, const std::vector<SortId>& sorts,
+                      const std::vector<std::string>& names) {
+    std::vector<SortedVariable> own;
+    for (std::size_t i = 0; i < arity; ++i) own.push_back({names[i], sorts[i]});
+    std::vector<std::vector<std::string>> choices = {{}};
+    for (std::size_t i = arity; i < sorts.size(); ++i) {
+      std::vector<std::vector<std::string>> next;
+      for (const auto& begun : choices) {
+        const auto add = [&](const std::string& text) {
+          next.push_back(begun);
+          next.back().push_back(text);
+        };
+        for (const auto& variable : own) {
+          if (typed_.sorts_overlap(variable.sort, sorts[i])) add(variable.name);
+        }
+        add(names[i]);
+        for (const auto& name : constants_of(typed_, sorts[i])) add(name);
+      }
+      choices = std::move(next);
+      if (choices.size() > 4 * kMostEach) return;
+    }
+    for (const auto& choice : choices) add_effect(kind, event, arity, fluent, sorts, names, choice);
+  }
+
+  void add_effect(const std::string& kind, const std::string& event, std::size_t arity,
+                  const std::string& fluent, const std::vector<SortId>& sorts,
+                  const std::vector<std::string>& names, const std::vector<std::string>& choice) {
+    const std::vector<std::string> of_event(names.begin(),
+                                            names.begin() + static_cast<std::ptrdiff_t>(arity));
+    Edit edit;
+    edit.kind = Edit::Kind::kAddEffect;
+    edit.event = event;
+    edit.variables = of_event;
+    edit.event_arity = arity;
+    edit.oddity = kind == "Releases" ? 4 : 2;
+    std::vector<SortedVariable> variables;
+    for (std::size_t i = 0; i < arity; ++i) variables.push_back({names[i], sorts[i]});
+    bool constants = false;
+    int own = 0;
+    for (std::size_t i = 0; i < choice.size(); ++i) {
+      if (choice[i] == names[arity + i]) {  // one of its own
+        edit.variables.push_back(choice[i]);
+        variables.push_back({choice[i], sorts[arity + i]});
+        edit.oddity += 1;
+        ++own;
+      } else if (std::find(of_event.begin(), of_event.end(), choice[i]) == of_event.end()) {
+        edit.oddity += 3;
+        constants = true;
+      }
+    }
+    if (!relevance_.covers(kind, event, fluent, of_event, choice, edit.variables)) return;
+    const auto list = [](const std::vector<std::string>& of) {
+      std::string text;
+      for (const auto& each : of) text += (text.empty() ? "" : ",") + each;
+      return text;
+    };
+    edit.text =
+        kind + "(" + event + "(" + list(of_event) + ")," + fluent + "(" + list(choice) + "),time)";
+    const auto place = out_.size();
+    out_.push_back(edit);
+    // Conditions of what is special already, or about everything, would be most of all edits.
+    if (constants || own > 1 || !scope_.more_events.empty()) return;
+    for (const auto& literal : condition_literals(typed_, variables, 1 + kMostEach / 8)) {
+      if (literal.count(LiteralArgument::Kind::kConstant) > 0) continue;
+      if (!relevance_.in_some_step(literal, true, of_event, event, of_event)) continue;
+      Edit condition;
+      condition.kind = Edit::Kind::kAddCondition;
+      condition.of = place;
+      condition.literal = literal;
+      condition.event = event;
+      condition.variables = edit.variables;
+      condition.oddity = relevance_.oddity(literal, event);
+      out_.push_back(std::move(condition));
+    }
+  }
+
+  const ModelAst& model_;
+  const TypedModel& typed_;
+  const std::vector<AxiomForm>& forms_;
+  const EditScope& scope_;
+  const EditRelevance relevance_;
+  std::set<std::string> events_, fluents_;
+  std::vector<Edit> out_;
+};
+
+}  // namespace
+
+std::string symbol_of(const std::string& ground) { return ground.substr(0, ground.find('(')); }
+
+std::vector<std::string> arguments_of(const std::string& ground) {
+  std::vector<std::string> out;
+  const auto open = ground.find('(');
+  if (open == std::string::npos || open + 2 >= ground.size()) return out;
+  int depth = 0;
+  std::string current;
+  for (std::size_t i = open + 1; i + 1 < ground.size(); ++i) {
+    const char c = ground[i];
+    if (c == '(') ++depth;
+    if (c == ')') --depth;
+    if (c == ',' && depth == 0) {
+      out.push_back(std::move(current));
+      current.clear();
+    } else {
+      current += c;
+    }
+  }
+  out.push_back(std::move(current));
+  return out;
+}
+
+std::vector<Edit> edits_in_scope(const ModelAst& model, const TypedModel& typed,
+                                 const std::vector<AxiomForm>& forms, const EditScope& scope) {
+  return EditMaker(model, typed, forms, scope).make();
+}
+
+}  // namespace parallax::compiler

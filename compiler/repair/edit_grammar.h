@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compiler/repair/axiom_form.h"
+#include "compiler/repair/condition_literal.h"
+#include "compiler/sema/typed_model.h"
+
+namespace parallax::compiler {
+
+/// One thing that may be wrong with a model, and what to do about it.
+struct Edit {
+  enum class Kind : std::uint8_t {
+    kNarrow,         // `literal` is added to the condition of the axiom
+    kNarrowEvent,    // ... of every axiom about what the event does
+    kRequire,        // a new precondition: the event happens only where `literal` holds
+    kDropCondition,  // the conjunct `node` of the axiom's condition goes
+    kDropAxiom,      // an axiom about effects, or a precondition
+    kReplace,        // `node` of the axiom, a conjunct or an effect, becomes `text`
+    kAddEffect,      // a new axiom: the effect `text`
+    kAddCondition,   // `literal` is the condition of the new axiom `of`
+    kOpenEvent,      // the effects `nodes`, one of each axiom, become Releases
+  };
+  Kind kind = Kind::kNarrow;
+  std::vector<std::size_t> axioms;  // places among the forms
+  NodeId node;
+  std::vector<std::pair<std::size_t, NodeId>> nodes;  // kOpenEvent: axiom and effect
+  std::optional<ConditionLiteral> literal;
+  std::string text;
+  std::string event;                   // symbol
+  std::vector<std::string> variables;  // of a new axiom: the event's arguments, then others
+  std::size_t event_arity = 0;         // of a new axiom
+  std::size_t of = 0;                  // kAddCondition: the edit with the effect
+  /// How far it is from what people write and forget: constants where a variable would do, a
+  /// condition that no other axiom of the event has. Smaller is tried first among equals.
+  int oddity = 0;
+};
+
+/// What the edits are to be about: the steps at which runs and model parted.
+struct EditScope {
+  struct Step {
+    std::string event;                      // "Go(bTable)"
+    bool refused = false;                   // the world did not do it
+    bool not_possible = false;              // and says that it cannot happen
+    std::map<std::string, bool> before;     // the fluents that were observed in front of it
+    std::map<std::string, bool> differing;  // observed behind it, unlike the model
+  };
+  std::vector<Step> steps;
+  /// Other events, and fluents, whose axioms may be to blame as well.
+  std::set<std::string> more_events, more_fluents;
+  /// An event may leave open what it does: `Releases`.
+  bool open_outcomes = false;
+};
+
+/// The event's symbol, and its arguments.
+std::string symbol_of(const std::string& ground);
+std::vector<std::string> arguments_of(const std::string& ground);
+
+/// Every single edit of the grammar in the scope, in a fixed order. Edits of one kind on one axiom
+/// are at most some hundred: where a model has more symbols and constants than that, those with
+/// constants are left out (condition_literals).
+std::vector<Edit> edits_in_scope(const ModelAst& model, const TypedModel& typed,
+                                 const std::vector<AxiomForm>& forms, const EditScope& scope);
+
+}  // namespace parallax::compiler

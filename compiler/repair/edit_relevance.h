@@ -1,0 +1,39 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/repair/edit_grammar.h"
+
+namespace parallax::compiler {
+
+/// Which literals and effects can have to do with what was seen at the steps of a scope, and how
+/// usual they are. What it is given outlives it.
+class EditRelevance {
+ public:
+  EditRelevance(const ModelAst& model, const std::vector<AxiomForm>& forms, const EditScope& scope)
+      : model_(model), forms_(forms), scope_(scope) {}
+
+  /// Could the literal have been `value` in front of one of the steps? `arguments` are those of the
+  /// event in the axiom, in whose `variables` the literal is. Of events that are not at a step
+  /// nothing is known.
+  bool in_some_step(const ConditionLiteral& literal, bool value,
+                    const std::vector<std::string>& arguments, const std::string& symbol,
+                    const std::vector<std::string>& variables) const;
+  /// Would the effect do to the fluent what was seen at one of the steps? `choice` are the fluent's
+  /// arguments.
+  bool covers(const std::string& kind, const std::string& event, const std::string& fluent,
+              const std::vector<std::string>& of_event, const std::vector<std::string>& choice,
+              const std::vector<std::string>& variables) const;
+  /// Edit::oddity of a condition of the event.
+  int oddity(const ConditionLiteral& literal, const std::string& event) const;
+
+ private:
+  const ModelAst& model_;
+  const std::vector<AxiomForm>& forms_;
+  const EditScope& scope_;
+};
+
+}  // namespace parallax::compiler

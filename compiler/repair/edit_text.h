@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compiler/repair/axiom_form.h"
+#include "compiler/repair/edit_grammar.h"
+
+namespace parallax::compiler {
+
+/// Chosen edits of one model as changes of its texts and as words. What they refer to outlives it.
+class EditText {
+ public:
+  EditText(const ModelAst& model, const base::SourceFiles& files,
+           const std::vector<AxiomForm>& forms, const std::vector<Edit>& edits)
+      : model_(model), files_(files), forms_(forms), edits_(edits) {}
+
+  /// As few characters change as may; a new axiom stands behind the last one of its event.
+  std::vector<TextChange> changes(const std::vector<std::size_t>& chosen) const;
+  /// One sentence: "`Go(base)` happens only where `Parked(left)` holds". No period.
+  std::string words(const std::vector<std::size_t>& chosen) const;
+
+ private:
+  const Ast& ast(std::size_t axiom) const { return model_.ast(forms_[axiom].place); }
+  std::string place(std::size_t axiom) const;
+  std::string literal(const Edit& edit, std::size_t axiom) const;
+  TextChange add_condition(std::size_t axiom, const std::string& condition) const;
+  TextChange drop_condition(std::size_t axiom, NodeId node) const;
+  TextChange drop_axiom(std::size_t axiom) const;
+  TextChange add_axiom(const std::string& event, std::string text) const;
+  std::string new_axiom(const Edit& effect, const std::vector<std::size_t>& chosen,
+                        std::size_t number, bool wrapped) const;
+
+  const ModelAst& model_;
+  const base::SourceFiles& files_;
+  const std::vector<AxiomForm>& forms_;
+  const std::vector<Edit>& edits_;
+};
+
+/// The literal of an edit in the words of one of its axioms, whose event may have other arguments.
+std::string literal_in(const ModelAst& model, const std::vector<AxiomForm>& forms, const Edit& edit,
+                       std::size_t axiom);
+
+}  // namespace parallax::compiler

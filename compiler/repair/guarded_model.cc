@@ -1,0 +1,152 @@
+#include "compiler/repair/guarded_model.h"
+
+#include <algorithm>
+
+#include "compiler/repair/edit_text.h"
+#include "compiler/syntax/printer.h"
+
+namespace parallax::compiler {
+namespace {
+
+std::string on(std::size_t edit) { return edit_predicate(edit) + "()"; }
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string out;
+  for (const auto& name : names) out += (out.empty() ? "" : ",") + name;
+  return out;
+}
+
+std::string joined(const std::vector<std::string>& parts, const std::string& effect) {
+  std::string out;
+  for (const auto& part : parts) out += (out.empty() ? "" : " & ") + part;
+  return out.empty() ? effect : out + " -> " + effect;
+}
+
+class GuardedForm {
+ public:
+  GuardedForm(const ModelAst& model, const std::vector<AxiomForm>& forms,
+              const std::vector<Edit>& edits, std::size_t axiom)
+      : model_(model), forms_(forms), form_(forms[axiom]), edits_(edits), axiom_(axiom) {
+    for (std::size_t i = 0; i < edits.size(); ++i) {
+      const auto& axioms = edits[i].axioms;
+      if (std::find(axioms.begin(), axioms.end(), axiom) != axioms.end()) touching_.push_back(i);
+    }
+  }
+
+  bool is_touched() const { return !touching_.empty(); }
+
+  std::string text() const {
+    const auto& ast = model_.ast(form_.place);
+    const auto quantifier = form_.variables.empty() ? "" : "[" + list_of(form_.variables) + "] ";
+    auto conditions = guarded_conditions();
+    for (const auto i : touching_) {
+      if (edits_[i].kind == Edit::Kind::kDropAxiom) conditions.push_back("!" + on(i));
+    }
+    if (form_.kind == AxiomForm::Kind::kPrecondition) {
+      return quantifier + joined(conditions, "(" + print_formula(ast, form_.head) + ")") + ".\n";
+    }
+    std::string out;
+    for (const auto effect : form_.effects) {
+      auto kept = conditions;
+      for (const auto i : touching_) {
+        const auto other = instead_of(effect, i);
+        if (other.empty()) continue;
+        kept.push_back("!" + on(i));
+        auto instead = conditions;
+        instead.push_back(on(i));
+        out += quantifier + joined(instead, other) + ".\n";
+      }
+      out += quantifier + joined(kept, print_formula(ast, effect)) + ".\n";
+    }
+    return out;
+  }
+
+ private:
+  /// What the edit makes of an effect; empty: it leaves it as it is.
+  std::string instead_of(NodeId effect, std::size_t edit) const {
+    const auto& ast = model_.ast(form_.place);
+    if (edits_[edit].kind == Edit::Kind::kReplace && edits_[edit].node == effect) {
+      return edits_[edit].text;
+    }
+    for (const auto& [axiom, node] : edits_[edit].nodes) {
+      if (axiom != axiom_ || node != effect) continue;
+      return "Releases" + print_formula(ast, effect).substr(ast.name(ast[effect]).size());
+    }
+    return {};
+  }
+
+  std::vector<std::string> guarded_conditions() const {
+    const auto& ast = model_.ast(form_.place);
+    std::vector<std::string> out;
+    for (const auto conjunct : form_.conjuncts) {
+      auto text = "(" + print_formula(ast, conjunct) + ")";
+      std::string off;
+      for (const auto i : touching_) {
+        if (edits_[i].node != conjunct) continue;
+        if (edits_[i].kind == Edit::Kind::kDropCondition) off += " | " + on(i);
+        if (edits_[i].kind == Edit::Kind::kReplace) {
+          off += " | " + on(i);
+          out.push_back("(!" + on(i) + " | (" + edits_[i].text + "))");
+        }
+      }
+      out.push_back(off.empty() ? text : "(" + text + off + ")");
+    }
+    for (const auto i : touching_) {
+      const auto kind = edits_[i].kind;
+      if (kind != Edit::Kind::kNarrow && kind != Edit::Kind::kNarrowEvent) continue;
+      out.push_back("(!" + on(i) + " | " + literal_in(model_, forms_, edits_[i], axiom_) + ")");
+    }
+    return out;
+  }
+
+  const ModelAst& model_;
+  const std::vector<AxiomForm>& forms_;
+  const AxiomForm& form_;
+  const std::vector<Edit>& edits_;
+  std::size_t axiom_;
+  std::vector<std::size_t> touching_;
+};
+
+}  // namespace
+
+std::string edit_predicate(std::size_t edit) { return "RepairEdit" + std::to_string(edit); }
+
+std::string guarded_text(const ModelAst& model, const base::SourceFiles& files,
+                         const std::vector<AxiomForm>& forms, const std::vector<Edit>& edits) {
+  std::vector<TextChange> changes;
+  for (std::size_t i = 0; i < forms.size(); ++i) {
+    const GuardedForm guarded(model, forms, edits, i);
+    if (!guarded.is_touched()) continue;
+    changes.push_back(
+        {model.ast(forms[i].place).file(), forms[i].begin, forms[i].end, guarded.text()});
+  }
+  auto out = flat_text(model, files, changes);
+  for (std::size_t i = 0; i < edits.size(); ++i) {
+    out += "predicate " + edit_predicate(i) + "()\n";
+  }
+  for (std::size_t i = 0; i < edits.size(); ++i) {
+    const auto& edit = edits[i];
+    const bool requires_it = edit.kind == Edit::Kind::kRequire;
+    if (!requires_it && edit.kind != Edit::Kind::kAddEffect) continue;
+    const std::vector<std::string> of_event(
+        edit.variables.begin(),
+        edit.variables.begin() + static_cast<std::ptrdiff_t>(edit.event_arity));
+    auto variables = edit.variables;
+    variables.emplace_back("time");
+    std::vector<std::string> conditions = {on(i)};
+    for (std::size_t j = i + 1; j < edits.size() && !requires_it; ++j) {
+      if (edits[j].kind != Edit::Kind::kAddCondition || edits[j].of != i) break;
+      conditions.push_back("(!" + on(j) + " | " +
+                           print(*edits[j].literal, "time", edits[j].variables) + ")");
+    }
+    auto effect = edit.text;
+    if (requires_it) {
+      conditions.push_back("Happens(" + edit.event + "(" + list_of(of_event) + "),time)");
+      effect = print(*edit.literal, "time", edit.variables);
+    }
+    out += "[" + list_of(variables) + "] " + joined(conditions, effect) + ".\n";
+  }
+  return out;
+}
+
+}  // namespace parallax::compiler

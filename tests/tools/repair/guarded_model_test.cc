@@ -1,0 +1,97 @@
+// An edit that is switched on in the guarded model, and the same edit made in the text, are one.
+
+#include "compiler/repair/guarded_model.h"
+
+#include <doctest/doctest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "compiler/repair/edit_text.h"
+#include "compiler/sema/check.h"
+#include "runtime/compare/trace_difference.h"
+#include "tools/repair/domain_model.h"
+
+namespace parallax::tools {
+namespace {
+
+using compiler::Edit;
+
+constexpr const char* kModel = R"(
+sort drawer
+drawer top, low
+fluent Open(drawer)
+fluent Parked()
+event Pull(drawer)
+event Park()
+[drawer,time]
+  HoldsAt(Parked(),time) & !HoldsAt(Open(drawer),time) -> Initiates(Pull(drawer),Open(drawer),time).
+[drawer,time] Terminates(Pull(drawer),Parked(),time).
+[drawer,time] Happens(Pull(drawer),time) -> !HoldsAt(Open(drawer),time).
+[time] Initiates(Park(),Parked(),time).
+)";
+
+std::string switched(const std::string& guarded, std::size_t edits,
+                     const std::set<std::size_t>& on) {
+  auto out = guarded;
+  for (std::size_t i = 0; i < edits; ++i) {
+    out += (on.contains(i) ? "" : "!") + compiler::edit_predicate(i) + "().\n";
+  }
+  return out;
+}
+
+TEST_CASE("every edit of a model, switched on and written") {
+  DomainModel domain;
+  base::DiagnosticSink sink;
+  auto ast =
+      compiler::load_model_text(domain.files.add("m.e", kModel), ".", {}, domain.files, sink);
+  REQUIRE(ast);
+  domain.ast = *std::move(ast);
+  compiler::CheckOptions check;
+  check.time_lower = 0;
+  check.time_upper = 1;
+  auto typed = compiler::check_model(domain.ast, domain.files, sink, check);
+  REQUIRE(typed);
+  domain.forms = compiler::axiom_forms(domain.ast, domain.files);
+  compiler::EditScope scope;
+  scope.open_outcomes = true;
+  scope.steps.push_back({"Pull(top)",
+                         true,
+                         true,
+                         {{"Open(top)", false}, {"Open(low)", false}, {"Parked()", true}},
+                         {{"Open(top)", false}, {"Parked()", true}}});
+  const auto edits = compiler::edits_in_scope(domain.ast, *typed, domain.forms, scope);
+  const compiler::EditText texts(domain.ast, domain.files, domain.forms, edits);
+  const auto guarded = compiler::guarded_text(domain.ast, domain.files, domain.forms, edits);
+  const Context context;
+  const auto same = [&](const std::string& a, const std::string& b) {
+    std::string why;
+    const auto first = compile_text(a, 2, context, why);
+    CAPTURE(why);
+    REQUIRE(first);
+    const auto second = compile_text(b, 2, context, why);
+    REQUIRE(second);
+    const auto difference = runtime::compare_traces(*first, *second, {});
+    CHECK(difference.lost.answer == runtime::Answer::kNone);
+    CHECK(difference.gained.answer == runtime::Answer::kNone);
+  };
+  same(switched(guarded, edits.size(), {}), kModel);
+  std::set<Edit::Kind> kinds;
+  std::size_t conditions = 0;
+  for (std::size_t i = 0; i < edits.size(); ++i) {
+    std::vector<std::size_t> set = {i};
+    if (edits[i].kind == Edit::Kind::kAddCondition) {
+      if (++conditions % 5 != 0) continue;  // they are many, and alike
+      set.insert(set.begin(), edits[i].of);
+    }
+    kinds.insert(edits[i].kind);
+    CAPTURE(texts.words(set));
+    same(switched(guarded, edits.size(), {set.begin(), set.end()}),
+         compiler::flat_text(domain.ast, domain.files, texts.changes(set)));
+  }
+  CHECK(kinds.size() == 9);
+}
+
+}  // namespace
+}  // namespace parallax::tools

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/artifact/compiled_model.h"
+#include "compiler/repair/axiom_form.h"
+#include "compiler/sema/typed_model.h"
+#include "harness/config/scenario.h"
+#include "tools/app/context.h"
+
+namespace parallax::tools {
+
+/// The texts of a scenario's model, parsed and checked, for edits to be made in them.
+struct DomainModel {
+  base::SourceFiles files;  // of the model alone; the rest refers to it
+  compiler::ModelAst ast;
+  std::optional<compiler::TypedModel> typed;
+  std::vector<compiler::AxiomForm> forms;
+};
+/// None where the texts are no right model any more; the scenario was loaded before, so that was
+/// reported.
+std::unique_ptr<DomainModel> load_domain(const harness::Scenario& scenario, const Context& context);
+
+/// The model that a text says, without plan and constraints, for this horizon. None: it is no right
+/// model; `why` is then the first thing that is wrong.
+std::optional<compiler::CompiledModel> compile_text(const std::string& text, std::int64_t horizon,
+                                                    const Context& context, std::string& why);
+
+}  // namespace parallax::tools

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/artifact/compiled_model.h"
+#include "runtime/session/solver_session.h"
+#include "tools/app/context.h"
+#include "tools/app/observed_path.h"
+
+namespace parallax::tools {
+
+/// What recorded runs that went the same way have shown: by names, for models of other numberings.
+struct Evidence {
+  struct Step {
+    std::string event;
+    bool failed = false;  // the world did not do it
+    std::string reason;   // in its words
+    friend bool operator==(const Step&, const Step&) = default;
+  };
+  using State = std::map<std::string, bool>;  // what was seen, by fluent
+  bool executed = false;                      // the plan was, in closed loop
+  std::vector<Step> steps;
+  std::vector<State> states;     // one more than steps
+  std::vector<std::string> ids;  // of the runs: "1.4"
+  /// The first timepoint that the model cannot reach like that; none: it admits all of it.
+  std::optional<std::size_t> divergence;
+  /// What came later is set aside: another run went the same way and failed.
+  std::optional<std::size_t> until;
+
+  std::size_t runs() const { return ids.size(); }
+  /// The timepoints that a repaired model has to admit: up to the divergence, as it may not be the
+  /// only mistake.
+  std::size_t needed() const { return until.value_or(seen_to()); }
+  std::size_t seen_to() const { return divergence.value_or(steps.size()); }
+};
+
+/// The paths, those that are alike as one, without their divergence. In the order of the first run
+/// of each.
+std::vector<Evidence> evidence_of(const std::vector<ObservedPath>& paths,
+                                  const compiler::CompiledModel& model);
+
+/// Asks a model without a plan how much of what was seen it admits.
+class Admission {
+ public:
+  /// The model, and `stop`, outlive the object.
+  Admission(const compiler::CompiledModel& model, const std::atomic<bool>& stop);
+
+  struct Answer {
+    std::size_t reached = 0;  // the last timepoint up to which it goes
+    bool start = true;        // it can begin like that
+    bool whole = false;
+    /// Of the step at `refuse_at`: the model says that the event cannot happen, and goes on
+    /// without.
+    bool refused = false;
+    bool stopped = false;
+  };
+  /// `refuse_at`: a step whose event the world refused, which the model may forbid.
+  Answer ask(const Evidence& evidence, std::optional<std::size_t> refuse_at = std::nullopt);
+
+  /// The fluents seen at `t` that the model cannot have there, each by itself, after what was seen
+  /// before; all that were seen there where none of them is impossible by itself.
+  Evidence::State impossible(const Evidence& evidence, std::size_t t);
+
+ private:
+  std::optional<std::vector<compiler::Literal>> facts(const Evidence& evidence, std::size_t steps,
+                                                      std::size_t states,
+                                                      std::optional<std::size_t> without);
+  runtime::SolveStatus goes(const Evidence& evidence, std::size_t t,
+                            std::optional<std::size_t> without);
+
+  runtime::SolverSession session_;
+  compiler::AtomIndex index_;
+  std::vector<std::uint32_t> undemanded_, all_;  // slots of events
+};
+
+/// What a simulator says of an action that its world cannot do at all.
+bool says_not_possible(const std::string& reason);
+
+}  // namespace parallax::tools

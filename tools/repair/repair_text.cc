@@ -1,0 +1,155 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+
+#include "compiler/base/json.h"
+#include "tools/repair/repair.h"
+
+namespace parallax::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string patch_of(const Proposal& proposal) {
+  std::error_code error;
+  return unified_diff(proposal.files, std::filesystem::current_path(error).string());
+}
+
+std::string plural(std::size_t count, const std::string& noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string number_of(const std::optional<runtime::TraceNumber>& number) {
+  if (!number) return "an unknown number";
+  return (number->exact ? "" : "at least ") + number->value.get_str();
+}
+
+std::string parting_text(const Parting& parting) {
+  std::vector<std::string> seen;
+  for (const auto& [fluent, holds] : parting.seen) seen.push_back((holds ? "" : "not ") + fluent);
+  constexpr std::size_t kMost = 6;
+  const auto more = seen.size() > kMost ? fmt::format(" and {} more", seen.size() - kMost) : "";
+  if (seen.size() > kMost) seen.resize(kMost);
+  const auto runs = parting.ids.size() == 1
+                        ? "run " + parting.ids.front()
+                        : fmt::format("{} runs, first {}", parting.ids.size(), parting.ids.front());
+  return fmt::format("  {}: {} at {}{}, and at {} the model cannot have: {}{}\n", runs,
+                     parting.step.event, parting.after - 1,
+                     parting.step.failed ? " failed (" + parting.step.reason + ")" : "",
+                     parting.after, fmt::join(seen, ", "), more);
+}
+
+std::string head(const RepairResult& result, const std::string& folder) {
+  auto out = fmt::format("{}: {}, {} of them not as the model says\n", folder,
+                         plural(result.runs, "run"), result.failed);
+  for (const auto& parting : result.partings) out += parting_text(parting);
+  for (const auto& text : result.contradictions) {
+    out += fmt::format(
+        "  {}: chance, or the simulator, or something that the model has no word for\n", text);
+  }
+  return out;
+}
+
+std::string proposal_text(const Proposal& proposal, std::size_t rank, const RepairResult& result) {
+  auto out = fmt::format("\n{}. {}.\n", rank, proposal.words);
+  const auto& verdict = proposal.verdict;
+  out += fmt::format("   Consistent with {} of {}", verdict.runs_consistent,
+                     plural(result.runs, "run"));
+  if (verdict.runs_whole < verdict.runs_consistent) {
+    out += fmt::format(", with {} of them to the end", verdict.runs_whole);
+  }
+  out += fmt::format("; traces lost: {}, gained: {}.\n", number_of(proposal.effects.lost),
+                     number_of(proposal.effects.gained));
+  if (proposal.precaution) {
+    out += "   A precaution: what may fail is taken to fail; in the other runs it went well.\n";
+  }
+  if (verdict.refuses) {
+    out += "   What failed is then impossible: no plan of the model may try it.\n";
+  }
+  if (proposal.effects.reaches == false) {
+    out +=
+        "   No trace reaches the constraints any more: if this is how the world is, the plan is at "
+        "fault.\n";
+  }
+  return out + "\n" + patch_of(proposal);
+}
+
+Json number_json(const std::optional<runtime::TraceNumber>& number) {
+  if (!number) return nullptr;
+  const bool small = number->value <= mpz_class("9007199254740992");
+  return small ? Json(number->value.get_ui()) : Json(number->value.get_str());
+}
+
+}  // namespace
+
+std::string repair_text(const RepairResult& result, const RepairOptions& options) {
+  const auto& folder = options.folder.folder;
+  if (result.runs == 0) return folder + ": no simulation in it came to its end\n";
+  if (result.partings.empty() && !result.remarks.empty()) {
+    return fmt::format("{}: {}, and nothing that an edit of the model could mend:\n  {}\n", folder,
+                       plural(result.runs, "run"), fmt::join(result.remarks, "\n  "));
+  }
+  if (result.partings.empty()) {
+    return fmt::format(
+        "{}: {}, and the model admits all of them: there is nothing to repair.\nMore runs may find "
+        "something: `parallax run` with a smaller --epsilon, or other starts, or another plan.\n",
+        folder, plural(result.runs, "run"));
+  }
+  auto out = head(result, folder);
+  if (result.proposals.empty()) {
+    out += fmt::format("No edit of the grammar explains all runs ({} were considered).\n",
+                       result.edits);
+    if (!result.nearest_miss.empty()) out += "Nearest miss: " + result.nearest_miss + ".\n";
+    return out;
+  }
+  for (std::size_t i = 0; i < result.proposals.size(); ++i) {
+    out += proposal_text(result.proposals[i], i + 1, result);
+  }
+  if (result.more) out += "\nThere are further ones; --limit shows more.\n";
+  return out;
+}
+
+std::string repair_json(const RepairResult& result) {
+  Json out;
+  out["status"] = "ok";
+  out["runs"] = result.runs;
+  out["failed"] = result.failed;
+  out["experiments"] = 0;
+  auto& partings = out["partings"] = Json::array();
+  for (const auto& parting : result.partings) {
+    Json seen = Json::array();
+    for (const auto& [fluent, holds] : parting.seen) {
+      seen.push_back({{"fluent", fluent}, {"observed", holds}});
+    }
+    partings.push_back({{"runs", parting.ids},
+                        {"event", parting.step.event},
+                        {"failed", parting.step.failed},
+                        {"reason", parting.step.reason},
+                        {"timepoint", parting.after},
+                        {"fluents", std::move(seen)}});
+  }
+  out["contradictions"] = result.contradictions;
+  auto& proposals = out["proposals"] = Json::array();
+  for (std::size_t i = 0; i < result.proposals.size(); ++i) {
+    const auto& proposal = result.proposals[i];
+    Json reaches = nullptr;
+    if (proposal.effects.reaches) reaches = *proposal.effects.reaches;
+    proposals.push_back({{"rank", i + 1},
+                         {"words", proposal.words},
+                         {"edits", proposal.size},
+                         {"patch", patch_of(proposal)},
+                         {"precaution", proposal.precaution},
+                         {"runs_consistent", proposal.verdict.runs_consistent},
+                         {"runs_to_the_end", proposal.verdict.runs_whole},
+                         {"runs", result.runs},
+                         {"traces_lost", number_json(proposal.effects.lost)},
+                         {"traces_gained", number_json(proposal.effects.gained)},
+                         {"reaches_constraints", std::move(reaches)}});
+  }
+  out["more"] = result.more;
+  if (!result.nearest_miss.empty()) out["nearest_miss"] = result.nearest_miss;
+  return base::json_text(out);
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,81 @@
+#include "tools/repair/verification.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runtime/enumerate/plan_enumerator.h"
+#include "runtime/session/solver_session.h"
+
+namespace parallax::tools {
+
+Verdict verify(const std::string& text, const std::vector<Evidence>& evidence,
+               const Context& context) {
+  std::size_t horizon = 1;
+  for (const auto& seen : evidence) horizon = std::max(horizon, seen.steps.size());
+  Verdict out;
+  std::string wrong;
+  const auto model = compile_text(text, static_cast<std::int64_t>(horizon), context, wrong);
+  if (!model) {
+    out.why = "no right model: " + wrong;
+    return out;
+  }
+  Admission admission(*model, context.stop());
+  for (const auto& seen : evidence) {
+    const auto needed = seen.needed();
+    std::optional<std::size_t> refuse_at;
+    if (seen.divergence && !seen.until && needed > 0 && seen.steps[needed - 1].failed)
+      refuse_at = needed - 1;
+    const auto answer = admission.ask(seen, refuse_at);
+    if (answer.stopped || !answer.start || answer.reached < needed) {
+      out.why = answer.stopped ? "stopped"
+                               : fmt::format("run {} at {}", seen.ids.front(), answer.reached + 1);
+      return out;
+    }
+    if (answer.whole) out.runs_whole += seen.runs();
+    if (answer.reached >= seen.seen_to()) out.runs_consistent += seen.runs();
+    out.refuses = out.refuses || answer.refused;
+  }
+  out.admits = true;
+  return out;
+}
+
+TraceComparer::TraceComparer(const ScenarioModel& loaded, const std::string& text, Context& context)
+    : loaded_(loaded), context_(context), original_(compile(text, false)) {}
+
+std::optional<compiler::Compilation> TraceComparer::compile(const std::string& text,
+                                                            bool constraints) {
+  // The scenario's texts are those of the context; what is said of an edited model is not reported.
+  const auto before = context_.sink();
+  auto compiled =
+      compile_with_model(loaded_.scenario, text, loaded_.scenario.execution, constraints, context_);
+  context_.sink() = before;
+  if (!compiled) return std::nullopt;
+  return *std::move(compiled);
+}
+
+TraceEffects TraceComparer::compare(const std::string& edited) {
+  TraceEffects out;
+  const auto other = compile(edited, false);
+  if (!original_ || !other || context_.stopped()) return out;
+  runtime::DifferenceOptions options;
+  options.stop = &context_.stop();
+  const auto difference = runtime::compare_traces(original_->model, other->model, options);
+  const auto number = [](const runtime::OneSided& side) -> std::optional<runtime::TraceNumber> {
+    if (side.answer == runtime::Answer::kUnknown) return std::nullopt;
+    return side.count;
+  };
+  out.lost = number(difference.lost);
+  out.gained = number(difference.gained);
+  const bool closed = loaded_.scenario.execution == harness::Execution::kClosedLoop;
+  if (loaded_.scenario.constraints.empty() || closed) return out;
+  const auto aimed = compile(edited, true);
+  if (!aimed) return out;
+  runtime::SolverSession session(aimed->model, runtime::make_cadical_solver(&context_.stop()));
+  runtime::PlanEnumerator traces(session);
+  out.reaches = traces.next().has_value();
+  if (!*out.reaches && context_.stopped()) out.reaches.reset();
+  return out;
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/compare/trace_difference.h"
+#include "tools/app/scenario_model.h"
+#include "tools/repair/domain_model.h"
+#include "tools/repair/evidence.h"
+
+namespace parallax::tools {
+
+/// How an edited model stands to what was seen, found out with the edited text alone.
+struct Verdict {
+  bool admits = false;              // every run as far as it is needed
+  std::string why;                  // it does not: "no right model: ...", "run 1.4 at 3"
+  std::size_t runs_whole = 0;       // runs that it admits to their end
+  std::size_t runs_consistent = 0;  // to their end, or to where they left the model
+  bool refuses = false;             // of a failed run it says that the event cannot happen
+};
+/// `text` is the edited model. Compiles it, and asks a solver about each way that runs went.
+Verdict verify(const std::string& text, const std::vector<Evidence>& evidence,
+               const Context& context);
+
+/// What an edit does to the traces of the scenario: its model with its plan, up to its horizon.
+struct TraceEffects {
+  std::optional<runtime::TraceNumber> lost, gained;  // none: not known
+  /// A trace reaches the state constraints; none: it is not known, or nothing asks for it.
+  std::optional<bool> reaches;
+};
+
+/// Compares models with the one of the scenario.
+class TraceComparer {
+ public:
+  /// `loaded`, of which the scenario is used, `context` and `text`, its model, outlive it.
+  TraceComparer(const ScenarioModel& loaded, const std::string& text, Context& context);
+  TraceEffects compare(const std::string& edited);
+
+ private:
+  std::optional<compiler::Compilation> compile(const std::string& text, bool constraints);
+
+  const ScenarioModel& loaded_;
+  Context& context_;
+  std::optional<compiler::Compilation> original_;
+};
+
+}  // namespace parallax::tools
