@@ -56,6 +56,15 @@ Eigen::Vector3d median(std::vector<Eigen::Vector3d> points) {
   return result;
 }
 
+/// Is the point, in the body's frame, in the matter of the body?
+bool is_solid_at(const BodySpec& body, const Eigen::Vector3d& p_B) {
+  return std::any_of(body.shapes.begin(), body.shapes.end(), [&](const BoxShape& shape) {
+    const Eigen::AngleAxisd back(-shape.yaw_rad, Eigen::Vector3d::UnitZ());
+    const Eigen::Vector3d p_S = back * (p_B - shape.p_BS);
+    return (p_S.array().abs() <= 0.5 * shape.size_m.array()).all();
+  });
+}
+
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
@@ -118,14 +127,18 @@ std::optional<Gaze> Perception::line_of_sight() const {
   return Gaze{robot_.camera(), place_in_world(gaze_)};
 }
 
-Eigen::Vector3d Perception::middle_of_chord(const Eigen::Vector3d& from, const Eigen::Vector3d& aim,
+Eigen::Vector3d Perception::middle_of_chord(const Eigen::Vector3d& from, const Eigen::Vector3d& p_B,
                                             BodyId id) const {
-  const Bounds box = own_bounds(world_.layout().bodies[id]);
+  const BodySpec& body = world_.layout().bodies[id];
+  const Bounds box = own_bounds(body);
+  const Eigen::Vector3d aim = from + (world_.position(id) + world_.rotation(id) * p_B - from);
+  // Near wall and bottom, which a ray at the hollow of a bowl meets, do not lie about its middle.
+  if (!is_solid_at(body, p_B)) return aim;
   const Eigen::Vector3d direction = (aim - from).normalized();
   const Eigen::Vector3d beyond = aim + (box.high - box.low).norm() * direction;
   const auto front_m = world_.ray_meets(from, beyond, id);
   const auto back_m = world_.ray_meets(beyond, from, id);
-  if (!front_m || !back_m) return aim;  // a ray through a hollow
+  if (!front_m || !back_m) return aim;  // the ray grazes an edge
   return 0.5 * (from + *front_m * direction + beyond - *back_m * direction);
 }
 
@@ -149,7 +162,7 @@ Sighting Perception::sight(BodyId id, int points) const {
       sighting.hidden_by = hit->body;
       continue;
     }
-    estimates.push_back(middle_of_chord(p_WC, p_WC + way, id) - R_WB * point);
+    estimates.push_back(middle_of_chord(p_WC, point, id) - R_WB * point);
   }
   sighting.seen = static_cast<int>(estimates.size());
   if (!estimates.empty()) sighting.p_W = median(std::move(estimates));

@@ -36,9 +36,9 @@ struct Gaze {
 };
 
 /// A camera that sees points of bodies by casting rays, and what was made of it. An estimate is the
-/// median of the middles of the stretches that the rays have inside the body: how a body of known
-/// shape is found, with an error that depends on the view. What is believed of it is off by the
-/// camera's errors of detection besides.
+/// median of the middles of the stretches that the rays have inside the body (of the points
+/// themselves where they lie in its hollow): how a body of known shape is found, with an error that
+/// depends on the view. What is believed of it is off by the camera's errors of detection besides.
 class Perception {
  public:
   Perception(const OdeWorld& world, const MobileRobot& robot);
@@ -76,8 +76,9 @@ class Perception {
  private:
   /// Is the place that was looked at in the cone of the neck as it was left?
   bool is_on_target() const;
-  /// Half way between where a ray at `aim` enters a body and where it leaves it.
-  Eigen::Vector3d middle_of_chord(const Eigen::Vector3d& from, const Eigen::Vector3d& aim,
+  /// Half way between where a ray at a point of the body enters it and where it leaves it; for a
+  /// point in its hollow, that point. `p_B` is in the body's frame.
+  Eigen::Vector3d middle_of_chord(const Eigen::Vector3d& from, const Eigen::Vector3d& p_B,
                                   BodyId id) const;
   /// What is believed of `id` where `like` was seen.
   void store(BodyId id, BodyId like, const Eigen::Vector3d& p_W, double yaw_rad,

@@ -1,7 +1,7 @@
 ; A kitchen: a counter with three cells beside a stack of three drawers, a table with four cells, a
-; robot with two arms. Everything but the three sentences about driving, which `domain.e` and
-; `domain_modified.e` add in two versions. A commanded action always happens; where its condition
-; does not hold it changes nothing.
+; robot with two arms. Everything but what is visible and the three sentences about driving, which
+; `domain.e` and `domain_modified.e` add in two versions. A commanded action always happens; where
+; its condition does not hold it changes nothing.
 
 sort item
 sort itype
@@ -89,14 +89,14 @@ event OpenGripper(arm)
   HoldsAt(Accessible(drawer),time) <->
     HoldsAt(DrawerOpen(drawer),time) & !HoldsAt(Obstructed(drawer),time).
 [place,time] !({drawer} place=drawer) -> HoldsAt(Accessible(place),time).
-[item,time]
-  HoldsAt(Visible(item),time) <->
-    ({base,place}
-     HoldsAt(RobotAt(base),time) &
-     HoldsAt(ItemAt(item,place),time) &
-     Serves(base,place) &
-     HoldsAt(Accessible(place),time) &
-     HoldsAt(LookingAt(place),time)).
+; What is visible is said twice:
+;  - in `domain.e` what lies where the camera looks;
+;  - in `domain_modified.e` that, and perhaps what lies on the next cell of the counter, which the
+;    cone of the camera takes in as well.
+; Either way it lies at a place that the robot's base serves and that no drawer above hides, so that
+; nothing is visible from elsewhere, and nothing in a closed drawer.
+;
+; Within reach is what lies at such a place, wherever the camera looks.
 [item,time]
   HoldsAt(Reachable(item),time) <->
     ({base,place}

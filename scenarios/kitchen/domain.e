@@ -12,3 +12,13 @@ load common.e
 [base,place,time]
   HoldsAt(Parked(left),time) & HoldsAt(Parked(right),time) & !HoldsAt(RobotAt(base),time) ->
     Terminates(Go(base),LookingAt(place),time).
+
+; The camera sees what is where it looks.
+[item,time]
+  HoldsAt(Visible(item),time) <->
+    ({base,place}
+     HoldsAt(RobotAt(base),time) &
+     HoldsAt(ItemAt(item,place),time) &
+     Serves(base,place) &
+     HoldsAt(Accessible(place),time) &
+     HoldsAt(LookingAt(place),time)).

@@ -7,7 +7,30 @@ fluent PathClear(base)
 fluent Secured(arm)
 noninertial PathClear
 
+predicate Beside(place,place)
+
 event Regrip(arm)
+
+; The camera sees what is where it looks, and may see what is on the next cell of the counter.
+[item,place,time]
+  HoldsAt(LookingAt(place),time) &
+  HoldsAt(ItemAt(item,place),time) &
+  HoldsAt(Accessible(place),time) &
+  ({base} HoldsAt(RobotAt(base),time) & Serves(base,place)) ->
+    HoldsAt(Visible(item),time).
+[item,time]
+  HoldsAt(Visible(item),time) ->
+    ({base,place1,place2}
+     HoldsAt(RobotAt(base),time) &
+     HoldsAt(ItemAt(item,place1),time) &
+     Serves(base,place1) &
+     HoldsAt(Accessible(place1),time) &
+     HoldsAt(LookingAt(place2),time) &
+     (place1=place2 | Beside(place1,place2))).
+[place1,place2]
+  Beside(place1,place2) <->
+    place1=pw1 & place2=pw2 | place1=pw2 & place2=pw1 | place1=pw2 & place2=pw3 |
+    place1=pw3 & place2=pw2.
 
 [base,time] HoldsAt(PathClear(base),time) <-> !({drawer} HoldsAt(DrawerOpen(drawer),time)).
 

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "tests/harness/world/hand_made.h"
 
@@ -62,6 +63,28 @@ TEST_CASE("a body in the cone is seen, and located to a few millimetres") {
     CHECK(sighting.seen == 9);
     CHECK(sighting.hidden_by.empty());
     CHECK((sighting.p_W - kMilk_W).norm() < 0.01);
+  }
+}
+
+TEST_CASE("a hollow body is located without a bias away from the camera") {
+  WorldSpec spec = room();
+  auto& bowl = spec.bodies.back();
+  // A tray: a floor and four walls, its origin in the middle of its bounding box.
+  bowl.shapes = {{{0.14, 0.14, 0.005}, {0.0, 0.0, -0.03}, 0.0},
+                 {{0.005, 0.14, 0.065}, {0.0675, 0.0, 0.0}, 0.0},
+                 {{0.005, 0.14, 0.065}, {-0.0675, 0.0, 0.0}, 0.0},
+                 {{0.14, 0.005, 0.065}, {0.0, 0.0675, 0.0}, 0.0},
+                 {{0.14, 0.005, 0.065}, {0.0, -0.0675, 0.0}, 0.0}};
+  Observer observer(spec);
+  const std::vector<Eigen::Vector3d> places = {{0.7, 0.0, 0.5}, {0.8, 0.1, 0.4}};
+  for (const Eigen::Vector3d& p_W : places) {
+    for (const double yaw_rad : {0.0, 0.6}) {
+      observer.put("milk", p_W, yaw_rad);
+      REQUIRE_FALSE(observer.perception.look_at({"it", "", p_W, 0.0}).has_value());
+      const Sighting sighting = observer.sight();
+      CHECK(sighting.seen == 9);
+      CHECK((sighting.p_W - p_W).norm() < 0.005);
+    }
   }
 }
 
