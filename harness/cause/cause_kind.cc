@@ -9,7 +9,7 @@
 namespace parallax::harness {
 namespace {
 
-/// So many runs of one kind and none of the other are taken for all, so many of each for chance.
+/// So many runs of one kind and none of the other are taken for all.
 constexpr std::int64_t kEnough = 5;
 
 std::int64_t contradictory_starts(const std::vector<CauseRun>& runs) {
@@ -57,8 +57,6 @@ CauseFinding tell_cause(const std::vector<CauseRun>& runs, bool is_model) {
     out.kind = CauseKind::kRegion;
   } else if (out.contradictory_starts > 0) {
     out.kind = is_model ? CauseKind::kRandom : CauseKind::kSimulator;
-  } else if (out.failures >= kEnough && clean >= kEnough) {
-    out.kind = CauseKind::kRandom;
   }
   return out;
 }
@@ -97,14 +95,8 @@ std::string cause_words(const CauseFinding& finding, const std::vector<std::stri
                        rule.accuracy);
     }
     case CauseKind::kRandom:
-      if (finding.contradictory_starts > 0) {
-        return out + fmt::format("It happened in {} of {}: the outcome is open.", finding.failures,
-                                 runs_text(finding.runs));
-      }
-      return out + fmt::format(
-                       "It happens at random, in {} of {}, and no border of one or two "
-                       "start parameters tells in which: the outcome is open.",
-                       finding.failures, runs_text(finding.runs));
+      return out + fmt::format("It happened in {} of {}: the outcome is open.", finding.failures,
+                               runs_text(finding.runs));
     case CauseKind::kSimulator:
       return out + fmt::format(
                        "It happens in {} of {}, with some seeds of the simulator and not "
@@ -112,6 +104,14 @@ std::string cause_words(const CauseFinding& finding, const std::vector<std::stri
                        finding.failures, runs_text(finding.runs));
     case CauseKind::kUnknown:
       break;
+  }
+  const auto clean = finding.runs - finding.failures;
+  if (finding.failures >= kEnough && clean >= kEnough) {
+    return out + fmt::format(
+                     "It happened in {} of {} of this trace, and no border of one or two "
+                     "start parameters tells in which: it takes more of them, or more runs, "
+                     "or it is chance.",
+                     finding.failures, runs_text(finding.runs));
   }
   return out + fmt::format(
                    "It happened in {} of {} of this trace, too few to tell whether always, "

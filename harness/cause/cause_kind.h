@@ -12,11 +12,11 @@ namespace parallax::harness {
 
 /// What kind of thing makes simulations of one trace fail in one way.
 enum class CauseKind : std::uint8_t {
-  kUnknown,    // too few runs to tell
+  kUnknown,    // the runs do not tell
   kAlways,     // every run fails: an axiom is wrong
   kRegion,     // runs fail in a part of the start region
-  kRandom,     // the outcome is open
-  kSimulator,  // one and the same start ends so and so, by the simulator's seed alone
+  kRandom,     // from one and the same start runs fail or do not: the outcome is open
+  kSimulator,  // the same where the world is a simulator: its seed alone decides
 };
 /// "unknown", "always", "region", "random", "simulator"
 std::string_view to_string(CauseKind kind);

@@ -33,8 +33,11 @@ class PartingSearch {
         axioms_(runtime::group_axioms(model)),
         all_(axioms_.size()) {
     std::iota(all_.begin(), all_.end(), 0U);
-    std::copy_if(all_.begin(), all_.end(), std::back_inserter(direct_),
-                 [&](auto group) { return !has_origin(group, OriginKind::kFrameAxiom); });
+    for (const auto group : all_) {
+      const bool of_plan = has_origin(group, OriginKind::kPlanStep);
+      if (of_plan) of_plan_.push_back(group);
+      if (!of_plan && !has_origin(group, OriginKind::kFrameAxiom)) direct_.push_back(group);
+    }
     parting_.after = after;
     auto& observed = parting_.observed;
     observed.length = static_cast<compiler::Timepoint>(after);
@@ -120,13 +123,6 @@ class PartingSearch {
     return std::any_of(origins.begin(), origins.end(),
                        [&](std::uint32_t origin) { return model_.origins[origin].kind == kind; });
   }
-  /// The success of a perform is said by the plan.
-  IndexSet without_inertia() const {
-    IndexSet out;
-    std::copy_if(all_.begin(), all_.end(), std::back_inserter(out),
-                 [&](auto group) { return !has_origin(group, OriginKind::kFrameAxiom); });
-    return out;
-  }
   SolveStatus solve(const IndexSet& groups) {
     const auto status = solver_->solve(groups);
     stopped_ = stopped_ || status == SolveStatus::kUnknown;
@@ -173,10 +169,11 @@ class PartingSearch {
       if (!contradicts(seen)) return Parting::Kind::kNoState;
       kind = Parting::Kind::kOutcome;
     }
-    // What was seen is told rather than what inertia makes of the state before.
-    auto with_outcome = kind == Parting::Kind::kTogether ? direct_ : without_inertia();
-    with_outcome.insert(with_outcome.end(), seen.begin(), seen.end());
-    if (solve(with_outcome) != SolveStatus::kUnsatisfiable) contradicts(seen);
+    // What was seen is told rather than what follows from the state before. How a perform ended is
+    // for the plan to say, by what was seen.
+    auto few = kind == Parting::Kind::kTogether ? direct_ : of_plan_;
+    few.insert(few.end(), seen.begin(), seen.end());
+    if (solve(few) != SolveStatus::kUnsatisfiable) contradicts(seen);
     auto core = solver_->core();
     stopped_ = !runtime::shrink(*solver_, core) || stopped_;
     for (std::size_t i = 0; i < stated_.size(); ++i) {
@@ -257,7 +254,7 @@ class PartingSearch {
   const ObservedPath& path_;
   PathFacts facts_;
   runtime::AxiomGroups axioms_;
-  IndexSet all_, direct_;  // direct_: without inertia and what the plan does
+  IndexSet all_, of_plan_, direct_;  // direct_: neither inertia nor of the plan
   std::vector<Stated> stated_;
   std::vector<Literal> outcome_;
   std::optional<runtime::GroupSolver> solver_;

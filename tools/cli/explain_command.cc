@@ -115,20 +115,28 @@ base::Result<std::vector<harness::SampleRecord>> make_further_runs(const Explain
 base::Result<CauseEvidence> with_further_runs(const ExplainOptions& options,
                                               const RecordedDiscrepancy& found,
                                               CauseEvidence evidence, Invocation& invocation) {
-  const auto& finding = evidence.finding;
-  if (is_enough(options.further, finding.failures, finding.runs - finding.failures) ||
-      finding.contradictory_starts > 0 || invocation.stopped()) {
-    return evidence;
+  const auto& on_record = evidence.finding;
+  const bool tells =
+      on_record.kind != harness::CauseKind::kUnknown &&
+      is_enough(options.further, on_record.failures, on_record.runs - on_record.failures);
+  if (tells || on_record.contradictory_starts > 0 || invocation.stopped()) return evidence;
+  // Twice as many again, for as long as they do not tell.
+  for (auto asked = options; true; asked.further.enough *= 2) {
+    std::string not_made;
+    const auto further = make_further_runs(asked, found, not_made, invocation);
+    if (!further) return invocation.sink().already_reported();
+    const auto known = evidence.further;
+    if (invocation.stopped()) {
+      not_made = "stopped before there were enough";
+    } else if (!further->empty()) {
+      auto more = gather_evidence(found, *further, invocation);
+      if (!more) return more;
+      evidence = *std::move(more);
+    }
+    evidence.not_made = not_made;
+    const bool is_known = evidence.finding.kind != harness::CauseKind::kUnknown;
+    if (is_known || evidence.further == known || invocation.stopped()) return evidence;
   }
-  std::string not_made;
-  const auto further = make_further_runs(options, found, not_made, invocation);
-  if (!further) return invocation.sink().already_reported();
-  evidence.not_made = not_made;
-  if (invocation.stopped()) {
-    evidence.not_made = "stopped before there were enough";
-    return evidence;
-  }
-  return further->empty() ? evidence : gather_evidence(found, *further, invocation);
 }
 
 /// Why the model excludes what was seen: in words first, then the sets, then the kind of cause.
