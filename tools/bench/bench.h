@@ -77,6 +77,7 @@ void measure_proofs(Bench& bench);
 void measure_plan(Bench& bench);
 void measure_plan_folder(Bench& bench);
 void measure_world(Bench& bench);
+void measure_loop(Bench& bench);
 void measure_demo(Bench& bench);
 void measure_monitor(Bench& bench);
 void measure_starts(Bench& bench);

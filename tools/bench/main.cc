@@ -26,6 +26,7 @@ const std::vector<Section>& sections() {
       {"plan", "a long plan in the kitchen", measure_plan},
       {"plan-folder", "a folder of plans of 3,000 lines", measure_plan_folder},
       {"world", "the two-region world", measure_world},
+      {"loop", "a plan of the kitchen executed, beside its actions alone", measure_loop},
       {"monitor", "a log of the kitchen held against its model", measure_monitor},
       {"starts", "executions until a plan is covered, uniform and guided", measure_starts},
       {"demo", "the demo", measure_demo},
