@@ -33,7 +33,7 @@ struct Proposal {
 };
 
 /// Where runs and model parted.
-struct Parting {
+struct RunParting {
   std::vector<std::string> ids;  // of the runs
   std::size_t after = 0;         // timepoint
   Evidence::Step step;           // in front of it
@@ -42,7 +42,7 @@ struct Parting {
 
 struct RepairResult {
   std::size_t runs = 0, failed = 0;  // read from the folder; those that the model cannot follow
-  std::vector<Parting> partings;
+  std::vector<RunParting> partings;
   /// Runs that went the same way up to a step and then differently: chance, or the simulator.
   std::vector<std::string> contradictions;
   std::vector<Proposal> proposals;  // best first

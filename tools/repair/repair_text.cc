@@ -25,7 +25,7 @@ std::string number_of(const std::optional<runtime::TraceNumber>& number) {
   return (number->exact ? "" : "at least ") + number->value.get_str();
 }
 
-std::string parting_text(const Parting& parting) {
+std::string parting_text(const RunParting& parting) {
   std::vector<std::string> seen;
   for (const auto& [fluent, holds] : parting.seen) seen.push_back((holds ? "" : "not ") + fluent);
   constexpr std::size_t kMost = 6;
