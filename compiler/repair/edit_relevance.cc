@@ -114,6 +114,9 @@ bool EditRelevance::covers(const std::string& kind, const std::string& event,
 int EditRelevance::oddity(const ConditionLiteral& literal, const std::string& event) const {
   int out = static_cast<int>(2 * literal.count(LiteralArgument::Kind::kConstant) +
                              literal.count(LiteralArgument::Kind::kSome));
+  // Two variables of one sort are as a rule to be told apart.
+  const bool tells_apart = literal.kind == ConditionLiteral::Kind::kEqual && literal.negated;
+  if (tells_apart && literal.count(LiteralArgument::Kind::kVariable) == 2) --out;
   // A condition is about what the event is about.
   if (!literal.arguments.empty() && literal.count(LiteralArgument::Kind::kVariable) == 0) ++out;
   const auto wanted = (literal.negated ? "!" : "") + literal.symbol;

@@ -215,12 +215,14 @@ class RepairSearch {
           compiler::edits_in_scope(domain_.ast, *domain_.typed, domain_.forms, scope(mode));
       if (mode == Mode::kWide) keep_few(known->edits);
       result_.edits = std::max(result_.edits, known->edits.size());
-      const auto guarded =
-          compiler::guarded_text(domain_.ast, domain_.files, domain_.forms, known->edits);
       std::size_t horizon = 1;
       for (const auto& seen : evidence) horizon = std::max(horizon, seen.needed());
       std::string why;
-      known->model = compile_text(guarded, static_cast<std::int64_t>(horizon), context_, why);
+      do {
+        const auto guarded =
+            compiler::guarded_text(domain_.ast, domain_.files, domain_.forms, known->edits);
+        known->model = compile_text(guarded, static_cast<std::int64_t>(horizon), context_, why);
+      } while (!known->model && !context_.stopped() && fewer(known->edits));
       if (known->model) {
         known->evidence = ways(evidence);
         known->search = std::make_unique<EditSearch>(*known->model, known->edits, known->evidence,
@@ -231,6 +233,21 @@ class RepairSearch {
     }
     if (!known->search) return false;
     return take(*known, known->search->find(size, kMostSets), evidence, mode, whole);
+  }
+
+  /// Of a model that is too large with all edits: without conditions of new effects, then the less
+  /// odd half. False: there are few.
+  static bool fewer(std::vector<Edit>& edits) {
+    constexpr std::size_t kFew = 50;
+    if (edits.size() <= kFew) return false;
+    const auto before = edits.size();
+    // What is left refers to no other edit, so that it may be put in order.
+    std::erase_if(edits, [](const Edit& edit) { return edit.kind == Edit::Kind::kAddCondition; });
+    if (edits.size() < before) return true;
+    std::stable_sort(edits.begin(), edits.end(),
+                     [](const Edit& a, const Edit& b) { return a.oddity < b.oddity; });
+    edits.resize(before / 2);
+    return true;
   }
 
   static std::vector<Evidence> ways(std::vector<Evidence> evidence) {
