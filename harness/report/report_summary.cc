@@ -259,9 +259,8 @@ class Summary {
     if (!result_.discrepancies.empty()) {
       const auto& found = result_.discrepancies.front();
       commands.push_back(replay_command(result_.replay_folder, found));
-      if (result_.execution == Execution::kOpenLoop) {
-        commands.push_back(fmt::format("parallax explain {}", folder));
-      }
+      commands.push_back(fmt::format("parallax explain {}", folder));
+      commands.push_back(fmt::format("parallax repair {}", folder));
     } else if (result_.interrupted && !result_.failed) {
       commands.push_back(
           fmt::format("parallax run {} --resume --out {}", shell_word(result_.scenario), folder));
