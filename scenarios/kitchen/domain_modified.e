@@ -29,7 +29,9 @@ event Regrip(arm)
      (place1=place2 | Beside(place1,place2))).
 [place1,place2]
   Beside(place1,place2) <->
-    place1=pw1 & place2=pw2 | place1=pw2 & place2=pw1 | place1=pw2 & place2=pw3 |
+    place1=pw1 & place2=pw2 |
+    place1=pw2 & place2=pw1 |
+    place1=pw2 & place2=pw3 |
     place1=pw3 & place2=pw2.
 
 [base,time] HoldsAt(PathClear(base),time) <-> !({drawer} HoldsAt(DrawerOpen(drawer),time)).
