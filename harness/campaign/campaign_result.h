@@ -123,6 +123,13 @@ struct TraceResult {
   std::vector<std::string> caveats;      // what weakens the claim, one sentence each
 };
 
+/// How much of one kind of thing in plan or model the simulations went through.
+struct CoverageShare {
+  std::string group;  // "performs", "branches", "axioms", ...
+  std::int64_t covered = 0;
+  std::int64_t all = 0;
+};
+
 /// Everything a report needs. Only `timing` depends on the clock.
 struct CampaignResult {
   std::string scenario;  // as the user wrote it
@@ -143,6 +150,7 @@ struct CampaignResult {
   std::string replay_folder;  // run folder as the user wrote it
   std::vector<TraceResult> traces;
   std::vector<Discrepancy> discrepancies;
+  std::vector<CoverageShare> coverage;  // of what there is; none: it was not looked at
   std::int64_t simulations = 0;
   struct Timing {
     double wall_s = 0.0;

@@ -217,6 +217,11 @@ Json json_of(const CampaignResult& result, bool with_timing) {
   for (const auto& found : result.discrepancies) {
     out["discrepancies"].push_back(json_of(result, found));
   }
+  if (!result.coverage.empty()) {
+    for (const auto& share : result.coverage) {
+      out["coverage"][share.group] = {{"covered", share.covered}, {"all", share.all}};
+    }
+  }
   out["exploration"] = result.exploration;
   if (!result.bounds.empty()) out["bounds"] = result.bounds;
   out["interrupted"] = result.interrupted;

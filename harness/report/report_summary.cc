@@ -249,6 +249,7 @@ class Summary {
                                                                  : "compared at every step");
     line("made", text);
     line("criterion", criterion_text(result_.criterion));
+    if (!result_.coverage.empty()) line("covered", coverage_shares_text(result_));
   }
 
   /// Not wrapped: commands are to be copied.

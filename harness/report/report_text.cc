@@ -372,6 +372,11 @@ class TextReport {
     }
     for (const auto& bound : result_.bounds) line("bound", bound);
     line("simulations", fmt::format("{}", result_.simulations));
+    if (!result_.coverage.empty()) {
+      line("covered",
+           fmt::format("{}; `parallax coverage {}` names the rest", coverage_shares_text(result_),
+                       shell_word(result_.replay_folder)));
+    }
     if (result_.traces.empty() && !result_.interrupted) {
       line("note", "no trace, so nothing was compared");
     }

@@ -72,6 +72,15 @@ std::string exploration_text(const CampaignResult& result) {
   return result.exploration == "stopped" ? "stopped before all were explored" : result.exploration;
 }
 
+std::string coverage_shares_text(const CampaignResult& result) {
+  std::string out;
+  for (const auto& share : result.coverage) {
+    if (!out.empty()) out += ", ";
+    out += fmt::format("{} of {} {}", share.covered, share.all, share.group);
+  }
+  return out;
+}
+
 std::string event_at(const CampaignTrace& trace, std::size_t t) {
   const auto& source = trace.plan[t].source;
   return trace.event(t) + (source.empty() ? "" : fmt::format(" ({})", source));

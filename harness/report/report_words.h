@@ -26,6 +26,8 @@ std::string end_of(PathEnd end, const std::string& detail);
 std::string confirmation(const Discrepancy& found);
 /// "stopped before all were explored"
 std::string exploration_text(const CampaignResult& result);
+/// "4 of 4 performs, 5 of 8 branches"; empty if it was not looked at.
+std::string coverage_shares_text(const CampaignResult& result);
 /// "Go(r2) (fetch.lisp:4)"
 std::string event_at(const CampaignTrace& trace, std::size_t t);
 

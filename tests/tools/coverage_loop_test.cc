@@ -12,6 +12,7 @@
 #include <string>
 
 #include "tests/tools/cli_json.h"
+#include "tests/tools/coverage_shares.h"
 #include "tests/tools/two_models.h"
 
 namespace parallax::test {
@@ -95,6 +96,7 @@ TEST_CASE("coverage of executions: each item as often as the paths of the report
   REQUIRE(all >= 90);
   CHECK(coverage.at("simulations") == all);
   CHECK(coverage.at("executions") == all);
+  CHECK(report.at("coverage") == shares_of(coverage));
   const auto failures = [](const Words& outcomes) {
     return std::count_if(outcomes.begin(), outcomes.end(),
                          [](const auto& outcome) { return outcome != "ok"; });

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "tests/tools/cli_json.h"
+#include "tests/tools/coverage_shares.h"
 #include "tests/tools/two_models.h"
 
 namespace parallax::test {
@@ -133,6 +134,21 @@ std::map<std::string, LcovFile> read_lcov(const std::string& text) {
   return files;
 }
 
+TEST_CASE("a run's report says how much of plan and model its simulations went through") {
+  const CoveredRun cli;
+  // It ends at the first trace, in which the drawer sticks twice.
+  const auto report = json_of(cli, {"run", "two/cover.yaml", "--out", "out"}, 1);
+  const auto coverage = json_of(cli, {"coverage", "out"});
+  CHECK(report.at("coverage") == shares_of(coverage));
+  CHECK(report.at("coverage").at("performs") == Json({{"covered", 2}, {"all", 3}}));
+  CHECK(report.at("coverage").at("branches") == Json({{"covered", 3}, {"all", 8}}));
+  CHECK(Json::parse(cli.read("out/report.json")).at("coverage") == report.at("coverage"));
+  CHECK(cli.read("out/report.txt").find("  covered      2 of 3 performs, 3 of 8 branches, ") !=
+        std::string::npos);
+  const auto again = json_of(cli, {"run", "two/cover.yaml", "--out", "out", "--resume"}, 1);
+  CHECK(again.at("coverage") == report.at("coverage"));
+}
+
 TEST_CASE("coverage of all traces: each item with the simulations and traces that go through it") {
   const CoveredRun cli;
   // Open, open, park (sticks twice); open, close, park; open, open, close, park.
@@ -149,6 +165,7 @@ TEST_CASE("coverage of all traces: each item with the simulations and traces tha
   CHECK(coverage.at("status") == "ok");
   CHECK(coverage.at("simulations") == all);
   CHECK(coverage.at("all_traces") == true);
+  CHECK(report.at("coverage") == shares_of(coverage));
   const std::string plan = "two/cover.lisp:", model = "two/cover.e:", domain = "two/domain.e:";
   CHECK(counts_of(coverage.at("performs")) == Counts{{plan + "8 OpenDrawer", {all, 3}},
                                                      {plan + "10 CloseDrawer", {b + c, 2}},

@@ -9,6 +9,7 @@
 #include "harness/campaign/campaign.h"
 #include "harness/report/report.h"
 #include "tools/app/closed_loop.h"
+#include "tools/app/run_coverage.h"
 #include "tools/app/scenario_check.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_feed.h"
@@ -194,11 +195,12 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
     if (!base::check_output(campaign.run_dir / name, invocation.files(), sink)) return 0;
   }
   const bool closed = loaded->scenario.execution == Execution::kClosedLoop;
-  const auto ran = closed ? run_closed(options, *loaded, *simulator, campaign, invocation)
-                          : run_open(options, *loaded, *simulator, campaign, invocation);
-  const auto& result = ran.result;
+  auto ran = closed ? run_closed(options, *loaded, *simulator, campaign, invocation)
+                    : run_open(options, *loaded, *simulator, campaign, invocation);
+  auto& result = ran.result;
   if (campaign.progress) write_error("\r\x1b[K");
   if (!result) return 0;
+  result->coverage = coverage_of_run(*loaded, *result, invocation);
   if (result->journal_open && !harness::write_report(*result, campaign.run_dir, sink)) return 0;
   if (invocation.options().json) {
     invocation.document(harness::campaign_json(*result, true));
