@@ -15,6 +15,7 @@
 #include "compiler/repair/edit_text.h"
 #include "compiler/repair/guarded_model.h"
 #include "harness/campaign/journal.h"
+#include "tools/app/evidence.h"
 #include "tools/repair/edit_search.h"
 
 namespace parallax::tools {
@@ -379,6 +380,34 @@ class RepairSearch {
   RepairResult result_;
 };
 
+/// What `explain` made of the same scenario to tell the kind of cause: runs like the others. Adds
+/// those that `paths` has not.
+base::Status add_further_paths(const RepairOptions& options, const ScenarioModel& loaded,
+                               const harness::JournalHeader& header,
+                               std::vector<ObservedPath>& paths, Context& context) {
+  const auto folder = fs::path(options.folder.folder) / kFurtherRuns;
+  std::error_code error;
+  if (!fs::exists(folder / "journal.ndjson", error)) return base::Unit{};
+  const auto journal = harness::read_journal(folder, context.files(), context.sink());
+  if (!journal) return context.sink().already_reported();
+  if (!journal->header || journal->header->scenario_hash != header.scenario_hash ||
+      journal->header->seed != header.seed) {
+    context.remark(fmt::format("{}: runs of something else, left out", folder.string()));
+    return base::Unit{};
+  }
+  auto further = observed_paths(loaded, *journal, context);
+  if (!further) return context.sink().already_reported();
+  const auto known = paths.size();
+  for (auto& path : *further) {
+    const auto same = [&](const ObservedPath& other) {
+      return other.id.trace == path.id.trace && other.id.sample == path.id.sample;
+    };
+    const auto end = paths.begin() + static_cast<std::ptrdiff_t>(known);
+    if (std::none_of(paths.begin(), end, same)) paths.push_back(std::move(path));
+  }
+  return base::Unit{};
+}
+
 }  // namespace
 
 base::Result<RepairResult> propose_repairs(const RepairOptions& options, Context& context) {
@@ -390,8 +419,10 @@ base::Result<RepairResult> propose_repairs(const RepairOptions& options, Context
   }
   const auto loaded = load(options, *journal->header, context);
   if (!loaded) return sink.already_reported();
-  const auto paths = observed_paths(*loaded, *journal, context);
-  if (!paths) return sink.already_reported();
+  auto paths = observed_paths(*loaded, *journal, context);
+  if (!paths || !add_further_paths(options, *loaded, *journal->header, *paths, context)) {
+    return sink.already_reported();
+  }
   const auto domain = load_domain(loaded->scenario, context);
   if (domain == nullptr) {
     return sink.error_about(base::DiagnosticCode::kReplayImpossible, options.folder.folder,

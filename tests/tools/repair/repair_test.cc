@@ -56,6 +56,27 @@ TEST_CASE("a forgotten effect: the first proposal has it, git applies it, and th
             .at("verdict") == "no-discrepancy");
 }
 
+TEST_CASE("runs that explain made to tell the kind of cause are evidence, too") {
+  const TwoModels cli;
+  // The first run fails; of further ones from the same start half do not.
+  json_of(cli, {"run", "two/sticks.yaml", "--out", "out", "--seed", "2"}, 1);
+  const auto alone = json_of(cli, {"repair", "out"}, 1);
+  const int runs = alone.at("proposals").at(0).at("runs");
+  const auto told = json_of(cli, {"explain", "out"}, 1);
+  const int further = told.at("evidence").at("further");
+  REQUIRE(further > 5);
+  const auto report = json_of(cli, {"repair", "out"}, 1);
+  const auto& first = report.at("proposals").at(0);
+  CHECK(first.at("runs") == runs + further);
+  CHECK(first.at("runs_consistent") == runs + further);
+  CHECK(first.at("words").get<std::string>().find("Releases") != std::string::npos);
+  // Those of another run do not count.
+  json_of(cli, {"run", "two/sticks.yaml", "--out", "other", "--seed", "4"}, 1);
+  std::filesystem::copy(cli.folder() / "out/further", cli.folder() / "other/further");
+  const auto other = cli.parallax({"repair", "other"});
+  CHECK(other.err.find("runs of something else, left out") != std::string::npos);
+}
+
 TEST_CASE("the text: where they parted, then each proposal with what stands behind it") {
   const TwoModels cli;
   json_of(cli, {"run", "two/unparks.yaml", "--out", "out"}, 1);
