@@ -11,7 +11,7 @@ namespace parallax::tools {
 namespace {
 
 /// A report is not worth waiting for: larger models are left to `parallax coverage`.
-constexpr std::int64_t kMaxInstances = 500'000;
+constexpr std::int64_t kMaxInstances = 2'000'000;
 
 using Shares = std::vector<harness::CoverageShare>;
 
