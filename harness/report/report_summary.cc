@@ -92,10 +92,10 @@ class Summary {
                          counted(first.loop->unfinished, "run did not end", "runs did not end"),
                          first.loop->why_unfinished);
     }
-    return first.loop ? std::string("fewer runs than the criterion asks for")
-                      : fmt::format("fewer runs than the criterion asks for of {} of {}", open,
-                                    counted(static_cast<std::int64_t>(result_.traces.size()),
-                                            "trace", "traces"));
+    if (first.loop) return "there were fewer runs than the criterion asks for";
+    return fmt::format(
+        "{} of {} had fewer runs than the criterion asks for", open,
+        counted(static_cast<std::int64_t>(result_.traces.size()), "trace", "traces"));
   }
 
   /// With --keep-going: a line each.
