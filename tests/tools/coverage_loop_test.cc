@@ -13,19 +13,12 @@
 
 #include "tests/tools/cli_json.h"
 #include "tests/tools/coverage_shares.h"
-#include "tests/tools/two_models.h"
+#include "tests/tools/executed_plan.h"
 
 namespace parallax::test {
 namespace {
 
 using Json = nlohmann::json;
-
-/// Opening succeeds unless the drawer sticks; whether it does, nothing shows.
-const std::string kSticks =
-    "load domain.e\nfluent Sticks()\n"
-    "[drawer,time] !HoldsAt(Sticks(),time) -> Initiates(OpenDrawer(drawer),Open(drawer),time).\n";
-/// The same, anew at every timepoint.
-const std::string kSticksAtTimes = kSticks + "noninertial Sticks\n";
 
 /// Parks if it has to; opens the drawer, if that fails once more; closes it if it is open.
 const std::string kPlan = R"((def-cram-function open-it ()
@@ -47,15 +40,9 @@ class ExecutedRuns : public TwoModels {
   }
   std::string scenario(const std::string& model, const std::string& plan, const std::string& world,
                        const std::string& more = "") const {
-    write("two/model.e", model);
-    write("two/plan.lisp", plan);
-    write("two/world.e", world);
-    write("two/own.yaml",
-          "include: common.yaml\nsimulator: {model: world.e}\nexecution: closed-loop\n"
-          "model: [model.e, start.e]\nplan: plan.lisp\n"
-          "mapping: {Sticks(): ignored, Parked(): {flag: \"Parked()\", drawn: true}}\n" +
-              more);
-    return "two/own.yaml";
+    return executed(
+        *this, model, plan, world,
+        "mapping: {Sticks(): ignored, Parked(): {flag: \"Parked()\", drawn: true}}\n" + more);
   }
 };
 
