@@ -5,6 +5,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "tools/cli/command.h"
 #include "tools/cli/shared_options.h"
+#include "tools/repair/apply.h"
 #include "tools/repair/repair.h"
 
 namespace parallax::tools {

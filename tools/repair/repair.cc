@@ -1,466 +1,64 @@
 #include "tools/repair/repair.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <filesystem>
-#include <map>
-#include <set>
-#include <system_error>
-#include <tuple>
+#include <iterator>
 
-#include "compiler/base/diagnostic_codes.h"
-#include "compiler/base/file_io.h"
-#include "compiler/repair/edit_text.h"
-#include "compiler/repair/guarded_model.h"
-#include "harness/campaign/journal.h"
-#include "tools/app/evidence.h"
-#include "tools/repair/edit_search.h"
+#include "tools/repair/model_proposals.h"
+#include "tools/repair/ranking.h"
 
 namespace parallax::tools {
-
-using compiler::Edit;
-using compiler::EditScope;
-
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr std::size_t kMostSets = 400;     // that the solver is asked for, of one size
-constexpr std::size_t kMostVerified = 40;  // of them are compiled and checked, the likeliest
-constexpr std::size_t kMostCompared = 6;   // of those have their traces compared
-constexpr std::size_t kMostWays = 32;  // that runs went are put to the solver, failed ones first
-
-base::Result<ScenarioModel> load(const RepairOptions& options, const harness::JournalHeader& header,
-                                 Context& context) {
-  if (!options.other_model) {
-    return load_recorded_scenario(options.folder, header, ScenarioUse::kExplain, context);
-  }
-  const auto path =
-      options.folder.scenario.empty() ? scenario_path(header) : fs::path(options.folder.scenario);
-  return load_plain_run(path, recorded_execution(header), context);
-}
-
-class RepairSearch {
- public:
-  RepairSearch(const RepairOptions& options, const ScenarioModel& loaded, DomainModel& domain,
-               std::vector<Evidence> evidence, Context& context)
-      : options_(options),
-        loaded_(loaded),
-        domain_(domain),
-        evidence_(std::move(evidence)),
-        context_(context),
-        text_(compiler::flat_text(domain.ast, domain.files, {})) {}
-
-  RepairResult run() {
-    for (const auto& seen : evidence_) result_.runs += seen.runs();
-    if (!find_partings() || result_.partings.empty()) return std::move(result_);
-    find_contradictions();
-    if (result_.contradictions.empty()) {
-      search_all(Mode::kExact);
-    } else {
-      if (set_aside()) search(Mode::kCautious, 1);
-      // Then what is right about all runs.
-      for (std::size_t size = 1; size <= EditSearch::kMostEdits && !context_.stopped(); ++size) {
-        if (search(Mode::kOpen, size)) break;
-      }
-    }
-    if (result_.proposals.empty() && !context_.stopped()) find_nearest_miss();
-    return finish();
-  }
-
- private:
-  /// How runs are taken that went the same way and ended differently.
-  enum class Mode : std::uint8_t {
-    kExact,     // there are none
-    kCautious,  // those that went well are set aside from there on
-    kOpen,      // the model may leave open what happens
-    kWide,      // kExact, about all that led to the step
-  };
-
-  std::size_t most_whole() const {
-    std::size_t out = 0;
-    for (const auto& each : result_.proposals) out = std::max(out, each.verdict.runs_whole);
-    return out;
-  }
-
-  /// First what the steps themselves are about, then what led there; more edits last.
-  void search_all(Mode mode) {
-    if (search(mode, 1)) {
-      // A missing effect has its condition at once, if that tells more of the runs.
-      const auto best = most_whole();
-      if (best < result_.runs && !context_.stopped()) search(mode, 2, best);
-      return;
-    }
-    if (context_.stopped() || search(Mode::kWide, 1) || context_.stopped()) return;
-    for (std::size_t size = 2; size <= EditSearch::kMostEdits && !context_.stopped(); ++size) {
-      if (search(mode, size)) return;
-    }
-  }
-
-  /// Of runs of which others failed the same way. False if none of those that failed was refused
-  /// by the world: then it would be no precaution.
-  bool set_aside() {
-    cautious_ = evidence_;
-    bool any = false;
-    for (const auto& a : evidence_) {
-      if (!a.divergence || !a.steps[*a.divergence - 1].failed) continue;
-      const auto t = *a.divergence;
-      for (auto& b : cautious_) {
-        if (b.divergence && *b.divergence <= t) continue;
-        if (!goes_like(a, b, t) || a.states[t] == b.states[t]) continue;
-        b.until = std::min(b.until.value_or(t - 1), t - 1);
-        any = true;
-      }
-    }
-    return any;
-  }
-
-  /// The same events up to `t`, through the same states in front of the last of them.
-  static bool goes_like(const Evidence& a, const Evidence& b, std::size_t t) {
-    if (b.steps.size() < t || a.executed != b.executed) return false;
-    for (std::size_t k = 0; k < t; ++k) {
-      if (a.states[k] != b.states[k] || a.steps[k].event != b.steps[k].event) return false;
-    }
-    return true;
-  }
-
-  /// False if the search was stopped.
-  bool find_partings() {
-    std::size_t horizon = 1;
-    for (const auto& seen : evidence_) horizon = std::max(horizon, seen.steps.size());
-    horizon_ = static_cast<std::int64_t>(horizon);
-    std::string why;
-    const auto model = compile_text(text_, horizon_, context_, why);
-    if (!model) {
-      result_.remarks.push_back("the model by itself cannot be compiled: " + why);
-      return false;
-    }
-    Admission admission(*model, context_.stop());
-    std::vector<Evidence> usable;
-    for (auto& seen : evidence_) {
-      const auto answer = admission.ask(seen);
-      if (answer.stopped) return false;
-      if (!answer.start) {
-        result_.remarks.push_back(fmt::format(
-            "run {} begins where the model cannot: what it says of the start is not repaired",
-            seen.ids.front()));
-        continue;
-      }
-      if (!answer.whole) {
-        seen.divergence = answer.reached + 1;
-        const auto after = *seen.divergence;
-        result_.failed += seen.runs();
-        result_.partings.push_back(
-            {seen.ids, after, seen.steps[after - 1], admission.impossible(seen, after)});
-      }
-      usable.push_back(std::move(seen));
-    }
-    evidence_ = std::move(usable);
-    return true;
-  }
-
-  void find_contradictions() {
-    for (std::size_t i = 0; i < evidence_.size(); ++i) {
-      const auto& a = evidence_[i];
-      if (!a.divergence) continue;
-      const auto t = *a.divergence;
-      for (const auto& b : evidence_) {
-        if (&a == &b || !goes_like(a, b, t) || a.states[t] == b.states[t]) continue;
-        result_.contradictions.push_back(
-            fmt::format("runs {} and {} go the same way up to {}, and after {} they differ",
-                        a.ids.front(), b.ids.front(), t - 1, a.steps[t - 1].event));
-        break;
-      }
-    }
-  }
-
-  EditScope scope(Mode mode) const {
-    const bool wide = mode == Mode::kWide;
-    EditScope out;
-    for (const auto& parting : result_.partings) {
-      const auto& seen = *std::find_if(evidence_.begin(), evidence_.end(), [&](const auto& each) {
-        return each.ids.front() == parting.ids.front();
-      });
-      EditScope::Step step;
-      step.event = parting.step.event;
-      step.refused = parting.step.failed;
-      step.not_possible = says_not_possible(parting.step.reason);
-      step.before = seen.states[parting.after - 1];
-      step.differing = parting.seen;
-      out.steps.push_back(std::move(step));
-      if (!wide) continue;
-      for (std::size_t t = 0; t < parting.after; ++t) {
-        out.more_events.insert(compiler::symbol_of(seen.steps[t].event));
-      }
-    }
-    out.open_outcomes = mode == Mode::kOpen;
-    if (!wide) return out;
-    // What the axioms of the steps ask for may be what went wrong before.
-    for (const auto& symbol : domain_.typed->symbols) {
-      if (symbol.kind == compiler::SymbolKind::kFluent && !symbol.noninertial) {
-        out.more_fluents.insert(symbol.name);
-      }
-    }
-    return out;
-  }
-
-  /// True if there are proposals that admit more than `whole` runs to their end.
-  bool search(Mode mode, std::size_t size, std::optional<std::size_t> whole = std::nullopt) {
-    const auto& evidence = mode == Mode::kCautious ? cautious_ : evidence_;
-    auto& known = searches_[mode];
-    if (!known) {
-      known = std::make_unique<Prepared>();
-      known->edits =
-          compiler::edits_in_scope(domain_.ast, *domain_.typed, domain_.forms, scope(mode));
-      if (mode == Mode::kWide) keep_few(known->edits);
-      result_.edits = std::max(result_.edits, known->edits.size());
-      std::size_t horizon = 1;
-      for (const auto& seen : evidence) horizon = std::max(horizon, seen.needed());
-      std::string why;
-      do {
-        const auto guarded =
-            compiler::guarded_text(domain_.ast, domain_.files, domain_.forms, known->edits);
-        known->model = compile_text(guarded, static_cast<std::int64_t>(horizon), context_, why);
-      } while (!known->model && !context_.stopped() && fewer(known->edits));
-      if (known->model) {
-        known->evidence = ways(evidence);
-        known->search = std::make_unique<EditSearch>(*known->model, known->edits, known->evidence,
-                                                     context_.stop());
-      } else {
-        result_.remarks.push_back("the edits could not be compiled together: " + why);
-      }
-    }
-    if (!known->search) return false;
-    return take(*known, known->search->find(size, kMostSets), evidence, mode, whole);
-  }
-
-  /// Of a model that is too large with all edits: without conditions of new effects, then the less
-  /// odd half. False: there are few.
-  static bool fewer(std::vector<Edit>& edits) {
-    constexpr std::size_t kFew = 50;
-    if (edits.size() <= kFew) return false;
-    const auto before = edits.size();
-    // What is left refers to no other edit, so that it may be put in order.
-    std::erase_if(edits, [](const Edit& edit) { return edit.kind == Edit::Kind::kAddCondition; });
-    if (edits.size() < before) return true;
-    std::stable_sort(edits.begin(), edits.end(),
-                     [](const Edit& a, const Edit& b) { return a.oddity < b.oddity; });
-    edits.resize(before / 2);
-    return true;
-  }
-
-  static std::vector<Evidence> ways(std::vector<Evidence> evidence) {
-    std::stable_partition(evidence.begin(), evidence.end(),
-                          [](const Evidence& seen) { return seen.divergence.has_value(); });
-    if (evidence.size() > kMostWays) evidence.resize(kMostWays);
-    return evidence;
-  }
-
-  /// Far from the step conditions are dropped and effects mended, not invented: there are too many.
-  static void keep_few(std::vector<Edit>& edits) {
-    constexpr std::size_t kMostWide = 600;
-    using Kind = Edit::Kind;
-    std::erase_if(edits, [](const Edit& edit) {
-      return edit.kind == Kind::kAddCondition || edit.kind == Kind::kNarrow ||
-             edit.kind == Kind::kNarrowEvent || edit.kind == Kind::kRequire;
-    });
-    std::stable_sort(edits.begin(), edits.end(),
-                     [](const Edit& a, const Edit& b) { return a.oddity < b.oddity; });
-    if (edits.size() > kMostWide) edits.resize(kMostWide);
-  }
-
-  struct Prepared {
-    std::vector<Edit> edits;
-    std::vector<Evidence> evidence;  // that the search is asked about; all of it is checked later
-    std::optional<compiler::CompiledModel> model;
-    std::unique_ptr<EditSearch> search;
-  };
-
-  bool take(const Prepared& prepared, const EditSearch::Found& found,
-            const std::vector<Evidence>& evidence, Mode mode, std::optional<std::size_t> whole) {
-    const compiler::EditText texts(domain_.ast, domain_.files, domain_.forms, prepared.edits);
-    std::vector<Proposal> tried;
-    std::vector<std::vector<std::size_t>> sets = found.sets;
-    const auto oddity = [&](const std::vector<std::size_t>& set) {
-      int out = 0;
-      for (const auto edit : set) out += prepared.edits[edit].oddity;
-      return out;
-    };
-    std::stable_sort(sets.begin(), sets.end(), [&](const auto& a, const auto& b) {
-      return oddity(a) != oddity(b) ? oddity(a) < oddity(b) : a < b;
-    });
-    result_.more = result_.more || !found.complete || sets.size() > kMostVerified;
-    std::set<std::string> seen;
-    for (const auto& set : sets) {
-      if (tried.size() == kMostVerified || context_.stopped()) break;
-      const auto changes = texts.changes(set);
-      Proposal proposal;
-      proposal.text = compiler::flat_text(domain_.ast, domain_.files, changes);
-      if (!seen.insert(proposal.text).second) continue;
-      proposal.verdict = verify(proposal.text, evidence, context_);
-      if (!proposal.verdict.admits) {
-        result_.remarks.push_back(
-            fmt::format("not proposed, as the check of its text says no: {} ({})", texts.words(set),
-                        proposal.verdict.why));
-        continue;
-      }
-      if (whole && proposal.verdict.runs_whole <= *whole) continue;
-      proposal.precaution = mode == Mode::kCautious;
-      // An effect and one condition are one axiom.
-      proposal.size = set.size();
-      for (const auto edit : set) {
-        if (prepared.edits[edit].kind != Edit::Kind::kAddCondition) continue;
-        --proposal.size;
-        break;
-      }
-      proposal.oddity = oddity(set);
-      proposal.words = texts.words(set);
-      proposal.files = changed_files(domain_.files, changes);
-      tried.push_back(std::move(proposal));
-    }
-    const bool any = !tried.empty();
-    auto& all = result_.proposals;
-    all.insert(all.end(), std::make_move_iterator(tried.begin()),
-               std::make_move_iterator(tried.end()));
-    return any;
-  }
-
-  RepairResult finish() {
-    auto& all = result_.proposals;
-    const auto likelier = [](const Proposal& a, const Proposal& b) {
-      return std::tuple(a.size, !a.precaution, ~a.verdict.runs_whole, a.oddity) <
-             std::tuple(b.size, !b.precaution, ~b.verdict.runs_whole, b.oddity);
-    };
-    std::stable_sort(all.begin(), all.end(), likelier);
-    const auto limit = options_.limit == 0 ? all.size() : static_cast<std::size_t>(options_.limit);
-    if (all.size() > std::max(limit, kMostCompared)) {
-      all.resize(std::max(limit, kMostCompared));
-      result_.more = true;
-    }
-    TraceComparer comparer(loaded_, text_, context_);
-    for (auto& proposal : all) proposal.effects = comparer.compare(proposal.text);
-    // Among equals the one that permits the least.
-    std::stable_sort(all.begin(), all.end(), [&](const Proposal& a, const Proposal& b) {
-      if (likelier(a, b) || likelier(b, a)) return likelier(a, b);
-      if (!a.effects.gained || !b.effects.gained) return false;
-      return a.effects.gained->value < b.effects.gained->value;
-    });
-    if (all.size() > limit) {
-      all.resize(limit);
-      result_.more = true;
-    }
-    return std::move(result_);
-  }
-
-  void find_nearest_miss() {
-    auto& known = searches_[result_.contradictions.empty() ? Mode::kExact : Mode::kOpen];
-    if (!known || !known->search) return;
-    const compiler::EditText texts(domain_.ast, domain_.files, domain_.forms, known->edits);
-    for (std::size_t i = 0; i < known->evidence.size(); ++i) {
-      if (!known->evidence[i].divergence) continue;
-      const auto set = known->search->find_for({i}, 1);
-      if (!set || set->empty()) continue;
-      result_.nearest_miss =
-          fmt::format("{}: explains run {} and the clean ones, not all that failed",
-                      texts.words(*set), known->evidence[i].ids.front());
-      return;
-    }
-  }
-
-  const RepairOptions& options_;
-  const ScenarioModel& loaded_;
-  DomainModel& domain_;
-  std::vector<Evidence> evidence_, cautious_;
-  Context& context_;
-  std::string text_;
-  std::int64_t horizon_ = 1;
-  std::map<Mode, std::unique_ptr<Prepared>> searches_;
-  RepairResult result_;
+/// Each is asked; what they find is put in order together.
+constexpr ProposalSource kSources[] = {
+    model_proposals,
 };
 
-/// What `explain` made of the same scenario to tell the kind of cause: runs like the others. Adds
-/// those that `paths` has not.
-base::Status add_further_paths(const RepairOptions& options, const ScenarioModel& loaded,
-                               const harness::JournalHeader& header,
-                               std::vector<ObservedPath>& paths, Context& context) {
-  const auto folder = fs::path(options.folder.folder) / kFurtherRuns;
-  std::error_code error;
-  if (!fs::exists(folder / "journal.ndjson", error)) return base::Unit{};
-  const auto journal = harness::read_journal(folder, context.files(), context.sink());
-  if (!journal) return context.sink().already_reported();
-  if (!journal->header || journal->header->scenario_hash != header.scenario_hash ||
-      journal->header->seed != header.seed) {
-    context.remark(fmt::format("{}: runs of something else, left out", folder.string()));
-    return base::Unit{};
-  }
-  auto further = observed_paths(loaded, *journal, context);
-  if (!further) return context.sink().already_reported();
-  const auto known = paths.size();
-  for (auto& path : *further) {
-    const auto same = [&](const ObservedPath& other) {
-      return other.id.trace == path.id.trace && other.id.sample == path.id.sample;
-    };
-    const auto end = paths.begin() + static_cast<std::ptrdiff_t>(known);
-    if (std::none_of(paths.begin(), end, same)) paths.push_back(std::move(path));
-  }
-  return base::Unit{};
+template <typename T>
+void append(std::vector<T>& to, std::vector<T> more) {
+  to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
 }  // namespace
 
-base::Result<RepairResult> propose_repairs(const RepairOptions& options, Context& context) {
-  auto& sink = context.sink();
-  const auto journal = harness::read_journal(options.folder.folder, context.files(), sink);
-  if (!journal) return sink.already_reported();
-  if (!journal->header) {
-    return sink.error_about(base::DiagnosticCode::kNoJournal, options.folder.folder);
+const char* name_of(Proposal::Changes changes) {
+  switch (changes) {
+    case Proposal::Changes::kModel:
+      return "model";
+    case Proposal::Changes::kBinding:
+      return "binding";
+    case Proposal::Changes::kPlan:
+      return "plan";
+    case Proposal::Changes::kScenario:
+      return "scenario";
   }
-  const auto loaded = load(options, *journal->header, context);
-  if (!loaded) return sink.already_reported();
-  auto paths = observed_paths(*loaded, *journal, context);
-  if (!paths || !add_further_paths(options, *loaded, *journal->header, *paths, context)) {
-    return sink.already_reported();
-  }
-  const auto domain = load_domain(loaded->scenario, context);
-  if (domain == nullptr) {
-    return sink.error_about(base::DiagnosticCode::kReplayImpossible, options.folder.folder,
-                            "the texts of the model changed meanwhile");
-  }
-  return RepairSearch(options, *loaded, *domain, evidence_of(*paths, loaded->compilation.model),
-                      context)
-      .run();
+  return "";
 }
 
-base::Status apply_proposal(const Proposal& proposal, Context& context) {
-  auto& sink = context.sink();
-  std::vector<fs::path> targets;
-  for (const auto& file : proposal.files) {
-    std::error_code error;
-    auto target = fs::canonical(file.name, error);
-    if (error) target = file.name;
-    if (::access(target.c_str(), W_OK) != 0) {
-      return sink.error_about(base::DiagnosticCode::kFileNotWritable, file.name,
-                              "it is read-only; `--json` has the patch");
-    }
-    const auto now = base::read_file(target, sink);
-    if (!now) return sink.already_reported();
-    if (*now != file.before) {
-      return sink.error_about(base::DiagnosticCode::kFileNotWritable, file.name,
-                              "it changed while the repair was looked for");
-    }
-    targets.push_back(std::move(target));
+base::Result<RepairResult> propose_repairs(const RepairOptions& options, Context& context) {
+  auto loaded = load_repair_input(options, context);
+  if (!loaded) return context.sink().already_reported();
+  const auto& input = *loaded;
+  RepairResult result;
+  result.runs = input.runs;
+  result.failed = input.failed;
+  result.partings = input.partings;
+  result.contradictions = input.contradictions;
+  result.remarks = input.remarks;
+  if (input.partings.empty()) return result;
+  for (const auto source : kSources) {
+    if (context.stopped()) break;
+    auto found = source(input, context);
+    append(result.proposals, std::move(found.proposals));
+    append(result.remarks, std::move(found.remarks));
+    result.more = result.more || found.more;
+    result.edits += found.edits;
+    if (result.nearest_miss.empty()) result.nearest_miss = std::move(found.nearest_miss);
   }
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    std::error_code error;
-    const auto status = fs::status(targets[i], error);
-    if (!base::write_file_atomically(targets[i], proposal.files[i].after, sink)) {
-      return sink.already_reported();
-    }
-    if (!error) fs::permissions(targets[i], status.permissions(), error);
-  }
-  return base::Unit{};
+  const bool more =
+      rank_proposals(input, static_cast<std::size_t>(options.limit), result.proposals, context);
+  result.more = result.more || more;
+  return result;
 }
 
 }  // namespace parallax::tools

@@ -59,15 +59,17 @@ std::string proposal_text(const Proposal& proposal, std::size_t rank, const Repa
   if (verdict.runs_whole < verdict.runs_consistent) {
     out += fmt::format(", with {} of them to the end", verdict.runs_whole);
   }
-  out += fmt::format("; traces lost: {}, gained: {}.\n", number_of(proposal.effects.lost),
-                     number_of(proposal.effects.gained));
+  const auto effects = proposal.effects.value_or(TraceEffects{});
+  out += fmt::format("; traces lost: {}, gained: {}.\n", number_of(effects.lost),
+                     number_of(effects.gained));
+  for (const auto& sentence : proposal.evidence) out += "   " + sentence + "\n";
   if (proposal.precaution) {
     out += "   A precaution: what may fail is taken to fail; in the other runs it went well.\n";
   }
   if (verdict.refuses) {
     out += "   What failed is then impossible: no plan of the model may try it.\n";
   }
-  if (proposal.effects.reaches == false) {
+  if (effects.reaches == false) {
     out +=
         "   No trace reaches the constraints any more: if this is how the world is, the plan is at "
         "fault.\n";
@@ -133,18 +135,21 @@ std::string repair_json(const RepairResult& result) {
   auto& proposals = out["proposals"] = Json::array();
   for (std::size_t i = 0; i < result.proposals.size(); ++i) {
     const auto& proposal = result.proposals[i];
+    const auto effects = proposal.effects.value_or(TraceEffects{});
     Json reaches = nullptr;
-    if (proposal.effects.reaches) reaches = *proposal.effects.reaches;
+    if (effects.reaches) reaches = *effects.reaches;
     proposals.push_back({{"rank", i + 1},
                          {"words", proposal.words},
+                         {"changes", name_of(proposal.changes)},
+                         {"evidence", proposal.evidence},
                          {"edits", proposal.size},
                          {"patch", patch_of(proposal)},
                          {"precaution", proposal.precaution},
                          {"runs_consistent", proposal.verdict.runs_consistent},
                          {"runs_to_the_end", proposal.verdict.runs_whole},
                          {"runs", result.runs},
-                         {"traces_lost", number_json(proposal.effects.lost)},
-                         {"traces_gained", number_json(proposal.effects.gained)},
+                         {"traces_lost", number_json(effects.lost)},
+                         {"traces_gained", number_json(effects.gained)},
                          {"reaches_constraints", std::move(reaches)}});
   }
   out["more"] = result.more;

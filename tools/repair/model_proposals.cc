@@ -1,0 +1,272 @@
+#include "tools/repair/model_proposals.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "compiler/repair/edit_text.h"
+#include "compiler/repair/guarded_model.h"
+#include "tools/repair/edit_search.h"
+
+namespace parallax::tools {
+
+using compiler::Edit;
+using compiler::EditScope;
+
+namespace {
+
+constexpr std::size_t kMostSets = 400;     // that the solver is asked for, of one size
+constexpr std::size_t kMostVerified = 40;  // of them are compiled and checked, the likeliest
+constexpr std::size_t kMostWays = 32;  // that runs went are put to the solver, failed ones first
+
+class ModelSearch {
+ public:
+  ModelSearch(const RepairInput& input, Context& context)
+      : input_(input), domain_(*input.domain), evidence_(input.evidence), context_(context) {}
+
+  FoundProposals run() {
+    if (input_.contradictions.empty()) {
+      search_all(Mode::kExact);
+    } else {
+      if (set_aside()) search(Mode::kCautious, 1);
+      // Then what is right about all runs.
+      for (std::size_t size = 1; size <= EditSearch::kMostEdits && !context_.stopped(); ++size) {
+        if (search(Mode::kOpen, size)) break;
+      }
+    }
+    if (result_.proposals.empty() && !context_.stopped()) find_nearest_miss();
+    return std::move(result_);
+  }
+
+ private:
+  /// How runs are taken that went the same way and ended differently.
+  enum class Mode : std::uint8_t {
+    kExact,     // there are none
+    kCautious,  // those that went well are set aside from there on
+    kOpen,      // the model may leave open what happens
+    kWide,      // kExact, about all that led to the step
+  };
+
+  std::size_t most_whole() const {
+    std::size_t out = 0;
+    for (const auto& each : result_.proposals) out = std::max(out, each.verdict.runs_whole);
+    return out;
+  }
+
+  /// First what the steps themselves are about, then what led there; more edits last.
+  void search_all(Mode mode) {
+    if (search(mode, 1)) {
+      // A missing effect has its condition at once, if that tells more of the runs.
+      const auto best = most_whole();
+      if (best < input_.runs && !context_.stopped()) search(mode, 2, best);
+      return;
+    }
+    if (context_.stopped() || search(Mode::kWide, 1) || context_.stopped()) return;
+    for (std::size_t size = 2; size <= EditSearch::kMostEdits && !context_.stopped(); ++size) {
+      if (search(mode, size)) return;
+    }
+  }
+
+  /// Of runs of which others failed the same way. False if none of those that failed was refused
+  /// by the world: then it would be no precaution.
+  bool set_aside() {
+    cautious_ = evidence_;
+    bool any = false;
+    for (const auto& a : evidence_) {
+      if (!a.divergence || !a.steps[*a.divergence - 1].failed) continue;
+      const auto t = *a.divergence;
+      for (auto& b : cautious_) {
+        if (b.divergence && *b.divergence <= t) continue;
+        if (!goes_like(a, b, t) || a.states[t] == b.states[t]) continue;
+        b.until = std::min(b.until.value_or(t - 1), t - 1);
+        any = true;
+      }
+    }
+    return any;
+  }
+
+  EditScope scope(Mode mode) const {
+    const bool wide = mode == Mode::kWide;
+    EditScope out;
+    for (const auto& parting : input_.partings) {
+      const auto& seen = *std::find_if(evidence_.begin(), evidence_.end(), [&](const auto& each) {
+        return each.ids.front() == parting.ids.front();
+      });
+      EditScope::Step step;
+      step.event = parting.step.event;
+      step.refused = parting.step.failed;
+      step.not_possible = says_not_possible(parting.step.reason);
+      step.before = seen.states[parting.after - 1];
+      step.differing = parting.seen;
+      out.steps.push_back(std::move(step));
+      if (!wide) continue;
+      for (std::size_t t = 0; t < parting.after; ++t) {
+        out.more_events.insert(compiler::symbol_of(seen.steps[t].event));
+      }
+    }
+    out.open_outcomes = mode == Mode::kOpen;
+    if (!wide) return out;
+    // What the axioms of the steps ask for may be what went wrong before.
+    for (const auto& symbol : domain_.typed->symbols) {
+      if (symbol.kind == compiler::SymbolKind::kFluent && !symbol.noninertial) {
+        out.more_fluents.insert(symbol.name);
+      }
+    }
+    return out;
+  }
+
+  /// True if there are proposals that admit more than `whole` runs to their end.
+  bool search(Mode mode, std::size_t size, std::optional<std::size_t> whole = std::nullopt) {
+    const auto& evidence = mode == Mode::kCautious ? cautious_ : evidence_;
+    auto& known = searches_[mode];
+    if (!known) {
+      known = std::make_unique<Prepared>();
+      known->edits =
+          compiler::edits_in_scope(domain_.ast, *domain_.typed, domain_.forms, scope(mode));
+      if (mode == Mode::kWide) keep_few(known->edits);
+      result_.edits = std::max(result_.edits, known->edits.size());
+      std::size_t horizon = 1;
+      for (const auto& seen : evidence) horizon = std::max(horizon, seen.needed());
+      std::string why;
+      do {
+        const auto guarded =
+            compiler::guarded_text(domain_.ast, domain_.files, domain_.forms, known->edits);
+        known->model = compile_text(guarded, static_cast<std::int64_t>(horizon), context_, why);
+      } while (!known->model && !context_.stopped() && fewer(known->edits));
+      if (known->model) {
+        known->evidence = ways(evidence);
+        known->search = std::make_unique<EditSearch>(*known->model, known->edits, known->evidence,
+                                                     context_.stop());
+      } else {
+        result_.remarks.push_back("the edits could not be compiled together: " + why);
+      }
+    }
+    if (!known->search) return false;
+    return take(*known, known->search->find(size, kMostSets), evidence, mode, whole);
+  }
+
+  /// Of a model that is too large with all edits: without conditions of new effects, then the less
+  /// odd half. False: there are few.
+  static bool fewer(std::vector<Edit>& edits) {
+    constexpr std::size_t kFew = 50;
+    if (edits.size() <= kFew) return false;
+    const auto before = edits.size();
+    // What is left refers to no other edit, so that it may be put in order.
+    std::erase_if(edits, [](const Edit& edit) { return edit.kind == Edit::Kind::kAddCondition; });
+    if (edits.size() < before) return true;
+    std::stable_sort(edits.begin(), edits.end(),
+                     [](const Edit& a, const Edit& b) { return a.oddity < b.oddity; });
+    edits.resize(before / 2);
+    return true;
+  }
+
+  static std::vector<Evidence> ways(std::vector<Evidence> evidence) {
+    std::stable_partition(evidence.begin(), evidence.end(),
+                          [](const Evidence& seen) { return seen.divergence.has_value(); });
+    if (evidence.size() > kMostWays) evidence.resize(kMostWays);
+    return evidence;
+  }
+
+  /// Far from the step conditions are dropped and effects mended, not invented: there are too many.
+  static void keep_few(std::vector<Edit>& edits) {
+    constexpr std::size_t kMostWide = 600;
+    using Kind = Edit::Kind;
+    std::erase_if(edits, [](const Edit& edit) {
+      return edit.kind == Kind::kAddCondition || edit.kind == Kind::kNarrow ||
+             edit.kind == Kind::kNarrowEvent || edit.kind == Kind::kRequire;
+    });
+    std::stable_sort(edits.begin(), edits.end(),
+                     [](const Edit& a, const Edit& b) { return a.oddity < b.oddity; });
+    if (edits.size() > kMostWide) edits.resize(kMostWide);
+  }
+
+  struct Prepared {
+    std::vector<Edit> edits;
+    std::vector<Evidence> evidence;  // that the search is asked about; all of it is checked later
+    std::optional<compiler::CompiledModel> model;
+    std::unique_ptr<EditSearch> search;
+  };
+
+  bool take(const Prepared& prepared, const EditSearch::Found& found,
+            const std::vector<Evidence>& evidence, Mode mode, std::optional<std::size_t> whole) {
+    const compiler::EditText texts(domain_.ast, domain_.files, domain_.forms, prepared.edits);
+    std::vector<Proposal> tried;
+    std::vector<std::vector<std::size_t>> sets = found.sets;
+    const auto oddity = [&](const std::vector<std::size_t>& set) {
+      int out = 0;
+      for (const auto edit : set) out += prepared.edits[edit].oddity;
+      return out;
+    };
+    std::stable_sort(sets.begin(), sets.end(), [&](const auto& a, const auto& b) {
+      return oddity(a) != oddity(b) ? oddity(a) < oddity(b) : a < b;
+    });
+    result_.more = result_.more || !found.complete || sets.size() > kMostVerified;
+    std::set<std::string> seen;
+    for (const auto& set : sets) {
+      if (tried.size() == kMostVerified || context_.stopped()) break;
+      const auto changes = texts.changes(set);
+      Proposal proposal;
+      proposal.text = compiler::flat_text(domain_.ast, domain_.files, changes);
+      if (!seen.insert(*proposal.text).second) continue;
+      proposal.verdict = verify(*proposal.text, evidence, context_);
+      if (!proposal.verdict.admits) {
+        result_.remarks.push_back(
+            fmt::format("not proposed, as the check of its text says no: {} ({})", texts.words(set),
+                        proposal.verdict.why));
+        continue;
+      }
+      if (whole && proposal.verdict.runs_whole <= *whole) continue;
+      proposal.precaution = mode == Mode::kCautious;
+      // An effect and one condition are one axiom.
+      proposal.size = set.size();
+      for (const auto edit : set) {
+        if (prepared.edits[edit].kind != Edit::Kind::kAddCondition) continue;
+        --proposal.size;
+        break;
+      }
+      proposal.oddity = oddity(set);
+      proposal.words = texts.words(set);
+      proposal.files = changed_files(domain_.files, changes);
+      tried.push_back(std::move(proposal));
+    }
+    const bool any = !tried.empty();
+    auto& all = result_.proposals;
+    all.insert(all.end(), std::make_move_iterator(tried.begin()),
+               std::make_move_iterator(tried.end()));
+    return any;
+  }
+
+  void find_nearest_miss() {
+    auto& known = searches_[input_.contradictions.empty() ? Mode::kExact : Mode::kOpen];
+    if (!known || !known->search) return;
+    const compiler::EditText texts(domain_.ast, domain_.files, domain_.forms, known->edits);
+    for (std::size_t i = 0; i < known->evidence.size(); ++i) {
+      if (!known->evidence[i].divergence) continue;
+      const auto set = known->search->find_for({i}, 1);
+      if (!set || set->empty()) continue;
+      result_.nearest_miss =
+          fmt::format("{}: explains run {} and the clean ones, not all that failed",
+                      texts.words(*set), known->evidence[i].ids.front());
+      return;
+    }
+  }
+
+  const RepairInput& input_;
+  const DomainModel& domain_;
+  const std::vector<Evidence>& evidence_;
+  std::vector<Evidence> cautious_;
+  Context& context_;
+  std::map<Mode, std::unique_ptr<Prepared>> searches_;
+  FoundProposals result_;
+};
+
+}  // namespace
+
+FoundProposals model_proposals(const RepairInput& input, Context& context) {
+  return ModelSearch(input, context).run();
+}
+
+}  // namespace parallax::tools

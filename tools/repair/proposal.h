@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/repair/patch.h"
+#include "tools/repair/repair_input.h"
+#include "tools/repair/verification.h"
+
+namespace parallax::tools {
+
+/// A change after which what was seen is no discrepancy any more, as far as it is needed.
+struct Proposal {
+  enum class Changes : std::uint8_t { kModel, kBinding, kPlan, kScenario };
+  Changes changes =
+      Changes::kModel;   // what it is about; a change of the plan may touch the model, too
+  std::size_t size = 0;  // edits
+  int oddity = 0;        // how far they are from what people write; less is better
+  std::string words;     // a sentence without its period
+  std::vector<std::string> evidence;  // what stands behind it, sentences; besides the verdict
+  std::vector<ChangedFile> files;
+  std::optional<std::string> text;  // of the edited model, flat; none: the model stays as it is
+  bool precaution = false;          // what may fail is taken to fail
+  Verdict verdict;
+  /// What it does to the traces. Of a change of the model alone the ranking finds it out.
+  std::optional<TraceEffects> effects;
+};
+
+/// "model", "binding", "plan", "scenario": as `--json` says it.
+const char* name_of(Proposal::Changes changes);
+
+/// What one source found.
+struct FoundProposals {
+  std::vector<Proposal> proposals;
+  bool more = false;         // there are further ones that were not looked at
+  std::size_t edits = 0;     // single edits that were considered
+  std::string nearest_miss;  // where there is no proposal; may be empty
+  std::vector<std::string> remarks;
+};
+
+/// A kind of proposals: looks for changes that explain the partings of `input`, of which there are
+/// some. Stops where `context` was stopped.
+using ProposalSource = FoundProposals (*)(const RepairInput& input, Context& context);
+
+}  // namespace parallax::tools

@@ -1,0 +1,46 @@
+#include "tools/repair/ranking.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace parallax::tools {
+namespace {
+
+constexpr std::size_t kMostCompared = 6;  // have their traces compared, where fewer are wanted
+
+bool likelier(const Proposal& a, const Proposal& b) {
+  return std::tuple(a.size, !a.precaution, ~a.verdict.runs_whole, a.oddity) <
+         std::tuple(b.size, !b.precaution, ~b.verdict.runs_whole, b.oddity);
+}
+
+/// Among equals the one that permits the least.
+bool permits_less(const Proposal& a, const Proposal& b) {
+  if (likelier(a, b) || likelier(b, a)) return likelier(a, b);
+  if (!a.effects || !b.effects || !a.effects->gained || !b.effects->gained) return false;
+  return a.effects->gained->value < b.effects->gained->value;
+}
+
+}  // namespace
+
+bool rank_proposals(const RepairInput& input, std::size_t limit, std::vector<Proposal>& proposals,
+                    Context& context) {
+  std::stable_sort(proposals.begin(), proposals.end(), likelier);
+  bool more = false;
+  const auto wanted = limit == 0 ? proposals.size() : limit;
+  if (proposals.size() > std::max(wanted, kMostCompared)) {
+    proposals.resize(std::max(wanted, kMostCompared));
+    more = true;
+  }
+  TraceComparer comparer(input.loaded, input.text, context);
+  for (auto& proposal : proposals) {
+    if (!proposal.effects && proposal.text) proposal.effects = comparer.compare(*proposal.text);
+  }
+  std::stable_sort(proposals.begin(), proposals.end(), permits_less);
+  if (proposals.size() > wanted) {
+    proposals.resize(wanted);
+    more = true;
+  }
+  return more;
+}
+
+}  // namespace parallax::tools

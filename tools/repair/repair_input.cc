@@ -1,0 +1,140 @@
+#include "tools/repair/repair_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "tools/app/evidence.h"
+
+namespace parallax::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+base::Result<ScenarioModel> load(const RepairOptions& options, const harness::JournalHeader& header,
+                                 Context& context) {
+  if (!options.other_model) {
+    return load_recorded_scenario(options.folder, header, ScenarioUse::kExplain, context);
+  }
+  const auto path =
+      options.folder.scenario.empty() ? scenario_path(header) : fs::path(options.folder.scenario);
+  return load_plain_run(path, recorded_execution(header), context);
+}
+
+/// What `explain` made of the same scenario to tell the kind of cause: runs like the others. Adds
+/// those that `paths` has not.
+base::Status add_further_paths(const RepairOptions& options, const ScenarioModel& loaded,
+                               const harness::JournalHeader& header,
+                               std::vector<ObservedPath>& paths, Context& context) {
+  const auto folder = fs::path(options.folder.folder) / kFurtherRuns;
+  std::error_code error;
+  if (!fs::exists(folder / "journal.ndjson", error)) return base::Unit{};
+  const auto journal = harness::read_journal(folder, context.files(), context.sink());
+  if (!journal) return context.sink().already_reported();
+  if (!journal->header || journal->header->scenario_hash != header.scenario_hash ||
+      journal->header->seed != header.seed) {
+    context.remark(fmt::format("{}: runs of something else, left out", folder.string()));
+    return base::Unit{};
+  }
+  auto further = observed_paths(loaded, *journal, context);
+  if (!further) return context.sink().already_reported();
+  const auto known = paths.size();
+  for (auto& path : *further) {
+    const auto same = [&](const ObservedPath& other) {
+      return other.id.trace == path.id.trace && other.id.sample == path.id.sample;
+    };
+    const auto end = paths.begin() + static_cast<std::ptrdiff_t>(known);
+    if (std::none_of(paths.begin(), end, same)) paths.push_back(std::move(path));
+  }
+  return base::Unit{};
+}
+
+/// Where each way that runs went leaves the model.
+void find_partings(RepairInput& input, Context& context) {
+  std::size_t horizon = 1;
+  for (const auto& seen : input.evidence) horizon = std::max(horizon, seen.steps.size());
+  std::string why;
+  const auto model = compile_text(input.text, static_cast<std::int64_t>(horizon), context, why);
+  if (!model) {
+    input.remarks.push_back("the model by itself cannot be compiled: " + why);
+    return;
+  }
+  Admission admission(*model, context.stop());
+  std::vector<Evidence> usable;
+  for (auto& seen : input.evidence) {
+    const auto answer = admission.ask(seen);
+    if (answer.stopped) return;
+    if (!answer.start) {
+      input.remarks.push_back(fmt::format(
+          "run {} begins where the model cannot: what it says of the start is not repaired",
+          seen.ids.front()));
+      continue;
+    }
+    if (!answer.whole) {
+      seen.divergence = answer.reached + 1;
+      const auto after = *seen.divergence;
+      input.failed += seen.runs();
+      input.partings.push_back(
+          {seen.ids, after, seen.steps[after - 1], admission.impossible(seen, after)});
+    }
+    usable.push_back(std::move(seen));
+  }
+  input.evidence = std::move(usable);
+}
+
+void find_contradictions(RepairInput& input) {
+  for (const auto& a : input.evidence) {
+    if (!a.divergence) continue;
+    const auto t = *a.divergence;
+    for (const auto& b : input.evidence) {
+      if (&a == &b || !goes_like(a, b, t) || a.states[t] == b.states[t]) continue;
+      input.contradictions.push_back(
+          fmt::format("runs {} and {} go the same way up to {}, and after {} they differ",
+                      a.ids.front(), b.ids.front(), t - 1, a.steps[t - 1].event));
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+bool goes_like(const Evidence& a, const Evidence& b, std::size_t t) {
+  if (b.steps.size() < t || a.executed != b.executed) return false;
+  for (std::size_t k = 0; k < t; ++k) {
+    if (a.states[k] != b.states[k] || a.steps[k].event != b.steps[k].event) return false;
+  }
+  return true;
+}
+
+base::Result<RepairInput> load_repair_input(const RepairOptions& options, Context& context) {
+  auto& sink = context.sink();
+  const auto journal = harness::read_journal(options.folder.folder, context.files(), sink);
+  if (!journal) return sink.already_reported();
+  if (!journal->header) {
+    return sink.error_about(base::DiagnosticCode::kNoJournal, options.folder.folder);
+  }
+  auto loaded = load(options, *journal->header, context);
+  if (!loaded) return sink.already_reported();
+  auto paths = observed_paths(*loaded, *journal, context);
+  if (!paths || !add_further_paths(options, *loaded, *journal->header, *paths, context)) {
+    return sink.already_reported();
+  }
+  auto domain = load_domain(loaded->scenario, context);
+  if (domain == nullptr) {
+    return sink.error_about(base::DiagnosticCode::kReplayImpossible, options.folder.folder,
+                            "the texts of the model changed meanwhile");
+  }
+  auto text = compiler::flat_text(domain->ast, domain->files, {});
+  auto evidence = evidence_of(*paths, loaded->compilation.model);
+  RepairInput input{options,         *journal->header,  *std::move(loaded), std::move(domain),
+                    std::move(text), *std::move(paths), std::move(evidence)};
+  for (const auto& seen : input.evidence) input.runs += seen.runs();
+  find_partings(input, context);
+  if (!input.partings.empty()) find_contradictions(input);
+  return input;
+}
+
+}  // namespace parallax::tools

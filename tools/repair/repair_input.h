@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compiler/base/result.h"
+#include "harness/campaign/journal.h"
+#include "tools/app/observed_path.h"
+#include "tools/app/recorded_run.h"
+#include "tools/repair/domain_model.h"
+#include "tools/repair/evidence.h"
+
+namespace parallax::tools {
+
+struct RepairOptions {
+  RunFolderOptions folder;
+  bool other_model = false;  // the scenario need not be as it was when it was run
+  std::int64_t limit = 5;    // proposals that are shown; 0: all
+};
+
+/// Where runs and model parted.
+struct RunParting {
+  std::vector<std::string> ids;  // of the runs
+  std::size_t after = 0;         // timepoint
+  Evidence::Step step;           // in front of it
+  Evidence::State seen;          // there, unlike what the model says
+};
+
+/// What a repair starts from: what was run, what it showed, and where the model cannot follow.
+struct RepairInput {
+  RepairOptions options;
+  harness::JournalHeader header;
+  ScenarioModel loaded;
+  std::unique_ptr<DomainModel> domain;
+  std::string text;                 // of the model, flat
+  std::vector<ObservedPath> paths;  // of all recorded runs, in the ids of `loaded`
+  /// The same by names, those that went the same way as one, with their divergence; without those
+  /// that begin where the model cannot.
+  std::vector<Evidence> evidence;
+  std::size_t runs = 0, failed = 0;  // recorded; those that the model cannot follow
+  std::vector<RunParting> partings = {};
+  /// Runs that went the same way up to a step and then differently: chance, or the simulator.
+  std::vector<std::string> contradictions = {};
+  std::vector<std::string> remarks = {};
+};
+
+/// The same events up to `t`, through the same states in front of the last of them.
+bool goes_like(const Evidence& a, const Evidence& b, std::size_t t);
+
+/// Reads the runs of the folder, those that `explain` made included, and holds them against the
+/// model; not all of them if `context` is stopped meanwhile. Reports
+/// what read_journal, load_recorded_scenario and observed_paths report.
+base::Result<RepairInput> load_repair_input(const RepairOptions& options, Context& context);
+
+}  // namespace parallax::tools
