@@ -5,7 +5,7 @@
 
 #include "compiler/base/source_file.h"
 #include "compiler/compare/fact.h"
-#include "compiler/plan/lisp_reader.h"
+#include "compiler/lisp/lisp_reader.h"
 
 namespace parallax::compiler {
 

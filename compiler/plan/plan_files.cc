@@ -11,7 +11,7 @@
 #include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
-#include "compiler/plan/system_definition.h"
+#include "compiler/lisp/system_definition.h"
 
 namespace parallax::compiler {
 namespace {

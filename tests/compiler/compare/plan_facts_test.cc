@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/plan/lisp_reader.h"
+#include "compiler/lisp/lisp_reader.h"
 
 namespace parallax::test {
 namespace {

@@ -1,11 +1,11 @@
-#include "compiler/plan/lisp_reader.h"
+#include "compiler/lisp/lisp_reader.h"
 
 #include <doctest/doctest.h>
 
 #include <cstdint>
 #include <string>
 
-#include "compiler/plan/number.h"
+#include "compiler/lisp/number.h"
 #include "tests/support/random.h"
 
 namespace parallax::compiler {

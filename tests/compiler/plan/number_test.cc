@@ -1,4 +1,4 @@
-#include "compiler/plan/number.h"
+#include "compiler/lisp/number.h"
 
 #include <doctest/doctest.h>
 

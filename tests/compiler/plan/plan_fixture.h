@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "compiler/base/diagnostic.h"
-#include "compiler/plan/lisp_reader.h"
+#include "compiler/interpreter/unroller.h"
+#include "compiler/lisp/lisp_reader.h"
 #include "compiler/plan/plan_binding.h"
 #include "compiler/plan/plan_graph.h"
-#include "compiler/plan/unroller.h"
 
 namespace parallax::compiler {
 

@@ -7,8 +7,8 @@
 #include <fstream>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/lisp/system_definition.h"
 #include "compiler/plan/plan_files.h"
-#include "compiler/plan/system_definition.h"
 
 namespace parallax::compiler {
 namespace {

@@ -1,5 +1,5 @@
 // Vectors, rotations and rigid motions, held against Eigen and against what must hold of them.
-#include "compiler/plan/pose_math.h"
+#include "compiler/builtins/pose_math.h"
 
 #include <doctest/doctest.h>
 

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "compiler/plan/builtin_call.h"
+#include "compiler/builtins/builtin_call.h"
 #include "tests/compiler/plan/plan_fixture.h"
 
 namespace parallax::compiler {

@@ -1,5 +1,5 @@
 // What tells the world around the robot does nothing, and the page lists all of it.
-#include "compiler/plan/world_forms.h"
+#include "compiler/interpreter/world_forms.h"
 
 #include <doctest/doctest.h>
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "compiler/base/file_io.h"
+#include "compiler/interpreter/unroller.h"
 #include "compiler/plan/plan_binding.h"
-#include "compiler/plan/unroller.h"
 #include "tools/bench/families/plan_folder.h"
 
 namespace parallax::tools {

@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "compiler/builtins/builtin_call.h"
+#include "compiler/builtins/designator_links.h"
+
+namespace parallax::compiler {
+namespace {
+
+using Test = bool (*)(const Value& value);
+
+bool is(const Value& value, ValueKind kind) { return value.kind == kind; }
+bool is_symbol(const Value& v) { return is(v, ValueKind::kSymbol) || is(v, ValueKind::kNil); }
+bool is_list(const Value& v) { return is(v, ValueKind::kCons) || is(v, ValueKind::kNil); }
+bool is_number(const Value& v) { return is(v, ValueKind::kNumber); }
+bool is_float(const Value& v) { return is_number(v) && (v.number.is_float() || !v.number.exact()); }
+template <Number::Kind kKind>
+bool is_kind(const Value& v) {
+  return is_number(v) && v.number.kind() == kKind;
+}
+bool is_rational(const Value& v) { return is_number(v) && !is_float(v); }
+bool is_integer(const Value& v) { return is_rational(v) && v.number.is_integer(); }
+bool is_keyword(const Value& v) { return is(v, ValueKind::kSymbol) && v.keyword; }
+bool is_boolean(const Value& v) {
+  return is(v, ValueKind::kNil) || (is(v, ValueKind::kSymbol) && !v.keyword && v.text == "t");
+}
+
+const std::map<std::string_view, Test>& types() {
+  static const std::map<std::string_view, Test> table = {
+      {"t", [](const Value&) { return true; }},
+      {"nil", [](const Value&) { return false; }},
+      {"null", [](const Value& v) { return is(v, ValueKind::kNil); }},
+      {"list", is_list},
+      {"cons", [](const Value& v) { return is(v, ValueKind::kCons); }},
+      {"atom", [](const Value& v) { return !is(v, ValueKind::kCons); }},
+      {"symbol", is_symbol},
+      {"keyword", is_keyword},
+      {"boolean", is_boolean},
+      {"string", [](const Value& v) { return is(v, ValueKind::kString); }},
+      {"simple-string", [](const Value& v) { return is(v, ValueKind::kString); }},
+      {"sequence", [](const Value& v) { return is_list(v) || is(v, ValueKind::kString); }},
+      {"number", is_number},
+      {"real", is_number},
+      {"rational", is_rational},
+      {"ratio", [](const Value& v) { return is_rational(v) && !is_integer(v); }},
+      {"integer", is_integer},
+      {"fixnum", is_integer},
+      {"unsigned-byte", [](const Value& v) { return is_integer(v) && v.number.numerator() >= 0; }},
+      {"float", is_float},
+      {"single-float", is_kind<Number::Kind::kSingle>},
+      {"double-float", is_kind<Number::Kind::kDouble>},
+      {"function", [](const Value& v) { return is(v, ValueKind::kFunction); }},
+  };
+  return table;
+}
+
+/// Is the number between the bounds of (integer low high) and its like? `*` is no bound.
+std::optional<bool> in_bounds(const BuiltinCall& c, const Value& value,
+                              const std::vector<ValueId>& parts) {
+  for (std::size_t i = 1; i < parts.size() && i < 3; ++i) {
+    const auto& bound = c.values[parts[i]];
+    if (bound.kind == ValueKind::kSymbol && bound.text == "*") continue;
+    if (bound.kind != ValueKind::kNumber) return std::nullopt;
+    const auto order = compare(value.number, bound.number);
+    if (i == 1 ? order < 0 : order > 0) return false;
+  }
+  return true;
+}
+
+/// None: that is no type. As deep as the type is written.
+std::optional<bool> has_type(const BuiltinCall& c, ValueId id, ValueId type) {
+  const auto& wanted = c.values[type];
+  const auto& value = c.values[id];
+  if (wanted.kind == ValueKind::kNil) return false;
+  if (wanted.kind == ValueKind::kSymbol) {
+    if (const auto known = types().find(wanted.text); known != types().end()) {
+      return known->second(value);
+    }
+    if (const auto holds = has_designator_type(value, wanted.text)) return holds;
+    const auto failure = c.classes.canonical(wanted.text);
+    if (!failure) return std::nullopt;
+    return value.kind == ValueKind::kFailure && c.classes.is_a(value.text, *failure);
+  }
+  const auto parts = c.values.elements(type);
+  if (!parts || parts->empty()) return std::nullopt;
+  const auto& head = c.values[parts->front()];
+  const std::string_view word = head.kind == ValueKind::kSymbol ? std::string_view(head.text) : "";
+  if (word == "or" || word == "and") {
+    bool result = word == "and";
+    for (std::size_t i = 1; i < parts->size(); ++i) {
+      const auto part = has_type(c, id, (*parts)[i]);
+      if (!part) return std::nullopt;
+      result = word == "or" ? (result || *part) : (result && *part);
+    }
+    return result;
+  }
+  if (word == "not" && parts->size() == 2) {
+    const auto part = has_type(c, id, (*parts)[1]);
+    if (!part) return std::nullopt;
+    return !*part;
+  }
+  if (word == "eql" && parts->size() == 2) return c.values.same(id, (*parts)[1]);
+  if (word == "member") {
+    return std::any_of(parts->begin() + 1, parts->end(),
+                       [&](ValueId item) { return c.values.same(id, item); });
+  }
+  const bool number = word == "integer" || word == "float" || word == "real" ||
+                      word == "rational" || word == "number" || word == "single-float" ||
+                      word == "double-float";
+  if (!number) return std::nullopt;
+  const auto kind = has_type(c, id, parts->front());
+  if (!kind || !*kind) return kind;
+  return in_bounds(c, value, *parts);
+}
+
+BuiltinResult typep(const BuiltinCall& c) {
+  const auto holds = has_type(c, c.args[0], c.args[1]);
+  if (!holds) return c.wrong(1, "a type");
+  return c.values.boolean(*holds);
+}
+
+/// A predicate by the name of the type that it tests.
+template <Test kTest>
+BuiltinResult is_of(const BuiltinCall& c) {
+  return c.values.boolean(kTest(c.values[c.args[0]]));
+}
+bool is_string(const Value& v) { return is(v, ValueKind::kString); }
+bool is_cons(const Value& v) { return is(v, ValueKind::kCons); }
+bool is_atom(const Value& v) { return !is(v, ValueKind::kCons); }
+bool is_function(const Value& v) { return is(v, ValueKind::kFunction); }
+
+BuiltinResult endp(const BuiltinCall& c) {
+  if (!is_list(c.values[c.args[0]])) return c.wrong(0, "a list");
+  return c.values.boolean(c.values.is_nil(c.args[0]));
+}
+
+constexpr BuiltinEntry kTypeTable[] = {
+    {{"typep", 2, 2}, typep},
+    {{"listp", 1, 1}, is_of<is_list>},
+    {{"consp", 1, 1}, is_of<is_cons>},
+    {{"atom", 1, 1}, is_of<is_atom>},
+    {{"endp", 1, 1}, endp},
+    {{"symbolp", 1, 1}, is_of<is_symbol>},
+    {{"keywordp", 1, 1}, is_of<is_keyword>},
+    {{"stringp", 1, 1}, is_of<is_string>},
+    {{"numberp", 1, 1}, is_of<is_number>},
+    {{"realp", 1, 1}, is_of<is_number>},
+    {{"rationalp", 1, 1}, is_of<is_rational>},
+    {{"integerp", 1, 1}, is_of<is_integer>},
+    {{"floatp", 1, 1}, is_of<is_float>},
+    {{"functionp", 1, 1}, is_of<is_function>},
+};
+
+}  // namespace
+
+std::span<const BuiltinEntry> type_builtins() { return kTypeTable; }
+
+}  // namespace parallax::compiler

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "compiler/base/result.h"
+#include "compiler/interpreter/perform_resolver.h"
+#include "compiler/interpreter/plan_compiler.h"
+#include "compiler/interpreter/plan_machine.h"
+#include "compiler/interpreter/rule_proofs.h"
+#include "compiler/interpreter/unroller.h"
+
+namespace parallax::compiler {
+
+/// An execution that waits to be continued, and the edge that it gives a target to.
+struct Job {
+  enum class Edge : std::uint8_t { kEntry, kSuccess, kFailure, kTrue, kFalse };
+  PlanState state;
+  std::optional<ValueId> failure;  // goes on by failing
+  std::optional<StopPerform> act;  // goes on by performing
+  Edge edge = Edge::kEntry;
+  std::uint32_t owner = 0;                         // location or branch
+  std::optional<LocationId> failed = {};           // what it goes on by failing
+  std::size_t way = 0;                             // likewise: the reason, if it goes by reasons
+  std::optional<PlanMachine::Ending> ending = {};  // goes on by the end of a `par`
+  /// Goes on by asking the rules again: what carries out an action, or whether a goal holds.
+  std::optional<std::variant<StopPerform, StopProof>> proof = {};
+  std::vector<std::uint32_t> answers = {};  // of the model, to what the rules asked so far
+};
+
+/// Explores the states of a plan depth first, success before failure, and writes the graph.
+class Explorer {
+ public:
+  Explorer(const LispData& data, const PlanCode& code, const FactBase& facts,
+           const PlanBinding& binding, const PoseLocator& locator, const UnrollOptions& options,
+           ValueStore& values, base::DiagnosticSink& sink)
+      : data_(data),
+        code_(code),
+        binding_(binding),
+        options_(options),
+        values_(values),
+        sink_(sink),
+        machine_(code, data,
+                 {static_cast<std::uint32_t>(std::max(options.max_call_depth, 1)), options.max_loop,
+                  options.max_steps, options.location_samples, options.stop},
+                 values, sink),
+        resolver_(binding, locator, ModelNames(options.constants), ModelNames(options.fluents),
+                  code.classes, graph_, values, sink),
+        rules_(
+            facts, data, code, options, resolver_, machine_,
+            [this](const StopQuestion& stop) { return guard_of(stop); }, values, sink) {}
+
+  base::Result<PlanGraph> explore();
+
+ private:
+  using StateKey = std::vector<std::uint32_t>;
+  void set(const Job& job, PlanTarget target);
+  void note_handlers(std::optional<LocationId> failed, std::size_t way = 0);
+  void write_handlers();
+  std::optional<PlanTarget> advance(Job& job);
+  std::optional<PlanTarget> stopped(PlanState& state, const PlanStop& stop);
+  bool has_room(const StateKey& key, DatumId form);
+  std::optional<PlanTarget> perform(PlanState& state, const StopPerform& stop);
+  void fail_by_reason(LocationId id, const PlanState& state, DatumId form);
+  std::optional<PlanStop> run_plan(PlanState& state, const StopPerform& stop,
+                                   const BindingEntry& entry);
+  std::optional<PlanTarget> refer(PlanState& state, const StopPerform& stop,
+                                  const PerformResolver::Reference& reference);
+  /// One of the ways whose guards hold, or, with the number 0, none of them.
+  BranchId one_of(const std::vector<ModelWay>& ways, DatumId form,
+                  const std::function<Job(std::uint32_t)>& job);
+  /// What became of a perform or a goal that the rules were asked about: where control goes if
+  /// they ask the model, or if that was an error; otherwise the machine goes on, unless it stopped.
+  struct Ruled {
+    bool goes_on = false;
+    std::optional<PlanTarget> target;
+    std::optional<PlanStop> stop;
+  };
+  Ruled ask_rules(Job& job);
+  Ruled ground(Job& job, const StopPerform& perform);
+  Ruled prove(Job& job, const StopProof& proof);
+  Ruled ask_model(const Job& job, const ProofQuestion& question, DatumId form);
+  Ruled nothing_fits(Job& job, const StopPerform& perform, bool fits);
+  bool is_ruled(const StopPerform& perform) const;
+  StopPerform named(const StopPerform& stop, const PerformResolver::Reference& reference,
+                    std::string_view name);
+  std::optional<PlanTarget> take_turns(const PlanState& state);
+  BranchId branch(FormulaTree guard, DatumId form);
+  BranchId free_branch(std::string choice, DatumId form);
+  std::optional<PlanTarget> question(PlanState& state, const StopQuestion& stop);
+  base::Result<FormulaTree> guard_of(const StopQuestion& stop);
+  ValueId found_object(ModelValueId id, ValueId designator);
+  ModelValueId free_register(const PlanState& state, DatumId form, const std::string& variable);
+  PlanTarget terminal(TerminalKind kind, std::string detail, std::optional<DatumId> at);
+  std::vector<base::SourceRange> calls(const PlanState& state) const;
+
+  const LispData& data_;
+  const PlanCode& code_;
+  const PlanBinding& binding_;
+  const UnrollOptions& options_;
+  ValueStore& values_;
+  base::DiagnosticSink& sink_;
+  PlanGraph graph_;
+  PlanMachine machine_;
+  PerformResolver resolver_;
+  RuleProofs rules_;
+  std::vector<Job> jobs_;
+  std::map<StateKey, LocationId> locations_;
+  std::map<std::pair<StateKey, FormulaTree>, BranchId> branches_;
+  std::map<StateKey, BranchId> references_;
+  std::map<StateKey, BranchId> turns_;
+  std::map<std::string, TerminalId> terminals_;
+  std::map<std::pair<std::uint32_t, std::string>, std::vector<ModelValueId>> registers_;
+  std::map<std::uint32_t, PlanHandler> handlers_;  // by unit: what they take up
+  bool failed_ = false;
+  std::size_t key_words_ = 0;
+  bool full_ = false;  // the limit of locations was reached and reported
+};
+
+}  // namespace parallax::compiler

@@ -1,0 +1,307 @@
+// `par` and `pursue` whose branches take turns, perform by perform. All branches begin at the same
+// height of frames, guards and stack; the one that runs is in place, the others are kept aside.
+// Each is a task of its own. When the first of them fails (of a `pursue`: ends), the others may
+// still carry out the performs at which they wait; then they run their clean-ups, and the whole
+// ends.
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "compiler/interpreter/plan_machine.h"
+
+namespace parallax::compiler {
+namespace {
+
+template <typename T>
+std::vector<T> take_above(std::vector<T>& all, std::size_t height) {
+  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(height);
+  std::vector<T> out(std::make_move_iterator(begin), std::make_move_iterator(all.end()));
+  all.erase(begin, all.end());
+  return out;
+}
+
+template <typename T>
+void put_back(std::vector<T>& all, std::vector<T>& part) {
+  std::move(part.begin(), part.end(), std::back_inserter(all));
+  part.clear();
+}
+
+/// Puts a branch of the innermost `par` in place.
+void put_in_place(PlanState& state, std::size_t branch) {
+  auto& par = state.pars.back();
+  par.active = branch;
+  auto& own = par.branches[branch];
+  own.fresh = own.fresh || !own.started;
+  own.started = true;
+  put_back(state.frames, own.frames);
+  put_back(state.guards, own.guards);
+  put_back(state.stack, own.stack);
+  auto nested = std::move(own.pars);
+  own.pars.clear();
+  put_back(state.pars, nested);
+}
+
+/// Puts the running branch of the `par` at this depth aside, with every `par` inside it.
+void put_aside(PlanState& state, std::size_t depth) {
+  auto nested = take_above(state.pars, depth + 1);
+  auto& par = state.pars[depth];
+  auto& own = par.branches[par.active];
+  own.fresh = false;
+  own.pars = std::move(nested);
+  own.frames = take_above(state.frames, par.frames);
+  own.guards = take_above(state.guards, par.guards);
+  own.stack = take_above(state.stack, par.height);
+}
+
+bool has_cleanup(const PlanBranchState& branch) {
+  const auto cleans_up = [](const PlanGuard& guard) { return guard.kind == GuardKind::kCleanup; };
+  if (std::any_of(branch.guards.begin(), branch.guards.end(), cleans_up)) return true;
+  for (const auto& par : branch.pars) {
+    if (std::any_of(par.branches.begin(), par.branches.end(), has_cleanup)) return true;
+  }
+  return false;
+}
+
+bool runs_cleanup(const PlanFrame& frame) { return frame.kind == FrameKind::kCleanup; }
+
+bool in_cleanup(const PlanBranchState& branch) {
+  if (std::any_of(branch.frames.begin(), branch.frames.end(), runs_cleanup)) return true;
+  for (const auto& par : branch.pars) {
+    if (std::any_of(par.branches.begin(), par.branches.end(), in_cleanup)) return true;
+  }
+  return false;
+}
+
+/// How indices move of what is put elsewhere: those from `frame` and `place` on.
+struct Shift {
+  std::size_t frame = 0;
+  std::size_t frames = 0;  // by so much
+  std::size_t place = 0;
+  std::size_t places = 0;
+};
+
+std::uint32_t moved_frame(std::uint32_t frame, const std::vector<Shift>& shifts) {
+  for (auto shift = shifts.rbegin(); shift != shifts.rend(); ++shift) {
+    if (frame >= shift->frame) return frame + static_cast<std::uint32_t>(shift->frames);
+  }
+  return frame;
+}
+
+std::uint32_t moved_place(std::uint32_t place, const std::vector<Shift>& shifts) {
+  for (auto shift = shifts.rbegin(); shift != shifts.rend(); ++shift) {
+    if (place >= shift->place) return place + static_cast<std::uint32_t>(shift->places);
+  }
+  return place;
+}
+
+/// Puts what the clean-ups of an ended branch need on top of everything: they run when control
+/// leaves what lies below.
+void keep_cleanups(PlanState& state, const PlanPar& par, const PlanBranchState& branch,
+                   std::vector<Shift> shifts) {
+  if (!has_cleanup(branch)) return;
+  shifts.push_back(
+      {par.frames, state.frames.size() - par.frames, par.height, state.stack.size() - par.height});
+  const auto border = static_cast<std::uint32_t>(state.guards.size());
+  state.guards.push_back({GuardKind::kEvaporated, 0,
+                          static_cast<std::uint32_t>(state.frames.size()),
+                          static_cast<std::uint32_t>(state.stack.size())});
+  for (auto frame : branch.frames) {
+    frame.link = moved_frame(frame.link, shifts);
+    frame.base = moved_place(frame.base, shifts);
+    frame.guard_base = border;
+    frame.skip_to = border;
+    frame.pc = 0;
+    state.frames.push_back(frame);
+  }
+  state.stack.insert(state.stack.end(), branch.stack.begin(), branch.stack.end());
+  for (auto guard : branch.guards) {
+    if (guard.kind != GuardKind::kCleanup && guard.kind != GuardKind::kSpecial) continue;
+    guard.frame = moved_frame(guard.frame, shifts);
+    guard.height = moved_place(guard.height, shifts);
+    state.guards.push_back(guard);
+  }
+  for (const auto& nested : branch.pars) {
+    for (auto inner = nested.branches.rbegin(); inner != nested.branches.rend(); ++inner) {
+      keep_cleanups(state, nested, *inner, shifts);
+    }
+  }
+}
+
+std::vector<PlanMachine::ParEnd> ends_of(const PlanPar& par) {
+  using ParEnd = PlanMachine::ParEnd;
+  std::vector<ParEnd> out;
+  // Clean-ups that are under way come to their end first.
+  if (std::any_of(par.branches.begin(), par.branches.end(), in_cleanup)) return out;
+  if (par.value) out.push_back(ParEnd::kValue);
+  if (!par.failure) return out;
+  out.push_back(ParEnd::kFailure);
+  const bool cleans_up = std::any_of(par.branches.begin(), par.branches.end(), has_cleanup);
+  if (cleans_up) out.push_back(ParEnd::kFailureAfterCleanups);
+  return out;
+}
+
+void find_endings(const PlanPar& par, PlanMachine::BranchPath& path,
+                  std::vector<PlanMachine::Ending>& out) {
+  for (const auto end : ends_of(par)) out.push_back({path, end});
+  for (std::size_t i = 0; i < par.branches.size(); ++i) {
+    if (par.branches[i].pars.empty()) continue;
+    path.push_back(i);
+    find_endings(par.branches[i].pars.front(), path, out);
+    path.pop_back();
+  }
+}
+
+void find_waiting(const PlanPar& par, PlanMachine::BranchPath& path,
+                  std::vector<PlanMachine::BranchPath>& out) {
+  for (std::size_t i = 0; i < par.branches.size(); ++i) {
+    const auto& branch = par.branches[i];
+    path.push_back(i);
+    if (branch.turn) out.push_back(path);
+    if (!branch.pars.empty()) find_waiting(branch.pars.front(), path, out);
+    path.pop_back();
+  }
+}
+
+}  // namespace
+
+PlanMachine::Step PlanMachine::start_par(PlanState& state, const PlanInstruction& instruction) {
+  PlanPar par;
+  par.frames = static_cast<std::uint32_t>(state.frames.size());
+  par.guards = static_cast<std::uint32_t>(state.guards.size());
+  par.height = static_cast<std::uint32_t>(state.stack.size());
+  par.form = instruction.source;
+  par.exit = code_.pars[instruction.a].exit;
+  for (const auto unit : code_.pars[instruction.a].units) {
+    PlanBranchState branch;
+    PlanFrame frame;
+    frame.unit = unit;
+    frame.link = par.frames - 1;
+    frame.base = par.height;
+    frame.guard_base = par.guards;
+    frame.performs = state.performs;
+    branch.frames = {frame};
+    par.branches.push_back(std::move(branch));
+  }
+  state.pars.push_back(std::move(par));
+  put_in_place(state, 0);
+  return {};
+}
+
+PlanMachine::Step PlanMachine::end_branch(PlanState& state) {
+  auto& par = state.pars.back();
+  auto& own = par.branches[par.active];
+  own.done = true;
+  own.fresh = false;
+  own.result = state.stack.back();
+  // A failure that came first decides.
+  if (par.exit && !par.failure && !par.value) par.value = own.result;
+  state.frames.resize(par.frames);
+  state.guards.resize(par.guards);
+  state.stack.resize(par.height);
+  return next_branch(state);
+}
+
+/// The branch that runs has failed, and its clean-ups have run.
+PlanMachine::Step PlanMachine::fail_branch(PlanState& state, ValueId failure) {
+  auto& par = state.pars.back();
+  par.branches[par.active].done = true;
+  par.branches[par.active].fresh = false;
+  if (!par.failure) par.failure = failure;
+  state.frames.resize(par.frames);
+  state.guards.resize(par.guards);
+  state.stack.resize(par.height);
+  return next_branch(state);
+}
+
+/// No branch of the innermost `par` is in place: starts the next one, or leaves the `par`, or goes
+/// outward where all wait.
+PlanMachine::Step PlanMachine::next_branch(PlanState& state) {
+  for (;;) {
+    auto& par = state.pars.back();
+    par.active = 0;
+    bool all_done = true;
+    for (std::size_t i = 0; i < par.branches.size(); ++i) {
+      if (!par.branches[i].started) {
+        put_in_place(state, i);
+        return {};
+      }
+      all_done = all_done && par.branches[i].done;
+    }
+    if (par.failure || par.value) {
+      std::vector<BranchPath> waiting;
+      BranchPath path;
+      find_waiting(par, path, waiting);
+      const auto ends = ends_of(par);
+      if (waiting.empty() && ends.size() == 1) return evaporate(state, ends.front());
+    } else if (all_done) {
+      const auto result = par.branches.front().result;
+      state.pars.pop_back();
+      state.stack.push_back(result);
+      return {};
+    }
+    if (state.pars.size() == 1) return StopTurn{};
+    put_aside(state, state.pars.size() - 2);
+  }
+}
+
+std::optional<PlanStop> PlanMachine::wait(PlanState& state, const StopPerform& perform) {
+  const auto decided = std::find_if(state.pars.begin(), state.pars.end(), [](const PlanPar& par) {
+    return par.failure.has_value() || par.value.has_value();
+  });
+  // A branch of a `par` that is decided performs nothing new, but for what it begins with and the
+  // clean-ups it is in.
+  bool goes_on = decided == state.pars.end() || decided->branches[decided->active].fresh;
+  if (!goes_on) {
+    goes_on = std::any_of(state.frames.begin() + decided->frames, state.frames.end(), runs_cleanup);
+  }
+  auto& par = state.pars.back();
+  if (goes_on) par.branches[par.active].turn = PlanTurn{perform.designator, perform.form};
+  put_aside(state, state.pars.size() - 1);
+  return next_branch(state);
+}
+
+std::vector<PlanMachine::BranchPath> PlanMachine::waiting(const PlanState& state) {
+  std::vector<BranchPath> out;
+  BranchPath path;
+  find_waiting(state.pars.front(), path, out);
+  return out;
+}
+
+std::vector<PlanMachine::Ending> PlanMachine::endings(const PlanState& state) {
+  std::vector<Ending> out;
+  BranchPath path;
+  find_endings(state.pars.front(), path, out);
+  return out;
+}
+
+StopPerform PlanMachine::resume(PlanState& state, const BranchPath& path) {
+  for (const auto branch : path) put_in_place(state, branch);
+  auto& par = state.pars.back();
+  auto& turn = par.branches[par.active].turn;
+  const StopPerform out{turn->designator, turn->form};
+  turn.reset();
+  return out;
+}
+
+std::optional<PlanStop> PlanMachine::end_par(PlanState& state, const Ending& ending) {
+  for (const auto branch : ending.path) put_in_place(state, branch);
+  return evaporate(state, ending.end);
+}
+
+/// The innermost `par` ends. Of its branches only the clean-ups are left, those of the first branch
+/// on top. They run before a value goes on, before a failure does, or once a handler of it has
+/// decided or on the way out of the task.
+PlanMachine::Step PlanMachine::evaporate(PlanState& state, ParEnd end) {
+  const auto par = std::move(state.pars.back());
+  state.pars.pop_back();
+  for (auto branch = par.branches.rbegin(); branch != par.branches.rend(); ++branch) {
+    keep_cleanups(state, par, *branch, {});
+  }
+  const auto frame = par.frames - 1;
+  if (end == ParEnd::kValue)
+    return unwind(state, {PendingKind::kExit, frame, *par.exit, *par.value});
+  if (end == ParEnd::kFailure) return search(state, *par.failure, par.guards);
+  return unwind(state, {PendingKind::kCross, frame, par.guards, *par.failure});
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,327 @@
+#include "compiler/interpreter/plan_compiler.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/suggest.h"
+#include "compiler/interpreter/function_calls.h"
+#include "compiler/interpreter/lisp_macros.h"
+#include "compiler/lisp/lisp_library.h"
+
+namespace parallax::compiler {
+namespace {
+
+using base::DiagnosticCode;
+
+bool defines_function(std::string_view head) {
+  return head == "defun" || head == "def-cram-function" || head == "def-top-level-cram-function";
+}
+
+bool defines_global(std::string_view head) {
+  return head == "defparameter" || head == "defvar" || head == "defconstant";
+}
+
+bool is_housekeeping(std::string_view head) {
+  return head == "in-package" || head == "defpackage" || head == "declaim" || head == "declare" ||
+         head == "proclaim" || head == "export" || head == "def-fact-group";
+}
+
+/// Collects what the file defines, compiles it, then what is to be run.
+class PlanCompiler {
+ public:
+  PlanCompiler(LispText& text, ValueStore& values, base::DiagnosticSink& sink, bool interleave)
+      : text_(text), sink_(sink), c_(text, values, sink, interleave) {}
+
+  base::Result<PlanCode> compile(const std::optional<std::string>& entry) {
+    if (text_.forms.empty()) {
+      return sink_.error(DiagnosticCode::kNoPlanEntry, base::SourceRange{text_.file, 0, 0},
+                         "the file has no forms");
+    }
+    for (const auto form : text_.forms) flatten(form);
+    note_designator_use();
+    collect_definitions();
+    for (const auto form : forms_) c_.check_dots(form);
+    add_library();
+    expand_forms();
+    if (!missing_ && bare_forms_.empty() && functions_.empty()) {
+      return c_.error(DiagnosticCode::kNoPlanEntry, text_.forms.front(),
+                      "only definitions of variables");
+    }
+    compile_functions();
+    if (!missing_) compile_main(entry);
+    if (c_.failed()) return sink_.already_reported();
+    c_.code.code().function_names.insert(text_.keys.begin(), text_.keys.end());
+    return std::move(c_.code.code());
+  }
+
+ private:
+  /// Whether the plan tells designators apart, and whether it asks what they say.
+  void note_designator_use() {
+    static constexpr std::string_view kEquate[] = {"equate", "desig-equal"};
+    static constexpr std::string_view kDescribe[] = {
+        "desig-prop-value", "desig-prop-values", "properties",     "description",
+        "copy-designator",  "property",          "def-fact-group", "extend-designator-properties"};
+    const auto is_one = [](const auto& names, std::string_view name) {
+      return std::find(std::begin(names), std::end(names), name) != std::end(names);
+    };
+    std::vector<DatumId> open(text_.forms.begin(), text_.forms.end());
+    while (!open.empty()) {
+      const auto datum = open.back();
+      open.pop_back();
+      const auto items = c_.data.children(datum);
+      open.insert(open.end(), items.begin(), items.end());
+      if (!c_.data.is_symbol(datum)) continue;
+      auto& code = c_.code.code();
+      code.identities = code.identities || is_one(kEquate, c_.data.name(datum));
+      code.describes = code.describes || code.identities || is_one(kDescribe, c_.data.name(datum));
+    }
+  }
+
+  bool define_name(DatumId form, DatumId name) {
+    if (!c_.data.is_symbol(name)) {
+      c_.malformed(form, "expected a name");
+      return false;
+    }
+    const auto [entry, added] = defined_.emplace(c_.data.key(name), name);
+    if (added) return true;
+    c_.error(DiagnosticCode::kDuplicatePlanDefinition, name, c_.data.name(name))
+        .note(c_.data.source(entry->second), "first defined here");
+    return false;
+  }
+
+  void define_function(DatumId form, FormItems items) {
+    if (items.size() < 3) return c_.malformed(form, "expected a name, parameters and a body");
+    if (!define_name(form, items[1])) return;
+    const auto& name = c_.data.key(items[1]);
+    if (plan_forms().contains(c_.data.name(items[1])))
+      return c_.unsupported(form, fmt::format("`{}` is a built-in form", name));
+    add_function(form, name, items);
+    functions_.emplace_back(c_.position, name);
+  }
+
+  void add_function(DatumId form, const std::string& name, FormItems items) {
+    const auto function = declare_function(c_, form, name, items[2]);
+    c_.code.code().functions.emplace(name, function.unit);
+    c_.defined.functions.emplace(name, function);
+    c_.defined.unwritten[function.unit] = {
+        function, {}, c_.data.name(items[1]), items.subspan(3), c_.position};
+  }
+
+  void define_macro(DatumId form, FormItems items) {
+    if (items.size() < 3) return c_.malformed(form, "expected a name, parameters and a body");
+    if (define_name(form, items[1])) add_macro(form, c_.data.key(items[1]), items);
+  }
+
+  void add_macro(DatumId form, const std::string& name, FormItems items) {
+    const auto macro = declare_macro(c_, form, c_.data.name(items[1]), items[2]);
+    c_.defined.macros.emplace(name, macro);
+    c_.defined.unwritten[macro.unit] = {{}, macro, macro.name, items.subspan(3), c_.position};
+  }
+
+  void define_global(DatumId form, FormItems items) {
+    if (items.size() < 2) return c_.malformed(form, "expected a name and a value");
+    // A function and a variable of one name live in different namespaces in Lisp; here they clash.
+    if (!define_name(form, items[1])) return;
+    c_.defined.globals.emplace(c_.data.key(items[1]),
+                               static_cast<std::uint32_t>(c_.code.code().globals.size()));
+    c_.code.code().globals.push_back({c_.data.key(items[1]), form});
+    global_forms_.emplace_back(c_.position, form);
+  }
+
+  void define_condition(DatumId form, FormItems items) {
+    if (items.size() < 3 || !c_.data.is_symbol(items[1]) || !c_.data.is_list(items[2])) {
+      return c_.malformed(form, "expected a name and a list of parents");
+    }
+    std::vector<std::string> parents;
+    for (const auto parent : c_.data.children(items[2])) {
+      if (const auto known = c_.failure_class(parent)) parents.push_back(*known);
+    }
+    if (parents.empty()) parents.emplace_back("condition");
+    if (c_.code.code().classes.add(c_.data.name(items[1]), std::move(parents))) return;
+    c_.error(DiagnosticCode::kDuplicatePlanDefinition, items[1], c_.data.name(items[1]));
+  }
+
+  /// What stands in a `progn` or `eval-when` at top level stands at top level.
+  void flatten(DatumId form) {
+    std::vector<DatumId> open = {form};
+    while (!open.empty()) {
+      const auto datum = open.back();
+      open.pop_back();
+      const auto head = c_.data.head(datum).value_or("");
+      const std::size_t skipped = head == "progn" ? 1 : (head == "eval-when" ? 2 : 0);
+      const auto items = c_.data.children(datum);
+      if (skipped == 0 || items.size() <= skipped) {
+        forms_.push_back(datum);
+        continue;
+      }
+      const auto inside = items.subspan(skipped);
+      open.insert(open.end(), inside.rbegin(), inside.rend());
+    }
+  }
+
+  /// True for a form that defines something, or says nothing about what is run.
+  bool define(DatumId form) {
+    const auto head = c_.data.head(form).value_or("");
+    const auto items = c_.data.children(form);
+    if (defines_function(head)) {
+      define_function(form, items);
+    } else if (head == "defmacro") {
+      define_macro(form, items);
+    } else if (defines_global(head)) {
+      define_global(form, items);
+    } else {
+      return is_housekeeping(head) || head == "define-condition";
+    }
+    return true;
+  }
+
+  void collect_definitions() {
+    // Failure classes come first: a handler may stand above the definition of its class.
+    for (const auto form : forms_) {
+      if (c_.data.head(form) == "define-condition") define_condition(form, c_.data.children(form));
+    }
+    for (std::size_t i = 0; i < forms_.size(); ++i) {
+      c_.position = i + 1;
+      if (!define(forms_[i])) others_.emplace_back(i + 1, forms_[i]);
+    }
+  }
+
+  /// Functions of our own Lisp that the plan does not define itself.
+  void add_library() {
+    c_.position = 0;
+    for (const auto form : add_lisp_library(c_.data)) {
+      const auto items = c_.data.children(form);
+      const auto& name = c_.data.key(items[1]);
+      if (defined_.contains(name)) continue;
+      if (c_.data.head(form) == "defmacro") {
+        add_macro(form, name, items);
+      } else {
+        add_function(form, name, items);
+      }
+    }
+  }
+
+  /// The calls of macros at top level may define something as well.
+  void expand_forms() {
+    for (const auto& [position, form] : others_) {
+      c_.position = position;
+      std::vector<DatumId> open = {form};
+      while (!open.empty()) {
+        const auto datum = open.back();
+        open.pop_back();
+        const auto items = c_.data.children(datum);
+        const auto head = c_.data.head(datum).value_or("");
+        const auto* macro = c_.data.head(datum) ? c_.find_macro(items.front()) : nullptr;
+        if (macro != nullptr) {
+          const auto expansion = c_.expand(*macro, datum);
+          if (expansion) open.push_back(*expansion);
+          missing_ = missing_ || !expansion;
+        } else if (datum != form && (head == "progn" || head == "eval-when") && items.size() > 1) {
+          const auto inside = items.subspan(head == "progn" ? 1 : 2);
+          open.insert(open.end(), inside.rbegin(), inside.rend());
+        } else if (datum != form && head == "define-condition") {
+          define_condition(datum, items);
+        } else if (datum == form || !define(datum)) {
+          bare_forms_.emplace_back(position, datum);
+        }
+      }
+    }
+    const auto by_position = [](const auto& a, const auto& b) { return a.first < b.first; };
+    std::stable_sort(functions_.begin(), functions_.end(), by_position);
+    std::stable_sort(global_forms_.begin(), global_forms_.end(), by_position);
+    for (const auto& [position, name] : functions_) c_.defined.function_order.push_back(name);
+  }
+
+  void compile_functions() {
+    const auto first = text_.forms.front();
+    c_.code.code().halt = c_.code.declare_unit("a computation", first, 0);
+    c_.code.enter_unit(c_.code.code().halt);
+    c_.code.leave_unit(PlanOp::kDone, first);
+    c_.code.code().definitions = c_.code.declare_unit("the definitions", first, 0);
+    c_.code.enter_unit(c_.code.code().definitions);
+    for (const auto& [position, form] : global_forms_) {
+      c_.position = position;
+      const auto items = c_.data.children(form);
+      if (items.size() > 2) {
+        c_.compile(items[2]);
+      } else {
+        c_.nil(form);
+      }
+      c_.code.emit(PlanOp::kStoreGlobal, c_.defined.globals.at(c_.data.key(items[1])), 0, form);
+      c_.code.adjust(-1);
+    }
+    c_.code.leave_unit(PlanOp::kDone, first);
+    while (!c_.defined.unwritten.empty()) c_.complete(c_.defined.unwritten.begin()->first);
+  }
+
+  /// An entry may be named as `package::name` or `package:name`.
+  std::string entry_key(std::string entry) const {
+    const auto colon = entry.find(':');
+    if (colon == std::string::npos) return entry;
+    if (!entry.substr(colon).starts_with("::")) entry.insert(colon, ":");
+    const auto found = text_.keys.find(entry);
+    return found == text_.keys.end() ? entry : found->second;
+  }
+
+  void compile_main(const std::optional<std::string>& entry) {
+    c_.code.code().main = c_.code.declare_unit("the plan", text_.forms.front(), 0);
+    c_.code.enter_unit(c_.code.code().main);
+    auto name = entry ? std::optional(entry_key(*entry)) : std::nullopt;
+    if (!name && bare_forms_.empty() && !c_.defined.function_order.empty())
+      name = c_.defined.function_order.back();
+    if (!name) {
+      for (std::size_t i = 0; i < bare_forms_.size(); ++i) {
+        if (i > 0) c_.code.drop(bare_forms_[i].second);
+        c_.position = bare_forms_[i].first;
+        c_.compile(bare_forms_[i].second);
+      }
+      if (bare_forms_.empty()) c_.nil(text_.forms.front());
+    } else if (const auto found = c_.defined.functions.find(*name);
+               found == c_.defined.functions.end()) {
+      std::vector<std::string> names = c_.defined.function_order;
+      auto error = c_.error(DiagnosticCode::kNoPlanEntry, text_.forms.front(),
+                            fmt::format("no function `{}`", *name));
+      if (const auto near = base::nearest_name(*name, names)) {
+        error.fix(fmt::format("name `{}`", *near));
+      }
+    } else if (Callee callee;
+               !found->second.parameters.empty() && !found->second.parameters.front().optional) {
+      c_.error(DiagnosticCode::kNoPlanEntry, found->second.source,
+               fmt::format("`{}` needs arguments", *name))
+          .fix(fmt::format("call it at top level: ({} ...)", *name));
+    } else {
+      callee.function = &found->second;
+      compile_call(c_, found->second.source, *name, callee, {});
+    }
+    c_.code.leave_unit(PlanOp::kDone, text_.forms.front());
+  }
+
+  using Positioned = std::pair<std::size_t, DatumId>;  // a form and where it stands
+  LispText& text_;
+  base::DiagnosticSink& sink_;
+  FormCompiler c_;
+  std::vector<DatumId> forms_;                           // at top level
+  std::map<std::string, DatumId, std::less<>> defined_;  // where, by name
+  std::vector<std::pair<std::size_t, std::string>> functions_;
+  std::vector<Positioned> global_forms_;
+  std::vector<Positioned> others_;      // no definitions, but perhaps calls of macros that define
+  std::vector<Positioned> bare_forms_;  // what is run
+  bool missing_ = false;                // of them, an expansion
+};
+
+}  // namespace
+
+base::Result<PlanCode> compile_plan(LispText& text, const std::optional<std::string>& entry,
+                                    bool interleave, ValueStore& values,
+                                    base::DiagnosticSink& sink) {
+  return PlanCompiler(text, values, sink, interleave).compile(entry);
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,98 @@
+// What the machine does for rules and designators: functions that run on their own, identities and
+// links of designators.
+#include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/interpreter/plan_machine.h"
+
+namespace parallax::compiler {
+
+using base::DiagnosticCode;
+
+void drop_dead_links(PlanState& state, std::span<const ValueId> more, const ValueStore& values) {
+  // What calls a computation may refer to more than its state shows.
+  if (state.links.chains.empty() || state.links.floor > 1) return;
+  std::set<std::uint32_t> identities;
+  std::set<ModelValueId> registers;
+  const auto note = [&](ValueId id) {
+    const auto& value = values[id];
+    identities.insert(value.identities.begin(), value.identities.end());
+    registers.insert(value.registers.begin(), value.registers.end());
+  };
+  for (const auto value : more) note(value);
+  auto chains = std::exchange(state.links.chains, {});
+  for_each_value(state, note);
+  state.links.chains = std::move(chains);
+  const auto alive = [&](ValueId id) {
+    const auto& value = values[id];
+    return value.kind == ValueKind::kModel ? registers.contains(value.model)
+                                           : identities.contains(value.identity);
+  };
+  // What a living chain ends in lives, with all that is in it.
+  std::vector<bool> kept(state.links.chains.size(), false);
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      const auto& chain = state.links.chains[i];
+      if (kept[i] || std::none_of(chain.begin(), chain.end(), alive)) continue;
+      kept[i] = changed = true;
+      note(chain.back());
+    }
+  }
+  std::vector<std::vector<ValueId>> out;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    auto& chain = state.links.chains[i];
+    std::erase_if(chain, [&](ValueId id) { return !alive(id); });
+    if (kept[i] && chain.size() > 1) out.push_back(std::move(chain));
+  }
+  state.links.chains = std::move(out);
+}
+
+void PlanMachine::report(const BuiltinFailure& failure, std::uint32_t builtin, DatumId form) {
+  const auto name = plan_builtins()[builtin].name;
+  const bool own = data_.in_library(form) || name.front() == '%';
+  const auto caller = own ? name_at(place_of(form)) : std::string(name);
+  switch (failure.kind) {
+    case BuiltinError::kRaise:
+    case BuiltinError::kValue:
+      report(DiagnosticCode::kPlanValue, form, caller, failure.text);
+      break;
+    case BuiltinError::kModelComparison:
+      report(DiagnosticCode::kModelComparison, form, caller);
+      break;
+    case BuiltinError::kModelList:
+      report(DiagnosticCode::kModelList, form, caller);
+      break;
+  }
+}
+
+PlanState PlanMachine::computation(std::uint32_t unit, const std::vector<ValueId>& arguments,
+                                   DesignatorLinks links) const {
+  PlanState state;
+  state.links = std::move(links);
+  state.links.floor = state.links.next;
+  state.frames.resize(2);
+  state.frames[0].unit = code_.halt;
+  state.frames[1].unit = unit;
+  state.stack = arguments;
+  return state;
+}
+
+void PlanMachine::refresh_links(PlanState& state, std::span<const ValueId> more) const {
+  state.links.identities = code_.identities;
+  if (!code_.identities) return;
+  drop_dead_links(state, more, values_);
+  std::uint32_t last = 0;
+  const auto note = [&](ValueId value) {
+    const auto& identities = values_[value].identities;
+    if (!identities.empty()) last = std::max(last, identities.back());
+  };
+  for_each_value(state, note);
+  for (const auto value : more) note(value);
+  state.links.next = std::max(state.links.floor, last + 1);
+}
+
+}  // namespace parallax::compiler

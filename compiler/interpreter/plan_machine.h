@@ -1,0 +1,304 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "compiler/builtins/designator_links.h"
+#include "compiler/builtins/plan_builtins.h"
+#include "compiler/builtins/plan_value.h"
+#include "compiler/interpreter/plan_compiler.h"
+#include "compiler/lisp/lisp_data.h"
+
+namespace parallax::compiler {
+
+enum class FrameKind : std::uint8_t { kCall, kHandler, kCleanup };
+enum class PendingKind : std::uint8_t { kNone, kExit, kCross, kFail };
+
+/// What a clean-up interrupted: a jump out of the frames above `frame`, a failure on its way out of
+/// a task, or the end of the plan.
+struct Pending {
+  PendingKind kind = PendingKind::kNone;
+  std::uint32_t frame = 0;
+  std::uint32_t exit = 0;  // kExit: the target; kCross: the guard of the task's border
+  ValueId value;           // kExit: carried along; kCross and kFail: the failure
+};
+
+/// One activation of a unit. Everything is an index, so equal activations compare equal.
+struct PlanFrame {
+  std::uint32_t unit = 0;
+  std::uint32_t pc = 0;
+  std::uint32_t link = 0;        // the frame of the unit around this one in the source
+  std::uint32_t base = 0;        // where its variables start on the stack
+  std::uint32_t guard_base = 0;  // guards below belong to other frames
+  FrameKind kind = FrameKind::kCall;
+  std::uint32_t skip_to = 0;  // kHandler: guards from here up to guard_base are asleep
+  std::uint32_t clause = 0;   // kHandler: the clause of the table that it is
+  ValueId failure;            // kHandler: what it handles
+  Pending pending;            // kCleanup
+  // Not part of the state's identity: performs on the way here, when the frame was made.
+  std::uint32_t performs = 0;
+};
+
+/// kTask: a task begins here, which no failure leaves before its clean-ups have run. kEvaporated:
+/// the same of a branch that another one's failure has ended; failures of its clean-ups are lost.
+/// kSpecial: a special variable is rebound here, by the value at `height`.
+enum class GuardKind : std::uint8_t { kHandlers, kCleanup, kTask, kEvaporated, kSpecial };
+
+/// The index of a kTask that ends with the function called in it.
+inline constexpr std::uint32_t kPerformTask = 1;
+
+/// An active with-failure-handling or unwind-protect, the border of a task, a rebound special.
+struct PlanGuard {
+  GuardKind kind = GuardKind::kHandlers;
+  std::uint32_t index = 0;  // the handler table, the clean-up's unit, the global
+  std::uint32_t frame = 0;
+  std::uint32_t height = 0;  // of the stack when it began
+};
+
+/// A perform that a branch of a `par` waits at for its turn.
+struct PlanTurn {
+  ValueId designator;
+  DatumId form;
+};
+
+struct PlanPar;
+
+/// A branch of a `par` that is not running: what it has on top of what all branches share. They
+/// begin at the same height, so that the indices in it are right whenever it is put back.
+struct PlanBranchState {
+  bool started = false;
+  bool fresh = false;  // on the way to its first perform
+  bool done = false;
+  ValueId result;  // done
+  std::optional<PlanTurn> turn;
+  std::vector<PlanFrame> frames;
+  std::vector<PlanGuard> guards;
+  std::vector<ValueId> stack;
+  std::vector<PlanPar> pars;  // at most one: of a branch that is itself in branches
+};
+
+/// An active `par` or `pursue` whose branches take turns, perform by perform. The first failure
+/// that leaves a branch decides it, and of a `pursue` the first value as well. Then the other
+/// branches may still carry out the perform at which they wait, and nothing more.
+struct PlanPar {
+  std::uint32_t frames = 0;  // what the branches share
+  std::uint32_t guards = 0;
+  std::uint32_t height = 0;
+  std::size_t active = 0;             // the branch whose state is in place
+  std::optional<std::uint32_t> exit;  // `pursue`: where it goes on with its value
+  std::optional<ValueId> failure;
+  std::optional<ValueId> value;  // `pursue` only; both are set if a failure came second
+  DatumId form;
+  std::vector<PlanBranchState> branches;
+};
+
+/// All that the rest of an execution depends on.
+struct PlanState {
+  std::vector<PlanFrame> frames;
+  std::vector<PlanGuard> guards;
+  std::vector<ValueId> stack;
+  std::vector<PlanPar> pars;  // outermost first
+  DesignatorLinks links;
+  std::uint32_t performs = 0;  // on the path so far; not part of the state's identity
+  std::uint32_t missed = 0;    // references that failed since the last perform; the same
+};
+
+/// Calls visit(value) for every value that the state holds, also in branches that wait.
+void for_each_value(const PlanState& state, const std::function<void(ValueId)>& visit);
+
+/// Forgets the links of designators that nothing else in the state, and nothing of `more`, refers
+/// to.
+void drop_dead_links(PlanState& state, std::span<const ValueId> more, const ValueStore& values);
+
+/// Equal for equal states. Without `counters`, states that differ only in how often an endless loop
+/// has run are equal: coming back to such a state is a cycle, not news.
+std::vector<std::uint32_t> state_key(const PlanState& state, const ValueStore& values,
+                                     bool counters);
+
+/// Why the machine stopped; in the first two cases the caller pushes the answer and runs it again.
+struct StopPerform {
+  ValueId designator;
+  DatumId form;
+};
+struct StopQuestion {                           // only the model knows
+  std::variant<ValueId, ModelEquality> fluent;  // a fluent's list, or whether two values are equal
+  DatumId form;
+};
+struct StopProof {  // the goal of a `prolog` form
+  ValueId goal;
+  DatumId form;
+  bool all = false;  // every solution, not just one
+};
+struct StopDone {};
+struct StopFailed {
+  std::string failure_class;
+};
+struct StopBound {
+  std::string form;
+  DatumId at;
+};
+struct StopTurn {
+};  // of the outermost `par` every branch is over or waits, or it may end in two ways
+struct StopUnit {  // the code of a unit is not complete yet; run tries again
+  std::uint32_t unit = 0;
+};
+struct StopError {};  // reported
+using PlanStop = std::variant<StopPerform, StopQuestion, StopProof, StopDone, StopFailed, StopBound,
+                              StopTurn, StopUnit, StopError>;
+
+/// Names the calls of macros that made the form.
+void note_macro_calls(base::DiagnosticBuilder& report, const LispData& data, DatumId form);
+
+struct MachineLimits {
+  std::uint32_t max_call_depth = 8;
+  std::int64_t max_loop = 16;
+  std::int64_t max_steps = 5000000;
+  std::int64_t location_samples = 0;
+  const std::atomic<bool>* stop = nullptr;  // raised to end the unrolling early
+};
+
+/// Executes plan code on one state at a time, silently, up to the next thing that is not silent.
+/// Deterministic: the answer depends on the state alone.
+class PlanMachine {
+ public:
+  PlanMachine(const PlanCode& code, const LispData& data, const MachineLimits& limits,
+              ValueStore& values, base::DiagnosticSink& sink)
+      : code_(code),
+        data_(data),
+        limits_(limits),
+        values_(values),
+        sink_(sink),
+        handlers_met_(code.handlers.size()) {}
+
+  /// Sets the global constants; false if that reported an error.
+  bool run_definitions();
+  PlanState start() const;
+  /// A state that calls the unit with these arguments; it is done with the result on the stack.
+  PlanState start(std::uint32_t unit, const std::vector<ValueId>& arguments) const;
+  /// What errors are about, if they arise at `own`: a macro is blamed on its call.
+  struct Blame {
+    DatumId own;
+    DatumId call;
+  };
+  void blame(std::optional<Blame> blame) { blame_ = blame; }
+  PlanStop run(PlanState& state);
+  /// Lets the current step fail instead of answering; run goes on from there.
+  std::optional<PlanStop> raise(PlanState& state, ValueId failure);
+  /// The units of the handlers that began to run since this was asked last.
+  std::vector<std::uint32_t> take_handlers_run() { return std::exchange(handlers_run_, {}); }
+  /// By handler table: has any state had it around itself?
+  const std::vector<bool>& handlers_met() const { return handlers_met_; }
+  /// Inside a `par`: the running branch waits at this perform, others run up to theirs. None: run
+  /// goes on with another branch.
+  std::optional<PlanStop> wait(PlanState& state, const StopPerform& perform);
+  /// Where branches wait: the way to each through nested `par`s, in written order.
+  using BranchPath = std::vector<std::size_t>;
+  static std::vector<BranchPath> waiting(const PlanState& state);
+  /// How a `par` that is decided may end now. The clean-ups of the branches that it ends run in
+  /// tasks of their own, so a handler of its failure may decide before them or after.
+  enum class ParEnd : std::uint8_t { kValue, kFailure, kFailureAfterCleanups };
+  struct Ending {
+    BranchPath path;  // to the `par`
+    ParEnd end = ParEnd::kValue;
+  };
+  static std::vector<Ending> endings(const PlanState& state);
+  /// The `par` ends like that; run goes on with what follows.
+  std::optional<PlanStop> end_par(PlanState& state, const Ending& ending);
+  /// Puts that branch in place; its perform is next.
+  static StopPerform resume(PlanState& state, const BranchPath& path);
+  /// Lets a function of the plan answer, in a task of its own; run goes into it.
+  std::optional<PlanStop> enter(PlanState& state, std::uint32_t unit,
+                                const std::vector<ValueId>& arguments, DatumId form);
+  /// A state in which the unit is all that runs: StopDone with its value on top.
+  PlanState computation(std::uint32_t unit, const std::vector<ValueId>& arguments,
+                        DesignatorLinks links) const;
+  /// Prepares the making of designators: an identity that neither the state nor `more` has.
+  void refresh_links(PlanState& state, std::span<const ValueId> more) const;
+  /// Neither a bound was reached nor was it stopped.
+  bool has_room() const {
+    return !values_.full() && steps_ + values_.elements_read() <= limits_.max_steps && !stopped();
+  }
+  /// Counts a step, also of work that is done elsewhere; false if there is no room for more.
+  bool count_step() {
+    ++steps_;
+    return has_room();
+  }
+  /// Says why a built-in has no value.
+  void report(const BuiltinFailure& failure, std::uint32_t builtin, DatumId form);
+  bool stopped() const {
+    return limits_.stop != nullptr && limits_.stop->load(std::memory_order_relaxed);
+  }
+  /// The bound of values, text or steps that was reached, or that somebody ended it.
+  void report_full(DatumId at);
+
+ private:
+  using Step = std::optional<PlanStop>;  // empty: go on
+  Step execute(PlanState& state, const PlanInstruction& instruction);
+  Step leave(PlanState& state);
+  Step load_global(PlanState& state, const PlanInstruction& instruction);
+  Step expect_list(const PlanState& state, const PlanInstruction& instruction);
+  Step builtin(PlanState& state, const PlanInstruction& instruction);
+  Step call(PlanState& state, const PlanInstruction& instruction);
+  Step make_function(PlanState& state, const PlanInstruction& instruction);
+  Step call_value(PlanState& state, const PlanInstruction& instruction);
+  Step enter_value(PlanState& state, std::vector<ValueId> arguments,
+                   const PlanFunctionValue& function, ValueId kept,
+                   const PlanInstruction& instruction);
+  Step enter_unit(PlanState& state, std::uint32_t unit, std::uint32_t link, DatumId form);
+  bool outlives(ValueId value, std::size_t frame, std::size_t place) const;
+  Step check_life(const PlanState& state, const PlanInstruction& instruction);
+  void take_primary(PlanState& state, const PlanInstruction& instruction);
+  void stamp(PlanState& state, const PlanInstruction& instruction);
+  void multiple_values(PlanState& state, const PlanInstruction& instruction);
+  base::DiagnosticBuilder report(base::DiagnosticCode code, DatumId at, auto&&... args) {
+    return note_blame(sink_.error(code, data_.source(place_of(at)), args...), at);
+  }
+  base::DiagnosticBuilder note_blame(base::DiagnosticBuilder report, DatumId at) const;
+  /// Where an error in that form is shown: our own Lisp stands for its caller.
+  DatumId place_of(DatumId form) const;
+  Step tick(PlanState& state, const PlanInstruction& instruction);
+  Step fail_value(PlanState& state, const PlanInstruction& instruction);
+  void push_guard(PlanState& state, const PlanInstruction& instruction);
+  void run_cleanup(PlanState& state, const PlanInstruction& instruction);
+  Step end_handler(PlanState& state);
+  Step end_cleanup(PlanState& state);
+  Step search(PlanState& state, ValueId failure, std::size_t limit, std::size_t clause = 0);
+  Step leave_task(PlanState& state, std::size_t border, ValueId failure);
+  Step check_exit(const PlanState& state, const PlanInstruction& instruction, std::uint32_t frame);
+  Step bind_special(PlanState& state, const PlanInstruction& instruction);
+  Step store_special(PlanState& state, const PlanInstruction& instruction);
+  std::optional<std::size_t> special(const PlanState& state, std::uint32_t global) const;
+  Step start_par(PlanState& state, const PlanInstruction& instruction);
+  Step end_branch(PlanState& state);
+  Step next_branch(PlanState& state);
+  Step fail_branch(PlanState& state, ValueId failure);
+  Step evaporate(PlanState& state, ParEnd end);
+  Step jump_out(PlanState& state, const Pending& pending);
+  Step unwind(PlanState& state, Pending pending);
+  void add_key(PlanState& state, const PlanInstruction& instruction);
+  std::size_t place(const PlanState& state, const PlanInstruction& instruction) const;
+  std::uint32_t linked(const PlanState& state, std::uint32_t level) const;
+  StopError error(base::DiagnosticCode code, const PlanInstruction& at, std::string text);
+  std::string name_at(DatumId form) const;
+
+  const PlanCode& code_;
+  const LispData& data_;
+  MachineLimits limits_;
+  ValueStore& values_;
+  base::DiagnosticSink& sink_;
+  std::vector<std::optional<ValueId>> globals_;
+  std::int64_t steps_ = 0;
+  std::vector<std::uint32_t> handlers_run_;
+  std::vector<bool> handlers_met_;
+  std::optional<Blame> blame_;
+  const PlanState* running_ = nullptr;
+};
+
+}  // namespace parallax::compiler

@@ -1,0 +1,78 @@
+// Globals while a plan runs: their own values, and those that a task has rebound.
+#include <algorithm>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/interpreter/plan_machine.h"
+
+namespace parallax::compiler {
+
+using base::DiagnosticCode;
+
+PlanMachine::Step PlanMachine::load_global(PlanState& state, const PlanInstruction& instruction) {
+  if (const auto rebound = special(state, instruction.a)) {
+    state.stack.push_back(state.stack[*rebound]);
+    return {};
+  }
+  if (const auto value = instruction.a < globals_.size() ? globals_[instruction.a] : std::nullopt) {
+    state.stack.push_back(*value);
+    return {};
+  }
+  const auto& global = code_.globals[instruction.a];
+  report(DiagnosticCode::kUnboundPlanVariable, instruction.source, global.name)
+      .note(data_.source(global.source),
+            blame_ ? "globals get their values behind the macros" : "it is defined only here");
+  return StopError{};
+}
+
+/// A function may be called where the binding that it sets is over, or in another task.
+PlanMachine::Step PlanMachine::store_special(PlanState& state, const PlanInstruction& instruction) {
+  if (const auto rebound = special(state, instruction.a)) {
+    state.stack[*rebound] = state.stack.back();
+    return {};
+  }
+  const auto& global = code_.globals[instruction.a];
+  report(DiagnosticCode::kHeapWrite, instruction.source, name_at(instruction.source), global.name)
+      .note(data_.source(global.source),
+            "it is a global constant, defined here; nothing in this task rebinds it any more");
+  return StopError{};
+}
+
+/// A variable of the running frame is what the global means from here on.
+PlanMachine::Step PlanMachine::bind_special(PlanState& state, const PlanInstruction& instruction) {
+  const auto frame = static_cast<std::uint32_t>(state.frames.size() - 1);
+  const auto place = state.frames[frame].base + instruction.b;
+  state.guards.push_back({GuardKind::kSpecial, instruction.a, frame, place});
+  return {};
+}
+
+namespace {
+
+/// A handler does not see what is left of ended branches, whose clean-ups are still to run.
+bool left_over(const PlanState& state, std::size_t guard) {
+  const auto at = [&](std::size_t index) {
+    return state.guards.begin() + static_cast<std::ptrdiff_t>(index);
+  };
+  const auto evaporated = [](const PlanGuard& kept) { return kept.kind == GuardKind::kEvaporated; };
+  return std::any_of(state.frames.begin(), state.frames.end(), [&](const PlanFrame& frame) {
+    const bool covers =
+        frame.kind == FrameKind::kHandler && frame.skip_to < guard && guard < frame.guard_base;
+    return covers && std::any_of(at(frame.skip_to), at(guard + 1), evaporated);
+  });
+}
+
+}  // namespace
+
+/// Where the task that runs has rebound the global, if it has: a task sees no other's bindings.
+std::optional<std::size_t> PlanMachine::special(const PlanState& state,
+                                                std::uint32_t global) const {
+  for (auto g = state.guards.size(); g-- > 0;) {
+    if (left_over(state, g)) continue;
+    const auto& guard = state.guards[g];
+    if (guard.kind == GuardKind::kSpecial && guard.index == global) return guard.height;
+    const bool border = guard.kind == GuardKind::kTask || guard.kind == GuardKind::kEvaporated;
+    if (border) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+}  // namespace parallax::compiler

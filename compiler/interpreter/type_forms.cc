@@ -1,0 +1,158 @@
+// Types as conditions, and the forms of Common Lisp for errors.
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/interpreter/form_compiler.h"
+
+namespace parallax::compiler {
+namespace {
+
+/// Leaves t or nil: is the value at `place` of that type?
+void type_test(FormCompiler& c, DatumId type, std::uint32_t place, DatumId source) {
+  c.code.load(place, source);
+  c.code.constant(c.datum_value(type), type);
+  c.code.builtin("typep", 2, source);
+}
+
+/// typecase and etypecase
+void form_typecase(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 2) return c.refuse(form, "expected a value and clauses");
+  c.compile(items[1]);
+  const auto place = c.code.height() - 1;
+  std::vector<std::size_t> to_end;
+  for (const auto clause : items.subspan(2)) {
+    const auto parts = c.data.children(clause);
+    if (parts.empty()) {
+      c.malformed(form, "a clause is (type form...)");
+      continue;
+    }
+    const bool any = c.data.is_symbol(parts[0], "t") || c.data.is_symbol(parts[0], "otherwise");
+    if (any) {
+      c.code.constant(c.values.truth(), clause);
+    } else {
+      type_test(c, parts[0], place, clause);
+    }
+    const auto to_next = c.code.jump(PlanOp::kJumpIfNil, clause);
+    if (parts.size() > 1) {
+      c.compile_body(parts.subspan(1));
+    } else {
+      c.nil(clause);
+    }
+    to_end.push_back(c.code.jump(PlanOp::kJump, clause));
+    c.code.adjust(-1);
+    c.code.patch_jump(to_next);
+  }
+  if (c.form_name(form) == "etypecase") {
+    c.code.fail("case-failure", form);
+  } else {
+    c.nil(form);
+  }
+  for (const auto jump : to_end) c.code.patch_jump(jump);
+  c.code.squeeze(1, form);
+}
+
+/// The test on top: a Lisp error if it is nil; the value is nil.
+void fail_if_nil(FormCompiler& c, std::string_view failure_class, DatumId form) {
+  const auto to_error = c.code.jump(PlanOp::kJumpIfNil, form);
+  c.nil(form);
+  const auto to_end = c.code.jump(PlanOp::kJump, form);
+  c.code.adjust(-1);
+  c.code.patch_jump(to_error);
+  c.code.fail(failure_class, form);
+  c.code.patch_jump(to_end);
+}
+
+/// (check-type place type [text])
+void form_check_type(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 3) return c.refuse(form, "expected a place and a type");
+  c.compile(items[1]);
+  type_test(c, items[2], c.code.height() - 1, form);
+  fail_if_nil(c, "type-error", form);
+  c.code.squeeze(1, form);
+}
+
+/// (assert test [places [class or text argument...]])
+void form_assert(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 2) return c.refuse(form, "expected a test");
+  c.check_no_perform(form);
+  std::string failure = "simple-error";
+  if (items.size() > 3 && c.data.head(items[3]) == "quote") {
+    failure = c.failure_class(items[3]).value_or(failure);
+  }
+  c.compile(items[1]);
+  fail_if_nil(c, failure, form);
+}
+
+/// (ignore-errors form...): the value of the last one, nil after a Lisp error.
+void form_ignore_errors(FormCompiler& c, DatumId form, FormItems items) {
+  const auto exit = c.code.open_exit();
+  const auto unit = c.code.declare_unit("a failure handler", form, 1);
+  c.code.enter_unit(unit);
+  c.nil(form);
+  c.code.emit(PlanOp::kExit, 1, exit, form);
+  c.code.leave_unit(PlanOp::kEndHandler, form);
+  c.code.push_handlers(c.code.add_handlers({{"error", unit}}), form);
+  c.compile_body(items.subspan(1));
+  c.code.pop_guard(form);
+  c.code.set_exit(exit);
+}
+
+/// (handler-bind ((class function)...) form...): each function is called with the failure, while
+/// the body still stands; one that returns has declined.
+void form_handler_bind(FormCompiler& c, DatumId form, FormItems items) {
+  if (items.size() < 2 || (!c.data.is_list(items[1]) && !c.data.is_nil(items[1]))) {
+    return c.refuse(form, "expected a list of (class function) and a body");
+  }
+  const auto height = c.code.height();
+  std::vector<HandlerClause> table;
+  std::vector<std::pair<DatumId, std::uint32_t>> functions;
+  for (const auto binding : c.data.children(items[1])) {
+    const auto parts = c.data.children(binding);
+    if (parts.size() != 2) {
+      c.malformed(binding, "a binding is (class function)");
+      continue;
+    }
+    c.compile(parts[1]);
+    functions.emplace_back(binding, c.code.height() - 1);
+  }
+  for (const auto& [binding, place] : functions) {
+    const auto function = c.code.named(BindingKind::kVariable, "", place);
+    const auto unit = c.code.declare_unit("a failure handler", binding, 1);
+    c.code.enter_unit(unit);
+    c.code.load(function, binding);
+    c.code.load(0, binding);
+    c.code.call_value(1, false, binding);
+    c.code.leave_unit(PlanOp::kEndHandler, binding);
+    const auto name = c.data.children(binding)[0];
+    const auto classes = c.data.head(name) == "or" ? c.data.children(name).subspan(1)
+                                                   : c.data.children(binding).first(1);
+    for (const auto one : classes) {
+      const auto known = c.failure_class(one);
+      if (!known) continue;
+      if (*known == "condition" || *known == "t") {
+        c.warning(base::DiagnosticCode::kBroadHandler, one, *known);
+      }
+      table.push_back({*known, unit});
+    }
+  }
+  c.code.push_handlers(c.code.add_handlers(std::move(table)), form);
+  c.compile_body(items.subspan(2));
+  c.code.pop_guard(form);
+  c.code.squeeze(c.code.height() - 1 - height, form);
+}
+
+}  // namespace
+
+std::span<const FormEntry> type_forms() {
+  static constexpr FormEntry kForms[] = {
+      {"typecase", form_typecase},           {"etypecase", form_typecase},
+      {"check-type", form_check_type},       {"assert", form_assert},
+      {"ignore-errors", form_ignore_errors}, {"handler-bind", form_handler_bind},
+  };
+  return kForms;
+}
+
+}  // namespace parallax::compiler

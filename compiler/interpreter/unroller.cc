@@ -1,0 +1,437 @@
+#include "compiler/interpreter/unroller.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/interpreter/explorer.h"
+#include "compiler/interpreter/plan_compiler.h"
+#include "compiler/lisp/lisp_packages.h"
+#include "compiler/lisp/lisp_reader.h"
+
+namespace parallax::compiler {
+
+using base::DiagnosticCode;
+
+void Explorer::set(const Job& job, PlanTarget target) {
+  using Edge = Job::Edge;
+  if (job.edge == Edge::kEntry) {
+    graph_.entry = target;
+  } else if (job.edge == Edge::kSuccess || job.edge == Edge::kFailure) {
+    auto& location = graph_.locations[LocationId(job.owner)];
+    (job.edge == Edge::kSuccess ? location.on_success : location.on_failure) = target;
+  } else {
+    auto& branch = graph_.branches[BranchId(job.owner)];
+    (job.edge == Edge::kTrue ? branch.if_true : branch.if_false) = target;
+  }
+}
+
+PlanTarget Explorer::terminal(TerminalKind kind, std::string detail, std::optional<DatumId> at) {
+  const auto key = fmt::format("{} {} {}", static_cast<int>(kind), at ? at->index() : 0, detail);
+  const auto found = terminals_.find(key);
+  if (found != terminals_.end()) return found->second;
+  PlanTerminal out{kind, std::move(detail), std::nullopt};
+  if (at) out.source = data_.source(*at);
+  const auto id = graph_.terminals.add(std::move(out));
+  terminals_.emplace(key, id);
+  return id;
+}
+
+/// The calls of macros that made the form, outermost first.
+std::vector<base::SourceRange> macro_calls(const LispData& data, DatumId form) {
+  std::vector<base::SourceRange> out;
+  for (auto call = data.macro_call(form); call; call = data.macro_call(*call)) {
+    out.insert(out.begin(), data.source(*call));
+  }
+  return out;
+}
+
+/// The call sites that are active, outermost first.
+std::vector<base::SourceRange> Explorer::calls(const PlanState& state) const {
+  std::vector<base::SourceRange> out;
+  for (std::size_t i = 1; i < state.frames.size(); ++i) {
+    const auto& frame = state.frames[i];
+    const auto& caller = state.frames[i - 1];
+    if (frame.kind != FrameKind::kCall || caller.pc == 0) continue;
+    const auto call = code_.units[caller.unit].code[caller.pc - 1].source;
+    if (data_.in_library(call)) continue;
+    const auto macros = macro_calls(data_, call);
+    out.insert(out.end(), macros.begin(), macros.end());
+    out.push_back(data_.source(call));
+  }
+  return out;
+}
+
+/// Deep calls make large states: not only their number is limited.
+bool Explorer::has_room(const StateKey& key, DatumId form) {
+  constexpr std::size_t kMaxWords = 8'000'000;
+  key_words_ += key.size();
+  const auto limit = static_cast<std::size_t>(options_.max_locations);
+  const bool many = graph_.locations.size() >= limit;
+  if (!many && key_words_ <= kMaxWords) return true;
+  if (!full_) {
+    sink_.error(DiagnosticCode::kUnrollLimit, data_.source(form), many ? limit : kMaxWords,
+                many ? "locations" : "words for the states of its calls");
+  }
+  full_ = true;
+  return false;
+}
+
+std::optional<PlanTarget> Explorer::perform(PlanState& state, const StopPerform& stop) {
+  auto key = state_key(state, values_, false);
+  key.push_back(stop.designator.index());
+  const auto found = locations_.find(key);
+  if (found != locations_.end()) return found->second;
+  if (!has_room(key, stop.form)) return std::nullopt;
+  const auto source = data_.source(stop.form);
+  const auto* entry = resolver_.find_entry(stop.designator, source);
+  if (entry == nullptr) return std::nullopt;
+  if (const auto object = resolver_.reference(*entry, stop.designator)) {
+    return refer(state, stop, *object);
+  }
+  auto resolved = resolver_.resolve(*entry, stop.designator, source);
+  if (!resolved) return std::nullopt;
+  auto& location = *resolved;
+  if (!options_.failures_by_reason) location.failures.clear();
+  location.calls = calls(state);
+  const auto macros = macro_calls(data_, stop.form);
+  location.calls.insert(location.calls.end(), macros.begin(), macros.end());
+  const auto failure = values_.failure(location.failure_class);
+  const auto id = graph_.locations.add(std::move(location));
+  locations_.emplace(std::move(key), id);
+  auto result = values_.truth();
+  if (entry->returns) {
+    const auto value = free_register(state, stop.form, *entry->returns);
+    graph_.locations[id].result = value;
+    result = found_object(value, stop.designator);
+  }
+  ++state.performs;
+  state.missed = 0;
+  // The last job is taken first: success.
+  if (graph_.locations[id].failures.empty()) {
+    jobs_.push_back({state, failure, {}, Job::Edge::kFailure, id.index(), id});
+  } else {
+    fail_by_reason(id, state, stop.form);
+  }
+  jobs_.push_back({std::move(state), {}, {}, Job::Edge::kSuccess, id.index()});
+  jobs_.back().state.stack.push_back(result);
+  return id;
+}
+
+/// The perform fails any way that the binding gives a reason for.
+void Explorer::fail_by_reason(LocationId id, const PlanState& state, DatumId form) {
+  const auto ways = graph_.locations[id].failures;
+  std::vector<Job> jobs;
+  auto edge = Job::Edge::kFailure;
+  auto owner = id.index();
+  for (std::size_t way = 0; way < ways.size(); ++way) {
+    const auto failure = values_.failure(ways[way].failure_class);
+    if (way + 1 < ways.size()) {
+      const auto next = free_branch("it fails with " + ways[way].failure_class, form);
+      if (way == 0) {
+        graph_.locations[id].on_failure = next;
+      } else {
+        graph_.branches[BranchId(owner)].if_false = next;
+      }
+      jobs.push_back({state, failure, {}, Job::Edge::kTrue, next.index(), id, way});
+      edge = Job::Edge::kFalse;
+      owner = next.index();
+    } else {
+      jobs.push_back({state, failure, {}, edge, owner, id, way});
+    }
+  }
+  jobs_.insert(jobs_.end(), std::make_move_iterator(jobs.rbegin()),
+               std::make_move_iterator(jobs.rend()));
+}
+
+/// What a perform returns. Where the plan asks for properties, it keeps the description by which it
+/// was sought.
+ValueId Explorer::found_object(ModelValueId id, ValueId designator) {
+  const auto sought = code_.describes ? values_.key(designator, "object") : std::nullopt;
+  Value value;
+  value.kind = ValueKind::kModel;
+  value.model = id;
+  if (sought && is_designator(values_[*sought])) value.keys = values_[*sought].keys;
+  std::erase_if(value.keys, [](const auto& key) { return key.first == "name"; });
+  return values_.intern(std::move(value));
+}
+
+/// The first register of this perform that the plan does not refer to any more.
+ModelValueId Explorer::free_register(const PlanState& state, DatumId form,
+                                     const std::string& variable) {
+  std::set<ModelValueId> taken;
+  const auto note = [&](ValueId value) {
+    const auto& registers = values_[value].registers;
+    taken.insert(registers.begin(), registers.end());
+  };
+  for_each_value(state, note);
+  auto& own = registers_[{form.index(), variable}];
+  for (const auto value : own) {
+    if (!taken.contains(value)) return value;
+  }
+  const auto name = fmt::format("?{}{}", variable, graph_.values.size() + 1);
+  own.push_back(graph_.values.add({name, variable}));
+  return own.back();
+}
+
+base::Result<FormulaTree> Explorer::guard_of(const StopQuestion& stop) {
+  const auto source = data_.source(stop.form);
+  if (const auto* fluent = std::get_if<ValueId>(&stop.fluent)) {
+    return resolver_.question(*fluent, source);
+  }
+  const auto& equality = std::get<ModelEquality>(stop.fluent);
+  const auto left = resolver_.constant(equality.left, "eq", source);
+  const auto right = resolver_.constant(equality.right, "eq", source);
+  if (!left || !right) return sink_.already_reported();
+  return equal_terms(*left, *right);
+}
+
+std::optional<PlanTarget> Explorer::question(PlanState& state, const StopQuestion& stop) {
+  auto guard = guard_of(stop);
+  if (!guard) return std::nullopt;
+  std::pair key(state_key(state, values_, true), *std::move(guard));
+  const auto found = branches_.find(key);
+  if (found != branches_.end()) return found->second;
+  if (!has_room(key.first, stop.form)) return std::nullopt;
+  const auto id = branch(key.second, stop.form);
+  branches_.emplace(std::move(key), id);
+  jobs_.push_back({state, {}, {}, Job::Edge::kFalse, id.index()});
+  jobs_.back().state.stack.push_back(values_.nil());
+  jobs_.push_back({std::move(state), {}, {}, Job::Edge::kTrue, id.index()});
+  jobs_.back().state.stack.push_back(values_.truth());
+  return id;
+}
+
+std::optional<PlanTarget> Explorer::stopped(PlanState& state, const PlanStop& stop) {
+  if (const auto* at = std::get_if<StopPerform>(&stop)) return perform(state, *at);
+  if (const auto* at = std::get_if<StopQuestion>(&stop)) return question(state, *at);
+  if (const auto* at = std::get_if<StopFailed>(&stop))
+    return terminal(TerminalKind::kFailed, at->failure_class, std::nullopt);
+  if (const auto* at = std::get_if<StopBound>(&stop))
+    return terminal(TerminalKind::kBound, at->form, at->at);
+  if (std::holds_alternative<StopTurn>(stop)) return take_turns(state);
+  if (std::holds_alternative<StopDone>(stop)) {
+    return terminal(TerminalKind::kDone, {}, std::nullopt);
+  }
+  return std::nullopt;
+}
+
+std::optional<PlanTarget> Explorer::advance(Job& job) {
+  if (job.failure) {
+    auto stop = machine_.raise(job.state, *job.failure);
+    if (job.failed) note_handlers(*job.failed, job.way);
+    if (stop) return stopped(job.state, *stop);
+  }
+  if (job.ending) {
+    if (auto stop = machine_.end_par(job.state, *job.ending)) return stopped(job.state, *stop);
+  }
+  if (job.act) return perform(job.state, *job.act);
+  for (;;) {
+    if (job.proof) {
+      const auto ruled = ask_rules(job);
+      if (ruled.stop) return stopped(job.state, *ruled.stop);
+      if (!ruled.goes_on) return ruled.target;
+    }
+    auto stop = machine_.run(job.state);
+    if (const auto* goal = std::get_if<StopProof>(&stop)) {
+      job.proof = *goal;
+      continue;
+    }
+    auto* act = std::get_if<StopPerform>(&stop);
+    if (act == nullptr) return stopped(job.state, stop);
+    act->designator = resolve_links(job.state.links, values_, act->designator);
+    drop_dead_links(job.state, std::span(&act->designator, 1), values_);
+    if (is_ruled(*act)) {
+      job.proof = *act;
+      continue;
+    }
+    std::optional<PlanStop> ended;
+    if (const auto* entry = resolver_.find_plan(act->designator)) {
+      ended = run_plan(job.state, *act, *entry);
+    } else if (job.state.pars.empty()) {
+      return perform(job.state, *act);
+    } else {
+      ended = machine_.wait(job.state, *act);
+    }
+    if (ended) return stopped(job.state, *ended);
+  }
+}
+
+/// Whose failure the handlers took up that began to run just now.
+void Explorer::note_handlers(std::optional<LocationId> failed, std::size_t way) {
+  for (const auto unit : machine_.take_handlers_run()) {
+    auto& handler = handlers_[unit];
+    if (failed) {
+      handler.failures.push_back(*failed);
+      if (!graph_.locations[*failed].failures.empty()) handler.ways.emplace_back(*failed, way);
+    } else {
+      handler.otherwise = true;
+    }
+  }
+}
+
+void Explorer::write_handlers() {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, PlanHandler> in_order;  // by unit's place
+  for (std::size_t table = 0; table < code_.handlers.size(); ++table) {
+    if (!machine_.handlers_met()[table]) continue;
+    for (const auto& clause : code_.handlers[table]) {
+      const auto source = data_.source(code_.units[clause.unit].source);
+      const auto [entry, fresh] = in_order.try_emplace({source.begin, clause.unit});
+      auto& handler = entry->second;
+      if (fresh) {
+        handler = handlers_[clause.unit];
+        handler.source = source;
+        std::sort(handler.failures.begin(), handler.failures.end());
+        std::sort(handler.ways.begin(), handler.ways.end());
+      }
+      handler.failure_classes.push_back(clause.failure_class);
+    }
+  }
+  for (auto& [place, handler] : in_order) graph_.handlers.push_back(std::move(handler));
+}
+
+base::Result<PlanGraph> Explorer::explore() {
+  if (!machine_.run_definitions()) return sink_.already_reported();
+  jobs_.push_back({machine_.start(), {}, {}, Job::Edge::kEntry, 0});
+  while (!jobs_.empty() && !full_) {
+    auto job = std::move(jobs_.back());
+    jobs_.pop_back();
+    const auto target = advance(job);
+    note_handlers(std::nullopt);
+    if (target) {
+      set(job, *target);
+    } else {
+      failed_ = true;
+      if (!machine_.has_room()) break;
+    }
+  }
+  if (failed_) return sink_.already_reported();
+  write_handlers();
+  return std::move(graph_);
+}
+
+/// The perform of an action that is a function of the plan: runs it.
+std::optional<PlanStop> Explorer::run_plan(PlanState& state, const StopPerform& stop,
+                                           const BindingEntry& entry) {
+  const auto full = code_.function_names.find(*entry.plan);
+  const auto function =
+      code_.functions.find(full == code_.function_names.end() ? *entry.plan : full->second);
+  if (function == code_.functions.end()) {
+    sink_.error(DiagnosticCode::kUnknownPlanForm, entry.source, *entry.plan);
+    return StopError{};
+  }
+  const auto wanted = code_.units[function->second].parameters;
+  if (wanted != entry.plan_arguments.size()) {
+    sink_
+        .error(DiagnosticCode::kPlanArguments, entry.source, *entry.plan,
+               fmt::format("the binding gives {} arguments, the function takes {}",
+                           entry.plan_arguments.size(), wanted))
+        .note(data_.source(code_.units[function->second].source), "defined here");
+    return StopError{};
+  }
+  std::vector<ValueId> arguments;
+  for (const auto& name : entry.plan_arguments) {
+    const auto value = resolver_.variable(entry, stop.designator, name, data_.source(stop.form));
+    if (!value) return StopError{};
+    arguments.push_back(*value);
+  }
+  return machine_.enter(state, function->second, arguments, stop.form);
+}
+
+BranchId Explorer::branch(FormulaTree guard, DatumId form) {
+  return graph_.branches.add(
+      {std::move(guard), {}, data_.source(form), TerminalId(0), TerminalId(0), false});
+}
+
+BranchId Explorer::free_branch(std::string choice, DatumId form) {
+  return graph_.branches.add(
+      {{}, std::move(choice), data_.source(form), TerminalId(0), TerminalId(0), true});
+}
+
+namespace {
+
+std::string_view choice_of(PlanMachine::ParEnd end) {
+  switch (end) {
+    case PlanMachine::ParEnd::kValue:
+      return "the `pursue` ends";
+    case PlanMachine::ParEnd::kFailure:
+      return "the branches fail";
+    case PlanMachine::ParEnd::kFailureAfterCleanups:
+      return "the branches fail after the clean-ups";
+  }
+  return "";
+}
+
+}  // namespace
+
+/// Any branch of a `par` that waits may go on, and a `par` that is decided may end.
+std::optional<PlanTarget> Explorer::take_turns(const PlanState& state) {
+  const auto waiting = PlanMachine::waiting(state);
+  const auto endings = PlanMachine::endings(state);
+  const auto ways = waiting.size() + endings.size();
+  const auto go_on = [&](std::size_t way, Job::Edge edge, std::uint32_t owner) {
+    Job job{state, {}, {}, edge, owner};
+    if (way < waiting.size()) {
+      job.act = PlanMachine::resume(job.state, waiting[way]);
+    } else {
+      job.ending = endings[way - waiting.size()];
+    }
+    return job;
+  };
+  if (ways == 1) {
+    auto job = go_on(0, Job::Edge::kEntry, 0);
+    return advance(job);
+  }
+  auto key = state_key(state, values_, false);
+  const auto found = turns_.find(key);
+  if (found != turns_.end()) return found->second;
+  const auto form = state.pars.front().form;
+  if (!has_room(key, form)) return std::nullopt;
+  const auto choice = [&](std::size_t way) {
+    const bool goes_on = way < waiting.size();
+    return free_branch(goes_on ? (way == 0 ? "the first branch goes on" : "the next branch goes on")
+                               : std::string(choice_of(endings[way - waiting.size()].end)),
+                       form);
+  };
+  const auto first = choice(0);
+  turns_.emplace(std::move(key), first);
+  auto here = first;
+  // The last job is taken first: branches in written order.
+  std::vector<Job> jobs;
+  for (std::size_t way = 0; way + 1 < ways; ++way) {
+    jobs.push_back(go_on(way, Job::Edge::kTrue, here.index()));
+    if (way + 2 == ways) {
+      jobs.push_back(go_on(way + 1, Job::Edge::kFalse, here.index()));
+    } else {
+      const auto next = choice(way + 1);
+      graph_.branches[here].if_false = next;
+      here = next;
+    }
+  }
+  jobs_.insert(jobs_.end(), std::make_move_iterator(jobs.rbegin()),
+               std::make_move_iterator(jobs.rend()));
+  return first;
+}
+
+base::Result<PlanGraph> unroll_plan(const base::SourceFiles& files,
+                                    std::span<const base::FileId> plan, const PlanBinding& binding,
+                                    const PoseLocator& locator, const UnrollOptions& options,
+                                    base::DiagnosticSink& sink) {
+  const auto errors_before = sink.error_count();
+  auto text = read_lisp(files, plan, sink);
+  if (!text || !resolve_packages(*text, sink)) return sink.already_reported();
+  ValueStore values;
+  const auto facts = read_fact_groups(*text, values, sink);
+  const auto code = compile_plan(*text, options.entry, options.interleave, values, sink);
+  if (!code || sink.error_count() != errors_before) return sink.already_reported();
+  return Explorer(text->data, *code, facts, binding, locator, options, values, sink).explore();
+}
+
+}  // namespace parallax::compiler

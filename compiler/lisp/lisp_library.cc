@@ -1,0 +1,217 @@
+#include "compiler/lisp/lisp_library.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "compiler/base/diagnostic.h"
+#include "compiler/lisp/lisp_reader.h"
+
+namespace parallax::compiler {
+namespace {
+
+/// Function arguments are called with `funcall`; nothing here performs by itself.
+constexpr std::string_view kText = R"LISP(
+(defun %key (key item) (if key (funcall key item) item))
+
+(defun find-if (test list &key key from-end (start 0) end)
+  (let ((list (subseq list start end)))
+    (dolist (item (if from-end (reverse list) list) nil)
+      (when (funcall test (%key key item)) (return item)))))
+(defun find-if-not (test list &key key from-end (start 0) end)
+  (find-if (lambda (item) (not (funcall test item))) list
+           :key key :from-end from-end :start start :end end))
+(defun find (wanted list &key key test test-not from-end (start 0) end)
+  (find-if (%test wanted test test-not) list :key key :from-end from-end :start start :end end))
+(defun %test (wanted test test-not)
+  (cond (test-not (lambda (item) (not (funcall test-not wanted item))))
+        (test (lambda (item) (funcall test wanted item)))
+        (t (lambda (item) (eql wanted item)))))
+
+(defun position-if (test list &key key from-end (start 0) end)
+  (let ((at start) (found nil))
+    (dolist (item (subseq list start end) found)
+      (when (funcall test (%key key item))
+        (if from-end (setf found at) (return at)))
+      (incf at))))
+(defun position-if-not (test list &key key from-end (start 0) end)
+  (position-if (lambda (item) (not (funcall test item))) list
+               :key key :from-end from-end :start start :end end))
+(defun position (wanted list &key key test test-not from-end (start 0) end)
+  (position-if (%test wanted test test-not) list :key key :from-end from-end :start start :end end))
+
+(defun count-if (test list &key key (start 0) end)
+  (let ((count 0))
+    (dolist (item (subseq list start end) count)
+      (when (funcall test (%key key item)) (incf count)))))
+(defun count-if-not (test list &key key (start 0) end)
+  (count-if (lambda (item) (not (funcall test item))) list :key key :start start :end end))
+(defun count (wanted list &key key test test-not (start 0) end)
+  (count-if (%test wanted test test-not) list :key key :start start :end end))
+
+(defun remove-if (test list &key key count from-end (start 0) end)
+  (let ((out nil) (left count) (at 0))
+    (dolist (item (if from-end (reverse list) list) (if from-end out (reverse out)))
+      (let ((place (if from-end (- (length list) at 1) at)))
+        (if (and (>= place start) (or (null end) (< place end))
+                 (or (null left) (> left 0))
+                 (funcall test (%key key item)))
+            (when left (decf left))
+            (push item out)))
+      (incf at))))
+(defun remove-if-not (test list &key key count from-end (start 0) end)
+  (remove-if (lambda (item) (not (funcall test item))) list
+             :key key :count count :from-end from-end :start start :end end))
+(defun remove (unwanted list &key key test test-not count from-end (start 0) end)
+  (remove-if (%test unwanted test test-not) list
+             :key key :count count :from-end from-end :start start :end end))
+(defun delete-if (test list &rest keys) (apply #'remove-if test list keys))
+(defun delete-if-not (test list &rest keys) (apply #'remove-if-not test list keys))
+(defun delete (unwanted list &rest keys) (apply #'remove unwanted list keys))
+
+(defun substitute-if (new test list &key key)
+  (mapcar (lambda (item) (if (funcall test (%key key item)) new item)) list))
+(defun substitute (new old list &key key (test #'eql))
+  (mapcar (lambda (item) (if (funcall test old (%key key item)) new item)) list))
+
+(defun remove-duplicates (list &key key (test #'eql) from-end)
+  (let ((out nil))
+    (dolist (item (if from-end list (reverse list)) (if from-end (reverse out) out))
+      (unless (%member-key (%key key item) out key test) (push item out)))))
+(defun delete-duplicates (list &rest keys) (apply #'remove-duplicates list keys))
+(defun %member-key (value list key test)
+  (dolist (item list nil)
+    (when (funcall test value (%key key item)) (return t))))
+
+(defun member-if (test list &key key)
+  (loop for rest on list
+        do (when (funcall test (%key key (car rest))) (return rest))))
+(defun member-if-not (test list &key key)
+  (member-if (lambda (item) (not (funcall test item))) list :key key))
+(defun member (wanted list &key key test test-not)
+  (member-if (%test wanted test test-not) list :key key))
+(defun assoc-if (test list &key key)
+  (dolist (pair list nil)
+    (when (and pair (funcall test (%key key (car pair)))) (return pair))))
+(defun assoc (wanted list &key key test test-not)
+  (assoc-if (%test wanted test test-not) list :key key))
+(defun rassoc (wanted list &key key (test #'eql))
+  (dolist (pair list nil)
+    (when (and pair (funcall test wanted (%key key (cdr pair)))) (return pair))))
+
+(defun adjoin (item list &key key (test #'eql))
+  (if (%member-key (%key key item) list key test) list (cons item list)))
+(defun union (left right &key key (test #'eql))
+  (let ((out right))
+    (dolist (item left out)
+      (unless (%member-key (%key key item) right key test) (push item out)))))
+(defun intersection (left right &key key (test #'eql))
+  (remove-if-not (lambda (item) (%member-key (%key key item) right key test)) left))
+(defun set-difference (left right &key key (test #'eql))
+  (remove-if (lambda (item) (%member-key (%key key item) right key test)) left))
+(defun subsetp (left right &key key (test #'eql))
+  (every (lambda (item) (%member-key (%key key item) right key test)) left))
+
+(defun reduce (function list &key key from-end (initial-value nil given) (start 0) end)
+  (let ((items (subseq list start end)) (out nil))
+    (when key (setf items (mapcar key items)))
+    (when from-end (setf items (reverse items)))
+    (cond (given (setf out initial-value))
+          ((null items) (return-from reduce (funcall function)))
+          (t (setf out (pop items))))
+    (dolist (item items out)
+      (setf out (if from-end (funcall function item out) (funcall function out item))))))
+
+(defun sort (list test &key key)
+  (%sort list (length list) test key))
+(defun stable-sort (list test &key key)
+  (%sort list (length list) test key))
+(defun %sort (list length test key)
+  (if (< length 2)
+      (subseq list 0 length)
+      (let ((half (floor length 2)))
+        (%merge (%sort list half test key)
+                (%sort (nthcdr half list) (- length half) test key)
+                test key))))
+(defun %merge (left right test key)
+  (let ((out nil))
+    (loop while (and left right)
+          do (if (funcall test (%key key (car right)) (%key key (car left)))
+                 (push (pop right) out)
+                 (push (pop left) out)))
+    (append (reverse out) left right)))
+
+(defun complement (function) (lambda (&rest arguments) (not (apply function arguments))))
+(defun constantly (value) (lambda (&rest arguments) (declare (ignore arguments)) value))
+(defun curry (function &rest first)
+  (lambda (&rest more) (apply function (append first more))))
+(defun rcurry (function &rest last)
+  (lambda (&rest more) (apply function (append more last))))
+(defun compose (function &rest more)
+  (if more
+      (let ((rest (apply #'compose more)))
+        (lambda (&rest arguments) (funcall function (apply rest arguments))))
+      (lambda (&rest arguments) (apply function arguments))))
+
+(defmacro with-gensyms (names &body body)
+  `(let ,(mapcar (lambda (name)
+                   (if (consp name)
+                       `(,(first name) (gensym ,(string (second name))))
+                       `(,name (gensym ,(string name)))))
+                 names)
+     ,@body))
+(defmacro with-unique-names (names &body body) `(with-gensyms ,names ,@body))
+(defmacro once-only (specs &body body)
+  (let* ((names (mapcar (lambda (spec) (if (consp spec) (first spec) spec)) specs))
+         (forms (mapcar (lambda (spec) (if (consp spec) (second spec) spec)) specs))
+         (symbols (mapcar (lambda (name) (gensym (string name))) names)))
+    `(let ,(mapcar (lambda (symbol name) `(,symbol (gensym ,(string name)))) symbols names)
+       `(let (,,@(mapcar (lambda (symbol form) ``(,,symbol ,,form)) symbols forms))
+          ,(let ,(mapcar #'list names symbols) ,@body)))))
+)LISP";
+
+/// Copies a tree; its parts all stand at `place`.
+DatumId copy(const LispData& from, DatumId datum, const base::SourceRange& place, LispData& to) {
+  switch (from[datum].kind) {
+    case DatumKind::kList: {
+      std::vector<DatumId> items;
+      for (const auto item : from.children(datum)) items.push_back(copy(from, item, place, to));
+      return to.add_list(items, place);
+    }
+    case DatumKind::kNumber:
+      return to.add_number(from.number(datum), place);
+    case DatumKind::kSymbol:
+    case DatumKind::kKeyword:
+    case DatumKind::kString:
+    case DatumKind::kCharacter:
+      break;
+  }
+  return to.add_named(from[datum].kind, from.name(datum), "", place);
+}
+
+bool wanted(const LispData& library, const std::vector<DatumId>& forms, const LispData& plan) {
+  return std::any_of(forms.begin(), forms.end(), [&](DatumId form) {
+    return plan.knows_name(library.name(library.children(form)[1]));
+  });
+}
+
+}  // namespace
+
+std::vector<DatumId> add_lisp_library(LispData& data) {
+  base::SourceFiles files;
+  base::DiagnosticSink sink;
+  const auto file = files.add("library", std::string(kText));
+  const auto library = read_lisp(files, file, sink);
+  PARALLAX_REQUIRE(library, "our own Lisp can be read");
+  if (data.size() == 0 || !wanted(library->data, library->forms, data)) return {};
+  const auto place = data.source(DatumId(0));
+  const auto begin = data.end_id();
+  std::vector<DatumId> out;
+  for (const auto form : library->forms) out.push_back(copy(library->data, form, place, data));
+  data.note_library(begin);
+  return out;
+}
+
+}  // namespace parallax::compiler
