@@ -75,7 +75,7 @@ std::string cause_words(const CauseFinding& finding, const std::vector<std::stri
   std::string out;
   if (finding.contradictory_starts > 0) {
     out = fmt::format(
-        "From one and the same start some runs go wrong like that and others do not: "
+        "From one and the same start some runs go wrong as told below and others do not: "
         "it is {}. ",
         finding.kind == CauseKind::kSimulator ? "the simulator or chance" : "chance");
   }

@@ -131,9 +131,10 @@ class BlameWords {
     if (asked.empty()) return " without a condition";
     auto out = fmt::format(" if {}, which was so at {}", joined_with_and(asked), at());
     if (!unseen.empty()) {
-      out += unseen.size() == asked.size()
-                 ? " by what the model says itself"
-                 : fmt::format(" ({} by what the model says itself)", joined_with_and(unseen));
+      out +=
+          unseen.size() == asked.size()
+              ? " as the model has it (nobody saw it)"
+              : fmt::format(" ({} as the model has it: nobody saw that)", joined_with_and(unseen));
     }
     return out;
   }
@@ -214,38 +215,56 @@ class BlameWords {
     }
     auto out = fmt::format(
         "though in the model it {} at {} by inertia from {}: no axiom {} it while `{}` happens{}.",
-        observed ? "does not hold" : "holds", parting_.after, since, observed ? "begins" : "ends",
-        step().name, in_brackets(place_of(origin(found.clause))));
+        observed ? "still does not hold" : "still holds", parting_.after, since,
+        observed ? "begins" : "ends", step().name, in_brackets(place_of(origin(found.clause))));
     for (const auto& near : near_misses(found)) out += ' ' + near;
     return out;
   }
 
-  /// Axioms with that very effect of the event, whose conditions were not met.
-  std::vector<std::string> near_misses(const Conclusion& found) const {
-    constexpr std::size_t kMost = 2;
-    std::vector<std::string> out;
-    std::vector<std::uint32_t> told;
-    for (std::size_t c = 0; c < model_.clauses.size() && out.size() < kMost; ++c) {
+  /// Of the axioms with that very effect of the event the instances that were nearest to being met.
+  std::vector<std::size_t> nearest_instances(const Conclusion& found) const {
+    std::vector<std::size_t> out;
+    for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
       if (origin(c).kind != OriginKind::kEffectAxiom) continue;
       const auto literals = model_.clauses[c];
       const auto has = [&](Literal wanted) {
         return std::find(literals.begin(), literals.end(), wanted) != literals.end();
       };
       if (!has(~found.predicted) || !has(~happens())) continue;
-      const auto number = model_.clause_origins[c];
-      if (std::find(told.begin(), told.end(), number) != told.end()) continue;
-      told.push_back(number);
+      const auto same = std::find_if(out.begin(), out.end(), [&](std::size_t other) {
+        return model_.clause_origins[other] == model_.clause_origins[c];
+      });
+      if (same == out.end()) {
+        out.push_back(c);
+      } else if (conditions_at(literals, Unmet::kSeen).size() <
+                 conditions_at(model_.clauses[*same], Unmet::kSeen).size()) {
+        *same = c;
+      }
+    }
+    return out;
+  }
+
+  /// Axioms with that very effect of the event, whose conditions were not met.
+  std::vector<std::string> near_misses(const Conclusion& found) const {
+    constexpr std::size_t kMost = 2;
+    const auto* would = found.difference->observed ? "begin" : "end";
+    std::vector<std::string> out;
+    for (const auto c : nearest_instances(found)) {
+      if (out.size() == kMost) break;
+      const auto literals = model_.clauses[c];
       const auto place = in_brackets(place_of(origin(c)));
       if (const auto unmet = conditions_at(literals, Unmet::kSeen); !unmet.empty()) {
-        out.push_back(fmt::format("An axiom about that asks for {}, which was not so at {}{}.",
-                                  joined_with_and(unmet), at(), place));
+        out.push_back(
+            fmt::format("An axiom that would {} it asks for {}, which was not so at {}{}.", would,
+                        joined_with_and(unmet), at(), place));
       } else if (const auto open = conditions_at(literals, Unmet::kUnseen); !open.empty()) {
         out.push_back(
-            fmt::format("An axiom about that asks for {}, which the model denies at {}{}.",
-                        joined_with_and(open), at(), place));
+            fmt::format("An axiom that would {} it asks for {}, which the model denies at {}{}.",
+                        would, joined_with_and(open), at(), place));
       } else {
-        out.push_back(fmt::format("An axiom about that has a condition that was not met{}: {}.",
-                                  place, axiom_words(origin(c))));
+        out.push_back(
+            fmt::format("An axiom that would {} it has a condition that was not met{}: {}.", would,
+                        place, axiom_words(origin(c))));
       }
     }
     return out;
@@ -306,7 +325,7 @@ class BlameWords {
                           ? std::string("At the start")
                           : fmt::format("`{}` at {} {}, and", step().name, at(),
                                         has_failed() ? "failed (" + reason() + ')' : "went well");
-    return fmt::format("{} {} at {}, which the model allows one by one and not together, {}.", when,
+    return fmt::format("{} {} at {}: the model allows each by itself, but not together, {}.", when,
                        needed(), parting_.after, exclusion(clauses));
   }
 
@@ -317,7 +336,7 @@ class BlameWords {
                                            : "found `" + done.object + '`';
     const auto place = clauses.empty() ? std::string() : place_of(origin(clauses.front()));
     return fmt::format(
-        "`{}` at {} {}, but {} at {}: by its formula of success the model takes it for {}{}.",
+        "`{}` at {} {}, but {} at {}, which by the formula of success is {} of this perform{}.",
         done.name, at(), how, needed(), parting_.after,
         done.succeeded && done.object.empty() ? "a failure"
         : done.succeeded                      ? "another result"
