@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "compiler/repair/edit_relevance.h"
+#include "compiler/repair/idle_condition.h"
 #include "compiler/syntax/printer.h"
 
 namespace parallax::compiler {
@@ -69,8 +70,6 @@ class EditMaker {
     return out;
   }
 
-  // --- edits of one axiom ---
-
   void drop(std::size_t i) {
     Edit edit;
     edit.kind = Edit::Kind::kDropAxiom;
@@ -95,9 +94,10 @@ class EditMaker {
     drop(i);
     edit_conditions(i);
     const auto variables = sorted(form.variables, form.time);
+    const auto arguments = event_arguments(form);
     for (const auto& literal : condition_literals(typed_, variables, kMostEach)) {
-      if (!relevance_.in_some_step(literal, false, event_arguments(form), form.event_symbol,
-                                   form.variables)) {
+      if (!relevance_.in_some_step(literal, false, arguments, form.event_symbol, form.variables) ||
+          is_idle_condition(model_, forms_, form, print(literal, form.time, form.variables))) {
         continue;
       }
       Edit edit;

@@ -13,11 +13,13 @@ bool likelier(const Proposal& a, const Proposal& b) {
          std::tuple(b.size, !b.precaution, ~b.verdict.runs_whole, b.oddity);
 }
 
-/// Among equals the one that permits the least.
-bool permits_less(const Proposal& a, const Proposal& b) {
+/// Among equals the one that permits the least, then the one that forbids the least.
+bool changes_less(const Proposal& a, const Proposal& b) {
   if (likelier(a, b) || likelier(b, a)) return likelier(a, b);
   if (!a.effects || !b.effects || !a.effects->gained || !b.effects->gained) return false;
-  return a.effects->gained->value < b.effects->gained->value;
+  const auto gained = cmp(a.effects->gained->value, b.effects->gained->value);
+  if (gained != 0 || !a.effects->lost || !b.effects->lost) return gained < 0;
+  return a.effects->lost->value < b.effects->lost->value;
 }
 
 }  // namespace
@@ -35,7 +37,7 @@ bool rank_proposals(const RepairInput& input, std::size_t limit, std::vector<Pro
   for (auto& proposal : proposals) {
     if (!proposal.effects && proposal.text) proposal.effects = comparer.compare(*proposal.text);
   }
-  std::stable_sort(proposals.begin(), proposals.end(), permits_less);
+  std::stable_sort(proposals.begin(), proposals.end(), changes_less);
   if (proposals.size() > wanted) {
     proposals.resize(wanted);
     more = true;

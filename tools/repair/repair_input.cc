@@ -52,7 +52,13 @@ base::Status add_further_paths(const RepairOptions& options, const ScenarioModel
   return base::Unit{};
 }
 
-/// Where each way that runs went leaves the model.
+/// What the world did not do at this step, the model forbids.
+bool refused_by_both(Admission& admission, const Evidence& seen, std::size_t step) {
+  return seen.steps[step].failed && admission.ask(seen, step).refused;
+}
+
+/// Where each way that runs went leaves the model. Of a run of which the model is right that a step
+/// is impossible, only what came before is evidence.
 void find_partings(RepairInput& input, Context& context) {
   std::size_t horizon = 1;
   for (const auto& seen : input.evidence) horizon = std::max(horizon, seen.steps.size());
@@ -73,7 +79,14 @@ void find_partings(RepairInput& input, Context& context) {
           seen.ids.front()));
       continue;
     }
-    if (!answer.whole) {
+    if (!answer.whole && refused_by_both(admission, seen, answer.reached)) {
+      input.remarks.push_back(fmt::format(
+          "run {}: {} at {} failed, and the model says that it cannot happen there: the "
+          "plan tried it, or started where it should not",
+          seen.ids.front(), seen.steps[answer.reached].event, answer.reached));
+      seen.steps.resize(answer.reached);
+      seen.states.resize(answer.reached + 1);
+    } else if (!answer.whole) {
       seen.divergence = answer.reached + 1;
       const auto after = *seen.divergence;
       input.failed += seen.runs();

@@ -171,6 +171,69 @@ TEST_CASE("nothing to repair is said, with what to do instead") {
   CHECK(json_of(cli, {"repair", "out"}).at("proposals").empty());
 }
 
+TEST_CASE(
+    "a refused event that the model forbids as well: the plan is at fault, nothing is proposed") {
+  const TwoModels cli;
+  const std::string forbidden =
+      "load domain.e\n\n[drawer,time] Initiates(OpenDrawer(drawer),Open(drawer),time).\n"
+      "[drawer,time] Happens(OpenDrawer(drawer),time) -> HoldsAt(Parked(),time).\n";
+  cli.write("two/opens.e", forbidden);
+  cli.write("two/start.e", "[drawer] !HoldsAt(Open(drawer),0).\n!HoldsAt(Parked(),0).\n");
+  json_of(cli, {"run", "two/agree.yaml", "--execution", "closed-loop", "--out", "out"}, 1);
+  const auto result = cli.parallax({"repair", "out"});
+  CAPTURE(result.out);
+  CHECK(result.code == 4);
+  CHECK(result.out.find("run 1.1: OpenDrawer(top) at 0 failed, and the model says that it cannot "
+                        "happen there") != std::string::npos);
+}
+
+TEST_CASE("no condition is proposed that the axiom has, or that leaves nothing of it") {
+  const TwoModels cli;
+  const std::string open =
+      "load domain.e\n\n[drawer,time] Initiates(OpenDrawer(drawer),Open(drawer),time).\n";
+  cli.write("two/world.e", open);
+  cli.write("two/opens.e", open +
+                               "[drawer,time] !HoldsAt(Open(drawer),time) -> "
+                               "Terminates(OpenDrawer(drawer),Parked(),time).\n");
+  cli.write("two/idle.yaml",
+            "include: common.yaml\nname: an effect too many\nmodel: [opens.e, start.e]\n"
+            "simulator: {model: world.e}\n");
+  json_of(cli, {"run", "two/idle.yaml", "--out", "out"}, 1);
+  const auto report = json_of(cli, {"repair", "out", "--limit", "0"}, 1);
+  bool dropped = false;
+  for (const auto& proposal : report.at("proposals")) {
+    const std::string words = proposal.at("words");
+    CAPTURE(words);
+    CHECK(words.find("only if `HoldsAt(Open(drawer),time)`") == std::string::npos);
+    CHECK(words.find("only if `!HoldsAt(Open(drawer),time)`") == std::string::npos);
+    CHECK(words.find("only if `!HoldsAt(Parked(),time)`") == std::string::npos);
+    dropped = dropped || words.find("is dropped") != std::string::npos;
+  }
+  CHECK(dropped);
+}
+
+TEST_CASE("among preconditions that explain a refusal the one comes first that forbids least") {
+  const TwoModels cli;
+  // Whether the drawer is locked is open. The plan reaches, too, so that it goes on without
+  // parking.
+  const std::string model =
+      "load domain.e\n\nfluent Locked(drawer)\nfluent Bolted()\n\n"
+      "[drawer,time] Initiates(OpenDrawer(drawer),Open(drawer),time).\n";
+  cli.write("two/opens.e", model);
+  cli.write(
+      "two/world.e",
+      model + "[drawer,time] Happens(OpenDrawer(drawer),time) -> !HoldsAt(Locked(drawer),time).\n");
+  cli.write("two/start.e",
+            "[drawer] !HoldsAt(Open(drawer),0).\nHoldsAt(Parked(),0).\nHoldsAt(Bolted(),0).\n");
+  cli.write("two/refuses.yaml",
+            "include: common.yaml\nname: a locked drawer\nmodel: [opens.e, start.e]\n"
+            "simulator: {model: world.e}\n");
+  json_of(cli, {"run", "two/refuses.yaml", "--execution", "closed-loop", "--out", "out"}, 1);
+  const auto report = json_of(cli, {"repair", "out", "--limit", "0"}, 1);
+  const auto& all = report.at("proposals");
+  CHECK(all.at(0).at("words").get<std::string>().find("Locked") != std::string::npos);
+}
+
 TEST_CASE("runs that contradict each other: said first, and the outcome is left open") {
   const TwoModels cli;
   json_of(cli, {"run", "two/sticks.yaml", "--out", "out"}, 1);
