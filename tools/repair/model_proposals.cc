@@ -30,6 +30,8 @@ class ModelSearch {
   FoundProposals run() {
     if (input_.contradictions.empty()) {
       search_all(Mode::kExact);
+      // Last of all that what happens is open: of one run, too, that tried twice and saw both.
+      if (result_.proposals.empty() && !context_.stopped()) search(Mode::kOpen, 1);
     } else {
       if (set_aside()) search(Mode::kCautious, 1);
       // Then what is right about all runs.

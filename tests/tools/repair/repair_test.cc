@@ -187,6 +187,28 @@ TEST_CASE(
                         "happen there") != std::string::npos);
 }
 
+TEST_CASE("a run that tried twice and saw two outcomes: the outcome is open") {
+  const TwoModels cli;
+  cli.write("two/retry.lisp", R"((def-cram-function open-it ()
+  (with-retry-counters ((tries 2))
+    (with-failure-handling ((manipulation-low-level-failure (e) (do-retry tries (retry))))
+      (perform (an action (type opening) (object (an object (name top))))))))
+(open-it)
+)");
+  cli.write("two/opens.e", "load domain.e\n");
+  cli.write("two/world.e",
+            "load domain.e\n\n[drawer,time] Releases(OpenDrawer(drawer),Open(drawer),time).\n");
+  cli.write("two/retry.yaml",
+            "plan: retry.lisp\nbind: robot.bind\nhorizon: 3\nname: a drawer that opens or not\n"
+            "model: [opens.e, start.e]\nexecution: closed-loop\nsimulator: {model: world.e}\n");
+  const auto run = json_of(cli, {"run", "two/retry.yaml", "--out", "out", "--seed", "2"}, 1);
+  REQUIRE(run.at("simulations") == 1);
+  const auto report = json_of(cli, {"repair", "out"}, 1);
+  REQUIRE(report.at("partings").at(0).at("timepoint") > 1);
+  const std::string words = report.at("proposals").at(0).at("words");
+  CHECK(words.find("Releases(OpenDrawer(") != std::string::npos);
+}
+
 TEST_CASE("no condition is proposed that the axiom has, or that leaves nothing of it") {
   const TwoModels cli;
   const std::string open =
