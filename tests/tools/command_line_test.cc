@@ -15,7 +15,7 @@ struct Example {
   std::string form = "text", proof, plan, bind;
   std::int64_t limit = 10;
   std::uint64_t seed = 1;
-  double level = 0.9;
+  double level = 0.9, rate = 1.0;
   int verbosity = 0, horizon = -1;
   bool count = false, form_given = false;
   OptionTable program{"example", "An example."}, list{"list", "Lists"}, secret{"secret", "Hides"};
@@ -34,6 +34,7 @@ struct Example {
     list.option("--plan", plan, "Plan").needs("--bind");
     list.option("--bind", bind, "Binding").needs("--plan");
     list.option("--limit", limit, "Limit").check(NonNegative{}).show_default();
+    list.option("--rate", rate, "Rate").check(Positive{});
     list.option("--seed", seed, "Seed").check(WholeNumber{0, 99});
     list.option("--level", level, "Level").check(FiniteNumber{0.5, 0.99});
     list.option("--horizon", horizon, "Horizon").check(IntRange{0, 9});
@@ -125,6 +126,14 @@ TEST_CASE("a line that does not fit is refused with a reason and the names that 
   CHECK(contains(error_of({"list", "a.e", "--format", "xml"}), "xml not in {text,csv}"));
   CHECK(contains(error_of({"list", "a.e", "--seed", "1x"}), "1x is no whole number from 0 to 99"));
   CHECK(contains(error_of({"list", "a.e", "--level", "nan"}), "nan is no number from 0.5 to 0.99"));
+  for (const std::string word : {"-1", "nan", "x"}) {
+    CHECK(contains(error_of({"list", "a.e", "--limit=" + word}),
+                   "--limit: " + word + " is no number from 0 on"));
+  }
+  for (const std::string word : {"-1", "0"}) {
+    CHECK(contains(error_of({"list", "a.e", "--rate=" + word}),
+                   "--rate: " + word + " is no number greater than 0"));
+  }
   CHECK(contains(error_of({"list", "a.e", "--horizon", "10"}), "10 not in range 0 to 9"));
   CHECK(contains(error_of({"list", "a.e", "--plan", "p"}), "--plan requires --bind"));
   CHECK(contains(error_of({"list", "a.e", "--cuont"}), "--cuont"));

@@ -33,6 +33,18 @@ CLI::Validator whole_number(std::int64_t lower, std::int64_t upper) {
   return CLI::Validator(check, "N");
 }
 
+/// With words of its own: the library prints the greatest double digit by digit.
+CLI::Validator number_from_0(bool and_0) {
+  const auto check = [and_0](std::string& text) -> std::string {
+    double value = 0.0;
+    const bool fine =
+        CLI::detail::lexical_cast(text, value) && (value > 0.0 || (and_0 && value == 0.0));
+    return fine ? std::string()
+                : fmt::format("{} is no number {}", text, and_0 ? "from 0 on" : "greater than 0");
+  };
+  return CLI::Validator(check, and_0 ? "NONNEGATIVE" : "POSITIVE");
+}
+
 struct AddCheck {
   CLI::Option& option;
 
@@ -47,8 +59,8 @@ struct AddCheck {
   void operator()(const IntRange& range) const {
     option.check(CLI::Range(range.lower, range.upper));
   }
-  void operator()(NonNegative) const { option.check(CLI::NonNegativeNumber); }
-  void operator()(Positive) const { option.check(CLI::PositiveNumber); }
+  void operator()(NonNegative) const { option.check(number_from_0(true)); }
+  void operator()(Positive) const { option.check(number_from_0(false)); }
 };
 
 CLI::Option* add_flag(CLI::App& app, const Option& from) {
