@@ -17,6 +17,7 @@
 #include "compiler/lint/lint.h"
 #include "compiler/pipeline/plan_encoder.h"
 #include "compiler/pipeline/plan_formulas.h"
+#include "compiler/pipeline/state_constraint.h"
 #include "compiler/plan/plan_binding.h"
 #include "compiler/sema/check.h"
 #include "compiler/sema/name_advice.h"
@@ -186,12 +187,7 @@ base::Result<CheckedFormula> check_constraint(const ConstraintText& constraint, 
   return check_formula(model, parsed->ast, root, {}, sink);
 }
 
-/// A state constraint with its place: a formula about a final timepoint, called
-/// `time` in it.
-struct StateConstraint {
-  CheckedFormula formula;
-  base::SourceRange source;
-};
+}  // namespace
 
 base::Result<std::vector<StateConstraint>> check_constraints(
     const std::vector<ConstraintText>& constraints, TypedModel& model,
@@ -207,6 +203,8 @@ base::Result<std::vector<StateConstraint>> check_constraints(
   if (checked.size() != constraints.size()) return sink.already_reported();
   return checked;
 }
+
+namespace {
 
 /// Defines an atom `hit` for every timepoint from `first` on: all constraints
 /// hold there. An instance that names a timepoint before 0 does not hold.

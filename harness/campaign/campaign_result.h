@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/campaign/cover_watch.h"
 #include "harness/campaign/sample_record.h"
 #include "harness/campaign/trace_input.h"
 #include "harness/confidence/comparison.h"
@@ -74,6 +75,7 @@ struct PathCount {
 /// What is said of executions of a plan beside what is said of any stream of samples.
 struct LoopResult {
   std::int64_t initial_states = 0;
+  bool has_weights = false;  // they are drawn by weights, else each is equally likely
   /// Runs that began where the start was chosen, not drawn: no claim is about them. None: all were
   /// to be drawn.
   std::optional<std::int64_t> guided;
@@ -82,7 +84,9 @@ struct LoopResult {
   std::vector<PathCount> paths;  // in the order in which they came
   /// With --keep-going: how often each cause ended what the model admits, most frequent first.
   std::vector<CauseRate> causes;
-  double causes_level = 0.0;  // confidence of their intervals
+  double causes_level = 0.0;         // confidence of their intervals
+  std::int64_t causes_runs = 0;      // the first ones with a drawn start, which they are counted in
+  std::optional<CoverResult> cover;  // where a run goes on until everything was shown
 };
 
 struct Discrepancy {

@@ -239,6 +239,7 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
                       {"keep_going", options.keep_going},
                       {"compare", to_string(scenario.comparison())},
                       {"match", scenario.match_model ? "model" : "trace"}};
+  if (scenario.until_covered) json["until_covered"] = true;
   if (scenario.execution == Execution::kClosedLoop) {
     json["execution"] = to_string(scenario.execution);
     if (scenario.starts == Starts::kGuided) json["starts"] = to_string(scenario.starts);

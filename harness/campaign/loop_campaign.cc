@@ -15,6 +15,7 @@
 #include "harness/campaign/run_setup.h"
 #include "harness/campaign/start_check.h"
 #include "harness/confidence/criterion.h"
+#include "harness/confidence/item_bounds.h"
 
 namespace parallax::harness {
 namespace {
@@ -38,6 +39,7 @@ class LoopCampaign {
         criterion_(make_criterion(scenario.criterion)),
         limit_(run_limit(scenario)),
         tally_(RegressionFrame{}),
+        rated_(planned()),
         samples_(scenario, feed, bench_, options.seed, sink),
         bench_(
             scenario, *feed.symbols(), make_simulator, {options.seed, options.jobs, options.stop},
@@ -65,6 +67,8 @@ class LoopCampaign {
     journal_ = std::move(*journal);
     result_.journal_open = true;
     stream_.loop->initial_states = samples_.initial_states();
+    stream_.loop->has_weights = samples_.has_weights();
+    if (scenario_.until_covered && !watch_what_is_shown()) return finished(true);
     if (!samples_.continue_from(*journal_)) return sink_.already_reported();
     const auto ended = sample();
     result_.failed = !ended;
@@ -94,9 +98,9 @@ class LoopCampaign {
     for (;;) {
       const auto decision = criterion_->decide(tally_);
       report_progress(decision);
-      if (decision.stop) return End::kDecided;
-      if (tally_.runs() >= limit_.max_runs) return End::kRunLimit;
-      if (goes_on_anyway() && executions() >= planned()) return End::kPlanned;
+      if (decision.stop && is_covered()) return End::kDecided;
+      if (executions() >= limit_.max_runs) return End::kRunLimit;
+      if (goes_on_anyway() && executions() >= planned() && is_covered()) return End::kPlanned;
       samples_.submit_to(last_wanted(decision));
       auto next = samples_.next();
       if (!next || !check_written(*journal_, options_, sink_)) return sink_.already_reported();
@@ -107,11 +111,32 @@ class LoopCampaign {
     }
   }
 
+  /// False when stopped.
+  bool watch_what_is_shown() {
+    cover_ = feed_.cover(options_.seed);
+    if (cover_ == nullptr) return false;
+    const auto items = std::ssize(cover_->items());
+    shown_.resize(cover_->items().size(), false);
+    const auto& criterion = scenario_.criterion;
+    if (items > 0) bounds_.emplace(items, criterion.confidence_level, criterion.epsilon);
+    if (bounds_ && scenario_.limits.max_runs == 0) {
+      limit_.max_runs = std::max(limit_.max_runs, 2 * bounds_->runs_needed());
+    }
+    return true;
+  }
+
+  /// Was everything shown that is to be, or is rare what was not?
+  bool is_covered() const { return !bounds_ || is_all_shown() || bounds_->is_rare(); }
+  bool is_all_shown() const {
+    return std::find(shown_.begin(), shown_.end(), false) == shown_.end();
+  }
+
   /// Something was found that ends other runs.
   bool goes_on_anyway() const {
     return options_.keep_going && (tally_.mismatch() > 0 || stream_.loop->unfinished > 0);
   }
-  std::int64_t executions() const { return tally_.runs() + stream_.loop->unfinished; }
+  /// Those with a start that was drawn.
+  std::int64_t executions() const { return tally_.runs() + drawn_unfinished_; }
   /// With --keep-going and a discrepancy: as many as if all had been clean, so that the number does
   /// not depend on what is found, and rates are rates.
   std::int64_t planned() const { return std::min(limit_.needed, limit_.max_runs); }
@@ -120,8 +145,8 @@ class LoopCampaign {
   std::int64_t last_wanted(const Decision& decision) const {
     const std::int64_t window = options_.jobs == 1 ? 1 : 2 * options_.jobs;
     const auto guided = stream_.loop->guided.value_or(0);
-    const auto asked =
-        goes_on_anyway() ? planned() : decision.runs_needed.value_or(limit_.max_runs);
+    auto asked = goes_on_anyway() ? planned() : decision.runs_needed.value_or(limit_.max_runs);
+    if (!is_covered()) asked = std::max(asked, bounds_->runs_needed());
     const auto needed = std::max(asked + guided, samples_.next_sample());
     return std::min({samples_.next_sample() + window - 1, needed, limit_.max_runs + guided});
   }
@@ -155,11 +180,14 @@ class LoopCampaign {
     count(record);
     if (judgement.admitted == base::Known::kNo) return accept(std::move(record), judgement);
     const auto unfinished = why_unfinished(*record.path, scenario_);
+    const bool is_rated = note(record, true);
+    auto& loop = *stream_.loop;
     if (unfinished.empty()) {
-      is_guided(record) ? note_guided() : tally_.add_clean_elsewhere();
+      if (!is_guided(record)) tally_.add_clean_elsewhere();
+      if (is_rated) ++loop.causes_runs;
       ++stream_.clean;
     } else {
-      auto& loop = *stream_.loop;
+      if (!is_guided(record)) ++drawn_unfinished_;
       if (loop.unfinished++ == 0) loop.why_unfinished = unfinished;
     }
     consumed_.push_back(std::move(record));
@@ -190,6 +218,19 @@ class LoopCampaign {
   static bool is_guided(const SampleRecord& record) { return !record.path->target.empty(); }
   void note_guided() { ++*stream_.loop->guided; }
 
+  /// An execution that came to a result. Is it one of those that rates are about?
+  bool note(const SampleRecord& record, bool admitted) {
+    if (bounds_) {
+      for (const auto item : cover_->shown_by(record, admitted)) shown_[item] = true;
+    }
+    if (is_guided(record)) {
+      note_guided();
+      return false;
+    }
+    if (bounds_) bounds_->add_run();
+    return rated_.next();
+  }
+
   std::optional<End> lost(SampleRecord record) {
     stream_.rejected += record.rejected;
     if (is_guided(record)) {
@@ -197,6 +238,8 @@ class LoopCampaign {
     } else {
       tally_.add_rejected(record.rejected);
       tally_.add_lost();
+      if (bounds_) bounds_->add_lost();
+      if (rated_.next()) ++stream_.loop->causes_runs;
     }
     ++stream_.lost;
     lost_too_often_ = bench_.lost_too_often(record, samples_.on_record(record));
@@ -219,16 +262,15 @@ class LoopCampaign {
       return rate.cause == judgement.cause.text;
     });
     if (known != causes.end()) {
-      tally_.add_mismatch();
-      ++known->count;
+      if (note_mismatch(record)) ++known->count;
       consumed_.push_back(std::move(record));
       return std::nullopt;
     }
     const auto again = samples_.repeat(record, options_.keep_going);
     if (!again) return End::kStopped;
-    is_guided(record) ? note_guided() : tally_.add_mismatch();
+    const std::int64_t rated = note_mismatch(record) ? 1 : 0;
     if (options_.keep_going) {
-      causes.push_back({judgement.cause.text, 1, 0.0, 0.0, 0.0, record.sample,
+      causes.push_back({judgement.cause.text, rated, 0.0, 0.0, 0.0, record.sample,
                         judgement.cause.reason, record.initial});
     }
     Discrepancy found;
@@ -251,6 +293,14 @@ class LoopCampaign {
     return options_.keep_going ? std::nullopt : std::optional(End::kDiscrepancy);
   }
 
+  /// Is it one of those that rates are about?
+  bool note_mismatch(const SampleRecord& record) {
+    const bool is_rated = note(record, false);
+    if (!is_guided(record)) tally_.add_mismatch();
+    if (is_rated) ++stream_.loop->causes_runs;
+    return is_rated;
+  }
+
   void report_progress(const Decision& decision) const {
     if (!options_.progress) return;
     const std::chrono::duration<double> elapsed = LoopClock::now() - started_;
@@ -260,6 +310,10 @@ class LoopCampaign {
     progress.needed = goes_on_anyway() ? planned()
                                        : std::min(decision.runs_needed.value_or(limit_.max_runs),
                                                   limit_.max_runs);
+    if (!is_covered()) {
+      progress.needed =
+          std::min(std::max(progress.needed, bounds_->runs_needed()), limit_.max_runs);
+    }
     const auto made = static_cast<double>(bench_.runs_made());
     progress.runs_per_s = elapsed.count() > 0.0 ? made / elapsed.count() : 0.0;
     options_.progress(progress);
@@ -268,17 +322,18 @@ class LoopCampaign {
   void fill_stream() {
     const auto& criterion = scenario_.criterion;
     auto& stream = stream_;
-    const bool decided = criterion_->decide(tally_).stop && stream.loop->unfinished == 0;
+    const bool decided =
+        criterion_->decide(tally_).stop && stream.loop->unfinished == 0 && is_covered();
     stream.verdict = !result_.discrepancies.empty() ? CampaignVerdict::kDiscrepancy
                      : decided                      ? CampaignVerdict::kNoDiscrepancy
                                                     : CampaignVerdict::kInconclusive;
     const auto guided = stream.loop->guided.value_or(0);
-    stream.simulations = tally_.runs() + stream.loop->unfinished + guided;
+    stream.simulations = executions() + guided;
     const auto bound = certified_bound(tally_, criterion.confidence_level);
     stream.certified_level = bound.confidence_level;
     stream.certified_epsilon = bound.epsilon;
-    stream.claim =
-        loop_claim(tally_, criterion, scenario_.comparison(), stream.loop->initial_states);
+    stream.claim = loop_claim(tally_, criterion, scenario_.comparison(),
+                              {stream.loop->initial_states, stream.loop->has_weights});
     stream.caveats = caveats(tally_, criterion, std::nullopt);
     if (feed_.plan().performs().empty()) {
       stream.caveats.emplace_back("the plan performs nothing: initial states alone were compared");
@@ -296,12 +351,40 @@ class LoopCampaign {
     }
     auto& causes = stream.loop->causes;
     stream.loop->causes_level = kRateLevel;
-    for (auto& rate : causes) set_interval(rate, tally_.runs(), kRateLevel);
+    for (auto& rate : causes) set_interval(rate, stream.loop->causes_runs, kRateLevel);
+    if (!causes.empty() && (guided > 0 || rated_.goes_on())) {
+      stream.caveats.push_back(fmt::format(
+          "how often each cause comes is counted in the first {} executions with a drawn start: a "
+          "number that nothing seen decides",
+          rated_.counted()));
+    }
     std::stable_sort(causes.begin(), causes.end(),
                      [](const auto& a, const auto& b) { return a.count > b.count; });
     const auto* found = result_.discrepancies.empty() ? nullptr : &result_.discrepancies.front();
     add_loss_caveats(stream);
     add_simulator_caveats(result_.simulator, found, stream);
+  }
+
+  void fill_cover() {
+    if (cover_ == nullptr) return;
+    auto& cover = stream_.loop->cover.emplace();
+    using CoverEnd = CoverResult::End;
+    cover.items = std::ssize(shown_);
+    cover.unreachable = cover_->unreachable();
+    cover.epsilon = scenario_.criterion.epsilon;
+    cover.end = is_all_shown()                    ? CoverEnd::kShown
+                : is_covered()                    ? CoverEnd::kRare
+                : executions() >= limit_.max_runs ? CoverEnd::kRunLimit
+                                                  : CoverEnd::kStopped;
+    for (std::size_t i = 0; i < shown_.size(); ++i) {
+      if (!shown_[i]) cover.left.push_back(cover_->items()[i]);
+    }
+    if (!bounds_) return;
+    const auto bound = bounds_->bound();
+    cover.drawn = bounds_->runs();
+    cover.lost = bounds_->lost();
+    cover.confidence = bound.confidence_level;
+    cover.bound = bound.epsilon;
   }
 
   base::Result<CampaignResult> finished(bool interrupted) {
@@ -315,6 +398,7 @@ class LoopCampaign {
     if (!interrupted && !result_.failed) {
       if (!journal_->rewrite({}, std::move(consumed_), sink_)) return sink_.already_reported();
     }
+    fill_cover();
     fill_stream();
     result_.interrupted = interrupted;
     result_.verdict = interrupted && stream_.verdict != CampaignVerdict::kDiscrepancy
@@ -336,6 +420,11 @@ class LoopCampaign {
   std::unique_ptr<ConfidenceCriterion> criterion_;
   RunLimit limit_;
   Tally tally_;
+  FixedCount rated_;
+  CoverWatch* cover_ = nullptr;       // of a run that goes on until everything was shown
+  std::vector<bool> shown_;           // by item
+  std::optional<ItemBounds> bounds_;  // none: there is nothing to be shown
+  std::int64_t drawn_unfinished_ = 0;
   std::unique_ptr<Journal> journal_;
   CampaignResult result_;
   TraceResult stream_;

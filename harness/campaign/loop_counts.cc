@@ -24,6 +24,20 @@ void count_path(const SampleRecord& record, LoopResult& loop) {
   ++(same == paths.end() ? paths.emplace_back(std::move(path)) : *same).runs;
 }
 
+std::string_view to_string(CoverResult::End end) {
+  switch (end) {
+    case CoverResult::End::kShown:
+      return "all shown";
+    case CoverResult::End::kRare:
+      return "rarer than epsilon";
+    case CoverResult::End::kRunLimit:
+      return "max_runs";
+    case CoverResult::End::kStopped:
+      break;
+  }
+  return "stopped";
+}
+
 std::string why_unfinished(const ExecutedPath& path, const Scenario& scenario) {
   switch (path.end) {
     case PathEnd::kPerformLimit:

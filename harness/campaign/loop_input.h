@@ -11,6 +11,7 @@
 #include "compiler/base/diagnostic.h"
 #include "compiler/base/known.h"
 #include "compiler/base/result.h"
+#include "harness/campaign/cover_watch.h"
 #include "harness/campaign/sample_record.h"
 #include "harness/campaign/start_guide.h"
 #include "harness/sampling/sampler.h"
@@ -51,6 +52,13 @@ class ExecutablePlan {
   virtual std::vector<PlannedPerform> performs() const = 0;
 };
 
+/// The states that executions begin in.
+struct LoopStates {
+  std::vector<std::vector<compiler::FluentId>> holds;  // in a fixed order
+  /// As likely as their weights, none of which is 0; none: each equally likely.
+  std::vector<double> weights;
+};
+
 /// A model with a plan that is executed.
 class LoopFeed {
  public:
@@ -62,13 +70,17 @@ class LoopFeed {
   virtual runtime::Symbols symbols() const = 0;
   /// The performs of one execution that the model was compiled for.
   virtual std::int64_t max_performs() const = 0;
-  /// The states that the model can begin in, in a fixed order, each as the true ones of `fluents`.
-  /// Reports that there are too many, or none; nothing if it was stopped.
-  virtual base::Result<std::optional<std::vector<std::vector<compiler::FluentId>>>> initial_states(
+  /// The states that the model can begin in, but for those that the scenario gives no weight, each
+  /// as the true ones of `fluents`. Reports that there are too many, or none, and what is wrong
+  /// with the weights; nothing if it was stopped.
+  virtual base::Result<std::optional<LoopStates>> initial_states(
       std::span<const compiler::FluentId> fluents) = 0;
   /// Chooses where executions begin that are drawn from this seed; null: all are drawn. To be asked
   /// for once, behind initial_states.
   virtual StartGuide* guide(std::uint64_t seed) = 0;
+  /// What executions that are drawn from this seed are to show; null if the solver was stopped. To
+  /// be asked for once, behind initial_states.
+  virtual CoverWatch* cover(std::uint64_t seed) = 0;
   /// Has the model an execution that begins with these performs, goes through these states (from
   /// timepoint 0 on, perhaps not to the end), and ends the first `outcomes` of the performs as they
   /// ended? Undecided where the stop flag is raised meanwhile.

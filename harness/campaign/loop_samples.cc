@@ -116,11 +116,13 @@ std::string wrong_path(const Scenario& scenario, const ExecutablePlan& plan,
 }
 
 LoopSamples::LoopSamples(const Scenario& scenario, const ExecutablePlan& plan,
-                         std::vector<LoopStart> starts, std::uint64_t campaign_seed,
-                         std::int64_t max_performs, bool repeats_losses)
+                         std::vector<LoopStart> starts, std::vector<double> weights,
+                         std::uint64_t campaign_seed, std::int64_t max_performs,
+                         bool repeats_losses)
     : scenario_(scenario),
       plan_(plan),
       starts_(std::move(starts)),
+      weights_(std::move(weights)),
       campaign_seed_(campaign_seed),
       max_performs_(max_performs),
       repeats_losses_(repeats_losses) {
@@ -128,7 +130,7 @@ LoopSamples::LoopSamples(const Scenario& scenario, const ExecutablePlan& plan,
 }
 
 DrawKey LoopSamples::key_of(std::int64_t sample) const {
-  return {campaign_seed_, base::fnv1a64(kStartStream), DrawPhase::kCertify,
+  return {campaign_seed_, loop_start_stream(), DrawPhase::kCertify,
           static_cast<std::uint64_t>(sample), 0};
 }
 
@@ -137,14 +139,26 @@ DrawKey LoopSamples::choices_key(std::uint64_t campaign_seed, std::int64_t sampl
           static_cast<std::uint64_t>(sample), 0};
 }
 
-std::int64_t LoopSamples::draw_state(std::int64_t sample) const {
-  auto key = key_of(sample);
-  key.trace_key = base::fnv1a64(kStateStream);
-  const auto count = starts_.size();
-  const auto drawn =
-      static_cast<std::size_t>(CounterRng(key).uniform(0) * static_cast<double>(count));
-  return static_cast<std::int64_t>(std::min(drawn, count - 1)) + 1;
+std::int64_t drawn_state(std::uint64_t campaign_seed, std::int64_t sample, std::size_t states,
+                         std::span<const double> weights) {
+  const DrawKey key{campaign_seed, base::fnv1a64(kStateStream), DrawPhase::kCertify,
+                    static_cast<std::uint64_t>(sample), 0};
+  const double uniform = CounterRng(key).uniform(0);
+  if (weights.empty()) {
+    const auto drawn = static_cast<std::size_t>(uniform * static_cast<double>(states));
+    return static_cast<std::int64_t>(std::min(drawn, states - 1)) + 1;
+  }
+  double sum = 0.0;
+  for (const double weight : weights) sum += weight;
+  std::size_t drawn = 0;
+  for (double left = uniform * sum; drawn + 1 < states; ++drawn) {
+    left -= weights[drawn];
+    if (left < 0.0) break;
+  }
+  return static_cast<std::int64_t>(drawn) + 1;
 }
+
+std::uint64_t loop_start_stream() { return base::fnv1a64(kStartStream); }
 
 const LoopStart& LoopSamples::start_of(const SampleRecord& record) const {
   return starts_[static_cast<std::size_t>(record.path->start - 1)];

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,13 @@
 #include "harness/sampling/sampler.h"
 
 namespace parallax::harness {
+
+/// The number, from 1, of the initial state that a sample begins in: drawn by these weights, or
+/// each of `states` equally likely if there are none.
+std::int64_t drawn_state(std::uint64_t campaign_seed, std::int64_t sample, std::size_t states,
+                         std::span<const double> weights);
+/// What takes the place of a trace's key where starts of executions are drawn.
+std::uint64_t loop_start_stream();
 
 /// An initial state of the model as executions begin in it.
 struct LoopStart {
@@ -34,14 +42,15 @@ std::string wrong_path(const Scenario& scenario, const ExecutablePlan& plan,
                        const LoopBounds& bounds, const SampleRecord& record);
 
 /// Executions of a plan. Sample n begins in an initial state that its number draws, each equally
-/// likely, at a point drawn uniformly from that state's cuboid; a start that is not valid is drawn
-/// again in the same state. Then each perform of the plan runs its controller, and the plan goes on
-/// by what came of it, until it ends or a limit ends it.
+/// likely or by weights, at a point drawn uniformly from that state's cuboid; a start that is not
+/// valid is drawn again in the same state. Then each perform of the plan runs its controller, and
+/// the plan goes on by what came of it, until it ends or a limit ends it.
 class LoopSamples final : public SampleMaker {
  public:
-  /// `scenario` and `plan` outlive the object; `starts` is not empty.
+  /// `scenario` and `plan` outlive the object; `starts` is not empty. `weights`: as LoopStates.
   LoopSamples(const Scenario& scenario, const ExecutablePlan& plan, std::vector<LoopStart> starts,
-              std::uint64_t campaign_seed, std::int64_t max_performs, bool repeats_losses);
+              std::vector<double> weights, std::uint64_t campaign_seed, std::int64_t max_performs,
+              bool repeats_losses);
 
   std::optional<SampleRecord> make(std::int64_t sample, Simulator& simulator,
                                    const std::function<bool()>& abandoned) const override;
@@ -64,11 +73,14 @@ class LoopSamples final : public SampleMaker {
 
  private:
   DrawKey key_of(std::int64_t sample) const;
-  std::int64_t draw_state(std::int64_t sample) const;
+  std::int64_t draw_state(std::int64_t sample) const {
+    return drawn_state(campaign_seed_, sample, starts_.size(), weights_);
+  }
 
   const Scenario& scenario_;
   const ExecutablePlan& plan_;
   std::vector<LoopStart> starts_;
+  std::vector<double> weights_;
   std::uint64_t campaign_seed_;
   std::int64_t max_performs_;
   bool repeats_losses_;

@@ -39,6 +39,17 @@ class GuidedSample final : public SampleMaker {
 
 }  // namespace
 
+std::vector<compiler::FluentId> compared_fluents(const Scenario& scenario,
+                                                 const ModelFluents& fluents) {
+  std::vector<compiler::FluentId> out;
+  const auto& ground = fluents.ground();
+  for (std::size_t i = 0; i < ground.size(); ++i) {
+    const auto* binding = scenario.mapping->find(ground[i].symbol);
+    if (binding != nullptr && !binding->is_ignored()) out.push_back(fluents.id(i));
+  }
+  return out;
+}
+
 std::shared_ptr<const CampaignTrace> LoopStream::start_state(
     const LoopFeed& feed, std::vector<compiler::FluentId> holds) {
   auto state = std::make_shared<CampaignTrace>();
@@ -49,10 +60,11 @@ std::shared_ptr<const CampaignTrace> LoopStream::start_state(
   return state;
 }
 
-base::Status LoopStream::check_performs() {
-  const auto errors_before = sink_.error_count();
+base::Status check_performs(const Scenario& scenario, const ExecutablePlan& plan,
+                            base::DiagnosticSink& sink) {
+  const auto errors_before = sink.error_count();
   std::set<std::pair<std::string, State>> known;
-  for (const auto& perform : feed_.plan().performs()) {
+  for (const auto& perform : plan.performs()) {
     if (!known.emplace(perform.event, perform.arguments).second) continue;
     CampaignTrace one;
     auto symbols = std::make_shared<compiler::SymbolTable>();
@@ -60,33 +72,29 @@ base::Status LoopStream::check_performs() {
     one.points.front().happens = {symbols->add_event(perform.event)};
     one.symbols = std::move(symbols);
     one.plan = {{perform.source, perform.arguments}};
-    (void)action_calls(scenario_, one, sink_);
+    (void)action_calls(scenario, one, sink);
   }
-  if (sink_.error_count() != errors_before) return sink_.already_reported();
+  if (sink.error_count() != errors_before) return sink.already_reported();
   return base::Unit{};
 }
 
 base::Result<bool> LoopStream::prepare() {
-  if (!check_performs()) return sink_.already_reported();
-  std::vector<compiler::FluentId> compared;
+  if (!check_performs(scenario_, feed_.plan(), sink_)) return sink_.already_reported();
   const auto& ground = bench_.fluents().ground();
-  for (std::size_t i = 0; i < ground.size(); ++i) {
-    const auto* binding = scenario_.mapping->find(ground[i].symbol);
-    if (binding != nullptr && !binding->is_ignored()) compared.push_back(bench_.fluents().id(i));
-  }
-  auto states = feed_.initial_states(compared);
+  auto states = feed_.initial_states(compared_fluents(scenario_, bench_.fluents()));
   if (!states) return sink_.already_reported();
   if (!*states) return false;
   std::vector<LoopStart> starts;
-  for (auto& holds : **states) {
+  has_weights_ = !(*states)->weights.empty();
+  for (auto& holds : (*states)->holds) {
     auto state = start_state(feed_, std::move(holds));
     auto parts = prepare_trace(scenario_, ground, bench_.simulator(), *state, sink_);
     if (!parts) return sink_.already_reported();
     starts.push_back({std::move(state), std::move(parts->sampler)});
   }
-  samples_ = std::make_shared<const LoopSamples>(scenario_, feed_.plan(), std::move(starts), seed_,
-                                                 feed_.max_performs(),
-                                                 may_repeat_losses(bench_.simulator()));
+  samples_ = std::make_shared<const LoopSamples>(
+      scenario_, feed_.plan(), std::move(starts), std::move((*states)->weights), seed_,
+      feed_.max_performs(), may_repeat_losses(bench_.simulator()));
   guide_ = feed_.guide(seed_);
   for (std::int64_t i = 0; i < kChosenAhead; ++i) choose();
   return true;

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "harness/campaign/journal.h"
 #include "harness/campaign/loop_input.h"
@@ -12,6 +13,15 @@
 #include "harness/config/scenario.h"
 
 namespace parallax::harness {
+
+/// The fluents that the mapping reads: states of the model that agree on them are one.
+std::vector<compiler::FluentId> compared_fluents(const Scenario& scenario,
+                                                 const ModelFluents& fluents);
+
+/// Every perform of the plan needs a controller that takes what it says. Reports what action_calls
+/// reports.
+base::Status check_performs(const Scenario& scenario, const ExecutablePlan& plan,
+                            base::DiagnosticSink& sink);
 
 /// What Trial is for a trace: the executions of a plan, simulated by workers that may run ahead, or
 /// taken from the journal, in the order of their numbers.
@@ -33,6 +43,7 @@ class LoopStream {
   base::Status continue_from(const Journal& journal);
 
   std::int64_t initial_states() const { return std::ssize(samples_->starts()); }
+  bool has_weights() const { return has_weights_; }
   const LoopStart& start_of(const SampleRecord& record) const { return samples_->start_of(record); }
   std::int64_t next_sample() const { return next_; }  // from 1
   /// Lets the workers simulate all samples up to this one.
@@ -48,7 +59,6 @@ class LoopStream {
   }
 
  private:
-  base::Status check_performs();
   void choose();
   const SampleRecord* recorded(std::int64_t sample, DrawPhase phase) const {
     return journal_->find(1, sample, phase);
@@ -61,6 +71,7 @@ class LoopStream {
   std::uint64_t seed_;
   base::DiagnosticSink& sink_;
   const Journal* journal_ = nullptr;
+  bool has_weights_ = false;
   std::shared_ptr<const LoopSamples> samples_;
   StartGuide* guide_ = nullptr;
   std::map<std::int64_t, GuidedStart> chosen_;  // by sample; of the others the start is drawn

@@ -163,14 +163,17 @@ std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comp
 }
 
 std::string loop_claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,
-                       std::int64_t initial_states) {
+                       const StartLaw& starts) {
   const std::string_view valid = tally.rejected() > 0 ? "the valid part of " : "";
   const auto from =
-      initial_states == 1
-          ? fmt::format("the only initial state, drawn uniformly from {}its region,", valid)
-          : fmt::format(
-                "{} initial states, each equally likely and drawn uniformly from {}its region,",
-                initial_states, valid);
+      starts.initial_states == 1
+          ? fmt::format("the only initial state{}, drawn uniformly from {}its region,",
+                        starts.has_weights ? " with a weight in `start_weights`" : "", valid)
+          : fmt::format("{} initial states, {} and drawn uniformly from {}its region,",
+                        starts.initial_states,
+                        starts.has_weights ? "each as likely as its weight in `start_weights`"
+                                           : "each equally likely",
+                        valid);
   return claim_about(tally, spec, fmt::format("executions of the plan from {}", from),
                      fmt::format("leave what the model admits {}", when(comparison)));
 }

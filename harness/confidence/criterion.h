@@ -81,11 +81,16 @@ CertifiedBound certified_bound(const Tally& tally, double confidence_level);
 /// discrepancy (90 clean runs of 90)". Figures are rounded up, so never beyond the evidence.
 std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison);
 
+/// The initial states that executions begin in, and whether they are drawn by weights.
+struct StartLaw {
+  std::int64_t initial_states = 0;
+  bool has_weights = false;
+};
 /// The same of executions of a plan from any of the model's initial states: "with 99 % confidence,
 /// fewer than 5 % of executions from 3 initial states, each equally likely and drawn uniformly from
 /// its region, leave what the model admits at any step (90 clean runs of 90)".
 std::string loop_claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,
-                       std::int64_t initial_states);
+                       const StartLaw& starts);
 
 /// What weakens the claim, one sentence each: rejected starts, lost runs, fluents without
 /// regression evidence where the paper's rule is satisfied, which it is after `paper_stopped_at`

@@ -41,6 +41,10 @@ struct Key {
   static constexpr std::string_view kCompare = "compare";
   static constexpr std::string_view kExecution = "execution";
   static constexpr std::string_view kStarts = "starts";
+  static constexpr std::string_view kStartWeights = "start_weights";
+  static constexpr std::string_view kUntilCovered = "until_covered";
+  static constexpr std::string_view kWhen = "when";
+  static constexpr std::string_view kWeight = "weight";
   static constexpr std::string_view kComplete = "complete";
   static constexpr std::string_view kConfidence = "confidence";
   static constexpr std::string_view kConfusionRate = "confusion_rate";

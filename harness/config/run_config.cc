@@ -58,6 +58,31 @@ std::optional<Comparison> read_comparison(const YamlFields& fields) {
   return comparison;
 }
 
+std::vector<StartWeight> read_start_weights(const YamlNode& node, base::DiagnosticSink& sink) {
+  // Sums of weights stay finite.
+  constexpr NumberBounds kWeight{0.0, 1e12, false, false};
+  std::vector<StartWeight> out;
+  const auto add = [&](const YamlNode& entry) {
+    YamlFields fields(entry, "an entry of " + key_text(Key::kStartWeights), sink);
+    fields.only({Key::kWhen, Key::kWeight});
+    StartWeight weight;
+    const auto* when = fields.require(Key::kWhen);
+    const bool has_weight = fields.require(Key::kWeight) != nullptr;
+    fields.number(Key::kWeight, kWeight, weight.weight);
+    if (when == nullptr || !has_weight) return;
+    auto text = read_text(*when, Key::kWhen, sink);
+    if (!text) return;
+    weight.when = {*std::move(text), when->range};
+    out.push_back(std::move(weight));
+  };
+  if (node.is_list()) {
+    for (const auto& entry : node.items) add(entry);
+  } else {
+    add(node);
+  }
+  return out;
+}
+
 CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink) {
   CriterionSpec criterion;
   criterion.paper = paper_literal();

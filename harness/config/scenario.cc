@@ -114,11 +114,12 @@ class ScenarioReader {
       : fields_(root, "the scenario", sink), gate_(gate), files_(files), sink_(sink) {}
 
   void read(Scenario& scenario) {
-    fields_.only({Key::kInclude,     Key::kName,    Key::kModel,    Key::kPlan,      Key::kBind,
-                  Key::kConstraints, Key::kHorizon, Key::kEvents,   Key::kWorld,     Key::kRegions,
-                  Key::kMapping,     Key::kActions, Key::kSampling, Key::kCriterion, Key::kCompare,
-                  Key::kExecution,   Key::kStarts,  Key::kMatch,    Key::kSimulator, Key::kLimits,
-                  Key::kExpect});
+    fields_.only({Key::kInclude,   Key::kName,         Key::kModel,        Key::kPlan,
+                  Key::kBind,      Key::kConstraints,  Key::kHorizon,      Key::kEvents,
+                  Key::kWorld,     Key::kRegions,      Key::kMapping,      Key::kActions,
+                  Key::kSampling,  Key::kCriterion,    Key::kCompare,      Key::kExecution,
+                  Key::kStarts,    Key::kStartWeights, Key::kUntilCovered, Key::kMatch,
+                  Key::kSimulator, Key::kLimits,       Key::kExpect});
     if (const auto* node = fields_.find(Key::kExecution)) {
       const auto choice =
           fields_.choice(Key::kExecution, "value of " + key_text(Key::kExecution), kExecutions);
@@ -128,6 +129,11 @@ class ScenarioReader {
     const auto starts =
         fields_.choice(Key::kStarts, "value of " + key_text(Key::kStarts), kStartsWords);
     if (starts) scenario.starts = static_cast<Starts>(*starts);
+    fields_.boolean(Key::kUntilCovered, scenario.until_covered);
+    if (const auto* node = fields_.find(Key::kStartWeights)) {
+      scenario.start_weights = read_start_weights(*node, sink_);
+      scenario.start_weights_source = node->range;
+    }
     static constexpr std::array<std::string_view, 2> kMatches = {"model", "trace"};
     if (fields_.choice(Key::kMatch, "value of " + key_text(Key::kMatch), kMatches) ==
         std::size_t{1}) {

@@ -24,6 +24,12 @@ struct LocatedText {
   base::SourceRange source;
 };
 
+/// How likely executions begin in the states in which a formula holds.
+struct StartWeight {
+  LocatedText when;
+  double weight = 1.0;
+};
+
 /// Event symbol -> controller with its fixed arguments; what the plan says of a perform is laid
 /// over them (a pose `target` becomes target.x, target.y, target.z, target.yaw).
 /// In a text argument "{0}" stands for the event's argument 0.
@@ -126,6 +132,13 @@ struct Scenario {
   Execution execution = Execution::kOpenLoop;
   base::SourceRange execution_source;
   Starts starts = Starts::kUniform;
+  /// Closed loop: initial states are drawn by the weight of the first formula that holds in them, 1
+  /// where none does; without entries each is equally likely.
+  std::vector<StartWeight> start_weights;
+  base::SourceRange start_weights_source;
+  /// Goes on until every trace was simulated; in closed loop, until executions showed what the
+  /// model has executions with, or what they did not show is rarer than epsilon.
+  bool until_covered = false;
   std::optional<Comparison> compare;  // none: by the criterion
   /// The paper's rule is about last states; every other claim about every step.
   Comparison comparison() const {

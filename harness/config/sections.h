@@ -47,6 +47,9 @@ std::vector<ActionBinding> read_actions(const YamlNode& node, bool built_in,
 /// `sampling`: inset and the dimensions that no fluent bounds, sorted by variable.
 void read_sampling(const YamlNode& node, Scenario& scenario, base::DiagnosticSink& sink);
 
+/// `start_weights`, in their order.
+std::vector<StartWeight> read_start_weights(const YamlNode& node, base::DiagnosticSink& sink);
+
 /// `compare`, of a scenario or of one fluent; none: it is not said.
 std::optional<Comparison> read_comparison(const YamlFields& fields);
 

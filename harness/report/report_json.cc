@@ -75,6 +75,26 @@ Json json_of(const std::vector<ComparedFluents>& compared) {
   return out;
 }
 
+Json json_of(const std::vector<CoverItem>& items) {
+  auto out = Json::array();
+  for (const auto& item : items) out.push_back({{"place", item.place}, {"what", item.what}});
+  return out;
+}
+
+Json json_of(const CoverResult& cover) {
+  Json out = {{"end", to_string(cover.end)},
+              {"items", cover.items},
+              {"shown", cover.items - std::ssize(cover.left)},
+              {"executions", cover.drawn},
+              {"lost", cover.lost},
+              {"confidence", cover.confidence},
+              {"bound", cover.bound},
+              {"epsilon", cover.epsilon}};
+  out["left"] = json_of(cover.left);
+  out["impossible"] = json_of(cover.unreachable);
+  return out;
+}
+
 Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& compared) {
   const auto& trace = *result.trace;
   auto events = Json::array();
@@ -107,6 +127,7 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
   out["not_covered"] = result.not_covered;
   if (result.loop) {
     out["initial_states"] = result.loop->initial_states;
+    out["start_law"] = result.loop->has_weights ? "weights" : "uniform";
     out["unfinished"] = result.loop->unfinished;
     if (result.loop->guided) out["chosen_starts"] = *result.loop->guided;
     out["paths"] = Json::array();
@@ -118,8 +139,10 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
                               {"simulations", path.runs},
                               {"example", path.example}});
     }
+    if (result.loop->cover) out["until_covered"] = json_of(*result.loop->cover);
   }
   if (result.loop && !result.loop->causes.empty()) {
+    out["causes_runs"] = result.loop->causes_runs;
     out["causes"] = Json::array();
     for (const auto& rate : result.loop->causes) {
       out["causes"].push_back({{"cause", rate.cause},

@@ -33,6 +33,7 @@ class Summary {
     traces();
     paths();
     causes();
+    shown();
     notes();
     context();
     pointers();
@@ -91,6 +92,10 @@ class Summary {
       return fmt::format("{} (of the first: {})",
                          counted(first.loop->unfinished, "run did not end", "runs did not end"),
                          first.loop->why_unfinished);
+    }
+    if (first.loop && first.loop->cover && first.loop->cover->end == CoverResult::End::kRunLimit) {
+      return fmt::format("max_runs came before what was not shown is rarer than {}",
+                         percent_up(first.loop->cover->epsilon));
     }
     if (first.loop) return "there were fewer runs than the criterion asks for";
     return fmt::format(
@@ -186,6 +191,21 @@ class Summary {
                               counted(static_cast<std::int64_t>(loop.paths.size()), "way", "ways"),
                               counted(loop.initial_states, "start state", "start states"),
                               fmt::join(parts, "; ")));
+  }
+
+  /// Of runs that go on until everything was shown.
+  void shown() {
+    if (result_.traces.empty() || !result_.traces.front().loop) return;
+    const auto& cover = result_.traces.front().loop->cover;
+    if (!cover) return;
+    line("shown", cover_text(*cover));
+    const auto& left = cover->left;
+    for (std::size_t i = 0; i < left.size() && i <= kMaxFurther; ++i) {
+      line("not shown", fmt::format("{}  {}", left[i].place, left[i].what));
+    }
+    if (left.size() > kMaxFurther + 1) {
+      line("not shown", fmt::format("{} more", left.size() - kMaxFurther - 1));
+    }
   }
 
   /// Of executed plans with --keep-going: how often each cause led away from the model.

@@ -112,6 +112,7 @@ class TextReport {
       figures(trace);
     }
     if (trace.loop) causes(*trace.loop);
+    if (trace.loop && trace.loop->cover) shown(*trace.loop->cover);
     for (const auto& caveat : trace.caveats) line("note", caveat);
     for (const auto& found : result_.discrepancies) {
       if (found.trace == trace.trace->number) discrepancy(found, trace);
@@ -176,7 +177,9 @@ class TextReport {
     const auto guided = loop.guided ? fmt::format(", but in {} chosen for what they lead to",
                                                   counted(*loop.guided, "execution", "executions"))
                                     : std::string();
-    line("start states", fmt::format("{}, each equally likely{}", loop.initial_states, guided));
+    line("start states",
+         fmt::format("{}, each {}{}", loop.initial_states,
+                     loop.has_weights ? "as likely as its weight" : "equally likely", guided));
     constexpr std::size_t kMaxPaths = 5;
     for (std::size_t i = 0; i < loop.paths.size() && i < kMaxPaths; ++i) {
       const auto& path = loop.paths[i];
@@ -203,6 +206,19 @@ class TextReport {
                        100.0 * loop.causes_level, 100.0 * rate.lower, 100.0 * rate.upper,
                        rate.example));
     }
+  }
+
+  void shown(const CoverResult& cover) {
+    line("shown", cover_text(cover));
+    items("not shown", cover.left);
+    items("impossible", cover.unreachable);
+  }
+  void items(std::string_view label, const std::vector<CoverItem>& items) {
+    constexpr std::size_t kMaxItems = 50;
+    for (std::size_t i = 0; i < items.size() && i < kMaxItems; ++i) {
+      line(label, fmt::format("{}  {}", items[i].place, items[i].what));
+    }
+    if (items.size() > kMaxItems) line(label, fmt::format("{} more", items.size() - kMaxItems));
   }
 
   void certified(const TraceResult& trace) {

@@ -81,6 +81,29 @@ std::string coverage_shares_text(const CampaignResult& result) {
   return out;
 }
 
+std::string cover_text(const CoverResult& cover) {
+  using End = CoverResult::End;
+  const auto left = std::ssize(cover.left);
+  if (cover.items == 0) return "plan and model have nothing to show";
+  auto text = left == 0 ? fmt::format("all of {} of plan and model",
+                                      counted(cover.items, "behaviour", "behaviours"))
+                        : fmt::format("{} of {} of plan and model", cover.items - left,
+                                      counted(cover.items, "behaviour", "behaviours"));
+  if (left == 0) return text;
+  if (cover.bound < 1.0) {
+    text += fmt::format("; {} comes in fewer than {} of executions ({} confidence{}, {})",
+                        left == 1 ? "the other one" : "each of the others", percent_up(cover.bound),
+                        level(cover.confidence), left == 1 ? "" : " in all of them together",
+                        counted(cover.drawn + cover.lost, "execution with a drawn start",
+                                "executions with a drawn start"));
+  }
+  if (cover.end == End::kRunLimit) {
+    text += fmt::format("; max_runs came before that was {}", percent_up(cover.epsilon));
+  }
+  if (cover.end == End::kStopped) text += "; the run was ended before that was settled";
+  return text;
+}
+
 std::string event_at(const CampaignTrace& trace, std::size_t t) {
   const auto& source = trace.plan[t].source;
   return trace.event(t) + (source.empty() ? "" : fmt::format(" ({})", source));

@@ -28,6 +28,8 @@ std::string confirmation(const Discrepancy& found);
 std::string exploration_text(const CampaignResult& result);
 /// "4 of 4 performs, 5 of 8 branches"; empty if it was not looked at.
 std::string coverage_shares_text(const CampaignResult& result);
+/// "12 of 14 behaviours of plan and model were shown; each of the others comes ..."
+std::string cover_text(const CoverResult& cover);
 /// "Go(r2) (fetch.lisp:4)"
 std::string event_at(const CampaignTrace& trace, std::size_t t);
 

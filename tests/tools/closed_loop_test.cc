@@ -178,6 +178,33 @@ TEST_CASE("an event that nobody performed and nothing demands excuses no differe
   json_of(cli, {"run", "two/bump.yaml", "--execution", "closed-loop", "--out", "demanded"});
 }
 
+TEST_CASE("check says what a run in closed loop would, and asks for no constraints") {
+  const TwoModels cli;
+  const std::string scenario =
+      "model: [opens.e, start.e]\nplan: open_and_close.lisp\nbind: robot.bind\nhorizon: 3\n"
+      "execution: closed-loop\nsimulator: {model: opens.e}\n";
+  cli.write("two/own.yaml", scenario);
+  CHECK(cli.parallax({"check", "two/own.yaml", "--no-lint"}).code == 0);
+  CHECK(cli.parallax({"run", "two/own.yaml", "--out", "out"}).code == 0);
+  // What both say of a scenario that cannot be run.
+  const std::pair<std::string, std::string> wrong[] = {
+      {"criterion: paper\n", "error[E7125]"},
+      {"mapping: {Open(d): ignored}\n", "error[E7124]"},
+      {"start_weights: {when: \"HoldsAt(Parked(),0) | !HoldsAt(Parked(),0)\", weight: 0}\n",
+       "error[E5109]"},
+  };
+  for (const auto& [more, code] : wrong) {
+    cli.write("two/own.yaml", scenario + more);
+    const auto checked = cli.parallax({"check", "two/own.yaml", "--no-lint"});
+    const auto run = cli.parallax({"run", "two/own.yaml"});
+    CAPTURE(more);
+    CAPTURE(checked.err);
+    CHECK(checked.code != 0);
+    CHECK(checked.err.find(code) != std::string::npos);
+    CHECK(run.err.find(code) != std::string::npos);
+  }
+}
+
 TEST_CASE("a plan that performs nothing is told of") {
   const TwoModels cli;
   const auto scenario = executed(cli, "load opens.e\n", "(def-cram-function idle () nil)\n(idle)\n",

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -130,10 +131,37 @@ TEST_CASE("guided starts: a discrepancy that one leads to is found at once") {
   CHECK(report.at("simulations") == 1);
   CHECK(report.at("traces").at(0).at("chosen_starts") == 1);
   CHECK(cli.parallax({"replay", "out"}).code == 0);
-  // Rates are about starts that are drawn.
-  const auto rates = cli.parallax({"run", "lamps.yaml", "--keep-going"});
-  CHECK(rates.code == 2);
-  CHECK(rates.err.find("--starts uniform") != std::string::npos);
+}
+
+TEST_CASE("guided starts: rates are counted in drawn starts alone") {
+  const Lamps cli;
+  // In the world parking does nothing. It is done from one start of 256, which is chosen.
+  cli.write("still.e",
+            "sort lamp\nlamp a, b, c, d, e, f, g, h\nfluent On(lamp)\nfluent Parked()\n"
+            "event Park()\n!HoldsAt(Parked(),0).\n");
+  cli.replace("lamps.yaml", "simulator: {model: lamps.e}",
+              "simulator: {model: still.e}\nstarts: guided");
+  const std::vector<std::string> run = {"run", "lamps.yaml", "--keep-going", "--out", "out"};
+  const auto report = json_of(cli, run, 1);
+  const auto& stream = report.at("traces").at(0);
+  CHECK(report.at("discrepancies").at(0).at("sample") == 1);
+  REQUIRE(stream.at("causes").size() == 1);
+  const auto& cause = stream.at("causes").at(0);
+  CHECK(cause.at("count") == 0);
+  CHECK(cause.at("example") == 1);
+  CHECK(cause.at("lower") == 0.0);
+  // Ninety drawn ones, of which none is the one.
+  CHECK(stream.at("causes_runs") == 90);
+  CHECK(stream.at("simulations").get<int>() == 90 + stream.at("chosen_starts").get<int>());
+  CHECK(std::pow(1.0 - cause.at("upper").get<double>(), 90) == doctest::Approx(0.025));
+  CHECK(stream.at("caveats").dump().find("first 90 executions with a drawn start") !=
+        std::string::npos);
+  const auto journal = cli.read("out/journal.ndjson");
+  auto more = run;
+  more.back() = "jobs";
+  more.insert(more.end(), {"--jobs", "3"});
+  json_of(cli, more, 1);
+  CHECK(cli.read("jobs/journal.ndjson") == journal);
 }
 
 TEST_CASE("guided starts: open loop has no use for them") {

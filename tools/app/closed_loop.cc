@@ -9,7 +9,9 @@
 #include "compiler/base/contract.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
+#include "tools/app/cover_items.h"
 #include "tools/app/start_guide.h"
+#include "tools/app/start_weights.h"
 #include "tools/app/trace_feed.h"
 
 namespace parallax::tools {
@@ -42,13 +44,13 @@ base::Result<std::unique_ptr<ClosedLoop>> ClosedLoop::make(const ScenarioModel& 
 
 std::int64_t ClosedLoop::max_performs() const { return loaded_.compilation.model.horizon; }
 
-base::Result<std::optional<std::vector<std::vector<compiler::FluentId>>>>
-ClosedLoop::initial_states(std::span<const compiler::FluentId> fluents) {
+base::Result<std::optional<harness::LoopStates>> ClosedLoop::initial_states(
+    std::span<const compiler::FluentId> fluents) {
   auto& sink = context_.sink();
   const auto& model = loaded_.compilation.model;
   auto found = runtime::initial_states(model, runtime::make_cadical_solver(&context_.stop()),
                                        fluents, kMaxInitialStates);
-  if (found.stopped) return std::optional<std::vector<std::vector<compiler::FluentId>>>();
+  if (found.stopped) return std::optional<harness::LoopStates>();
   if (found.more) {
     return sink.error(DiagnosticCode::kTooManyInitialStates,
                       base::SourceRange{loaded_.scenario.source, 0, 0}, kMaxInitialStates);
@@ -58,18 +60,44 @@ ClosedLoop::initial_states(std::span<const compiler::FluentId> fluents) {
     return sink.already_reported();
   }
   compared_.assign(fluents.begin(), fluents.end());
-  states_ = found.states;
-  return std::optional(std::move(found.states));
+  harness::LoopStates out;
+  if (loaded_.scenario.start_weights.empty()) {
+    out.holds = std::move(found.states);
+  } else {
+    const auto value = [&](const std::string& predicate) {
+      return runtime::predicate_value(session_, predicate);
+    };
+    const auto weights = start_weights(loaded_, found.states, compared_, value, context_);
+    if (!weights) return sink.already_reported();
+    for (std::size_t i = 0; i < found.states.size(); ++i) {
+      if ((*weights)[i] == 0.0) continue;
+      out.holds.push_back(std::move(found.states[i]));
+      out.weights.push_back((*weights)[i]);
+    }
+  }
+  states_ = out.holds;
+  return std::optional(std::move(out));
 }
 
 harness::StartGuide* ClosedLoop::guide(std::uint64_t seed) {
   if (loaded_.scenario.starts != harness::Starts::kGuided) return nullptr;
-  plan_coverage_ = std::make_unique<PlanCoverage>(*loaded_.compilation.plan,
-                                                  *loaded_.compilation.typed, context_.files());
+  const auto& coverage = plan_coverage();
   guide_ = std::make_unique<ScenarioStartGuide>(
-      start_candidates(loaded_, *this, *plan_coverage_, states_, compared_), *plan_coverage_,
-      *plan_, seed);
+      start_candidates(loaded_, *this, coverage, states_, compared_), coverage, *plan_, seed);
   return guide_.get();
+}
+
+harness::CoverWatch* ClosedLoop::cover(std::uint64_t seed) {
+  cover_ = ScenarioCoverWatch::make(loaded_, *this, plan_coverage(), seed, context_.files());
+  return cover_.get();
+}
+
+const PlanCoverage& ClosedLoop::plan_coverage() {
+  if (!plan_coverage_) {
+    plan_coverage_ = std::make_unique<PlanCoverage>(*loaded_.compilation.plan,
+                                                    *loaded_.compilation.typed, context_.files());
+  }
+  return *plan_coverage_;
 }
 
 base::Known ClosedLoop::admits(std::span<const harness::PathStep> performs, std::size_t outcomes,

@@ -25,9 +25,10 @@ class ClosedLoop final : public harness::LoopFeed {
   const harness::ExecutablePlan& plan() const override { return *plan_; }
   runtime::Symbols symbols() const override { return symbols_; }
   std::int64_t max_performs() const override;
-  base::Result<std::optional<std::vector<std::vector<compiler::FluentId>>>> initial_states(
+  base::Result<std::optional<harness::LoopStates>> initial_states(
       std::span<const compiler::FluentId> fluents) override;
   harness::StartGuide* guide(std::uint64_t seed) override;
+  harness::CoverWatch* cover(std::uint64_t seed) override;
   base::Known admits(std::span<const harness::PathStep> performs, std::size_t outcomes,
                      std::span<const ObservedFluents> observed) override;
   /// A trace of the model that goes as `admits` asks; none if it has none, or was stopped.
@@ -43,6 +44,7 @@ class ClosedLoop final : public harness::LoopFeed {
 
  private:
   ClosedLoop(const ScenarioModel& loaded, Context& context);
+  const PlanCoverage& plan_coverage();
 
   const ScenarioModel& loaded_;
   Context& context_;
@@ -55,6 +57,7 @@ class ClosedLoop final : public harness::LoopFeed {
   std::vector<std::vector<compiler::FluentId>> states_;
   std::unique_ptr<PlanCoverage> plan_coverage_;
   std::unique_ptr<harness::StartGuide> guide_;
+  std::unique_ptr<harness::CoverWatch> cover_;
 };
 
 }  // namespace parallax::tools

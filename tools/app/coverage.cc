@@ -16,6 +16,7 @@
 #include "tools/app/coverage_loop.h"
 #include "tools/app/coverage_model.h"
 #include "tools/app/coverage_plan.h"
+#include "tools/app/execution_check.h"
 #include "tools/app/file_kind.h"
 #include "tools/app/trace_feed.h"
 
@@ -183,9 +184,13 @@ class Collector {
       scenario.loop = *std::move(loop);
     }
     note_scenario(scenario.loaded.scenario.name);
+    const auto check = ExecutionCheck::make(scenario.loaded, header.seed, context_);
+    if (!check) return sink.already_reported();
     for (const auto& key : to_count(run)) {
       if (context_.stopped()) break;
       const auto& place = run.journal.places.at(key);
+      const auto why = *check ? (*check)->wrong(run.journal.samples.at(key)) : std::string();
+      if (!why.empty()) return sink.error(DiagnosticCode::kForeignJournalLine, place, why);
       if (!scenario.loop->add(run.journal.samples.at(key), header.seed, run.terms, place)) {
         return sink.already_reported();
       }

@@ -9,6 +9,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/loop_judge.h"
 #include "harness/campaign/loop_samples.h"
+#include "tools/app/cover_items.h"
 
 namespace parallax::tools {
 
@@ -43,11 +44,6 @@ std::string text_of(const SampleRecord& record, const std::vector<harness::LoopS
     for (const auto& text : seen.outside) out += text + " ";
   }
   return out;
-}
-
-std::string outcome_of(const PathStep& step, const compiler::PlanLocation& location) {
-  if (step.succeeded) return "succeeds";
-  return location.failures.empty() ? "fails" : "fails with " + step.condition;
 }
 
 }  // namespace

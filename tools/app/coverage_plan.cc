@@ -122,8 +122,8 @@ PlanCoverage::PlanCoverage(const compiler::PlanGraph& graph, const compiler::Typ
   for (std::size_t i = 0; i < graph.locations.size(); ++i) {
     const auto& location = graph.locations[graph.locations.id_at(i)];
     all_.insert(perform(location));
-    all_.insert(outcome(location, true));
-    all_.insert(outcome(location, false));
+    outcomes_.insert(outcome(location, true));
+    outcomes_.insert(outcome(location, false));
     if (!earlier_[i].empty()) all_.insert(retry(location));
   }
   for (std::size_t i = 0; i < graph.branches.size(); ++i) {
@@ -131,7 +131,14 @@ PlanCoverage::PlanCoverage(const compiler::PlanGraph& graph, const compiler::Typ
     all_.insert(decision(branch, true));
     all_.insert(decision(branch, false));
   }
-  for (const auto& one : graph.handlers) all_.insert(handler(one));
+  for (const auto& one : graph.handlers) {
+    all_.insert(handler(one));
+    if (one.failures.empty()) without_performs_.insert(handler(one));
+  }
+  for (const auto& one : graph.handlers) {
+    if (!one.failures.empty()) without_performs_.erase(handler(one));
+  }
+  all_.insert(outcomes_.begin(), outcomes_.end());
 }
 
 CoverageKey PlanCoverage::perform(const PlanLocation& location) const {

@@ -29,6 +29,15 @@ class PlanCoverage {
 
   const std::set<CoverageKey>& all() const { return all_; }
   std::set<CoverageKey> covered_by(const PlanPath& path) const;
+  /// How performs end, among `all`.
+  const std::set<CoverageKey>& outcomes() const { return outcomes_; }
+  /// Handlers that take up no perform, only what the plan signals: no path covers them.
+  const std::set<CoverageKey>& without_performs() const { return without_performs_; }
+  /// Of a location: performs of the same `perform` that a way leads from to it again.
+  const std::vector<compiler::LocationId>& earlier(compiler::LocationId location) const {
+    return earlier_[location.index()];
+  }
+  CoverageKey retry(const compiler::PlanLocation& location) const;
   /// `trace` as an enumerator gave it, with the plan's steps.
   PlanPath path_of(const runtime::Trace& trace) const;
 
@@ -37,7 +46,6 @@ class PlanCoverage {
 
   CoverageKey perform(const compiler::PlanLocation& location) const;
   CoverageKey outcome(const compiler::PlanLocation& location, bool success) const;
-  CoverageKey retry(const compiler::PlanLocation& location) const;
   CoverageKey decision(const compiler::PlanBranch& branch, bool value) const;
   CoverageKey handler(const compiler::PlanHandler& handler) const;
   /// The decisions on the way from a place to the next location; those that are certain.
@@ -54,7 +62,7 @@ class PlanCoverage {
   const compiler::TypedModel& model_;
   const base::SourceFiles& files_;
   std::vector<std::vector<compiler::LocationId>> earlier_;
-  std::set<CoverageKey> all_;
+  std::set<CoverageKey> all_, outcomes_, without_performs_;
 };
 
 }  // namespace parallax::tools

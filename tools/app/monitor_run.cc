@@ -4,8 +4,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/journal.h"
-#include "harness/campaign/loop_samples.h"
-#include "tools/app/closed_loop.h"
+#include "tools/app/execution_check.h"
 #include "tools/app/monitor.h"
 
 namespace parallax::tools {
@@ -133,11 +132,12 @@ base::Result<std::vector<MonitorResult>> monitor_run(const RunFolderOptions& run
   as_recorded.comparison = recorded_comparison(*journal->header);
   auto watch = Watch::make(*loaded, as_recorded, context);
   if (!watch) return sink.already_reported();
-  std::unique_ptr<ClosedLoop> loop;
-  if (loaded->scenario.execution == harness::Execution::kClosedLoop) {
-    auto made = ClosedLoop::make(*loaded, context);
+  std::unique_ptr<ExecutionCheck> check;
+  const bool executed = loaded->scenario.execution == harness::Execution::kClosedLoop;
+  if (executed) {
+    auto made = ExecutionCheck::make(*loaded, journal->header->seed, context);
     if (!made) return sink.already_reported();
-    loop = *std::move(made);
+    check = *std::move(made);
   }
   std::vector<MonitorResult> out;
   for (const auto& [key, record] : journal->samples) {
@@ -161,13 +161,10 @@ base::Result<std::vector<MonitorResult>> monitor_run(const RunFolderOptions& run
                         "it names what the model has not");
     }
     auto why = misfit((*watch)->reader(), record);
-    if (why.empty() && record.path.has_value() != (loop != nullptr)) {
+    if (why.empty() && record.path.has_value() != executed) {
       why = "it is of another way of execution than the run";
     }
-    if (why.empty() && loop != nullptr) {
-      why = harness::wrong_path(loaded->scenario, loop->plan(),
-                                {journal->header->seed, loop->max_performs()}, record);
-    }
+    if (why.empty() && check) why = check->wrong(record);
     if (!why.empty()) {
       return sink.error(base::DiagnosticCode::kForeignJournalLine, journal->places.at(key), why);
     }

@@ -6,6 +6,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/journal.h"
+#include "tools/app/execution_check.h"
 #include "tools/app/recorded_run.h"
 
 namespace parallax::tools {
@@ -135,6 +136,12 @@ base::Result<std::vector<ObservedPath>> observed_paths(const ScenarioModel& load
                                                        const harness::JournalText& journal,
                                                        Context& context) {
   const PathReader reader(loaded, context);
+  std::unique_ptr<ExecutionCheck> check;
+  if (loaded.scenario.execution == harness::Execution::kClosedLoop && journal.header) {
+    auto made = ExecutionCheck::make(loaded, journal.header->seed, context);
+    if (!made) return context.sink().already_reported();
+    check = *std::move(made);
+  }
   std::vector<ObservedPath> out;
   for (const auto& [key, record] : journal.samples) {
     if (record.phase != harness::DrawPhase::kCertify) continue;
@@ -142,6 +149,10 @@ base::Result<std::vector<ObservedPath>> observed_paths(const ScenarioModel& load
     if (!record.path && !journal.traces.contains(record.trace)) {
       return context.sink().error(DiagnosticCode::kForeignJournalLine, journal.places.at(key),
                                   "its trace is not in the journal");
+    }
+    const auto why = check && record.path ? check->wrong(record) : std::string();
+    if (!why.empty()) {
+      return context.sink().error(DiagnosticCode::kForeignJournalLine, journal.places.at(key), why);
     }
     auto path = reader.read(harness::recorded_run(journal, {record.trace, record.sample}));
     if (!path) return context.sink().already_reported();

@@ -66,7 +66,10 @@ PlanReach::PlanReach(const ScenarioModel& loaded, ClosedLoop& loop, const PlanCo
 
 /// Recursion is as deep as branches follow each other.
 void PlanReach::add_ways(Way way, const compiler::PlanTarget& target, std::size_t& left) {
-  if (left == 0) return;
+  if (left == 0) {
+    too_many_ways_ = true;
+    return;
+  }
   if (const auto* id = std::get_if<BranchId>(&target)) {
     const auto& branch = graph_.branches[*id];
     for (const bool side : {true, false}) {
@@ -131,7 +134,6 @@ bool PlanReach::run() {
   return true;
 }
 
-/// Nothing happens that nobody performs and nothing demands.
 std::vector<Literal> PlanReach::nothing_idle(Timepoint n) const {
   std::vector<Literal> out;
   for (Timepoint t = 0; t < n; ++t) {
@@ -178,7 +180,10 @@ bool PlanReach::refine(OpenWay& open, const ReachingTrace& answer, Timepoint n) 
   const bool between = std::all_of(open.literals.begin(), open.literals.end(),
                                    [&](Literal literal) { return session.value(literal); });
   if (!between) return true;
-  if (++open.other_ways > kMaxRefinements) return false;
+  if (++open.other_ways > kMaxRefinements) {
+    given_up_.insert(open.way->items.begin(), open.way->items.end());
+    return false;
+  }
   const auto& model = loaded_.compilation.model;
   const auto& point = answer.trace.points.back();
   for (const auto& [branch, side] : open.way->decisions) {

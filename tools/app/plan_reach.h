@@ -33,6 +33,13 @@ class PlanReach {
   const std::map<CoverageKey, std::shared_ptr<const ReachingTrace>>& found() const {
     return found_;
   }
+  /// After `run`: was it given up to look for a way through the item, so that there may be one
+  /// although none was found?
+  bool is_undecided(const CoverageKey& key) const {
+    return !found_.contains(key) && (too_many_ways_ || given_up_.contains(key));
+  }
+  /// Nothing happens before `n` that nobody performs and nothing demands.
+  std::vector<compiler::Literal> nothing_idle(compiler::Timepoint n) const;
   /// An execution to the end of the plan, or to the horizon, that begins in this state: the true
   /// ones of `fluents`. None: the model has none, or the solver was stopped.
   std::optional<ReachingTrace> whole(const std::vector<compiler::FluentId>& state,
@@ -61,7 +68,6 @@ class PlanReach {
   /// All new ways that executions of `n` steps end with. False if the solver was stopped.
   bool look_at(compiler::Timepoint n);
   ReachingTrace read(compiler::Timepoint n);
-  std::vector<compiler::Literal> nothing_idle(compiler::Timepoint n) const;
   bool holds(compiler::BranchId branch, const runtime::TracePoint& point) const;
   /// Forbids the way what made a guard on it decide otherwise. False: it is settled.
   bool refine(OpenWay& open, const ReachingTrace& answer, compiler::Timepoint n);
@@ -76,6 +82,8 @@ class PlanReach {
   std::vector<bool> known_;                  // likewise: the model has the fluent
   std::vector<std::uint32_t> idle_;  // slots of events that nobody performs and nothing demands
   std::vector<Way> ways_;
+  bool too_many_ways_ = false;
+  std::set<CoverageKey> given_up_;
   std::map<CoverageKey, std::shared_ptr<const ReachingTrace>> found_;
   compiler::RegisterObjects registers_;  // at the end of the path that was read last
 };

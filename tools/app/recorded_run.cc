@@ -13,6 +13,7 @@
 #include "compiler/base/json.h"
 #include "harness/sampling/sampler.h"
 #include "runtime/replay/trace_replay.h"
+#include "tools/app/execution_check.h"
 
 namespace parallax::tools {
 
@@ -212,8 +213,14 @@ base::Result<harness::CampaignTrace> check_recorded_run(const ScenarioModel& loa
   auto trace = in_ids_of(model, *run.line.trace);
   if (!trace) return foreign(run.trace_source, "it names what the model has not");
   auto why = wrong_calls(loaded.scenario, run.line);
-  // An executed plan has no trace: what it does need not be what the model admits.
-  if (why.empty() && run.record.path) return *std::move(trace);
+  if (why.empty() && run.record.path) {
+    // An executed plan has no trace: what it does need not be what the model admits.
+    const auto check = ExecutionCheck::make(loaded, run.header.seed, context);
+    if (!check) return sink.already_reported();
+    if (*check) why = (*check)->wrong(run.record);
+    if (!why.empty()) return foreign(run.source, why);
+    return *std::move(trace);
+  }
   if (why.empty()) why = wrong_trace(model, *trace, context);
   if (!why.empty()) return foreign(run.trace_source, why);
   why = wrong_start(loaded.scenario, *trace, run);

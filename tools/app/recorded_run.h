@@ -35,8 +35,9 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
                                                    ScenarioUse use, Context& context);
 
 /// Can the scenario have had this simulation? Its trace must be one of the model, its calls those
-/// of the actions, its start and seed what is drawn for its number; of an executed plan the calls
-/// alone are looked at. What was observed is not. Gives the trace in the ids of the model. Reports
+/// of the actions, its start and seed what is drawn for its number; an executed plan must have gone
+/// as it is on record after what was seen and reported (ExecutionCheck). What was observed is
+/// believed. Gives the trace in the ids of the model. Reports
 /// kForeignJournalLine.
 base::Result<harness::CampaignTrace> check_recorded_run(const ScenarioModel& loaded,
                                                         const harness::RecordedRun& run,

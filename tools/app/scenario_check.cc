@@ -10,10 +10,12 @@
 #include "compiler/base/ascii.h"
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/campaign.h"
+#include "harness/campaign/loop_stream.h"
 #include "harness/campaign/start_check.h"
 #include "harness/discrete/model_simulator.h"
 #include "harness/robot/ode_simulator.h"
 #include "runtime/enumerate/plan_enumerator.h"
+#include "tools/app/closed_loop.h"
 #include "tools/app/trace_feed.h"
 
 namespace parallax::tools {
@@ -130,10 +132,59 @@ std::vector<std::string> reasons_for_absence(const ScenarioModel& loaded, Contex
   return reasons;
 }
 
+namespace {
+
+/// The simulator that a scenario is tried with; null: it would have to be started.
+std::unique_ptr<harness::Simulator> tried_simulator(const ScenarioModel& loaded, Context& context) {
+  const auto& scenario = loaded.scenario;
+  if (scenario.simulator.is_built_in()) {
+    return std::make_unique<harness::OdeSimulator>(scenario.world);
+  }
+  if (loaded.world) {
+    return std::make_unique<harness::ModelSimulator>(loaded.world, &context.stop());
+  }
+  context.remark("the simulator was not started: what it observes and takes is not checked");
+  return nullptr;
+}
+
+/// Of a plan that is to be executed: what it asks and performs, where it can begin.
+void check_before_executions(const ScenarioModel& loaded, Context& context) {
+  auto& sink = context.sink();
+  const auto& scenario = loaded.scenario;
+  if (scenario.criterion.kind == harness::CriterionKind::kPaper) {
+    sink.error(base::DiagnosticCode::kCriterionNotOfLoop, base::SourceRange{scenario.source, 0, 0});
+    return;
+  }
+  harness::warn_of_low_limit(scenario, context.files(), sink);
+  const auto loop = ClosedLoop::make(loaded, context);
+  if (!loop || !harness::check_performs(scenario, (*loop)->plan(), sink)) return;
+  const harness::ModelFluents fluents(*(*loop)->symbols());
+  auto states = (*loop)->initial_states(harness::compared_fluents(scenario, fluents));
+  if (!states || !*states) return;
+  const auto simulator = tried_simulator(loaded, context);
+  const auto info = simulator ? simulator->info() : harness::SimulatorInfo();
+  for (std::size_t i = 0; i < (*states)->holds.size() && !context.stopped(); ++i) {
+    const auto state = harness::LoopStream::start_state(**loop, (*states)->holds[i]);
+    const auto errors_before = sink.error_count();
+    const auto prepared = harness::prepare_trace(scenario, fluents.ground(), info, *state, sink);
+    if (prepared && simulator && i < static_cast<std::size_t>(kTracesTried)) {
+      harness::check_first_start(
+          scenario, *state, *prepared, fluents, kSeedTried, *simulator,
+          [&] { return context.stopped(); }, sink);
+    }
+    if (sink.error_count() != errors_before) return;
+  }
+}
+
+}  // namespace
+
 void check_before_run(const ScenarioModel& loaded, Context& context) {
   auto& sink = context.sink();
   const auto& scenario = loaded.scenario;
   const auto& model = loaded.compilation.model;
+  if (scenario.execution == harness::Execution::kClosedLoop) {
+    return check_before_executions(loaded, context);
+  }
   if (!model.has_constraints) {
     sink.error(base::DiagnosticCode::kNothingToSimulate, base::SourceRange{scenario.source, 0, 0});
     return;
@@ -142,14 +193,7 @@ void check_before_run(const ScenarioModel& loaded, Context& context) {
   EnumeratedTraces traces(model, context);
   traces.explain_absence_by([&] { return reasons_for_absence(loaded, context); });
   const harness::ModelFluents fluents(*traces.symbols());
-  std::unique_ptr<harness::Simulator> simulator;
-  if (scenario.simulator.is_built_in()) {
-    simulator = std::make_unique<harness::OdeSimulator>(scenario.world);
-  } else if (loaded.world) {
-    simulator = std::make_unique<harness::ModelSimulator>(loaded.world, &context.stop());
-  } else {
-    context.remark("the simulator was not started: what it observes and takes is not checked");
-  }
+  const auto simulator = tried_simulator(loaded, context);
   const auto info = simulator ? simulator->info() : harness::SimulatorInfo();
   std::set<std::string> tried;  // starts; most traces share theirs
   const auto last = scenario.limits.max_traces > 0

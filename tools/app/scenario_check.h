@@ -11,7 +11,8 @@ namespace parallax::tools {
 /// finds: missing constraints, a criterion that cannot be met, a model without an execution, no
 /// trace within the horizon, and whatever keeps the first traces from being simulated: their start
 /// states, the arguments of their actions, sampling. The built-in simulator is put into a start of
-/// each, so starts that are all invalid show; nothing is moved. Commands of other simulators are
+/// each, so starts that are all invalid show; nothing is moved. Of a plan that is to be executed:
+/// what it asks and performs, and the first initial states. Commands of other simulators are
 /// not started; what they would say is not checked.
 void check_before_run(const ScenarioModel& loaded, Context& context);
 

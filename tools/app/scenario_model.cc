@@ -17,6 +17,7 @@
 #include "harness/discrete/model_simulator.h"
 #include "harness/simulator/process_simulator.h"
 #include "tools/app/file_kind.h"
+#include "tools/app/start_weights.h"
 #include "tools/app/version.h"
 #include "tools/app/world_model.h"
 
@@ -94,8 +95,18 @@ class RegionLocator final : public compiler::PoseLocator {
   const harness::RegionMap* regions_;
 };
 
-/// Where a formula of the scenario can be parsed: in the file itself if it stands there word for
-/// word, else (escapes, folded lines) as a text of its own.
+/// Traces are to end where the property does not hold, also right at the start.
+base::Status look_for_violations(const std::string& property, compiler::CompileInput& input,
+                                 Context& context) {
+  const auto range = formula_argument("--property", property, context);
+  if (!range) return context.sink().already_reported();
+  input.constraints = {{*range, *range, true}};
+  input.hits_at_start = true;
+  return base::Unit{};
+}
+
+}  // namespace
+
 compiler::ConstraintText constraint_text(const harness::LocatedText& text,
                                          base::SourceFiles& files) {
   const auto size = static_cast<std::uint32_t>(text.text.size());
@@ -108,18 +119,6 @@ compiler::ConstraintText constraint_text(const harness::LocatedText& text,
   const auto file = files.add(files[text.source.file].name(), text.text);
   return {{file, 0, size}, text.source, false};
 }
-
-/// Traces are to end where the property does not hold, also right at the start.
-base::Status look_for_violations(const std::string& property, compiler::CompileInput& input,
-                                 Context& context) {
-  const auto range = formula_argument("--property", property, context);
-  if (!range) return context.sink().already_reported();
-  input.constraints = {{*range, *range, true}};
-  input.hits_at_start = true;
-  return base::Unit{};
-}
-
-}  // namespace
 
 base::Result<std::vector<base::FileId>> load_scenario_plan(const harness::Scenario& scenario,
                                                            Context& context) {
@@ -227,6 +226,10 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
   }
   auto compilation = compiler::compile_model(*input, context.files(), sink);
   if (!compilation) return sink.already_reported();
+  if (!scenario->start_weights.empty() &&
+      !check_start_weights(*scenario, *compilation->typed, context)) {
+    return sink.already_reported();
+  }
   if (closed) scenario->horizon = compilation->model.horizon;
   const auto fluents = compiler::names_of(compilation->model.fluents);
   auto events = compiler::names_of(compilation->model.events);
@@ -358,9 +361,9 @@ base::Result<compiler::Compilation> compile(const ModelOptions& options, Context
 
 }  // namespace
 
-base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path, Context& context,
-                                                bool lint) {
-  return load(path, context, {.lint = lint});
+base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
+                                                Context& context) {
+  return load(path, context, {});
 }
 
 base::Result<ScenarioModel> load_watched_scenario(const std::filesystem::path& path,
@@ -370,8 +373,8 @@ base::Result<ScenarioModel> load_watched_scenario(const std::filesystem::path& p
 
 base::Result<ScenarioModel> load_scenario_run(const std::filesystem::path& path,
                                               std::optional<harness::Execution> execution,
-                                              Context& context) {
-  return load(path, context, {.as_run = true, .execution = execution});
+                                              Context& context, bool lint) {
+  return load(path, context, {.lint = lint, .as_run = true, .execution = execution});
 }
 
 std::optional<compiler::CompiledModel> compile_variant(const harness::Scenario& scenario,

@@ -35,15 +35,16 @@ struct ScenarioModel {
 
 /// The scenario to be run in the way that it asks for, or `execution`: for closed loop the model is
 /// compiled without constraints, for as many timepoints as an execution of the plan may take, and
-/// with a way for each reason of a failure. Reports kNoPlanToExecute.
+/// with a way for each reason of a failure. Reports kNoPlanToExecute. `lint`: also reports what is
+/// legal but hardly meant.
 base::Result<ScenarioModel> load_scenario_run(const std::filesystem::path& path,
                                               std::optional<harness::Execution> execution,
-                                              Context& context);
+                                              Context& context, bool lint = false);
 
 /// Reads the scenario, compiles model, plan and constraints, and holds the mapping and the actions
-/// against the model. `lint`: also reports what is legal but hardly meant.
-base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path, Context& context,
-                                                bool lint = false);
+/// against the model.
+base::Result<ScenarioModel> load_scenario_model(const std::filesystem::path& path,
+                                                Context& context);
 
 /// The same where nothing is simulated: the scenario's unobserved events need no action.
 base::Result<ScenarioModel> load_watched_scenario(const std::filesystem::path& path,
@@ -77,6 +78,11 @@ base::Result<ScenarioModel> load_plain_run(const std::filesystem::path& path,
                                            harness::Execution execution, Context& context);
 base::Result<compiler::Compilation> compile_plain_models(const ModelOptions& options,
                                                          Context& context);
+
+/// Where a formula of the scenario can be parsed: in the file itself if it stands there word for
+/// word, else (escapes, folded lines) as a text of its own.
+compiler::ConstraintText constraint_text(const harness::LocatedText& text,
+                                         base::SourceFiles& files);
 
 /// The text of an option (`--until`) as a text of its own among the files, so that it is parsed by
 /// itself and messages point into it. kUsage if it says nothing: blanks and comments at most.

@@ -29,14 +29,9 @@ double loop_processor_seconds() { return static_cast<double>(std::clock()) / CLO
 std::vector<harness::LoopStart> loop_starts(const ScenarioModel& loaded, ClosedLoop& loop,
                                             const harness::ModelFluents& fluents,
                                             const harness::SimulatorInfo& info, Context& context) {
-  std::vector<compiler::FluentId> compared;
-  for (std::size_t i = 0; i < fluents.ground().size(); ++i) {
-    const auto* binding = loaded.scenario.mapping->find(fluents.ground()[i].symbol);
-    if (binding != nullptr && !binding->is_ignored()) compared.push_back(fluents.id(i));
-  }
   std::vector<harness::LoopStart> starts;
-  auto states = loop.initial_states(compared);
-  for (auto& holds : **states) {
+  auto states = loop.initial_states(harness::compared_fluents(loaded.scenario, fluents));
+  for (auto& holds : (*states)->holds) {
     auto state = harness::LoopStream::start_state(loop, std::move(holds));
     auto parts =
         harness::prepare_trace(loaded.scenario, fluents.ground(), info, *state, context.sink());
@@ -56,7 +51,7 @@ void measure_loop(Bench& bench) {
   harness::OdeSimulator simulator(loaded->scenario.world);
   const harness::LoopSamples samples(
       loaded->scenario, loop->plan(),
-      loop_starts(*loaded, *loop, fluents, simulator.info(), context), 1, loop->max_performs(),
+      loop_starts(*loaded, *loop, fluents, simulator.info(), context), {}, 1, loop->max_performs(),
       false);
   const auto never = [] { return false; };
   double simulated_s = 0.0, closed_s = 0.0, judging_s = 0.0, open_s = 0.0;

@@ -79,12 +79,8 @@ Played play(const ScenarioModel& loaded, bool guided, Context& context) {
   Played out;
   auto loop = *ClosedLoop::make(loaded, context);
   const harness::ModelFluents fluents(*loop->symbols());
-  std::vector<compiler::FluentId> compared;
-  for (std::size_t i = 0; i < fluents.ground().size(); ++i) {
-    const auto* binding = loaded.scenario.mapping->find(fluents.ground()[i].symbol);
-    if (binding != nullptr && !binding->is_ignored()) compared.push_back(fluents.id(i));
-  }
-  const auto states = **loop->initial_states(compared);
+  const auto compared = harness::compared_fluents(loaded.scenario, fluents);
+  const auto states = (**loop->initial_states(compared)).holds;
   const auto simulator = simulator_factory(loaded, {}, context.stop())();
   out.starts = static_cast<std::int64_t>(states.size());
   std::vector<harness::LoopStart> starts;
@@ -100,7 +96,7 @@ Played play(const ScenarioModel& loaded, bool guided, Context& context) {
   out.prepared_ms = preparing.lap_ms();
   out.coverable = candidates.coverable.size();
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const harness::LoopSamples samples(loaded.scenario, loop->plan(), starts, seed,
+    const harness::LoopSamples samples(loaded.scenario, loop->plan(), starts, {}, seed,
                                        loop->max_performs(), true);
     ScenarioStartGuide guide(candidates, plan, loop->scenario_plan(), seed, kUnlimited);
     std::int64_t run = 0;

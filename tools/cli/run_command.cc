@@ -59,8 +59,9 @@ struct RunOptions {
   bool keep_going = false;
   std::string criterion;
   JudgingOptions judging;
-  std::string execution;    // empty: as the scenario says
-  std::string starts;       // likewise
+  std::string execution;  // empty: as the scenario says
+  std::string starts;     // likewise
+  bool until_covered = false;
   double confidence = 0.0;  // 0: as the scenario says
   double epsilon = 0.0;
   std::int64_t max_runs = 0;
@@ -79,6 +80,7 @@ void apply(const RunOptions& options, harness::Scenario& scenario) {
   for (const auto one : {harness::Starts::kUniform, harness::Starts::kGuided}) {
     if (options.starts == to_string(one)) scenario.starts = one;
   }
+  if (options.until_covered) scenario.until_covered = true;
   if (options.epsilon > 0) criterion.epsilon = options.epsilon;
   if (options.max_runs > 0) scenario.limits.max_runs = options.max_runs;
 }
@@ -88,7 +90,8 @@ harness::CampaignOptions campaign_options(const RunOptions& options, const Scena
   harness::CampaignOptions campaign;
   campaign.seed = options.seed;
   campaign.jobs = options.jobs;
-  campaign.keep_going = options.keep_going;
+  // Until all was seen: whatever is found on the way.
+  campaign.keep_going = options.keep_going || loaded.scenario.until_covered;
   campaign.resume = options.resume;
   if (!options.out.empty()) {
     campaign.run_dir = options.out;
@@ -146,11 +149,6 @@ base::Status check_closed(const RunOptions& options, const harness::Scenario& sc
   }
   if (options.split_initial) {
     return refuse("--split-initial", "in closed loop executions begin in every initial state");
-  }
-  if (options.keep_going && scenario.starts == harness::Starts::kGuided) {
-    return sink.error_about(base::DiagnosticCode::kUsage, "--keep-going",
-                            "it counts rates, which are about starts that are drawn; leave it out, "
-                            "or begin anywhere with --starts uniform");
   }
   if (!scenario.match_model) {
     return refuse(options.judging.match == "trace" ? "--match=trace" : "match: trace",
@@ -249,6 +247,10 @@ Command run_command() {
   command.flag("--keep-going", options->keep_going,
                "Go on after a discrepancy: with the next trace; in closed loop with the next "
                "execution, and count how often each cause comes up");
+  command.flag("--until-covered", options->until_covered,
+               "Go on until every trace was simulated; in closed loop, until executions showed "
+               "every behaviour of plan and model, or those that they did not show are rarer than "
+               "epsilon. Includes --keep-going");
   command.option("--criterion", options->criterion, "When a trace has been tried enough")
       .check(OneOf{{"clean-runs", "paper"}});
   add_judging_options(command, options->judging);

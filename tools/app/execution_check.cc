@@ -1,0 +1,51 @@
+#include "tools/app/execution_check.h"
+
+#include <set>
+#include <utility>
+
+#include "harness/campaign/loop_samples.h"
+#include "harness/campaign/loop_stream.h"
+
+namespace parallax::tools {
+
+base::Result<std::unique_ptr<ExecutionCheck>> ExecutionCheck::make(const ScenarioModel& loaded,
+                                                                   std::uint64_t seed,
+                                                                   Context& context) {
+  auto loop = ClosedLoop::make(loaded, context);
+  if (!loop) return context.sink().already_reported();
+  const harness::ModelFluents fluents(*(*loop)->symbols());
+  auto states = (*loop)->initial_states(harness::compared_fluents(loaded.scenario, fluents));
+  if (!states) return context.sink().already_reported();
+  if (!*states) return std::unique_ptr<ExecutionCheck>();
+  std::unique_ptr<ExecutionCheck> out(new ExecutionCheck(loaded, seed, *std::move(loop)));
+  out->states_ = **std::move(states);
+  return out;
+}
+
+std::string ExecutionCheck::wrong(const harness::SampleRecord& record) const {
+  const auto& scenario = loaded_.scenario;
+  const auto& path = *record.path;
+  const auto& holds = states_.holds;
+  if (path.start < 1 || path.start > std::ssize(holds) ||
+      (path.target.empty() &&
+       path.start != harness::drawn_state(seed_, record.sample, holds.size(), states_.weights))) {
+    return "its initial state is not that of its number";
+  }
+  base::DiagnosticSink unread;
+  const harness::ModelFluents fluents(*loop_->symbols());
+  std::set<std::string> names;
+  for (const auto id : holds[static_cast<std::size_t>(path.start - 1)]) {
+    names.emplace(loop_->symbols()->name(id));
+  }
+  auto cuboid = scenario.mapping->start_cuboid(fluents.ground(), names, scenario.sampling,
+                                               scenario.sampling_source, unread);
+  if (!cuboid) return "it begins where no start can be drawn";
+  const auto sampler = harness::Sampler::make(*std::move(cuboid), scenario.sampling_inset_m,
+                                              scenario.sampling_source, unread);
+  if (!sampler) return "it begins where no start can be drawn";
+  auto why = harness::wrong_draw(record, *sampler, seed_, harness::loop_start_stream());
+  if (!why.empty()) return why;
+  return harness::wrong_path(scenario, loop_->plan(), {seed_, loop_->max_performs()}, record);
+}
+
+}  // namespace parallax::tools
