@@ -228,7 +228,7 @@ std::string run_contradictions_json(const RecordedDiscrepancy& found,
 std::string cause_text(const CauseEvidence& cause) {
   auto out = cause.words();
   if (cause.otherwise > 0) {
-    out += fmt::format(" {} went wrong otherwise and {} left out.",
+    out += fmt::format(" {} went otherwise and {} left out.",
                        counted(static_cast<std::size_t>(cause.otherwise), "run"),
                        cause.otherwise == 1 ? "is" : "are");
   }
