@@ -168,6 +168,18 @@ std::optional<SortId> sort_of_variable(const TypedModel& model, std::string_view
   return model.find_sort(name);
 }
 
+std::vector<std::string> variables_for(const TypedModel& model, const std::vector<SortId>& sorts) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < sorts.size(); ++i) {
+    const auto& name = model.sorts[sorts[i]].name;
+    const auto same = std::count(sorts.begin(), sorts.end(), sorts[i]);
+    const auto before =
+        std::count(sorts.begin(), sorts.begin() + static_cast<std::ptrdiff_t>(i), sorts[i]);
+    out.push_back(same > 1 ? name + std::to_string(before + 1) : name);
+  }
+  return out;
+}
+
 std::vector<std::string> constants_of(const TypedModel& model, SortId sort) {
   std::vector<std::string> out;
   for (const auto& object : model.objects) {

@@ -56,6 +56,8 @@ struct SortedVariable {
 };
 /// Its sort is its name without the trailing digits. None: there is no such sort.
 std::optional<SortId> sort_of_variable(const TypedModel& model, std::string_view name);
+/// Names for variables of these sorts: "base", "item1", "item2".
+std::vector<std::string> variables_for(const TypedModel& model, const std::vector<SortId>& sorts);
 /// The constants of a sort and of all sorts below it, in order of declaration.
 std::vector<std::string> constants_of(const TypedModel& model, SortId sort);
 

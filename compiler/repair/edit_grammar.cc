@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "compiler/repair/delayed_effect.h"
 #include "compiler/repair/edit_relevance.h"
+#include "compiler/repair/effect_bundle.h"
 #include "compiler/repair/idle_condition.h"
 #include "compiler/syntax/printer.h"
 
@@ -11,6 +13,7 @@ namespace parallax::compiler {
 namespace {
 
 constexpr std::size_t kMostEach = 160;  // literals of a symbol on one axiom
+constexpr int kOpenWithoutNeed = 20;    // oddity, beyond that of any condition
 
 class EditMaker {
  public:
@@ -45,6 +48,8 @@ class EditMaker {
       edit_event(event, typed_.symbols[*symbol].arguments);
       add_effects(event, typed_.symbols[*symbol].arguments);
     }
+    add_delays(model_, typed_, forms_, scope_, out_);
+    add_effect_bundles(model_, typed_, forms_, scope_, out_);
     return std::move(out_);
   }
 
@@ -287,21 +292,8 @@ class EditMaker {
 
   // --- edits of an event ---
 
-  /// Names for variables of these sorts: "base", "item1", "item2".
-  std::vector<std::string> variables_for(const std::vector<SortId>& sorts) const {
-    std::vector<std::string> out;
-    for (std::size_t i = 0; i < sorts.size(); ++i) {
-      const auto& name = typed_.sorts[sorts[i]].name;
-      const auto same = std::count(sorts.begin(), sorts.end(), sorts[i]);
-      const auto before =
-          std::count(sorts.begin(), sorts.begin() + static_cast<std::ptrdiff_t>(i), sorts[i]);
-      out.push_back(same > 1 ? name + std::to_string(before + 1) : name);
-    }
-    return out;
-  }
-
   void edit_event(const std::string& event, const std::vector<SortId>& sorts) {
-    const auto names = variables_for(sorts);
+    const auto names = variables_for(typed_, sorts);
     std::vector<SortedVariable> variables;
     for (std::size_t i = 0; i < names.size(); ++i) variables.push_back({names[i], sorts[i]});
     std::vector<std::size_t> axioms;
@@ -310,13 +302,14 @@ class EditMaker {
         axioms.push_back(i);
       }
     }
-    if (scope_.open_outcomes) open_event(event, names, axioms);
     bool refused = false, not_possible = false;
     for (const auto& step : scope_.steps) {
       if (symbol_of(step.event) != event) continue;
       refused = refused || step.refused;
       not_possible = not_possible || step.not_possible;
     }
+    // What was tried and failed may fail. What cannot be is no outcome.
+    if (scope_.open_outcomes || (refused && !not_possible)) open_event(event, names, axioms);
     for (const auto& literal : condition_literals(typed_, variables, kMostEach)) {
       if (!relevance_.in_some_step(literal, false, names, event, names)) continue;
       Edit edit;
@@ -348,7 +341,8 @@ class EditMaker {
     edit.event = event;
     edit.variables = names;
     edit.event_arity = names.size();
-    edit.oddity = 1;
+    // It explains anything: without need for it, it comes last.
+    edit.oddity = scope_.open_outcomes ? 1 : kOpenWithoutNeed;
     for (const auto i : axioms) {
       for (const auto effect : forms_[i].effects) {
         const auto& tree = ast(forms_[i]);
@@ -370,7 +364,7 @@ class EditMaker {
       auto all = sorts;
       const auto& places = typed_.symbols[*symbol].arguments;
       all.insert(all.end(), places.begin(), places.end());
-      const auto names = variables_for(all);
+      const auto names = variables_for(typed_, all);
       std::vector<std::string> kinds = {"Initiates", "Terminates"};
       if (scope_.open_outcomes) kinds.emplace_back("Releases");
       for (const auto& kind : kinds) {

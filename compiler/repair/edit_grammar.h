@@ -26,7 +26,13 @@ struct Edit {
     kReplace,        // `node` of the axiom, a conjunct or an effect, becomes `text`
     kAddEffect,      // a new axiom: the effect `text`
     kAddCondition,   // `literal` is the condition of the new axiom `of`
+    kDelay,          // the effect comes later: `sentences` instead of the axiom
     kOpenEvent,      // the effects `nodes`, one of each axiom, become Releases
+  };
+  /// `[variables] condition -> effect.`
+  struct Sentence {
+    std::vector<std::string> variables;
+    std::string condition, effect;
   };
   Kind kind = Kind::kNarrow;
   std::vector<std::size_t> axioms;  // places among the forms
@@ -34,10 +40,13 @@ struct Edit {
   std::vector<std::pair<std::size_t, NodeId>> nodes;  // kOpenEvent: axiom and effect
   std::optional<ConditionLiteral> literal;
   std::string text;
-  std::string event;                   // symbol
-  std::vector<std::string> variables;  // of a new axiom: the event's arguments, then others
-  std::size_t event_arity = 0;         // of a new axiom
-  std::size_t of = 0;                  // kAddCondition: the edit with the effect
+  std::string event;                    // symbol
+  std::vector<std::string> variables;   // of a new axiom: the event's arguments, then others
+  std::size_t event_arity = 0;          // of a new axiom
+  std::size_t of = 0;                   // kAddCondition: the edit with the effect
+  std::vector<ConditionLiteral> given;  // kAddEffect: conditions that it has in any case
+  std::string words;                    // kAddEffect of several effects: "ends `F` and begins `G`"
+  std::vector<Sentence> sentences;      // kDelay
   /// How far it is from what people write and forget: constants where a variable would do, a
   /// condition that no other axiom of the event has. Smaller is tried first among equals.
   int oddity = 0;
@@ -51,6 +60,13 @@ struct EditScope {
     bool not_possible = false;              // and says that it cannot happen
     std::map<std::string, bool> before;     // the fluents that were observed in front of it
     std::map<std::string, bool> differing;  // observed behind it, unlike the model
+    /// Those of `differing` that became as the model says `by` steps later, behind that event.
+    struct Late {
+      std::string event;
+      std::size_t by = 1;
+      std::set<std::string> fluents;
+    };
+    std::vector<Late> late = {};
   };
   std::vector<Step> steps;
   /// Other events, and fluents, whose axioms may be to blame as well.

@@ -55,6 +55,20 @@ std::string wrapped_axiom(const std::string& quantifier, const std::string& cond
   return quantifier + "\n  " + condition + " ->\n    " + effect + ".";
 }
 
+/// Of several effects each is an axiom of its own, as other readers of the language want it.
+std::string axiom_for_each(const std::string& quantifier, const std::string& condition,
+                           const std::string& effects) {
+  constexpr std::string_view kAnd = " & ";
+  std::string out;
+  for (std::size_t begin = 0; begin < effects.size();) {
+    const auto end = std::min(effects.find(kAnd, begin), effects.size());
+    out += (out.empty() ? "" : "\n") +
+           wrapped_axiom(quantifier, condition, effects.substr(begin, end - begin));
+    begin = end + kAnd.size();
+  }
+  return out;
+}
+
 std::string list(const std::vector<std::string>& names) {
   std::string out;
   for (const auto& name : names) out += (out.empty() ? "" : ",") + name;
@@ -79,6 +93,12 @@ std::vector<TextChange> without_nesting(std::vector<TextChange> changes) {
     if (!inside[i]) out.push_back(std::move(changes[i]));
   }
   return out;
+}
+
+/// The event of a new axiom.
+std::string of_event(const Edit& edit) {
+  const auto end = edit.variables.begin() + static_cast<std::ptrdiff_t>(edit.event_arity);
+  return edit.event + "(" + list({edit.variables.begin(), end}) + ")";
 }
 
 }  // namespace
@@ -192,6 +212,9 @@ TextChange EditText::add_axiom(const std::string& event, std::string text) const
 std::string EditText::new_axiom(const Edit& effect, const std::vector<std::size_t>& chosen,
                                 std::size_t number, bool wrapped) const {
   std::string condition;
+  for (const auto& literal : effect.given) {
+    condition += (condition.empty() ? "" : " & ") + print(literal, "time", effect.variables);
+  }
   for (const auto i : chosen) {
     if (edits_[i].kind != Edit::Kind::kAddCondition || edits_[i].of != number) continue;
     condition +=
@@ -200,7 +223,7 @@ std::string EditText::new_axiom(const Edit& effect, const std::vector<std::size_
   auto variables = effect.variables;
   variables.emplace_back("time");
   const auto quantifier = "[" + list(variables) + "]";
-  if (wrapped) return wrapped_axiom(quantifier, condition, effect.text);
+  if (wrapped) return axiom_for_each(quantifier, condition, effect.text);
   return (condition.empty() ? "" : condition + " -> ") + effect.text;
 }
 
@@ -238,6 +261,16 @@ std::vector<TextChange> EditText::changes(const std::vector<std::size_t>& chosen
       case Edit::Kind::kAddEffect:
         out.push_back(add_axiom(edit.event, new_axiom(edit, chosen, i, true)));
         break;
+      case Edit::Kind::kDelay: {
+        const auto& form = forms_[edit.axioms.front()];
+        std::string text;
+        for (const auto& late : edit.sentences) {
+          text += (text.empty() ? "" : "\n") +
+                  wrapped_axiom("[" + list(late.variables) + "]", late.condition, late.effect);
+        }
+        out.push_back({ast(edit.axioms.front()).file(), form.begin, form.end, std::move(text)});
+        break;
+      }
       case Edit::Kind::kOpenEvent:
         for (const auto& [axiom, node] : edit.nodes) {
           const auto& tree = ast(axiom);
@@ -288,7 +321,17 @@ std::string EditText::words(const std::vector<std::size_t>& chosen) const {
                                   place(edit.axioms.front()), node(), edit.text));
         break;
       case Edit::Kind::kAddEffect:
-        out.push_back(fmt::format("an effect is missing: `{}`", new_axiom(edit, chosen, i, false)));
+        out.push_back(
+            edit.words.empty()
+                ? fmt::format("an effect is missing: `{}`", new_axiom(edit, chosen, i, false))
+                : fmt::format("`{}` {}, effects that are missing: `{}`", of_event(edit), edit.words,
+                              new_axiom(edit, chosen, i, false)));
+        break;
+      case Edit::Kind::kDelay:
+        for (const auto& late : edit.sentences) {
+          out.push_back(fmt::format("{} comes later, with what happens then: `{} -> {}`", axiom(),
+                                    late.condition, late.effect));
+        }
         break;
       case Edit::Kind::kOpenEvent:
         out.push_back(fmt::format("what `{}` does is open: `Releases` in {} of its axioms", event,

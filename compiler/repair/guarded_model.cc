@@ -40,12 +40,15 @@ class GuardedForm {
     const auto quantifier = form_.variables.empty() ? "" : "[" + list_of(form_.variables) + "] ";
     auto conditions = guarded_conditions();
     for (const auto i : touching_) {
-      if (edits_[i].kind == Edit::Kind::kDropAxiom) conditions.push_back("!" + on(i));
+      const bool goes =
+          edits_[i].kind == Edit::Kind::kDropAxiom || edits_[i].kind == Edit::Kind::kDelay;
+      if (goes) conditions.push_back("!" + on(i));
     }
     if (form_.kind == AxiomForm::Kind::kPrecondition) {
       return quantifier + joined(conditions, "(" + print_formula(ast, form_.head) + ")") + ".\n";
     }
     std::string out;
+    if (conditions.size() > 1 && replaces_effects()) conditions = {share(conditions, out)};
     for (const auto effect : form_.effects) {
       auto kept = conditions;
       for (const auto i : touching_) {
@@ -62,6 +65,36 @@ class GuardedForm {
   }
 
  private:
+  bool replaces_effects() const {
+    return std::any_of(touching_.begin(), touching_.end(), [&](std::size_t i) {
+      return std::any_of(form_.effects.begin(), form_.effects.end(),
+                         [&](NodeId effect) { return !instead_of(effect, i).empty(); });
+    });
+  }
+
+  /// A predicate for all conditions together: written out for each replacement they would be most
+  /// of the text. Where the event does not happen nothing follows from it, so that a solver need
+  /// not look at it there.
+  std::string share(const std::vector<std::string>& conditions, std::string& out) const {
+    const auto& ast = model_.ast(form_.place);
+    const auto name = "RepairIf" + std::to_string(axiom_);
+    std::vector<std::string> sorts;
+    for (const auto& variable : form_.variables) {
+      sorts.push_back(variable.substr(0, variable.find_last_not_of("0123456789") + 1));
+    }
+    const auto atom = name + "(" + list_of(form_.variables) + ")";
+    const auto quantifier = "[" + list_of(form_.variables) + "] ";
+    auto happening = conditions;
+    happening.insert(happening.begin(),
+                     "Happens(" + print_formula(ast, form_.event) + "," + form_.time + ")");
+    out += "predicate " + name + "(" + list_of(sorts) + ")\n";
+    out += quantifier + joined(happening, atom) + ".\n";
+    for (const auto& condition : conditions) {
+      out += quantifier + atom + " -> " + condition + ".\n";
+    }
+    return atom;
+  }
+
   /// What the edit makes of an effect; empty: it leaves it as it is.
   std::string instead_of(NodeId effect, std::size_t edit) const {
     const auto& ast = model_.ast(form_.place);
@@ -126,6 +159,10 @@ std::string guarded_text(const ModelAst& model, const base::SourceFiles& files,
   }
   for (std::size_t i = 0; i < edits.size(); ++i) {
     const auto& edit = edits[i];
+    for (const auto& late : edit.sentences) {
+      out += "[" + list_of(late.variables) + "] " + joined({on(i), late.condition}, late.effect) +
+             ".\n";
+    }
     const bool requires_it = edit.kind == Edit::Kind::kRequire;
     if (!requires_it && edit.kind != Edit::Kind::kAddEffect) continue;
     const std::vector<std::string> of_event(
@@ -134,6 +171,9 @@ std::string guarded_text(const ModelAst& model, const base::SourceFiles& files,
     auto variables = edit.variables;
     variables.emplace_back("time");
     std::vector<std::string> conditions = {on(i)};
+    for (const auto& literal : edit.given) {
+      conditions.push_back(print(literal, "time", edit.variables));
+    }
     for (std::size_t j = i + 1; j < edits.size() && !requires_it; ++j) {
       if (edits[j].kind != Edit::Kind::kAddCondition || edits[j].of != i) break;
       conditions.push_back("(!" + on(j) + " | " +

@@ -76,6 +76,22 @@ class EvidenceReader {
 
 }  // namespace
 
+CauseEvidence cause_of(const std::vector<const ObservedPath*>& paths,
+                       const std::vector<bool>& failed, bool world_is_model) {
+  CauseEvidence out;
+  out.parameters = varying_parameters(paths);
+  std::vector<harness::CauseRun> runs;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    auto& run = runs.emplace_back();
+    run.failed = failed[i];
+    for (const auto& name : out.parameters) {
+      run.start.push_back(*number_of(paths[i]->start.find(name)->second));
+    }
+  }
+  out.finding = harness::tell_cause(runs, world_is_model);
+  return out;
+}
+
 base::Result<CauseEvidence> gather_evidence(const RecordedDiscrepancy& found,
                                             const std::vector<harness::SampleRecord>& further,
                                             Context& context) {
@@ -115,16 +131,9 @@ base::Result<CauseEvidence> gather_evidence(const RecordedDiscrepancy& found,
     out.not_made = "stopped before those on record were looked at";
     return out;
   }
-  out.parameters = varying_parameters(bearing);
-  std::vector<harness::CauseRun> runs;
-  for (std::size_t i = 0; i < bearing.size(); ++i) {
-    auto& run = runs.emplace_back();
-    run.failed = failed[i];
-    for (const auto& name : out.parameters) {
-      run.start.push_back(*number_of(bearing[i]->start.find(name)->second));
-    }
-  }
-  out.finding = harness::tell_cause(runs, found.loaded.world != nullptr);
+  auto told = cause_of(bearing, failed, found.loaded.world != nullptr);
+  out.parameters = std::move(told.parameters);
+  out.finding = std::move(told.finding);
   return out;
 }
 

@@ -27,6 +27,10 @@ struct CauseEvidence {
   std::string words() const { return harness::cause_words(finding, parameters); }
 };
 
+/// What the starts of simulations of one trace say of why some of them failed.
+CauseEvidence cause_of(const std::vector<const ObservedPath*>& paths,
+                       const std::vector<bool>& failed, bool world_is_model);
+
 /// Those of the journal (and `further`, of the same trace) that get as far as the discrepancy: does
 /// it happen there again? Reports as observed_paths does.
 base::Result<CauseEvidence> gather_evidence(const RecordedDiscrepancy& found,

@@ -95,6 +95,53 @@ bool EditSearch::propagate(std::vector<Literal> facts, Timepoint last,
   return true;
 }
 
+/// The clauses up to `last` that `values` do not satisfy. What stands in them with one sign only,
+/// and is not `needed`, gets it.
+std::vector<std::uint32_t> EditSearch::open_clauses(Timepoint last, const std::vector<bool>& needed,
+                                                    std::vector<std::int8_t>& values) const {
+  const auto is_open = [&](std::uint32_t c) {
+    const auto clause = guarded_.clauses[c];
+    return std::none_of(clause.begin(), clause.end(),
+                        [&](Literal each) { return value_of(each, values) > 0; });
+  };
+  std::vector<std::uint32_t> open;
+  std::vector<std::uint32_t> uses(occurrences_.size(), 0);
+  const auto count = [&](std::uint32_t c, bool more) {
+    for (const auto literal : guarded_.clauses[c]) uses[place_of(literal)] += more ? 1U : ~0U;
+  };
+  for (std::uint32_t c = 0; c < guarded_.clauses.size(); ++c) {
+    if (guarded_.clause_timepoints[c] > last || !is_open(c)) continue;
+    open.push_back(c);
+    count(c, true);
+  }
+  std::vector<std::size_t> candidates;
+  for (std::size_t variable = 0; variable < values.size(); ++variable) {
+    if (!needed[variable] && values[variable] == 0) candidates.push_back(variable);
+  }
+  while (!candidates.empty()) {
+    const auto variable = candidates.back();
+    candidates.pop_back();
+    const bool positive = uses[2 * variable] > 0, negative = uses[2 * variable + 1] > 0;
+    if (values[variable] != 0 || positive == negative) continue;
+    values[variable] = positive ? 1 : -1;
+    for (const auto c : occurrences_[2 * variable + (positive ? 0 : 1)]) {
+      if (guarded_.clause_timepoints[c] > last) continue;
+      const auto clause = guarded_.clauses[c];
+      // It was open until now.
+      const auto true_ones = std::count_if(
+          clause.begin(), clause.end(), [&](Literal each) { return value_of(each, values) > 0; });
+      if (true_ones != 1) continue;
+      count(c, false);
+      for (const auto literal : clause) {
+        const auto other = static_cast<std::size_t>(literal.var()) - 1;
+        if (values[other] == 0 && !needed[other]) candidates.push_back(other);
+      }
+    }
+  }
+  std::erase_if(open, [&](std::uint32_t c) { return !is_open(c); });
+  return open;
+}
+
 void EditSearch::add(std::size_t number) {
   const auto& evidence = evidence_[number];
   const auto active = circuit_.new_variable();
@@ -148,17 +195,17 @@ void EditSearch::add(std::size_t number) {
     if (!fixed_[variable] || values[variable] == 0) continue;
     require({~active, values[variable] > 0 ? *fixed_[variable] : ~*fixed_[variable]});
   }
-  for (std::size_t c = 0; c < guarded_.clauses.size(); ++c) {
-    if (guarded_.clause_timepoints[c] > last) continue;
+  std::vector<bool> needed(values.size(), false);  // also elsewhere
+  for (std::size_t variable = 0; variable < fixed_.size(); ++variable) {
+    needed[variable] = fixed_[variable].has_value();
+  }
+  if (refused) needed[static_cast<std::size_t>(happens(*refused)->var()) - 1] = true;
+  for (const auto c : open_clauses(last, needed, values)) {
     std::vector<Literal> clause = {~active};
-    bool satisfied = false;
     for (const auto literal : guarded_.clauses[c]) {
-      const int value = value_of(literal, values);
-      satisfied = satisfied || value > 0;
-      if (satisfied) break;
-      if (value == 0) clause.push_back(mapped(literal));
+      if (value_of(literal, values) == 0) clause.push_back(mapped(literal));
     }
-    if (!satisfied) require(std::move(clause));
+    require(std::move(clause));
   }
   if (!refused) return;
   std::map<std::string, Literal> seen;

@@ -44,6 +44,8 @@ class EditSearch {
   void find_occurrences();
   bool propagate(std::vector<runtime::Literal> facts, compiler::Timepoint last,
                  std::vector<std::int8_t>& values) const;
+  std::vector<std::uint32_t> open_clauses(compiler::Timepoint last, const std::vector<bool>& needed,
+                                          std::vector<std::int8_t>& values) const;
   void add_refusal(const Evidence& evidence, std::size_t t, compiler::Literal happens,
                    compiler::Literal active, const std::map<std::string, compiler::Literal>& state);
   runtime::Literal selector(std::size_t edit) const {

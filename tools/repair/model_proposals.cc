@@ -9,6 +9,7 @@
 
 #include "compiler/repair/edit_text.h"
 #include "compiler/repair/guarded_model.h"
+#include "tools/repair/binding_change.h"
 #include "tools/repair/edit_search.h"
 
 namespace parallax::tools {
@@ -103,6 +104,7 @@ class ModelSearch {
       step.not_possible = says_not_possible(parting.step.reason);
       step.before = seen.states[parting.after - 1];
       step.differing = parting.seen;
+      step.late = late(parting, seen);
       out.steps.push_back(std::move(step));
       if (!wide) continue;
       for (std::size_t t = 0; t < parting.after; ++t) {
@@ -116,6 +118,25 @@ class ModelSearch {
       if (symbol.kind == compiler::SymbolKind::kFluent && !symbol.noninertial) {
         out.more_fluents.insert(symbol.name);
       }
+    }
+    return out;
+  }
+
+  /// What was seen behind the step as the model says, only later.
+  static std::vector<EditScope::Step::Late> late(const RunParting& parting, const Evidence& seen) {
+    constexpr std::size_t kLatest = 3;  // steps
+    std::vector<EditScope::Step::Late> out;
+    auto waiting = parting.seen;
+    for (std::size_t by = 1; by <= kLatest && parting.after + by < seen.states.size(); ++by) {
+      EditScope::Step::Late step{seen.steps[parting.after + by - 1].event, by, {}};
+      const auto& state = seen.states[parting.after + by];
+      std::erase_if(waiting, [&](const auto& fluent) {
+        const auto found = state.find(fluent.first);
+        const bool came = found != state.end() && found->second != fluent.second;
+        if (came) step.fluents.insert(fluent.first);
+        return came;
+      });
+      if (!step.fluents.empty()) out.push_back(std::move(step));
     }
     return out;
   }
@@ -232,6 +253,14 @@ class ModelSearch {
       proposal.oddity = oddity(set);
       proposal.words = texts.words(set);
       proposal.files = changed_files(domain_.files, changes);
+      for (const auto edit : set) {
+        const auto& each = prepared.edits[edit];
+        const bool opens =
+            each.kind == Edit::Kind::kOpenEvent ||
+            (each.kind == Edit::Kind::kAddEffect && each.text.starts_with("Releases"));
+        if (opens) tell_failures(each.event, proposal);
+        proposal.open = proposal.open || opens;
+      }
       tried.push_back(std::move(proposal));
     }
     const bool any = !tried.empty();
@@ -239,6 +268,22 @@ class ModelSearch {
     all.insert(all.end(), std::make_move_iterator(tried.begin()),
                std::make_move_iterator(tried.end()));
     return any;
+  }
+
+  /// What the plan is told where the world refused the event that may fail now.
+  void tell_failures(const std::string& event, Proposal& proposal) const {
+    std::set<std::string> told;
+    for (const auto& parting : input_.partings) {
+      const auto& step = parting.step;
+      if (!step.failed || compiler::symbol_of(step.event) != event) continue;
+      if (!told.insert(step.reason).second) continue;
+      auto bound = bound_failure(input_, step);
+      if (!bound) continue;
+      proposal.evidence.push_back(std::move(bound->words));
+      if (!bound->file || proposal.changes == Proposal::Changes::kBinding) continue;
+      proposal.files.push_back(*std::move(bound->file));
+      proposal.changes = Proposal::Changes::kBinding;
+    }
   }
 
   void find_nearest_miss() {

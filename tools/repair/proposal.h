@@ -24,9 +24,13 @@ struct Proposal {
   std::vector<ChangedFile> files;
   std::optional<std::string> text;  // of the edited model, flat; none: the model stays as it is
   bool precaution = false;          // what may fail is taken to fail
+  bool open = false;                // it leaves open what happens
   Verdict verdict;
   /// What it does to the traces. Of a change of the model alone the ranking finds it out.
   std::optional<TraceEffects> effects;
+  /// The numbers of those that nothing tells from it: not what was seen, not size, not the usual,
+  /// not the traces. Of the ranking.
+  std::vector<std::size_t> tied = {};
 };
 
 /// "model", "binding", "plan", "scenario": as `--json` says it.

@@ -22,6 +22,20 @@ bool changes_less(const Proposal& a, const Proposal& b) {
   return a.effects->lost->value < b.effects->lost->value;
 }
 
+/// Runs of equals in what is in order.
+void find_ties(std::vector<Proposal>& proposals) {
+  for (std::size_t begin = 0; begin < proposals.size();) {
+    auto end = begin + 1;
+    while (end < proposals.size() && !changes_less(proposals[begin], proposals[end])) ++end;
+    for (auto i = begin; i < end; ++i) {
+      for (auto j = begin; j < end; ++j) {
+        if (i != j) proposals[i].tied.push_back(j + 1);
+      }
+    }
+    begin = end;
+  }
+}
+
 }  // namespace
 
 bool rank_proposals(const RepairInput& input, std::size_t limit, std::vector<Proposal>& proposals,
@@ -42,6 +56,7 @@ bool rank_proposals(const RepairInput& input, std::size_t limit, std::vector<Pro
     proposals.resize(wanted);
     more = true;
   }
+  find_ties(proposals);
   return more;
 }
 

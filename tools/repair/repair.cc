@@ -46,6 +46,7 @@ base::Result<RepairResult> propose_repairs(const RepairOptions& options, Context
   result.contradictions = input.contradictions;
   result.remarks = input.remarks;
   if (input.partings.empty()) return result;
+  result.causes = causes_of(input);
   for (const auto source : kSources) {
     if (context.stopped()) break;
     auto found = source(input, context);
@@ -54,6 +55,11 @@ base::Result<RepairResult> propose_repairs(const RepairOptions& options, Context
     result.more = result.more || found.more;
     result.edits += found.edits;
     if (result.nearest_miss.empty()) result.nearest_miss = std::move(found.nearest_miss);
+  }
+  // What the model has no word for is said where that is left open, or taken to happen.
+  for (auto& proposal : result.proposals) {
+    if (!proposal.open && !proposal.precaution) continue;
+    for (const auto& cause : result.causes) proposal.evidence.push_back(cause.words);
   }
   const bool more =
       rank_proposals(input, static_cast<std::size_t>(options.limit), result.proposals, context);

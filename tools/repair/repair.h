@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/repair/causes.h"
 #include "tools/repair/proposal.h"
 #include "tools/repair/repair_input.h"
 
@@ -13,6 +14,7 @@ struct RepairResult {
   std::size_t runs = 0, failed = 0;  // read from the folder; those that the model cannot follow
   std::vector<RunParting> partings;
   std::vector<std::string> contradictions;
+  std::vector<RepairCause> causes;  // of the contradictions
   std::vector<Proposal> proposals;  // best first
   bool more = false;                // there are further ones that were not looked at
   std::size_t edits = 0;            // single edits that were considered

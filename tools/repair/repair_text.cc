@@ -48,11 +48,18 @@ std::string head(const RepairResult& result, const std::string& folder) {
     out += fmt::format(
         "  {}: chance, or the simulator, or something that the model has no word for\n", text);
   }
+  for (const auto& cause : result.causes) out += "  " + cause.words + "\n";
   return out;
 }
 
+std::string tie_text(const std::vector<std::size_t>& tied) {
+  return tied.empty() ? ""
+                      : fmt::format(" (tied with {}: no run and no count tells them apart)",
+                                    fmt::join(tied, ", "));
+}
+
 std::string proposal_text(const Proposal& proposal, std::size_t rank, const RepairResult& result) {
-  auto out = fmt::format("\n{}. {}.\n", rank, proposal.words);
+  auto out = fmt::format("\n{}. {}{}.\n", rank, proposal.words, tie_text(proposal.tied));
   const auto& verdict = proposal.verdict;
   out += fmt::format("   Consistent with {} of {}", verdict.runs_consistent,
                      plural(result.runs, "run"));
@@ -132,6 +139,10 @@ std::string repair_json(const RepairResult& result) {
                         {"fluents", std::move(seen)}});
   }
   out["contradictions"] = result.contradictions;
+  auto& causes = out["causes"] = Json::array();
+  for (const auto& cause : result.causes) {
+    causes.push_back({{"cause", cause.kind}, {"words", cause.words}});
+  }
   auto& proposals = out["proposals"] = Json::array();
   for (std::size_t i = 0; i < result.proposals.size(); ++i) {
     const auto& proposal = result.proposals[i];
@@ -139,6 +150,7 @@ std::string repair_json(const RepairResult& result) {
     Json reaches = nullptr;
     if (effects.reaches) reaches = *effects.reaches;
     proposals.push_back({{"rank", i + 1},
+                         {"tied", proposal.tied},
                          {"words", proposal.words},
                          {"changes", name_of(proposal.changes)},
                          {"evidence", proposal.evidence},

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ sort drawer
 drawer top, low
 fluent Open(drawer)
 fluent Parked()
+sort part
+part bolt
+fluent Held(part,drawer)
 event Pull(drawer)
 event Park()
 [drawer,time]
@@ -60,7 +64,15 @@ TEST_CASE("every edit of a model, switched on and written") {
                          true,
                          true,
                          {{"Open(top)", false}, {"Open(low)", false}, {"Parked()", true}},
-                         {{"Open(top)", false}, {"Parked()", true}}});
+                         {{"Open(top)", false}, {"Parked()", true}},
+                         {{"Park()", 1, {"Open(top)"}}, {"Pull(low)", 2, {"Open(top)"}}}});
+  // Two fluents that have to do with each other changed at once.
+  scope.steps.push_back({"Park()",
+                         false,
+                         false,
+                         {{"Held(bolt,low)", true}, {"Open(low)", false}, {"Open(top)", false}},
+                         {{"Held(bolt,low)", false}, {"Open(low)", true}},
+                         {}});
   const auto edits = compiler::edits_in_scope(domain.ast, *typed, domain.forms, scope);
   const compiler::EditText texts(domain.ast, domain.files, domain.forms, edits);
   const auto guarded = compiler::guarded_text(domain.ast, domain.files, domain.forms, edits);
@@ -90,7 +102,14 @@ TEST_CASE("every edit of a model, switched on and written") {
     same(switched(guarded, edits.size(), {set.begin(), set.end()}),
          compiler::flat_text(domain.ast, domain.files, texts.changes(set)));
   }
-  CHECK(kinds.size() == 9);
+  CHECK(kinds.size() == 10);
+  const auto bundle = std::find_if(edits.begin(), edits.end(), [](const auto& edit) {
+    return edit.text ==
+           "Terminates(Park(),Held(part,drawer),time) & "
+           "Initiates(Park(),Open(drawer),time)";
+  });
+  REQUIRE(bundle != edits.end());
+  CHECK(compiler::print(bundle->given.front(), "time", {}) == "HoldsAt(Held(part,drawer),time)");
 }
 
 }  // namespace

@@ -303,5 +303,173 @@ TEST_CASE("a run in closed loop is evidence like any other") {
         std::string::npos);
 }
 
+/// A box in a hand, and a drawer: what `world` says happens, and what `model` says.
+std::string box_world(const TwoModels& cli, const std::string& world, const std::string& model) {
+  cli.write("two/domain.e",
+            "sort drawer\nsort thing\ndrawer top\nthing box, jar\n"
+            "fluent Open(drawer)\nfluent Parked()\nfluent Held(thing)\nfluent Fallen(thing)\n"
+            "event OpenDrawer(drawer)\nevent CloseDrawer(drawer)\nevent Park()\nevent Reach()\n"
+            "[thing,time] HoldsAt(Held(thing),time) -> !HoldsAt(Fallen(thing),time).\n"
+            "[time] !HoldsAt(Held(box),time) -> HoldsAt(Fallen(box),time).\n"
+            "[drawer,time] Initiates(OpenDrawer(drawer),Open(drawer),time).\n"
+            "[drawer,time] Terminates(CloseDrawer(drawer),Open(drawer),time).\n"
+            "[time] Initiates(Park(),Parked(),time).\n");
+  cli.write("two/start.e",
+            "[drawer] !HoldsAt(Open(drawer),0).\nHoldsAt(Parked(),0).\nHoldsAt(Held(box),0).\n"
+            "!HoldsAt(Held(jar),0).\n[thing] !HoldsAt(Fallen(thing),0).\n");
+  cli.write("two/opens.e", "load domain.e\n" + model);
+  return cli.world("load domain.e\n" + world);
+}
+
+TEST_CASE("effects that only make sense together are one proposal, bound by what ends") {
+  const TwoModels cli;
+  const std::string slips =
+      "[drawer,thing,time] HoldsAt(Held(thing),time) -> "
+      "Terminates(OpenDrawer(drawer),Held(thing),time).\n"
+      "[drawer,thing,time] HoldsAt(Held(thing),time) -> "
+      "Initiates(OpenDrawer(drawer),Fallen(thing),time).\n";
+  const auto scenario = box_world(cli, slips, "");
+  json_of(cli, {"run", scenario, "--out", "out"}, 1);
+  const auto report = json_of(cli, {"repair", "out"}, 1);
+  const auto& first = report.at("proposals").at(0);
+  CAPTURE(report.dump(1));
+  CHECK(first.at("words").get<std::string>().find(
+            "`OpenDrawer(drawer)` ends `Held(thing)` and begins `Fallen(thing)`") !=
+        std::string::npos);
+  CHECK(first.at("edits") == 1);
+  CHECK(first.at("changes") == "model");
+  CHECK(first.at("runs_to_the_end") == first.at("runs"));
+  CHECK(cli.parallax({"repair", "out", "--apply", "1"}).code == 0);
+  CHECK(json_of(cli, {"run", scenario, "--epsilon", "0.3", "--out", "again"}).at("verdict") ==
+        "no-discrepancy");
+}
+
+TEST_CASE("effects that chance brings together are left open together") {
+  const TwoModels cli;
+  const std::string may_slip =
+      "[drawer,thing,time] HoldsAt(Held(thing),time) -> "
+      "Releases(OpenDrawer(drawer),Held(thing),time).\n"
+      "[drawer,thing,time] HoldsAt(Held(thing),time) -> "
+      "Releases(OpenDrawer(drawer),Fallen(thing),time).\n"
+      "[drawer,thing,time] !HoldsAt(Held(thing),time) -> "
+      "Terminates(CloseDrawer(drawer),Held(thing),time).\n"
+      "[drawer,thing,time] HoldsAt(Held(thing),time) -> "
+      "Initiates(CloseDrawer(drawer),Held(thing),time).\n";
+  json_of(cli, {"run", box_world(cli, may_slip, ""), "--out", "out"}, 1);
+  json_of(cli, {"explain", "out"}, 1);
+  const auto report = json_of(cli, {"repair", "out"}, 1);
+  CAPTURE(report.dump(1));
+  CHECK(!report.at("contradictions").empty());
+  const auto& first = report.at("proposals").at(0);
+  CHECK(first.at("words").get<std::string>().find(
+            "`OpenDrawer(drawer)` can end `Held(thing)` and begin `Fallen(thing)`") !=
+        std::string::npos);
+  CHECK(first.at("runs_consistent") == first.at("runs"));
+  // Why it is left open stands with it.
+  REQUIRE(report.at("causes").size() > 0);
+  CHECK(report.at("causes").at(0).at("cause") == "random");
+  CHECK(first.at("evidence").at(0) == report.at("causes").at(0).at("words"));
+}
+
+/// What nothing tells apart says so of each other; there are such.
+void check_ties(const Json& proposals) {
+  std::size_t tied = 0;
+  for (const auto& proposal : proposals) {
+    for (const std::size_t other : proposal.at("tied")) {
+      ++tied;
+      const auto& twin = proposals.at(other - 1);
+      CHECK(twin.at("tied").size() == proposal.at("tied").size());
+      for (const auto* field :
+           {"edits", "precaution", "runs_to_the_end", "traces_gained", "traces_lost"}) {
+        CHECK(twin.at(field) == proposal.at(field));
+      }
+    }
+  }
+  CHECK(tied > 0);
+}
+
+TEST_CASE("an effect that comes later: the axiom says so, with what happens then") {
+  const TwoModels cli;
+  const std::string begins =
+      "sort drawer\ndrawer top\nfluent Open(drawer)\nfluent Parked()\n"
+      "event OpenDrawer(drawer)\nevent Park()\n";
+  cli.write("two/domain.e", begins + "[time] Initiates(Park(),Parked(),time).\n");
+  cli.write("two/open_and_close.lisp",
+            "(def-cram-function open-late ()\n"
+            "  (perform (an action (type opening) (object (an object (name top)))))\n"
+            "  (perform (an action (type parking-arms))))\n(open-late)\n");
+  cli.write("two/robot.bind",
+            "action opening (:object ?d) -> OpenDrawer(?d)\n"
+            "  ok: Open(?d) | !Open(?d) @t+1 else manipulation-goal-not-reached\n"
+            "action parking-arms () -> Park()\n"
+            "  ok: Parked() | !Parked() @t+1 else manipulation-goal-not-reached\n");
+  cli.write("two/opens.e",
+            "load domain.e\n[drawer,time] Initiates(OpenDrawer(drawer),Open(drawer),time).\n");
+  const auto scenario = cli.world(
+      "load domain.e\nfluent Moving(drawer)\n[drawer] !HoldsAt(Moving(drawer),0).\n"
+      "[drawer,time] Initiates(OpenDrawer(drawer),Moving(drawer),time).\n"
+      "[drawer,time] HoldsAt(Moving(drawer),time) -> Initiates(Park(),Open(drawer),time).\n");
+  json_of(cli, {"run", scenario, "--out", "out"}, 1);
+  const auto report = json_of(cli, {"repair", "out"}, 1);
+  CAPTURE(report.dump(1));
+  const auto& first = report.at("proposals").at(0);
+  CHECK(first.at("patch").get<std::string>().find(
+            "Happens(OpenDrawer(drawer),time-1) -> Initiates(Park(),Open(drawer),time).") !=
+        std::string::npos);
+  CHECK(first.at("runs_to_the_end") == first.at("runs"));
+  check_ties(json_of(cli, {"repair", "out", "--limit", "0"}, 1).at("proposals"));
+  CHECK(cli.parallax({"repair", "out", "--limit", "0"})
+            .out.find("no run and no count tells them apart") != std::string::npos);
+  CHECK(cli.parallax({"repair", "out", "--apply", "1"}).code == 0);
+  CHECK(json_of(cli, {"run", scenario, "--epsilon", "0.3", "--out", "again"}).at("verdict") ==
+        "no-discrepancy");
+}
+
+TEST_CASE("what the world refused may fail, and the binding table knows the reason") {
+  const TwoModels cli;
+  std::filesystem::copy(std::filesystem::path(PARALLAX_SOURCE_DIR) / "scenarios" / "warehouse",
+                        cli.folder() / "house", std::filesystem::copy_options::recursive);
+  json_of(cli, {"run", "house/oily_pads.yaml", "--out", "out"}, 1);
+  const auto bound = json_of(cli, {"repair", "out"}, 1).at("proposals").at(0);
+  CHECK(bound.at("words") == "what `PickUp(arm,part)` does is open: `Releases` in 2 of its axioms");
+  CHECK(bound.at("edits") == 1);
+  CHECK(bound.at("changes") == "model");
+  CHECK(
+      bound.at("evidence")
+          .at(0)
+          .get<std::string>()
+          .starts_with("`PickUp(left,crate)` failed for the reason object-not-held; the plan gets "
+                       "`manipulation-pose-unreachable` then (house/robot.bind:"));
+
+  // A table that binds other reasons gets this one, too.
+  cli.replace("house/robot.bind", "ok: Holding(?a,?o) @t+1  else manipulation-pose-unreachable",
+              "ok: Holding(?a,?o) @t+1  else manipulation-pose-unreachable on too-far "
+              "manipulation-pose-unreachable");
+  const auto table = cli.read("house/robot.bind");
+  json_of(cli, {"run", "house/oily_pads.yaml", "--out", "other"}, 1);
+  const auto unbound = json_of(cli, {"repair", "other"}, 1).at("proposals").at(0);
+  CHECK(unbound.at("changes") == "binding");
+  CHECK(cli.parallax({"repair", "other", "--apply", "1"}).code == 0);
+  auto expected = table;
+  const std::string last = "on too-far manipulation-pose-unreachable";
+  expected.insert(expected.find(last) + last.size(),
+                  " on object-not-held manipulation-pose-unreachable");
+  CHECK(cli.read("house/robot.bind") == expected);
+}
+
+TEST_CASE("a file that cannot be written: said, and it is as it was") {
+  const TwoModels cli;
+  json_of(cli, {"run", "two/unparks.yaml", "--out", "out"}, 1);
+  const auto before = files_below(cli.folder());
+  const std::string program = std::string(PARALLAX_BINARY_DIR) + "/parallax";
+  // Whoever runs this may write anything; a limit on the size of files holds for everybody.
+  const auto result = run_process(
+      {"bash", "-c", "trap '' XFSZ; ulimit -f 0; exec '" + program + "' repair out --apply 1"},
+      in_folder(cli));
+  CHECK(result.code == 2);
+  CHECK(result.err.find("error[E0005]: cannot write the file") != std::string::npos);
+  CHECK(files_below(cli.folder()) == before);
+}
+
 }  // namespace
 }  // namespace parallax::test

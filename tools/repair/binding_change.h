@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "tools/repair/patch.h"
+#include "tools/repair/repair_input.h"
+
+namespace parallax::tools {
+
+/// What the plan is told of a failure, and what the binding table has to say for that.
+struct BoundFailure {
+  std::string words;                // a sentence
+  std::optional<ChangedFile> file;  // none: the table knows the reason already
+};
+
+/// A step that the world refused: `on REASON CLASS` goes behind the other reasons of the first
+/// entry for its event, with the class of its `else`. An entry without reasons raises that for all.
+/// None where no entry is about the event.
+std::optional<BoundFailure> bound_failure(const RepairInput& input, const Evidence::Step& step);
+
+}  // namespace parallax::tools
