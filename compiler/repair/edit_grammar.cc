@@ -309,7 +309,8 @@ class EditMaker {
       not_possible = not_possible || step.not_possible;
     }
     // What was tried and failed may fail. What cannot be is no outcome.
-    if (scope_.open_outcomes || (refused && !not_possible)) open_event(event, names, axioms);
+    if (scope_.open_outcomes || (scope_.open_refused && refused && !not_possible))
+      open_event(event, names, axioms);
     for (const auto& literal : condition_literals(typed_, variables, kMostEach)) {
       if (!relevance_.in_some_step(literal, false, names, event, names)) continue;
       Edit edit;

@@ -73,6 +73,8 @@ struct EditScope {
   std::set<std::string> more_events, more_fluents;
   /// An event may leave open what it does: `Releases`.
   bool open_outcomes = false;
+  /// ... one that the world refused, though it can happen.
+  bool open_refused = false;
 };
 
 /// The event's symbol, and its arguments.

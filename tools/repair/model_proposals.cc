@@ -112,6 +112,7 @@ class ModelSearch {
       }
     }
     out.open_outcomes = mode == Mode::kOpen;
+    out.open_refused = mode == Mode::kExact;
     if (!wide) return out;
     // What the axioms of the steps ask for may be what went wrong before.
     for (const auto& symbol : domain_.typed->symbols) {

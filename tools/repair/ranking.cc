@@ -9,8 +9,9 @@ namespace {
 constexpr std::size_t kMostCompared = 6;  // have their traces compared, where fewer are wanted
 
 bool likelier(const Proposal& a, const Proposal& b) {
-  return std::tuple(a.size, !a.precaution, ~a.verdict.runs_whole, a.oddity) <
-         std::tuple(b.size, !b.precaution, ~b.verdict.runs_whole, b.oddity);
+  // That anything may happen explains every run: it comes behind what says more.
+  return std::tuple(a.size, !a.precaution, a.open, ~a.verdict.runs_whole, a.oddity) <
+         std::tuple(b.size, !b.precaution, b.open, ~b.verdict.runs_whole, b.oddity);
 }
 
 /// Among equals the one that permits the least, then the one that forbids the least.

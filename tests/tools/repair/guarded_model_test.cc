@@ -103,6 +103,18 @@ TEST_CASE("every edit of a model, switched on and written") {
          compiler::flat_text(domain.ast, domain.files, texts.changes(set)));
   }
   CHECK(kinds.size() == 10);
+  // Without contradictions only what the world refused, and can happen, is left open, if asked for.
+  const auto opened = [&](bool refused, bool not_possible) {
+    scope.open_outcomes = false;
+    scope.open_refused = refused;
+    scope.steps.front().not_possible = not_possible;
+    const auto others = compiler::edits_in_scope(domain.ast, *typed, domain.forms, scope);
+    return std::count_if(others.begin(), others.end(),
+                         [](const Edit& edit) { return edit.kind == Edit::Kind::kOpenEvent; });
+  };
+  CHECK(opened(true, false) == 1);
+  CHECK(opened(true, true) == 0);
+  CHECK(opened(false, false) == 0);
   const auto bundle = std::find_if(edits.begin(), edits.end(), [](const auto& edit) {
     return edit.text ==
            "Terminates(Park(),Held(part,drawer),time) & "
