@@ -77,6 +77,7 @@ void add_common_options(OptionTable& table, CommonOptions& options);
 Command run_command();
 Command repair_command();
 Command replay_command();
+Command report_command();
 Command check_command();
 Command coverage_command();
 Command compile_command();

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace parallax::test {
+
+/// What a reader of HTML makes of a page, found out by a scanner of its own.
+struct HtmlPage {
+  std::vector<std::string> faults;  // badly nested, doubtful attributes, links to nowhere
+  std::map<std::string, std::size_t> elements;
+  std::set<std::string> ids;
+  std::string style, script, policy, data;
+  std::string text;  // what is shown, a line for each block
+};
+
+/// Takes a page apart. Faults are elements that do not nest, unknown ones, attributes `style` and
+/// `on...`, `src` and links that are not to an id of the page, and ids that stand twice.
+HtmlPage check_html(std::string_view page);
+
+}  // namespace parallax::test

@@ -1,0 +1,213 @@
+// Pages as they are written from data, without a run: hashes, hostile names, many simulations.
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/page/html_check.h"
+#include "tools/page/gather.h"
+#include "tools/page/markup.h"
+#include "tools/page/plot.h"
+#include "tools/page/sha256.h"
+#include "tools/page/write_page.h"
+
+namespace parallax::test {
+namespace {
+
+using namespace parallax::tools;  // NOLINT: what is tested
+
+std::string hex(const std::array<std::uint8_t, 32>& hash) {
+  std::string out;
+  for (const auto byte : hash) out += fmt::format("{:02x}", byte);
+  return out;
+}
+
+TEST_CASE("SHA-256 of the examples of its standard") {
+  CHECK(hex(sha256("")) == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  CHECK(hex(sha256("abc")) == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  CHECK(hex(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq")) ==
+        "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  CHECK(hex(sha256(std::string(1'000'000, 'a'))) ==
+        "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+  CHECK(csp_hash("") == "sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=");
+}
+
+/// A page with everything in it, whose names are `name`.
+PageData page_named(const std::string& name, std::int64_t samples) {
+  PageData page;
+  page.folder = page.scenario = page.simulator = page.criterion = page.exploration = name;
+  page.tool_version = name;
+  page.verdict = "discrepancy";
+  page.banners = {name};
+  page.simulations = samples;
+  PageTrace trace;
+  trace.number = 1;
+  trace.verdict = "discrepancy";
+  trace.claim = trace.paper_variant = name;
+  trace.caveats = trace.not_covered = {name};
+  trace.simulations = samples;
+  trace.clean = samples - 1;
+  trace.steps = {{name, name + ":1", {}, {}, {}}};
+  trace.causes = {{name, 1, 0.1, 0.0, 0.2}};
+  page.traces = {trace};
+  PageDiscrepancy found;
+  found.trace = found.sample = 1;
+  found.first_divergence = 1;
+  found.words = found.reason = found.kind = name;
+  found.cause = name;
+  found.first = {{name, 1, true, false}};
+  found.start = {{name, name}};
+  page.discrepancies = {found};
+  page.coverage = {{name, "1", "2"}};
+  PageTimeline timeline;
+  timeline.trace = timeline.sample = 1;
+  timeline.verdict = SampleVerdict::kDiscrepancy;
+  timeline.steps = {{name, "plan.lisp:2", "failed", name, 1.0}};
+  timeline.rows = {{name, "11", "10", TimelineRow::Role::kFirst, true},
+                   {name + "2", "00", "00", TimelineRow::Role::kAgrees, false}};
+  timeline.parting = 1;
+  page.timelines = {timeline};
+  page.variables = {name, "b.mass"};
+  page.bodies = {name};
+  for (std::int64_t i = 1; i <= samples; ++i) {
+    PageSample sample;
+    sample.trace = 1;
+    sample.sample = i;
+    sample.verdict = i == 1 ? SampleVerdict::kDiscrepancy : SampleVerdict::kClean;
+    sample.cause = i == 1 ? name : "";
+    const auto at = static_cast<float>(i) / 100.0F;
+    sample.start = {static_cast<double>(i), 1.0 / static_cast<double>(i)};
+    sample.ways = {{{at, 0.0F}, {at, 1.0F}, {0.0F, at}}};
+    page.samples.push_back(sample);
+  }
+  page.regions = {{name, {{0.0, 1.0}}, {}, false}};
+  page.sources = {{name + ".lisp", name + "\n"},
+                  {"plan.lisp", "; one\n(perform \"" + name + "\")\n"}};
+  page.axioms = {{name, {{"plan.lisp:1", name}}}};
+  PageBlame blame;
+  blame.words = blame.more = blame.cause = name;
+  blame.axioms = {{"plan.lisp:1", name}};
+  blame.rule = {{"b.mass", 0.5, true}};
+  page.blame = blame;
+  page.proposals = {{name, name, "--- a\n+++ b\n-" + name + "\n+" + name + "\n"}};
+  return page;
+}
+
+TEST_CASE("names of a run folder are text on the page, whatever they hold") {
+  const std::string names[] = {
+      "<script>alert(1)</script>",
+      "</script></style></title><img src=x onerror=alert(1)>",
+      "\" onclick=\"alert(1)\" x='",
+      "<!-- ]]> <![CDATA[ &lt;script&gt;",
+      "\xE2\x80\xAE\xE2\x81\xA6 turned \xD8\x9C\xE2\x80\x8F",
+      std::string("\0\x01\x1b[31m\x7f\xff\xc0\x80", 11),
+      std::string(1 << 20, 'x') + "</section>",
+      "javascript:alert(1)",
+  };
+  const auto plain = check_html(run_page(page_named("plain", 30)));
+  for (const auto& name : names) {
+    CAPTURE(name.substr(0, 60));
+    const auto page = page_named(name, 30);
+    for (const auto& text : {run_page(page), comparison_page({page, page_named("other", 3)})}) {
+      const auto shown = check_html(text);
+      for (const auto& fault : shown.faults) FAIL_CHECK(fault);
+      CHECK(shown.elements.at("script") <= 2);
+      CHECK(shown.elements.at("style") == 1);
+      // Nothing turns the direction of writing, as characters or as references to them.
+      for (const auto* turning :
+           {"\xE2\x80\xAE", "\xE2\x81\xA6", "\xE2\x80\x8F", "\xD8\x9C", "&#x20"}) {
+        CHECK(text.find(turning) == std::string::npos);
+      }
+      CHECK(text.size() < 16'000'000);
+    }
+    const auto shown = check_html(run_page(page));
+    CHECK(shown.text.find("Simulations") != std::string::npos);
+    CHECK(shown.style == plain.style);
+    CHECK(shown.script == plain.script);
+    CHECK(shown.policy == plain.policy);
+    CHECK(nlohmann::json::accept(shown.data));
+  }
+}
+
+TEST_CASE("the policy lets run what is in the page, by its hash, and nothing else") {
+  const auto page = check_html(run_page(page_named("plain", 3)));
+  CHECK(page.policy == "default-src 'none'; style-src '" + csp_hash(page.style) +
+                           "'; script-src '" + csp_hash(page.script) +
+                           "'; base-uri 'none'; form-action 'none'");
+  // No address but that of the name space of SVG.
+  CHECK(page.style.find("url(") == std::string::npos);
+  CHECK(page.style.find("@import") == std::string::npos);
+  auto script = page.script;
+  const std::string name_space = "http://www.w3.org/2000/svg";
+  REQUIRE(script.find(name_space) != std::string::npos);
+  script.erase(script.find(name_space), name_space.size());
+  for (const auto* word :
+       {"http:", "https:", "fetch(", "XMLHttpRequest", "import(", "eval(", "innerHTML"}) {
+    CHECK_MESSAGE(script.find(word) == std::string::npos, word);
+  }
+}
+
+TEST_CASE("a page without scripts has verdict, timeline, table and the decisive rule") {
+  const auto page = check_html(run_page(page_named("some name", 30)));
+  for (const auto* part : {"discrepancy", "timeline", "map", "starts", "confidence", "blame",
+                           "samples", "coverage", "traces", "sources"}) {
+    CHECK_MESSAGE(page.ids.contains(part), part);
+  }
+  CHECK(page.text.find("Discrepancy\n") != std::string::npos);
+  CHECK(page.text.find("differs first") != std::string::npos);
+  CHECK(page.text.find("Simulations fail where b.mass > 0.5") != std::string::npos);
+  CHECK(page.text.find("parallax replay 'some name' --sample 1.30") != std::string::npos);
+}
+
+TEST_CASE("an empty page is one, too") {
+  PageData page;
+  page.banners = {"nothing is there"};
+  const auto shown = check_html(run_page(page));
+  for (const auto& fault : shown.faults) FAIL_CHECK(fault);
+  CHECK(shown.text.find("nothing is there") != std::string::npos);
+}
+
+TEST_CASE("thousands of simulations stay within the size that is promised") {
+  const auto text = run_page(page_named("cup", 5000));
+  CHECK(text.size() < 12'000'000);
+  const auto page = check_html(text);
+  for (const auto& fault : page.faults) FAIL_CHECK(fault);
+  CHECK(page.elements.at("tr") > 5000);
+  CHECK(nlohmann::json::parse(page.data)["samples"].size() == 5000);
+}
+
+TEST_CASE("a report of any kind of damage gives what it has") {
+  PageData page;
+  CHECK_FALSE(add_report("", page));
+  CHECK_FALSE(add_report("{\"traces\": [", page));
+  CHECK_FALSE(add_report("[]", page));
+  CHECK_FALSE(add_report("{}", page));
+  // Every field of a wrong type, and none at all.
+  const std::string wrong =
+      R"x({"traces": [{"trace": "x", "events": [1, "Go()"], "sources": 3, "certified": 1, )x"
+      R"x("paper": [], "causes": {}}, 7], "discrepancies": [3, {"first": [1], "start": 2, "cause": []}], )x"
+      R"x("coverage": {"performs": 1}, "criterion": {"confidence": 7, "epsilon": -1}, "simulator": ""})x";
+  CHECK(add_report(wrong, page));
+  CHECK(page.traces.size() == 2);
+  CHECK(page.traces[0].steps.size() == 1);
+  const auto shown = check_html(run_page(page));
+  for (const auto& fault : shown.faults) FAIL_CHECK(fault);
+}
+
+TEST_CASE("ticks are round, within the axis, and few") {
+  CHECK(ticks(0.0, 1.0, 5) == std::vector<double>{0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0});
+  CHECK(ticks(1.0, 1.0, 5).empty());
+  CHECK(ticks(0.0, INFINITY, 5).empty());
+  CHECK(ticks(-1e300, 1e300, 5).size() < 50);
+}
+
+TEST_CASE("source lines are coloured by their language and stay what they say") {
+  CHECK(coloured("Go(r2) ; \"why\"", "a.e") == "Go(r2) <b class=\"sc\">; &quot;why&quot;</b>");
+  CHECK(coloured("sort region", "a.e") == "<b class=\"sk\">sort</b> region");
+  CHECK(coloured("(\"open", "a.lisp") == "(<b class=\"ss\">&quot;open</b>");
+  CHECK(coloured("(\"a\\", "a.lisp") == "(<b class=\"ss\">&quot;a\\</b>");
+}
+
+}  // namespace
+}  // namespace parallax::test

@@ -1,0 +1,181 @@
+// `parallax report` as users run it: whole folders, damaged ones, several.
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/tools/cli_json.h"
+#include "tests/tools/page/html_check.h"
+
+namespace parallax::test {
+namespace {
+
+using Json = nlohmann::json;
+
+const std::string kSource = PARALLAX_SOURCE_DIR;
+
+std::string read_whole(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+/// Runs in the repository, so that names are as short as users see them.
+ProcessResult at_source(const CliFixture& cli, std::vector<std::string> arguments) {
+  ProcessOptions options;
+  options.folder = kSource;
+  return cli.parallax(std::move(arguments), options);
+}
+
+/// A run of a world that is a model: the same on every machine.
+std::string exact_run(const CliFixture& cli, const std::string& name = "sticks") {
+  auto folder = (cli.folder() / name).string();
+  const auto run =
+      at_source(cli, {"run", "scenarios/two_models/" + name + ".yaml", "--out", folder});
+  REQUIRE_MESSAGE(run.code <= 1, run.err);
+  return folder;
+}
+
+HtmlPage page_of(const CliFixture& cli, const std::string& name) {
+  auto page = check_html(cli.read(name));
+  for (const auto& fault : page.faults) FAIL_CHECK(fault);
+  return page;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+TEST_CASE("without scripts the page of a run says what the golden text says") {
+  const CliFixture cli;
+  const auto folder = exact_run(cli);
+  const auto made = at_source(cli, {"report", folder});
+  CHECK(made.code == 0);
+  CHECK(made.out == folder + "/report.html\n");
+  const auto text = replaced(page_of(cli, "sticks/report.html").text, folder, "RUN");
+  const auto golden = kSource + "/tests/tools/page/sticks.txt";
+  if (std::getenv("PARALLAX_UPDATE_GOLDEN") != nullptr) std::ofstream(golden) << text;
+  CHECK(text == read_whole(golden));
+  // The same bytes each time.
+  const auto first = cli.read("sticks/report.html");
+  CHECK(at_source(cli, {"report", folder}).code == 0);
+  CHECK(cli.read("sticks/report.html") == first);
+}
+
+TEST_CASE("a run in a world of bodies has a map, and explain's rule once it was made") {
+  const CliFixture cli;
+  REQUIRE(cli.parallax({"run", "edge.yaml", "--out", "edge"}).code == 1);
+  CHECK(cli.parallax({"report", "edge", "-o", "before.html"}).code == 0);
+  const auto before = page_of(cli, "before.html");
+  CHECK(before.ids.contains("map"));
+  CHECK(before.text.find("parallax explain edge") != std::string::npos);
+  CHECK(before.text.find("they part here") != std::string::npos);
+  REQUIRE(cli.parallax({"explain", "edge"}).code == 1);
+  const auto journal = cli.read("edge/journal.ndjson");
+  CHECK(cli.parallax({"report", "edge", "-o", "after.html", "--repair"}).code == 0);
+  const auto after = page_of(cli, "after.html");
+  CHECK(after.ids.contains("starts"));
+  CHECK(after.text.find("Simulations fail where box.x > 1.7") != std::string::npos);
+  CHECK(after.text.find("made afterwards") != std::string::npos);
+  CHECK(after.text.find("Proposed repairs of the model") != std::string::npos);
+  const auto data = Json::parse(after.data);
+  CHECK(data["samples"].size() > 20);
+  CHECK(data["bodies"] == Json({"box", "robot"}));
+  CHECK(cli.read("edge/journal.ndjson") == journal);
+}
+
+TEST_CASE("damaged and foreign folders give a page with a banner") {
+  const CliFixture cli;
+  const auto folder = exact_run(cli);
+  const auto journal = cli.read("sticks/journal.ndjson"), report = cli.read("sticks/report.json");
+  const auto banner_of = [&](const char* what) {
+    CAPTURE(what);
+    const auto made = at_source(cli, {"report", folder});
+    CHECK(made.code == 0);
+    CHECK_FALSE(made.err.empty());
+    const auto page = page_of(cli, "sticks/report.html");
+    CHECK_MESSAGE(page.text.find(what) != std::string::npos, page.text.substr(0, 1500));
+    return page;
+  };
+  cli.write("sticks/report.json", report.substr(0, report.size() / 2));
+  CHECK(banner_of("only half of one").ids.contains("samples"));
+  std::filesystem::remove(cli.folder() / "sticks/report.json");
+  CHECK(banner_of("There is no report.json yet").text.find("Not finished") != std::string::npos);
+  cli.write("sticks/report.json", report);
+  cli.write("sticks/journal.ndjson", journal.substr(0, journal.size() - 20));
+  banner_of("last line is incomplete");
+  cli.write("sticks/journal.ndjson", "{\"journal\":99}\n");
+  CHECK(banner_of("The journal cannot be read").text.find("Open(top)") != std::string::npos);
+  cli.write("sticks/journal.ndjson", "");
+  banner_of("before its first line is complete");
+  std::filesystem::remove(cli.folder() / "sticks/journal.ndjson");
+  banner_of("The folder has no journal");
+  // Of a scenario that has changed nothing is quoted.
+  cli.write("sticks/journal.ndjson",
+            replaced(journal, "\"scenario_hash\":\"", "\"scenario_hash\":\"00"));
+  const auto changed = banner_of("cannot be read any more as it was");
+  CHECK_FALSE(changed.ids.contains("sources"));
+  CHECK(changed.ids.contains("timeline"));
+}
+
+TEST_CASE("a folder that is none, and an output that would replace a run, are refused") {
+  const CliFixture cli;
+  const auto folder = exact_run(cli);
+  const auto nothing = cli.parallax({"report", "nowhere"});
+  CHECK(nothing.code == 2);
+  CHECK(nothing.err.find("E7111") != std::string::npos);
+  const auto over = at_source(cli, {"report", folder, "-o", folder + "/journal.ndjson"});
+  CHECK(over.code == 2);
+  CHECK(over.err.find("E0011") != std::string::npos);
+  const auto document = json_of(cli, {"report", folder, "-o", "x.html"});
+  CHECK(document["page"] == "x.html");
+  CHECK(document["bytes"] == cli.read("x.html").size());
+}
+
+TEST_CASE("a page that is watched loads itself until the run is over") {
+  const CliFixture cli;
+  const auto folder = exact_run(cli);
+  REQUIRE(at_source(cli, {"report", folder}).code == 0);
+  const auto whole = cli.read("sticks/report.html"), report = cli.read("sticks/report.json");
+  std::filesystem::remove(cli.folder() / "sticks/report.json");
+  std::filesystem::remove(cli.folder() / "sticks/report.html");
+  ProcessOptions options;
+  options.folder = kSource;
+  bool was_seen = false;
+  options.signal_when = [&] {
+    if (was_seen || !std::filesystem::exists(cli.folder() / "sticks/report.html")) return 0;
+    const auto page = cli.read("sticks/report.html");
+    was_seen = true;
+    CHECK(page.find("http-equiv=\"refresh\"") != std::string::npos);
+    CHECK(page.find("Not finished") != std::string::npos);
+    cli.write("sticks/report.json", report);
+    return 0;
+  };
+  const auto watched = cli.parallax({"report", folder, "--watch"}, options);
+  CHECK(watched.code == 0);
+  CHECK(was_seen);
+  CHECK(cli.read("sticks/report.html") == whole);
+  CHECK(cli.parallax({"report", folder, folder, "--watch"}).code == 2);
+}
+
+TEST_CASE("several folders are held against each other") {
+  const CliFixture cli;
+  const auto first = exact_run(cli, "sticks"), second = exact_run(cli, "agree");
+  CHECK(at_source(cli, {"report", first, second, "-o", (cli.folder() / "c.html").string()}).code ==
+        0);
+  const auto page = page_of(cli, "c.html");
+  CHECK(page.text.find("2 runs, different verdicts") != std::string::npos);
+  CHECK(page.text.find("1 of 2 (50 %; 1.26 % to 98.7 %)") != std::string::npos);
+  CHECK(page.text.find("Traces that were simulated:") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace parallax::test

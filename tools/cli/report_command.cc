@@ -1,0 +1,137 @@
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
+#include "tools/cli/command.h"
+#include "tools/cli/shared_options.h"
+#include "tools/page/gather.h"
+#include "tools/page/write_page.h"
+
+namespace parallax::tools {
+namespace {
+
+struct ReportOptions {
+  std::vector<std::string> folders;
+  std::string out, scenario;
+  bool explain = false, repair = false, watch = false;
+};
+
+namespace fs = std::filesystem;
+
+/// Where the page goes: beside the run's other reports, or for a comparison where the user is.
+std::string page_path(const ReportOptions& options) {
+  if (!options.out.empty()) return options.out;
+  if (options.folders.size() > 1) return "comparison.html";
+  return (std::filesystem::path(options.folders.front()) / "report.html").string();
+}
+
+/// Has the run written its report since it recorded something? It does so last of all.
+bool is_over(const std::string& folder) {
+  std::error_code error;
+  const auto report = fs::last_write_time(fs::path(folder) / "report.json", error);
+  if (error) return false;
+  const auto journal = fs::last_write_time(fs::path(folder) / harness::kJournalName, error);
+  return error || journal <= report;
+}
+
+/// Writes the page again and again while the run goes on, and for the last time when it is over.
+int watch(const ReportOptions& options, Invocation& invocation) {
+  constexpr auto kPause = std::chrono::milliseconds(200);
+  if (options.folders.size() > 1) {
+    invocation.sink().error_about(base::DiagnosticCode::kUsage, "--watch",
+                                  "one run is watched at a time; name one folder");
+    return 0;
+  }
+  const auto& folder = options.folders.front();
+  const auto journal = fs::path(folder) / harness::kJournalName;
+  std::uintmax_t seen = 0;
+  while (!is_over(folder) && !invocation.stopped()) {
+    std::error_code error;
+    const auto size = fs::file_size(journal, error);
+    if (!error && size != seen) {
+      seen = size;
+      // What could not be read of a line that is being written is no news.
+      Context own(invocation.form(), invocation.stop());
+      const auto page = gather_page({folder, options.scenario, false, false}, own);
+      if (page && !base::write_output(page_path(options), run_page(*page, {2}), invocation.files(),
+                                      invocation.sink())) {
+        return 0;
+      }
+    }
+    // Not oftener than the page loads itself.
+    for (int i = 0; i < 10 && !is_over(folder) && !invocation.stopped(); ++i) {
+      std::this_thread::sleep_for(kPause);
+    }
+  }
+  return 0;
+}
+
+int report(const ReportOptions& options, Invocation& invocation) {
+  if (options.watch) watch(options, invocation);
+  if (invocation.sink().has_errors() || (options.watch && invocation.stopped())) return 0;
+  std::vector<PageData> pages;
+  for (const auto& folder : options.folders) {
+    auto page =
+        gather_page({folder, options.scenario, options.explain, options.repair}, invocation);
+    if (!page) return 0;
+    for (const auto& banner : page->banners) invocation.remark(folder + ": " + banner);
+    for (const auto* name : {"report.json", "journal.ndjson"}) {
+      invocation.files().note_input((std::filesystem::path(folder) / name).string());
+    }
+    pages.push_back(std::move(*page));
+  }
+  const auto text = pages.size() == 1 ? run_page(pages.front()) : comparison_page(pages);
+  const auto path = page_path(options);
+  if (!base::write_output(path, text, invocation.files(), invocation.sink())) return 0;
+  if (invocation.options().json) {
+    auto missing = nlohmann::ordered_json::array();
+    for (const auto& page : pages) {
+      for (const auto& banner : page.banners) missing.push_back(page.folder + ": " + banner);
+    }
+    const nlohmann::ordered_json document = {
+        {"status", "ok"}, {"page", path}, {"bytes", text.size()}, {"missing", missing}};
+    invocation.document(document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
+                        '\n');
+  } else {
+    invocation.result(path + '\n');
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command report_command() {
+  auto options = std::make_shared<ReportOptions>();
+  OptionTable command("report",
+                      "A page about a run, or about how several runs differ (one HTML file)");
+  command.footer(
+      "Examples:\n"
+      "  parallax report out/plan2                         writes out/plan2/report.html\n"
+      "  parallax report out/plan2 --explain --repair -o plan2.html\n"
+      "  parallax report out/plan2 --watch                 while `parallax run` is at it\n"
+      "  parallax report out/before out/after -o comparison.html\n"
+      "The page needs no network and can be read without scripts. Nothing is simulated for it.\n"
+      "Exit codes: 0 written; what could not be shown is told on the page and on standard error.");
+  command.option("run_dirs", options->folders, "Folders of runs; of several, what differs")
+      .required();
+  command.option("-o,--out", options->out,
+                 "The page; default report.html in the run folder, comparison.html of several");
+  command.flag(
+      "--explain", options->explain,
+      "Say which axioms contradict the first discrepancy, as `parallax explain` does; always "
+      "where that has been at the folder");
+  command.flag("--repair", options->repair,
+               "Propose changes of the model, as `parallax repair` does");
+  command.flag(
+      "--watch", options->watch,
+      "While the run goes on: write a page that loads itself again, until the run is over");
+  add_recorded_scenario_option(command, options->scenario);
+  return {std::move(command),
+          [options](Invocation& invocation) { return report(*options, invocation); }};
+}
+
+}  // namespace parallax::tools

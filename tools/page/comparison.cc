@@ -1,0 +1,225 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "harness/confidence/quantiles.h"
+#include "tools/page/markup.h"
+#include "tools/page/sections.h"
+#include "tools/page/write_page.h"
+
+namespace parallax::tools {
+namespace {
+
+constexpr std::size_t kMostEvents = 60;   // of a trace that is named
+constexpr std::size_t kMostTraces = 500;  // rows
+
+/// What a trace is, whatever its number: its events.
+std::string key_of(const PageTrace& trace) {
+  std::string out;
+  for (const auto& step : trace.steps) out += step.event + ';';
+  return out;
+}
+
+std::string events_of(const PageTrace& trace) {
+  std::string out;
+  for (std::size_t i = 0; i < trace.steps.size() && i < kMostEvents; ++i) {
+    out += (i > 0 ? ", " : "") + html_short(trace.steps[i].event);
+  }
+  return trace.steps.size() > kMostEvents ? out + ", &hellip;" : out;
+}
+
+/// The share of simulations that were not clean, with the interval of Clopper and Pearson (1934).
+std::string rate_of(std::int64_t bad, std::int64_t runs) {
+  if (runs <= 0) return "no simulations";
+  const auto k = static_cast<double>(bad), n = static_cast<double>(runs);
+  const double lower = bad == 0 ? 0.0 : harness::beta_quantile(0.025, k, n - k + 1.0);
+  const double upper = bad == runs ? 1.0 : harness::beta_quantile(0.975, k + 1.0, n - k);
+  return fmt::format("{} of {} ({}; {} to {})", bad, runs, percent(k / n), percent(lower),
+                     percent(upper));
+}
+
+std::string column_heads(const std::vector<PageData>& pages) {
+  std::string out;
+  for (std::size_t i = 0; i < pages.size(); ++i) {
+    out += fmt::format("<th scope=\"col\">{}{}</th>", html_short(pages[i].folder),
+                       i == 0 ? " (first)" : "");
+  }
+  return out + "</tr></thead><tbody>\n";
+}
+
+template <typename Cell>
+std::string row(const std::string& name, const std::vector<PageData>& pages, const Cell& cell) {
+  auto out = "<tr><th scope=\"row\">" + name + "</th>";
+  for (const auto& page : pages) out += "<td>" + cell(page) + "</td>";
+  return out + "</tr>\n";
+}
+
+std::string table_of(const std::string& label, const std::string& head, const std::string& rows) {
+  return "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"" + label +
+         "\"><table class=\"compare\"><thead><tr>" + head + rows + "</tbody></table></div>\n";
+}
+
+std::string verdict_cell(const std::string& verdict) {
+  return fmt::format("<span class=\"tag {}\">{}</span>", verdict_class(verdict),
+                     verdict.empty() ? "no verdict" : html_short(verdict));
+}
+
+std::string overview(const std::vector<PageData>& pages) {
+  std::string rows;
+  rows += row("Verdict", pages, [](const PageData& page) { return verdict_cell(page.verdict); });
+  rows += row("What parted", pages, [](const PageData& page) {
+    return page.discrepancies.empty() ? std::string("nothing")
+                                      : html_words(page.discrepancies.front().words);
+  });
+  rows += row("Scenario", pages, [](const PageData& page) { return html_short(page.scenario); });
+  rows += row("Traces", pages, [](const PageData& page) {
+    return fmt::format("{} ({})", page.traces.size(), html_short(page.exploration));
+  });
+  rows += row("Not clean, with 95 % interval", pages, [](const PageData& page) {
+    std::int64_t runs = 0, clean = 0;
+    for (const auto& trace : page.traces) runs += trace.simulations, clean += trace.clean;
+    return page.running ? std::string("not finished") : rate_of(runs - clean, runs);
+  });
+  rows += row("Claim", pages, [](const PageData& page) {
+    for (const auto& trace : page.traces) {
+      if (!trace.claim.empty()) return html_short(trace.claim);
+    }
+    return std::string();
+  });
+  rows += row("Criterion", pages, [](const PageData& page) { return html_short(page.criterion); });
+  rows += row("Seed", pages, [](const PageData& page) { return std::to_string(page.seed); });
+  for (const auto& group : {"performs", "branches", "handlers", "axioms"}) {
+    const bool is_known = std::any_of(pages.begin(), pages.end(), [&](const PageData& page) {
+      return std::any_of(page.coverage.begin(), page.coverage.end(),
+                         [&](const auto& share) { return share[0] == group; });
+    });
+    if (!is_known) continue;
+    rows += row(fmt::format("Covered: {}", group), pages, [&](const PageData& page) {
+      for (const auto& share : page.coverage) {
+        if (share[0] == group) return share[1] + " of " + share[2];
+      }
+      return std::string("not known");
+    });
+  }
+  return section_of(
+      "overview", "Verdicts and rates",
+      table_of("Verdicts and rates", "<th scope=\"col\"></th>" + column_heads(pages), rows));
+}
+
+/// Every trace that some run has, with what became of it in each.
+std::string traces(const std::vector<PageData>& pages) {
+  std::vector<std::string> order;
+  std::map<std::string, std::vector<const PageTrace*>> by_key;
+  for (std::size_t i = 0; i < pages.size(); ++i) {
+    for (const auto& trace : pages[i].traces) {
+      const auto key = key_of(trace);
+      auto& found = by_key[key];
+      if (found.empty()) {
+        found.resize(pages.size());
+        order.push_back(key);
+      }
+      if (found[i] == nullptr) found[i] = &trace;
+    }
+  }
+  std::size_t gained = 0, lost = 0, both = 0;
+  std::string rows;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const auto& found = by_key[order[i]];
+    const bool in_first = found.front() != nullptr;
+    const bool in_all =
+        std::all_of(found.begin(), found.end(), [](auto* one) { return one != nullptr; });
+    ++(in_all ? both : in_first ? lost : gained);
+    if (i >= kMostTraces) continue;
+    const auto* any =
+        *std::find_if(found.begin(), found.end(), [](auto* one) { return one != nullptr; });
+    rows += fmt::format("<tr class=\"{0}\"><td>{0}</td><th scope=\"row\">{1}</th>",
+                        in_all     ? "kept"
+                        : in_first ? "lost"
+                                   : "gained",
+                        any->steps.empty() ? "executions of the plan" : events_of(*any));
+    for (const auto* trace : found) {
+      rows += "<td>";
+      if (trace == nullptr) {
+        rows += "none";
+      } else {
+        rows += verdict_cell(trace->verdict) + " " +
+                rate_of(trace->simulations - trace->clean, trace->simulations);
+      }
+      rows += "</td>";
+    }
+    rows += "</tr>\n";
+  }
+  if (rows.empty()) return {};
+  auto text = fmt::format(
+      "<p>Traces that were simulated: {} in all runs, {} lost (the first has them), {} gained. A "
+      "run "
+      "that ends at a discrepancy simulates none behind it.</p>\n",
+      both, lost, gained);
+  if (order.size() > kMostTraces) {
+    text += fmt::format("<p>{} further ones are left out.</p>\n", order.size() - kMostTraces);
+  }
+  return section_of(
+      "traces", "Traces lost and gained",
+      text + table_of("Traces",
+                      "<th scope=\"col\"></th><th scope=\"col\">Events</th>" + column_heads(pages),
+                      rows));
+}
+
+std::string causes(const std::vector<PageData>& pages) {
+  std::vector<std::string> order;
+  std::map<std::string, std::vector<std::string>> cells;
+  const auto cell = [&](const std::string& cause, std::size_t i) -> std::string& {
+    auto& row = cells[cause];
+    if (row.empty()) {
+      row.resize(pages.size());
+      order.push_back(cause);
+    }
+    return row[i];
+  };
+  for (std::size_t i = 0; i < pages.size(); ++i) {
+    for (const auto& found : pages[i].discrepancies) {
+      auto& text = cell(found.cause, i);
+      text += (text.empty() ? "simulation " : ", ") + sample_name(found.trace, found.sample);
+    }
+    for (const auto& trace : pages[i].traces) {
+      for (const auto& cause : trace.causes) {
+        cell(cause.cause, i) = fmt::format("{} ({}; {} to {})", cause.count, percent(cause.rate),
+                                           percent(cause.lower), percent(cause.upper));
+      }
+    }
+  }
+  if (order.empty()) return {};
+  std::string rows;
+  for (const auto& cause : order) {
+    rows += "<tr><th scope=\"row\">" + html_short(cause) + "</th>";
+    for (const auto& text : cells[cause]) rows += "<td>" + (text.empty() ? "none" : text) + "</td>";
+    rows += "</tr>\n";
+  }
+  return section_of("causes", "Causes of discrepancies",
+                    table_of("Causes", "<th scope=\"col\">Cause</th>" + column_heads(pages), rows));
+}
+
+}  // namespace
+
+std::string comparison_page(const std::vector<PageData>& pages) {
+  const bool agree = std::all_of(pages.begin(), pages.end(), [&](const PageData& page) {
+    return page.verdict == pages.front().verdict;
+  });
+  auto body = fmt::format(
+      "<header class=\"top {}\"><p class=\"kicker\">parallax report &middot; comparison</p>\n"
+      "<h1>{} runs, {}</h1></header>\n",
+      agree ? verdict_class(pages.front().verdict) : "open", pages.size(),
+      agree ? "the same verdict" : "different verdicts");
+  for (const auto& page : pages) {
+    for (const auto& banner : page.banners) {
+      body += "<p class=\"banner\" role=\"note\"><b>" + html_short(page.folder) + ":</b> " +
+              html(banner.substr(0, 3000)) + "</p>\n";
+    }
+  }
+  body += "<main id=\"main\">\n" + overview(pages) + traces(pages) + causes(pages) + "</main>\n" +
+          "<footer><p>Made by parallax from what the runs recorded.</p></footer>\n";
+  return html_document("parallax: comparison of runs", body, {});
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,154 @@
+#include "tools/page/gather.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/diagnostic_printer.h"
+#include "compiler/base/file_io.h"
+#include "harness/campaign/journal.h"
+#include "tools/app/evidence.h"
+#include "tools/app/recorded_run.h"
+
+namespace parallax::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxReportBytes = std::size_t{256} << 20U;
+
+bool has(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+/// A context of its own, whose messages become banners.
+Context::Form quiet(const Context& outer) {
+  auto form = outer.form();
+  form.json = false;
+  return form;
+}
+
+std::optional<harness::JournalText> journal_of(const std::string& folder, Context& context,
+                                               PageData& page) {
+  if (!has(fs::path(folder) / harness::kJournalName)) {
+    page.banners.push_back(
+        "The folder has no journal: single simulations, timelines and the map of starts are "
+        "missing.");
+    return std::nullopt;
+  }
+  auto journal = harness::read_journal(folder, context.files(), context.sink());
+  if (!journal) {
+    page.banners.push_back(
+        "The journal cannot be read; single simulations, timelines and the map of starts are "
+        "missing. " +
+        messages_of(context));
+    return std::nullopt;
+  }
+  if (context.sink().warning_count() > 0) page.banners.push_back(messages_of(context));
+  if (!journal->header) {
+    page.banners.push_back("The journal ends before its first line is complete.");
+    return std::nullopt;
+  }
+  return std::move(*journal);
+}
+
+/// What `explain` simulated beside the run; none if there is nothing of the kind that can be read.
+std::optional<harness::JournalText> further_of(const std::string& folder, Context& context) {
+  const auto place = fs::path(folder) / kFurtherRuns;
+  if (!has(place / harness::kJournalName)) return std::nullopt;
+  auto further = harness::read_journal(place, context.files(), context.sink());
+  if (!further || !further->header) return std::nullopt;
+  return std::move(*further);
+}
+
+void read_report(const std::string& folder, Context& context, PageData& page) {
+  if (!has(fs::path(folder) / "report.json")) {
+    page.running = true;
+    page.banners.push_back(
+        "There is no report.json yet: the run goes on, or was ended before it wrote one. "
+        "`parallax run SCENARIO --out " +
+        folder + " --resume` continues it.");
+    return;
+  }
+  const auto text = base::read_file_of(folder, "report.json", context.sink(), kMaxReportBytes);
+  if (!text || !add_report(*text, page)) {
+    page.banners.push_back(
+        "report.json is no report of a run, or only half of one: verdict and claims are missing. " +
+        messages_of(context));
+  }
+}
+
+/// The scenario of the run, if it is still what it was; else a banner says what is missing.
+std::optional<ScenarioModel> scenario_of(const PageOptions& options,
+                                         const harness::JournalHeader& header, Context& context,
+                                         PageData& page) {
+  auto loaded = load_recorded_scenario({options.folder, options.scenario}, header,
+                                       ScenarioUse::kRun, context);
+  if (loaded) return std::move(*loaded);
+  page.banners.push_back(
+      "The scenario of the run cannot be read any more as it was: sources, axioms, regions and "
+      "what was observed of each fluent are missing. " +
+      messages_of(context));
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string messages_of(const Context& context) {
+  std::string out;
+  for (const auto& diagnostic : context.sink().sorted()) {
+    if (out.size() > 2000) break;
+    const auto text = base::to_text(diagnostic, context.files(), {});
+    out += (out.empty() ? "" : " ") + text.substr(0, text.find('\n'));
+  }
+  return out;
+}
+
+base::Result<PageData> gather_page(const PageOptions& options, Context& context) {
+  const auto& folder = options.folder;
+  std::error_code error;
+  if (!fs::is_directory(folder, error) ||
+      (!has(fs::path(folder) / harness::kJournalName) && !has(fs::path(folder) / "report.json"))) {
+    return context.sink().error_about(base::DiagnosticCode::kNoJournal, folder);
+  }
+  PageData page;
+  page.folder = folder;
+  {
+    Context own(quiet(context), context.stop());
+    read_report(folder, own, page);
+  }
+  Context own(quiet(context), context.stop());
+  const auto journal = journal_of(folder, own, page);
+  if (!journal) return page;
+  const auto& header = *journal->header;
+  if (page.scenario.empty()) page.scenario = header.scenario;
+  if (page.simulator.empty()) page.simulator = header.simulator.name;
+  Context scenario_context(quiet(context), context.stop());
+  const auto loaded = scenario_of(options, header, scenario_context, page);
+  Context further_context(quiet(context), context.stop());
+  const auto further = loaded ? further_of(folder, further_context) : std::nullopt;
+  add_journal(*journal, further ? &*further : nullptr, page);
+  if (loaded && page.closed_loop) {
+    Context judging(quiet(context), context.stop());
+    judge_executions(*journal, *loaded, judging, page);
+  }
+  add_timelines(*journal, loaded ? &*loaded : nullptr, page);
+  if (!loaded) return page;
+  add_world(*loaded, scenario_context.files(), page);
+  if (further) add_further(*further, *loaded, further_context, page);
+  const bool was_explained = further.has_value();
+  if ((options.explain || was_explained) && !page.discrepancies.empty()) {
+    Context blame(quiet(context), context.stop());
+    add_blame(options, blame, page);
+  }
+  if (options.repair && !context.stopped()) {
+    Context repair(quiet(context), context.stop());
+    add_repair(options, repair, page);
+  }
+  return page;
+}
+
+}  // namespace parallax::tools

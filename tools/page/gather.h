@@ -1,0 +1,63 @@
+#pragma once
+
+#include <string>
+
+#include "compiler/base/result.h"
+#include "harness/campaign/journal.h"
+#include "tools/app/context.h"
+#include "tools/app/scenario_model.h"
+#include "tools/page/page_data.h"
+
+namespace parallax::tools {
+
+struct PageOptions {
+  std::string folder;
+  std::string scenario;  // where it lies by now; empty: where the journal says
+  bool explain = false;  // also where `explain` has not been at the folder
+  bool repair = false;
+};
+
+/// What a page shows of a run folder: report.json and journal as they are, nothing is simulated.
+/// What is missing, damaged or changed becomes a banner. Fails, having reported, only where the
+/// folder holds nothing of a run.
+base::Result<PageData> gather_page(const PageOptions& options, Context& context);
+
+// Its parts.
+
+/// Takes report.json apart, each field as far as it is there and of the right type; false if the
+/// text is no report.
+bool add_report(const std::string& text, PageData& page);
+
+/// The simulations with their starts and ways; `page` has the report. `further`, which may be null,
+/// has simulations that are added later: their variables count.
+void add_journal(const harness::JournalText& journal, const harness::JournalText* further,
+                 PageData& page);
+
+/// Of the discrepancies and of a clean simulation of each trace, which are judged by now. `loaded`
+/// may be null: then nothing says what was observed.
+void add_timelines(const harness::JournalText& journal, const ScenarioModel* loaded,
+                   PageData& page);
+
+/// One simulation, not judged yet; `page` has its variables and bodies.
+PageSample page_sample(const harness::SampleRecord& record, const PageData& page);
+
+/// Executions of the plan of which the report does not say one by one how they ended: held against
+/// the model as `explain` does it. Of very many only the first.
+void judge_executions(const harness::JournalText& journal, const ScenarioModel& loaded,
+                      Context& context, PageData& page);
+
+/// Simulations that `explain` made.
+void add_further(const harness::JournalText& further, const ScenarioModel& loaded, Context& context,
+                 PageData& page);
+
+/// Regions and furniture, sources, axioms by event.
+void add_world(const ScenarioModel& loaded, const base::SourceFiles& files, PageData& page);
+
+/// What `explain` and `repair` say of the folder, without further simulations.
+void add_blame(const PageOptions& options, Context& context, PageData& page);
+void add_repair(const PageOptions& options, Context& context, PageData& page);
+
+/// The messages of a sink, each on a line.
+std::string messages_of(const Context& context);
+
+}  // namespace parallax::tools

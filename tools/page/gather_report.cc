@@ -1,0 +1,187 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "compiler/base/json.h"
+#include "harness/report/report_words.h"
+#include "tools/page/gather.h"
+#include "tools/page/markup.h"
+
+namespace parallax::tools {
+
+const char* to_string(SampleVerdict verdict) {
+  switch (verdict) {
+    case SampleVerdict::kClean:
+      return "clean";
+    case SampleVerdict::kDiscrepancy:
+      return "discrepancy";
+    case SampleVerdict::kLost:
+      return "lost";
+    case SampleVerdict::kNotJudged:
+      break;
+  }
+  return "not judged";
+}
+
+std::string sample_name(std::int64_t trace, std::int64_t sample) {
+  return fmt::format("{}.{}", trace, sample);
+}
+
+namespace {
+
+using nlohmann::json;
+
+/// A member of an object of this type, or what stands for one that is not there.
+template <typename T>
+T field(const json& object, const char* name, T otherwise = {}) {
+  const auto* value = base::json_member(object, name);
+  if (value == nullptr) return otherwise;
+  return base::json_as<T>(*value).value_or(otherwise);
+}
+
+std::int64_t whole(const json& object, const char* name) {
+  return field<std::int64_t>(object, name);
+}
+std::string text(const json& object, const char* name) { return field<std::string>(object, name); }
+
+/// The members of a list; none where it is none.
+const json::array_t& list(const json& object, const char* name) {
+  static const json::array_t kNone;
+  const auto* value = base::json_member(object, name);
+  return value != nullptr && value->is_array() ? value->get_ref<const json::array_t&>() : kNone;
+}
+
+std::vector<std::string> texts(const json& object, const char* name) {
+  std::vector<std::string> out;
+  for (const auto& value : list(object, name)) {
+    if (value.is_string()) out.push_back(value.get<std::string>());
+  }
+  return out;
+}
+
+std::vector<PageDifference> differences(const json& object, const char* name) {
+  std::vector<PageDifference> out;
+  for (const auto& entry : list(object, name)) {
+    out.push_back({text(entry, "fluent"), whole(entry, "timepoint"),
+                   field<bool>(entry, "predicted"), field<bool>(entry, "observed")});
+  }
+  return out;
+}
+
+PageTrace trace_of(const json& entry) {
+  PageTrace out;
+  out.number = whole(entry, "trace");
+  out.verdict = text(entry, "verdict");
+  out.claim = text(entry, "claim");
+  out.caveats = texts(entry, "caveats");
+  out.simulations = whole(entry, "simulations");
+  out.clean = whole(entry, "clean");
+  out.lost = whole(entry, "lost");
+  if (const auto* certified = base::json_member(entry, "certified")) {
+    out.certified_confidence = field<double>(*certified, "confidence");
+    out.certified_epsilon = field<double>(*certified, "epsilon", 1.0);
+  }
+  if (const auto* paper = base::json_member(entry, "paper")) {
+    out.paper_variant = text(*paper, "variant");
+    if (const auto* at = base::json_member(*paper, "stopped_at")) {
+      out.paper_stopped_at = base::json_as<std::int64_t>(*at);
+    }
+  }
+  out.not_covered = texts(entry, "not_covered");
+  const auto& sources = list(entry, "sources");
+  for (std::size_t i = 0; const auto& event : texts(entry, "events")) {
+    const bool is_known = i < sources.size() && sources[i].is_string();
+    out.steps.push_back({event, is_known ? sources[i].get<std::string>() : "", {}, {}, {}});
+    ++i;
+  }
+  for (const auto& cause : list(entry, "causes")) {
+    out.causes.push_back({text(cause, "cause"), whole(cause, "count"), field<double>(cause, "rate"),
+                          field<double>(cause, "lower"), field<double>(cause, "upper", 1.0)});
+  }
+  return out;
+}
+
+PageDiscrepancy discrepancy_of(const json& entry) {
+  PageDiscrepancy out;
+  out.trace = whole(entry, "trace");
+  out.sample = whole(entry, "sample");
+  out.first_divergence = whole(entry, "first_divergence");
+  out.words = text(entry, "words");
+  out.kind = text(entry, "kind");
+  out.repeated = text(entry, "repeated");
+  if (const auto* cause = base::json_member(entry, "cause")) {
+    out.cause = text(*cause, "text");
+    out.reason = text(*cause, "reason");
+  }
+  if (out.words.empty()) out.words = out.cause;
+  if (const auto* differs = base::json_member(entry, "differs")) {
+    out.parting_event = field<std::int64_t>(*differs, "event");
+  }
+  out.first = differences(entry, "first");
+  out.fluents = differences(entry, "fluents");
+  if (const auto* start = base::json_member(entry, "start");
+      start != nullptr && start->is_object()) {
+    for (const auto& [name, value] : start->items()) {
+      out.start.emplace_back(name, value.is_number()   ? number(value.get<double>())
+                                   : value.is_string() ? value.get<std::string>()
+                                                       : value.dump());
+    }
+  }
+  return out;
+}
+
+void add_criterion(const json& criterion, PageData& page) {
+  const auto kind = text(criterion, "kind");
+  page.confidence = std::clamp(field<double>(criterion, "confidence", 0.99), 0.01, 1.0 - 1e-9);
+  page.epsilon = std::clamp(field<double>(criterion, "epsilon", 0.05), 1e-9, 1.0 - 1e-9);
+  page.is_paper = kind == "paper";
+  harness::CriterionSpec spec;
+  spec.confidence_level = page.confidence;
+  spec.epsilon = page.epsilon;
+  if (page.is_paper) {
+    spec.kind = harness::CriterionKind::kPaper;
+    if (const auto* paper = base::json_member(criterion, "paper")) {
+      spec.paper.preset = text(*paper, "preset");
+    }
+  }
+  page.criterion = harness::criterion_text(spec);
+}
+
+}  // namespace
+
+bool add_report(const std::string& source, PageData& page) {
+  const auto report = json::parse(source, nullptr, false);
+  if (!report.is_object() || base::json_member(report, "traces") == nullptr) return false;
+  page.scenario = text(report, "scenario");
+  page.verdict = text(report, "verdict");
+  page.seed = field<std::uint64_t>(report, "seed");
+  page.simulations = whole(report, "simulations");
+  page.tool_version = text(report, "tool_version");
+  page.exploration = text(report, "exploration");
+  page.interrupted = field<bool>(report, "interrupted");
+  page.closed_loop = text(report, "execution") == "closed-loop";
+  if (const auto* simulator = base::json_member(report, "simulator")) {
+    page.simulator = text(*simulator, "name") + ' ' + text(*simulator, "version");
+  }
+  if (const auto* criterion = base::json_member(report, "criterion")) {
+    add_criterion(*criterion, page);
+  }
+  for (const auto& entry : list(report, "traces")) page.traces.push_back(trace_of(entry));
+  for (const auto& entry : list(report, "discrepancies")) {
+    page.discrepancies.push_back(discrepancy_of(entry));
+  }
+  if (const auto* coverage = base::json_member(report, "coverage");
+      coverage != nullptr && coverage->is_object()) {
+    for (const auto& [group, share] : coverage->items()) {
+      page.coverage.push_back(
+          {group, std::to_string(whole(share, "covered")), std::to_string(whole(share, "all"))});
+    }
+  }
+  if (page.interrupted) {
+    page.banners.push_back("The run was interrupted: what is claimed is what it had come to.");
+  }
+  return true;
+}
+
+}  // namespace parallax::tools

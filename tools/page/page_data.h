@@ -1,0 +1,165 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace parallax::tools {
+
+/// What became of a simulation, as far as the run folder tells.
+enum class SampleVerdict : std::uint8_t { kClean, kDiscrepancy, kLost, kNotJudged };
+
+/// An axiom or a line of the plan, as a text has it.
+struct PagePlace {
+  std::string place;  // "domain.e:12"; empty for what no text says
+  std::string text;   // on one line; may be empty
+};
+
+/// An event of a trace or a perform of an executed plan; of a simulation with its outcome.
+struct PageStep {
+  std::string event;
+  std::string source;   // "fetch.lisp:4"
+  std::string outcome;  // "ok", "failed", ...; empty where nothing was simulated
+  std::string reason;
+  std::optional<double> sim_time_s;
+};
+
+/// One fluent over the timepoints of a simulation. A character for each timepoint: '1' holds, '0'
+/// does not, 'n' neither, '-' not known or not compared.
+struct TimelineRow {
+  enum class Role : std::uint8_t { kAgrees, kFirst, kFollows };
+  std::string fluent;
+  std::string predicted, observed;
+  Role role = Role::kAgrees;
+  bool changes = false;
+};
+
+struct PageTimeline {
+  std::int64_t trace = 0, sample = 0;
+  SampleVerdict verdict = SampleVerdict::kClean;
+  std::vector<PageStep> steps;
+  std::vector<TimelineRow> rows;       // those that differ first
+  std::optional<std::size_t> parting;  // timepoint of the first difference
+};
+
+struct PageDifference {
+  std::string fluent;
+  std::int64_t timepoint = 0;
+  bool predicted = false, observed = false;
+};
+
+struct PageDiscrepancy {
+  std::int64_t trace = 0, sample = 0, first_divergence = 0;
+  std::optional<std::int64_t> parting_event;
+  std::string words, cause, reason, repeated, kind;
+  std::vector<PageDifference> first, fluents;
+  std::vector<std::pair<std::string, std::string>> start;  // variable, value
+};
+
+/// How often one cause ended simulations; rates with their interval.
+struct PageCause {
+  std::string cause;
+  std::int64_t count = 0;
+  double rate = 0.0, lower = 0.0, upper = 0.0;
+};
+
+struct PageTrace {
+  std::int64_t number = 0;
+  std::string verdict;  // "no-discrepancy", "discrepancy", "inconclusive"; empty: not known
+  std::string claim;
+  std::vector<std::string> caveats;
+  std::int64_t simulations = 0, clean = 0, lost = 0;
+  double certified_confidence = 0.0, certified_epsilon = 1.0;
+  std::optional<std::int64_t> paper_stopped_at;
+  std::string paper_variant;
+  std::vector<std::string> not_covered;
+  std::vector<PageStep> steps;
+  std::vector<PageCause> causes;
+};
+
+/// Where a body was at each timepoint; empty where it is not known.
+using BodyWay = std::vector<std::array<float, 2>>;
+
+struct PageSample {
+  std::int64_t trace = 0, sample = 0;
+  std::uint64_t seed = 0;
+  SampleVerdict verdict = SampleVerdict::kNotJudged;
+  bool further = false;  // made by `explain`, after the run
+  std::string cause;
+  std::int64_t events = 0, retries = 0;
+  double sim_time_s = 0.0;
+  std::vector<double> start;  // by PageData::variables; NaN where there is none
+  std::vector<BodyWay> ways;  // by PageData::bodies
+};
+
+struct PageRegion {
+  std::string name;
+  std::optional<std::array<double, 2>> x, y;  // none: not bounded there
+  bool moves = false;  // it is one of a body's frame, drawn where that starts
+};
+
+/// A border of the rule that tells failing simulations.
+struct PageBorder {
+  std::string variable;
+  double value = 0.0;
+  bool above = true;
+};
+
+/// Why the model cannot follow, as `explain` tells it.
+struct PageBlame {
+  std::string words, more;
+  std::vector<PagePlace> axioms;
+  std::string cause;  // the kind of cause in words, by the runs on record
+  std::vector<PageBorder> rule;
+  std::int64_t failures_inside = 0, failures = 0, clean_inside = 0, clean = 0;
+};
+
+struct PageProposal {
+  std::string words, facts, patch;
+};
+
+struct PageSource {
+  std::string name, text;
+};
+
+/// Everything that the page of one run folder shows.
+struct PageData {
+  std::string folder;  // as the user named it
+  std::string scenario, verdict, exploration, simulator, criterion, tool_version;
+  std::uint64_t seed = 0;
+  std::int64_t simulations = 0;
+  bool interrupted = false, closed_loop = false;
+  bool running = false;  // there is no report yet
+  double confidence = 0.99, epsilon = 0.05;
+  bool is_paper = false;             // the criterion that ends a trace is the paper's
+  std::vector<std::string> banners;  // what is missing or wrong, one sentence each
+  std::vector<PageTrace> traces;
+  std::vector<PageDiscrepancy> discrepancies;
+  std::vector<std::array<std::string, 3>> coverage;  // group, covered, all
+  std::vector<PageTimeline> timelines;
+  std::size_t timelines_left_out = 0;
+  std::vector<std::string> variables;  // of the starts, those that differ between simulations
+  std::vector<std::string> bodies;     // that starts place
+  std::vector<PageSample> samples;
+  std::vector<PageRegion> regions;
+  std::vector<std::array<std::array<double, 2>, 4>> furniture;  // seen from above [m]
+  std::vector<PageSource> sources;
+  /// By event symbol, the axioms that speak of it.
+  std::vector<std::pair<std::string, std::vector<PagePlace>>> axioms;
+  std::optional<PageBlame> blame;
+  std::vector<PageProposal> proposals;
+  bool repair_was_asked = false;
+  std::string repair_words;  // where there are no proposals
+  /// None: there is nothing in the folder that anything could be shown of.
+  bool empty() const { return traces.empty() && samples.empty() && verdict.empty(); }
+};
+
+/// "2.4"
+std::string sample_name(std::int64_t trace, std::int64_t sample);
+/// "clean", "discrepancy", "lost", "not judged"
+const char* to_string(SampleVerdict verdict);
+
+}  // namespace parallax::tools

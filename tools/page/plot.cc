@@ -1,0 +1,65 @@
+#include "tools/page/plot.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace parallax::tools {
+
+std::vector<double> ticks(double low, double high, int count) {
+  std::vector<double> out;
+  const double width = high - low;
+  if (!(width > 0.0) || !std::isfinite(width)) return out;
+  const double rough = width / count;
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  double step = power;
+  for (const double factor : {1.0, 2.0, 5.0, 10.0}) {
+    step = factor * power;
+    if (step >= rough) break;
+  }
+  for (double i = std::ceil(low / step); i * step <= high + 1e-9 * step && out.size() < 50; ++i) {
+    out.push_back(std::abs(i * step) < 1e-12 ? 0.0 : i * step);
+  }
+  return out;
+}
+
+std::string px(double value) {
+  auto text = fmt::format("{:.1f}", std::isfinite(value) ? value : 0.0);
+  if (text.ends_with(".0")) text.resize(text.size() - 2);
+  return text;
+}
+
+void DotPath::add(double x, double y) {
+  if (std::isfinite(x) && std::isfinite(y)) d_ += 'M' + px(x) + ' ' + px(y) + "h0";
+}
+
+std::string DotPath::element(std::string_view classes) const {
+  if (d_.empty()) return {};
+  return fmt::format("<path class=\"{}\" d=\"{}\"/>\n", classes, d_);
+}
+
+std::string dot_class(SampleVerdict verdict) {
+  switch (verdict) {
+    case SampleVerdict::kClean:
+      return "dot clean";
+    case SampleVerdict::kDiscrepancy:
+      return "dot bad";
+    case SampleVerdict::kLost:
+      return "dot lost";
+    case SampleVerdict::kNotJudged:
+      break;
+  }
+  return "dot open";
+}
+
+std::string line(double x1, double y1, double x2, double y2, std::string_view classes) {
+  return fmt::format("<line class=\"{}\" x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\"/>", classes,
+                     px(x1), px(y1), px(x2), px(y2));
+}
+
+std::string label(double x, double y, std::string_view classes, std::string_view escaped) {
+  return fmt::format("<text class=\"{}\" x=\"{}\" y=\"{}\">{}</text>", classes, px(x), px(y),
+                     escaped);
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/page/page_data.h"
+
+namespace parallax::tools {
+
+/// One axis of a plot: values to pixels.
+struct PlotAxis {
+  double low = 0.0, high = 1.0;  // values
+  double from = 0.0, to = 1.0;   // pixels
+  double at(double value) const {
+    return high > low ? from + (value - low) / (high - low) * (to - from) : 0.5 * (from + to);
+  }
+};
+
+/// Round values between the ends of an axis, about `count` of them.
+std::vector<double> ticks(double low, double high, int count);
+
+/// Points as one path of dots, however many: "M12.3 4.5h0M...".
+class DotPath {
+ public:
+  void add(double x, double y);
+  bool empty() const { return d_.empty(); }
+  /// An element with these classes; empty without points.
+  std::string element(std::string_view classes) const;
+
+ private:
+  std::string d_;
+};
+
+/// The dots of one kind of simulation: what went wrong is a larger square, so that colour is not
+/// all that tells.
+std::string dot_class(SampleVerdict verdict);
+
+/// "12.3", as coordinates are written.
+std::string px(double value);
+std::string line(double x1, double y1, double x2, double y2, std::string_view classes);
+std::string label(double x, double y, std::string_view classes, std::string_view escaped);
+
+}  // namespace parallax::tools

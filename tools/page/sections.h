@@ -1,0 +1,63 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/page/page_data.h"
+
+namespace parallax::tools {
+
+// The parts of a page, each as HTML; empty where there is nothing to show. Everything that comes
+// from a run folder is escaped here. Colours and sizes are those of assets/page.css: the page's
+// Content-Security-Policy allows no style attributes.
+
+/// Where lines of the embedded sources are in the page.
+class SourceLinks {
+ public:
+  explicit SourceLinks(const PageData& page);
+  /// "fetch.lisp:4" as a link to that line, or as plain text.
+  std::string link(const std::string& place) const;
+  /// The line with `around` ones before and behind it, coloured; empty if it is not embedded.
+  std::string excerpt(const std::string& place, std::size_t around) const;
+  /// The axioms that speak of the event "Go(r2)".
+  const std::vector<PagePlace>& axioms_of(const std::string& event) const;
+  /// All embedded texts.
+  std::string section() const;
+
+ private:
+  struct Line {
+    std::size_t file = 0, number = 0;
+  };
+  bool find(const std::string& place, Line& line) const;
+  std::string line_html(const Line& line, bool with_id) const;
+
+  const PageData& page_;
+  std::vector<std::vector<std::string_view>> lines_;  // by file
+  std::map<std::string, std::vector<PagePlace>> axioms_;
+};
+
+std::string verdict_section(const PageData& page);
+std::string discrepancy_section(const PageData& page, const SourceLinks& links);
+std::string timeline_section(const PageData& page);
+std::string map_section(const PageData& page);
+std::string scatter_section(const PageData& page);
+std::string confidence_section(const PageData& page);
+std::string blame_section(const PageData& page, const SourceLinks& links);
+std::string samples_section(const PageData& page);
+std::string coverage_section(const PageData& page);
+std::string traces_section(const PageData& page, const SourceLinks& links);
+/// What assets/page.js reads: starts and ways of the simulations.
+std::string data_block(const PageData& page);
+
+/// `<section id="..">` with a heading around `body`.
+std::string section_of(std::string_view id, std::string_view heading, std::string_view body);
+/// A command in a box of its own.
+std::string command_box(std::string_view command);
+/// "clean" of "no-discrepancy", ...: the class of a word that says how something ended.
+const char* verdict_class(std::string_view verdict);
+/// "parallax replay DIR --sample 1.4"
+std::string replay_words(const PageData& page, std::int64_t trace, std::int64_t sample);
+
+}  // namespace parallax::tools

@@ -1,0 +1,248 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/report/text_layout.h"
+#include "tools/page/markup.h"
+#include "tools/page/sections.h"
+
+namespace parallax::tools {
+
+std::string section_of(std::string_view id, std::string_view heading, std::string_view body) {
+  return fmt::format(
+      "<section id=\"{0}\" aria-labelledby=\"{0}-h\">\n<h2 "
+      "id=\"{0}-h\">{1}</h2>\n{2}</section>\n\n",
+      id, heading, body);
+}
+
+std::string command_box(std::string_view command) {
+  return fmt::format("<code class=\"command\">{}</code>\n", html_short(command));
+}
+
+const char* verdict_class(std::string_view verdict) {
+  if (verdict == "no-discrepancy" || verdict == "clean" || verdict == "ok") return "clean";
+  if (verdict == "discrepancy" || verdict == "failed") return "bad";
+  return verdict == "lost" ? "lost" : "open";
+}
+
+std::string replay_words(const PageData& page, std::int64_t trace, std::int64_t sample) {
+  return fmt::format("parallax replay {} --sample {}", harness::shell_word(page.folder),
+                     sample_name(trace, sample));
+}
+
+namespace {
+
+std::string verdict_title(const PageData& page) {
+  if (page.verdict == "no-discrepancy") return "No discrepancy found";
+  if (page.verdict == "discrepancy") return "Discrepancy";
+  if (page.verdict == "inconclusive") return "Inconclusive";
+  return page.running ? "Not finished" : "No verdict";
+}
+
+std::string fact(std::string_view name, std::string_view value) {
+  if (value.empty()) return {};
+  return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", name, html_short(value));
+}
+
+std::string differences_table(const PageDiscrepancy& found) {
+  const auto in_first = [&](const PageDifference& one) {
+    return std::any_of(found.first.begin(), found.first.end(),
+                       [&](const auto& other) { return other.fluent == one.fluent; });
+  };
+  const auto row = [](const PageDifference& one, bool follows) {
+    return fmt::format(
+        "<tr{}><th scope=\"row\">{}{}</th><td>{}</td><td>{}</td><td class=\"num\">{}</td></tr>\n",
+        follows ? " class=\"follows\"" : "", follows ? "then " : "", html_short(one.fluent),
+        one.predicted, one.observed, one.timepoint);
+  };
+  std::string rows;
+  for (const auto& one : found.first) rows += row(one, false);
+  for (const auto& one : found.fluents) {
+    if (!in_first(one)) rows += row(one, true);
+  }
+  if (rows.empty()) return {};
+  return "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"What differs\">"
+         "<table><caption>What differs; consequences below the first difference</caption>"
+         "<thead><tr><th scope=\"col\">Fluent</th><th scope=\"col\">Predicted</th>"
+         "<th scope=\"col\">Observed</th><th scope=\"col\">At</th></tr></thead><tbody>\n" +
+         rows + "</tbody></table></div>\n";
+}
+
+const PageTimeline* timeline_of(const PageData& page, const PageDiscrepancy& found) {
+  for (const auto& timeline : page.timelines) {
+    if (timeline.trace == found.trace && timeline.sample == found.sample) return &timeline;
+  }
+  return nullptr;
+}
+
+/// The event at which they part: the one that ends at the first difference, or as `cause` names it.
+std::optional<std::size_t> parting_step(const PageDiscrepancy& found,
+                                        const std::vector<PageStep>& steps) {
+  if (found.parting_event && *found.parting_event >= 0) {
+    return static_cast<std::size_t>(*found.parting_event);
+  }
+  const auto name = found.cause.substr(0, found.cause.find(": "));
+  for (auto i = static_cast<std::size_t>(std::max<std::int64_t>(found.first_divergence, 1) - 1);
+       i < steps.size(); ++i) {
+    if (steps[i].event == name) return i;
+  }
+  return std::nullopt;
+}
+
+std::string start_table(const PageDiscrepancy& found) {
+  if (found.start.empty()) return {};
+  std::string out =
+      "<details><summary>Start state of this simulation</summary><dl class=\"facts\">\n";
+  for (const auto& [name, value] : found.start) out += fact(html_short(name), value);
+  return out + "</dl></details>\n";
+}
+
+/// Events in order; with `marked` the one where model and world part.
+std::string steps_table(const std::vector<PageStep>& steps, std::optional<std::size_t> marked,
+                        const SourceLinks& links) {
+  const bool simulated = std::any_of(steps.begin(), steps.end(),
+                                     [](const PageStep& step) { return !step.outcome.empty(); });
+  std::string out =
+      "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Events\"><table>"
+      "<thead><tr><th scope=\"col\">#</th><th scope=\"col\">Event</th><th scope=\"col\">Plan</th>"
+      "<th scope=\"col\">Axioms</th>";
+  out += simulated ? "<th scope=\"col\">Outcome</th><th scope=\"col\">Took</th>" : "";
+  out += "</tr></thead><tbody>\n";
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const auto& step = steps[i];
+    const bool later = marked && i > *marked;
+    out += fmt::format("<tr{}><td class=\"num\">{}</td><th scope=\"row\">{}{}</th><td>{}</td><td>",
+                       marked == i ? " class=\"parts\""
+                       : later     ? " class=\"follows\""
+                                   : "",
+                       i, html_short(step.event),
+                       marked == i ? " <span class=\"tag bad\">they part here</span>" : "",
+                       links.link(step.source));
+    constexpr std::size_t kMostAxioms = 8;
+    const auto& axioms = links.axioms_of(step.event);
+    for (std::size_t k = 0; k < axioms.size() && k < kMostAxioms; ++k) {
+      out += (k > 0 ? ", " : "") + links.link(axioms[k].place);
+    }
+    if (axioms.size() > kMostAxioms) out += fmt::format(", {} more", axioms.size() - kMostAxioms);
+    out += "</td>";
+    if (simulated) {
+      out += fmt::format("<td><span class=\"{}\">{}</span>{}{}</td><td class=\"num\">{}</td>",
+                         // The model has other failures, too, or they are consequences.
+                         step.outcome == "ok" || marked == i ? verdict_class(step.outcome) : "open",
+                         html_short(step.outcome), step.reason.empty() ? "" : ": ",
+                         html_words(step.reason),
+                         step.sim_time_s ? number(*step.sim_time_s) + " s" : "");
+    }
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+std::string axioms_of_step(const PageStep& step, const SourceLinks& links) {
+  const auto& axioms = links.axioms_of(step.event);
+  if (axioms.empty()) return {};
+  std::string out = "<figure class=\"excerpt\"><figcaption>What the model says of " +
+                    html_short(step.event) + "</figcaption><pre>";
+  for (const auto& axiom : axioms) {
+    const auto shown = axiom.text.substr(0, 400);
+    out += "<span class=\"l\">" + coloured(shown, "axiom.e") + "  <i>" + links.link(axiom.place) +
+           "</i></span>\n";
+  }
+  return out + "</pre></figure>\n";
+}
+
+}  // namespace
+
+std::string verdict_section(const PageData& page) {
+  std::string out = fmt::format(
+      "<header class=\"top {}\">\n<p class=\"kicker\">parallax report &middot; "
+      "{}</p>\n<h1>{}</h1>\n",
+      verdict_class(page.verdict), html_short(page.scenario), verdict_title(page));
+  if (!page.discrepancies.empty()) {
+    out += "<p class=\"lead\">" + html_words(page.discrepancies.front().words) + ".</p>\n";
+  }
+  constexpr std::size_t kMostClaims = 3;
+  std::size_t claims = 0;
+  for (const auto& trace : page.traces) {
+    if (trace.claim.empty()) continue;
+    if (++claims > kMostClaims) continue;
+    out += fmt::format("<p class=\"claim\"><b>Trace {}:</b> {}.</p>\n", trace.number,
+                       html_short(trace.claim));
+  }
+  if (claims > kMostClaims) {
+    out += fmt::format(
+        "<p class=\"claim\">Claims of {} further traces: <a href=\"#traces\">traces</a>.</p>\n",
+        claims - kMostClaims);
+  }
+  out += "<dl class=\"facts\">\n" + fact("Scenario", page.scenario);
+  out += fact("Simulations", fmt::format("{}, of {} {}", page.simulations, page.traces.size(),
+                                         page.traces.size() == 1 ? "trace" : "traces"));
+  out += fact("Explored", page.exploration) + fact("Criterion", page.criterion) +
+         fact("Simulator", page.simulator) + fact("Seed", std::to_string(page.seed)) +
+         fact("Run folder", page.folder);
+  out += "</dl>\n</header>\n\n";
+  for (const auto& banner : page.banners) {
+    out += "<p class=\"banner\" role=\"note\">" +
+           html(banner.size() > 3000 ? banner.substr(0, 3000) : banner) + "</p>\n";
+  }
+  return out;
+}
+
+std::string discrepancy_section(const PageData& page, const SourceLinks& links) {
+  constexpr std::size_t kMost = 20;
+  std::string out;
+  for (std::size_t i = 0; i < page.discrepancies.size() && i < kMost; ++i) {
+    const auto& found = page.discrepancies[i];
+    const auto* timeline = timeline_of(page, found);
+    std::vector<PageStep> steps = timeline != nullptr ? timeline->steps : std::vector<PageStep>();
+    for (const auto& trace : page.traces) {
+      if (steps.empty() && trace.number == found.trace) steps = trace.steps;
+    }
+    const auto marked = parting_step(found, steps);
+    out += fmt::format("<article><h3>Simulation {}</h3>\n", sample_name(found.trace, found.sample));
+    if (i > 0) out += "<p class=\"lead\">" + html_words(found.words) + ".</p>\n";
+    if (!found.reason.empty()) {
+      out += "<p>The simulator says: " + html_words(found.reason) + ".</p>\n";
+    }
+    out += steps_table(steps, marked, links);
+    out += differences_table(found);
+    if (marked && *marked < steps.size()) {
+      out += links.excerpt(steps[*marked].source, 2) + axioms_of_step(steps[*marked], links);
+    }
+    out += start_table(found);
+    out += "<p>Repeat it to the bit:</p>\n" +
+           command_box(replay_words(page, found.trace, found.sample)) + "</article>\n";
+  }
+  if (page.discrepancies.size() > kMost) {
+    out += fmt::format("<p>{} further discrepancies are in the table of simulations.</p>\n",
+                       page.discrepancies.size() - kMost);
+  }
+  return out.empty() ? out : section_of("discrepancy", "Where they part", out);
+}
+
+std::string traces_section(const PageData& page, const SourceLinks& links) {
+  constexpr std::size_t kMostInFull = 60, kMost = 2000, kOpen = 2;
+  std::string out;
+  for (std::size_t i = 0; i < page.traces.size() && i < kMost; ++i) {
+    const auto& trace = page.traces[i];
+    out += fmt::format(
+        "<details{}><summary>Trace {} <span class=\"tag {}\">{}</span> {} simulations, {} "
+        "clean</summary>\n",
+        i < kOpen ? " open" : "", trace.number, verdict_class(trace.verdict),
+        trace.verdict.empty() ? "not judged" : html_short(trace.verdict), trace.simulations,
+        trace.clean);
+    if (!trace.claim.empty()) out += "<p class=\"claim\">" + html_short(trace.claim) + ".</p>\n";
+    for (const auto& caveat : trace.caveats) {
+      out += "<p class=\"caveat\">" + html_short(caveat) + ".</p>\n";
+    }
+    if (i < kMostInFull && !trace.steps.empty()) out += steps_table(trace.steps, {}, links);
+    out += "</details>\n";
+  }
+  if (page.traces.size() > kMost) {
+    out +=
+        fmt::format("<p>{} further traces are in report.json.</p>\n", page.traces.size() - kMost);
+  }
+  return out.empty() ? out : section_of("traces", "Traces and what is claimed of them", out);
+}
+
+}  // namespace parallax::tools

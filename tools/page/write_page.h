@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/page/page_data.h"
+
+namespace parallax::tools {
+
+struct DocumentOptions {
+  int reload_s = 0;  // the page loads itself again after so many seconds; 0: never
+};
+
+/// The page of one run folder, as one HTML file: no network, readable without scripts, and nothing
+/// that a run folder holds is markup in it.
+std::string run_page(const PageData& page, const DocumentOptions& options = {});
+
+/// How several runs differ: verdicts, rates with intervals, traces that one has and another has
+/// not. The first one is what the others are held against.
+std::string comparison_page(const std::vector<PageData>& pages);
+
+/// The document around a body: style and script inline, allowed by their hashes alone.
+std::string html_document(const std::string& title, const std::string& body,
+                          const DocumentOptions& options = {});
+
+}  // namespace parallax::tools
