@@ -86,4 +86,24 @@ class LoopSamples final : public SampleMaker {
   bool repeats_losses_;
 };
 
+/// One execution from a start that was chosen.
+class GuidedSample final : public SampleMaker {
+ public:
+  GuidedSample(std::shared_ptr<const LoopSamples> samples, GuidedStart start)
+      : samples_(std::move(samples)), start_(std::move(start)) {}
+
+  std::optional<SampleRecord> make(std::int64_t sample, Simulator& simulator,
+                                   const std::function<bool()>& abandoned) const override {
+    return samples_->make_from(sample, start_, simulator, abandoned);
+  }
+  std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
+                                     const std::function<bool()>& abandoned) const override {
+    return samples_->repeat(record, simulator, abandoned);
+  }
+
+ private:
+  std::shared_ptr<const LoopSamples> samples_;
+  GuidedStart start_;
+};
+
 }  // namespace parallax::harness

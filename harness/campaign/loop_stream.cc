@@ -17,26 +17,6 @@ namespace {
 /// at the same time; how many may not depend on the number of workers.
 constexpr std::int64_t kChosenAhead = 4;
 
-/// One execution from a start that was chosen.
-class GuidedSample final : public SampleMaker {
- public:
-  GuidedSample(std::shared_ptr<const LoopSamples> samples, GuidedStart start)
-      : samples_(std::move(samples)), start_(std::move(start)) {}
-
-  std::optional<SampleRecord> make(std::int64_t sample, Simulator& simulator,
-                                   const std::function<bool()>& abandoned) const override {
-    return samples_->make_from(sample, start_, simulator, abandoned);
-  }
-  std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
-                                     const std::function<bool()>& abandoned) const override {
-    return samples_->repeat(record, simulator, abandoned);
-  }
-
- private:
-  std::shared_ptr<const LoopSamples> samples_;
-  GuidedStart start_;
-};
-
 }  // namespace
 
 std::vector<compiler::FluentId> compared_fluents(const Scenario& scenario,

@@ -42,6 +42,8 @@ class LoopStream {
   /// Reports kForeignJournalLine for a start that is not that of its number.
   base::Status continue_from(const Journal& journal);
 
+  /// How executions are made; behind `prepare`.
+  const std::shared_ptr<const LoopSamples>& samples() const { return samples_; }
   std::int64_t initial_states() const { return std::ssize(samples_->starts()); }
   bool has_weights() const { return has_weights_; }
   const LoopStart& start_of(const SampleRecord& record) const { return samples_->start_of(record); }

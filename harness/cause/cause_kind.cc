@@ -35,7 +35,32 @@ std::string runs_text(std::int64_t count) {
   return fmt::format("{} run{}", count, count == 1 ? "" : "s");
 }
 
+/// "Again from the failing start: with 5 other seeds of the simulator in 5, with half ...".
+std::string persistence_words(const CauseFinding& finding) {
+  std::string out;
+  const auto add = [&](const std::optional<Persistence>& seen, const char* with) {
+    if (!seen || seen->runs == 0) return;
+    out += fmt::format("{} {} it happens in {} of {}", out.empty() ? "" : ",", with, seen->failures,
+                       runs_text(seen->runs));
+  };
+  add(finding.other_seeds, "with other seeds of the simulator");
+  add(finding.half_step, "with half its step");
+  return out.empty() ? out : " From the failing start once more:" + out + ".";
+}
+
 }  // namespace
+
+void weigh_persistence(std::optional<Persistence> other_seeds, std::optional<Persistence> half_step,
+                       CauseFinding& finding) {
+  finding.other_seeds = other_seeds;
+  finding.half_step = half_step;
+  const auto vanishes = [](const std::optional<Persistence>& seen) {
+    return seen && seen->runs > 0 && !seen->in_most();
+  };
+  if (finding.kind == CauseKind::kUnknown && (vanishes(other_seeds) || vanishes(half_step))) {
+    finding.kind = CauseKind::kSimulator;
+  }
+}
 
 std::string_view to_string(CauseKind kind) {
   static constexpr std::string_view kWords[] = {"unknown", "always", "region", "random",
@@ -71,7 +96,9 @@ std::string rule_text(const std::vector<Border>& borders,
   return out;
 }
 
-std::string cause_words(const CauseFinding& finding, const std::vector<std::string>& parameters) {
+namespace {
+
+std::string kind_words(const CauseFinding& finding, const std::vector<std::string>& parameters) {
   std::string out;
   if (finding.contradictory_starts > 0) {
     out = fmt::format(
@@ -98,6 +125,10 @@ std::string cause_words(const CauseFinding& finding, const std::vector<std::stri
       return out + fmt::format("It happened in {} of {}: the outcome is open.", finding.failures,
                                runs_text(finding.runs));
     case CauseKind::kSimulator:
+      if (finding.contradictory_starts == 0) {
+        return fmt::format("It happened in {} of {}, and the simulator is in doubt.",
+                           finding.failures, runs_text(finding.runs));
+      }
       return out + fmt::format(
                        "It happens in {} of {}, with some seeds of the simulator and not "
                        "with others.",
@@ -117,6 +148,12 @@ std::string cause_words(const CauseFinding& finding, const std::vector<std::stri
                    "It happened in {} of {} of this trace, too few to tell whether always, "
                    "in a part of the start region or at random.",
                    finding.failures, runs_text(finding.runs));
+}
+
+}  // namespace
+
+std::string cause_words(const CauseFinding& finding, const std::vector<std::string>& parameters) {
+  return kind_words(finding, parameters) + persistence_words(finding);
 }
 
 }  // namespace parallax::harness

@@ -21,16 +21,29 @@ enum class CauseKind : std::uint8_t {
 /// "unknown", "always", "region", "random", "simulator"
 std::string_view to_string(CauseKind kind);
 
+/// How often it happens again from one failing start.
+struct Persistence {
+  std::int64_t runs = 0, failures = 0;
+  bool in_most() const { return 2 * failures >= runs; }
+};
+
 struct CauseFinding {
   CauseKind kind = CauseKind::kUnknown;
   std::int64_t runs = 0, failures = 0;
   /// Starts, equal to the last bit, from which some runs fail and others do not.
   std::int64_t contradictory_starts = 0;
   std::optional<FailureRule> rule;
+  /// From a failing start, with other seeds of the simulator, and with half its step.
+  std::optional<Persistence> other_seeds, half_step;
 };
 
 /// `is_model`: the world is a model, so that what differs from one start is its open outcome.
 CauseFinding tell_cause(const std::vector<CauseRun>& runs, bool is_model);
+
+/// Takes into account whether it happens again from the failing start: where the runs tell nothing
+/// else and it does not in most of either kind, the simulator is in doubt.
+void weigh_persistence(std::optional<Persistence> other_seeds, std::optional<Persistence> half_step,
+                       CauseFinding& finding);
 
 /// "`milk1.mass` > 0.98 and `robot.x` <= 0.7"
 std::string rule_text(const std::vector<Border>& borders,

@@ -92,6 +92,34 @@ CauseEvidence cause_of(const std::vector<const ObservedPath*>& paths,
   return out;
 }
 
+base::Result<harness::Persistence> count_failures(const RecordedDiscrepancy& found,
+                                                  const std::vector<harness::SampleRecord>& records,
+                                                  Context& context) {
+  const harness::SampleId id = found.path.id;
+  const harness::SampleKey known(id.trace, id.sample, harness::DrawPhase::kCertify);
+  harness::JournalText journal;
+  journal.header = found.journal.header;
+  journal.traces = found.journal.traces;
+  journal.trace_places = found.journal.trace_places;
+  for (const auto& record : records) {
+    const harness::SampleKey key(record.trace, record.sample, record.phase);
+    journal.places[key] = found.journal.places.at(known);
+    journal.samples.emplace(key, record);
+  }
+  EvidenceReader reader(found, context);
+  harness::Persistence out;
+  for (const auto& record : records) {
+    const auto path = observed_path(
+        found.loaded, harness::recorded_run(journal, {record.trace, record.sample}), context);
+    if (!path) return context.sink().already_reported();
+    const auto how = reader.bearing(*path);
+    if (how == Bearing::kOther) continue;
+    ++out.runs;
+    out.failures += how == Bearing::kSame ? 1 : 0;
+  }
+  return out;
+}
+
 base::Result<CauseEvidence> gather_evidence(const RecordedDiscrepancy& found,
                                             const std::vector<harness::SampleRecord>& further,
                                             Context& context) {

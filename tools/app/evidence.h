@@ -37,6 +37,13 @@ base::Result<CauseEvidence> gather_evidence(const RecordedDiscrepancy& found,
                                             const std::vector<harness::SampleRecord>& further,
                                             Context& context);
 
+/// How many of these simulations, of the same trace or of executions, go wrong like the
+/// discrepancy; numbered from 1, as none of the journal has to be. Those that tell nothing are left
+/// out.
+base::Result<harness::Persistence> count_failures(const RecordedDiscrepancy& found,
+                                                  const std::vector<harness::SampleRecord>& records,
+                                                  Context& context);
+
 struct FurtherRunsOptions {
   std::int64_t runs = 60;    // at most so many, counted with those made earlier
   std::int64_t enough = 10;  // until so many have failed, and as many or none at all have not
@@ -61,5 +68,26 @@ base::Result<std::vector<harness::SampleRecord>> further_runs(
     const std::string& run_dir, const RecordedDiscrepancy& found, const ScenarioModel& as_run,
     const harness::SimulatorFactory& make_simulator, const FurtherRunsOptions& options,
     Context& context);
+
+/// The same of an executed plan: executions that begin in the state that the discrepancy began in.
+base::Result<std::vector<harness::SampleRecord>> further_executions(
+    const std::string& run_dir, const RecordedDiscrepancy& found, const ScenarioModel& as_run,
+    const harness::SimulatorFactory& make_simulator, const FurtherRunsOptions& options,
+    Context& context);
+
+/// Simulates the discrepancy's own start and actions again, kSameStartRuns times each with other
+/// seeds and with the simulator of half the step (null: there is none), and records that in
+/// RUN_DIR/same_start and RUN_DIR/half_step. Of an executed plan the actions up to where it went
+/// wrong. Reports as further_runs does.
+inline constexpr std::int64_t kSameStartRuns = 5;
+struct SameStart {
+  std::optional<harness::Persistence> other_seeds, half_step;
+};
+base::Result<SameStart> same_start_runs(const std::string& run_dir,
+                                        const RecordedDiscrepancy& found,
+                                        const ScenarioModel& as_run,
+                                        const harness::SimulatorFactory& make_simulator,
+                                        const harness::SimulatorFactory& half_step,
+                                        const FurtherRunsOptions& options, Context& context);
 
 }  // namespace parallax::tools

@@ -33,7 +33,8 @@ struct ObservedPath {
   using State = std::map<compiler::FluentId, bool>;
 
   harness::SampleId id;
-  bool executed = false;  // the plan was, in closed loop
+  bool experiment = false;  // of the experiments that repair made, which have numbers of their own
+  bool executed = false;    // the plan was, in closed loop
   std::vector<ObservedStep> steps;
   std::vector<harness::LoopState> points;  // as it was seen, one more than steps
   /// By timepoint what is held against the model. At the start of a trace all fluents, as the trace

@@ -76,8 +76,11 @@ base::Result<std::optional<harness::CampaignTrace>> EnumeratedTraces::next() {
     return std::optional<harness::CampaignTrace>();
   }
   given_ = trace->number;
-  auto converted = convert(*std::move(trace));
+  auto converted = campaign_trace(*model_, *std::move(trace), *context_);
   if (!converted) return context_->sink().already_reported();
+  // Traces of the same events are told apart by where they start.
+  if (split_initial_)
+    converted->key += fmt::format(" from {}", fmt::join(converted->holds(0), ";"));
   return std::optional<harness::CampaignTrace>(*std::move(converted));
 }
 
@@ -112,22 +115,21 @@ base::Status EnumeratedTraces::explain_absence() const {
   return base::Unit{};
 }
 
-base::Result<harness::CampaignTrace> EnumeratedTraces::convert(runtime::Trace trace) const {
+base::Result<harness::CampaignTrace> campaign_trace(const compiler::CompiledModel& model,
+                                                    runtime::Trace trace, Context& context) {
   harness::CampaignTrace out{std::move(trace), {}, {}};
   out.key = runtime::event_key(out);
-  // Traces of the same events are told apart by where they start.
-  if (split_initial_) out.key += fmt::format(" from {}", fmt::join(out.holds(0), ";"));
   for (std::size_t t = 0; t + 1 < out.points.size(); ++t) {
     const auto& point = out.points[t];
     if (point.happens.size() != 1) {
-      const auto where = model_->origins.front().source;
-      return context_->sink().error(base::DiagnosticCode::kSeveralEventsAtOnce, where,
-                                    point.happens.size(), t);
+      const auto where = model.origins.front().source;
+      return context.sink().error(base::DiagnosticCode::kSeveralEventsAtOnce, where,
+                                  point.happens.size(), t);
     }
     auto& planned = out.plan.emplace_back();
     if (!point.plan_step) continue;
-    const auto& step = model_->plan[*point.plan_step];
-    planned.source = context_->files().place(step.source);
+    const auto& step = model.plan[*point.plan_step];
+    planned.source = context.files().place(step.source);
     for (const auto& [name, value] : step.arguments) {
       std::visit([&, key = name](const auto& v) { planned.arguments[key] = v; }, value);
       // An object that the plan knows from the model is named by its register.

@@ -33,7 +33,6 @@ class EnumeratedTraces final : public harness::TraceFeed {
   std::int64_t solve_calls() const { return session_->solve_calls(); }
 
  private:
-  base::Result<harness::CampaignTrace> convert(runtime::Trace trace) const;
   base::Status explain_absence() const;
 
   const compiler::CompiledModel* model_;
@@ -44,6 +43,11 @@ class EnumeratedTraces final : public harness::TraceFeed {
   std::unique_ptr<runtime::PlanEnumerator> enumerator_;
   std::int64_t given_ = 0;  // the number of the last trace
 };
+
+/// The trace as campaigns have it, with what the plan says of its events. Reports
+/// kSeveralEventsAtOnce unless exactly one event leads from each timepoint to the next.
+base::Result<harness::CampaignTrace> campaign_trace(const compiler::CompiledModel& model,
+                                                    runtime::Trace trace, Context& context);
 
 /// Has the model an execution of `steps` steps? If it has none, reports why: the axioms of a
 /// minimal core, each with its place.

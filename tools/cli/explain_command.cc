@@ -12,6 +12,7 @@
 #include "tools/app/scenario_model.h"
 #include "tools/cli/command.h"
 #include "tools/cli/explain_text.h"
+#include "tools/cli/limits.h"
 #include "tools/cli/shared_options.h"
 
 namespace parallax::tools {
@@ -74,22 +75,20 @@ int explain_contradiction(const compiler::CompiledModel& model, const SetOptions
   return 0;
 }
 
-/// Makes further simulations of the trace, if they may be made and are needed; why not is told.
+/// Makes further simulations, if they may be made and are needed; why not is told. The first time
+/// also some from the very start that failed.
 base::Result<std::vector<harness::SampleRecord>> make_further_runs(const ExplainOptions& options,
                                                                    const RecordedDiscrepancy& found,
                                                                    std::string& not_made,
+                                                                   SameStart& persistence,
                                                                    Invocation& invocation) {
   const auto& sink = invocation.sink();
   std::vector<harness::SampleRecord> none;
   if (options.further.runs == 0) return none;
-  if (found.path.executed) {
-    not_made = "of executed plans none are made";
-    return none;
-  }
   // By the name that was found, which has been told.
   const RunFolderOptions folder{options.model.models.front(),
                                 std::filesystem::path(found.loaded.scenario.file).string()};
-  const auto loaded =
+  auto loaded =
       load_recorded_scenario(folder, *found.journal.header, ScenarioUse::kRun, invocation);
   if (!loaded) return sink.already_reported();
   if (!loaded->scenario.simulator.command.empty() && !options.commands.allow) {
@@ -106,7 +105,24 @@ base::Result<std::vector<harness::SampleRecord>> make_further_runs(const Explain
   if (!simulator) return sink.already_reported();
   auto further = options.further;
   further.progress = progress_on_terminal(invocation.options());
-  auto made = further_runs(folder.folder, found, *loaded, *simulator, further, invocation);
+  // Executions begin where the discrepancy did, whatever the run would have chosen.
+  loaded->scenario.starts = harness::Starts::kUniform;
+  auto made =
+      found.path.executed
+          ? further_executions(folder.folder, found, *loaded, *simulator, further, invocation)
+          : further_runs(folder.folder, found, *loaded, *simulator, further, invocation);
+  if (made && loaded->world == nullptr && !persistence.other_seeds && !invocation.stopped()) {
+    harness::SimulatorFactory half_step;
+    if (loaded->scenario.simulator.command.empty()) {
+      std::vector<std::string> worker = {"/proc/self/exe", "worker", "--half-step"};
+      if (invocation.form().allow_outside) worker.emplace_back("--allow-outside");
+      half_step = simulator_factory(*loaded, worker, stop_flag());
+    }
+    const auto again =
+        same_start_runs(folder.folder, found, *loaded, *simulator, half_step, further, invocation);
+    if (!again) return sink.already_reported();
+    persistence = *again;
+  }
   if (further.progress) write_error("\r\x1b[K");
   return made;
 }
@@ -120,10 +136,11 @@ base::Result<CauseEvidence> with_further_runs(const ExplainOptions& options,
       on_record.kind != harness::CauseKind::kUnknown &&
       is_enough(options.further, on_record.failures, on_record.runs - on_record.failures);
   if (tells || on_record.contradictory_starts > 0 || invocation.stopped()) return evidence;
+  SameStart persistence;
   // Twice as many again, for as long as they do not tell.
   for (auto asked = options; true; asked.further.enough *= 2) {
     std::string not_made;
-    const auto further = make_further_runs(asked, found, not_made, invocation);
+    const auto further = make_further_runs(asked, found, not_made, persistence, invocation);
     if (!further) return invocation.sink().already_reported();
     const auto known = evidence.further;
     if (invocation.stopped()) {
@@ -134,6 +151,7 @@ base::Result<CauseEvidence> with_further_runs(const ExplainOptions& options,
       evidence = *std::move(more);
     }
     evidence.not_made = not_made;
+    harness::weigh_persistence(persistence.other_seeds, persistence.half_step, evidence.finding);
     const bool is_known = evidence.finding.kind != harness::CauseKind::kUnknown;
     if (is_known || evidence.further == known || invocation.stopped()) return evidence;
   }

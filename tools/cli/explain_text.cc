@@ -222,6 +222,12 @@ std::string run_contradictions_json(const RecordedDiscrepancy& found,
                           {"contradictory_starts", finding.contradictory_starts},
                           {"otherwise", cause.otherwise},
                           {"further", cause.further}};
+  const auto add = [&](const char* name, const std::optional<harness::Persistence>& seen) {
+    if (!seen) return;
+    document["evidence"][name] = {{"runs", seen->runs}, {"failures", seen->failures}};
+  };
+  add("other_seeds", finding.other_seeds);
+  add("half_step", finding.half_step);
   return base::json_text(document) + '\n';
 }
 

@@ -6,14 +6,24 @@
 #include "tools/cli/command.h"
 #include "tools/cli/shared_options.h"
 #include "tools/repair/apply.h"
+#include "tools/repair/experiments.h"
 #include "tools/repair/repair.h"
+#include "tools/repair/repair_loop.h"
 
 namespace parallax::tools {
 namespace {
 
+constexpr std::int64_t kUsualRuns = -1;
+
 struct RepairCommandOptions {
   RepairOptions repair;
   std::int64_t apply = 0;  // 0: nothing is written
+  std::int64_t runs = kUsualRuns;
+  ExperimentOptions experiments;
+  CommandPermission commands;
+  bool loop = false;
+  std::string out;
+  std::int64_t rounds = 8;
 };
 
 constexpr int kProposals = 1, kNoneFound = 4;
@@ -32,10 +42,60 @@ int apply(const RepairResult& result, std::int64_t number, Invocation& invocatio
   return 0;
 }
 
+int exit_code(LoopEnd end) {
+  switch (end) {
+    case LoopEnd::kClean:
+    case LoopEnd::kNothing:
+      return 0;
+    case LoopEnd::kTie:
+    case LoopEnd::kPlanAtFault:
+    case LoopEnd::kRounds:
+      return kProposals;
+    case LoopEnd::kNone:
+    case LoopEnd::kInconclusive:
+    case LoopEnd::kStopped:
+      break;
+  }
+  return kNoneFound;
+}
+
+/// Round after round in copies; with --apply the user's files are changed at last.
+int repair_loop(const RepairCommandOptions& options, const ExperimentOptions& experiments,
+                Invocation& invocation) {
+  const auto& given = options.repair;
+  if (options.out.empty() || given.other_model || options.apply > 1) {
+    invocation.sink().error_about(base::DiagnosticCode::kUsage, "--loop",
+                                  "it takes --out DIR, the model of the runs, and the first "
+                                  "proposal (--apply 1: of each round, into the files)");
+    return 0;
+  }
+  const auto loop = repair_in_rounds({given, experiments, options.out, options.rounds}, invocation);
+  if (experiments.progress) write_error("\r\x1b[K");
+  if (!loop) return 0;
+  invocation.options().json ? invocation.document(loop_json(*loop))
+                            : invocation.result(loop_text(*loop));
+  if (options.apply == 1) {
+    Proposal all;
+    all.files = loop->files;
+    if (!apply_proposal(all, invocation)) return 0;
+    for (const auto& file : all.files) invocation.remark("wrote " + file.name);
+  }
+  return exit_code(loop->end);
+}
+
 int repair(const RepairCommandOptions& options, Invocation& invocation) {
   auto repair = options.repair;
   if (repair.limit != 0) repair.limit = std::max(repair.limit, options.apply);
-  const auto result = propose_repairs(repair, invocation);
+  auto experiments = options.experiments;
+  if (options.runs != kUsualRuns) experiments.runs = options.runs;
+  experiments.allow_commands = options.commands.allow;
+  experiments.simulator = [&](const ScenarioModel& loaded) {
+    return permitted_simulator(loaded, options.commands.allow, invocation);
+  };
+  experiments.progress = progress_on_terminal(invocation.options());
+  if (options.loop) return repair_loop(options, experiments, invocation);
+  const auto result = repair_with_experiments(repair, experiments, invocation);
+  if (experiments.progress) write_error("\r\x1b[K");
   if (!result) return 0;
   if (invocation.options().verbosity > 0) {
     for (const auto& text : result->remarks) invocation.remark(text);
@@ -64,6 +124,8 @@ Command repair_command() {
       "  parallax repair out/plan2\n"
       "  parallax repair out/plan2 --limit 1 | git apply\n"
       "  parallax repair out/plan2 --apply 1\n"
+      "  parallax repair out/plan2 --runs 40 --jobs 2\n"
+      "  parallax repair out/plan2 --loop --out repaired\n"
       "Exit codes: 0 nothing to repair, or a proposal was applied; 1 proposals; 4 none was found.");
   command.option("run_dir", options->repair.folder.folder, "The folder of a run").required();
   add_recorded_scenario_option(command, options->repair.folder.scenario);
@@ -74,6 +136,25 @@ Command repair_command() {
       .show_default();
   command.option("--apply", options->apply, "Write this proposal into the files of the model")
       .check(Positive{});
+  command
+      .option("--runs", options->runs,
+              fmt::format("Make at most so many simulations to tell proposals apart, counted with "
+                          "those made earlier; 0: none; default: {}, where the world is a model {}",
+                          kRunsInPhysics, kRunsInModel))
+      .check(WholeNumber{0, 1'000'000});
+  command.option("-j,--jobs", options->experiments.jobs, "Of --runs: simulations at the same time")
+      .check(WholeNumber{1, 256})
+      .show_default();
+  command.flag("--loop", options->loop,
+               "Apply the first proposal to a copy, run again, and so on, while the first is the "
+               "only one of its rank");
+  command.option("--out", options->out, "Of --loop: a new folder for copies, runs and the log")
+      .needs("--loop");
+  command.option("--rounds", options->rounds, "Of --loop: at most so many")
+      .check(WholeNumber{1, 1'000})
+      .show_default()
+      .needs("--loop");
+  add_command_options(command, options->commands, false);
   return {std::move(command),
           [options](Invocation& invocation) { return repair(*options, invocation); }};
 }

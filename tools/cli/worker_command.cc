@@ -15,6 +15,7 @@ Command worker_command() {
   struct Options {
     std::string scenario;
     std::string hash;
+    bool half_step = false;
   };
   auto options = std::make_shared<Options>();
   OptionTable command("worker",
@@ -22,21 +23,22 @@ Command worker_command() {
   command.hide();  // started by `run`; not meant to be typed
   command.option("scenario", options->scenario).required();
   command.option("--scenario-hash", options->hash);
-  return {std::move(command), [options](Invocation& invocation) {
-            const auto scenario =
-                harness::load_scenario(options->scenario, invocation.files(), invocation.sink(),
-                                       invocation.form().allow_outside);
-            if (!scenario) return 0;
-            // The parent read the same file a moment ago; an edit in between must not go unseen.
-            if (!options->hash.empty() &&
-                harness::hash_of_sources(invocation.files()) != options->hash) {
-              invocation.sink().error_about(base::DiagnosticCode::kScenarioChanged,
-                                            options->scenario);
-              return 0;
-            }
-            harness::OdeSimulator simulator(scenario->world);
-            return harness::serve(simulator, STDIN_FILENO, STDOUT_FILENO) == 0 ? 0 : 5;
-          }};
+  command.flag("--half-step", options->half_step, "Simulate with half the scenario's step");
+  return {
+      std::move(command), [options](Invocation& invocation) {
+        auto scenario = harness::load_scenario(options->scenario, invocation.files(),
+                                               invocation.sink(), invocation.form().allow_outside);
+        if (!scenario) return 0;
+        // The parent read the same file a moment ago; an edit in between must not go unseen.
+        if (!options->hash.empty() &&
+            harness::hash_of_sources(invocation.files()) != options->hash) {
+          invocation.sink().error_about(base::DiagnosticCode::kScenarioChanged, options->scenario);
+          return 0;
+        }
+        if (options->half_step) scenario->world.solver.timestep_s /= 2.0;
+        harness::OdeSimulator simulator(scenario->world);
+        return harness::serve(simulator, STDIN_FILENO, STDOUT_FILENO) == 0 ? 0 : 5;
+      }};
 }
 
 }  // namespace parallax::tools

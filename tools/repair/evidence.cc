@@ -27,7 +27,8 @@ std::vector<Evidence> evidence_of(const std::vector<ObservedPath>& paths,
         state.emplace(model.fluents[fluent.index()].name, holds);
       }
     }
-    const auto id = std::to_string(path.id.trace) + "." + std::to_string(path.id.sample);
+    const auto id = (path.experiment ? "e" : "") + std::to_string(path.id.trace) + "." +
+                    std::to_string(path.id.sample);
     const auto same = std::find_if(out.begin(), out.end(), [&](const auto& other) {
       return other.executed == seen.executed && other.steps == seen.steps &&
              other.states == seen.states;

@@ -25,7 +25,7 @@ struct Evidence {
   bool executed = false;                      // the plan was, in closed loop
   std::vector<Step> steps;
   std::vector<State> states;     // one more than steps
-  std::vector<std::string> ids;  // of the runs: "1.4"
+  std::vector<std::string> ids;  // of the runs: "1.4"; of experiments "e1.4"
   /// The first timepoint that the model cannot reach like that; none: it admits all of it.
   std::optional<std::size_t> divergence;
   /// What came later is set aside: another run went the same way and failed.

@@ -34,7 +34,9 @@ class ModelSearch {
       // Last of all that what happens is open: of one run, too, that tried twice and saw both.
       if (result_.proposals.empty() && !context_.stopped()) search(Mode::kOpen, 1);
     } else {
-      if (set_aside()) search(Mode::kCautious, 1);
+      if (set_aside() && !search(Mode::kCautious, 1) && !context_.stopped()) {
+        search(Mode::kCautious, 2);
+      }
       // Then what is right about all runs.
       for (std::size_t size = 1; size <= EditSearch::kMostEdits && !context_.stopped(); ++size) {
         if (search(Mode::kOpen, size)) break;

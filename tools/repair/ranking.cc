@@ -37,11 +37,30 @@ void find_ties(std::vector<Proposal>& proposals) {
   }
 }
 
+/// Experiments are made to decide: of what was as well founded as the first one, that drops out
+/// which cannot follow a run as far.
+void drop_refuted(std::vector<Proposal>& proposals) {
+  if (proposals.empty()) return;
+  const auto& first = proposals.front();
+  const auto from = std::find_if(proposals.begin(), proposals.end(), [&](const Proposal& other) {
+    return other.verdict.runs_whole < first.verdict.runs_whole;
+  });
+  proposals.erase(std::remove_if(from, proposals.end(),
+                                 [&](const Proposal& other) {
+                                   return other.changes == first.changes &&
+                                          other.size == first.size &&
+                                          other.precaution == first.precaution &&
+                                          other.verdict.runs_whole < first.verdict.runs_whole;
+                                 }),
+                  proposals.end());
+}
+
 }  // namespace
 
 bool rank_proposals(const RepairInput& input, std::size_t limit, std::vector<Proposal>& proposals,
                     Context& context) {
   std::stable_sort(proposals.begin(), proposals.end(), likelier);
+  if (input.experiments > 0) drop_refuted(proposals);
   bool more = false;
   const auto wanted = limit == 0 ? proposals.size() : limit;
   if (proposals.size() > std::max(wanted, kMostCompared)) {
@@ -59,6 +78,28 @@ bool rank_proposals(const RepairInput& input, std::size_t limit, std::vector<Pro
   }
   find_ties(proposals);
   return more;
+}
+
+std::size_t of_first_rank(const std::vector<Proposal>& proposals) {
+  return static_cast<std::size_t>(std::find_if(proposals.begin(), proposals.end(),
+                                               [&](const Proposal& other) {
+                                                 return changes_less(proposals.front(), other) ||
+                                                        proposals.front().changes != other.changes;
+                                               }) -
+                                  proposals.begin());
+}
+
+std::vector<std::size_t> as_well_founded(const std::vector<Proposal>& proposals) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < proposals.size(); ++i) {
+    const auto& a = proposals.front();
+    const auto& b = proposals[i];
+    if (a.changes == b.changes && a.size == b.size && a.precaution == b.precaution &&
+        a.verdict.runs_whole == b.verdict.runs_whole) {
+      out.push_back(i);
+    }
+  }
+  return out;
 }
 
 }  // namespace parallax::tools

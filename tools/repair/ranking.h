@@ -13,4 +13,10 @@ namespace parallax::tools {
 bool rank_proposals(const RepairInput& input, std::size_t limit, std::vector<Proposal>& proposals,
                     Context& context);
 
+/// So many of the ranked proposals, from the first one on, are of one rank.
+std::size_t of_first_rank(const std::vector<Proposal>& proposals);
+
+/// Those that the runs speak for as much as for the first one, whatever is usual; indices.
+std::vector<std::size_t> as_well_founded(const std::vector<Proposal>& proposals);
+
 }  // namespace parallax::tools

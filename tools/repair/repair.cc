@@ -36,12 +36,16 @@ const char* name_of(Proposal::Changes changes) {
 }
 
 base::Result<RepairResult> propose_repairs(const RepairOptions& options, Context& context) {
-  auto loaded = load_repair_input(options, context);
-  if (!loaded) return context.sink().already_reported();
-  const auto& input = *loaded;
+  const auto input = load_repair_input(options, context);
+  if (!input) return context.sink().already_reported();
+  return propose_repairs(*input, context);
+}
+
+base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& context) {
   RepairResult result;
   result.runs = input.runs;
   result.failed = input.failed;
+  result.experiments = input.experiments;
   result.partings = input.partings;
   result.contradictions = input.contradictions;
   result.remarks = input.remarks;
@@ -61,9 +65,12 @@ base::Result<RepairResult> propose_repairs(const RepairOptions& options, Context
     if (!proposal.open && !proposal.precaution) continue;
     for (const auto& cause : result.causes) proposal.evidence.push_back(cause.words);
   }
-  const bool more =
-      rank_proposals(input, static_cast<std::size_t>(options.limit), result.proposals, context);
+  const bool more = rank_proposals(input, static_cast<std::size_t>(input.options.limit),
+                                   result.proposals, context);
   result.more = result.more || more;
+  if (result.proposals.empty()) return result;
+  result.tied = of_first_rank(result.proposals);
+  result.founded = as_well_founded(result.proposals);
   return result;
 }
 

@@ -20,11 +20,20 @@ struct RepairResult {
   std::size_t edits = 0;            // single edits that were considered
   std::string nearest_miss;         // where there is no proposal; may be empty
   std::vector<std::string> remarks;
+  std::size_t experiments = 0;       // of the runs were made to tell proposals apart
+  std::vector<std::string> refuted;  // proposals, in words, that these have refuted
+  /// Proposals that the runs speak for as much as for the first, with it: indices. Those in front
+  /// that `tied` counts are of one rank with it, too.
+  std::vector<std::size_t> founded;
+  std::size_t tied = 0;
+  std::string why_tied;  // "no run of this plan tells them apart"; empty: nothing was tried
 };
 
 /// What is to be changed so that what was seen in the runs of a folder is no discrepancy: what all
 /// sources of proposals find, in order. Reports what load_repair_input reports.
 base::Result<RepairResult> propose_repairs(const RepairOptions& options, Context& context);
+/// The same of what was loaded, for as many proposals as its options say.
+base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& context);
 
 std::string repair_text(const RepairResult& result, const RepairOptions& options);
 std::string repair_json(const RepairResult& result);

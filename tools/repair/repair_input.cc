@@ -24,12 +24,13 @@ base::Result<ScenarioModel> load(const RepairOptions& options, const harness::Jo
   return load_plain_run(path, recorded_execution(header), context);
 }
 
-/// What `explain` made of the same scenario to tell the kind of cause: runs like the others. Adds
-/// those that `paths` has not.
-base::Status add_further_paths(const RepairOptions& options, const ScenarioModel& loaded,
-                               const harness::JournalHeader& header,
-                               std::vector<ObservedPath>& paths, Context& context) {
-  const auto folder = fs::path(options.folder.folder) / kFurtherRuns;
+/// Adds what was made of the same scenario besides: by `explain` to tell the kind of cause, which
+/// are runs like the others, those that `paths` has not; by `repair` to tell proposals apart.
+base::Status add_paths(const char* name, const RepairOptions& options, const ScenarioModel& loaded,
+                       const harness::JournalHeader& header, std::vector<ObservedPath>& paths,
+                       Context& context) {
+  const auto folder = fs::path(options.folder.folder) / name;
+  const bool experiments = name == std::string_view(kExperiments);
   std::error_code error;
   if (!fs::exists(folder / "journal.ndjson", error)) return base::Unit{};
   const auto journal = harness::read_journal(folder, context.files(), context.sink());
@@ -43,11 +44,12 @@ base::Status add_further_paths(const RepairOptions& options, const ScenarioModel
   if (!further) return context.sink().already_reported();
   const auto known = paths.size();
   for (auto& path : *further) {
+    path.experiment = experiments;
     const auto same = [&](const ObservedPath& other) {
       return other.id.trace == path.id.trace && other.id.sample == path.id.sample;
     };
     const auto end = paths.begin() + static_cast<std::ptrdiff_t>(known);
-    if (std::none_of(paths.begin(), end, same)) paths.push_back(std::move(path));
+    if (experiments || std::none_of(paths.begin(), end, same)) paths.push_back(std::move(path));
   }
   return base::Unit{};
 }
@@ -132,8 +134,11 @@ base::Result<RepairInput> load_repair_input(const RepairOptions& options, Contex
   auto loaded = load(options, *journal->header, context);
   if (!loaded) return sink.already_reported();
   auto paths = observed_paths(*loaded, *journal, context);
-  if (!paths || !add_further_paths(options, *loaded, *journal->header, *paths, context)) {
-    return sink.already_reported();
+  if (!paths) return sink.already_reported();
+  for (const auto* name : {kFurtherRuns, kExperiments}) {
+    if (!add_paths(name, options, *loaded, *journal->header, *paths, context)) {
+      return sink.already_reported();
+    }
   }
   auto domain = load_domain(loaded->scenario, context);
   if (domain == nullptr) {
@@ -145,6 +150,8 @@ base::Result<RepairInput> load_repair_input(const RepairOptions& options, Contex
   RepairInput input{options,         *journal->header,  *std::move(loaded), std::move(domain),
                     std::move(text), *std::move(paths), std::move(evidence)};
   for (const auto& seen : input.evidence) input.runs += seen.runs();
+  input.experiments = static_cast<std::size_t>(std::count_if(
+      input.paths.begin(), input.paths.end(), [](const auto& path) { return path.experiment; }));
   find_partings(input, context);
   if (!input.partings.empty()) find_contradictions(input);
   return input;

@@ -15,6 +15,9 @@
 
 namespace parallax::tools {
 
+/// The folder in a run folder that has the runs which were made to tell proposals apart.
+inline constexpr const char* kExperiments = "experiments";
+
 struct RepairOptions {
   RunFolderOptions folder;
   bool other_model = false;  // the scenario need not be as it was when it was run
@@ -41,6 +44,7 @@ struct RepairInput {
   /// that begin where the model cannot.
   std::vector<Evidence> evidence;
   std::size_t runs = 0, failed = 0;  // recorded; those that the model cannot follow
+  std::size_t experiments = 0;       // of them were made to tell proposals apart
   std::vector<RunParting> partings = {};
   /// Runs that went the same way up to a step and then differently: chance, or the simulator.
   std::vector<std::string> contradictions = {};

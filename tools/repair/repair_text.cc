@@ -43,6 +43,10 @@ std::string parting_text(const RunParting& parting) {
 std::string head(const RepairResult& result, const std::string& folder) {
   auto out = fmt::format("{}: {}, {} of them not as the model says\n", folder,
                          plural(result.runs, "run"), result.failed);
+  if (result.experiments > 0) {
+    out += fmt::format("  {} of them {} made to tell proposals apart\n", result.experiments,
+                       result.experiments == 1 ? "was" : "were");
+  }
   for (const auto& parting : result.partings) out += parting_text(parting);
   for (const auto& text : result.contradictions) {
     out += fmt::format(
@@ -84,6 +88,24 @@ std::string proposal_text(const Proposal& proposal, std::size_t rank, const Repa
   return out + "\n" + patch_of(proposal);
 }
 
+/// What the runs refuted, and what they leave open.
+std::string tie_text(const RepairResult& result) {
+  std::string out;
+  for (const auto& words : result.refuted) out += fmt::format("\nRefuted by a run: {}.", words);
+  if (!out.empty()) out += "\n";
+  if (result.founded.size() < 2) return out;
+  if (result.tied > 1) {
+    out += fmt::format("\nA tie: proposals 1 to {} are of one rank", result.tied);
+  } else {
+    std::vector<std::size_t> ranks;
+    for (const auto i : result.founded) ranks.push_back(i + 1);
+    out +=
+        fmt::format("\nThe runs speak for proposals {} alike, of which the first is the usual one",
+                    fmt::join(ranks, ", "));
+  }
+  return out + (result.why_tied.empty() ? "" : "; " + result.why_tied) + ".\n";
+}
+
 Json number_json(const std::optional<runtime::TraceNumber>& number) {
   if (!number) return nullptr;
   const bool small = number->value <= mpz_class("9007199254740992");
@@ -115,6 +137,7 @@ std::string repair_text(const RepairResult& result, const RepairOptions& options
   for (std::size_t i = 0; i < result.proposals.size(); ++i) {
     out += proposal_text(result.proposals[i], i + 1, result);
   }
+  out += tie_text(result);
   if (result.more) out += "\nThere are further ones; --limit shows more.\n";
   return out;
 }
@@ -124,7 +147,7 @@ std::string repair_json(const RepairResult& result) {
   out["status"] = "ok";
   out["runs"] = result.runs;
   out["failed"] = result.failed;
-  out["experiments"] = 0;
+  out["experiments"] = result.experiments;
   auto& partings = out["partings"] = Json::array();
   for (const auto& parting : result.partings) {
     Json seen = Json::array();
@@ -164,6 +187,9 @@ std::string repair_json(const RepairResult& result) {
                          {"traces_gained", number_json(effects.gained)},
                          {"reaches_constraints", std::move(reaches)}});
   }
+  out["tied"] = result.tied;
+  if (!result.why_tied.empty()) out["why_tied"] = result.why_tied;
+  out["refuted"] = result.refuted;
   out["more"] = result.more;
   if (!result.nearest_miss.empty()) out["nearest_miss"] = result.nearest_miss;
   return base::json_text(out);

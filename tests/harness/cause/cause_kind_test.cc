@@ -47,5 +47,30 @@ TEST_CASE("the sentence has the share, the parameter and the border") {
   CHECK(open.starts_with("From one and the same start some runs go wrong"));
 }
 
+TEST_CASE("what vanishes with another seed or half the step puts the simulator in doubt") {
+  using harness::Persistence;
+  const auto weighed = [](const std::vector<CauseRun>& list, std::optional<Persistence> seeds,
+                          std::optional<Persistence> step) {
+    auto finding = harness::tell_cause(list, false);
+    harness::weigh_persistence(seeds, step, finding);
+    return finding;
+  };
+  const auto few = runs(8, [](int i) { return i == 3; });
+  CHECK(weighed(few, Persistence{5, 5}, Persistence{5, 5}).kind == CauseKind::kUnknown);
+  CHECK(weighed(few, Persistence{5, 1}, Persistence{5, 5}).kind == CauseKind::kSimulator);
+  const auto by_step = weighed(few, Persistence{5, 5}, Persistence{5, 0});
+  CHECK(by_step.kind == CauseKind::kSimulator);
+  const auto words = harness::cause_words(by_step, {"x"});
+  CHECK(words ==
+        "It happened in 1 of 8 runs, and the simulator is in doubt. From the failing start once "
+        "more: with other seeds of the simulator it happens in 5 of 5 runs, with half its step it "
+        "happens in 0 of 5 runs.");
+  // What all runs say is stronger.
+  const auto always = runs(10, [](int) { return true; });
+  CHECK(weighed(always, Persistence{5, 0}, std::nullopt).kind == CauseKind::kAlways);
+  CHECK(weighed(few, std::nullopt, std::nullopt).kind == CauseKind::kUnknown);
+  CHECK(weighed(few, Persistence{0, 0}, std::nullopt).kind == CauseKind::kUnknown);
+}
+
 }  // namespace
 }  // namespace parallax::test

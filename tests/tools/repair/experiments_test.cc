@@ -1,0 +1,164 @@
+// Runs that tell proposals apart, in worlds that are models: what is right is known.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/tools/cli_json.h"
+
+namespace parallax::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A drawer that a robot pulls and pushes; whether it opens is the world's to say.
+class Drawer : public CliFixture {
+ public:
+  explicit Drawer(const std::string& truth, const std::string& execution = "open-loop") {
+    write("domain.e",
+          "fluent Open()\nfluent Lit()\nfluent Parked()\nfluent Full()\n\n"
+          "event Pull()\nevent Push()\n\n[time] Terminates(Push(),Open(),time).\n");
+    write("truth.e", "load domain.e\n" + truth);
+    write("model.e", "load domain.e\n\n[time] Initiates(Pull(),Open(),time).\n");
+    write("start.e", "!HoldsAt(Open(),0).\n");
+    write("pull.lisp",
+          "(def-cram-function pull ()\n  (perform (an action (type pulling)))\n"
+          "  (perform (an action (type pushing))))\n(pull)\n");
+    write("robot.bind",
+          "action pulling () -> Pull()  ok: Open() | !Open() @t+1 "
+          "else manipulation-goal-not-reached\n"
+          "action pushing () -> Push()  ok: !Open() @t+1 else manipulation-goal-not-reached\n");
+    write("drawer.yaml",
+          "model: [model.e, start.e]\nsimulator: {model: truth.e}\nplan: pull.lisp\n"
+          "bind: robot.bind\nhorizon: 2\nconstraints: \"Happens(Push(),time-1)\"\nexecution: " +
+              execution + "\n");
+  }
+  bool has_experiments() const { return fs::exists(folder() / "out" / "experiments"); }
+};
+
+const std::string kLit = "[time] HoldsAt(Lit(),time) -> Initiates(Pull(),Open(),time).\n";
+
+std::string first_words(const nlohmann::json& report) {
+  return report.at("proposals").at(0).at("words");
+}
+
+TEST_CASE("a run cannot tell which condition is missing; further ones from other starts do") {
+  for (const std::string execution : {"open-loop", "closed-loop"}) {
+    CAPTURE(execution);
+    const Drawer cli(kLit, execution);
+    // Some start in the dark.
+    json_of(cli, {"run", "drawer.yaml", "--out", "out"}, 1);
+    const auto before = json_of(cli, {"repair", "out", "--runs", "0", "--limit", "0"}, 1);
+    CHECK_FALSE(cli.has_experiments());
+    CHECK(before.at("experiments") == 0);
+    CHECK(before.at("proposals").size() > 2);
+    CHECK(before.at("why_tied") == "no runs may be made to tell them apart (--runs 0)");
+    const auto journal = cli.read("out/journal.ndjson");
+
+    const auto after = json_of(cli, {"repair", "out", "--limit", "0"}, 1);
+    CHECK(after.at("proposals").size() == 1);
+    CHECK(first_words(after).find("only if `HoldsAt(Lit(),time)`") != std::string::npos);
+    CHECK(after.at("tied") == 1);
+    CHECK(after.at("refuted").size() + 1 >= before.at("proposals").size());
+    const int made = after.at("experiments");
+    CHECK(made > 0);
+    CHECK(made <= 4);  // of 16 starts
+    CHECK(after.at("runs") == before.at("runs").get<int>() + made);
+    CHECK(after.at("proposals").at(0).at("runs_consistent") == after.at("runs"));
+    CHECK(cli.read("out/journal.ndjson") == journal);
+
+    // Not made again; the same for any number of jobs, and in pieces.
+    const auto recorded = cli.read("out/experiments/journal.ndjson");
+    const auto again = json_of(cli, {"repair", "out", "--limit", "0"}, 1);
+    CHECK(again.at("proposals") == after.at("proposals"));
+    CHECK(cli.read("out/experiments/journal.ndjson") == recorded);
+    fs::remove_all(cli.folder() / "out" / "experiments");
+    json_of(cli, {"repair", "out", "--jobs", "3"}, 1);
+    CHECK(cli.read("out/experiments/journal.ndjson") == recorded);
+    fs::remove_all(cli.folder() / "out" / "experiments");
+    for (int budget = 1; budget <= made; ++budget) {
+      const auto part = json_of(cli, {"repair", "out", "--runs", std::to_string(budget)}, 1);
+      CHECK(part.at("experiments") == budget);
+    }
+    CHECK(cli.read("out/experiments/journal.ndjson") == recorded);
+
+    // Of another model nothing is run.
+    cli.replace("model.e", "load domain.e\n", "load domain.e\n; Changed.\n");
+    const auto other = json_of(cli, {"repair", "out", "--other-model"}, 1);
+    CHECK(other.at("experiments") == made);
+    CHECK(cli.read("out/experiments/journal.ndjson") == recorded);
+  }
+}
+
+TEST_CASE("what no run of the plan tells apart is shown as a tie") {
+  // The lamp burns if and only if the arm is parked, in every state that the plan can begin in.
+  const Drawer cli(kLit);
+  cli.write("start.e",
+            "!HoldsAt(Open(),0).\nHoldsAt(Lit(),0) <-> HoldsAt(Parked(),0).\nHoldsAt(Full(),0).\n");
+  json_of(cli, {"run", "drawer.yaml", "--out", "out"}, 1);
+  const auto report = json_of(cli, {"repair", "out"}, 1);
+  CHECK(report.at("why_tied") == "no run of this plan tells them apart");
+  CHECK(report.at("tied") == 2);
+  CHECK(report.at("proposals").size() == 2);
+  const auto text = cli.parallax({"repair", "out"}).out;
+  CHECK(
+      text.find("A tie: proposals 1 to 2 are of one rank; no run of this plan tells them apart.") !=
+      std::string::npos);
+}
+
+/// Is there a proposal with this in its words?
+bool proposes(const nlohmann::json& report, const std::string& text) {
+  const auto& all = report.at("proposals");
+  return std::any_of(all.begin(), all.end(), [&](const auto& each) {
+    return each.at("words").template get<std::string>().find(text) != std::string::npos;
+  });
+}
+
+TEST_CASE("whatever the world is like: experiments never drop what is right") {
+  struct World {
+    std::string truth, right;
+  };
+  const std::string opens = "[time] Initiates(Pull(),Open(),time).\n";
+  const std::vector<World> worlds = {
+      {kLit, "only if `HoldsAt(Lit(),time)`"},
+      {"[time] !HoldsAt(Parked(),time) -> Initiates(Pull(),Open(),time).\n",
+       "only if `!HoldsAt(Parked(),time)`"},
+      {"[time] !HoldsAt(Full(),time) -> Initiates(Pull(),Open(),time).\n",
+       "only if `!HoldsAt(Full(),time)`"},
+      {opens + "[time] Terminates(Pull(),Parked(),time).\n", "`Terminates(Pull(),Parked(),time)`"},
+      {opens + "[time] HoldsAt(Full(),time) -> Terminates(Pull(),Lit(),time).\n",
+       "`HoldsAt(Full(),time) -> Terminates(Pull(),Lit(),time)`"},
+      {"[time] Initiates(Pull(),Lit(),time).\n", "becomes `Initiates(Pull(),Lit(),time)`"},
+      {"", "is dropped"},
+  };
+  int made = 0, fewer = 0;
+  for (const auto& world : worlds) {
+    for (const std::string seed : {"2", "3"}) {
+      CAPTURE(world.truth);
+      CAPTURE(seed);
+      const Drawer cli(world.truth, "closed-loop");
+      cli.write("start.e",
+                "!HoldsAt(Open(),0).\n"
+                "HoldsAt(Full(),0) | HoldsAt(Lit(),0) | HoldsAt(Parked(),0).\n");
+      json_of(cli, {"run", "drawer.yaml", "--out", "out", "--seed", seed}, 1);
+      const auto before = json_of(cli, {"repair", "out", "--runs", "0", "--limit", "0"}, 1);
+      const auto after = json_of(cli, {"repair", "out", "--limit", "0"}, 1);
+      CAPTURE(after.dump());
+      if (proposes(before, world.right)) CHECK(proposes(after, world.right));
+      for (const auto& proposal : after.at("proposals")) {
+        CHECK(proposal.at("runs_to_the_end") == after.at("runs"));
+      }
+      made += after.at("experiments").get<int>();
+      fewer += after.at("proposals").size() < before.at("proposals").size() ? 1 : 0;
+    }
+  }
+  CHECK(made > 8);
+  CHECK(fewer > 5);
+}
+
+}  // namespace
+}  // namespace parallax::test

@@ -1,0 +1,129 @@
+// `parallax repair --loop`: repaired, run again, repaired, in copies.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/tools/cli_json.h"
+#include "tests/tools/two_models.h"
+
+namespace parallax::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kUnparks = "[drawer,time] Terminates(OpenDrawer(drawer),Parked(),time).\n";
+const std::string kParks = "[drawer,time] Initiates(CloseDrawer(drawer),Parked(),time).\n";
+
+/// The model forgets two effects, which show one after the other.
+struct TwoMistakes : TwoModels {
+  TwoMistakes() { world("load opens.e\n\n" + kUnparks + kParks); }
+};
+
+TEST_CASE("two mistakes: two rounds, then a clean run with its claim, and one patch") {
+  for (const std::string execution : {"open-loop", "closed-loop"}) {
+    CAPTURE(execution);
+    const TwoMistakes cli;
+    json_of(cli,
+            {"run", "two/own.yaml", "--out", "out", "--epsilon", "0.2", "--execution", execution},
+            1);
+    const auto before = files_below(cli.folder());
+    const auto report = json_of(cli, {"repair", "out", "--loop", "--out", "repaired"});
+    CAPTURE(report.dump());
+    CHECK(report.at("end") == "clean");
+    const auto& rounds = report.at("rounds");
+    REQUIRE(rounds.size() == 2);
+    CHECK(rounds.at(0).at("folder") == "out");
+    CHECK(rounds.at(0).at("verdict") == "discrepancy");
+    CHECK(rounds.at(1).at("folder") == rounds.at(0).at("next_folder"));
+    CHECK(rounds.at(1).at("verdict") == "no-discrepancy");
+    // As it was asked for on the command line of the first run.
+    const std::string claim = rounds.at(1).at("claims").at(0);
+    CHECK(claim.find("99 %") != std::string::npos);
+    const auto again = nlohmann::json::parse(cli.read("repaired/run-2/report.json"));
+    CHECK(again.at("criterion").at("epsilon") == 0.2);
+    CHECK(again.at("execution") == execution);
+
+    // The user's files are as they were; all that is new lies in the folder that was named.
+    for (const auto& [path, text] : before) CHECK(cli.read(path) == text);
+    for (const auto& [path, text] : files_below(cli.folder())) {
+      const bool is_known = std::any_of(before.begin(), before.end(),
+                                        [&](const auto& each) { return each.first == path; });
+      CHECK((is_known || path.starts_with("repaired/")));
+    }
+    CHECK(nlohmann::json::parse(cli.read("repaired/rounds.json")).at("rounds") == rounds);
+    CHECK(cli.read("repaired/rounds.txt").find("clean: the run after it is clean.") !=
+          std::string::npos);
+    CHECK(cli.read("repaired/repair.patch") == report.at("patch").get<std::string>());
+
+    // One patch against the originals.
+    ProcessOptions here;
+    here.folder = cli.folder().string();
+    const auto applied = run_process({"git", "apply", "repaired/repair.patch"}, here);
+    CHECK_MESSAGE(applied.code == 0, applied.err);
+    const auto model = cli.read("two/opens.e");
+    CHECK(model.find(kUnparks) != std::string::npos);
+    CHECK(cli.read("two/domain.e").find(kParks) != std::string::npos);
+    CHECK(
+        json_of(cli, {"run", "two/own.yaml", "--out", "again", "--epsilon", "0.2"}).at("verdict") ==
+        "no-discrepancy");
+  }
+}
+
+TEST_CASE("the rounds are bounded, and --apply writes the user's files at last") {
+  const TwoMistakes cli;
+  json_of(cli, {"run", "two/own.yaml", "--out", "out"}, 1);
+  const auto report = json_of(cli, {"repair", "out", "--loop", "--out", "one", "--rounds", "1"}, 1);
+  CHECK(report.at("end") == "rounds");
+  CHECK(report.at("rounds").size() == 1);
+  CHECK(cli.read("two/opens.e").find("Parked") == std::string::npos);
+  CHECK(cli.parallax({"repair", "out", "--loop", "--out", "all", "--apply", "1"}).code == 0);
+  CHECK(cli.read("two/opens.e").find(kUnparks) != std::string::npos);
+  CHECK(cli.read("two/domain.e").find(kParks) != std::string::npos);
+}
+
+TEST_CASE("it ends at a tie, with a clean folder, and where there is no room for it") {
+  const TwoModels cli;
+  // A drawer that opens by itself at one time and not at another.
+  cli.write("two/domain.e", cli.read("two/domain.e") + "\nfluent Lit()\nfluent Warm()\n");
+  cli.write("two/start.e", cli.read("two/start.e") + "!HoldsAt(Lit(),0).\n!HoldsAt(Warm(),0).\n");
+  cli.world(
+      "load domain.e\n\n[drawer,time] HoldsAt(Lit(),time) -> "
+      "Initiates(OpenDrawer(drawer),Open(drawer),time).\n");
+  cli.write("two/robot.bind",
+            "action opening (:object ?d) -> OpenDrawer(?d)\n"
+            "  ok: Open(?d) | !Open(?d) @t+1 else manipulation-goal-not-reached\n"
+            "action closing (:object ?d) -> CloseDrawer(?d)\n"
+            "  ok: !Open(?d) @t+1 else manipulation-goal-not-reached\n"
+            "action parking-arms () -> Park()\n"
+            "  ok: Parked() @t+1 else manipulation-goal-not-reached\n"
+            "action reaching () -> Reach()\n"
+            "  ok: !Parked() @t+1 else manipulation-goal-not-reached\n");
+  json_of(cli, {"run", "two/own.yaml", "--out", "out"}, 1);
+  const auto original = cli.read("two/opens.e");
+  const auto alone = json_of(cli, {"repair", "out"}, 1);
+  const auto tie = cli.parallax({"repair", "out", "--loop", "--out", "tie"});
+  CAPTURE(tie.out);
+  const bool is_tie = alone.at("tied") > 1;
+  CHECK(tie.code == (is_tie ? 1 : 0));
+  CHECK((tie.out.find("tie: ") != std::string::npos) == is_tie);
+  CHECK(cli.read("two/opens.e") == original);
+
+  const auto again = cli.parallax({"repair", "out", "--loop", "--out", "tie"});
+  CHECK(again.code == 2);
+  CHECK(again.err.find("needs a folder that is new or empty") != std::string::npos);
+  CHECK(cli.parallax({"repair", "out", "--loop"}).code == 2);
+  CHECK(cli.parallax({"repair", "out", "--out", "there"}).code == 2);
+
+  json_of(cli, {"run", "two/agree.yaml", "--out", "clean", "--epsilon", "0.5"});
+  const auto clean = json_of(cli, {"repair", "clean", "--loop", "--out", "nothing"});
+  CHECK(clean.at("end") == "nothing-to-repair");
+  CHECK(clean.at("patch") == "");
+}
+
+}  // namespace
+}  // namespace parallax::test

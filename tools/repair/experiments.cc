@@ -1,0 +1,217 @@
+#include "tools/repair/experiments.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "tools/repair/experiment.h"
+#include "tools/repair/experiment_runs.h"
+#include "tools/repair/ranking.h"
+
+namespace parallax::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostContenders = 8;  // are told apart at a time
+
+class Experiments {
+ public:
+  Experiments(const RepairOptions& options, const ExperimentOptions& experiments, RepairInput input,
+              Context& context)
+      : options_(options),
+        experiments_(experiments),
+        first_(std::move(input)),
+        context_(context),
+        chooser_(first_.loaded, context) {}
+
+  base::Result<RepairResult> run() {
+    auto proposed = propose_repairs(first_, context_);
+    if (!proposed) return proposed;
+    auto& result = *proposed;
+    if (!may_be_made(result)) return finished(std::move(result));
+    const bool on_record = first_.experiments > 0;
+    if (on_record && !open()) return context_.sink().already_reported();
+    if (runs_ != nullptr && !complete(result)) return context_.sink().already_reported();
+    while (!context_.stopped()) {
+      const auto models = contenders(result);
+      if (models.size() < 2) break;
+      if (budget() <= 0) {
+        result.why_tied = "the budget of runs is used up, --runs gives more";
+        break;
+      }
+      const auto experiment = chooser_.choose(
+          models, [this](const auto& trace) { return runs_ == nullptr || runs_->usable(trace); });
+      if (!experiment) {
+        if (!context_.stopped()) result.why_tied = nothing_tells();
+        break;
+      }
+      if (runs_ == nullptr && !open()) return context_.sink().already_reported();
+      if (runs_ == nullptr) break;
+      const auto made = make(*experiment, result);
+      if (!made) return context_.sink().already_reported();
+      if (!*made) break;
+    }
+    if (runs_ != nullptr && !context_.stopped() && !runs_->close()) {
+      return context_.sink().already_reported();
+    }
+    return finished(std::move(result));
+  }
+
+ private:
+  std::int64_t most() const {
+    const bool model = first_.loaded.world != nullptr;
+    return experiments_.runs.value_or(model ? kRunsInModel : kRunsInPhysics);
+  }
+  std::int64_t budget() const { return most() - (runs_ == nullptr ? 0 : runs_->made()); }
+
+  std::string nothing_tells() const {
+    return first_.loaded.scenario.plan.empty() ? "no run of the scenario tells them apart"
+                                               : "no run of this plan tells them apart";
+  }
+
+  /// Why none are made is told where it matters.
+  bool may_be_made(RepairResult& result) {
+    if (contenders(result).size() < 2 || context_.stopped()) return false;
+    std::error_code ignored;
+    const auto& folder = options_.folder.folder;
+    const auto place = fs::path(folder) / kExperiments;
+    if (experiments_.runs == 0) {
+      result.why_tied = "no runs may be made to tell them apart (--runs 0)";
+    } else if (options_.other_model) {
+      result.why_tied = "none are made of a scenario that may be another one";
+    } else if (!first_.loaded.scenario.simulator.command.empty() && !experiments_.allow_commands) {
+      result.why_tied = "the simulator is a command, which --allow-commands permits";
+    } else if (::access(folder.c_str(), W_OK) != 0 || fs::is_symlink(place, ignored)) {
+      result.why_tied = "nothing can be written into the folder";
+    }
+    return result.why_tied.empty();
+  }
+
+  /// The models of those that the runs speak for as much as for the first.
+  std::vector<std::string> contenders(const RepairResult& result) {
+    std::vector<std::string> out;
+    if (result.proposals.empty()) return out;
+    for (const auto i : as_well_founded(result.proposals)) {
+      const auto& proposal = result.proposals[i];
+      if (!proposal.text || proposal.changes != Proposal::Changes::kModel) continue;
+      if (out.size() == kMostContenders) break;
+      out.push_back(*proposal.text);
+      words_.emplace(*proposal.text, proposal.words);
+    }
+    return out;
+  }
+
+  base::Status open() {
+    auto& sink = context_.sink();
+    const RunFolderOptions folder{options_.folder.folder, first_.loaded.scenario.file.string()};
+    auto loaded = load_recorded_scenario(folder, first_.header, ScenarioUse::kRun, context_);
+    if (!loaded) return sink.already_reported();
+    as_run_ = std::make_unique<ScenarioModel>(*std::move(loaded));
+    auto& scenario = as_run_->scenario;
+    scenario.starts = harness::Starts::kUniform;  // it is the experiments that choose
+    scenario.compare = recorded_comparison(first_.header).value_or(scenario.comparison());
+    const auto simulator = experiments_.simulator(*as_run_);
+    if (!simulator) return sink.already_reported();
+    std::int64_t last = 0;
+    for (const auto& path : first_.paths) {
+      if (!path.experiment) last = std::max(last, path.id.sample);
+    }
+    extra_ = {experiments_.jobs, most(), experiments_.progress};
+    auto runs = ExperimentRuns::open({folder.folder, kExperiments, first_.header}, *as_run_, last,
+                                     *simulator, extra_, context_);
+    if (!runs) return sink.already_reported();
+    runs_ = *std::move(runs);
+    return base::Unit{};
+  }
+
+  /// What an earlier repair was at when it was ended.
+  base::Status complete(RepairResult& result) {
+    const auto before = runs_->made();
+    const auto made = runs_->complete(budget());
+    if (!made) return context_.sink().already_reported();
+    if (runs_->made() == before || context_.stopped()) return base::Unit{};
+    return propose_again(result);
+  }
+
+  base::Result<bool> make(const Experiment& experiment, RepairResult& result) {
+    const auto before = runs_->made();
+    const auto errors = context_.sink().error_count();
+    const auto made = runs_->make(experiment, budget());
+    if (!made) return context_.sink().already_reported();
+    if (!*made) return !context_.stopped() && context_.sink().error_count() == errors;
+    remarks_.push_back(fmt::format("{} made to tell {} pairs of proposals apart: {}",
+                                   runs_->made() - before, experiment.separated,
+                                   experiment.trace.key));
+    if (!propose_again(result)) return context_.sink().already_reported();
+    return true;
+  }
+
+  base::Status propose_again(RepairResult& result) {
+    auto wide = first_.options;
+    const auto input = load_repair_input(wide, context_);
+    if (!input) return context_.sink().already_reported();
+    auto proposed = propose_repairs(*input, context_);
+    if (!proposed) return context_.sink().already_reported();
+    result = *std::move(proposed);
+    return base::Unit{};
+  }
+
+  RepairResult finished(RepairResult result) {
+    auto& all = result.proposals;
+    for (const auto& [text, words] : words_) {
+      const bool left = std::any_of(all.begin(), all.end(),
+                                    [&](const Proposal& each) { return each.text == text; });
+      if (!left) result.refuted.push_back(words);
+    }
+    for (auto a = words_.begin(); a != words_.end(); ++a) {
+      for (auto b = std::next(a); b != words_.end(); ++b) {
+        if (!chooser_.are_same(a->first, b->first)) continue;
+        remarks_.push_back(fmt::format("{}: {} and {}", nothing_tells(), a->second, b->second));
+      }
+    }
+    std::sort(result.refuted.begin(), result.refuted.end());
+    if (options_.limit > 0 && all.size() > static_cast<std::size_t>(options_.limit)) {
+      all.resize(static_cast<std::size_t>(options_.limit));
+      result.more = true;
+    }
+    if (!all.empty()) {
+      result.tied = of_first_rank(all);
+      result.founded = as_well_founded(all);
+    }
+    result.remarks.insert(result.remarks.begin(), remarks_.begin(), remarks_.end());
+    return result;
+  }
+
+  const RepairOptions& options_;
+  const ExperimentOptions& experiments_;
+  RepairInput first_;
+  Context& context_;
+  ExperimentChooser chooser_;
+  std::map<std::string, std::string> words_;  // of all that were contenders, by their models
+  std::vector<std::string> remarks_;
+  std::unique_ptr<ScenarioModel> as_run_;
+  ExtraRunsOptions extra_;
+  std::unique_ptr<ExperimentRuns> runs_;  // last: it refers to the others
+};
+
+}  // namespace
+
+base::Result<RepairResult> repair_with_experiments(const RepairOptions& options,
+                                                   const ExperimentOptions& experiments,
+                                                   Context& context) {
+  auto wide = options;
+  if (wide.limit > 0) {
+    wide.limit = std::max(wide.limit, static_cast<std::int64_t>(kMostContenders) + 1);
+  }
+  auto input = load_repair_input(wide, context);
+  if (!input) return context.sink().already_reported();
+  return Experiments(options, experiments, *std::move(input), context).run();
+}
+
+}  // namespace parallax::tools

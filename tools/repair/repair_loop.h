@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/base/result.h"
+#include "harness/campaign/campaign_result.h"
+#include "tools/repair/experiments.h"
+
+namespace parallax::tools {
+
+struct RepairLoopOptions {
+  RepairOptions repair;
+  ExperimentOptions experiments;
+  std::string out;          // a new folder: copies of the scenario's files, runs, the log
+  std::int64_t rounds = 8;  // at most
+};
+
+/// Why it ended.
+enum class LoopEnd : std::uint8_t {
+  kClean,         // a run without discrepancy
+  kNothing,       // the model admits all runs of the folder
+  kTie,           // the first proposal is not the only one of its rank
+  kNone,          // no proposal
+  kPlanAtFault,   // with the first proposal no trace reaches the constraints
+  kInconclusive,  // the run decided nothing
+  kRounds,        // so many rounds were allowed
+  kStopped,
+};
+/// "clean", "nothing-to-repair", "tie", "no-proposal", "plan-at-fault", ...
+std::string_view to_string(LoopEnd end);
+
+struct RepairRound {
+  std::string folder;  // of the runs that were repaired
+  std::size_t runs = 0, failed = 0, experiments = 0;
+  std::string words, patch;  // of what was applied; empty: nothing was
+  std::string next_folder;   // of the run after it
+  std::string verdict;
+  std::vector<std::string> claims;  // by trace
+};
+
+struct RepairLoop {
+  std::vector<RepairRound> rounds;
+  LoopEnd end = LoopEnd::kStopped;
+  std::string why;                 // a sentence without its period
+  std::vector<ChangedFile> files;  // the user's, as they were and as the loop left its copies
+};
+
+/// Repairs, runs again and repairs the next discrepancy, in copies of the scenario's files. What an
+/// earlier round was repaired for holds in all later ones. Reports what repairing and running
+/// report, and an `out` that is not a new folder.
+base::Result<RepairLoop> repair_in_rounds(const RepairLoopOptions& options, Context& context);
+
+std::string loop_text(const RepairLoop& loop);
+std::string loop_json(const RepairLoop& loop);
+
+}  // namespace parallax::tools
