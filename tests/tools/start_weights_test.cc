@@ -53,8 +53,8 @@ std::map<std::string, int> starts_of(const CliFixture& cli, const std::string& f
     if (!object.contains("sample")) continue;
     const auto& initial = object.at("initial");
     std::string on;
-    if (initial.at("On(a)") == true) on += "a";
-    if (initial.at("On(b)") == true) on += "b";
+    if (initial.at("On(a)") == 1) on += "a";
+    if (initial.at("On(b)") == 1) on += "b";
     ++out[on];
   }
   return out;
