@@ -120,25 +120,23 @@ base::Result<PageData> gather_page(const PageOptions& options, Context& context)
     Context own(quiet(context), context.stop());
     read_report(folder, own, page);
   }
+  // One for journal and scenario: what is said of a simulation may point into both.
   Context own(quiet(context), context.stop());
   const auto journal = journal_of(folder, own, page);
   if (!journal) return page;
   const auto& header = *journal->header;
   if (page.scenario.empty()) page.scenario = header.scenario;
   if (page.simulator.empty()) page.simulator = header.simulator.name;
-  Context scenario_context(quiet(context), context.stop());
-  const auto loaded = scenario_of(options, header, scenario_context, page);
-  Context further_context(quiet(context), context.stop());
-  const auto further = loaded ? further_of(folder, further_context) : std::nullopt;
+  const auto loaded = scenario_of(options, header, own, page);
+  const auto further = loaded ? further_of(folder, own) : std::nullopt;
   add_journal(*journal, further ? &*further : nullptr, page);
   if (loaded && page.closed_loop) {
-    Context judging(quiet(context), context.stop());
-    judge_executions(*journal, *loaded, judging, page);
+    judge_executions(*journal, *loaded, own, page);
   }
   add_timelines(*journal, loaded ? &*loaded : nullptr, page);
   if (!loaded) return page;
-  add_world(*loaded, scenario_context.files(), page);
-  if (further) add_further(*further, *loaded, further_context, page);
+  add_world(*loaded, own.files(), page);
+  if (further) add_further(*further, *loaded, own, page);
   const bool was_explained = further.has_value();
   if ((options.explain || was_explained) && !page.discrepancies.empty()) {
     Context blame(quiet(context), context.stop());
