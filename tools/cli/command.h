@@ -86,6 +86,7 @@ Command traces_command();
 Command verify_command();
 Command diagnostics_command();
 Command fmt_command();
+Command learn_command();
 Command rates_command();
 Command draw_command();
 Command explain_command();

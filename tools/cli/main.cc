@@ -70,7 +70,7 @@ int run(int argc, char** argv) {
       check_command(),       traces_command(),  compile_command(), verify_command(),
       diagnostics_command(), explain_command(), fmt_command(),     diff_command(),
       worker_command(),      rates_command(),   draw_command(),    supervise_command(),
-      coverage_command(),    monitor_command(), report_command()};
+      coverage_command(),    monitor_command(), report_command(),  learn_command()};
   Program program{
       table, fmt::format("parallax {} (CaDiCaL {})", kVersion, kCadicalVersion), true, {}};
   for (auto& command : commands) {

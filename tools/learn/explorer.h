@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "harness/campaign/campaign.h"
+#include "harness/campaign/sample_runner.h"
+#include "tools/app/context.h"
+#include "tools/app/scenario_model.h"
+#include "tools/repair/evidence.h"
+
+namespace parallax::tools {
+
+struct ExploreOptions {
+  std::uint64_t seed = 1;
+  std::int64_t jobs = 1;
+  std::int64_t first = 1, count = 1;  // numbers of the sequences
+  std::filesystem::path run_dir;
+  std::string tool_version;
+  std::function<void(const harness::CampaignProgress&)> progress;
+};
+
+struct Explored {
+  std::vector<Evidence> runs;        // ids "7.1": the number of the sequence, and its sample
+  std::int64_t made = 0;             // simulations
+  std::vector<std::string> skipped;  // sequences that could not be simulated, and why
+};
+
+/// Simulates random sequences of events, each once, and records them in a run folder. Events are
+/// those that the plan performs, with what the plan says of them, and the same with other arguments
+/// where the scenario's action needs nothing of the plan. Every other sequence begins as one of
+/// `known` did, for a part of its way. `loaded` was loaded for closed loop. Reports what claiming
+/// the folder and starting the simulator report.
+base::Result<Explored> explore(const ScenarioModel& loaded, const std::vector<Evidence>& known,
+                               const harness::SimulatorFactory& make_simulator,
+                               const ExploreOptions& options, Context& context);
+
+}  // namespace parallax::tools

@@ -1,0 +1,449 @@
+#include "tools/learn/learn.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <system_error>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
+#include "harness/campaign/journal.h"
+#include "harness/report/report.h"
+#include "tools/app/closed_loop.h"
+#include "tools/app/observed_path.h"
+#include "tools/app/trace_feed.h"
+#include "tools/learn/explorer.h"
+#include "tools/learn/taught_model.h"
+
+namespace parallax::tools {
+
+using harness::CampaignVerdict;
+using harness::Execution;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kBatch = 10;  // sequences between two models
+constexpr std::int64_t kMostRounds = 400;
+
+/// Gives traces until a number of simulations is used up.
+class BoundedTraces final : public harness::TraceFeed {
+ public:
+  BoundedTraces(EnumeratedTraces& traces, const std::int64_t& made, std::int64_t most)
+      : traces_(traces), made_(made), most_(most) {}
+  base::Result<std::optional<harness::CampaignTrace>> next() override {
+    if (made_ < most_) return traces_.next();
+    ended_ = true;
+    return std::optional<harness::CampaignTrace>();
+  }
+  bool ended() const { return ended_; }
+  std::string exploration() const override { return ended_ ? "stopped" : traces_.exploration(); }
+  std::vector<std::string> bounds() const override { return traces_.bounds(); }
+  runtime::Symbols symbols() const override { return traces_.symbols(); }
+  base::Known admits(const harness::CampaignTrace& trace,
+                     const std::vector<std::map<compiler::FluentId, bool>>& observed) override {
+    return traces_.admits(trace, observed);
+  }
+
+ private:
+  EnumeratedTraces& traces_;
+  const std::int64_t& made_;
+  std::int64_t most_;
+  bool ended_ = false;
+};
+
+std::string first_error(const base::DiagnosticSink& sink) {
+  for (const auto& diagnostic : sink.sorted()) {
+    if (base::info(diagnostic.code).severity == base::Severity::kError) return diagnostic.message;
+  }
+  return "it was stopped";
+}
+
+class ScenarioLearner {
+ public:
+  ScenarioLearner(
+      const LearnOptions& options,
+      const std::function<base::Result<harness::SimulatorFactory>(const ScenarioModel&)>& simulator,
+      Context& context)
+      : options_(options), ask_simulator_(simulator), context_(context) {}
+
+  base::Result<LearnResult> run() {
+    auto& sink = context_.sink();
+    // In the way that it asks for, then as it is executed: both must be possible.
+    auto own = load_scenario_run(options_.scenario, std::nullopt, context_);
+    if (!own) return sink.already_reported();
+    own_execution_ = own->scenario.execution;
+    loaded_ = load_scenario_run(options_.scenario, Execution::kClosedLoop, context_);
+    if (!*loaded_) return sink.already_reported();
+    if (!prepare()) return sink.already_reported();
+    go();
+    finish();
+    if (!write()) return sink.already_reported();
+    return std::move(result_);
+  }
+
+ private:
+  const ScenarioModel& loaded() const { return **loaded_; }
+  bool over() const {
+    return context_.stopped() || result_.simulations >= options_.max_runs ||
+           std::ssize(result_.rounds) >= kMostRounds;
+  }
+
+  base::Status prepare() {
+    auto& sink = context_.sink();
+    if (!loaded().world) {
+      auto factory = ask_simulator_(loaded());
+      if (!factory) return sink.already_reported();
+      simulator_ = *std::move(factory);
+    }
+    auto made = TaughtModel::make(loaded(), options_.scenario, context_);
+    if (!made) return sink.already_reported();
+    taught_ = *std::move(made);
+    result_.dropped = taught_->dropped();
+    std::error_code error;
+    if (fs::exists(options_.out / "rounds", error)) {
+      return sink.error_about(base::DiagnosticCode::kUsage, "--out",
+                              fmt::format("{} has rounds of an earlier call; name another folder",
+                                          options_.out.string()));
+    }
+    fs::create_directories(options_.out / "rounds", error);
+    if (error) {
+      return sink.error_about(base::DiagnosticCode::kFileNotWritable, options_.out.string(),
+                              error.message());
+    }
+    return base::Unit{};
+  }
+
+  void go() {
+    if (options_.explore > 0) {
+      // One execution says what the plan does; then anything.
+      if (!plan_round(1) || over()) return;
+      while (result_.sequences < options_.explore && !over()) {
+        if (!explore_round()) return;
+      }
+    }
+    while (!over()) {
+      const auto planned = plan_round(std::nullopt);
+      if (!planned) return;
+      if (!*planned) continue;
+      if (own_execution_ == Execution::kClosedLoop) {
+        result_.clean = true;
+        return;
+      }
+      if (over()) return;
+      const auto traced = trace_round();
+      if (!traced) return;
+      if (!*traced) continue;
+      result_.clean = true;
+      return;
+    }
+  }
+
+  // --- rounds
+
+  struct Round {
+    LearnRound told;
+    fs::path folder;
+    std::unique_ptr<Context> context;
+    std::optional<ScenarioModel> loaded;
+    harness::SimulatorFactory simulator;
+  };
+
+  /// Writes the model and its scenario, and loads it as `parallax run` does.
+  std::optional<Round> begin(LearnRound::Kind kind, Execution execution) {
+    Round round;
+    round.told.number = std::ssize(result_.rounds) + 1;
+    round.told.kind = kind;
+    round.told.axioms = known_axioms_.size();
+    round.folder = options_.out / "rounds" / std::to_string(round.told.number);
+    if (!write_scenario(round.folder, "model.e", "scenario.yaml")) {
+      result_.why = "a file cannot be written";
+      return std::nullopt;
+    }
+    // What the user's scenario may name was asked when it was loaded.
+    auto form = context_.form();
+    form.allow_outside = true;
+    round.context = std::make_unique<Context>(form, context_.stop());
+    auto loaded = load_scenario_run(round.folder / "scenario.yaml", execution, *round.context);
+    if (!loaded) {
+      result_.why = fmt::format("the model of round {} cannot be run: {}", round.told.number,
+                                first_error(round.context->sink()));
+      return std::nullopt;
+    }
+    round.loaded = *std::move(loaded);
+    round.simulator =
+        round.loaded->world ? simulator_factory(*round.loaded, {}, context_.stop()) : simulator_;
+    return round;
+  }
+
+  bool write_scenario(const fs::path& folder, const std::string& model, const std::string& name) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    const auto from = fs::relative(loaded().scenario.file, folder, error);
+    const auto include = error || from.empty() ? loaded().scenario.file : from;
+    const auto scenario = fmt::format(
+        "# A model that was learned from runs of this scenario.\n\n"
+        "include: \"{}\"\nmodel: [{}]\nexpect:\n",
+        include.generic_string(), model);
+    auto& sink = context_.sink();
+    return base::write_file_atomically(folder / model, taught_->text(), sink).has_value() &&
+           base::write_file_atomically(folder / name, scenario, sink).has_value();
+  }
+
+  harness::CampaignOptions campaign(const Round& round) const {
+    harness::CampaignOptions out;
+    // Other starts in every round: the same ones again would teach nothing.
+    out.seed = options_.seed + static_cast<std::uint64_t>(round.told.number) - 1;
+    out.jobs = options_.jobs;
+    out.run_dir = round.folder / "run";
+    std::error_code error;
+    out.start_folder = fs::current_path(error).string();
+    out.scenario_hash = round.loaded->sources_hash;
+    out.tool_version = options_.tool_version;
+    out.stop = &context_.stop();
+    out.progress = options_.progress;
+    return out;
+  }
+
+  void limit_runs(harness::Scenario& scenario, std::optional<std::int64_t> most) const {
+    auto left = options_.max_runs - result_.simulations;
+    if (most) left = std::min(left, *most);
+    auto& limit = scenario.limits.max_runs;
+    if (limit == 0 || limit > left) limit = std::max<std::int64_t>(left, 1);
+  }
+
+  /// Executes the plan. True: clean, with a claim; none: nothing more can be learned.
+  std::optional<bool> plan_round(std::optional<std::int64_t> most) {
+    auto round = begin(LearnRound::Kind::kPlan, Execution::kClosedLoop);
+    if (!round) return std::nullopt;
+    auto& scenario = round->loaded->scenario;
+    limit_runs(scenario, most);
+    auto loop = ClosedLoop::make(*round->loaded, *round->context);
+    if (!loop) return failed(*round);
+    const auto options = campaign(*round);
+    auto ran = harness::run_loop_campaign(scenario, **loop, round->simulator, options,
+                                          round->context->files(), round->context->sink());
+    return judge(*round, ran, most.has_value());
+  }
+
+  /// Simulates the traces of the scenario as it asks for.
+  std::optional<bool> trace_round() {
+    auto round = begin(LearnRound::Kind::kTraces, Execution::kOpenLoop);
+    if (!round) return std::nullopt;
+    if (!round->loaded->compilation.model.has_constraints) return true;
+    limit_runs(round->loaded->scenario, std::nullopt);
+    EnumeratedTraces all(round->loaded->compilation.model, *round->context);
+    std::int64_t made = 0, done = 0, trace = 0;
+    BoundedTraces traces(all, made, options_.max_runs - result_.simulations);
+    auto options = campaign(*round);
+    options.progress = [&](const harness::CampaignProgress& progress) {
+      made += progress.trace == trace ? progress.done - done : progress.done;
+      done = progress.done;
+      trace = progress.trace;
+      if (options_.progress) options_.progress(progress);
+    };
+    auto ran = harness::run_campaign(round->loaded->scenario, traces, round->simulator, options,
+                                     round->context->files(), round->context->sink());
+    if (ran && ran->traces.empty() && !context_.stopped()) {
+      result_.why = "no trace of the learned model reaches the scenario's constraints";
+      close(*round, "no trace");
+      return std::nullopt;
+    }
+    if (ran && traces.ended() && ran->verdict == CampaignVerdict::kNoDiscrepancy) {
+      ran->verdict = CampaignVerdict::kInconclusive;
+    }
+    return judge(*round, ran, false);
+  }
+
+  std::optional<bool> judge(Round& round, base::Result<harness::CampaignResult>& ran, bool first) {
+    if (!ran) return failed(round);
+    if (ran->journal_open) {
+      (void)harness::write_report(*ran, round.folder / "run", round.context->sink());
+    }
+    round.told.simulations = ran->simulations;
+    result_.simulations += ran->simulations;
+    const auto outcome = std::string(harness::to_string(ran->verdict));
+    const bool taught = take(round);
+    close(round, outcome);
+    if (ran->verdict == CampaignVerdict::kNoDiscrepancy) {
+      result_.claims.clear();
+      for (const auto& trace : ran->traces) {
+        auto& claims = result_.claims;
+        const bool told = std::find(claims.begin(), claims.end(), trace.claim) != claims.end();
+        if (!trace.claim.empty() && !told) claims.push_back(trace.claim);
+      }
+      return !taught;  // with more runs another model may be the simplest one
+    }
+    if (context_.stopped()) return std::nullopt;
+    if (ran->failed) {
+      result_.why =
+          fmt::format("round {}: {}", round.told.number, first_error(round.context->sink()));
+      return std::nullopt;
+    }
+    if (taught || first) return false;
+    if (ran->verdict == CampaignVerdict::kInconclusive) {
+      if (!over()) {
+        result_.why = fmt::format("the run of round {} is inconclusive", round.told.number);
+        const auto& loop = ran->traces.empty() ? std::nullopt : ran->traces.front().loop;
+        if (loop && !loop->why_unfinished.empty()) result_.why += ": " + loop->why_unfinished;
+      }
+      return std::nullopt;
+    }
+    result_.why = fmt::format(
+        "what round {} found teaches nothing that axioms about events can say", round.told.number);
+    if (!ran->discrepancies.empty()) {
+      result_.why += ": " + ran->discrepancies.front().cause.text;
+    }
+    return std::nullopt;
+  }
+
+  /// A run that ended with an error; what it has on record counts all the same.
+  std::optional<bool> failed(Round& round) {
+    const auto why = first_error(round.context->sink());
+    std::error_code error;
+    if (fs::exists(round.folder / "run" / harness::kJournalName, error)) {
+      if (take(round)) {
+        close(round, "error: " + why);
+        return false;
+      }
+    }
+    result_.why = fmt::format("round {}: {}", round.told.number, why);
+    close(round, "error: " + why);
+    return std::nullopt;
+  }
+
+  /// False: nothing more can be done.
+  bool explore_round() {
+    auto round = begin(LearnRound::Kind::kSequences, Execution::kClosedLoop);
+    if (!round) return false;
+    ExploreOptions options;
+    options.seed = options_.seed;
+    options.jobs = options_.jobs;
+    options.first = result_.sequences + 1;
+    options.count = std::min(
+        {kBatch, options_.explore - result_.sequences, options_.max_runs - result_.simulations});
+    options.run_dir = round->folder / "run";
+    options.tool_version = options_.tool_version;
+    options.progress = options_.progress;
+    auto explored =
+        explore(*round->loaded, taught_->runs(), round->simulator, options, *round->context);
+    if (!explored) return failed(*round).has_value();
+    result_.sequences += options.count;
+    round->told.simulations = explored->made;
+    result_.simulations += explored->made;
+    for (auto& why : explored->skipped) result_.remarks.push_back(std::move(why));
+    const auto predicted = taught_->check(explored->runs).admitted;
+    for (const auto& run : explored->runs) taught_->add(run, round->told.number);
+    const auto before = known_axioms_;
+    taught_->relearn();
+    close(*round, fmt::format("{} of {} as the model said", predicted, explored->runs.size()));
+    const bool nothing = known_axioms_ == before;
+    result_.sequences_clean = nothing ? result_.sequences_clean + options.count : 0;
+    return true;
+  }
+
+  void close(Round& round, std::string outcome) {
+    round.told.outcome = std::move(outcome);
+    const auto axioms = taught_->axioms();
+    std::set<std::string> now(axioms.begin(), axioms.end());
+    std::vector<std::string> changed;
+    std::set_symmetric_difference(now.begin(), now.end(), known_axioms_.begin(),
+                                  known_axioms_.end(), std::back_inserter(changed));
+    round.told.changed = changed.size();
+    known_axioms_ = std::move(now);
+    context_.remark(fmt::format("round {}, {}: {} simulations, {}; {} axioms about events now",
+                                round.told.number, to_string(round.told.kind),
+                                round.told.simulations, round.told.outcome, known_axioms_.size()));
+    result_.rounds.push_back(round.told);
+  }
+
+  // --- what was seen
+
+  /// Learns from the simulations of a round; false if they have changed nothing.
+  bool take(const Round& round) {
+    const auto before = taught_->axioms();
+    const auto journal =
+        harness::read_journal(round.folder / "run", round.context->files(), round.context->sink());
+    if (!journal) return false;
+    auto paths = observed_paths(*round.loaded, *journal, *round.context);
+    if (!paths) return false;
+    taught_->add(*std::move(paths), round.loaded->compilation.model, round.told.number);
+    taught_->relearn();
+    return taught_->axioms() != before;
+  }
+
+  // --- the end
+
+  void finish() {
+    result_.model = taught_->text();
+    result_.axioms = taught_->axioms().size();
+    result_.contradictions = taught_->contradictions();
+    result_.not_learnable = taught_->not_learned();
+    // Whoever has stopped it does not wait for the runs to be held against the model.
+    const auto check = context_.stopped() ? RunsCheck() : taught_->check(taught_->runs());
+    result_.runs = check.runs;
+    result_.admitted = check.admitted;
+    if (!check.first.empty()) {
+      result_.remarks.push_back("the first run that the model does not admit: " + check.first);
+    }
+    if (!check.wrong.empty()) {
+      result_.remarks.push_back("the learned text is no right model: " + check.wrong);
+    }
+    if (result_.clean) {
+      result_.why.clear();
+      return;
+    }
+    result_.claims.clear();
+    if (!result_.why.empty()) return;
+    result_.why = context_.stopped()
+                      ? "it was stopped"
+                      : fmt::format("the budget of {} simulations is used up", options_.max_runs);
+  }
+
+  base::Status write() {
+    auto& sink = context_.sink();
+    if (!write_scenario(options_.out, "learned.e", "learned.yaml") ||
+        !base::write_file_atomically(options_.out / "log.txt", learn_log(result_), sink)) {
+      return sink.already_reported();
+    }
+    return base::Unit{};
+  }
+
+  const LearnOptions& options_;
+  const std::function<base::Result<harness::SimulatorFactory>(const ScenarioModel&)>&
+      ask_simulator_;
+  Context& context_;
+  std::optional<base::Result<ScenarioModel>> loaded_;
+  Execution own_execution_ = Execution::kOpenLoop;
+  harness::SimulatorFactory simulator_;
+  std::unique_ptr<TaughtModel> taught_;
+  std::set<std::string> known_axioms_;
+  LearnResult result_;
+};
+
+}  // namespace
+
+std::string_view to_string(LearnRound::Kind kind) {
+  switch (kind) {
+    case LearnRound::Kind::kPlan:
+      return "plan";
+    case LearnRound::Kind::kTraces:
+      return "traces";
+    case LearnRound::Kind::kSequences:
+      return "sequences";
+  }
+  return "";
+}
+
+base::Result<LearnResult> learn(
+    const LearnOptions& options,
+    const std::function<base::Result<harness::SimulatorFactory>(const ScenarioModel&)>&
+        make_simulator,
+    Context& context) {
+  return ScenarioLearner(options, make_simulator, context).run();
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/app/context.h"
+#include "tools/learn/declarations.h"
+#include "tools/learn/effect_learner.h"
+
+namespace parallax::tools {
+
+/// The declarations, each rule with the runs that taught it, and the start, in the standard layout.
+/// `heading`: comment lines.
+std::string learned_text(const Declarations& declarations, const LearnedEffects& effects,
+                         const LearnVocabulary& vocabulary, const std::string& heading);
+
+/// How a model stands to the runs that it was learned from, asked of the compiled text.
+struct RunsCheck {
+  std::string wrong;  // the text is no right model
+  std::size_t admitted = 0, runs = 0;
+  std::string first;  // that is not: "run 1/1.4 at 3"
+};
+
+/// `forbidden`: may the rules forbid events that the world refused? Then such a step is one where
+/// the event does not happen and the model says that it cannot.
+RunsCheck check_runs(const std::string& text, const std::vector<Evidence>& runs,
+                     const std::vector<LearnedRule>& rules, const LearnVocabulary& vocabulary,
+                     const Context& context);
+
+}  // namespace parallax::tools

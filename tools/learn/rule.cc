@@ -1,0 +1,214 @@
+#include "tools/learn/rule.h"
+
+#include <algorithm>
+#include <map>
+
+namespace parallax::tools {
+
+namespace {
+
+/// Looks for values of a unit's own variables.
+class UnitQuestion {
+ public:
+  UnitQuestion(const RuleUnit& unit, const LearnVocabulary& vocabulary,
+               const std::vector<Truth>& state, const std::vector<std::size_t>& binding)
+      : unit_(unit),
+        vocabulary_(vocabulary),
+        state_(state),
+        binding_(binding),
+        own_(unit.own.size(), kOpen) {}
+
+  Truth answer() {
+    descend(0, Truth::kTrue);
+    return best_;
+  }
+
+ private:
+  static constexpr auto kOpen = static_cast<std::size_t>(-1);
+
+  std::size_t value(const RuleTerm& term) const {
+    if (term.kind == RuleTerm::Kind::kConstant) return term.index;
+    return term.kind == RuleTerm::Kind::kHead ? binding_[term.index] : own_[term.index];
+  }
+
+  Truth truth(const RuleLiteral& literal) const {
+    if (literal.equation) {
+      const bool same = value(literal.terms[0]) == value(literal.terms[1]);
+      return same != literal.negated ? Truth::kTrue : Truth::kFalse;
+    }
+    std::vector<std::size_t> arguments;
+    arguments.reserve(literal.terms.size());
+    for (const auto& term : literal.terms) arguments.push_back(value(term));
+    const auto atom = vocabulary_.atom(literal.symbol, arguments);
+    return atom ? state_[*atom] : Truth::kFalse;
+  }
+
+  /// `so_far`: true, or unknown.
+  void descend(std::size_t place, Truth so_far) {
+    if (best_ == Truth::kTrue) return;
+    if (place == unit_.literals.size()) {
+      best_ = so_far;
+      return;
+    }
+    const auto& literal = unit_.literals[place];
+    for (const auto& term : literal.terms) {
+      if (term.kind != RuleTerm::Kind::kOwn || own_[term.index] != kOpen) continue;
+      for (const auto constant : vocabulary_.domain(unit_.own[term.index])) {
+        own_[term.index] = constant;
+        descend(place, so_far);
+      }
+      own_[term.index] = kOpen;
+      return;
+    }
+    const auto here = truth(literal);
+    if (here == Truth::kFalse) return;
+    descend(place + 1, here == Truth::kUnknown ? here : so_far);
+  }
+
+  const RuleUnit& unit_;
+  const LearnVocabulary& vocabulary_;
+  const std::vector<Truth>& state_;
+  const std::vector<std::size_t>& binding_;
+  std::vector<std::size_t> own_;
+  Truth best_ = Truth::kFalse;
+};
+
+/// Names for the variables of a rule: their sorts, numbered where there are several of one.
+class RuleNames {
+ public:
+  RuleNames(const LearnedRule& rule, const LearnVocabulary& vocabulary) : vocabulary_(vocabulary) {
+    std::map<std::string, int> count, next;
+    const auto sort_name = [&](auto sort) { return vocabulary.typed().sorts[sort].name; };
+    for (const auto sort : rule.variables) ++count[sort_name(sort)];
+    for (const auto& unit : rule.units) {
+      for (const auto sort : unit.own) ++count[sort_name(sort)];
+    }
+    const auto name = [&](auto sort) {
+      const auto base = sort_name(sort);
+      return count[base] == 1 ? base : base + std::to_string(++next[base]);
+    };
+    for (const auto sort : rule.variables) head_.push_back(name(sort));
+    for (const auto& unit : rule.units) {
+      auto& names = own_.emplace_back();
+      for (const auto sort : unit.own) names.push_back(name(sort));
+    }
+  }
+
+  const std::vector<std::string>& head() const { return head_; }
+  const std::vector<std::string>& own(std::size_t unit) const { return own_[unit]; }
+  std::string term(const RuleTerm& term, std::size_t unit) const {
+    if (term.kind == RuleTerm::Kind::kConstant) return vocabulary_.constant(term.index);
+    return term.kind == RuleTerm::Kind::kHead ? head_[term.index] : own_[unit][term.index];
+  }
+  std::string call(std::size_t symbol, const std::vector<RuleTerm>& terms, std::size_t unit) const {
+    std::string out = vocabulary_.symbols()[symbol].name + "(";
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      out += (i == 0 ? "" : ",") + term(terms[i], unit);
+    }
+    return out + ")";
+  }
+
+ private:
+  const LearnVocabulary& vocabulary_;
+  std::vector<std::string> head_;
+  std::vector<std::vector<std::string>> own_;
+};
+
+std::string print_literal(const RuleLiteral& literal, std::size_t unit, const RuleNames& names,
+                          const LearnVocabulary& vocabulary) {
+  if (literal.equation) {
+    return names.term(literal.terms[0], unit) + (literal.negated ? "!=" : "=") +
+           names.term(literal.terms[1], unit);
+  }
+  const auto atom = names.call(literal.symbol, literal.terms, unit);
+  const bool fluent = vocabulary.symbols()[literal.symbol].kind == compiler::SymbolKind::kFluent;
+  return fluent ? "HoldsAt(" + atom + ",time)" : atom;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string out;
+  for (const auto& name : names) out += (out.empty() ? "" : ",") + name;
+  return out;
+}
+
+std::string print_unit(const RuleUnit& unit, std::size_t number, const RuleNames& names,
+                       const LearnVocabulary& vocabulary) {
+  std::string out;
+  for (const auto& literal : unit.literals) {
+    out += (out.empty() ? "" : " & ") + print_literal(literal, number, names, vocabulary);
+  }
+  if (!unit.negated) return out;
+  if (unit.own.empty()) return "!" + out;
+  return "!({" + listed(names.own(number)) + "} " + out + ")";
+}
+
+}  // namespace
+
+bool LearnedRule::bind(const std::vector<std::size_t>& event_arguments,
+                       const std::vector<std::size_t>& fluent_arguments,
+                       std::vector<std::size_t>& binding) const {
+  binding = event_arguments;
+  binding.resize(variables.size(), 0);
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const auto& term = terms[i];
+    if (term.kind == RuleTerm::Kind::kConstant) {
+      if (term.index != fluent_arguments[i]) return false;
+    } else if (term.index < event_arguments.size()) {
+      if (binding[term.index] != fluent_arguments[i]) return false;
+    } else {
+      binding[term.index] = fluent_arguments[i];
+    }
+  }
+  return true;
+}
+
+Truth value_of(const RuleUnit& unit, const LearnVocabulary& vocabulary,
+               const std::vector<Truth>& state, const std::vector<std::size_t>& binding) {
+  const auto holds = UnitQuestion(unit, vocabulary, state, binding).answer();
+  if (!unit.negated || holds == Truth::kUnknown) return holds;
+  return holds == Truth::kTrue ? Truth::kFalse : Truth::kTrue;
+}
+
+Truth value_of(const std::vector<RuleUnit>& units, const LearnVocabulary& vocabulary,
+               const std::vector<Truth>& state, const std::vector<std::size_t>& binding) {
+  auto out = Truth::kTrue;
+  for (const auto& unit : units) {
+    const auto here = value_of(unit, vocabulary, state, binding);
+    if (here == Truth::kFalse) return here;
+    if (here == Truth::kUnknown) out = here;
+  }
+  return out;
+}
+
+std::string print(const LearnedRule& rule, const LearnVocabulary& vocabulary) {
+  const RuleNames names(rule, vocabulary);
+  // "There is one" in front of an implication is "for all" in front of the rule.
+  auto variables = names.head();
+  std::string condition;
+  for (std::size_t i = 0; i < rule.units.size(); ++i) {
+    const auto& unit = rule.units[i];
+    if (!unit.negated) {
+      variables.insert(variables.end(), names.own(i).begin(), names.own(i).end());
+    }
+    condition += (i == 0 ? "" : " & ") + print_unit(unit, i, names, vocabulary);
+  }
+  variables.emplace_back("time");
+  std::vector<RuleTerm> arguments;
+  for (std::size_t i = 0; i < vocabulary.symbols()[rule.event].sorts.size(); ++i) {
+    arguments.push_back({RuleTerm::Kind::kHead, i});
+  }
+  const auto event = names.call(rule.event, arguments, 0);
+  std::string head;
+  if (rule.kind == RuleKind::kForbids) {
+    head = "!Happens(" + event + ",time)";
+  } else {
+    const auto* kind = rule.kind == RuleKind::kInitiates    ? "Initiates("
+                       : rule.kind == RuleKind::kTerminates ? "Terminates("
+                                                            : "Releases(";
+    head = kind + event + "," + names.call(rule.fluent, rule.terms, 0) + ",time)";
+  }
+  return "[" + listed(variables) + "] " + (condition.empty() ? "" : condition + " -> ") + head +
+         ".";
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/learn/observations.h"
+
+namespace parallax::tools {
+
+/// A variable of the rule's head, one of the unit's own, or a constant.
+struct RuleTerm {
+  enum class Kind : std::uint8_t { kHead, kOwn, kConstant };
+  Kind kind = Kind::kHead;
+  std::size_t index = 0;
+  friend bool operator==(const RuleTerm&, const RuleTerm&) = default;
+};
+
+/// An atom at the time of the event, or an equation of two terms.
+struct RuleLiteral {
+  bool equation = false;
+  bool negated = false;  // of an equation
+  std::size_t symbol = 0;
+  std::vector<RuleTerm> terms;
+};
+
+/// Part of a condition: there are values of the unit's own variables for which all its literals
+/// hold; or there are none.
+struct RuleUnit {
+  bool negated = false;
+  std::vector<RuleLiteral> literals;
+  std::vector<compiler::SortId> own;  // sorts of its variables
+  int cost = 0;
+};
+
+enum class RuleKind : std::uint8_t { kInitiates, kTerminates, kReleases, kForbids };
+
+/// `[variables] units -> Initiates(event(x1,..,xn),fluent(terms),time)`, or, of kForbids,
+/// `units -> !Happens(event(x1,..,xn),time)`. The head's variables are the event's arguments, then
+/// further ones of the fluent.
+struct LearnedRule {
+  RuleKind kind = RuleKind::kInitiates;
+  std::size_t event = 0, fluent = 0;
+  std::vector<compiler::SortId> variables;
+  std::vector<RuleTerm> terms;  // of the fluent
+  std::vector<RuleUnit> units;
+  int cost = 0;
+  std::vector<std::string> taught_by;  // runs that show the effect
+  std::vector<std::string> held_by;    // runs that show that it needs its condition
+
+  /// The values of the head's variables where it is about these arguments; false if it is not.
+  bool bind(const std::vector<std::size_t>& event_arguments,
+            const std::vector<std::size_t>& fluent_arguments,
+            std::vector<std::size_t>& binding) const;
+};
+
+/// Does the unit hold in a state, for these values of the head's variables?
+Truth value_of(const RuleUnit& unit, const LearnVocabulary& vocabulary,
+               const std::vector<Truth>& state, const std::vector<std::size_t>& binding);
+/// Do all of them?
+Truth value_of(const std::vector<RuleUnit>& units, const LearnVocabulary& vocabulary,
+               const std::vector<Truth>& state, const std::vector<std::size_t>& binding);
+
+/// As the language writes it, with its period.
+std::string print(const LearnedRule& rule, const LearnVocabulary& vocabulary);
+
+}  // namespace parallax::tools

@@ -1,0 +1,300 @@
+#include "tools/learn/rule_search.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <set>
+
+#include "tools/learn/rule_units.h"
+
+namespace parallax::tools {
+
+namespace {
+
+constexpr int kRule = 20, kNewVariable = 2, kHeadConstant = 25;
+constexpr int kAnotherRule = 30;             // what a rule may cost more that makes others needless
+constexpr int kCheapCondition = 30;          // cheaper than this, no further stage is asked
+constexpr std::size_t kMostUnits = 3;        // of one rule
+constexpr std::size_t kMostSteps = 200'000;  // of one search
+constexpr int kNone = std::numeric_limits<int>::max();
+
+/// A set of examples by number.
+class ExampleSet {
+ public:
+  explicit ExampleSet(std::size_t count, bool all = false) : words_((count + 63) / 64, 0) {
+    for (std::size_t i = 0; all && i < count; ++i) insert(i);
+  }
+  void insert(std::size_t i) { words_[i / 64] |= std::uint64_t{1} << (i % 64); }
+  bool contains(std::size_t i) const { return (words_[i / 64] >> (i % 64) & 1U) != 0; }
+  std::optional<std::size_t> first() const {
+    for (std::size_t i = 0; i < words_.size(); ++i) {
+      if (words_[i] != 0) return i * 64 + static_cast<std::size_t>(std::countr_zero(words_[i]));
+    }
+    return std::nullopt;
+  }
+  std::size_t size() const {
+    std::size_t out = 0;
+    for (const auto word : words_) out += static_cast<std::size_t>(std::popcount(word));
+    return out;
+  }
+  ExampleSet both(const ExampleSet& other) const {
+    auto out = *this;
+    for (std::size_t i = 0; i < words_.size(); ++i) out.words_[i] &= other.words_[i];
+    return out;
+  }
+  ExampleSet without(const ExampleSet& other) const {
+    auto out = *this;
+    for (std::size_t i = 0; i < words_.size(); ++i) out.words_[i] &= ~other.words_[i];
+    return out;
+  }
+
+ private:
+  std::vector<std::uint64_t> words_;
+};
+
+/// An example in the words of a head.
+struct Instance {
+  std::size_t example = 0;  // place among `shown` or `against`
+  std::size_t state = 0;
+  std::vector<std::size_t> binding;
+};
+
+struct RatedUnit {
+  const RuleUnit* unit = nullptr;
+  ExampleSet shows, excludes;
+};
+
+/// The cheapest conjunction for one head.
+class ConditionSearch {
+ public:
+  ConditionSearch(const std::vector<RatedUnit>& units, std::size_t shown, std::size_t against,
+                  std::size_t wanted, int head_cost, int bound)
+      : units_(units), wanted_(wanted), best_(bound) {
+    descend(ExampleSet(shown, true), ExampleSet(against, true), head_cost);
+  }
+
+  int best() const { return best_; }
+  const std::optional<std::vector<std::size_t>>& chosen() const { return found_; }
+
+ private:
+  void descend(const ExampleSet& shown, const ExampleSet& against, int cost) {
+    if (++steps_ > kMostSteps || cost >= best_) return;
+    const auto open = against.first();
+    if (!open) {
+      const int score = cost + (shown.size() < wanted_ ? kAnotherRule : 0);
+      if (score >= best_) return;
+      best_ = score;
+      found_ = chosen_;
+      return;
+    }
+    if (chosen_.size() == kMostUnits) return;
+    for (std::size_t i = 0; i < units_.size(); ++i) {
+      const auto& unit = units_[i];
+      if (cost + unit.unit->cost >= best_) break;  // the others cost no less
+      if (!unit.excludes.contains(*open)) continue;
+      chosen_.push_back(i);
+      descend(shown.both(unit.shows), against.without(unit.excludes), cost + unit.unit->cost);
+      chosen_.pop_back();
+    }
+  }
+
+  const std::vector<RatedUnit>& units_;
+  std::size_t wanted_;
+  int best_;
+  std::size_t steps_ = 0;
+  std::vector<std::size_t> chosen_;
+  std::optional<std::vector<std::size_t>> found_;
+};
+
+class RuleFinder {
+ public:
+  RuleFinder(const RuleProblem& problem, const Observations& observations,
+             const std::atomic<bool>& stop)
+      : problem_(problem),
+        observations_(observations),
+        vocabulary_(observations.vocabulary()),
+        stop_(stop),
+        open_(problem.shown.size(), true) {}
+
+  RuleAnswer find() {
+    RuleAnswer out;
+    while (const auto seed = open_.first()) {
+      if (stop_.load()) break;
+      auto rule = best_rule(*seed);
+      ExampleSet explained(problem_.shown.size());
+      if (rule) {
+        for (std::size_t i = 0; i < problem_.shown.size(); ++i) {
+          if (fires(*rule, problem_.shown[i])) explained.insert(i);
+        }
+      }
+      if (!rule || !explained.contains(*seed)) {
+        out.unexplained.push_back(problem_.shown[*seed]);
+        explained.insert(*seed);
+      } else {
+        name_runs(*rule);
+        out.rules.push_back(*std::move(rule));
+      }
+      open_ = open_.without(explained);
+    }
+    return out;
+  }
+
+ private:
+  const Transition& step(const RuleExample& example) const {
+    return observations_.transitions()[example.transition];
+  }
+
+  bool fires(const LearnedRule& rule, const RuleExample& example) const {
+    std::vector<std::size_t> binding;
+    const auto& at = step(example);
+    return rule.bind(at.arguments, example.arguments, binding) &&
+           value_of(rule.units, vocabulary_, observations_.state(at.before), binding) ==
+               Truth::kTrue;
+  }
+
+  /// Every way to say of the seed's fluent what it is: arguments of the event, variables,
+  /// constants. Cheapest first.
+  std::vector<LearnedRule> heads(const RuleExample& seed) const {
+    LearnedRule bare;
+    bare.kind = problem_.kind;
+    bare.event = problem_.event;
+    bare.fluent = problem_.fluent;
+    bare.variables = vocabulary_.symbols()[problem_.event].sorts;
+    bare.cost = kRule;
+    std::vector<LearnedRule> out = {bare};
+    const auto& arguments = step(seed).arguments;
+    for (std::size_t i = 0; i < seed.arguments.size(); ++i) {
+      const auto sort = vocabulary_.symbols()[problem_.fluent].sorts[i];
+      std::vector<LearnedRule> next;
+      for (const auto& begun : out) {
+        for (std::size_t k = 0; k < arguments.size(); ++k) {
+          if (arguments[k] != seed.arguments[i]) continue;
+          next.push_back(begun);
+          next.back().terms.push_back({RuleTerm::Kind::kHead, k});
+        }
+        next.push_back(begun);
+        next.back().terms.push_back({RuleTerm::Kind::kHead, begun.variables.size()});
+        next.back().variables.push_back(sort);
+        next.back().cost += kNewVariable;
+        next.push_back(begun);
+        next.back().terms.push_back({RuleTerm::Kind::kConstant, seed.arguments[i]});
+        next.back().cost += kHeadConstant;
+      }
+      out = std::move(next);
+    }
+    std::stable_sort(out.begin(), out.end(),
+                     [](const auto& a, const auto& b) { return a.cost < b.cost; });
+    return out;
+  }
+
+  std::vector<Instance> instances(const LearnedRule& head, const std::vector<RuleExample>& examples,
+                                  const ExampleSet* only) const {
+    std::vector<Instance> out;
+    for (std::size_t i = 0; i < examples.size(); ++i) {
+      if (only != nullptr && !only->contains(i)) continue;
+      Instance instance;
+      const auto& at = step(examples[i]);
+      if (!head.bind(at.arguments, examples[i].arguments, instance.binding)) continue;
+      instance.example = i;
+      instance.state = at.before;
+      out.push_back(std::move(instance));
+    }
+    return out;
+  }
+
+  std::optional<LearnedRule> best_rule(std::size_t seed) const {
+    std::optional<LearnedRule> best;
+    int score = kNone;
+    const auto all_heads = heads(problem_.shown[seed]);
+    for (const auto stage :
+         {UnitStage::kPlain, UnitStage::kJoined, UnitStage::kConstants, UnitStage::kChained}) {
+      for (const auto& head : all_heads) {
+        if (stop_.load()) return best;
+        if (head.cost >= score) continue;
+        const bool constants = std::any_of(head.terms.begin(), head.terms.end(), [](auto& term) {
+          return term.kind == RuleTerm::Kind::kConstant;
+        });
+        if (constants && stage < UnitStage::kConstants) continue;
+        try_head(head, seed, stage, best, score);
+      }
+      if (best && score <= kRule + kCheapCondition) break;
+    }
+    return best;
+  }
+
+  void try_head(const LearnedRule& head, std::size_t seed, UnitStage stage,
+                std::optional<LearnedRule>& best, int& score) const {
+    const auto shown = instances(head, problem_.shown, &open_);
+    const auto against = instances(head, problem_.against, nullptr);
+    const auto at = std::find_if(shown.begin(), shown.end(),
+                                 [&](const auto& each) { return each.example == seed; });
+    const RuleHead about{head.kind, head.fluent, head.variables, head.terms};
+    std::vector<RuleUnit> units;
+    if (!against.empty()) {
+      units =
+          units_that_hold(about, vocabulary_, observations_.state(at->state), at->binding, stage);
+    }
+    std::vector<RatedUnit> rated;
+    for (const auto& unit : units) {
+      if (head.cost + unit.cost >= score) break;
+      RatedUnit one{&unit, ExampleSet(shown.size()), ExampleSet(against.size())};
+      for (std::size_t i = 0; i < against.size(); ++i) {
+        if (value(unit, against[i]) == Truth::kFalse) one.excludes.insert(i);
+      }
+      if (!one.excludes.first()) continue;
+      for (std::size_t i = 0; i < shown.size(); ++i) {
+        if (value(unit, shown[i]) == Truth::kTrue) one.shows.insert(i);
+      }
+      rated.push_back(std::move(one));
+    }
+    const ConditionSearch search(rated, shown.size(), against.size(), open_.size(), head.cost,
+                                 score);
+    if (!search.chosen()) return;
+    score = search.best();
+    best = head;
+    for (const auto i : *search.chosen()) {
+      best->units.push_back(*rated[i].unit);
+      best->cost += rated[i].unit->cost;
+    }
+  }
+
+  Truth value(const RuleUnit& unit, const Instance& at) const {
+    return value_of(unit, vocabulary_, observations_.state(at.state), at.binding);
+  }
+
+  /// Which runs say so: those that show the effect, and those that the bare rule would contradict.
+  void name_runs(LearnedRule& rule) const {
+    const auto collect = [&](const Transition& from, std::vector<std::string>& to) {
+      for (const auto& id : from.runs) {
+        if (std::find(to.begin(), to.end(), id) == to.end()) to.push_back(id);
+      }
+    };
+    for (const auto& example : problem_.shown) {
+      if (fires(rule, example)) collect(step(example), rule.taught_by);
+    }
+    if (rule.units.empty()) return;
+    std::vector<std::size_t> binding;
+    for (const auto& example : problem_.against) {
+      if (rule.bind(step(example).arguments, example.arguments, binding)) {
+        collect(step(example), rule.held_by);
+      }
+    }
+  }
+
+  const RuleProblem& problem_;
+  const Observations& observations_;
+  const LearnVocabulary& vocabulary_;
+  const std::atomic<bool>& stop_;
+  ExampleSet open_;  // of `shown`, those that no rule explains yet
+};
+
+}  // namespace
+
+RuleAnswer find_rules(const RuleProblem& problem, const Observations& observations,
+                      const std::atomic<bool>& stop) {
+  return RuleFinder(problem, observations, stop).find();
+}
+
+}  // namespace parallax::tools
