@@ -26,6 +26,13 @@ bool compared_at_rest(const StateMapping& mapping, const GroundFluent& fluent) {
   return binding != nullptr && binding->at_rest_only;
 }
 
+bool is_compared(const StateMapping& mapping, const GroundFluent& fluent, Moment moment) {
+  const auto* binding = mapping.find(fluent.symbol);
+  if (binding == nullptr || moment == Moment::kStart) return true;
+  if (binding->at_start_only()) return false;
+  return moment == Moment::kEnd || !binding->at_rest_only;
+}
+
 bool only_at_rest(const StateMapping& mapping, const ModelFluents& fluents,
                   const std::string& outside) {
   return std::all_of(fluents.ground().begin(), fluents.ground().end(), [&](const auto& fluent) {
@@ -36,11 +43,12 @@ bool only_at_rest(const StateMapping& mapping, const ModelFluents& fluents,
 }  // namespace
 
 LoopState loop_state(const StateMapping& mapping, const ModelFluents& fluents,
-                     const State& observation, bool at_rest, std::set<std::string>* missing) {
+                     const State& observation, Moment moment, std::set<std::string>* missing) {
   LoopState seen;
+  const bool at_rest = moment != Moment::kOnTheWay;
   for (std::size_t i = 0; i < fluents.ground().size(); ++i) {
     const auto& fluent = fluents.ground()[i];
-    if (!at_rest && compared_at_rest(mapping, fluent)) continue;
+    if (!is_compared(mapping, fluent, moment)) continue;
     const auto reading = mapping.read(fluent, observation, missing);
     if (!reading) continue;  // ignored on purpose
     if (*reading == Reading::kNeither) {
@@ -62,12 +70,13 @@ Judgement judge(const StateMapping& mapping, const ModelFluents& fluents,
   Judgement out;
   std::vector<DivergingFluent> lasting;
   for (std::size_t t = 0; t < observations.size(); ++t) {
-    const bool at_rest = t == 0 || t + 1 == observations.size();
+    const auto moment = moment_at(t, observations.size() - 1);
+    const bool at_rest = moment != Moment::kOnTheWay;
     std::vector<DivergingFluent> differing;
     auto& state = out.states.emplace_back();
     for (std::size_t i = 0; i < fluents.ground().size(); ++i) {
       const auto& fluent = fluents.ground()[i];
-      if (!at_rest && compared_at_rest(mapping, fluent)) continue;
+      if (!is_compared(mapping, fluent, moment)) continue;
       const auto reading = mapping.read(fluent, observations[t], &out.missing);
       if (!reading) continue;  // ignored on purpose
       const bool predicted = runtime::contains(trace.points[t].holds, fluents.id(i));
@@ -138,6 +147,8 @@ std::vector<ComparedFluents> compared_fluents(const StateMapping& mapping,
     if (binding->is_ignored()) {
       entry.how = ComparedFluents::How::kIgnored;
       entry.why = std::get<IgnoredBinding>(binding->condition).why;
+    } else if (binding->at_start_only()) {
+      entry.how = ComparedFluents::How::kAtTheStart;
     } else if (comparison == Comparison::kFinal || binding->at_rest_only) {
       entry.how = ComparedFluents::How::kAtTheEnd;
     }

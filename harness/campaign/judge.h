@@ -20,15 +20,21 @@ struct ObservedState {
   bool in_no_state = false;  // one that no state of a model stands for
 };
 
-/// One observation as the compared fluents read it. `at_rest`: those that are compared at rest only
-/// count, too.
+/// When something is observed: fluents may be compared at the start only, or at start and end.
+enum class Moment : std::uint8_t { kStart, kOnTheWay, kEnd };
+inline Moment moment_at(std::size_t timepoint, std::size_t last) {
+  if (timepoint == 0) return Moment::kStart;
+  return timepoint == last ? Moment::kEnd : Moment::kOnTheWay;
+}
+
+/// One observation as the fluents read it that are compared then.
 struct LoopState {
   ObservedState state;
   std::vector<compiler::FluentId> neither;  // what is neither so nor so; not in `state.holds`
   std::vector<std::string> outside;         // bodies in none of their regions: "RobotAt(outside)"
 };
 LoopState loop_state(const StateMapping& mapping, const ModelFluents& fluents,
-                     const State& observation, bool at_rest, std::set<std::string>* missing);
+                     const State& observation, Moment moment, std::set<std::string>* missing);
 
 /// What the observations of one simulation say about the trace, on every fluent with a mapping: at
 /// every timepoint, or at the start and the last one where the mapping says so.

@@ -185,10 +185,10 @@ std::vector<LoopState> path_states(const StateMapping& mapping, const ModelFluen
   std::vector<LoopState> states;
   const auto last = record.observations.size() - 1;
   for (std::size_t t = 0; t <= last; ++t) {
-    const bool at_rest = t == 0 || t == last;
-    auto& seen = states.emplace_back(
-        loop_state(mapping, fluents, record.observations[t], at_rest, &missing));
-    if (!at_rest && comparison == Comparison::kFinal) seen = {};
+    const auto moment = moment_at(t, last);
+    auto& seen =
+        states.emplace_back(loop_state(mapping, fluents, record.observations[t], moment, &missing));
+    if (moment == Moment::kOnTheWay && comparison == Comparison::kFinal) seen = {};
   }
   return states;
 }

@@ -37,7 +37,7 @@ constexpr std::string_view to_string(Starts starts) {
 
 /// How the fluents of one symbol are compared.
 struct ComparedFluents {
-  enum class How : std::uint8_t { kEveryStep, kAtTheEnd, kIgnored };
+  enum class How : std::uint8_t { kEveryStep, kAtTheEnd, kAtTheStart, kIgnored };
   std::string fluent;  // "Holding(..)", "Tired()"
   How how = How::kEveryStep;
   std::string why;  // of an ignored one, in the scenario's words; may be empty

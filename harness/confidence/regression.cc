@@ -115,7 +115,7 @@ RegressionFrame regression_frame(const StateMapping& mapping, const StartCuboid&
   for (const auto& fluent : fluents) {
     const FluentBinding* binding = mapping.find(fluent.symbol);
     PARALLAX_REQUIRE(binding != nullptr, "the mapping was checked against the model's fluents");
-    if (binding->is_ignored()) continue;
+    if (binding->is_ignored() || binding->at_start_only()) continue;
     const auto* inside = binding->inside();
     if (inside != nullptr && is_covered(fluent, *inside, cells)) continue;
     frame.not_covered.push_back(fluent.text);

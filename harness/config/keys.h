@@ -12,6 +12,7 @@ namespace parallax::harness {
 /// the same word, and a misspelt one does not compile. Region axes are keys under their own names
 /// (`to_string`).
 struct Key {
+  static constexpr std::string_view kAbove = "above";
   static constexpr std::string_view kActTimeoutS = "act_timeout_s";
   static constexpr std::string_view kActions = "actions";
   static constexpr std::string_view kApproach = "approach";
@@ -128,6 +129,7 @@ struct Key {
   static constexpr std::string_view kNoiseM = "noise_m";
   static constexpr std::string_view kNoiseRad = "noise_rad";
   static constexpr std::string_view kObserveTimeoutS = "observe_timeout_s";
+  static constexpr std::string_view kOnly = "only";
   static constexpr std::string_view kOnlyIf = "only_if";
   static constexpr std::string_view kOpeningM = "opening_m";
   static constexpr std::string_view kPalmBody = "palm_body";
@@ -177,6 +179,7 @@ struct Key {
   static constexpr std::string_view kTraces = "traces";
   static constexpr std::string_view kType = "type";
   static constexpr std::string_view kUnless = "unless";
+  static constexpr std::string_view kUpTo = "up_to";
   static constexpr std::string_view kUpright = "upright";
   static constexpr std::string_view kUprightExcept = "upright_except";
   static constexpr std::string_view kUnobserved = "unobserved";

@@ -210,6 +210,23 @@ EqualsBinding read_equals(YamlFields& fields, const SymbolPattern& pattern) {
   return binding;
 }
 
+BorderBinding read_border(YamlFields& fields, const SymbolPattern& pattern) {
+  fields.only({Key::kStart, Key::kAbove, Key::kUpTo, Key::kOnly});
+  BorderBinding binding;
+  binding.variable = read_pattern_text(fields, Key::kStart, pattern);
+  const auto* above = fields.find(Key::kAbove);
+  const auto* up_to = fields.find(Key::kUpTo);
+  if (above != nullptr && up_to != nullptr) {
+    fields.sink().error(DiagnosticCode::kYamlOutOfBounds, up_to->range, key_text(Key::kUpTo),
+                        "given besides " + key_text(Key::kAbove), "alone");
+  }
+  if (above == nullptr && up_to == nullptr) fields.require(Key::kAbove);
+  binding.above = above != nullptr;
+  fields.number(binding.above ? Key::kAbove : Key::kUpTo, kAnyNumber, binding.border);
+  fields.texts(Key::kOnly, binding.only);
+  return binding;
+}
+
 std::optional<FluentBinding> read_binding(const YamlEntry& entry, base::DiagnosticSink& sink) {
   const auto pattern = parse_pattern(entry.key);
   if (!pattern) {
@@ -234,6 +251,10 @@ std::optional<FluentBinding> read_binding(const YamlEntry& entry, base::Diagnost
     binding.condition = ignored;
     return binding;
   }
+  if (fields.find(Key::kStart) != nullptr) {
+    binding.condition = read_border(fields, *pattern);
+    return binding;
+  }
   // Where an observation makes sense at rest only.
   const auto comparison = read_comparison(fields);
   binding.at_rest_only = comparison == Comparison::kFinal;
@@ -251,8 +272,8 @@ std::optional<FluentBinding> read_binding(const YamlEntry& entry, base::Diagnost
     return binding;
   }
   fields.only({Key::kInside, Key::kBody, Key::kUnless, Key::kOnlyIf, Key::kDrawn, Key::kUpright,
-               Key::kUprightExcept, Key::kFlag, Key::kRange, Key::kEquals, Key::kCompare,
-               Key::kIgnored});
+               Key::kUprightExcept, Key::kFlag, Key::kRange, Key::kEquals, Key::kStart,
+               Key::kCompare, Key::kIgnored});
   if (fields.require(Key::kInside) == nullptr) return std::nullopt;
   binding.condition = read_inside(fields, *pattern);
   return binding;

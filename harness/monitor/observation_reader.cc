@@ -141,6 +141,9 @@ void ObservationReader::prepare(const EqualsBinding& kind, const GroundFluent& f
   reader.text = with_arguments(kind.text, fluent);
 }
 
+/// A log need not begin where a start is drawn.
+void ObservationReader::prepare(const BorderBinding&, const GroundFluent&, FluentReader&) {}
+
 void ObservationReader::prepare(const IgnoredBinding&, const GroundFluent&, FluentReader&) {}
 
 /// Do the flags let the fluent hold?

@@ -73,6 +73,7 @@ class ObservationReader {
   void prepare(const FlagBinding& kind, const GroundFluent& fluent, FluentReader& reader);
   void prepare(const RangeBinding& kind, const GroundFluent& fluent, FluentReader& reader);
   void prepare(const EqualsBinding& kind, const GroundFluent& fluent, FluentReader& reader);
+  void prepare(const BorderBinding& kind, const GroundFluent& fluent, FluentReader& reader);
   void prepare(const IgnoredBinding& kind, const GroundFluent& fluent, FluentReader& reader);
   std::int8_t allowed(const FluentReader& reader, const ReportedValues& values) const;
   std::int8_t inside(const FluentReader& reader, const ReportedValues& values) const;

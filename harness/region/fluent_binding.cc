@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "compiler/base/contract.h"
 
@@ -137,6 +138,14 @@ std::optional<Reading> read(const EqualsBinding& kind, const GroundFluent& fluen
   return Reading::kFails;
 }
 
+std::optional<Reading> read(const BorderBinding& kind, const GroundFluent& fluent,
+                            const State& state, const RegionMap& /*regions*/,
+                            std::set<std::string>* missing) {
+  if (!kind.concerns(fluent)) return Reading::kFails;
+  const auto value = number(state, with_arguments(kind.variable, fluent), missing);
+  return reading(value && (*value > kind.border) == kind.above);
+}
+
 std::optional<Reading> read(const IgnoredBinding&, const GroundFluent&, const State&,
                             const RegionMap&, std::set<std::string>*) {
   return std::nullopt;
@@ -165,6 +174,12 @@ std::vector<std::string> variables(const InsideBinding& kind, const GroundFluent
     out.insert(out.end(), {body + ".roll", body + ".pitch"});
   }
   return out;
+}
+
+std::vector<std::string> variables(const BorderBinding& kind, const GroundFluent& fluent,
+                                   const RegionMap& /*regions*/) {
+  if (!kind.concerns(fluent)) return {};
+  return {with_arguments(kind.variable, fluent)};
 }
 
 std::vector<std::string> variables(const IgnoredBinding&, const GroundFluent&, const RegionMap&) {
@@ -223,6 +238,12 @@ std::optional<std::string> reset_conflict(const EqualsBinding& kind, const Groun
   return needs_flag(kind.variable, fluent);
 }
 
+std::optional<std::string> reset_conflict(const BorderBinding& kind, const GroundFluent& fluent,
+                                          bool wanted) {
+  if (!wanted || kind.concerns(fluent)) return std::nullopt;
+  return fmt::format("`{}` holds, but it can only for {}", fluent.text, fmt::join(kind.only, ", "));
+}
+
 std::optional<std::string> reset_conflict(const IgnoredBinding&, const GroundFluent&, bool) {
   return std::nullopt;
 }
@@ -256,6 +277,8 @@ void add_reset_values(const EqualsBinding& kind, const GroundFluent& fluent,
                       const RegionMap& /*regions*/, State& state) {
   state.emplace(with_arguments(kind.variable, fluent), std::string());
 }
+
+void add_reset_values(const BorderBinding&, const GroundFluent&, const RegionMap&, State&) {}
 
 void add_reset_values(const IgnoredBinding&, const GroundFluent&, const RegionMap&, State&) {}
 
@@ -294,6 +317,17 @@ std::string with_arguments(std::string_view pattern, const GroundFluent& fluent)
     }
   }
   return result;
+}
+
+bool BorderBinding::concerns(const GroundFluent& fluent) const {
+  if (only.empty()) return true;
+  return !fluent.arguments.empty() &&
+         std::find(only.begin(), only.end(), fluent.arguments.front()) != only.end();
+}
+
+Interval BorderBinding::side(bool wanted) const {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  return wanted == above ? Interval{border, kFar} : Interval{-kFar, border};
 }
 
 const Region* InsideBinding::region_of(const GroundFluent& fluent, const RegionMap& regions) const {

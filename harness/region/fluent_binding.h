@@ -71,6 +71,18 @@ struct EqualsBinding {
   std::string text;
 };
 
+/// Fluent holds iff a variable began on one side of a border: above it, or at or below it. A start
+/// draws the variable on the side that the fluent asks for; later nothing is compared.
+struct BorderBinding {
+  std::string variable;  // "{0}.x"
+  double border = 0.0;
+  bool above = true;
+  std::vector<std::string> only{};  // first arguments for which it can hold; empty: all
+
+  bool concerns(const GroundFluent& fluent) const;
+  Interval side(bool wanted) const;
+};
+
 /// Said on purpose: this fluent has no continuous meaning and is not compared.
 struct IgnoredBinding {
   std::string why;  // in the scenario's words; may be empty
@@ -81,7 +93,9 @@ struct IgnoredBinding {
 struct FluentBinding {
   std::string fluent;  // symbol name, "RobotIn"
   std::size_t arity = 0;
-  std::variant<InsideBinding, FlagBinding, RangeBinding, EqualsBinding, IgnoredBinding> condition;
+  std::variant<InsideBinding, FlagBinding, RangeBinding, EqualsBinding, BorderBinding,
+               IgnoredBinding>
+      condition;
   base::SourceRange source;
   /// Compared at the start and at the end only, also where other fluents are at every step.
   bool at_rest_only = false;
@@ -102,6 +116,8 @@ struct FluentBinding {
   /// value for them.
   void add_reset_values(const GroundFluent& ground, const RegionMap& regions, State& state) const;
 
+  /// It is about the start alone, and not compared later.
+  bool at_start_only() const { return std::holds_alternative<BorderBinding>(condition); }
   bool is_ignored() const { return std::holds_alternative<IgnoredBinding>(condition); }
   /// How the fluent puts a body into a region; null if it is about something else.
   const InsideBinding* inside() const { return std::get_if<InsideBinding>(&condition); }

@@ -49,6 +49,11 @@ class DemandCollector {
       }
     }
     if (const auto* inside = binding->inside()) add_inside(fluent, wanted, *inside);
+    const auto* border = std::get_if<BorderBinding>(&binding->condition);
+    if (border != nullptr && at_reset_ && border->concerns(fluent)) {
+      sides_.push_back(
+          {with_arguments(border->variable, fluent), border->side(wanted), fluent.text});
+    }
     const auto* flag = std::get_if<FlagBinding>(&binding->condition);
     if (flag == nullptr || !at_reset_ || !flag->drawn.value_or(false)) return;
     flags_.push_back({with_arguments(flag->variable, fluent),
@@ -62,6 +67,8 @@ class DemandCollector {
     std::string fluent;
   };
   const std::vector<Flag>& flags() const { return flags_; }
+  /// Variables that begin on a side of a border.
+  const std::vector<Flag>& sides() const { return sides_; }
   const Demands& demands() const { return demands_; }
   const std::vector<Problem>& problems() const { return problems_; }
 
@@ -79,7 +86,7 @@ class DemandCollector {
   const StateMapping& mapping_;
   bool at_reset_;
   Demands demands_;
-  std::vector<Flag> flags_;
+  std::vector<Flag> flags_, sides_;
   std::vector<Problem> problems_;
 };
 
@@ -133,6 +140,16 @@ class StartBuilder {
 
   void set(const std::string& variable, const Interval& value, const std::string& fluent) {
     narrow(variable, value, fmt::format("what `{}` asks for", fluent));
+  }
+
+  /// Narrows what something else draws; a fixed value has to lie there.
+  void keep_to(const std::string& variable, const Interval& side, const std::string& fluent) {
+    if (!dimensions_.contains(variable)) {
+      problems_.push_back(
+          fmt::format("`{}` asks for a side of `{}`, which nothing draws", fluent, variable));
+      return;
+    }
+    narrow(variable, side, fmt::format("what `{}` asks for", fluent));
   }
 
   const std::vector<std::string>& problems() const { return problems_; }
@@ -232,6 +249,9 @@ base::Result<StartCuboid> StateMapping::start_cuboid(const std::vector<GroundFlu
   StartBuilder builder(extra);
   for (const auto& [body, demand] : collected.demands()) builder.add(body, demand);
   for (const auto& flag : collected.flags()) builder.set(flag.variable, flag.value, flag.fluent);
+  for (const auto& side : collected.sides()) {
+    builder.keep_to(side.variable, side.value, side.fluent);
+  }
   for (const auto& problem : builder.problems()) {
     sink.error(base::DiagnosticCode::kStartNotSampleable, blame, problem);
   }

@@ -68,7 +68,11 @@ Json json_of(const std::vector<ComparedFluents>& compared) {
   for (const auto& entry : compared) {
     const bool ignored = entry.how == ComparedFluents::How::kIgnored;
     const bool final = entry.how == ComparedFluents::How::kAtTheEnd;
-    const std::string_view how = ignored ? "ignored" : final ? "final" : "every-step";
+    const bool start = entry.how == ComparedFluents::How::kAtTheStart;
+    const std::string_view how = ignored ? "ignored"
+                                 : final ? "final"
+                                 : start ? "start"
+                                         : "every-step";
     out.push_back({{"fluent", entry.fluent}, {"compared", how}});
     if (!entry.why.empty()) out.back()["why"] = entry.why;
   }

@@ -58,8 +58,9 @@ class TextReport {
   /// What is compared and when, and what is not and why.
   void compared() {
     using How = ComparedFluents::How;
-    for (const auto& [how, label] :
-         {std::pair{How::kEveryStep, "every step"}, {How::kAtTheEnd, "only the end"}}) {
+    for (const auto& [how, label] : {std::pair{How::kEveryStep, "every step"},
+                                     {How::kAtTheEnd, "only the end"},
+                                     {How::kAtTheStart, "at the start"}}) {
       std::vector<std::string> names;
       for (const auto& entry : result_.compared) {
         if (entry.how == how) names.push_back(entry.fluent);

@@ -131,7 +131,7 @@ std::string ScenarioPlan::unseen(const compiler::PlanQuestions::Needs& needs) co
   if (!needs.one_state) return "it is not about the fluents of one timepoint";
   for (const auto number : needs.fluents) {
     const auto* binding = mapping_.find(fluents_[number].symbol);
-    if (binding == nullptr || binding->is_ignored()) {
+    if (binding == nullptr || binding->is_ignored() || binding->at_start_only()) {
       return fmt::format("`{}` is not observed", fluents_[number].text);
     }
   }

@@ -78,8 +78,8 @@ class PathReader {
     std::set<std::string> missing;
     for (std::size_t t = 0; t <= count; ++t) {
       path.points.push_back(harness::loop_state(*loaded_.scenario.mapping, fluents_,
-                                                record.observations[t], t == 0 || t == count,
-                                                &missing));
+                                                record.observations[t],
+                                                harness::moment_at(t, count), &missing));
       path.states.push_back(path.points.back().state.holds);
     }
     if (!missing.empty()) {

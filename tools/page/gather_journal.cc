@@ -173,9 +173,9 @@ class TimelineMaker {
     const auto last = std::min(count, record.observations.size());
     for (std::size_t t = 0; t < last; ++t) {
       std::set<std::string> missing;
-      const bool at_rest = t == 0 || t + 1 == count;
+      const auto moment = harness::moment_at(t, count - 1);
       const auto seen = harness::loop_state(*loaded_->scenario.mapping, *fluents_,
-                                            record.observations[t], at_rest, &missing);
+                                            record.observations[t], moment, &missing);
       for (const auto& [fluent, holds] : seen.state.holds) {
         row_of(symbols_->name(fluent)).observed[t] = holds ? '1' : '0';
       }
