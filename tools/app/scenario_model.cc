@@ -16,6 +16,7 @@
 #include "harness/campaign/replay.h"
 #include "harness/discrete/model_simulator.h"
 #include "harness/simulator/process_simulator.h"
+#include "tools/app/edited_scenario.h"
 #include "tools/app/file_kind.h"
 #include "tools/app/start_weights.h"
 #include "tools/app/version.h"
@@ -400,6 +401,32 @@ base::Result<compiler::Compilation> compile_with_model(const harness::Scenario& 
   input->text = context.files().add("edited.e", std::move(model));
   if (execution == harness::Execution::kClosedLoop && input->plan) execute(scenario, *input);
   if (!constraints) input->constraints.clear();
+  return compiler::compile_model(*input, context.files(), context.sink());
+}
+
+base::Result<compiler::Compilation> compile_edited(const harness::Scenario& scenario,
+                                                   const EditedTexts& texts, Context& context) {
+  const RegionLocator locator(scenario.mapping->regions());
+  auto input = compile_input(scenario, locator, context);
+  if (!input) return context.sink().already_reported();
+  if (texts.model) input->text = context.files().add("edited.e", *texts.model);
+  if (input->plan) {
+    for (auto& file : input->plan->plan) {
+      const auto& name = context.files()[file].name();
+      const auto edited = texts.plan.find(name);
+      if (edited != texts.plan.end()) file = context.files().add(name, edited->second);
+    }
+  }
+  auto constraints = std::move(input->constraints);
+  input->constraints.clear();
+  if (scenario.execution == harness::Execution::kClosedLoop && input->plan) {
+    execute(scenario, *input);
+  }
+  if (texts.horizon) input->horizon = *texts.horizon;
+  if (texts.constraints) input->constraints = std::move(constraints);
+  if (!texts.property.empty() && !look_for_violations(texts.property, *input, context)) {
+    return context.sink().already_reported();
+  }
   return compiler::compile_model(*input, context.files(), context.sink());
 }
 

@@ -85,6 +85,7 @@ int repair_loop(const RepairCommandOptions& options, const ExperimentOptions& ex
 
 int repair(const RepairCommandOptions& options, Invocation& invocation) {
   auto repair = options.repair;
+  repair.plan = true;
   if (repair.limit != 0) repair.limit = std::max(repair.limit, options.apply);
   auto experiments = options.experiments;
   if (options.runs != kUsualRuns) experiments.runs = options.runs;
@@ -118,7 +119,8 @@ int repair(const RepairCommandOptions& options, Invocation& invocation) {
 
 Command repair_command() {
   auto options = std::make_shared<RepairCommandOptions>();
-  OptionTable command("repair", "Propose changes of a model that recorded runs have refuted");
+  OptionTable command("repair",
+                      "Propose changes of a model, or a plan, that recorded runs have refuted");
   command.footer(
       "Examples:\n"
       "  parallax repair out/plan2\n"
@@ -134,7 +136,11 @@ Command repair_command() {
   command.option("--limit", options->repair.limit, "Show so many proposals at most; 0: all found")
       .check(NonNegative{})
       .show_default();
-  command.option("--apply", options->apply, "Write this proposal into the files of the model")
+  command.option("--property", options->repair.properties,
+                 "Also say which of these properties of the plan each proposal breaks or restores");
+  command
+      .option("--apply", options->apply,
+              "Write this proposal into the files of the model or the plan")
       .check(Positive{});
   command
       .option("--runs", options->runs,

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "tools/repair/experiment.h"
@@ -34,7 +35,7 @@ class Experiments {
     auto proposed = propose_repairs(first_, context_);
     if (!proposed) return proposed;
     auto& result = *proposed;
-    if (!may_be_made(result)) return finished(std::move(result));
+    if (!may_be_made(result)) return with_plan(finished(std::move(result)));
     const bool on_record = first_.experiments > 0;
     if (on_record && !open()) return context_.sink().already_reported();
     if (runs_ != nullptr && !complete(result)) return context_.sink().already_reported();
@@ -60,7 +61,7 @@ class Experiments {
     if (runs_ != nullptr && !context_.stopped() && !runs_->close()) {
       return context_.sink().already_reported();
     }
-    return finished(std::move(result));
+    return with_plan(finished(std::move(result)));
   }
 
  private:
@@ -154,12 +155,22 @@ class Experiments {
 
   base::Status propose_again(RepairResult& result) {
     auto wide = first_.options;
-    const auto input = load_repair_input(wide, context_);
+    auto input = load_repair_input(wide, context_);
     if (!input) return context_.sink().already_reported();
     auto proposed = propose_repairs(*input, context_);
     if (!proposed) return context_.sink().already_reported();
     result = *std::move(proposed);
+    last_.emplace(*std::move(input));
     return base::Unit{};
+  }
+
+  /// Changes of the plan start from the repairs of the model that are left.
+  base::Result<RepairResult> with_plan(RepairResult result) {
+    if (!options_.plan) return result;
+    auto& input = last_ ? *last_ : first_;
+    input.options.limit = options_.limit;
+    if (!add_plan_proposals(input, result, context_)) return context_.sink().already_reported();
+    return result;
   }
 
   RepairResult finished(RepairResult result) {
@@ -191,6 +202,7 @@ class Experiments {
   const RepairOptions& options_;
   const ExperimentOptions& experiments_;
   RepairInput first_;
+  std::optional<RepairInput> last_;  // with the runs that were made
   Context& context_;
   ExperimentChooser chooser_;
   std::map<std::string, std::string> words_;  // of all that were contenders, by their models

@@ -12,6 +12,12 @@
 
 namespace parallax::tools {
 
+/// Does a property of the plan hold up to the horizon? None: it is not known.
+struct PropertyEffect {
+  std::string property;
+  std::optional<bool> before, after;  // in what was run; with the change
+};
+
 /// A change after which what was seen is no discrepancy any more, as far as it is needed.
 struct Proposal {
   enum class Changes : std::uint8_t { kModel, kBinding, kPlan, kScenario };
@@ -23,8 +29,12 @@ struct Proposal {
   std::vector<std::string> evidence;  // what stands behind it, sentences; besides the verdict
   std::vector<ChangedFile> files;
   std::optional<std::string> text;  // of the edited model, flat; none: the model stays as it is
-  bool precaution = false;          // what may fail is taken to fail
-  bool open = false;                // it leaves open what happens
+  /// Of a change of the plan: the number of the proposal that says how the world then is; 0: the
+  /// runs by themselves do.
+  std::size_t under = 0;
+  std::vector<PropertyEffect> properties;  // of those that were asked about, in their order
+  bool precaution = false;                 // what may fail is taken to fail
+  bool open = false;                       // it leaves open what happens
   Verdict verdict;
   /// What it does to the traces. Of a change of the model alone the ranking finds it out.
   std::optional<TraceEffects> effects;

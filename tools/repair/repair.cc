@@ -4,6 +4,8 @@
 #include <iterator>
 
 #include "tools/repair/model_proposals.h"
+#include "tools/repair/plan_proposals.h"
+#include "tools/repair/properties.h"
 #include "tools/repair/ranking.h"
 
 namespace parallax::tools {
@@ -20,6 +22,35 @@ void append(std::vector<T>& to, std::vector<T> more) {
 }
 
 }  // namespace
+
+base::Status add_plan_proposals(const RepairInput& input, RepairResult& result, Context& context) {
+  const auto limit = static_cast<std::size_t>(input.options.limit);
+  auto& all = result.proposals;
+  const auto place = std::min(all.size(), std::max(kMostModels, result.tied));
+  if (!input.partings.empty() && !context.stopped() && (limit == 0 || limit > place)) {
+    auto found = plan_proposals(input, all, context);
+    append(result.remarks, std::move(found.remarks));
+    result.edits += found.edits;
+    const auto& first = all.empty() ? std::nullopt : all.front().effects;
+    result.plan_at_fault = first && first->reaches == false;
+    result.more = result.more || found.more;
+    const auto added = found.proposals.size();
+    all.insert(all.begin() + static_cast<std::ptrdiff_t>(place),
+               std::make_move_iterator(found.proposals.begin()),
+               std::make_move_iterator(found.proposals.end()));
+    if (limit != 0 && all.size() > limit) {
+      all.resize(limit);
+      result.more = true;
+    }
+    for (auto& proposal : all) {
+      for (auto& tied : proposal.tied) tied += tied > place ? added : 0;
+      std::erase_if(proposal.tied, [&](std::size_t tied) { return tied > all.size(); });
+    }
+    for (auto& index : result.founded) index += index >= place ? added : 0;
+    std::erase_if(result.founded, [&](std::size_t index) { return index >= all.size(); });
+  }
+  return hold_against_properties(input, all, context);
+}
 
 const char* name_of(Proposal::Changes changes) {
   switch (changes) {

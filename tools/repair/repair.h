@@ -16,9 +16,11 @@ struct RepairResult {
   std::vector<std::string> contradictions;
   std::vector<RepairCause> causes;  // of the contradictions
   std::vector<Proposal> proposals;  // best first
-  bool more = false;                // there are further ones that were not looked at
-  std::size_t edits = 0;            // single edits that were considered
-  std::string nearest_miss;         // where there is no proposal; may be empty
+  /// In the model that the first proposal makes no trace of the plan reaches the constraints.
+  bool plan_at_fault = false;
+  bool more = false;         // there are further ones that were not looked at
+  std::size_t edits = 0;     // single edits that were considered
+  std::string nearest_miss;  // where there is no proposal; may be empty
   std::vector<std::string> remarks;
   std::size_t experiments = 0;       // of the runs were made to tell proposals apart
   std::vector<std::string> refuted;  // proposals, in words, that these have refuted
@@ -34,6 +36,12 @@ struct RepairResult {
 base::Result<RepairResult> propose_repairs(const RepairOptions& options, Context& context);
 /// The same of what was loaded, for as many proposals as its options say.
 base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& context);
+
+/// Adds changes of the plan to what was proposed for `input`, behind the first repairs of the
+/// model, from which they start, so that the number of a proposal does not depend on how many are
+/// shown; then holds all against the properties that were asked about. Reports a property that is
+/// none.
+base::Status add_plan_proposals(const RepairInput& input, RepairResult& result, Context& context);
 
 std::string repair_text(const RepairResult& result, const RepairOptions& options);
 std::string repair_json(const RepairResult& result);

@@ -20,8 +20,10 @@ inline constexpr const char* kExperiments = "experiments";
 
 struct RepairOptions {
   RunFolderOptions folder;
-  bool other_model = false;  // the scenario need not be as it was when it was run
-  std::int64_t limit = 5;    // proposals that are shown; 0: all
+  bool other_model = false;             // the scenario need not be as it was when it was run
+  std::int64_t limit = 5;               // proposals that are shown; 0: all
+  bool plan = false;                    // changes of the plan are proposed, too
+  std::vector<std::string> properties;  // of the plan, that every proposal is held against
 };
 
 /// Where runs and model parted.

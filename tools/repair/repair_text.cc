@@ -62,9 +62,30 @@ std::string tie_text(const std::vector<std::size_t>& tied) {
                                     fmt::join(tied, ", "));
 }
 
+/// What a change does to the properties that were asked about.
+std::string properties_text(const Proposal& proposal) {
+  std::string out;
+  for (const auto& [property, before, after] : proposal.properties) {
+    const auto* what = "nothing is known of";
+    if (after && !before) what = *after ? "there then holds" : "there then does not hold";
+    if (after && before) {
+      what = *after ? (*before ? "keeps" : "restores") : (*before ? "breaks" : "does not restore");
+    }
+    out += fmt::format("   Property: {} `{}`.\n", what, property);
+  }
+  return out;
+}
+
 std::string proposal_text(const Proposal& proposal, std::size_t rank, const RepairResult& result) {
   auto out = fmt::format("\n{}. {}{}.\n", rank, proposal.words, tie_text(proposal.tied));
   const auto& verdict = proposal.verdict;
+  if (proposal.changes == Proposal::Changes::kPlan) {
+    const auto effects = proposal.effects.value_or(TraceEffects{});
+    for (const auto& sentence : proposal.evidence) out += "   " + sentence + "\n";
+    out += fmt::format("   Of the plan's traces there {} lost, {} gained.\n",
+                       number_of(effects.lost), number_of(effects.gained));
+    return out + properties_text(proposal) + "\n" + patch_of(proposal);
+  }
   out += fmt::format("   Consistent with {} of {}", verdict.runs_consistent,
                      plural(result.runs, "run"));
   if (verdict.runs_whole < verdict.runs_consistent) {
@@ -85,7 +106,7 @@ std::string proposal_text(const Proposal& proposal, std::size_t rank, const Repa
         "   No trace reaches the constraints any more: if this is how the world is, the plan is at "
         "fault.\n";
   }
-  return out + "\n" + patch_of(proposal);
+  return out + properties_text(proposal) + "\n" + patch_of(proposal);
 }
 
 /// What the runs refuted, and what they leave open.
@@ -134,7 +155,22 @@ std::string repair_text(const RepairResult& result, const RepairOptions& options
     if (!result.nearest_miss.empty()) out += "Nearest miss: " + result.nearest_miss + ".\n";
     return out;
   }
+  const auto is_plan = [](const Proposal& proposal) {
+    return proposal.changes == Proposal::Changes::kPlan;
+  };
   for (std::size_t i = 0; i < result.proposals.size(); ++i) {
+    const bool first =
+        is_plan(result.proposals[i]) && (i == 0 || !is_plan(result.proposals[i - 1]));
+    if (first && i == 0) {
+      out += "\nNo edit of the model explains all runs. Changes of the plan:\n";
+    } else if (first) {
+      out += result.plan_at_fault
+                 ? "\nIf the world is as proposal 1 says, the plan is at fault: no trace of it "
+                   "reaches the constraints any more. Changes of the plan:\n"
+                 : "\nOr the plan is changed:\n";
+    } else if (i > 0 && !is_plan(result.proposals[i]) && is_plan(result.proposals[i - 1])) {
+      out += "\nFurther changes of the model:\n";
+    }
     out += proposal_text(result.proposals[i], i + 1, result);
   }
   out += tie_text(result);
@@ -172,6 +208,14 @@ std::string repair_json(const RepairResult& result) {
     const auto effects = proposal.effects.value_or(TraceEffects{});
     Json reaches = nullptr;
     if (effects.reaches) reaches = *effects.reaches;
+    Json properties = Json::array();
+    const auto known = [](std::optional<bool> value) {
+      return value ? Json(*value) : Json(nullptr);
+    };
+    for (const auto& [property, before, after] : proposal.properties) {
+      properties.push_back(
+          {{"property", property}, {"before", known(before)}, {"after", known(after)}});
+    }
     proposals.push_back({{"rank", i + 1},
                          {"tied", proposal.tied},
                          {"words", proposal.words},
@@ -185,11 +229,14 @@ std::string repair_json(const RepairResult& result) {
                          {"runs", result.runs},
                          {"traces_lost", number_json(effects.lost)},
                          {"traces_gained", number_json(effects.gained)},
-                         {"reaches_constraints", std::move(reaches)}});
+                         {"reaches_constraints", std::move(reaches)},
+                         {"properties", std::move(properties)}});
+    if (proposal.under > 0) proposals.back()["under"] = proposal.under;
   }
   out["tied"] = result.tied;
   if (!result.why_tied.empty()) out["why_tied"] = result.why_tied;
   out["refuted"] = result.refuted;
+  out["plan_at_fault"] = result.plan_at_fault;
   out["more"] = result.more;
   if (!result.nearest_miss.empty()) out["nearest_miss"] = result.nearest_miss;
   return base::json_text(out);
