@@ -18,7 +18,7 @@ namespace parallax::compiler {
 /// One thing that may be wrong with a model, and what to do about it.
 struct Edit {
   enum class Kind : std::uint8_t {
-    kNarrow,         // `literal` is added to the condition of the axiom
+    kNarrow,         // `literal`, or else `text`, is added to the condition of the axiom
     kNarrowEvent,    // ... of every axiom about what the event does
     kRequire,        // a new precondition: the event happens only where `literal` holds
     kDropCondition,  // the conjunct `node` of the axiom's condition goes

@@ -106,6 +106,7 @@ std::string of_event(const Edit& edit) {
 std::string literal_in(const ModelAst& model, const std::vector<AxiomForm>& forms, const Edit& edit,
                        std::size_t axiom) {
   const auto& form = forms[axiom];
+  if (!edit.literal) return edit.text;
   if (edit.kind != Edit::Kind::kNarrowEvent) {
     return print(*edit.literal, form.time, form.variables);
   }

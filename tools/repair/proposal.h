@@ -53,6 +53,7 @@ struct FoundProposals {
   std::size_t edits = 0;     // single edits that were considered
   std::string nearest_miss;  // where there is no proposal; may be empty
   std::vector<std::string> remarks;
+  std::vector<std::string> hints;  // what the user may do to have more found; told in any case
 };
 
 /// A kind of proposals: looks for changes that explain the partings of `input`, of which there are

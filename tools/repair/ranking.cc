@@ -8,10 +8,17 @@ namespace {
 
 constexpr std::size_t kMostCompared = 6;  // have their traces compared, where fewer are wanted
 
+/// What may fail is taken to fail in the model's own words, then a split that the starts show, then
+/// what else is consistent: where runs contradict each other that leaves outcomes open.
+int group_of(const Proposal& proposal) {
+  if (proposal.changes == Proposal::Changes::kScenario) return 1;
+  return proposal.precaution ? 0 : 2;
+}
+
 bool likelier(const Proposal& a, const Proposal& b) {
   // That anything may happen explains every run: it comes behind what says more.
-  return std::tuple(a.size, !a.precaution, a.open, ~a.verdict.runs_whole, a.oddity) <
-         std::tuple(b.size, !b.precaution, b.open, ~b.verdict.runs_whole, b.oddity);
+  return std::tuple(a.size, group_of(a), a.open, ~a.verdict.runs_whole, a.oddity) <
+         std::tuple(b.size, group_of(b), b.open, ~b.verdict.runs_whole, b.oddity);
 }
 
 /// Among equals the one that permits the least, then the one that forbids the least.

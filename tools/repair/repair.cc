@@ -7,6 +7,7 @@
 #include "tools/repair/plan_proposals.h"
 #include "tools/repair/properties.h"
 #include "tools/repair/ranking.h"
+#include "tools/repair/region_split.h"
 
 namespace parallax::tools {
 namespace {
@@ -14,6 +15,7 @@ namespace {
 /// Each is asked; what they find is put in order together.
 constexpr ProposalSource kSources[] = {
     model_proposals,
+    region_splits,
 };
 
 template <typename T>
@@ -87,6 +89,7 @@ base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& co
     auto found = source(input, context);
     append(result.proposals, std::move(found.proposals));
     append(result.remarks, std::move(found.remarks));
+    append(result.hints, std::move(found.hints));
     result.more = result.more || found.more;
     result.edits += found.edits;
     if (result.nearest_miss.empty()) result.nearest_miss = std::move(found.nearest_miss);
@@ -94,6 +97,7 @@ base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& co
   // What the model has no word for is said where that is left open, or taken to happen.
   for (auto& proposal : result.proposals) {
     if (!proposal.open && !proposal.precaution) continue;
+    if (proposal.changes == Proposal::Changes::kScenario) continue;  // it says so itself
     for (const auto& cause : result.causes) proposal.evidence.push_back(cause.words);
   }
   const bool more = rank_proposals(input, static_cast<std::size_t>(input.options.limit),

@@ -21,7 +21,7 @@ struct RepairResult {
   bool more = false;         // there are further ones that were not looked at
   std::size_t edits = 0;     // single edits that were considered
   std::string nearest_miss;  // where there is no proposal; may be empty
-  std::vector<std::string> remarks;
+  std::vector<std::string> remarks, hints;
   std::size_t experiments = 0;       // of the runs were made to tell proposals apart
   std::vector<std::string> refuted;  // proposals, in words, that these have refuted
   /// Proposals that the runs speak for as much as for the first, with it: indices. Those in front

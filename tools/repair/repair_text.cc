@@ -153,6 +153,7 @@ std::string repair_text(const RepairResult& result, const RepairOptions& options
     out += fmt::format("No edit of the grammar explains all runs ({} were considered).\n",
                        result.edits);
     if (!result.nearest_miss.empty()) out += "Nearest miss: " + result.nearest_miss + ".\n";
+    for (const auto& hint : result.hints) out += hint + ".\n";
     return out;
   }
   const auto is_plan = [](const Proposal& proposal) {
@@ -175,6 +176,7 @@ std::string repair_text(const RepairResult& result, const RepairOptions& options
   }
   out += tie_text(result);
   if (result.more) out += "\nThere are further ones; --limit shows more.\n";
+  for (const auto& hint : result.hints) out += "\n" + hint + ".\n";
   return out;
 }
 
@@ -238,6 +240,7 @@ std::string repair_json(const RepairResult& result) {
   out["refuted"] = result.refuted;
   out["plan_at_fault"] = result.plan_at_fault;
   out["more"] = result.more;
+  if (!result.hints.empty()) out["hints"] = result.hints;
   if (!result.nearest_miss.empty()) out["nearest_miss"] = result.nearest_miss;
   return base::json_text(out);
 }
