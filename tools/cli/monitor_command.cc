@@ -53,7 +53,10 @@ int check_run(const MonitorOptions& options, Invocation& invocation) {
   } else {
     invocation.result(monitor_text(*runs));
   }
-  return exit_code(verdict_of(*runs));
+  const auto verdict = verdict_of(*runs);
+  // A run of which some was not checked is undecided: this one was checked to its end.
+  if (verdict == MonitorVerdict::kConsistent) invocation.answered();
+  return exit_code(verdict);
 }
 
 MonitorProgress progress_of(const Invocation& invocation) {

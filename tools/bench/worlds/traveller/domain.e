@@ -26,7 +26,6 @@ event Ride(bus)
 [bus,time] HoldsAt(At(Market),time) -> Initiates(Board(bus),Aboard(bus),time).
 [bus,stop,time] HoldsAt(At(Market),time) -> Terminates(Board(bus),At(stop),time).
 
-[bus,stop,time]
-  Ends(bus,stop) & HoldsAt(Aboard(bus),time) -> Initiates(Ride(bus),At(stop),time).
+[bus,stop,time] Ends(bus,stop) & HoldsAt(Aboard(bus),time) -> Initiates(Ride(bus),At(stop),time).
 [bus,time] Terminates(Ride(bus),Aboard(bus),time).
 [bus,time] HoldsAt(Aboard(bus),time) -> Terminates(Ride(bus),Ticket(),time).
