@@ -35,6 +35,14 @@ function(parallax_batches target)
   endforeach()
 endfunction()
 
+# Where a folder sets PARALLAX_COLD its libraries and programs are compiled with -O1: they read and write
+# text, and wait for solvers and simulators in other folders. It saves a fifth of their compile time.
+function(parallax_optimize target)
+  if(PARALLAX_COLD)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
+endfunction()
+
 # parallax_library(NAME SOURCES a.cc ... DEPENDS lib ... [PRIVATE_DEPENDS lib ...])
 # A static library parallax_NAME, alias parallax::NAME, with includes rooted at the repository.
 # DEPENDS and PRIVATE_DEPENDS are the house's layers: what the folder may include, and no more
@@ -48,6 +56,7 @@ function(parallax_library name)
                         PRIVATE $<BUILD_INTERFACE:parallax_warnings> ${arg_PRIVATE_DEPENDS})
   target_compile_features(parallax_${name} PUBLIC cxx_std_20)
   set_target_properties(parallax_${name} PROPERTIES EXPORT_NAME ${name})
+  parallax_optimize(parallax_${name})
   parallax_batches(parallax_${name} ${arg_SOURCES})
   parallax_headers(parallax_${name} ${arg_SOURCES})
   parallax_record_layer(parallax::${name} "${arg_SOURCES}" "${arg_DEPENDS};${arg_PRIVATE_DEPENDS}")
@@ -108,6 +117,7 @@ function(parallax_program name)
   add_executable(${name} ${arg_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE ${arg_DEPENDS} parallax_warnings)
+  parallax_optimize(${name})
   parallax_batches(${name} ${arg_SOURCES})
   parallax_record_layer(${name} "${arg_SOURCES}" "${arg_DEPENDS}")
 endfunction()
