@@ -46,6 +46,13 @@ std::string first_words(const nlohmann::json& report) {
   return report.at("proposals").at(0).at("words");
 }
 
+/// Those that change the model; behind them stand changes of the plan.
+std::size_t of_the_model(const nlohmann::json& report) {
+  const auto& all = report.at("proposals");
+  return static_cast<std::size_t>(std::count_if(
+      all.begin(), all.end(), [](const auto& each) { return each.at("changes") == "model"; }));
+}
+
 TEST_CASE("a run cannot tell which condition is missing; further ones from other starts do") {
   for (const std::string execution : {"open-loop", "closed-loop"}) {
     CAPTURE(execution);
@@ -55,15 +62,15 @@ TEST_CASE("a run cannot tell which condition is missing; further ones from other
     const auto before = json_of(cli, {"repair", "out", "--runs", "0", "--limit", "0"}, 1);
     CHECK_FALSE(cli.has_experiments());
     CHECK(before.at("experiments") == 0);
-    CHECK(before.at("proposals").size() > 2);
+    CHECK(of_the_model(before) > 2);
     CHECK(before.at("why_tied") == "no runs may be made to tell them apart (--runs 0)");
     const auto journal = cli.read("out/journal.ndjson");
 
     const auto after = json_of(cli, {"repair", "out", "--limit", "0"}, 1);
-    CHECK(after.at("proposals").size() == 1);
+    CHECK(of_the_model(after) == 1);
     CHECK(first_words(after).find("only if `HoldsAt(Lit(),time)`") != std::string::npos);
     CHECK(after.at("tied") == 1);
-    CHECK(after.at("refuted").size() + 1 >= before.at("proposals").size());
+    CHECK(after.at("refuted").size() + 1 >= of_the_model(before));
     const int made = after.at("experiments");
     CHECK(made > 0);
     CHECK(made <= 4);  // of 16 starts
@@ -103,7 +110,7 @@ TEST_CASE("what no run of the plan tells apart is shown as a tie") {
   const auto report = json_of(cli, {"repair", "out"}, 1);
   CHECK(report.at("why_tied") == "no run of this plan tells them apart");
   CHECK(report.at("tied") == 2);
-  CHECK(report.at("proposals").size() == 2);
+  CHECK(of_the_model(report) == 2);
   const auto text = cli.parallax({"repair", "out"}).out;
   CHECK(
       text.find("A tie: proposals 1 to 2 are of one rank; no run of this plan tells them apart.") !=
