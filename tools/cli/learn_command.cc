@@ -37,7 +37,14 @@ int run_learn(const LearnCommandOptions& options, Invocation& invocation) {
   learn_options.out =
       options.folder.empty() ? learn_folder(learn_options.scenario) : fs::path(options.folder);
   learn_options.tool_version = kVersion;
+  learn_options.model_file = options.output;
   learn_options.progress = progress_on_terminal(invocation.options());
+  if (std::error_code error; !options.folder.empty() && fs::exists(options.folder, error) &&
+                             !fs::is_empty(options.folder, error)) {
+    invocation.sink().error_about(base::DiagnosticCode::kFileNotWritable, options.folder,
+                                  "--out needs a folder that is new or empty; name another folder");
+    return 0;
+  }
   const auto result = learn(
       learn_options,
       [&](const ScenarioModel& loaded) {

@@ -74,7 +74,10 @@ int repair_loop(const RepairCommandOptions& options, const ExperimentOptions& ex
   if (!loop) return 0;
   invocation.options().json ? invocation.document(loop_json(*loop))
                             : invocation.result(loop_text(*loop));
-  if (options.apply == 1) {
+  if (options.apply == 1 && exit_code(loop->end) != 0) {
+    invocation.remark("nothing was written into the files: the rounds did not end clean; " +
+                      options.out + "/repair.patch has what they changed");
+  } else if (options.apply == 1) {
     Proposal all;
     all.files = loop->files;
     if (!apply_proposal(all, invocation)) return 0;

@@ -1,5 +1,6 @@
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -38,6 +39,20 @@ bool is_over(const std::string& folder) {
   return error || journal <= report;
 }
 
+/// A page replaces an earlier page and nothing else: not what it is made from, nor a stranger's
+/// file.
+bool may_write(const std::string& path, base::DiagnosticSink& sink) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error) || fs::file_size(path, error) == 0) return true;
+  std::ifstream file(path, std::ios::binary);
+  std::string head(512, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  if (head.find(kPageMark) != std::string::npos) return true;
+  sink.error_about(base::DiagnosticCode::kFileNotWritable, path,
+                   "it is there already, and no page of this command; name another file");
+  return false;
+}
+
 /// Writes the page again and again while the run goes on, and for the last time when it is over.
 int watch(const ReportOptions& options, Invocation& invocation) {
   constexpr auto kPause = std::chrono::milliseconds(200);
@@ -71,6 +86,7 @@ int watch(const ReportOptions& options, Invocation& invocation) {
 }
 
 int report(const ReportOptions& options, Invocation& invocation) {
+  if (!may_write(page_path(options), invocation.sink())) return 0;
   if (options.watch) watch(options, invocation);
   if (invocation.sink().has_errors() || (options.watch && invocation.stopped())) return 0;
   std::vector<PageData> pages;

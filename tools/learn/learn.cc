@@ -94,6 +94,10 @@ class ScenarioLearner {
 
   base::Status prepare() {
     auto& sink = context_.sink();
+    if (!options_.model_file.empty() &&
+        !base::check_output(options_.model_file, context_.files(), sink)) {
+      return sink.already_reported();
+    }
     if (!loaded().world) {
       auto factory = ask_simulator_(loaded());
       if (!factory) return sink.already_reported();

@@ -17,6 +17,7 @@ namespace parallax::tools {
 struct LearnOptions {
   std::string scenario;
   std::filesystem::path out;  // the folder that everything is written to; must not have a run yet
+  std::filesystem::path model_file;  // may be empty; is to get the model, by the caller: no input
   std::uint64_t seed = 1;
   std::int64_t jobs = 1;
   std::int64_t max_runs = 500;  // simulations in all

@@ -123,9 +123,10 @@ PageDiscrepancy discrepancy_of(const json& entry) {
   if (const auto* start = base::json_member(entry, "start");
       start != nullptr && start->is_object()) {
     for (const auto& [name, value] : start->items()) {
-      out.start.emplace_back(name, value.is_number()   ? number(value.get<double>())
-                                   : value.is_string() ? value.get<std::string>()
-                                                       : value.dump());
+      out.start.emplace_back(name, value.is_number()       ? number(value.get<double>())
+                                   : value.is_string()     ? value.get<std::string>()
+                                   : value.is_structured() ? "..."
+                                                           : value.dump());
     }
   }
   return out;

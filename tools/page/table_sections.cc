@@ -128,6 +128,7 @@ std::string data_block(const PageData& page) {
   if (page.samples.empty()) return {};
   std::size_t points = 0;
   const auto place = [](const std::array<float, 2>& at) {
+    if (!std::isfinite(at[0]) || !std::isfinite(at[1])) return std::string("[0,0]");
     return fmt::format("[{:.4g},{:.4g}]", at[0], at[1]);
   };
   std::string out = "{\"bodies\":[";

@@ -34,6 +34,8 @@ std::string html_document(const std::string& title, const std::string& body,
       "default-src 'none'; style-src '{}'; script-src '{}'; base-uri 'none'; form-action 'none'",
       csp_hash(kPageStyle), csp_hash(kPageScript));
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  out += kPageMark;
+  out += '\n';
   out += "<meta http-equiv=\"Content-Security-Policy\" content=\"" + policy + "\">\n";
   out +=
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"

@@ -7,6 +7,9 @@
 
 namespace parallax::tools {
 
+/// By which an earlier page is known.
+inline constexpr const char* kPageMark = "<meta name=\"generator\" content=\"parallax report\">";
+
 struct DocumentOptions {
   int reload_s = 0;  // the page loads itself again after so many seconds; 0: never
 };

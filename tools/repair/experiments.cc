@@ -178,7 +178,8 @@ class Experiments {
     for (const auto& [text, words] : words_) {
       const bool left = std::any_of(all.begin(), all.end(),
                                     [&](const Proposal& each) { return each.text == text; });
-      if (!left) result.refuted.push_back(words);
+      // What a search that was stopped has not come to again is not refuted.
+      if (!left && !context_.stopped()) result.refuted.push_back(words);
     }
     for (auto a = words_.begin(); a != words_.end(); ++a) {
       for (auto b = std::next(a); b != words_.end(); ++b) {
@@ -187,13 +188,13 @@ class Experiments {
       }
     }
     std::sort(result.refuted.begin(), result.refuted.end());
-    if (options_.limit > 0 && all.size() > static_cast<std::size_t>(options_.limit)) {
-      all.resize(static_cast<std::size_t>(options_.limit));
-      result.more = true;
-    }
     if (!all.empty()) {
       result.tied = of_first_rank(all);
       result.founded = as_well_founded(all);
+    }
+    if (options_.limit > 0 && all.size() > static_cast<std::size_t>(options_.limit)) {
+      all.resize(static_cast<std::size_t>(options_.limit));
+      result.more = true;
     }
     result.remarks.insert(result.remarks.begin(), remarks_.begin(), remarks_.end());
     return result;

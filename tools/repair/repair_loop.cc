@@ -130,10 +130,25 @@ class Rounds {
     round.words = first->words;
     std::error_code error;
     round.patch = unified_diff(first->files, fs::current_path(error).string());
+    for (const auto& file : first->files) {
+      if (is_copy(file.name)) continue;
+      return sink.error_about(base::DiagnosticCode::kFileNotWritable, file.name,
+                              "--loop changes copies, and this file was not read from its copy: "
+                              "name it relative to the scenario");
+    }
     if (!apply_proposal(*first, context_)) return sink.already_reported();
     evidence_.insert(evidence_.end(), input->evidence.begin(), input->evidence.end());
     round.next_folder = next;
     return run_again(next, round);
+  }
+
+  /// Does the file lie in the folder of copies?
+  bool is_copy(const std::string& name) const {
+    std::error_code error;
+    const auto file = fs::weakly_canonical(name, error);
+    const auto folder = fs::weakly_canonical(fs::path(options_.out) / "files", error);
+    const auto below = file.lexically_relative(folder);
+    return !below.empty() && *below.begin() != "..";
   }
 
   /// The first proposal, if it is the only one of its rank; else why not is the end.
@@ -155,7 +170,7 @@ class Rounds {
     if (tied > 1) {
       end(LoopEnd::kTie, fmt::format("{} proposals are of one rank{}{}", tied,
                                      found.why_tied.empty() ? "" : ": ", found.why_tied));
-      for (std::size_t i = 0; i < tied; ++i) loop_.why += "; " + all[i].words;
+      for (std::size_t i = 0; i < std::min(tied, all.size()); ++i) loop_.why += "; " + all[i].words;
       return nullptr;
     }
     if (first.effects && first.effects->reaches == false) {
@@ -174,7 +189,8 @@ class Rounds {
     if (!simulator) return sink.already_reported();
     std::error_code error;
     harness::CampaignOptions options;
-    options.seed = header_.seed;
+    // Other starts than those that the repair was made for: they are clean by construction.
+    options.seed = header_.seed + loop_.rounds.size();
     options.jobs = options_.experiments.jobs;
     options.run_dir = folder;
     options.start_folder = fs::current_path(error).string();

@@ -57,9 +57,7 @@ std::string head(const RepairResult& result, const std::string& folder) {
 }
 
 std::string tie_text(const std::vector<std::size_t>& tied) {
-  return tied.empty() ? ""
-                      : fmt::format(" (tied with {}: no run and no count tells them apart)",
-                                    fmt::join(tied, ", "));
+  return tied.empty() ? "" : fmt::format(" (tied with {})", fmt::join(tied, ", "));
 }
 
 /// What a change does to the properties that were asked about.

@@ -189,5 +189,20 @@ TEST_CASE("bad input: no plan, a folder with rounds, a scenario that is none") {
   CHECK(again.err.find("name another folder") != std::string::npos);
 }
 
+TEST_CASE("what is there already is not replaced, and that is said before anything is simulated") {
+  const TwoModels cli;
+  std::filesystem::create_directory(cli.folder() / "mine");
+  cli.write("mine/log.txt", "mine");
+  CHECK(cli.parallax({"learn", "two/agree.yaml", "--out", "mine"}).code == 2);
+  CHECK(cli.read("mine/log.txt") == "mine");
+  const auto model = cli.read("two/opens.e");
+  const auto refused =
+      cli.parallax({"learn", "two/agree.yaml", "--out", "out", "-o", "two/opens.e"});
+  CHECK(refused.code == 2);
+  CHECK(refused.err.find("E0011") != std::string::npos);
+  CHECK(refused.err.find("round 1") == std::string::npos);
+  CHECK(cli.read("two/opens.e") == model);
+}
+
 }  // namespace
 }  // namespace parallax::test

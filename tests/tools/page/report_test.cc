@@ -54,6 +54,40 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
+TEST_CASE("a report with a value nested without end does not end the program") {
+  const CliFixture cli;
+  const auto folder = exact_run(cli);
+  auto report = cli.read("sticks/report.json");
+  const auto at = report.find("\"start\": {");
+  REQUIRE(at != std::string::npos);
+  report.insert(at + 10,
+                "\"deep\":" + std::string(2'000'000, '[') + std::string(2'000'000, ']') + ",");
+  cli.write("sticks/report.json", report);
+  const auto made = at_source(cli, {"report", folder});
+  CHECK(made.code <= 3);
+}
+
+TEST_CASE("a page replaces an earlier page, and nothing else") {
+  const CliFixture cli;
+  const auto folder = exact_run(cli);
+  cli.write("notes.txt", "mine");
+  for (const auto& name : {std::string("notes.txt"), std::string("sticks/journal.ndjson")}) {
+    CAPTURE(name);
+    const auto before = cli.read(name);
+    for (const std::string watch : {"", "--watch"}) {
+      std::vector<std::string> words = {"report", folder, "-o", (cli.folder() / name).string()};
+      if (!watch.empty()) words.push_back(watch);
+      const auto refused = at_source(cli, words);
+      CHECK(refused.code == 2);
+      CHECK(refused.err.find("no page of this command") != std::string::npos);
+      CHECK(cli.read(name) == before);
+    }
+  }
+  const auto page = (cli.folder() / "page.html").string();
+  CHECK(at_source(cli, {"report", folder, "-o", page}).code == 0);
+  CHECK(at_source(cli, {"report", folder, "-o", page}).code == 0);
+}
+
 TEST_CASE("without scripts the page of a run says what the golden text says") {
   const CliFixture cli;
   const auto folder = exact_run(cli);
@@ -134,7 +168,7 @@ TEST_CASE("a folder that is none, and an output that would replace a run, are re
   CHECK(nothing.err.find("E7111") != std::string::npos);
   const auto over = at_source(cli, {"report", folder, "-o", folder + "/journal.ndjson"});
   CHECK(over.code == 2);
-  CHECK(over.err.find("E0011") != std::string::npos);
+  CHECK(over.err.find("no page of this command") != std::string::npos);
   const auto document = json_of(cli, {"report", folder, "-o", "x.html"});
   CHECK(document["page"] == "x.html");
   CHECK(document["bytes"] == cli.read("x.html").size());

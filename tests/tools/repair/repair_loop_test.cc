@@ -86,6 +86,18 @@ TEST_CASE("the rounds are bounded, and --apply writes the user's files at last")
   CHECK(cli.read("two/domain.e").find(kParks) != std::string::npos);
 }
 
+TEST_CASE("a file that the scenario names by an absolute path has no copy, and stays as it is") {
+  const TwoMistakes cli;
+  cli.replace("two/own.yaml", "opens.e", (cli.folder() / "two" / "opens.e").string());
+  json_of(cli, {"run", "two/own.yaml", "--allow-outside", "--out", "out"}, 1);
+  const auto before = cli.read("two/opens.e");
+  const auto refused =
+      cli.parallax({"repair", "out", "--loop", "--out", "copies", "--allow-outside"});
+  CHECK(refused.code == 2);
+  CHECK(refused.err.find("was not read from its copy") != std::string::npos);
+  CHECK(cli.read("two/opens.e") == before);
+}
+
 TEST_CASE("it ends at a tie, with a clean folder, and where there is no room for it") {
   const TwoModels cli;
   // A drawer that opens by itself at one time and not at another.
