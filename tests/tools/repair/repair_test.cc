@@ -418,8 +418,8 @@ TEST_CASE("an effect that comes later: the axiom says so, with what happens then
         std::string::npos);
   CHECK(first.at("runs_to_the_end") == first.at("runs"));
   check_ties(json_of(cli, {"repair", "out", "--limit", "0"}, 1).at("proposals"));
-  CHECK(cli.parallax({"repair", "out", "--limit", "0"})
-            .out.find("(tied with ") != std::string::npos);
+  CHECK(cli.parallax({"repair", "out", "--limit", "0"}).out.find("(tied with ") !=
+        std::string::npos);
   CHECK(cli.parallax({"repair", "out", "--apply", "1"}).code == 0);
   CHECK(json_of(cli, {"run", scenario, "--epsilon", "0.3", "--out", "again"}).at("verdict") ==
         "no-discrepancy");
