@@ -438,18 +438,7 @@ class EditMaker {
     out_.push_back(edit);
     // Conditions of what is special already, or about everything, would be most of all edits.
     if (constants || own > 1 || !scope_.more_events.empty()) return;
-    for (const auto& literal : condition_literals(typed_, variables, 1 + kMostEach / 8)) {
-      if (literal.count(LiteralArgument::Kind::kConstant) > 0) continue;
-      if (!relevance_.in_some_step(literal, true, of_event, event, of_event)) continue;
-      Edit condition;
-      condition.kind = Edit::Kind::kAddCondition;
-      condition.of = place;
-      condition.literal = literal;
-      condition.event = event;
-      condition.variables = edit.variables;
-      condition.oddity = relevance_.oddity(literal, event);
-      out_.push_back(std::move(condition));
-    }
+    relevance_.add_conditions(typed_, place, variables, arity, 1 + kMostEach / 8, {}, out_);
   }
 
   const ModelAst& model_;

@@ -129,4 +129,28 @@ int EditRelevance::oddity(const ConditionLiteral& literal, const std::string& ev
   return out;
 }
 
+void EditRelevance::add_conditions(const TypedModel& typed, std::size_t of,
+                                   const std::vector<SortedVariable>& variables, std::size_t arity,
+                                   std::size_t most, const std::vector<ConditionLiteral>& given,
+                                   std::vector<Edit>& edits) const {
+  std::vector<std::string> names;
+  for (const auto& variable : variables) names.push_back(variable.name);
+  const std::vector<std::string> of_event(names.begin(),
+                                          names.begin() + static_cast<std::ptrdiff_t>(arity));
+  const auto event = edits[of].event;
+  for (const auto& literal : condition_literals(typed, variables, most)) {
+    if (literal.count(LiteralArgument::Kind::kConstant) > 0) continue;
+    if (std::find(given.begin(), given.end(), literal) != given.end()) continue;
+    if (!in_some_step(literal, true, of_event, event, of_event)) continue;
+    Edit condition;
+    condition.kind = Edit::Kind::kAddCondition;
+    condition.of = of;
+    condition.literal = literal;
+    condition.event = event;
+    condition.variables = names;
+    condition.oddity = oddity(literal, event);
+    edits.push_back(std::move(condition));
+  }
+}
+
 }  // namespace parallax::compiler

@@ -30,6 +30,14 @@ class EditRelevance {
   /// Edit::oddity of a condition of the event.
   int oddity(const ConditionLiteral& literal, const std::string& event) const;
 
+  /// Adds to `edits` the conditions that the new effect `of`, one of them, may have: at most `most`
+  /// of a symbol, without constants and without those that are `given`. Of its `variables` the
+  /// first `arity` are those of the event.
+  void add_conditions(const TypedModel& typed, std::size_t of,
+                      const std::vector<SortedVariable>& variables, std::size_t arity,
+                      std::size_t most, const std::vector<ConditionLiteral>& given,
+                      std::vector<Edit>& edits) const;
+
  private:
   const ModelAst& model_;
   const std::vector<AxiomForm>& forms_;

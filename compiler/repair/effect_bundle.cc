@@ -220,22 +220,7 @@ class BundleMaker {
                   const std::vector<SortId>& sorts, const std::vector<ConditionLiteral>& given) {
     std::vector<SortedVariable> variables;
     for (std::size_t i = 0; i < names.size(); ++i) variables.push_back({names[i], sorts[i]});
-    const std::vector<std::string> of_event(names.begin(),
-                                            names.begin() + static_cast<std::ptrdiff_t>(arity));
-    const auto event = edits_[of].event;
-    for (const auto& literal : condition_literals(typed_, variables, kMostConditions)) {
-      if (literal.count(LiteralArgument::Kind::kConstant) > 0) continue;
-      if (std::find(given.begin(), given.end(), literal) != given.end()) continue;
-      if (!relevance_.in_some_step(literal, true, of_event, event, of_event)) continue;
-      Edit condition;
-      condition.kind = Edit::Kind::kAddCondition;
-      condition.of = of;
-      condition.literal = literal;
-      condition.event = event;
-      condition.variables = names;
-      condition.oddity = relevance_.oddity(literal, event);
-      edits_.push_back(std::move(condition));
-    }
+    relevance_.add_conditions(typed_, of, variables, arity, kMostConditions, given, edits_);
   }
 
   const TypedModel& typed_;

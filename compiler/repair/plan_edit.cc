@@ -108,15 +108,12 @@ Wrapping wrapping(const PlanText& plan, const PlanEdit& edit) {
 
 /// Lines of the form that begin inside a string keep their beginning.
 bool in_string(const PlanText& plan, DatumId form, std::uint32_t at) {
-  std::vector<DatumId> todo = {form};
-  while (!todo.empty()) {
-    const auto datum = todo.back();
-    todo.pop_back();
+  bool inside = false;
+  plan.for_each_datum({form}, [&](DatumId datum) {
     const auto& source = plan.source(datum);
-    if (plan.data().is_string(datum) && source.begin < at && at < source.end) return true;
-    for (const auto child : plan.data().children(datum)) todo.push_back(child);
-  }
-  return false;
+    inside = inside || (plan.data().is_string(datum) && source.begin < at && at < source.end);
+  });
+  return inside;
 }
 
 void wrap(const PlanText& plan, const PlanEdit& edit, std::vector<TextChange>& out) {

@@ -61,15 +61,9 @@ std::optional<PlanText> PlanText::read(const base::SourceFiles& files,
 PlanText::PlanText(const base::SourceFiles& files, LispText text)
     : files_(&files), text_(std::move(text)) {
   parents_.resize(text_.data.end_id().index());
-  std::vector<DatumId> todo = text_.forms;
-  while (!todo.empty()) {
-    const auto form = todo.back();
-    todo.pop_back();
-    for (const auto child : text_.data.children(form)) {
-      parents_[child.index()] = form;
-      todo.push_back(child);
-    }
-  }
+  for_each_datum(text_.forms, [&](DatumId form) {
+    for (const auto child : text_.data.children(form)) parents_[child.index()] = form;
+  });
   for (const auto form : text_.forms) {
     const auto head = text_.data.head(form);
     const auto items = text_.data.children(form);
@@ -118,13 +112,9 @@ bool PlanText::is_last_of_body(DatumId statement) const {
 }
 
 void PlanText::collect_symbols(DatumId form, std::set<std::string>& out) const {
-  std::vector<DatumId> todo = {form};
-  while (!todo.empty()) {
-    const auto datum = todo.back();
-    todo.pop_back();
+  for_each_datum({form}, [&](DatumId datum) {
     if (text_.data.is_symbol(datum)) out.insert(text_.data.name(datum));
-    for (const auto child : text_.data.children(datum)) todo.push_back(child);
-  }
+  });
 }
 
 /// Of a form whose body binds variables: their names.

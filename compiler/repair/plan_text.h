@@ -29,6 +29,17 @@ class PlanText {
   std::string place(DatumId form) const { return files_->place(source(form)); }
   const base::SourceFiles& files() const { return *files_; }
 
+  /// Calls `visit` with each of the forms and with all that is in them, outer ones first.
+  template <typename Visit>
+  void for_each_datum(std::vector<DatumId> todo, Visit visit) const {
+    while (!todo.empty()) {
+      const auto datum = todo.back();
+      todo.pop_back();
+      visit(datum);
+      for (const auto child : data().children(datum)) todo.push_back(child);
+    }
+  }
+
   /// The form that stands exactly there.
   std::optional<DatumId> form_at(const base::SourceRange& source) const;
   /// The form, or the innermost one around it, that is an element of a body (of a function, `let`,

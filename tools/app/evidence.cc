@@ -34,6 +34,15 @@ std::vector<std::string> varying_parameters(const std::vector<const ObservedPath
   return out;
 }
 
+/// The journal as it was before its first simulation.
+harness::JournalText without_samples(const harness::JournalText& journal) {
+  harness::JournalText out;
+  out.header = journal.header;
+  out.traces = journal.traces;
+  out.trace_places = journal.trace_places;
+  return out;
+}
+
 /// How a simulation bears on a discrepancy.
 enum class Bearing : std::uint8_t { kSame, kClean, kOther };
 
@@ -97,10 +106,7 @@ base::Result<harness::Persistence> count_failures(const RecordedDiscrepancy& fou
                                                   Context& context) {
   const harness::SampleId id = found.path.id;
   const harness::SampleKey known(id.trace, id.sample, harness::DrawPhase::kCertify);
-  harness::JournalText journal;
-  journal.header = found.journal.header;
-  journal.traces = found.journal.traces;
-  journal.trace_places = found.journal.trace_places;
+  auto journal = without_samples(found.journal);
   for (const auto& record : records) {
     const harness::SampleKey key(record.trace, record.sample, record.phase);
     journal.places[key] = found.journal.places.at(known);
@@ -125,10 +131,7 @@ base::Result<CauseEvidence> gather_evidence(const RecordedDiscrepancy& found,
                                             Context& context) {
   const harness::SampleId id = found.path.id;
   const harness::SampleKey known(id.trace, id.sample, harness::DrawPhase::kCertify);
-  harness::JournalText journal;
-  journal.header = found.journal.header;
-  journal.traces = found.journal.traces;
-  journal.trace_places = found.journal.trace_places;
+  auto journal = without_samples(found.journal);
   const auto add = [&](const harness::SampleKey& key, const harness::SampleRecord& record) {
     if (record.trace != id.trace) return false;
     journal.places[key] = found.journal.places.at(known);

@@ -43,6 +43,18 @@ std::vector<Evidence> evidence_of(const std::vector<ObservedPath>& paths,
   return out;
 }
 
+bool add_states(const compiler::AtomIndex& index, const Evidence& evidence, std::size_t states,
+                std::vector<Literal>& out) {
+  for (std::size_t t = 0; t < states; ++t) {
+    for (const auto& [fluent, holds] : evidence.states[t]) {
+      const auto literal = index.find(AtomKind::kHoldsAt, fluent, static_cast<Timepoint>(t));
+      if (!literal && holds) return false;
+      if (literal) out.push_back(holds ? *literal : ~*literal);
+    }
+  }
+  return true;
+}
+
 Admission::Admission(const compiler::CompiledModel& model, const std::atomic<bool>& stop)
     : session_(model, runtime::make_cadical_solver(&stop)),
       index_(model),
@@ -69,13 +81,7 @@ std::optional<std::vector<Literal>> Admission::facts(const Evidence& evidence, s
       if (!happens || literal != *happens) out.push_back(~literal);
     }
   }
-  for (std::size_t t = 0; t < states; ++t) {
-    for (const auto& [fluent, holds] : evidence.states[t]) {
-      const auto literal = index_.find(AtomKind::kHoldsAt, fluent, static_cast<Timepoint>(t));
-      if (!literal && holds) return std::nullopt;
-      if (literal) out.push_back(holds ? *literal : ~*literal);
-    }
-  }
+  if (!add_states(index_, evidence, states, out)) return std::nullopt;
   return out;
 }
 

@@ -43,6 +43,11 @@ struct Evidence {
 std::vector<Evidence> evidence_of(const std::vector<ObservedPath>& paths,
                                   const compiler::CompiledModel& model);
 
+/// Adds that the first `states` states are as they were seen. False: one of them has a fluent that
+/// holds and that the model does not know.
+bool add_states(const compiler::AtomIndex& index, const Evidence& evidence, std::size_t states,
+                std::vector<compiler::Literal>& out);
+
 /// Asks a model without a plan how much of what was seen it admits.
 class Admission {
  public:

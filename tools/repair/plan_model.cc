@@ -49,13 +49,7 @@ std::optional<PlanModel::Literals> PlanModel::like(const Evidence& evidence, std
     if (!happens) return std::nullopt;
     out.push_back(*happens);
   }
-  for (std::size_t t = 0; t < states; ++t) {
-    for (const auto& [fluent, holds] : evidence.states[t]) {
-      const auto literal = index_.find(AtomKind::kHoldsAt, fluent, static_cast<Timepoint>(t));
-      if (!literal && holds) return std::nullopt;
-      if (literal) out.push_back(holds ? *literal : ~*literal);
-    }
-  }
+  if (!add_states(index_, evidence, states, out)) return std::nullopt;
   return out;
 }
 
