@@ -26,6 +26,8 @@ struct CampaignOptions {
   std::int64_t jobs = 1;
   bool keep_going = false;  // do not stop at the first discrepancy
   bool resume = false;
+  /// How the traces were enumerated that it is handed: for the record.
+  bool all_hits = false, split_initial = false;
   std::filesystem::path run_dir;  // made if missing; holds journal.ndjson
   std::string start_folder;       // where the paths of the scenario start; empty: not recorded
   std::string scenario_hash;      // over every text that was read (hash_of_sources)

@@ -231,27 +231,15 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
   header.simulator = simulator;
   header.simulator.parameters.clear();
   header.simulator.actions.clear();
-  OrderedJson json = {{"criterion", OrderedJson::parse(criterion_json(scenario.criterion))},
-                      {"limits",
-                       {{"max_traces", scenario.limits.max_traces},
-                        {"max_rejected_starts", scenario.limits.max_rejected_starts},
-                        {"max_lost_in_a_row", scenario.limits.max_lost_in_a_row}}},
-                      {"keep_going", options.keep_going},
-                      {"compare", to_string(scenario.comparison())},
-                      {"match", scenario.match_model ? "model" : "trace"}};
-  if (scenario.until_covered) json["until_covered"] = true;
-  if (scenario.execution == Execution::kClosedLoop) {
-    json["execution"] = to_string(scenario.execution);
-    if (scenario.starts == Starts::kGuided) json["starts"] = to_string(scenario.starts);
-    json["limits"]["max_performs"] = scenario.limits.max_performs;
-    json["limits"]["max_simulated_s"] = scenario.limits.max_simulated_s;
-  }
-  header.options = json.dump();
+  header.max_runs = scenario.limits.max_runs;
+  header.options = recorded_options_json(scenario, options);
+  header.asked = std::get<RecordedOptions>(recorded_options(header.options));
   return header;
 }
 
 std::string encode(const JournalHeader& header) {
   auto out = json_of(header);
+  if (header.max_runs > 0) out["max_runs"] = header.max_runs;
   out["options"] = OrderedJson::parse(header.options);
   return base::json_text(out);
 }
@@ -350,7 +338,11 @@ std::variant<JournalHeader, ForeignLine> decode_header(std::string_view line) tr
   header.simulator.determinism = get<std::string>(simulator, "determinism");
   header.simulator.seeds = get<bool>(simulator, "seeds");
   header.simulator.timestep_s = get<double>(simulator, "timestep_s");
+  if (object.contains("max_runs")) header.max_runs = count_of(object, "max_runs", 0);
   header.options = field(object, "options").dump();
+  auto asked = recorded_options(header.options);
+  if (auto* why = std::get_if<std::string>(&asked)) return ForeignLine{*std::move(why)};
+  header.asked = std::get<RecordedOptions>(std::move(asked));
   return header;
 } catch (const Foreign& foreign) {
   return ForeignLine{foreign.why};

@@ -12,20 +12,23 @@
 #include <vector>
 
 #include "harness/campaign/campaign.h"
+#include "harness/campaign/recorded_options.h"
 #include "harness/campaign/sample_record.h"
 
 namespace parallax::harness {
 
-/// What must be equal for a run to be continued or repeated, but for the name of the scenario and
-/// the folder it was started in.
+/// What must be equal for a run to be continued or repeated, but for the name of the scenario, the
+/// folder it was started in and `max_runs`.
 struct JournalHeader {
   std::string scenario;      // as the user wrote it
   std::string start_folder;  // where that path starts; empty in older journals
   std::string scenario_hash;
   std::uint64_t seed = 0;
   std::string tool_version;
-  SimulatorInfo simulator;  // without parameters and actions: the scenario was held against them
-  std::string options;      // canonical JSON of criterion, limits without max_runs, keep_going
+  SimulatorInfo simulator;    // without parameters and actions: the scenario was held against them
+  std::int64_t max_runs = 0;  // of a trace; 0: as the criterion needs
+  std::string options;        // canonical JSON of criterion, limits without max_runs, keep_going
+  RecordedOptions asked;      // the same, as it was read
 };
 JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& options,
                              const SimulatorInfo& simulator);

@@ -106,11 +106,7 @@ class Collector {
     const auto& header = *run.journal.header;
     run.executed = recorded_execution(header) == harness::Execution::kClosedLoop;
     run.terms.comparison = recorded_comparison(header).value_or(harness::Comparison::kEveryStep);
-    const auto options = nlohmann::json::parse(header.options);
-    if (const auto* criterion = base::json_member(options, "criterion")) {
-      const auto* level = base::json_member(*criterion, "confidence");
-      run.terms.confidence = level ? base::json_as<double>(*level).value_or(0.0) : 0.0;
-    }
+    run.terms.confidence = header.asked.confidence_level.value_or(0.0);
     for (const auto& [key, record] : run.journal.samples) {
       if (record.path.has_value() == run.executed) continue;
       return sink.error(DiagnosticCode::kForeignJournalLine, run.journal.places.at(key),

@@ -21,7 +21,9 @@ class FurtherRuns {
         scenario_(as_run.scenario),
         options_(options),
         context_(context),
-        feed_(as_run.compilation.model, context) {
+        feed_(as_run.compilation.model, context,
+              {.all_hits = found.journal.header->asked.all_hits,
+               .split_initial = found.journal.header->asked.split_initial}) {
     // Judged as the run was.
     scenario_.compare = recorded_comparison(*found.journal.header).value_or(scenario_.comparison());
   }

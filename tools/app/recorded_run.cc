@@ -10,7 +10,6 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/hash.h"
-#include "compiler/base/json.h"
 #include "harness/sampling/sampler.h"
 #include "runtime/replay/trace_replay.h"
 #include "tools/app/execution_check.h"
@@ -142,30 +141,12 @@ fs::path scenario_path(const harness::JournalHeader& header) {
   return is_file(start / named) || !is_file(named) ? start / named : named;
 }
 
-namespace {
-
-/// Is this what the option was when the run was started? None: it is not on record.
-std::optional<bool> option_is(const harness::JournalHeader& header, const char* name,
-                              std::string_view word) {
-  const auto options = nlohmann::json::parse(header.options, nullptr, false);
-  const auto* value = base::json_member(options, name);
-  if (value == nullptr) return std::nullopt;
-  return *value == word;
-}
-
-}  // namespace
-
 std::optional<harness::Comparison> recorded_comparison(const harness::JournalHeader& header) {
-  using harness::Comparison;
-  const auto is_final = option_is(header, "compare", harness::to_string(Comparison::kFinal));
-  if (!is_final) return std::nullopt;
-  return *is_final ? Comparison::kFinal : Comparison::kEveryStep;
+  return header.asked.compare;
 }
 
 harness::Execution recorded_execution(const harness::JournalHeader& header) {
-  using harness::Execution;
-  const auto closed = option_is(header, "execution", harness::to_string(Execution::kClosedLoop));
-  return closed.value_or(false) ? Execution::kClosedLoop : Execution::kOpenLoop;
+  return header.asked.execution;
 }
 
 base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& options,

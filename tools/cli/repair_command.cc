@@ -28,6 +28,19 @@ struct RepairCommandOptions {
 
 constexpr int kProposals = 1, kNoneFound = 4;
 
+/// Says what was written, and what else changes with it.
+void tell_written(const std::vector<ChangedFile>& files, const std::vector<std::string>& world,
+                  const Context& context) {
+  for (const auto& file : files) context.remark("wrote " + file.name);
+  for (const auto& name : world) {
+    context.remark(
+        fmt::format("the world reads {}, too, and was changed with the model: that a run after it "
+                    "is clean says "
+                    "nothing; give the world files of its own",
+                    name));
+  }
+}
+
 int apply(const RepairResult& result, std::int64_t number, Invocation& invocation) {
   const auto count = static_cast<std::int64_t>(result.proposals.size());
   if (number > count) {
@@ -38,7 +51,7 @@ int apply(const RepairResult& result, std::int64_t number, Invocation& invocatio
   }
   const auto& proposal = result.proposals[static_cast<std::size_t>(number) - 1];
   if (!apply_proposal(proposal, invocation)) return 0;
-  for (const auto& file : proposal.files) invocation.remark("wrote " + file.name);
+  tell_written(proposal.files, proposal.read_by_world, invocation);
   return 0;
 }
 
@@ -46,6 +59,7 @@ int exit_code(LoopEnd end) {
   switch (end) {
     case LoopEnd::kClean:
     case LoopEnd::kNothing:
+    case LoopEnd::kFailed:  // the error decides
       return 0;
     case LoopEnd::kTie:
     case LoopEnd::kPlanAtFault:
@@ -63,25 +77,34 @@ int exit_code(LoopEnd end) {
 int repair_loop(const RepairCommandOptions& options, const ExperimentOptions& experiments,
                 Invocation& invocation) {
   const auto& given = options.repair;
-  if (options.out.empty() || given.other_model || options.apply > 1) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, "--loop",
-                                  "it takes --out DIR, the model of the runs, and the first "
-                                  "proposal (--apply 1: of each round, into the files)");
+  const auto refuse = [&](const char* option, const std::string& why) {
+    invocation.sink().error_about(base::DiagnosticCode::kUsage, option, why);
     return 0;
+  };
+  if (options.out.empty()) {
+    return refuse("--loop",
+                  "add --out DIR: a new folder, which gets the copies, the runs and the "
+                  "log of the rounds");
+  }
+  if (given.other_model) {
+    return refuse("--other-model", "--loop begins with the model that was run; leave it out");
+  }
+  if (options.apply > 1) {
+    return refuse("--apply", "--loop takes the first proposal of each round: --apply 1");
   }
   const auto loop = repair_in_rounds({given, experiments, options.out, options.rounds}, invocation);
   if (experiments.progress) write_error("\r\x1b[K");
   if (!loop) return 0;
   invocation.options().json ? invocation.document(loop_json(*loop))
                             : invocation.result(loop_text(*loop));
-  if (options.apply == 1 && exit_code(loop->end) != 0) {
+  if (options.apply == 1 && (exit_code(loop->end) != 0 || loop->end == LoopEnd::kFailed)) {
     invocation.remark("nothing was written into the files: the rounds did not end clean; " +
                       options.out + "/repair.patch has what they changed");
   } else if (options.apply == 1) {
     Proposal all;
     all.files = loop->files;
     if (!apply_proposal(all, invocation)) return 0;
-    for (const auto& file : all.files) invocation.remark("wrote " + file.name);
+    tell_written(all.files, loop->read_by_world, invocation);
   }
   return exit_code(loop->end);
 }

@@ -93,6 +93,8 @@ harness::CampaignOptions campaign_options(const RunOptions& options, const Scena
   // Until all was seen: whatever is found on the way.
   campaign.keep_going = options.keep_going || loaded.scenario.until_covered;
   campaign.resume = options.resume;
+  campaign.all_hits = options.hits == "all";
+  campaign.split_initial = options.split_initial;
   if (!options.out.empty()) {
     campaign.run_dir = options.out;
   } else {
@@ -114,18 +116,16 @@ struct Ran {
   std::int64_t solve_calls = 0;
 };
 
-Ran run_open(const RunOptions& options, const ScenarioModel& loaded,
-             const harness::SimulatorFactory& simulator, const harness::CampaignOptions& campaign,
-             Invocation& invocation) {
+Ran run_open(const ScenarioModel& loaded, const harness::SimulatorFactory& simulator,
+             const harness::CampaignOptions& campaign, Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto& model = loaded.compilation.model;
   if (!model.has_constraints) {
     return {sink.error(base::DiagnosticCode::kNothingToSimulate,
                        base::SourceRange{loaded.scenario.source, 0, 0})};
   }
-  EnumeratedTraces traces(
-      model, invocation,
-      {.all_hits = options.hits == "all", .split_initial = options.split_initial});
+  EnumeratedTraces traces(model, invocation,
+                          {.all_hits = campaign.all_hits, .split_initial = campaign.split_initial});
   traces.explain_absence_by([&] { return reasons_for_absence(loaded, invocation); });
   auto result =
       harness::run_campaign(loaded.scenario, traces, simulator, campaign, invocation.files(), sink);
@@ -194,7 +194,7 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
   }
   const bool closed = loaded->scenario.execution == Execution::kClosedLoop;
   auto ran = closed ? run_closed(options, *loaded, *simulator, campaign, invocation)
-                    : run_open(options, *loaded, *simulator, campaign, invocation);
+                    : run_open(*loaded, *simulator, campaign, invocation);
   auto& result = ran.result;
   if (campaign.progress) write_error("\r\x1b[K");
   if (!result) return 0;

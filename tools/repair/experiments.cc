@@ -13,6 +13,7 @@
 #include "tools/repair/experiment.h"
 #include "tools/repair/experiment_runs.h"
 #include "tools/repair/ranking.h"
+#include "tools/repair/world_files.h"
 
 namespace parallax::tools {
 namespace {
@@ -49,7 +50,7 @@ class Experiments {
       const auto experiment = chooser_.choose(
           models, [this](const auto& trace) { return runs_ == nullptr || runs_->usable(trace); });
       if (!experiment) {
-        if (!context_.stopped()) result.why_tied = nothing_tells();
+        if (!context_.stopped()) result.why_tied = why_none(models);
         break;
       }
       if (runs_ == nullptr && !open()) return context_.sink().already_reported();
@@ -74,6 +75,17 @@ class Experiments {
   std::string nothing_tells() const {
     return first_.loaded.scenario.plan.empty() ? "no run of the scenario tells them apart"
                                                : "no run of this plan tells them apart";
+  }
+
+  /// Why there is no further experiment: that no run tells is said where it was shown.
+  std::string why_none(const std::vector<std::string>& models) const {
+    for (const auto& text : models) {
+      if (!chooser_.are_same(models.front(), text)) {
+        return "no further run that tells them apart was found, and the search for one stopped at "
+               "its limits";
+      }
+    }
+    return nothing_tells();
   }
 
   /// Why none are made is told where it matters.
@@ -103,7 +115,7 @@ class Experiments {
       if (!proposal.text || proposal.changes != Proposal::Changes::kModel) continue;
       if (out.size() == kMostContenders) break;
       out.push_back(*proposal.text);
-      words_.emplace(*proposal.text, proposal.words);
+      contenders_.emplace(*proposal.text, Contender{proposal.words, proposal.precaution});
     }
     return out;
   }
@@ -173,21 +185,41 @@ class Experiments {
     return result;
   }
 
+  struct Contender {
+    std::string words;
+    bool precaution = false;
+  };
+
+  /// Does it not explain the runs that were made, or not as far as the first one does? Else it was
+  /// crowded out by others, as no more than some are looked at.
+  bool is_refuted(const std::string& text, const Contender& contender,
+                  const std::vector<Proposal>& left) const {
+    auto seen = (last_ ? *last_ : first_).evidence;
+    if (contender.precaution) set_aside((last_ ? *last_ : first_).evidence, seen);
+    const auto verdict = verify(text, seen, context_);
+    return !verdict.admits ||
+           (!left.empty() && verdict.runs_whole < left.front().verdict.runs_whole);
+  }
+
   RepairResult finished(RepairResult result) {
     auto& all = result.proposals;
-    for (const auto& [text, words] : words_) {
+    for (const auto& [text, contender] : contenders_) {
       const bool left = std::any_of(all.begin(), all.end(),
                                     [&](const Proposal& each) { return each.text == text; });
       // What a search that was stopped has not come to again is not refuted.
-      if (!left && !context_.stopped()) result.refuted.push_back(words);
+      if (left || context_.stopped()) continue;
+      (is_refuted(text, contender, all) ? result.refuted : result.crowded_out)
+          .push_back(contender.words);
     }
-    for (auto a = words_.begin(); a != words_.end(); ++a) {
-      for (auto b = std::next(a); b != words_.end(); ++b) {
+    for (auto a = contenders_.begin(); a != contenders_.end(); ++a) {
+      for (auto b = std::next(a); b != contenders_.end(); ++b) {
         if (!chooser_.are_same(a->first, b->first)) continue;
-        remarks_.push_back(fmt::format("{}: {} and {}", nothing_tells(), a->second, b->second));
+        remarks_.push_back(
+            fmt::format("{}: {} and {}", nothing_tells(), a->second.words, b->second.words));
       }
     }
     std::sort(result.refuted.begin(), result.refuted.end());
+    std::sort(result.crowded_out.begin(), result.crowded_out.end());
     if (!all.empty()) {
       result.tied = of_first_rank(all);
       result.founded = as_well_founded(all);
@@ -196,6 +228,7 @@ class Experiments {
       all.resize(static_cast<std::size_t>(options_.limit));
       result.more = true;
     }
+    result.tied_hidden = result.tied - std::min(result.tied, all.size());
     result.remarks.insert(result.remarks.begin(), remarks_.begin(), remarks_.end());
     return result;
   }
@@ -206,7 +239,7 @@ class Experiments {
   std::optional<RepairInput> last_;  // with the runs that were made
   Context& context_;
   ExperimentChooser chooser_;
-  std::map<std::string, std::string> words_;  // of all that were contenders, by their models
+  std::map<std::string, Contender> contenders_;  // all that were, by their models
   std::vector<std::string> remarks_;
   std::unique_ptr<ScenarioModel> as_run_;
   ExtraRunsOptions extra_;
@@ -224,7 +257,13 @@ base::Result<RepairResult> repair_with_experiments(const RepairOptions& options,
   }
   auto input = load_repair_input(wide, context);
   if (!input) return context.sink().already_reported();
-  return Experiments(options, experiments, *std::move(input), context).run();
+  const auto scenario = input->loaded.scenario;
+  auto result = Experiments(options, experiments, *std::move(input), context).run();
+  if (!result) return result;
+  for (auto& proposal : result->proposals) {
+    proposal.read_by_world = read_by_world(scenario, proposal.files, context);
+  }
+  return result;
 }
 
 }  // namespace parallax::tools

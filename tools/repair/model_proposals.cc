@@ -34,7 +34,9 @@ class ModelSearch {
       // Last of all that what happens is open: of one run, too, that tried twice and saw both.
       if (result_.proposals.empty() && !context_.stopped()) search(Mode::kOpen, 1);
     } else {
-      if (set_aside() && !search(Mode::kCautious, 1) && !context_.stopped()) {
+      cautious_ = evidence_;
+      // Where none of those that failed was refused by the world it would be no precaution.
+      if (set_aside(evidence_, cautious_) && !search(Mode::kCautious, 1) && !context_.stopped()) {
         search(Mode::kCautious, 2);
       }
       // Then what is right about all runs.
@@ -73,24 +75,6 @@ class ModelSearch {
     for (std::size_t size = 2; size <= EditSearch::kMostEdits && !context_.stopped(); ++size) {
       if (search(mode, size)) return;
     }
-  }
-
-  /// Of runs of which others failed the same way. False if none of those that failed was refused
-  /// by the world: then it would be no precaution.
-  bool set_aside() {
-    cautious_ = evidence_;
-    bool any = false;
-    for (const auto& a : evidence_) {
-      if (!a.divergence || !a.steps[*a.divergence - 1].failed) continue;
-      const auto t = *a.divergence;
-      for (auto& b : cautious_) {
-        if (b.divergence && *b.divergence <= t) continue;
-        if (!goes_like(a, b, t) || a.states[t] == b.states[t]) continue;
-        b.until = std::min(b.until.value_or(t - 1), t - 1);
-        any = true;
-      }
-    }
-    return any;
   }
 
   EditScope scope(Mode mode) const {

@@ -28,6 +28,7 @@ struct Proposal {
   std::string words;     // a sentence without its period
   std::vector<std::string> evidence;  // what stands behind it, sentences; besides the verdict
   std::vector<ChangedFile> files;
+  std::vector<std::string> read_by_world;  // of these: applied, the change is one of the world, too
   std::optional<std::string> text;  // of the edited model, flat; none: the model stays as it is
   /// Of a change of the plan: the number of the proposal that says how the world then is; 0: the
   /// runs by themselves do.

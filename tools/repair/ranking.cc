@@ -64,15 +64,19 @@ void drop_refuted(std::vector<Proposal>& proposals) {
 
 }  // namespace
 
-bool rank_proposals(const RepairInput& input, std::size_t limit, std::vector<Proposal>& proposals,
-                    Context& context) {
+Unranked rank_proposals(const RepairInput& input, std::size_t limit,
+                        std::vector<Proposal>& proposals, Context& context) {
   std::stable_sort(proposals.begin(), proposals.end(), likelier);
   if (input.experiments > 0) drop_refuted(proposals);
-  bool more = false;
+  Unranked out;
   const auto wanted = limit == 0 ? proposals.size() : limit;
   if (proposals.size() > std::max(wanted, kMostCompared)) {
-    proposals.resize(std::max(wanted, kMostCompared));
-    more = true;
+    const auto kept = std::max(wanted, kMostCompared);
+    out.more = true;
+    out.not_compared = static_cast<std::size_t>(
+        std::count_if(proposals.begin() + static_cast<std::ptrdiff_t>(kept), proposals.end(),
+                      [&](const Proposal& each) { return !likelier(proposals.front(), each); }));
+    proposals.resize(kept);
   }
   TraceComparer comparer(input.loaded, input.text, context);
   for (auto& proposal : proposals) {
@@ -81,10 +85,10 @@ bool rank_proposals(const RepairInput& input, std::size_t limit, std::vector<Pro
   std::stable_sort(proposals.begin(), proposals.end(), changes_less);
   if (proposals.size() > wanted) {
     proposals.resize(wanted);
-    more = true;
+    out.more = true;
   }
   find_ties(proposals);
-  return more;
+  return out;
 }
 
 std::size_t of_first_rank(const std::vector<Proposal>& proposals) {

@@ -100,9 +100,10 @@ base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& co
     if (proposal.changes == Proposal::Changes::kScenario) continue;  // it says so itself
     for (const auto& cause : result.causes) proposal.evidence.push_back(cause.words);
   }
-  const bool more = rank_proposals(input, static_cast<std::size_t>(input.options.limit),
-                                   result.proposals, context);
-  result.more = result.more || more;
+  const auto left_out = rank_proposals(input, static_cast<std::size_t>(input.options.limit),
+                                       result.proposals, context);
+  result.more = result.more || left_out.more;
+  result.not_compared = left_out.not_compared;
   if (result.proposals.empty()) return result;
   result.tied = of_first_rank(result.proposals);
   result.founded = as_well_founded(result.proposals);

@@ -24,10 +24,15 @@ struct RepairResult {
   std::vector<std::string> remarks, hints;
   std::size_t experiments = 0;       // of the runs were made to tell proposals apart
   std::vector<std::string> refuted;  // proposals, in words, that these have refuted
+  /// Such that no run refutes, but others came before them: no more than some are looked at.
+  std::vector<std::string> crowded_out;
   /// Proposals that the runs speak for as much as for the first, with it: indices. Those in front
   /// that `tied` counts are of one rank with it, too.
   std::vector<std::size_t> founded;
   std::size_t tied = 0;
+  std::size_t tied_hidden = 0;  // of these are not shown, as --limit says
+  /// Further ones that are as likely as the first, of which the traces were not compared.
+  std::size_t not_compared = 0;
   std::string why_tied;  // "no run of this plan tells them apart"; empty: nothing was tried
 };
 

@@ -124,6 +124,21 @@ bool goes_like(const Evidence& a, const Evidence& b, std::size_t t) {
   return true;
 }
 
+bool set_aside(const std::vector<Evidence>& failed, std::vector<Evidence>& taken) {
+  bool any = false;
+  for (const auto& a : failed) {
+    if (!a.divergence || !a.steps[*a.divergence - 1].failed) continue;
+    const auto t = *a.divergence;
+    for (auto& b : taken) {
+      if (b.divergence && *b.divergence <= t) continue;
+      if (!goes_like(a, b, t) || a.states[t] == b.states[t]) continue;
+      b.until = std::min(b.until.value_or(t - 1), t - 1);
+      any = true;
+    }
+  }
+  return any;
+}
+
 base::Result<RepairInput> load_repair_input(const RepairOptions& options, Context& context) {
   auto& sink = context.sink();
   const auto journal = harness::read_journal(options.folder.folder, context.files(), sink);

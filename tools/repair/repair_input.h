@@ -56,6 +56,11 @@ struct RepairInput {
 /// The same events up to `t`, through the same states in front of the last of them.
 bool goes_like(const Evidence& a, const Evidence& b, std::size_t t);
 
+/// Sets aside what came, in those of `taken` that went the same way as one of `failed` up to a step
+/// which the world refused there, from that step on: what may fail is taken to fail. False: there
+/// are none.
+bool set_aside(const std::vector<Evidence>& failed, std::vector<Evidence>& taken);
+
 /// Reads the runs of the folder, those that `explain` made included, and holds them against the
 /// model; not all of them if `context` is stopped meanwhile. Reports
 /// what read_journal, load_recorded_scenario and observed_paths report.

@@ -17,8 +17,11 @@
 #include "tools/app/trace_feed.h"
 #include "tools/app/version.h"
 #include "tools/repair/apply.h"
+#include "tools/repair/lost_starts.h"
 #include "tools/repair/ranking.h"
 #include "tools/repair/scenario_copy.h"
+#include "tools/repair/trace_numbers.h"
+#include "tools/repair/world_files.h"
 
 namespace parallax::tools {
 namespace {
@@ -26,22 +29,6 @@ namespace {
 namespace fs = std::filesystem;
 using harness::CampaignResult;
 using harness::CampaignVerdict;
-
-/// What the recorded run was asked for on its command line, beside the scenario.
-void ask_as_recorded(const harness::JournalHeader& header, harness::Scenario& scenario) {
-  const auto options = nlohmann::json::parse(header.options, nullptr, false);
-  if (!options.is_object()) return;
-  const auto criterion = options.value("criterion", nlohmann::json::object());
-  auto& spec = scenario.criterion;
-  const bool paper = criterion.value("kind", "clean-runs") == "paper";
-  spec.kind = paper ? harness::CriterionKind::kPaper : harness::CriterionKind::kCleanRuns;
-  spec.confidence_level = criterion.value("confidence", spec.confidence_level);
-  spec.epsilon = criterion.value("epsilon", spec.epsilon);
-  scenario.match_model = options.value("match", "model") == "model";
-  scenario.compare = recorded_comparison(header).value_or(scenario.comparison());
-  const bool guided = options.value("starts", "uniform") == "guided";
-  scenario.starts = guided ? harness::Starts::kGuided : harness::Starts::kUniform;
-}
 
 class Rounds {
  public:
@@ -51,7 +38,7 @@ class Rounds {
   base::Result<RepairLoop> run() {
     auto& sink = context_.sink();
     if (!prepare()) return sink.already_reported();
-    auto folder = options_.repair.folder.folder;
+    auto folder = options_.repair.folder;
     for (std::int64_t number = 1;; ++number) {
       if (number > options_.rounds) {
         end(LoopEnd::kRounds, fmt::format("{} rounds were allowed", options_.rounds));
@@ -59,13 +46,18 @@ class Rounds {
       }
       const auto next = (fs::path(options_.out) / fmt::format("run-{}", number)).string();
       const auto goes_on = round(folder, next);
-      if (!goes_on) return sink.already_reported();
+      if (!goes_on) {
+        // What was done is not lost.
+        end(LoopEnd::kFailed, fmt::format("an error ended round {}", number));
+        break;
+      }
       if (!*goes_on) break;
-      folder = next;
+      folder = {next, copy_->scenario().string()};
     }
     auto changes = copy_->changes(context_);
     if (!changes) return sink.already_reported();
     loop_.files = *std::move(changes);
+    loop_.read_by_world = read_by_world(original_->scenario, loop_.files, context_);
     if (!write_log()) return sink.already_reported();
     return std::move(loop_);
   }
@@ -94,24 +86,26 @@ class Rounds {
     header_ = *journal->header;
     const auto first_file = context_.files().size();
     const auto first_input = context_.files().inputs().size();
-    const auto loaded = load_recorded_scenario(folder, header_, ScenarioUse::kRun, context_);
+    auto loaded = load_recorded_scenario(folder, header_, ScenarioUse::kRun, context_);
     if (!loaded) return sink.already_reported();
     auto copy =
-        ScenarioCopy::make(loaded->scenario.file, out / "files", first_file, first_input, context_);
+        ScenarioCopy::make(loaded->scenario, out / "files", first_file, first_input, context_);
     if (!copy) return sink.already_reported();
+    original_.emplace(*std::move(loaded));
     copy_.emplace(*std::move(copy));
     return base::Unit{};
   }
 
-  /// One round; false: it was the last.
-  base::Result<bool> round(const std::string& folder, const std::string& next) {
+  /// One round; false: it was the last. The first one reads the user's files, so that its
+  /// experiments are made in the world that was run; what it changes are the copies.
+  base::Result<bool> round(const RunFolderOptions& folder, const std::string& next) {
     auto& sink = context_.sink();
     auto repair = options_.repair;
-    repair.folder = {folder, copy_->scenario().string()};
+    repair.folder = folder;
     auto found = repair_with_experiments(repair, options_.experiments, context_);
     if (!found) return sink.already_reported();
     auto& round = loop_.rounds.emplace_back();
-    round.folder = folder;
+    round.folder = folder.folder;
     round.runs = found->runs;
     round.failed = found->failed;
     round.experiments = found->experiments;
@@ -120,44 +114,38 @@ class Rounds {
       return false;
     }
     if (found->partings.empty()) {
-      end(LoopEnd::kNothing, "the model admits all runs of " + folder);
+      end(LoopEnd::kNothing, "the model admits all runs of " + folder.folder);
       return false;
     }
     const auto input = load_repair_input(repair, context_);
     if (!input) return sink.already_reported();
-    const auto* first = choose(*found);
+    auto* first = choose(*found, input->evidence);
     if (first == nullptr) return false;
+    auto files = copy_->in_copies(std::move(first->files), context_);
+    if (!files) return sink.already_reported();
+    first->files = *std::move(files);
+    if (!apply_proposal(*first, context_)) return sink.already_reported();
     round.words = first->words;
+    round.effects = first->effects;
     std::error_code error;
     round.patch = unified_diff(first->files, fs::current_path(error).string());
-    for (const auto& file : first->files) {
-      if (is_copy(file.name)) continue;
-      return sink.error_about(base::DiagnosticCode::kFileNotWritable, file.name,
-                              "--loop changes copies, and this file was not read from its copy: "
-                              "name it relative to the scenario");
-    }
-    if (!apply_proposal(*first, context_)) return sink.already_reported();
     evidence_.insert(evidence_.end(), input->evidence.begin(), input->evidence.end());
+    // What it takes to fail is not asked of later rounds either.
+    if (first->precaution) set_aside(input->evidence, evidence_);
     round.next_folder = next;
     return run_again(next, round);
   }
 
-  /// Does the file lie in the folder of copies?
-  bool is_copy(const std::string& name) const {
-    std::error_code error;
-    const auto file = fs::weakly_canonical(name, error);
-    const auto folder = fs::weakly_canonical(fs::path(options_.out) / "files", error);
-    const auto below = file.lexically_relative(folder);
-    return !below.empty() && *below.begin() != "..";
-  }
-
   /// The first proposal, if it is the only one of its rank; else why not is the end.
-  const Proposal* choose(RepairResult& found) {
+  Proposal* choose(RepairResult& found, const std::vector<Evidence>& seen) {
     auto& all = found.proposals;
     const auto before = all.size();
+    auto cautious = evidence_;
+    set_aside(seen, cautious);
     // What was repaired in earlier rounds stays so.
     std::erase_if(all, [&](const Proposal& proposal) {
-      return proposal.text && !verify(*proposal.text, evidence_, context_).admits;
+      const auto& earlier = proposal.precaution ? cautious : evidence_;
+      return proposal.text && !verify(*proposal.text, earlier, context_).admits;
     });
     if (all.empty()) {
       end(LoopEnd::kNone, before == 0 ? "no change was found that explains all runs"
@@ -165,7 +153,7 @@ class Rounds {
                                         "rounds");
       return nullptr;
     }
-    const auto& first = all.front();
+    auto& first = all.front();
     const auto tied = before == all.size() ? found.tied : of_first_rank(all);
     if (tied > 1) {
       end(LoopEnd::kTie, fmt::format("{} proposals are of one rank{}{}", tied,
@@ -183,12 +171,14 @@ class Rounds {
     return &first;
   }
 
-  base::Result<CampaignResult> campaign(const ScenarioModel& loaded, const std::string& folder) {
+  base::Result<CampaignResult> campaign(ScenarioModel& loaded, const std::string& folder) {
     auto& sink = context_.sink();
+    harness::CampaignOptions options;
+    header_.asked.apply(loaded.scenario, options);
+    if (header_.max_runs > 0) loaded.scenario.limits.max_runs = header_.max_runs;
     const auto simulator = options_.experiments.simulator(loaded);
     if (!simulator) return sink.already_reported();
     std::error_code error;
-    harness::CampaignOptions options;
     // Other starts than those that the repair was made for: they are clean by construction.
     options.seed = header_.seed + loop_.rounds.size();
     options.jobs = options_.experiments.jobs;
@@ -204,7 +194,8 @@ class Rounds {
       if (!feed) return sink.already_reported();
       return harness::run_loop_campaign(loaded.scenario, **feed, *simulator, options, files, sink);
     }
-    EnumeratedTraces traces(loaded.compilation.model, context_);
+    EnumeratedTraces traces(loaded.compilation.model, context_,
+                            {.all_hits = options.all_hits, .split_initial = options.split_initial});
     return harness::run_campaign(loaded.scenario, traces, *simulator, options, files, sink);
   }
 
@@ -213,7 +204,6 @@ class Rounds {
     auto& sink = context_.sink();
     auto loaded = load_scenario_run(copy_->scenario(), recorded_execution(header_), context_);
     if (!loaded) return sink.already_reported();
-    ask_as_recorded(header_, loaded->scenario);
     auto result = campaign(*loaded, folder);
     if (!result) return sink.already_reported();
     if (result->journal_open) {
@@ -226,17 +216,34 @@ class Rounds {
       end(LoopEnd::kStopped, "it was stopped");
       return false;
     }
+    if (result->failed) return sink.already_reported();
     switch (result->verdict) {
       case CampaignVerdict::kDiscrepancy:
         return true;
       case CampaignVerdict::kNoDiscrepancy:
-        end(LoopEnd::kClean, "the run after it is clean");
+        end_clean(loaded->compilation.model);
         return false;
       case CampaignVerdict::kInconclusive:
         break;
     }
     end(LoopEnd::kInconclusive, "the run after it decides nothing");
     return false;
+  }
+
+  /// A run is clean, too, if what went wrong is no trace any more.
+  void end_clean(const compiler::CompiledModel& model) {
+    const auto& before = original_->compilation.model;
+    if (!before.has_constraints || !model.has_constraints) {
+      return end(LoopEnd::kClean, "the run after it is clean");
+    }
+    const auto starts = lost_starts(before, model, context_.stop());
+    if (starts.lost == 0) return end(LoopEnd::kClean, "the run after it is clean");
+    end(LoopEnd::kPlanAtFault,
+        fmt::format(
+            "the run after it is clean, but from {} of {}{} initial states the constraints "
+            "can no longer be reached, and nothing was run (the first: where {}): from there "
+            "it is the plan that has to change",
+            starts.lost, starts.more ? "the first " : "", starts.of, starts.first));
   }
 
   base::Status write_log() {
@@ -255,6 +262,7 @@ class Rounds {
   const RepairLoopOptions& options_;
   Context& context_;
   harness::JournalHeader header_;
+  std::optional<ScenarioModel> original_;  // what was run at first
   std::optional<ScenarioCopy> copy_;
   std::vector<Evidence> evidence_;  // of the rounds that were
   RepairLoop loop_;
@@ -263,9 +271,9 @@ class Rounds {
 }  // namespace
 
 std::string_view to_string(LoopEnd end) {
-  static constexpr std::string_view kWords[] = {
-      "clean",         "nothing-to-repair", "tie",    "no-proposal",
-      "plan-at-fault", "inconclusive",      "rounds", "stopped"};
+  static constexpr std::string_view kWords[] = {"clean",       "nothing-to-repair", "tie",
+                                                "no-proposal", "plan-at-fault",     "inconclusive",
+                                                "rounds",      "stopped",           "failed"};
   return kWords[static_cast<std::size_t>(end)];
 }
 
@@ -285,6 +293,10 @@ std::string loop_text(const RepairLoop& loop) {
     out += '\n';
     if (round.words.empty()) continue;
     out += fmt::format("  applied: {}\n", round.words);
+    if (round.effects) {
+      out += fmt::format("    traces lost: {}, gained: {}\n", number_text(round.effects->lost),
+                         number_text(round.effects->gained));
+    }
     if (round.verdict.empty()) continue;
     out += fmt::format("  run again: {}, in {}\n", round.verdict, round.next_folder);
     if (round.verdict == "discrepancy") continue;
@@ -292,12 +304,20 @@ std::string loop_text(const RepairLoop& loop) {
   }
   out += fmt::format("{}: {}.\n", to_string(loop.end), loop.why);
   if (loop.files.empty()) return out;
+  for (const auto& name : loop.read_by_world) {
+    out += fmt::format(
+        "The world reads {}, too. The rounds ran in the world as it was; applied, the "
+        "change is one of the world as well.\n",
+        name);
+  }
   std::error_code error;
   return out + "\n" + unified_diff(loop.files, fs::current_path(error).string());
 }
 
 std::string loop_json(const RepairLoop& loop) {
-  nlohmann::ordered_json out = {{"status", "ok"}, {"end", to_string(loop.end)}, {"why", loop.why}};
+  const auto* status = loop.end == LoopEnd::kFailed ? "error" : "ok";
+  nlohmann::ordered_json out = {
+      {"status", status}, {"end", to_string(loop.end)}, {"why", loop.why}};
   auto& rounds = out["rounds"] = nlohmann::ordered_json::array();
   for (const auto& round : loop.rounds) {
     nlohmann::ordered_json one = {{"folder", round.folder},
@@ -307,12 +327,16 @@ std::string loop_json(const RepairLoop& loop) {
     if (!round.words.empty()) {
       one["words"] = round.words;
       one["patch"] = round.patch;
+      const auto effects = round.effects.value_or(TraceEffects{});
+      one["traces_lost"] = number_json(effects.lost);
+      one["traces_gained"] = number_json(effects.gained);
       one["next_folder"] = round.next_folder;
       one["verdict"] = round.verdict;
       one["claims"] = round.claims;
     }
     rounds.push_back(std::move(one));
   }
+  out["read_by_world"] = loop.read_by_world;
   std::error_code error;
   out["patch"] = unified_diff(loop.files, fs::current_path(error).string());
   return base::json_text(out);

@@ -25,10 +25,12 @@ enum class LoopEnd : std::uint8_t {
   kNothing,       // the model admits all runs of the folder
   kTie,           // the first proposal is not the only one of its rank
   kNone,          // no proposal
-  kPlanAtFault,   // with the first proposal no trace reaches the constraints
+  kPlanAtFault,   // with what was repaired no trace, or none from some starts that had one, reaches
+                  // the constraints
   kInconclusive,  // the run decided nothing
   kRounds,        // so many rounds were allowed
   kStopped,
+  kFailed,  // with an error, which was reported
 };
 /// "clean", "nothing-to-repair", "tie", "no-proposal", "plan-at-fault", ...
 std::string_view to_string(LoopEnd end);
@@ -36,8 +38,9 @@ std::string_view to_string(LoopEnd end);
 struct RepairRound {
   std::string folder;  // of the runs that were repaired
   std::size_t runs = 0, failed = 0, experiments = 0;
-  std::string words, patch;  // of what was applied; empty: nothing was
-  std::string next_folder;   // of the run after it
+  std::string words, patch;             // of what was applied; empty: nothing was
+  std::optional<TraceEffects> effects;  // of that
+  std::string next_folder;              // of the run after it
   std::string verdict;
   std::vector<std::string> claims;  // by trace
 };
@@ -47,11 +50,14 @@ struct RepairLoop {
   LoopEnd end = LoopEnd::kStopped;
   std::string why;                 // a sentence without its period
   std::vector<ChangedFile> files;  // the user's, as they were and as the loop left its copies
+  std::vector<std::string> read_by_world;  // of these
 };
 
-/// Repairs, runs again and repairs the next discrepancy, in copies of the scenario's files. What an
-/// earlier round was repaired for holds in all later ones. Reports what repairing and running
-/// report, and an `out` that is not a new folder.
+/// Repairs, runs again and repairs the next discrepancy, in copies of the scenario's files; a world
+/// that is a model stays as it is. What an earlier round was repaired for holds in all later ones.
+/// Each run is asked for as the recorded one was, but for its seed. Reports what repairing and
+/// running report, and an `out` that is not a new folder; rounds that were done before an error are
+/// written, and returned.
 base::Result<RepairLoop> repair_in_rounds(const RepairLoopOptions& options, Context& context);
 
 std::string loop_text(const RepairLoop& loop);

@@ -5,6 +5,7 @@
 
 #include "compiler/base/json.h"
 #include "tools/repair/repair.h"
+#include "tools/repair/trace_numbers.h"
 
 namespace parallax::tools {
 namespace {
@@ -18,11 +19,6 @@ std::string patch_of(const Proposal& proposal) {
 
 std::string plural(std::size_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
-
-std::string number_of(const std::optional<runtime::TraceNumber>& number) {
-  if (!number) return "an unknown number";
-  return (number->exact ? "" : "at least ") + number->value.get_str();
 }
 
 std::string parting_text(const RunParting& parting) {
@@ -47,12 +43,13 @@ std::string head(const RepairResult& result, const std::string& folder) {
     out += fmt::format("  {} of them {} made to tell proposals apart\n", result.experiments,
                        result.experiments == 1 ? "was" : "were");
   }
-  for (const auto& parting : result.partings) out += parting_text(parting);
+  // Where runs contradict each other no axiom is simply wrong.
   for (const auto& text : result.contradictions) {
     out += fmt::format(
         "  {}: chance, or the simulator, or something that the model has no word for\n", text);
   }
   for (const auto& cause : result.causes) out += "  " + cause.words + "\n";
+  for (const auto& parting : result.partings) out += parting_text(parting);
   return out;
 }
 
@@ -81,7 +78,7 @@ std::string proposal_text(const Proposal& proposal, std::size_t rank, const Repa
     const auto effects = proposal.effects.value_or(TraceEffects{});
     for (const auto& sentence : proposal.evidence) out += "   " + sentence + "\n";
     out += fmt::format("   Of the plan's traces there {} lost, {} gained.\n",
-                       number_of(effects.lost), number_of(effects.gained));
+                       number_text(effects.lost), number_text(effects.gained));
     return out + properties_text(proposal) + "\n" + patch_of(proposal);
   }
   out += fmt::format("   Consistent with {} of {}", verdict.runs_consistent,
@@ -90,8 +87,8 @@ std::string proposal_text(const Proposal& proposal, std::size_t rank, const Repa
     out += fmt::format(", with {} of them to the end", verdict.runs_whole);
   }
   const auto effects = proposal.effects.value_or(TraceEffects{});
-  out += fmt::format("; traces lost: {}, gained: {}.\n", number_of(effects.lost),
-                     number_of(effects.gained));
+  out += fmt::format("; traces lost: {}, gained: {}.\n", number_text(effects.lost),
+                     number_text(effects.gained));
   for (const auto& sentence : proposal.evidence) out += "   " + sentence + "\n";
   if (proposal.precaution) {
     out += "   A precaution: what may fail is taken to fail; in the other runs it went well.\n";
@@ -104,6 +101,10 @@ std::string proposal_text(const Proposal& proposal, std::size_t rank, const Repa
         "   No trace reaches the constraints any more: if this is how the world is, the plan is at "
         "fault.\n";
   }
+  for (const auto& name : proposal.read_by_world) {
+    out += fmt::format(
+        "   The world reads {}, too: applied, this changes the world with the model.\n", name);
+  }
   return out + properties_text(proposal) + "\n" + patch_of(proposal);
 }
 
@@ -111,10 +112,22 @@ std::string proposal_text(const Proposal& proposal, std::size_t rank, const Repa
 std::string tie_text(const RepairResult& result) {
   std::string out;
   for (const auto& words : result.refuted) out += fmt::format("\nRefuted by a run: {}.", words);
+  for (const auto& words : result.crowded_out) {
+    out += fmt::format("\nNo run refutes it, but others are shown in its place: {}.", words);
+  }
   if (!out.empty()) out += "\n";
-  if (result.founded.size() < 2) return out;
+  if (result.not_compared > 0) {
+    out += fmt::format(
+        "\n{} as likely as the first {} not compared with it; --limit 0 compares all.\n",
+        plural(result.not_compared, "further proposal"), result.not_compared == 1 ? "was" : "were");
+  }
+  if (result.founded.size() < 2 && result.tied < 2) return out;
   if (result.tied > 1) {
     out += fmt::format("\nA tie: proposals 1 to {} are of one rank", result.tied);
+    if (result.tied_hidden > 0) {
+      out += fmt::format(", of which the last {} {} not shown (--limit)", result.tied_hidden,
+                         result.tied_hidden == 1 ? "is" : "are");
+    }
   } else {
     std::vector<std::size_t> ranks;
     for (const auto i : result.founded) ranks.push_back(i + 1);
@@ -123,12 +136,6 @@ std::string tie_text(const RepairResult& result) {
                     fmt::join(ranks, ", "));
   }
   return out + (result.why_tied.empty() ? "" : "; " + result.why_tied) + ".\n";
-}
-
-Json number_json(const std::optional<runtime::TraceNumber>& number) {
-  if (!number) return nullptr;
-  const bool small = number->value <= mpz_class("9007199254740992");
-  return small ? Json(number->value.get_ui()) : Json(number->value.get_str());
 }
 
 }  // namespace
@@ -223,6 +230,7 @@ std::string repair_json(const RepairResult& result) {
                          {"evidence", proposal.evidence},
                          {"edits", proposal.size},
                          {"patch", patch_of(proposal)},
+                         {"read_by_world", proposal.read_by_world},
                          {"precaution", proposal.precaution},
                          {"runs_consistent", proposal.verdict.runs_consistent},
                          {"runs_to_the_end", proposal.verdict.runs_whole},
@@ -235,7 +243,10 @@ std::string repair_json(const RepairResult& result) {
   }
   out["tied"] = result.tied;
   if (!result.why_tied.empty()) out["why_tied"] = result.why_tied;
+  out["tied_hidden"] = result.tied_hidden;
+  out["not_compared"] = result.not_compared;
   out["refuted"] = result.refuted;
+  out["crowded_out"] = result.crowded_out;
   out["plan_at_fault"] = result.plan_at_fault;
   out["more"] = result.more;
   if (!result.hints.empty()) out["hints"] = result.hints;

@@ -98,6 +98,57 @@ TEST_CASE("a file that the scenario names by an absolute path has no copy, and s
   CHECK(cli.read("two/opens.e") == before);
 }
 
+TEST_CASE("an error in a later round: what was done is on record") {
+  const TwoMistakes cli;
+  // The second change is one of a file that is named by an absolute path.
+  cli.replace("two/opens.e", "load domain.e",
+              "load " + (cli.folder() / "two" / "domain.e").string());
+  cli.world("load " + (cli.folder() / "two" / "opens.e").string() + "\n\n" + kUnparks + kParks);
+  json_of(cli, {"run", "two/own.yaml", "--allow-outside", "--out", "out"}, 1);
+  const auto failed = cli.parallax(
+      {"repair", "out", "--loop", "--out", "fixed", "--allow-outside", "--apply", "1"});
+  CAPTURE(failed.out);
+  CAPTURE(failed.err);
+  CHECK(failed.code == 2);
+  CHECK(failed.err.find("was not read from its copy") != std::string::npos);
+  CHECK(failed.out.find("failed: an error ended round 2") != std::string::npos);
+  CHECK(cli.read("fixed/rounds.txt").find("applied: ") != std::string::npos);
+  const auto log = nlohmann::json::parse(cli.read("fixed/rounds.json"));
+  CHECK(log.at("end") == "failed");
+  CHECK(log.at("rounds").at(0).at("verdict") == "discrepancy");
+  CHECK(cli.read("fixed/repair.patch").find(kUnparks) != std::string::npos);
+  CHECK(cli.read("two/opens.e").find(kUnparks) == std::string::npos);  // it did not end clean
+}
+
+TEST_CASE("a repair that takes starts from the plan does not end clean") {
+  const CliFixture cli;
+  cli.write("domain.e",
+            "fluent Open()\nfluent Lit()\n\nevent Pull()\nevent Push()\n\n"
+            "[time] Terminates(Push(),Open(),time).\n[time] Initiates(Pull(),Open(),time).\n");
+  cli.write("model.e", "load domain.e\n");
+  cli.write("truth.e", "load domain.e\n\n[time] Happens(Pull(),time) -> HoldsAt(Lit(),time).\n");
+  cli.write("start.e", "!HoldsAt(Open(),0).\n");
+  cli.write("pull.lisp",
+            "(def-cram-function pull ()\n  (perform (an action (type pulling)))\n"
+            "  (perform (an action (type pushing))))\n(pull)\n");
+  cli.write("robot.bind",
+            "action pulling () -> Pull()  ok: Open() | !Open() @t+1 "
+            "else manipulation-goal-not-reached\n"
+            "action pushing () -> Push()  ok: !Open() @t+1 else manipulation-goal-not-reached\n");
+  cli.write("drawer.yaml",
+            "model: [model.e, start.e]\nsimulator: {model: truth.e}\nplan: pull.lisp\n"
+            "bind: robot.bind\nhorizon: 2\nconstraints: \"Happens(Push(),time-1)\"\n");
+  json_of(cli, {"run", "drawer.yaml", "--out", "out"}, 1);
+  const auto report = json_of(cli, {"repair", "out", "--loop", "--out", "fixed"}, 1);
+  CAPTURE(report.dump());
+  CHECK(report.at("end") == "plan-at-fault");
+  const std::string why = report.at("why");
+  CHECK(why.find("from 1 of 2 initial states the constraints can no longer be reached") !=
+        std::string::npos);
+  CHECK(report.at("rounds").at(0).at("verdict") == "no-discrepancy");
+  CHECK(report.at("rounds").at(0).at("traces_lost") == 1);
+}
+
 TEST_CASE("it ends at a tie, with a clean folder, and where there is no room for it") {
   const TwoModels cli;
   // A drawer that opens by itself at one time and not at another.
