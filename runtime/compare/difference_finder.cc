@@ -112,7 +112,25 @@ CompiledModel truncated(const CompiledModel& model, Timepoint n) {
   return out;
 }
 
+std::shared_ptr<const Definitions> definitions_for(const CompiledModel& model,
+                                                   const SharedVocabulary& vocabulary,
+                                                   std::optional<Literal> SharedAtom::*side,
+                                                   const std::atomic<bool>* stop) {
+  return std::make_shared<const Definitions>(
+      find_definitions(model, observed_in(model, vocabulary, side), stop));
+}
+
 DifferenceFinder::DifferenceFinder(const CompiledModel& first, const CompiledModel& second,
+                                   const SharedVocabulary& vocabulary, std::size_t max_refinements,
+                                   const std::atomic<bool>* stop)
+    : DifferenceFinder(first, definitions_for(first, vocabulary, &SharedAtom::first, stop), second,
+                       definitions_for(second, vocabulary, &SharedAtom::second, stop), vocabulary,
+                       max_refinements, stop) {}
+
+DifferenceFinder::DifferenceFinder(const CompiledModel& first,
+                                   std::shared_ptr<const Definitions> of_first,
+                                   const CompiledModel& second,
+                                   std::shared_ptr<const Definitions> of_second,
                                    const SharedVocabulary& vocabulary, std::size_t max_refinements,
                                    const std::atomic<bool>* stop)
     : first_(first),
@@ -122,10 +140,8 @@ DifferenceFinder::DifferenceFinder(const CompiledModel& first, const CompiledMod
       max_refinements_(max_refinements),
       solver_(make_cadical_solver(stop)),
       circuit_(*solver_, first.variable_count() + 1),
-      first_definitions_(
-          find_definitions(first, observed_in(first, vocabulary, &SharedAtom::first), stop)),
-      second_definitions_(
-          find_definitions(second, observed_in(second, vocabulary, &SharedAtom::second), stop)),
+      first_definitions_(std::move(of_first)),
+      second_definitions_(std::move(of_second)),
       verifier_(second, make_cadical_solver(stop)) {
   add_first();
   prepare_refutation();
@@ -133,10 +149,10 @@ DifferenceFinder::DifferenceFinder(const CompiledModel& first, const CompiledMod
 
 /// The first model with its definitions as gates, so that both models share what they can.
 void DifferenceFinder::add_first() {
-  mapped_first_.emplace(first_, first_definitions_, circuit_,
+  mapped_first_.emplace(first_, *first_definitions_, circuit_,
                         [](std::int32_t variable) { return Literal::positive(variable); });
   for (std::size_t c = 0; c < first_.clauses.size(); ++c) {
-    if (first_definitions_.is_gate_clause[c]) continue;
+    if (first_definitions_->is_gate_clause[c]) continue;
     const auto clause = mapped_first_->clause(c);
     if (clause->satisfied) continue;
     asserted_.insert(*clause);
@@ -161,7 +177,7 @@ void DifferenceFinder::prepare_refutation() {
     }
   }
   refutation_.emplace(
-      second_, second_definitions_, circuit_, *solver_, asserted_,
+      second_, *second_definitions_, circuit_, *solver_, asserted_,
       [&](std::int32_t v) { return of_second[static_cast<std::size_t>(v) - 1]; }, impossible);
   if (is_determined()) refutation_->require([](std::int32_t) { return false; });
 }

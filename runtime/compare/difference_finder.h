@@ -51,6 +51,12 @@ SharedVocabulary exchanged(const SharedVocabulary& vocabulary);
 /// Sections, which describe how a file is written, are not kept.
 CompiledModel truncated(const CompiledModel& model, Timepoint n);
 
+/// How the variables of a side of the vocabulary follow from what is compared.
+std::shared_ptr<const Definitions> definitions_for(const CompiledModel& model,
+                                                   const SharedVocabulary& vocabulary,
+                                                   std::optional<Literal> SharedAtom::*side,
+                                                   const std::atomic<bool>* stop);
+
 enum class Answer : std::uint8_t {
   kFound,
   kNone,
@@ -69,6 +75,11 @@ class DifferenceFinder {
   /// outlive the finder, `stop` may be null. `max_refinements`: values that are learned; then as
   /// many single traces, then it gives up.
   DifferenceFinder(const CompiledModel& first, const CompiledModel& second,
+                   const SharedVocabulary& vocabulary, std::size_t max_refinements,
+                   const std::atomic<bool>* stop);
+  /// The same with what `definitions_for` gives, so that several finders share it.
+  DifferenceFinder(const CompiledModel& first, std::shared_ptr<const Definitions> of_first,
+                   const CompiledModel& second, std::shared_ptr<const Definitions> of_second,
                    const SharedVocabulary& vocabulary, std::size_t max_refinements,
                    const std::atomic<bool>* stop);
   DifferenceFinder(const DifferenceFinder&) = delete;
@@ -101,7 +112,7 @@ class DifferenceFinder {
   void block();
 
   /// No variable of the second model is left open by the observables: one call answers.
-  bool is_determined() const { return second_definitions_.free.empty(); }
+  bool is_determined() const { return second_definitions_->free.empty(); }
   std::size_t refinements() const { return refinements_; }
   std::int64_t solve_calls() const { return solver_->solve_calls() + verifier_.solve_calls(); }
 
@@ -124,7 +135,7 @@ class DifferenceFinder {
   const std::size_t max_refinements_;
   std::unique_ptr<SatSolver> solver_;
   Circuit circuit_;
-  Definitions first_definitions_, second_definitions_;
+  const std::shared_ptr<const Definitions> first_definitions_, second_definitions_;
   std::optional<MappedModel> mapped_first_;
   ClauseSet asserted_;
   std::optional<Refutation> refutation_;

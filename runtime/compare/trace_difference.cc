@@ -204,22 +204,28 @@ std::string describe(const SharedAtom& atom, const SharedVocabulary& vocabulary)
 class Direction {
  public:
   Direction(const CompiledModel& first, const CompiledModel& second, SharedVocabulary vocabulary,
-            const std::vector<bool>& second_edited, const DifferenceOptions& options)
+            std::shared_ptr<const Definitions> of_first,
+            std::shared_ptr<const Definitions> of_second, const std::vector<bool>& second_edited,
+            const DifferenceOptions& options)
       : first_(first),
         second_(second),
         vocabulary_(std::move(vocabulary)),
         edited_(second_edited),
         options_(options),
-        finder_(first, second, vocabulary_, options.max_refinements, options.stop) {}
+        of_first_(std::move(of_first)),
+        finder_(first, of_first_, second, std::move(of_second), vocabulary_,
+                options.max_refinements, options.stop) {}
 
   OneSided run() {
     OneSided out;
-    out.answer = finder_.find();
+    out.answer = options_.counts_only ? finder_.find_any() : finder_.find();
     if (out.answer == Answer::kFound) {
-      keep(finder_);
-      find_earliest();
-      explain();
-      out.witness = std::move(witness_);
+      if (!options_.counts_only) {
+        keep(finder_);
+        find_earliest();
+        explain();
+        out.witness = std::move(witness_);
+      }
       list(out.count);
     } else if (out.answer == Answer::kNone) {
       out.count.exact = true;
@@ -259,7 +265,8 @@ class Direction {
   /// True if the witness got better.
   bool find_exactly(Timepoint by) {
     const auto second = truncated(second_, by);
-    DifferenceFinder finder(first_, second, vocabulary_, options_.max_refinements, options_.stop);
+    DifferenceFinder finder(first_, of_first_, second, of_truncated(second), vocabulary_,
+                            options_.max_refinements, options_.stop);
     const auto answer = finder.find();
     if (answer == Answer::kFound) keep(finder);
     note(finder, answer);
@@ -277,13 +284,18 @@ class Direction {
       return;
     }
     const auto second = truncated(second_, by);
-    DifferenceFinder finder(first_, second, vocabulary_, options_.max_refinements, options_.stop);
+    DifferenceFinder finder(first_, of_first_, second, of_truncated(second), vocabulary_,
+                            options_.max_refinements, options_.stop);
     auto answer = Answer::kFound;
     while (answer == Answer::kFound) {
       answer = finder.find_with_fewer(witness_.events);
       if (answer == Answer::kFound) keep(finder);
     }
     note(finder, answer);
+  }
+
+  std::shared_ptr<const Definitions> of_truncated(const CompiledModel& second) const {
+    return definitions_for(second, vocabulary_, &SharedAtom::second, options_.stop);
   }
 
   void note(const DifferenceFinder& finder, Answer answer) {
@@ -317,6 +329,7 @@ class Direction {
   const SharedVocabulary vocabulary_;
   const std::vector<bool>& edited_;
   const DifferenceOptions& options_;
+  const std::shared_ptr<const Definitions> of_first_;
   DifferenceFinder finder_;
   Witness witness_;
   std::vector<Literal> observation_;
@@ -376,8 +389,11 @@ TraceDifference compare_traces(const CompiledModel& first, const CompiledModel& 
   out.horizon = std::min(first.horizon, second.horizon);
   const auto a = truncated(first, out.horizon), b = truncated(second, out.horizon);
   out.vocabulary = shared_vocabulary(a, b, out.horizon);
-  out.lost = Direction(a, b, out.vocabulary, options.second_edited, options).run();
-  out.gained = Direction(b, a, exchanged(out.vocabulary), options.first_edited, options).run();
+  const auto of_a = definitions_for(a, out.vocabulary, &SharedAtom::first, options.stop);
+  const auto of_b = definitions_for(b, out.vocabulary, &SharedAtom::second, options.stop);
+  out.lost = Direction(a, b, out.vocabulary, of_a, of_b, options.second_edited, options).run();
+  out.gained =
+      Direction(b, a, exchanged(out.vocabulary), of_b, of_a, options.first_edited, options).run();
   const bool open = !out.lost.count.exact || !out.gained.count.exact;
   if (open && out.vocabulary.is_same()) count_with_graphs(a, b, options, out);
   return out;

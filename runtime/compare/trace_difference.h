@@ -55,6 +55,8 @@ struct DifferenceOptions {
   std::size_t list_limit = 200;        // traces that are found one by one to be counted
   std::size_t max_refinements = 200;   // DifferenceFinder
   GraphLimits graph = {2'000, 4'000};  // for counting beyond `list_limit`
+  /// Without witnesses, which take more time than to count.
+  bool counts_only = false;
   /// By origin of each model: belongs to an edited axiom.
   std::vector<bool> first_edited, second_edited;
   const std::atomic<bool>* stop = nullptr;

@@ -215,6 +215,9 @@ class PlanRepair {
   struct Tried {
     Proposal proposal;
     int kind = 0;
+    std::vector<compiler::TextChange> changes;  // of the plan
+    /// What is around the step: the order does not ask for its traces.
+    bool around() const { return kind >= static_cast<int>(PlanEdit::Kind::kRetry); }
   };
   struct Kept {
     Proposal proposal;
@@ -259,7 +262,7 @@ class PlanRepair {
       if (!tried.empty() || context_.stopped()) break;
     }
     try_edits(world, plan_handlers(scope_), true, 1, *before, tried);
-    keep(world, std::move(tried));
+    keep(world, *before, std::move(tried));
   }
 
   /// So many at once: a plan that has too many in it becomes too large. Those that are nearest to
@@ -385,8 +388,8 @@ class PlanRepair {
     proposal.files = changed_files(plan_->files(), changes);
     if (world.from != nullptr) proposal.verdict = world.from->verdict;
     proposal.evidence.push_back(evidence(world, handles, length));
-    proposal.effects = effects(before, world, changes);
-    if (task_.goal.constraints) proposal.effects->reaches = true;
+    tried.changes = changes;
+    if (!tried.around()) add_effects(before, world, tried);
     out.push_back(std::move(tried));
   }
 
@@ -409,14 +412,15 @@ class PlanRepair {
         world_words, event, run, target, length);
   }
 
-  TraceEffects effects(PlanModel& before, const World& world,
-                       const std::vector<compiler::TextChange>& changes) {
-    TraceEffects out;
+  void add_effects(PlanModel& before, const World& world, Tried& tried) {
+    auto& out = tried.proposal.effects.emplace();
+    if (task_.goal.constraints) out.reaches = true;
     PlanModel::Wrong wrong;
-    const auto behind = compile(world.text, changes, false, wrong);
-    if (!behind) return out;
+    const auto behind = compile(world.text, tried.changes, false, wrong);
+    if (!behind) return;
     runtime::DifferenceOptions options;
     options.stop = &context_.stop();
+    options.counts_only = true;
     const auto difference = runtime::compare_traces(before.model(), behind->model(), options);
     const auto number = [](const runtime::OneSided& side) -> std::optional<runtime::TraceNumber> {
       if (side.answer == runtime::Answer::kUnknown) return std::nullopt;
@@ -424,18 +428,16 @@ class PlanRepair {
     };
     out.lost = number(difference.lost);
     out.gained = number(difference.gained);
-    return out;
   }
 
   /// The best of one world: what does the step before what goes on without it, then what changes
   /// the fewest traces.
-  void keep(const World& world, std::vector<Tried> tried) {
+  void keep(const World& world, PlanModel& before, std::vector<Tried> tried) {
     std::stable_sort(tried.begin(), tried.end(), [](const Tried& a, const Tried& b) {
       if (a.proposal.size != b.proposal.size) return a.proposal.size < b.proposal.size;
       if (a.kind != b.kind) return a.kind < b.kind;
       // Of retries and handlers the innermost takes the least.
-      const bool around = a.kind >= static_cast<int>(PlanEdit::Kind::kRetry);
-      if (around) return a.proposal.oddity < b.proposal.oddity;
+      if (a.around()) return a.proposal.oddity < b.proposal.oddity;
       const auto left = changed(a), right = changed(b);
       return left != right ? left < right : a.proposal.oddity < b.proposal.oddity;
     });
@@ -443,8 +445,7 @@ class PlanRepair {
     std::set<int> kinds;
     for (auto& each : tried) {
       // One retry and one handler are enough: the innermost.
-      const bool around = each.kind >= static_cast<int>(PlanEdit::Kind::kRetry);
-      if (around && !kinds.insert(each.kind).second) continue;
+      if (each.around() && !kinds.insert(each.kind).second) continue;
       const auto same = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& other) {
         return other.proposal.words == each.proposal.words;
       });
@@ -456,6 +457,7 @@ class PlanRepair {
         found_.more = true;
         break;
       }
+      if (each.around()) add_effects(before, world, each);
       each.proposal.precaution = world.from != nullptr && world.from->precaution;
       kept_.push_back({std::move(each.proposal), each.kind, kept++});
     }

@@ -60,6 +60,7 @@ TraceEffects TraceComparer::compare(const std::string& edited) {
   if (!original_ || !other || context_.stopped()) return out;
   runtime::DifferenceOptions options;
   options.stop = &context_.stop();
+  options.counts_only = true;
   const auto difference = runtime::compare_traces(original_->model, other->model, options);
   const auto number = [](const runtime::OneSided& side) -> std::optional<runtime::TraceNumber> {
     if (side.answer == runtime::Answer::kUnknown) return std::nullopt;

@@ -187,6 +187,15 @@ void compare(const CompiledModel& first, const CompiledModel& second, Seen& seen
   seen.lost += lost ? 1 : 0;
   seen.gained += gained ? 1 : 0;
   seen.differ += lost || gained ? 1 : 0;
+  // So does who asks for no witness.
+  options.counts_only = true;
+  const auto numbers = runtime::compare_traces(first, second, options);
+  CHECK(numbers.lost.count.value == difference.lost.count.value);
+  CHECK(numbers.lost.count.exact == difference.lost.count.exact);
+  CHECK(numbers.gained.count.value == difference.gained.count.value);
+  CHECK(numbers.gained.count.exact == difference.gained.count.exact);
+  CHECK_FALSE(numbers.lost.witness);
+  options.counts_only = false;
   // The graphs, where there are some, count the same.
   options.list_limit = 0;
   const auto counted = runtime::compare_traces(first, second, options);
