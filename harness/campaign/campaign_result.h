@@ -140,7 +140,9 @@ struct CampaignResult {
   std::string title;     // what the scenario calls itself; may be empty
   std::uint64_t seed = 0;
   CampaignVerdict verdict = CampaignVerdict::kInconclusive;
-  std::string exploration;          // "all traces explored" | "complete up to bound" | "stopped"
+  /// "all traces explored", "complete up to bound", "stopped"; where a plan is executed until
+  /// everything was shown, "all shown".
+  std::string exploration;
   std::vector<std::string> bounds;  // what was not followed, if complete up to a bound
   bool interrupted = false;         // the stop flag was raised, or an error ended it
   bool failed = false;              // an error ended it, after the traces that are here

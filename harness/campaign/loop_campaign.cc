@@ -376,6 +376,8 @@ class LoopCampaign {
                 : is_covered()                    ? CoverEnd::kRare
                 : executions() >= limit_.max_runs ? CoverEnd::kRunLimit
                                                   : CoverEnd::kStopped;
+    if (cover.end == CoverEnd::kShown) result_.exploration = to_string(cover.end);
+    if (cover.end == CoverEnd::kRare) result_.exploration = "complete up to bound";
     for (std::size_t i = 0; i < shown_.size(); ++i) {
       if (!shown_[i]) cover.left.push_back(cover_->items()[i]);
     }

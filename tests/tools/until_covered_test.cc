@@ -186,6 +186,7 @@ TEST_CASE("until covered: a discrepancy does not end it, and does not spoil the 
   const auto& stream = report.at("traces").at(0);
   CHECK(report.at("verdict") == "discrepancy");
   CHECK(cover_of(report).at("end") == "all shown");
+  CHECK(report.at("exploration") == "all shown");
   REQUIRE(stream.at("causes").size() == 1);
   CHECK(stream.at("causes_runs") == 90);
   const auto kept = json_of(cli, {"run", scenario, "--keep-going", "--out", "kept"}, 1);

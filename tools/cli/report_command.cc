@@ -1,3 +1,8 @@
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -39,6 +44,19 @@ bool is_over(const std::string& folder) {
   return error || journal <= report;
 }
 
+/// A folder that has something of a run, or that a run holds which has recorded nothing yet.
+bool is_run(const std::string& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) return false;
+  if (fs::exists(fs::path(folder) / harness::kJournalName, error)) return true;
+  if (fs::exists(fs::path(folder) / "report.json", error)) return true;
+  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return false;
+  const bool is_held = ::flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(fd);
+  return is_held;
+}
+
 /// A page replaces an earlier page and nothing else: not what it is made from, nor a stranger's
 /// file.
 bool may_write(const std::string& path, base::DiagnosticSink& sink) {
@@ -62,6 +80,10 @@ int watch(const ReportOptions& options, Invocation& invocation) {
     return 0;
   }
   const auto& folder = options.folders.front();
+  if (!is_run(folder)) {
+    invocation.sink().error_about(base::DiagnosticCode::kNoJournal, folder);
+    return 0;
+  }
   const auto journal = fs::path(folder) / harness::kJournalName;
   std::uintmax_t seen = 0;
   while (!is_over(folder) && !invocation.stopped()) {

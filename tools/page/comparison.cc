@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "harness/confidence/quantiles.h"
 #include "tools/page/markup.h"
@@ -14,11 +15,50 @@ namespace {
 constexpr std::size_t kMostEvents = 60;   // of a trace that is named
 constexpr std::size_t kMostTraces = 500;  // rows
 
-/// What a trace is, whatever its number: its events.
-std::string key_of(const PageTrace& trace) {
+/// What a trace is, whatever its number: its events, and where another has the same, its start.
+std::string key_of(const PageTrace& trace, bool with_start) {
   std::string out;
   for (const auto& step : trace.steps) out += step.event + ';';
+  if (!with_start) return out;
+  out += '|';
+  for (const auto& fluent : trace.initial_state) out += fluent + ';';
   return out;
+}
+
+/// The events of which some run has several traces, which begin in different states.
+std::set<std::string> ambiguous_events(const std::vector<PageData>& pages) {
+  std::set<std::string> out;
+  for (const auto& page : pages) {
+    std::set<std::string> seen;
+    for (const auto& trace : page.traces) {
+      auto key = key_of(trace, false);
+      if (!seen.insert(key).second) out.insert(std::move(key));
+    }
+  }
+  return out;
+}
+
+/// What holds at the start of a trace and not at that of every other one with its events.
+std::string start_of(const PageTrace& trace, const std::vector<PageData>& pages) {
+  const auto events = key_of(trace, false);
+  std::map<std::string, std::size_t> counts;
+  std::size_t traces = 0;
+  for (const auto& page : pages) {
+    for (const auto& other : page.traces) {
+      if (key_of(other, false) != events) continue;
+      ++traces;
+      for (const auto& fluent : other.initial_state) ++counts[fluent];
+    }
+  }
+  constexpr std::size_t kMost = 8;
+  std::string out;
+  std::size_t shown = 0;
+  for (const auto& fluent : trace.initial_state) {
+    if (counts[fluent] == traces) continue;
+    if (++shown <= kMost) out += (shown > 1 ? ", " : "") + html_short(fluent);
+  }
+  if (shown > kMost) out += ", &hellip;";
+  return shown > 0 ? out : "none of what others begin with";
 }
 
 std::string events_of(const PageTrace& trace) {
@@ -74,6 +114,7 @@ std::string overview(const std::vector<PageData>& pages) {
   });
   rows += row("Scenario", pages, [](const PageData& page) { return html_short(page.scenario); });
   rows += row("Traces", pages, [](const PageData& page) {
+    if (page.closed_loop) return std::string("executions of the plan");
     return fmt::format("{} ({})", page.traces.size(), html_short(page.exploration));
   });
   rows += row("Not clean, with 95 % interval", pages, [](const PageData& page) {
@@ -82,10 +123,14 @@ std::string overview(const std::vector<PageData>& pages) {
     return page.running ? std::string("not finished") : rate_of(runs - clean, runs);
   });
   rows += row("Claim", pages, [](const PageData& page) {
-    for (const auto& trace : page.traces) {
-      if (!trace.claim.empty()) return html_short(trace.claim);
+    constexpr std::size_t kMost = 3;
+    const auto claims = claims_of(page);
+    std::string out;
+    for (std::size_t i = 0; i < claims.size() && i < kMost; ++i) {
+      out += (i > 0 ? "<br>" : "") + claims[i];
     }
-    return std::string();
+    if (claims.size() > kMost) out += fmt::format("<br>{} more", claims.size() - kMost);
+    return out;
   });
   rows += row("Criterion", pages, [](const PageData& page) { return html_short(page.criterion); });
   rows += row("Seed", pages, [](const PageData& page) { return std::to_string(page.seed); });
@@ -109,11 +154,15 @@ std::string overview(const std::vector<PageData>& pages) {
 
 /// Every trace that some run has, with what became of it in each.
 std::string traces(const std::vector<PageData>& pages) {
+  const auto ambiguous = ambiguous_events(pages);
+  const auto is_ambiguous = [&](const PageTrace& trace) {
+    return ambiguous.contains(key_of(trace, false));
+  };
   std::vector<std::string> order;
   std::map<std::string, std::vector<const PageTrace*>> by_key;
   for (std::size_t i = 0; i < pages.size(); ++i) {
     for (const auto& trace : pages[i].traces) {
-      const auto key = key_of(trace);
+      const auto key = key_of(trace, is_ambiguous(trace));
       auto& found = by_key[key];
       if (found.empty()) {
         found.resize(pages.size());
@@ -133,11 +182,13 @@ std::string traces(const std::vector<PageData>& pages) {
     if (i >= kMostTraces) continue;
     const auto* any =
         *std::find_if(found.begin(), found.end(), [](auto* one) { return one != nullptr; });
+    auto name = any->steps.empty() ? "executions of the plan" : events_of(*any);
+    if (is_ambiguous(*any)) name += "<br>from " + start_of(*any, pages);
     rows += fmt::format("<tr class=\"{0}\"><td>{0}</td><th scope=\"row\">{1}</th>",
                         in_all     ? "kept"
                         : in_first ? "lost"
                                    : "gained",
-                        any->steps.empty() ? "executions of the plan" : events_of(*any));
+                        name);
     for (const auto* trace : found) {
       rows += "<td>";
       if (trace == nullptr) {

@@ -17,16 +17,28 @@ constexpr std::size_t kMostPlots = 12;
 struct Curve {
   std::vector<std::pair<std::int64_t, double>> bounds;  // after so many runs
   std::int64_t runs = 0, failures = 0;
+  std::int64_t aside = 0, unfinished = 0, open = 0;  // not counted; not known
 };
 
-/// The bound after each run, in order, or after some of many. Simulations made afterwards are no
-/// part of the claim.
+/// The bound after each run with a drawn start that came to its end, in order, or after some of
+/// many: as the run itself counts.
 Curve curve_of(const PageData& page, const PageTrace& trace) {
   Curve curve;
   std::vector<bool> failed;
   for (const auto& sample : page.samples) {
-    if (sample.trace != trace.number || sample.further) continue;
-    if (sample.verdict == SampleVerdict::kNotJudged) continue;
+    if (sample.trace != trace.number) continue;
+    if (sample.origin != SampleOrigin::kDrawn) {
+      curve.aside += sample.origin == SampleOrigin::kFurther ? 0 : 1;
+      continue;
+    }
+    if (sample.verdict == SampleVerdict::kNotJudged) {
+      ++curve.open;
+      continue;
+    }
+    if (sample.unfinished && sample.verdict == SampleVerdict::kClean) {
+      ++curve.unfinished;
+      continue;
+    }
     failed.push_back(sample.verdict != SampleVerdict::kClean);
   }
   curve.runs = static_cast<std::int64_t>(failed.size());
@@ -51,8 +63,8 @@ std::string plot(const PageData& page, const PageTrace& trace, const Curve& curv
   const auto at = [&](double bound) { return y.at(std::log10(std::max(bound, 1e-12))); };
   auto out = fmt::format(
       "<svg class=\"plot confidence\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"Bound on the "
-      "discrepancy probability of trace {} against the number of runs\">\n<g class=\"axis\">",
-      px(kWide), px(kHigh), trace.number);
+      "discrepancy probability against the number of runs: {}\">\n<g class=\"axis\">",
+      px(kWide), px(kHigh), stream_name(page, trace));
   for (const double share : {1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0001}) {
     if (std::log10(share) < y.low) break;
     out += line(x.from, at(share), x.to, at(share), "grid") +
@@ -103,33 +115,61 @@ std::string plot(const PageData& page, const PageTrace& trace, const Curve& curv
 
 }  // namespace
 
+namespace {
+
+/// What the curve counts, and what the report certifies.
+std::string caption(const PageData& page, const PageTrace& trace, const Curve& curve) {
+  auto out = fmt::format("{}: {} {}, {} not clean. ", stream_name(page, trace), curve.runs,
+                         curve.runs == 1 ? "run" : "runs", curve.failures);
+  if (curve.aside > 0) {
+    out +=
+        fmt::format("Not counted: {} with starts that were chosen or searched for. ", curve.aside);
+  }
+  if (curve.unfinished > 0) {
+    out += fmt::format(
+        "Nothing is claimed: {} did not end. ",
+        curve.unfinished == 1 ? "an execution" : fmt::format("{} executions", curve.unfinished));
+  } else if (curve.open > 0) {
+    out += fmt::format("{} are not judged one by one, so there is no curve. ", curve.open);
+  }
+  if (trace.certified_confidence > 0.0 && curve.unfinished == 0) {
+    out += trace.certified_epsilon < 1.0
+               ? fmt::format("Certified with {} confidence: fewer than {} of the runs. ",
+                             percent(trace.certified_confidence), percent(trace.certified_epsilon))
+               : "Nothing is certified. ";
+  }
+  if (page.closed_loop) return out;
+  const auto variant =
+      trace.paper_variant.empty() ? std::string() : " (" + html_short(trace.paper_variant) + ")";
+  out += trace.paper_stopped_at ? fmt::format("The paper&#39;s rule would stop after {}{}.",
+                                              *trace.paper_stopped_at, variant)
+                                : "The paper&#39;s rule was not satisfied" + variant + ".";
+  return out;
+}
+
+}  // namespace
+
 std::string confidence_section(const PageData& page) {
   std::string out;
   std::size_t shown = 0, left_out = 0;
   for (const auto& trace : page.traces) {
     const auto curve = curve_of(page, trace);
-    if (curve.runs == 0) continue;
+    if (curve.runs + curve.open + curve.unfinished == 0) continue;
     if (++shown > kMostPlots) {
       ++left_out;
       continue;
     }
-    out += fmt::format("<figure><figcaption>Trace {}: {} runs, {} not clean. ", trace.number,
-                       curve.runs, curve.failures);
-    const auto variant =
-        trace.paper_variant.empty() ? std::string() : " (" + html_short(trace.paper_variant) + ")";
-    out += trace.paper_stopped_at ? fmt::format("The paper&#39;s rule would stop after {}{}.",
-                                                *trace.paper_stopped_at, variant)
-           : page.closed_loop     ? std::string()
-                                  : "The paper&#39;s rule was not satisfied" + variant + ".";
-    out += "</figcaption>" + plot(page, trace, curve) + "</figure>\n";
+    const bool has_curve = curve.open == 0 && curve.unfinished == 0;
+    out += "<figure><figcaption>" + caption(page, trace, curve) + "</figcaption>" +
+           (has_curve ? plot(page, trace, curve) : "") + "</figure>\n";
   }
   if (out.empty()) return out;
   auto text = fmt::format(
-      "<p>With confidence {} a discrepancy comes in fewer of the runs than the bound says; it "
-      "holds "
-      "whenever one looks. The thin curve is what clean runs alone would give.</p>\n<div "
-      "class=\"panels\">\n{}</div>\n",
-      percent(page.confidence), out);
+      "<p>The bound on how many of the runs give a discrepancy, which holds whenever one looks: "
+      "with "
+      "{} confidence, and with {} from the first run on that is not clean. The thin curve is what "
+      "clean runs alone would give.</p>\n<div class=\"panels\">\n{}</div>\n",
+      percent(page.confidence), percent(std::max(0.0, 1.0 - 2.0 * (1.0 - page.confidence))), out);
   if (left_out > 0) text += fmt::format("<p>{} further traces are left out.</p>\n", left_out);
   return section_of("confidence", "Confidence", text);
 }

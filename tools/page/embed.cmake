@@ -1,4 +1,4 @@
-# cmake -DOUTPUT=assets.cc -DSTYLE=page.css -DSCRIPT=page.js -P embed.cmake
+# cmake -DOUTPUT=assets.cc -DSTYLE=page.css -DSCRIPT=page.js -DDOTS=dots.js -P embed.cmake
 # Writes C++ that holds the files as raw string literals, in pieces that every compiler takes.
 function(literal name file out)
   file(READ ${file} text)
@@ -15,6 +15,7 @@ endfunction()
 
 literal(kPageStyle ${STYLE} style)
 literal(kPageScript ${SCRIPT} script)
+literal(kDotsScript ${DOTS} dots)
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "// Made by tools/page/embed.cmake.
 #include \"tools/page/assets.h\"
 
@@ -22,5 +23,6 @@ namespace parallax::tools {
 
 @style@
 @script@
+@dots@
 }  // namespace parallax::tools
 " @ONLY)

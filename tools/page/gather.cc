@@ -129,14 +129,18 @@ base::Result<PageData> gather_page(const PageOptions& options, Context& context)
   if (page.simulator.empty()) page.simulator = header.simulator.name;
   const auto loaded = scenario_of(options, header, own, page);
   const auto further = loaded ? further_of(folder, own) : std::nullopt;
+  for (const auto& [key, record] : journal->samples) {
+    page.closed_loop = page.closed_loop || record.path.has_value();
+  }
   add_journal(*journal, further ? &*further : nullptr, page);
-  if (loaded && page.closed_loop) {
+  if (loaded && page.closed_loop && !page.running) {
     judge_executions(*journal, *loaded, own, page);
   }
   add_timelines(*journal, loaded ? &*loaded : nullptr, page);
   if (!loaded) return page;
   add_world(*loaded, own.files(), page);
   if (further) add_further(*further, *loaded, own, page);
+  add_rule(page);
   const bool was_explained = further.has_value();
   if ((options.explain || was_explained) && !page.discrepancies.empty()) {
     Context blame(quiet(context), context.stop());

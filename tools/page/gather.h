@@ -41,14 +41,18 @@ void add_timelines(const harness::JournalText& journal, const ScenarioModel* loa
 /// One simulation, not judged yet; `page` has its variables and bodies.
 PageSample page_sample(const harness::SampleRecord& record, const PageData& page);
 
-/// Executions of the plan of which the report does not say one by one how they ended: held against
-/// the model as `explain` does it. Of very many only the first.
+/// Executions of the plan in `journal` of which nothing says one by one how they ended: held
+/// against the model as `explain` does it. Of very many only the first.
 void judge_executions(const harness::JournalText& journal, const ScenarioModel& loaded,
                       Context& context, PageData& page);
 
-/// Simulations that `explain` made.
+/// Simulations that `explain` made, also of an executed plan.
 void add_further(const harness::JournalText& further, const ScenarioModel& loaded, Context& context,
                  PageData& page);
+
+/// Where simulations fail like the first discrepancy, from the starts on record, where they show
+/// it.
+void add_rule(PageData& page);
 
 /// Regions and furniture, sources, axioms by event.
 void add_world(const ScenarioModel& loaded, const base::SourceFiles& files, PageData& page);

@@ -1,17 +1,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <utility>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/judge.h"
-#include "runtime/session/solver_session.h"
+#include "harness/campaign/loop_judge.h"
+#include "tools/app/closed_loop.h"
 #include "tools/app/discrepancy.h"
 #include "tools/app/evidence.h"
-#include "tools/app/observed_path.h"
 #include "tools/page/gather.h"
+#include "tools/repair/experiments.h"
 #include "tools/repair/repair.h"
 
 namespace parallax::tools {
@@ -44,20 +46,48 @@ PagePlace place_of(const compiler::Origin& origin) {
   return out;
 }
 
-void add_rule(const CauseEvidence& evidence, PageBlame& blame) {
-  blame.cause = evidence.words();
-  const auto& rule = evidence.finding.rule;
-  if (!rule) return;
-  for (const auto& border : rule->borders) {
-    blame.rule.push_back({evidence.parameters[border.parameter], border.value, border.above});
+PageRule rule_of(const harness::FailureRule& rule, const std::vector<std::string>& parameters) {
+  PageRule out;
+  for (const auto& border : rule.borders) {
+    out.borders.push_back({parameters[border.parameter], border.value, border.above});
   }
-  blame.failures_inside = rule->failures_inside;
-  blame.failures = rule->failures;
-  blame.clean_inside = rule->clean_inside;
-  blame.clean = rule->clean;
+  out.failures_inside = rule.failures_inside;
+  out.failures = rule.failures;
+  out.clean_inside = rule.clean_inside;
+  out.clean = rule.clean;
+  return out;
 }
 
 }  // namespace
+
+void add_rule(PageData& page) {
+  constexpr std::size_t kMost = 200;  // of either kind; the search takes their square
+  if (page.discrepancies.empty()) return;
+  const auto& found = page.discrepancies.front();
+  std::vector<harness::CauseRun> runs;
+  std::size_t failed = 0, clean = 0;
+  for (const auto& sample : page.samples) {
+    const bool fails = sample.verdict == SampleVerdict::kDiscrepancy && sample.cause == found.cause;
+    if (sample.trace != found.trace || (!fails && sample.verdict != SampleVerdict::kClean))
+      continue;
+    if (++(fails ? failed : clean) <= kMost) runs.push_back({sample.start, fails});
+  }
+  // Those that are numbers in each of the runs.
+  std::vector<std::string> parameters;
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < page.variables.size(); ++i) {
+    const auto is_number = [&](const auto& run) { return std::isfinite(run.start[i]); };
+    if (!std::all_of(runs.begin(), runs.end(), is_number)) continue;
+    kept.push_back(i);
+    parameters.push_back(page.variables[i]);
+  }
+  for (auto& run : runs) {
+    std::vector<double> start;
+    for (const auto i : kept) start.push_back(run.start[i]);
+    run.start = std::move(start);
+  }
+  if (const auto rule = harness::failure_rule(runs)) page.rule = rule_of(*rule, parameters);
+}
 
 void add_blame(const PageOptions& options, Context& context, PageData& page) {
   const auto fail = [&] {
@@ -85,7 +115,8 @@ void add_blame(const PageOptions& options, Context& context, PageData& page) {
   blame.more = consequence_words(discrepancy.path, *discrepancy.parting);
   if (const auto evidence =
           gather_evidence(discrepancy, further_records(options.folder), context)) {
-    add_rule(*evidence, blame);
+    blame.cause = evidence->words();
+    if (const auto& rule = evidence->finding.rule) page.rule = rule_of(*rule, evidence->parameters);
   }
   if (context.stopped()) {
     page.banners.push_back("The explanation was stopped before it was finished.");
@@ -96,8 +127,11 @@ void add_blame(const PageOptions& options, Context& context, PageData& page) {
 void add_repair(const PageOptions& options, Context& context, PageData& page) {
   RepairOptions asked;
   asked.folder = {options.folder, options.scenario};
+  asked.plan = true;
   page.repair_was_asked = true;
-  const auto result = propose_repairs(asked, context);
+  ExperimentOptions experiments;
+  experiments.runs = 0;
+  auto result = repair_with_experiments(asked, experiments, context);
   if (!result) {
     page.banners.push_back("No repair could be looked for. " + messages_of(context));
     return;
@@ -105,12 +139,19 @@ void add_repair(const PageOptions& options, Context& context, PageData& page) {
   std::error_code error;
   const auto here = std::filesystem::current_path(error).string();
   for (const auto& proposal : result->proposals) {
-    const auto& verdict = proposal.verdict;
-    page.proposals.push_back(
-        {proposal.words,
-         fmt::format("consistent with {} of {} recorded runs, with {} of them to the end",
-                     verdict.runs_consistent, result->runs, verdict.runs_whole),
-         unified_diff(proposal.files, here)});
+    page.proposals.push_back({proposal.words, unified_diff(proposal.files, here),
+                              proposal_sentences(proposal, result->runs), proposal.tied,
+                              proposal.precaution, name_of(proposal.changes)});
+  }
+  if (!result->why_tied.empty()) {
+    result->why_tied =
+        "nothing is simulated for a page, and `parallax repair` makes runs that may tell them "
+        "apart";
+  }
+  if (!page.proposals.empty()) {
+    const auto words = tie_words(*result);
+    page.repair_notes = words.refuted;
+    page.repair_notes.insert(page.repair_notes.end(), words.open.begin(), words.open.end());
   }
   if (page.proposals.empty()) page.repair_words = repair_text(*result, asked);
 }
@@ -122,30 +163,23 @@ void judge_executions(const harness::JournalText& journal, const ScenarioModel& 
     return one.verdict == SampleVerdict::kNotJudged;
   };
   if (std::none_of(page.samples.begin(), page.samples.end(), is_open)) return;
-  const auto paths = observed_paths(loaded, journal, context);
-  if (!paths) return;
-  std::map<std::pair<std::int64_t, std::int64_t>, const ObservedPath*> by_id;
-  for (const auto& path : *paths) by_id[{path.id.trace, path.id.sample}] = &path;
-  const auto& model = loaded.compilation.model;
-  const PathFacts facts(model);
-  runtime::SolverSession session(model, runtime::make_cadical_solver(&context.stop()));
+  auto loop = ClosedLoop::make(loaded, context);
+  if (!loop) return;
+  const compiler::SymbolTable symbols(loaded.compilation.model);
+  const harness::ModelFluents fluents(symbols);
   std::size_t judged = 0;
   for (auto& sample : page.samples) {
-    const auto path = by_id.find({sample.trace, sample.sample});
-    if (!is_open(sample) || path == by_id.end() || context.stopped()) continue;
+    if (!is_open(sample) || context.stopped()) continue;
+    const auto record = journal.samples.find(
+        harness::SampleKey(sample.trace, sample.sample, harness::DrawPhase::kCertify));
+    if (record == journal.samples.end() || !record->second.path) continue;
     if (++judged > kMost) break;
-    const auto parting = parting_of(*path->second, facts, session);
-    if (parting.undecided) continue;
-    sample.verdict = parting.after ? SampleVerdict::kDiscrepancy : SampleVerdict::kClean;
-    if (!parting.after) continue;
-    const auto& causes = page.traces.empty() ? std::vector<PageCause>() : page.traces[0].causes;
-    const auto& steps = path->second->steps;
-    if (causes.size() == 1) {
-      sample.cause = causes.front().cause;
-    } else if (*parting.after > 0 && *parting.after <= steps.size()) {
-      const auto& step = steps[*parting.after - 1];
-      sample.cause = step.name + (step.succeeded ? "" : ": " + harness::reason_word(step.outcome));
-    }
+    const auto judgement = harness::judge_path(*loaded.scenario.mapping, fluents, **loop,
+                                               record->second, loaded.scenario.comparison());
+    if (!judgement.missing.empty() || judgement.admitted == base::Known::kUndecided) continue;
+    const bool clean = judgement.admitted == base::Known::kYes;
+    sample.verdict = clean ? SampleVerdict::kClean : SampleVerdict::kDiscrepancy;
+    if (!clean) sample.cause = judgement.cause.text;
   }
 }
 
@@ -155,11 +189,16 @@ void add_further(const harness::JournalText& further, const ScenarioModel& loade
   std::optional<harness::ModelFluents> fluents;
   for (const auto& [key, record] : further.samples) {
     const auto [number, sample, phase] = key;
-    if (phase == harness::DrawPhase::kConfirm || record.path) continue;
+    if (phase == harness::DrawPhase::kConfirm) continue;
     const bool is_known = std::any_of(
         page.samples.begin(), page.samples.end(),
         [&](const auto& one) { return one.trace == record.trace && one.sample == record.sample; });
     if (is_known) continue;
+    if (record.path) {
+      page.samples.push_back(page_sample(record, page));
+      page.samples.back().origin = SampleOrigin::kFurther;
+      continue;
+    }
     if (!trace || trace->number != number) {
       const auto checked =
           check_recorded_run(loaded, harness::recorded_run(further, {number, sample}), context);
@@ -168,7 +207,7 @@ void add_further(const harness::JournalText& further, const ScenarioModel& loade
       fluents.emplace(*trace->symbols);
     }
     auto out = page_sample(record, page);
-    out.further = true;
+    out.origin = SampleOrigin::kFurther;
     const auto whole = record.observations.size() == trace->event_count() + 1;
     if (record.status == harness::SampleStatus::kOk && whole) {
       const auto comparison = loaded.scenario.comparison();
@@ -180,6 +219,7 @@ void add_further(const harness::JournalText& further, const ScenarioModel& loade
     }
     page.samples.push_back(std::move(out));
   }
+  if (page.closed_loop) judge_executions(further, loaded, context, page);
 }
 
 }  // namespace parallax::tools

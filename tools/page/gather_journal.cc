@@ -97,6 +97,13 @@ PageSample page_sample(const SampleRecord& record, const PageData& page) {
     out.start.push_back(number_in(record.initial, variable));
   }
   for (const auto& body : page.bodies) out.ways.push_back(way_of(record, body));
+  if (record.phase == harness::DrawPhase::kSearch) out.origin = SampleOrigin::kSearch;
+  if (record.path) {
+    if (!record.path->target.empty()) out.origin = SampleOrigin::kChosen;
+    using harness::PathEnd;
+    out.unfinished = record.path->end == PathEnd::kPerformLimit ||
+                     record.path->end == PathEnd::kTimeLimit || record.path->end == PathEnd::kCut;
+  }
   if (record.status == harness::SampleStatus::kLost) {
     out.verdict = SampleVerdict::kLost;
     out.cause = "lost: " + record.reason;

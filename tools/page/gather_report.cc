@@ -24,6 +24,20 @@ const char* to_string(SampleVerdict verdict) {
   return "not judged";
 }
 
+const char* to_string(SampleOrigin origin) {
+  switch (origin) {
+    case SampleOrigin::kDrawn:
+      return "drawn";
+    case SampleOrigin::kChosen:
+      return "chosen start";
+    case SampleOrigin::kSearch:
+      return "search";
+    case SampleOrigin::kFurther:
+      break;
+  }
+  return "made afterwards";
+}
+
 std::string sample_name(std::int64_t trace, std::int64_t sample) {
   return fmt::format("{}.{}", trace, sample);
 }
@@ -69,6 +83,35 @@ std::vector<PageDifference> differences(const json& object, const char* name) {
   return out;
 }
 
+PagePath path_of(const json& entry) {
+  constexpr std::size_t kMostSteps = 60;
+  PagePath out;
+  const auto events = texts(entry, "events"), outcomes = texts(entry, "outcomes");
+  for (std::size_t i = 0; i < events.size() && i < kMostSteps; ++i) {
+    out.steps += (i > 0 ? ", " : "") + events[i];
+    if (i < outcomes.size() && outcomes[i] != "ok") out.steps += ": " + outcomes[i];
+  }
+  if (events.size() > kMostSteps) out.steps += ", ...";
+  const auto detail = text(entry, "detail");
+  out.end = text(entry, "end") + (detail.empty() ? "" : ": " + detail);
+  out.simulations = whole(entry, "simulations");
+  out.example = whole(entry, "example");
+  return out;
+}
+
+/// "12 of 14 behaviours shown; each of the others comes in fewer than 5 % of executions"
+std::string covered_text(const json& cover) {
+  const auto items = whole(cover, "items"), shown = whole(cover, "shown");
+  auto out = fmt::format("{} of {} behaviours of plan and model shown", shown, items);
+  const auto bound = field<double>(cover, "bound", 1.0);
+  if (shown < items && bound < 1.0) {
+    out += fmt::format("; each of the others comes in fewer than {} of executions ({} confidence)",
+                       percent(bound), percent(field<double>(cover, "confidence")));
+  }
+  const auto end = text(cover, "end");
+  return shown < items && !end.empty() ? out + "; ended by: " + end : out;
+}
+
 PageTrace trace_of(const json& entry) {
   PageTrace out;
   out.number = whole(entry, "trace");
@@ -89,6 +132,13 @@ PageTrace trace_of(const json& entry) {
     }
   }
   out.not_covered = texts(entry, "not_covered");
+  out.initial_state = texts(entry, "initial_state");
+  out.chosen_starts = whole(entry, "chosen_starts");
+  out.unfinished = whole(entry, "unfinished");
+  if (const auto* cover = base::json_member(entry, "until_covered")) {
+    out.covered = covered_text(*cover);
+  }
+  for (const auto& path : list(entry, "paths")) out.paths.push_back(path_of(path));
   const auto& sources = list(entry, "sources");
   for (std::size_t i = 0; const auto& event : texts(entry, "events")) {
     const bool is_known = i < sources.size() && sources[i].is_string();

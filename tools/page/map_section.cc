@@ -67,13 +67,16 @@ class MapPlot {
   std::string svg() const {
     std::string out = fmt::format(
         "<svg id=\"map-svg\" class=\"plot\" viewBox=\"0 0 {0} {1}\" role=\"img\" "
-        "aria-labelledby=\"map-t map-d\" data-x=\"{2:.6g} {3:.6g} {4:.6g} {5:.6g}\" "
+        "aria-labelledby=\"map-t map-d\"{11} data-x=\"{2:.6g} {3:.6g} {4:.6g} {5:.6g}\" "
         "data-y=\"{6:.6g} {7:.6g} {8:.6g} {9:.6g}\">\n<title id=\"map-t\">Map of starts and ends"
         "</title><desc id=\"map-d\">{10}</desc>\n",
         px(kWidth), px(height_), x_.low, x_.high, x_.from, x_.to, y_.low, y_.high, y_.from, y_.to,
-        html_short(summary()));
+        html_short(summary()), page_.samples.size() > kMostDots ? " data-dots=\"map\"" : "");
     out += furniture() + regions() + axes();
-    for (std::size_t body = 0; body < page_.bodies.size(); ++body) out += dots(body);
+    std::vector<const PageSample*> all;
+    for (const auto& sample : page_.samples) all.push_back(&sample);
+    const auto shown = dotted(all);
+    for (std::size_t body = 0; body < page_.bodies.size(); ++body) out += dots(body, shown);
     out += ways() + names();
     return out + "<g id=\"map-hover\"></g></svg>\n";
   }
@@ -145,18 +148,21 @@ class MapPlot {
     return out + "</g>\n";
   }
 
-  std::string dots(std::size_t body) const {
+  std::string dots(std::size_t body, const std::vector<const PageSample*>& shown) const {
     std::string out = fmt::format("<g data-body=\"{}\">\n", body);
     for (const auto verdict : kVerdicts) {
-      DotPath starts, ends;
-      for (const auto& sample : page_.samples) {
-        if (sample.verdict != verdict || sample.ways[body].empty()) continue;
-        const auto& way = sample.ways[body];
-        starts.add(x_.at(way.front()[0]), y_.at(way.front()[1]));
-        ends.add(x_.at(way.back()[0]), y_.at(way.back()[1]));
+      for (const bool aside : {true, false}) {
+        DotPath starts, ends;
+        for (const auto* sample : shown) {
+          if (sample->verdict != verdict || sample->ways[body].empty()) continue;
+          if ((sample->origin != SampleOrigin::kDrawn) != aside) continue;
+          const auto& way = sample->ways[body];
+          starts.add(x_.at(way.front()[0]), y_.at(way.front()[1]));
+          ends.add(x_.at(way.back()[0]), y_.at(way.back()[1]));
+        }
+        const auto kind = dot_class(verdict, aside);
+        out += ends.element(kind) + starts.element(kind + " ring") + starts.element(kind + " hole");
       }
-      out += ends.element(dot_class(verdict)) + starts.element(dot_class(verdict) + " ring") +
-             starts.element(dot_class(verdict) + " hole");
     }
     return out + "</g>\n";
   }
@@ -166,7 +172,9 @@ class MapPlot {
     std::string out;
     std::size_t shown = 0;
     for (const auto& sample : page_.samples) {
-      if (sample.verdict != SampleVerdict::kDiscrepancy || sample.further || shown >= 3) continue;
+      if (sample.verdict != SampleVerdict::kDiscrepancy || shown >= 3 ||
+          sample.origin == SampleOrigin::kFurther)
+        continue;
       ++shown;
       for (std::size_t body = 0; body < sample.ways.size(); ++body) {
         std::string points;
@@ -221,6 +229,15 @@ std::string key_of(const PageData& page) {
     out += fmt::format("<span class=\"mark {}\"></span> {} ", verdict_class(to_string(verdict)),
                        to_string(verdict));
   }
+  const auto aside = std::count_if(page.samples.begin(), page.samples.end(), [](const auto& one) {
+    return one.origin != SampleOrigin::kDrawn;
+  });
+  if (aside > 0) {
+    out += fmt::format(
+        "<span class=\"mark aside\"></span> pale: {} whose starts were not drawn for the claim "
+        "(chosen, searched for, or made afterwards)",
+        aside);
+  }
   return out;
 }
 
@@ -241,9 +258,10 @@ std::string map_section(const PageData& page) {
       "</label> <button type=\"button\" id=\"map-in\">Zoom in</button> <button type=\"button\" "
       "id=\"map-out\">Zoom out</button> <button type=\"button\" id=\"map-all\">Whole map</button> "
       "<span class=\"hint\">Point at a mark, or use the arrow keys on the map, to see one "
-      "simulation&#39;s ways.</span></div>\n<div class=\"plot-box\" id=\"map-box\">{}</div>\n"
-      "<p id=\"map-says\" class=\"says\" aria-live=\"polite\"></p>\n",
-      html_short(plot.summary()), key_of(page), bodies, plot.svg());
+      "simulation&#39;s ways.</span></div>\n<div class=\"plot-box\" "
+      "id=\"map-box\"><div class=\"layered\">{}</div></div>\n{}<p id=\"map-says\" class=\"says\" "
+      "aria-live=\"polite\"></p>\n",
+      html_short(plot.summary()), key_of(page), bodies, plot.svg(), dots_hint(page.samples.size()));
   return section_of("map", "Map of starts and ends", body);
 }
 

@@ -12,6 +12,14 @@ namespace parallax::tools {
 /// What became of a simulation, as far as the run folder tells.
 enum class SampleVerdict : std::uint8_t { kClean, kDiscrepancy, kLost, kNotJudged };
 
+/// How a simulation came by its start. Claims are about drawn starts alone.
+enum class SampleOrigin : std::uint8_t {
+  kDrawn,
+  kChosen,   // for what it leads to
+  kSearch,   // of the search before the claim
+  kFurther,  // made by `explain`, after the run
+};
+
 /// An axiom or a line of the plan, as a text has it.
 struct PagePlace {
   std::string place;  // "domain.e:12"; empty for what no text says
@@ -66,10 +74,17 @@ struct PageCause {
   double rate = 0.0, lower = 0.0, upper = 0.0;
 };
 
+/// A way that executions of the plan went.
+struct PagePath {
+  std::string steps, end;  // "Go(r2) ok, Grasp(milk) failed"
+  std::int64_t simulations = 0, example = 0;
+};
+
 struct PageTrace {
   std::int64_t number = 0;
   std::string verdict;  // "no-discrepancy", "discrepancy", "inconclusive"; empty: not known
   std::string claim;
+  std::vector<std::string> initial_state;  // what holds at the start
   std::vector<std::string> caveats;
   std::int64_t simulations = 0, clean = 0, lost = 0;
   double certified_confidence = 0.0, certified_epsilon = 1.0;
@@ -78,6 +93,10 @@ struct PageTrace {
   std::vector<std::string> not_covered;
   std::vector<PageStep> steps;
   std::vector<PageCause> causes;
+  // Of executions of the plan.
+  std::int64_t chosen_starts = 0, unfinished = 0;
+  std::string covered;  // what came of going on until everything was shown
+  std::vector<PagePath> paths;
 };
 
 /// Where a body was at each timepoint; empty where it is not known.
@@ -87,7 +106,8 @@ struct PageSample {
   std::int64_t trace = 0, sample = 0;
   std::uint64_t seed = 0;
   SampleVerdict verdict = SampleVerdict::kNotJudged;
-  bool further = false;  // made by `explain`, after the run
+  SampleOrigin origin = SampleOrigin::kDrawn;
+  bool unfinished = false;  // a limit ended it: nothing is said of it
   std::string cause;
   std::int64_t events = 0, retries = 0;
   double sim_time_s = 0.0;
@@ -108,17 +128,25 @@ struct PageBorder {
   bool above = true;
 };
 
+/// Where in the start region simulations fail like the first discrepancy.
+struct PageRule {
+  std::vector<PageBorder> borders;
+  std::int64_t failures_inside = 0, failures = 0, clean_inside = 0, clean = 0;
+};
+
 /// Why the model cannot follow, as `explain` tells it.
 struct PageBlame {
   std::string words, more;
   std::vector<PagePlace> axioms;
   std::string cause;  // the kind of cause in words, by the runs on record
-  std::vector<PageBorder> rule;
-  std::int64_t failures_inside = 0, failures = 0, clean_inside = 0, clean = 0;
 };
 
 struct PageProposal {
-  std::string words, facts, patch;
+  std::string words, patch;
+  std::vector<std::string> facts;  // sentences
+  std::vector<std::size_t> tied;   // numbers of those that nothing tells from it
+  bool precaution = false;
+  std::string changes;  // "model", "plan", ...
 };
 
 struct PageSource {
@@ -150,9 +178,11 @@ struct PageData {
   /// By event symbol, the axioms that speak of it.
   std::vector<std::pair<std::string, std::vector<PagePlace>>> axioms;
   std::optional<PageBlame> blame;
+  std::optional<PageRule> rule;
   std::vector<PageProposal> proposals;
   bool repair_was_asked = false;
-  std::string repair_words;  // where there are no proposals
+  std::string repair_words;               // where there are no proposals
+  std::vector<std::string> repair_notes;  // what runs refuted, and what they leave open
   /// None: there is nothing in the folder that anything could be shown of.
   bool empty() const { return traces.empty() && samples.empty() && verdict.empty(); }
 };
@@ -161,5 +191,7 @@ struct PageData {
 std::string sample_name(std::int64_t trace, std::int64_t sample);
 /// "clean", "discrepancy", "lost", "not judged"
 const char* to_string(SampleVerdict verdict);
+/// "drawn", "chosen start", "search", "made afterwards"
+const char* to_string(SampleOrigin origin);
 
 }  // namespace parallax::tools

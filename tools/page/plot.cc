@@ -38,18 +38,40 @@ std::string DotPath::element(std::string_view classes) const {
   return fmt::format("<path class=\"{}\" d=\"{}\"/>\n", classes, d_);
 }
 
-std::string dot_class(SampleVerdict verdict) {
+std::string dot_class(SampleVerdict verdict, bool aside) {
+  const std::string more = aside ? " aside" : "";
   switch (verdict) {
     case SampleVerdict::kClean:
-      return "dot clean";
+      return "dot clean" + more;
     case SampleVerdict::kDiscrepancy:
-      return "dot bad";
+      return "dot bad" + more;
     case SampleVerdict::kLost:
-      return "dot lost";
+      return "dot lost" + more;
     case SampleVerdict::kNotJudged:
       break;
   }
-  return "dot open";
+  return "dot open" + more;
+}
+
+std::vector<const PageSample*> dotted(const std::vector<const PageSample*>& samples) {
+  if (samples.size() <= kMostDots) return samples;
+  std::vector<const PageSample*> out;
+  for (const bool wrong : {true, false}) {
+    const auto most = wrong ? kMostDots / 2 : kMostDots;
+    for (const auto* sample : samples) {
+      const bool is_wrong = sample->verdict != SampleVerdict::kClean;
+      if (is_wrong == wrong && out.size() < most) out.push_back(sample);
+    }
+  }
+  return out;
+}
+
+std::string dots_hint(std::size_t samples) {
+  if (samples <= kMostDots) return {};
+  return fmt::format(
+      "<noscript><p class=\"hint\">Of {} simulations {} are drawn; all of them are where scripts "
+      "may run.</p></noscript>\n",
+      samples, kMostDots);
 }
 
 std::string line(double x1, double y1, double x2, double y2, std::string_view classes) {

@@ -35,8 +35,15 @@ class DotPath {
 };
 
 /// The dots of one kind of simulation: what went wrong is a larger square, so that colour is not
-/// all that tells.
-std::string dot_class(SampleVerdict verdict);
+/// all that tells; `aside`: no claim is about it.
+std::string dot_class(SampleVerdict verdict, bool aside);
+
+/// Beyond so many simulations all dots are a script's to draw, on a canvas.
+inline constexpr std::size_t kMostDots = 1000;
+/// Those whose dots are in the page itself: all, or of very many some, what went wrong first.
+std::vector<const PageSample*> dotted(const std::vector<const PageSample*>& samples);
+/// What says so without scripts; empty where all are drawn.
+std::string dots_hint(std::size_t samples);
 
 /// "12.3", as coordinates are written.
 std::string px(double value);

@@ -21,39 +21,64 @@ bool is_place(const std::string& variable) {
 /// One panel: a variable against another one.
 class Panel {
  public:
-  Panel(const PageData& page, const std::vector<const PageSample*>& samples, std::size_t x,
-        std::size_t y)
-      : page_(page), samples_(samples), ix_(x), iy_(y) {
-    x_ = axis_of(x, kLeft, kSide - kPad);
-    y_ = axis_of(y, kSide - kBottom, kPad + 14);
+  /// `u`, `v`: among the plotted variables; `v` behind the last of them: the simulations' numbers.
+  Panel(const PageData& page, const PlottedVariables& plotted, std::size_t u, std::size_t v)
+      : page_(page), plotted_(plotted), u_(u), v_(v) {
+    x_ = axis_of(u, kLeft, kSide - kPad);
+    y_ = axis_of(v, kSide - kBottom, kPad + 14);
   }
 
   std::string svg() const {
-    const auto &x = page_.variables[ix_], &y = page_.variables[iy_];
+    const auto& x = page_.variables[plotted_.chosen[u_]];
     auto out = fmt::format(
-        "<svg class=\"plot panel\" viewBox=\"0 0 {0} {0}\" role=\"img\" aria-label=\"{1} against "
-        "{2}\">\n<rect class=\"frame\" x=\"{3}\" y=\"{4}\" width=\"{5}\" height=\"{6}\"/>\n",
-        px(kSide), html_short(y), html_short(x), px(x_.from), px(y_.to), px(x_.to - x_.from),
-        px(y_.from - y_.to));
+        "<div class=\"layered panel\"><svg class=\"plot\" viewBox=\"0 0 {0} {0}\" role=\"img\" "
+        "aria-label=\"{1} against {2}\"{7}>\n<rect class=\"frame\" x=\"{3}\" y=\"{4}\" "
+        "width=\"{5}\" height=\"{6}\"/>\n",
+        px(kSide), html_short(y_name()), html_short(x), px(x_.from), px(y_.to), px(x_.to - x_.from),
+        px(y_.from - y_.to), canvas_words());
     out += rule() + axes();
+    const auto shown = dotted(plotted_.samples);
     for (const auto verdict : {SampleVerdict::kClean, SampleVerdict::kNotJudged,
                                SampleVerdict::kLost, SampleVerdict::kDiscrepancy}) {
-      DotPath dots;
-      for (const auto* sample : samples_) {
-        if (sample->verdict != verdict) continue;
-        const double a = sample->start[ix_], b = sample->start[iy_];
-        if (std::isfinite(a) && std::isfinite(b)) dots.add(x_.at(a), y_.at(b));
+      for (const bool aside : {true, false}) {
+        DotPath dots;
+        for (const auto* sample : shown) {
+          if (sample->verdict != verdict || (sample->origin != SampleOrigin::kDrawn) != aside) {
+            continue;
+          }
+          const double a = value_of(*sample, u_), b = value_of(*sample, v_);
+          if (std::isfinite(a) && std::isfinite(b)) dots.add(x_.at(a), y_.at(b));
+        }
+        out += dots.element(dot_class(verdict, aside));
       }
-      out += dots.element(dot_class(verdict));
     }
-    return out + "</svg>\n";
+    return out + "</svg></div>\n";
   }
 
  private:
+  double value_of(const PageSample& sample, std::size_t variable) const {
+    return variable < plotted_.chosen.size() ? sample.start[plotted_.chosen[variable]]
+                                             : static_cast<double>(sample.sample);
+  }
+  std::string y_name() const {
+    return v_ < plotted_.chosen.size() ? page_.variables[plotted_.chosen[v_]] : "simulation";
+  }
+
+  /// What assets/dots.js needs to draw them all.
+  std::string canvas_words() const {
+    if (plotted_.samples.size() <= kMostDots) return {};
+    return fmt::format(
+        " data-dots=\"starts\" data-u=\"{}\" data-v=\"{}\" data-trace=\"{}\" "
+        "data-x=\"{:.6g} {:.6g} {:.6g} {:.6g}\" data-y=\"{:.6g} {:.6g} {:.6g} {:.6g}\"",
+        u_, v_ < plotted_.chosen.size() ? std::to_string(v_) : "-1",
+        plotted_.trace ? std::to_string(*plotted_.trace) : "", x_.low, x_.high, x_.from, x_.to,
+        y_.low, y_.high, y_.from, y_.to);
+  }
+
   PlotAxis axis_of(std::size_t variable, double from, double to) const {
     PlotAxis axis{INFINITY, -INFINITY, from, to};
-    for (const auto* sample : samples_) {
-      const double value = sample->start[variable];
+    for (const auto* sample : plotted_.samples) {
+      const double value = value_of(*sample, variable);
       if (!std::isfinite(value)) continue;
       axis.low = std::min(axis.low, value), axis.high = std::max(axis.high, value);
     }
@@ -63,13 +88,14 @@ class Panel {
     return axis;
   }
 
-  /// The borders of the rule, and the side on which simulations fail.
+  /// The borders of the rule, the side on which simulations fail, and how many do.
   std::string rule() const {
     std::string out;
-    if (!page_.blame) return out;
-    for (const auto& border : page_.blame->rule) {
-      const bool on_x = border.variable == page_.variables[ix_];
-      const bool on_y = !on_x && border.variable == page_.variables[iy_];
+    if (!page_.rule) return out;
+    const auto& x_variable = page_.variables[plotted_.chosen[u_]];
+    for (const auto& border : page_.rule->borders) {
+      const bool on_x = border.variable == x_variable;
+      const bool on_y = !on_x && border.variable == y_name();
       if (!on_x && !on_y) continue;
       const auto& axis = on_x ? x_ : y_;
       const double at = axis.at(std::clamp(border.value, axis.low, axis.high));
@@ -83,7 +109,10 @@ class Panel {
                              px(x_.from), px(low), px(x_.to - x_.from), px(size)) +
                      line(x_.from, at, x_.to, at, "border");
     }
-    return out;
+    if (out.empty()) return out;
+    const auto inside = page_.rule->failures_inside + page_.rule->clean_inside;
+    return out + label(x_.to, 14, "end rule-name",
+                       fmt::format("fail there: {} of {}", page_.rule->failures_inside, inside));
   }
 
   std::string axes() const {
@@ -96,41 +125,30 @@ class Panel {
       out += line(x_.from - 4, y_.at(value), x_.from, y_.at(value), "tick") +
              label(x_.from - 6, y_.at(value) + 4, "end", number(value));
     }
-    out +=
-        label(0.5 * (x_.from + x_.to), kSide - 6, "middle name", html_short(page_.variables[ix_])) +
-        label(4, 14, "name", html_short(page_.variables[iy_]));
+    out += label(0.5 * (x_.from + x_.to), kSide - 6, "middle name",
+                 html_short(page_.variables[plotted_.chosen[u_]])) +
+           label(4, 14, "name", html_short(y_name()));
     return out + "</g>\n";
   }
 
   const PageData& page_;
-  const std::vector<const PageSample*>& samples_;
-  std::size_t ix_, iy_;
+  const PlottedVariables& plotted_;
+  std::size_t u_, v_;
   PlotAxis x_, y_;
 };
 
-std::string rule_words(const PageBlame& blame) {
-  std::string out;
-  for (const auto& border : blame.rule) {
-    out += fmt::format("{}<code>{} {} {}</code>", out.empty() ? "" : " and ",
-                       html_short(border.variable), border.above ? "&gt;" : "&le;",
-                       number(border.value, 6));
-  }
-  return out;
-}
-
 }  // namespace
 
-std::string scatter_section(const PageData& page) {
+PlottedVariables plotted_variables(const PageData& page) {
+  PlottedVariables out;
   // What the traces' starts have in common need not be much: one trace, the one that parted.
-  const bool one_trace = !page.discrepancies.empty();
-  const std::int64_t trace = one_trace ? page.discrepancies.front().trace : 0;
-  std::vector<const PageSample*> samples;
+  if (!page.discrepancies.empty()) out.trace = page.discrepancies.front().trace;
   for (const auto& sample : page.samples) {
-    if (!one_trace || sample.trace == trace) samples.push_back(&sample);
+    if (!out.trace || sample.trace == *out.trace) out.samples.push_back(&sample);
   }
   const auto varies = [&](std::size_t i) {
     double first = NAN;
-    for (const auto* sample : samples) {
+    for (const auto* sample : out.samples) {
       const double value = sample->start[i];
       if (std::isnan(first)) first = value;
       if (std::isfinite(value) && value != first) return true;
@@ -138,42 +156,51 @@ std::string scatter_section(const PageData& page) {
     return false;
   };
   const auto rank = [&](std::size_t i) -> std::size_t {
-    if (page.blame) {
-      for (std::size_t k = 0; k < page.blame->rule.size(); ++k) {
-        if (page.blame->rule[k].variable == page.variables[i]) return k;
+    if (page.rule) {
+      for (std::size_t k = 0; k < page.rule->borders.size(); ++k) {
+        if (page.rule->borders[k].variable == page.variables[i]) return k;
       }
     }
     return is_place(page.variables[i]) ? 101 : 100;
   };
-  std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < page.variables.size(); ++i) {
-    if (varies(i)) chosen.push_back(i);
+    if (varies(i)) out.chosen.push_back(i);
   }
-  std::stable_sort(chosen.begin(), chosen.end(),
+  std::stable_sort(out.chosen.begin(), out.chosen.end(),
                    [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
-  const auto left_out = chosen.size() > kMostVariables ? chosen.size() - kMostVariables : 0;
-  if (left_out > 0) chosen.resize(kMostVariables);
-  if (chosen.size() < 2) return {};
+  if (out.chosen.size() > kMostVariables) {
+    out.left_out = out.chosen.size() - kMostVariables;
+    out.chosen.resize(kMostVariables);
+  }
+  return out;
+}
+
+std::string scatter_section(const PageData& page) {
+  const auto plotted = plotted_variables(page);
+  const auto count = plotted.chosen.size();
+  if (count == 0 || plotted.samples.size() < 2) return {};
   std::string out;
-  if (one_trace) out += fmt::format("<p>Simulations of trace {}.</p>\n", trace);
-  if (page.blame && !page.blame->rule.empty()) {
-    const auto& blame = *page.blame;
+  if (plotted.trace && !page.closed_loop) {
+    out += fmt::format("<p>Simulations of trace {}.</p>\n", *plotted.trace);
+  }
+  if (page.rule) {
+    const auto& rule = *page.rule;
     out += fmt::format(
         "<p class=\"lead\">Simulations fail where {}: {} of {} failures and {} of {} clean ones "
         "lie "
         "there.</p>\n",
-        rule_words(blame), blame.failures_inside, blame.failures, blame.clean_inside, blame.clean);
+        rule_html(rule), rule.failures_inside, rule.failures, rule.clean_inside, rule.clean);
   }
-  out += "<div class=\"panels\">\n";
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    for (std::size_t k = i + 1; k < chosen.size(); ++k) {
-      out += Panel(page, samples, chosen[i], chosen[k]).svg();
-    }
+  out += dots_hint(plotted.samples.size()) + "<div class=\"panels\">\n";
+  if (count == 1) out += Panel(page, plotted, 0, 1).svg();
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = i + 1; k < count; ++k) out += Panel(page, plotted, i, k).svg();
   }
   out += "</div>\n";
-  if (left_out > 0) {
-    out += fmt::format(
-        "<p class=\"hint\">{} further variables of the start are in the journal.</p>\n", left_out);
+  if (plotted.left_out > 0) {
+    out +=
+        fmt::format("<p class=\"hint\">{} further variables of the start are in the journal.</p>\n",
+                    plotted.left_out);
   }
   return section_of("starts", "Variables of the start", out);
 }

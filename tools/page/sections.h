@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +40,13 @@ class SourceLinks {
 };
 
 std::string verdict_section(const PageData& page);
+/// What is claimed, each with what it is about, that of the traces which decided the verdict first;
+/// escaped.
+std::vector<std::string> claims_of(const PageData& page);
+/// "Trace 2", or "Executions" of a plan that was executed.
+std::string stream_name(const PageData& page, const PageTrace& trace);
+/// "`box.x` > 1.7 and ...", escaped.
+std::string rule_html(const PageRule& rule);
 std::string discrepancy_section(const PageData& page, const SourceLinks& links);
 std::string timeline_section(const PageData& page);
 std::string map_section(const PageData& page);
@@ -48,8 +56,17 @@ std::string blame_section(const PageData& page, const SourceLinks& links);
 std::string samples_section(const PageData& page);
 std::string coverage_section(const PageData& page);
 std::string traces_section(const PageData& page, const SourceLinks& links);
-/// What assets/page.js reads: starts and ways of the simulations.
+/// What the scripts read: starts and ways of the simulations.
 std::string data_block(const PageData& page);
+
+/// The variables of the start that are plotted, by index, the decisive ones first.
+struct PlottedVariables {
+  std::vector<std::size_t> chosen;
+  std::size_t left_out = 0;
+  std::optional<std::int64_t> trace;  // of which the simulations are; none: of all
+  std::vector<const PageSample*> samples;
+};
+PlottedVariables plotted_variables(const PageData& page);
 
 /// `<section id="..">` with a heading around `body`.
 std::string section_of(std::string_view id, std::string_view heading, std::string_view body);

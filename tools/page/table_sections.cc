@@ -5,6 +5,7 @@
 
 #include "harness/report/text_layout.h"
 #include "tools/page/markup.h"
+#include "tools/page/plot.h"
 #include "tools/page/sections.h"
 
 namespace parallax::tools {
@@ -14,13 +15,16 @@ constexpr std::size_t kMostRows = 20'000;
 constexpr std::size_t kMostPoints = 60'000;  // of ways in the data block
 
 std::string sample_row(const PageData& page, const PageSample& sample) {
+  const bool is_own = sample.origin != SampleOrigin::kFurther;
   return fmt::format(
-      "<tr><th scope=\"row\">{}</th><td class=\"{}\">{}{}</td><td>{}</td><td class=\"num\">{}</td>"
+      "<tr><th scope=\"row\">{}</th><td class=\"{}\">{}</td><td>{}</td><td>{}</td><td "
+      "class=\"num\">{}</td>"
       "<td class=\"num\">{}</td><td class=\"num\">{}</td><td><code>{}</code></td></tr>\n",
       sample_name(sample.trace, sample.sample), verdict_class(to_string(sample.verdict)),
-      to_string(sample.verdict), sample.further ? ", made afterwards" : "",
-      html_short(sample.cause), sample.events, number(sample.sim_time_s), sample.seed,
-      html_short(sample.further ? "" : replay_words(page, sample.trace, sample.sample)));
+      sample.unfinished && sample.verdict == SampleVerdict::kClean ? "did not end"
+                                                                   : to_string(sample.verdict),
+      to_string(sample.origin), html_short(sample.cause), sample.events, number(sample.sim_time_s),
+      sample.seed, html_short(is_own ? replay_words(page, sample.trace, sample.sample) : ""));
 }
 
 }  // namespace
@@ -32,7 +36,7 @@ std::string samples_section(const PageData& page) {
     if (!sample.cause.empty() && causes.size() < 100) causes.insert(sample.cause);
   }
   std::string options = "<option value=\"\">any</option>";
-  for (const auto* verdict : {"clean", "discrepancy", "lost", "not judged"}) {
+  for (const auto* verdict : {"clean", "discrepancy", "lost", "not judged", "did not end"}) {
     options += fmt::format("<option>{}</option>", verdict);
   }
   std::string cause_options = "<option value=\"\">any</option>";
@@ -47,7 +51,8 @@ std::string samples_section(const PageData& page) {
       "id=\"by-text\"></label> <span id=\"row-count\" aria-live=\"polite\"></span></div>\n"
       "<div class=\"scroll tall\" tabindex=\"0\" role=\"group\" aria-label=\"Simulations\">"
       "<table id=\"samples-table\"><thead><tr><th scope=\"col\">Simulation</th><th "
-      "scope=\"col\">Verdict</th><th scope=\"col\">Cause</th><th scope=\"col\">Events</th><th "
+      "scope=\"col\">Verdict</th><th scope=\"col\">Start</th><th scope=\"col\">Cause</th><th "
+      "scope=\"col\">Events</th><th "
       "scope=\"col\">Simulated&nbsp;s</th><th scope=\"col\">Seed</th><th scope=\"col\">Repeat "
       "it</th>"
       "</tr></thead><tbody>\n{}</tbody></table></div>\n",
@@ -71,9 +76,11 @@ std::string coverage_section(const PageData& page) {
   }
   return section_of(
       "coverage", "Coverage",
-      "<table><thead><tr><th scope=\"col\">Of the plan and the model</th><th scope=\"col\">Gone "
+      "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Coverage\"><table "
+      "class=\"coverage\"><thead><tr><th scope=\"col\">Of the plan and the model</th><th "
+      "scope=\"col\">Gone "
       "through</th><th scope=\"col\">Share</th></tr></thead><tbody>\n" +
-          rows + "</tbody></table>\n<p>Each of them with its count:</p>\n" +
+          rows + "</tbody></table></div>\n<p>Each of them with its count:</p>\n" +
           command_box("parallax coverage " + harness::shell_word(page.folder)));
 }
 
@@ -99,10 +106,15 @@ std::string blame_section(const PageData& page, const SourceLinks& links) {
         "region, is told by this command; a report made afterwards shows it:</p>\n" +
         command_box("parallax explain " + harness::shell_word(page.folder));
   }
-  if (!page.proposals.empty()) out += "<h3>Proposed repairs of the model</h3>\n";
+  if (!page.proposals.empty()) out += "<h3>Proposed repairs</h3>\n";
+  for (const auto& note : page.repair_notes) out += "<p>" + html_words(note) + "</p>\n";
   for (std::size_t i = 0; i < page.proposals.size(); ++i) {
     const auto& proposal = page.proposals[i];
-    std::string patch;
+    std::string patch, facts, tied;
+    for (const auto& fact : proposal.facts) facts += "<p>" + html_words(fact) + "</p>";
+    for (const auto number : proposal.tied) {
+      tied += (tied.empty() ? "" : ", ") + std::to_string(number);
+    }
     for (std::size_t begin = 0; begin < proposal.patch.size();) {
       const auto end = std::min(proposal.patch.find('\n', begin), proposal.patch.size());
       const auto text = proposal.patch.substr(begin, end - begin);
@@ -111,10 +123,14 @@ std::string blame_section(const PageData& page, const SourceLinks& links) {
       begin = end + 1;
     }
     out += fmt::format(
-        "<details{}><summary>{}. {}</summary><p>{}.</p><pre class=\"patch\" tabindex=\"0\">{}</pre>"
-        "</details>\n",
-        i == 0 ? " open" : "", i + 1, html_words(proposal.words), html_short(proposal.facts),
-        patch);
+        "<details{}><summary>{}. {}{}{}{}</summary>{}<pre class=\"patch\" "
+        "tabindex=\"0\">{}</pre></details>\n",
+        i == 0 ? " open" : "", i + 1, html_words(proposal.words),
+        proposal.changes.empty() || proposal.changes == "model"
+            ? ""
+            : " <span class=\"tag\">of the " + html_short(proposal.changes) + "</span>",
+        proposal.tied.empty() ? "" : " <span class=\"tag\">tied with " + tied + "</span>",
+        proposal.precaution ? " <span class=\"tag\">precaution</span>" : "", facts, patch);
   }
   if (!page.repair_words.empty()) out += "<pre>" + html_lines(page.repair_words) + "</pre>\n";
   if (!page.discrepancies.empty() && !page.repair_was_asked) {
@@ -131,6 +147,8 @@ std::string data_block(const PageData& page) {
     if (!std::isfinite(at[0]) || !std::isfinite(at[1])) return std::string("[0,0]");
     return fmt::format("[{:.4g},{:.4g}]", at[0], at[1]);
   };
+  const auto plotted = plotted_variables(page);
+  const bool has_starts = plotted.samples.size() > kMostDots;  // for the canvas
   std::string out = "{\"bodies\":[";
   for (std::size_t i = 0; i < page.bodies.size(); ++i) {
     out += (i > 0 ? "," : "") + json_word(page.bodies[i].substr(0, 200));
@@ -157,7 +175,17 @@ std::string data_block(const PageData& page) {
       }
       out += "]";
     }
-    out += "]]";
+    out += fmt::format("],{}", static_cast<int>(sample.origin));
+    if (has_starts) {
+      out += ",[";
+      for (std::size_t k = 0; k < plotted.chosen.size(); ++k) {
+        const double value = sample.start[plotted.chosen[k]];
+        out += (k > 0 ? "," : "") +
+               (std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string("null"));
+      }
+      out += ']';
+    }
+    out += ']';
   }
   return "<script type=\"application/json\" id=\"data\">" + out + "]}</script>\n";
 }

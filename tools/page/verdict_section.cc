@@ -51,7 +51,8 @@ std::string differences_table(const PageDiscrepancy& found) {
   };
   const auto row = [](const PageDifference& one, bool follows) {
     return fmt::format(
-        "<tr{}><th scope=\"row\">{}{}</th><td>{}</td><td>{}</td><td class=\"num\">{}</td></tr>\n",
+        "<tr{}><th scope=\"row\">{}{}</th><td data-label=\"Predicted\">{}</td>"
+        "<td data-label=\"Observed\">{}</td><td class=\"num\" data-label=\"At\">{}</td></tr>\n",
         follows ? " class=\"follows\"" : "", follows ? "then " : "", html_short(one.fluent),
         one.predicted, one.observed, one.timepoint);
   };
@@ -62,7 +63,8 @@ std::string differences_table(const PageDiscrepancy& found) {
   }
   if (rows.empty()) return {};
   return "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"What differs\">"
-         "<table><caption>What differs; consequences below the first difference</caption>"
+         "<table class=\"flow\"><caption>What differs; consequences below the first "
+         "difference</caption>"
          "<thead><tr><th scope=\"col\">Fluent</th><th scope=\"col\">Predicted</th>"
          "<th scope=\"col\">Observed</th><th scope=\"col\">At</th></tr></thead><tbody>\n" +
          rows + "</tbody></table></div>\n";
@@ -103,7 +105,8 @@ std::string steps_table(const std::vector<PageStep>& steps, std::optional<std::s
   const bool simulated = std::any_of(steps.begin(), steps.end(),
                                      [](const PageStep& step) { return !step.outcome.empty(); });
   std::string out =
-      "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Events\"><table>"
+      "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Events\"><table "
+      "class=\"flow\">"
       "<thead><tr><th scope=\"col\">#</th><th scope=\"col\">Event</th><th scope=\"col\">Plan</th>"
       "<th scope=\"col\">Axioms</th>";
   out += simulated ? "<th scope=\"col\">Outcome</th><th scope=\"col\">Took</th>" : "";
@@ -111,13 +114,15 @@ std::string steps_table(const std::vector<PageStep>& steps, std::optional<std::s
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const auto& step = steps[i];
     const bool later = marked && i > *marked;
-    out += fmt::format("<tr{}><td class=\"num\">{}</td><th scope=\"row\">{}{}</th><td>{}</td><td>",
-                       marked == i ? " class=\"parts\""
-                       : later     ? " class=\"follows\""
-                                   : "",
-                       i, html_short(step.event),
-                       marked == i ? " <span class=\"tag bad\">they part here</span>" : "",
-                       links.link(step.source));
+    out += fmt::format(
+        "<tr{}><td class=\"num\" data-label=\"#\">{}</td><th scope=\"row\">{}{}</th><td "
+        "data-label=\"Plan\">{}</td><td data-label=\"Axioms\">",
+        marked == i ? " class=\"parts\""
+        : later     ? " class=\"follows\""
+                    : "",
+        i, html_short(step.event),
+        marked == i ? " <span class=\"tag bad\">they part here</span>" : "",
+        links.link(step.source));
     constexpr std::size_t kMostAxioms = 8;
     const auto& axioms = links.axioms_of(step.event);
     for (std::size_t k = 0; k < axioms.size() && k < kMostAxioms; ++k) {
@@ -126,12 +131,13 @@ std::string steps_table(const std::vector<PageStep>& steps, std::optional<std::s
     if (axioms.size() > kMostAxioms) out += fmt::format(", {} more", axioms.size() - kMostAxioms);
     out += "</td>";
     if (simulated) {
-      out += fmt::format("<td><span class=\"{}\">{}</span>{}{}</td><td class=\"num\">{}</td>",
-                         // The model has other failures, too, or they are consequences.
-                         step.outcome == "ok" || marked == i ? verdict_class(step.outcome) : "open",
-                         html_short(step.outcome), step.reason.empty() ? "" : ": ",
-                         html_words(step.reason),
-                         step.sim_time_s ? number(*step.sim_time_s) + " s" : "");
+      out += fmt::format(
+          "<td data-label=\"Outcome\"><span class=\"{}\">{}</span>{}{}</td><td class=\"num\" "
+          "data-label=\"Took\">{}</td>",
+          // The model has other failures, too, or they are consequences.
+          step.outcome == "ok" || marked == i ? verdict_class(step.outcome) : "open",
+          html_short(step.outcome), step.reason.empty() ? "" : ": ", html_words(step.reason),
+          step.sim_time_s ? number(*step.sim_time_s) + " s" : "");
     }
     out += "</tr>\n";
   }
@@ -153,6 +159,36 @@ std::string axioms_of_step(const PageStep& step, const SourceLinks& links) {
 
 }  // namespace
 
+std::string stream_name(const PageData& page, const PageTrace& trace) {
+  return page.closed_loop ? "Executions" : fmt::format("Trace {}", trace.number);
+}
+
+std::string rule_html(const PageRule& rule) {
+  std::string out;
+  for (const auto& border : rule.borders) {
+    out += fmt::format("{}<code>{} {} {}</code>", out.empty() ? "" : " and ",
+                       html_short(border.variable), border.above ? "&gt;" : "&le;",
+                       number(border.value, 6));
+  }
+  return out;
+}
+
+std::vector<std::string> claims_of(const PageData& page) {
+  // In front of others the trace that the first discrepancy is of.
+  const auto rank = [&](const PageTrace& trace) {
+    if (!page.discrepancies.empty() && trace.number == page.discrepancies.front().trace) return 0;
+    return trace.verdict == page.verdict ? 1 : 2;
+  };
+  std::vector<std::string> out;
+  for (const int wanted : {0, 1, 2}) {
+    for (const auto& trace : page.traces) {
+      if (trace.claim.empty() || rank(trace) != wanted) continue;
+      out.push_back("<b>" + stream_name(page, trace) + ":</b> " + html_short(trace.claim) + '.');
+    }
+  }
+  return out;
+}
+
 std::string verdict_section(const PageData& page) {
   std::string out = fmt::format(
       "<header class=\"top {}\">\n<p class=\"kicker\">parallax report &middot; "
@@ -161,25 +197,38 @@ std::string verdict_section(const PageData& page) {
   if (!page.discrepancies.empty()) {
     out += "<p class=\"lead\">" + html_words(page.discrepancies.front().words) + ".</p>\n";
   }
-  constexpr std::size_t kMostClaims = 3;
-  std::size_t claims = 0;
-  for (const auto& trace : page.traces) {
-    if (trace.claim.empty()) continue;
-    if (++claims > kMostClaims) continue;
-    out += fmt::format("<p class=\"claim\"><b>Trace {}:</b> {}.</p>\n", trace.number,
-                       html_short(trace.claim));
+  if (page.rule) {
+    const auto& rule = *page.rule;
+    out += fmt::format(
+        "<p class=\"lead\">It happens where {}: {} of {} simulations there, and {} of {} "
+        "elsewhere.</p>\n",
+        rule_html(rule), rule.failures_inside, rule.failures_inside + rule.clean_inside,
+        rule.failures - rule.failures_inside,
+        rule.failures + rule.clean - rule.failures_inside - rule.clean_inside);
   }
-  if (claims > kMostClaims) {
+  constexpr std::size_t kMostClaims = 3;
+  const auto claims = claims_of(page);
+  for (std::size_t i = 0; i < claims.size() && i < kMostClaims; ++i) {
+    out += "<p class=\"claim\">" + claims[i] + "</p>\n";
+  }
+  if (claims.size() > kMostClaims) {
     out += fmt::format(
         "<p class=\"claim\">Claims of {} further traces: <a href=\"#traces\">traces</a>.</p>\n",
-        claims - kMostClaims);
+        claims.size() - kMostClaims);
   }
   out += "<dl class=\"facts\">\n" + fact("Scenario", page.scenario);
-  out += fact("Simulations", fmt::format("{}, of {} {}", page.simulations, page.traces.size(),
-                                         page.traces.size() == 1 ? "trace" : "traces"));
-  out += fact("Explored", page.exploration) + fact("Criterion", page.criterion) +
-         fact("Simulator", page.simulator) + fact("Seed", std::to_string(page.seed)) +
-         fact("Run folder", page.folder);
+  if (page.closed_loop) {
+    out += fact("Simulations", fmt::format("{}, executions of the plan", page.simulations));
+    for (const auto& trace : page.traces) out += fact("Shown", trace.covered);
+  } else {
+    out += fact("Simulations", fmt::format("{}, of {} {}", page.simulations, page.traces.size(),
+                                           page.traces.size() == 1 ? "trace" : "traces"));
+    out +=
+        fact("Explored", page.exploration == "stopped" ? "stopped before all traces were explored"
+                                                       : page.exploration);
+  }
+  out += fact("Criterion", page.criterion) + fact("Simulator", page.simulator) +
+         fact("Seed", std::to_string(page.seed)) + fact("Run folder", page.folder);
   out += "</dl>\n</header>\n\n";
   for (const auto& banner : page.banners) {
     out += "<p class=\"banner\" role=\"note\">" +
@@ -220,21 +269,52 @@ std::string discrepancy_section(const PageData& page, const SourceLinks& links) 
   return out.empty() ? out : section_of("discrepancy", "Where they part", out);
 }
 
+namespace {
+
+/// The ways that executions of the plan went, as far as the report tells them apart.
+std::string paths_table(const PageData& page, const PageTrace& trace) {
+  constexpr std::size_t kMostWays = 200;
+  if (trace.paths.empty()) return {};
+  std::string rows;
+  for (std::size_t i = 0; i < trace.paths.size() && i < kMostWays; ++i) {
+    const auto& path = trace.paths[i];
+    rows += fmt::format(
+        "<tr><td class=\"num\">{}</td><td>{}</td><td>{}</td><td><code>{}</code></td></tr>\n",
+        path.simulations, html_short(path.steps), html_short(path.end),
+        html_short(replay_words(page, trace.number, path.example)));
+  }
+  auto out =
+      "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Ways of "
+      "executions\"><table>"
+      "<caption>Ways that executions went; without a word an event succeeded</caption><thead><tr>"
+      "<th scope=\"col\">Executions</th><th scope=\"col\">Events</th><th scope=\"col\">End</th>"
+      "<th scope=\"col\">Repeat the first</th></tr></thead><tbody>\n" +
+      rows + "</tbody></table></div>\n";
+  if (trace.paths.size() > kMostWays) {
+    out +=
+        fmt::format("<p>{} further ones are in report.json.</p>\n", trace.paths.size() - kMostWays);
+  }
+  return out;
+}
+
+}  // namespace
+
 std::string traces_section(const PageData& page, const SourceLinks& links) {
   constexpr std::size_t kMostInFull = 60, kMost = 2000, kOpen = 2;
   std::string out;
   for (std::size_t i = 0; i < page.traces.size() && i < kMost; ++i) {
     const auto& trace = page.traces[i];
     out += fmt::format(
-        "<details{}><summary>Trace {} <span class=\"tag {}\">{}</span> {} simulations, {} "
+        "<details{}><summary>{} <span class=\"tag {}\">{}</span> {} simulations, {} "
         "clean</summary>\n",
-        i < kOpen ? " open" : "", trace.number, verdict_class(trace.verdict),
+        i < kOpen ? " open" : "", stream_name(page, trace), verdict_class(trace.verdict),
         trace.verdict.empty() ? "not judged" : html_short(trace.verdict), trace.simulations,
         trace.clean);
     if (!trace.claim.empty()) out += "<p class=\"claim\">" + html_short(trace.claim) + ".</p>\n";
     for (const auto& caveat : trace.caveats) {
       out += "<p class=\"caveat\">" + html_short(caveat) + ".</p>\n";
     }
+    out += paths_table(page, trace);
     if (i < kMostInFull && !trace.steps.empty()) out += steps_table(trace.steps, {}, links);
     out += "</details>\n";
   }
@@ -242,7 +322,9 @@ std::string traces_section(const PageData& page, const SourceLinks& links) {
     out +=
         fmt::format("<p>{} further traces are in report.json.</p>\n", page.traces.size() - kMost);
   }
-  return out.empty() ? out : section_of("traces", "Traces and what is claimed of them", out);
+  const auto* heading = page.closed_loop ? "Executions and what is claimed of them"
+                                         : "Traces and what is claimed of them";
+  return out.empty() ? out : section_of("traces", heading, out);
 }
 
 }  // namespace parallax::tools

@@ -4,6 +4,7 @@
 
 #include "tools/page/assets.h"
 #include "tools/page/markup.h"
+#include "tools/page/plot.h"
 #include "tools/page/sections.h"
 #include "tools/page/sha256.h"
 
@@ -30,9 +31,16 @@ std::string navigation(const std::vector<Part>& parts) {
 std::string html_document(const std::string& title, const std::string& body,
                           const DocumentOptions& options) {
   // A data block is no script to the policy: browsers never run it.
+  std::vector<std::string_view> scripts = {kPageScript};
+  if (options.has_many_dots) scripts.insert(scripts.begin(), kDotsScript);
+  std::string hashes, elements;
+  for (const auto& script : scripts) {
+    hashes += fmt::format("{}'{}'", hashes.empty() ? "" : " ", csp_hash(script));
+    elements += "<script>" + std::string(script) + "</script>\n";
+  }
   const auto policy = fmt::format(
-      "default-src 'none'; style-src '{}'; script-src '{}'; base-uri 'none'; form-action 'none'",
-      csp_hash(kPageStyle), csp_hash(kPageScript));
+      "default-src 'none'; style-src '{}'; script-src {}; base-uri 'none'; form-action 'none'",
+      csp_hash(kPageStyle), hashes);
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   out += kPageMark;
   out += '\n';
@@ -46,7 +54,7 @@ std::string html_document(const std::string& title, const std::string& body,
   }
   out += "<title>" + html_short(title) + "</title>\n<style>" + std::string(kPageStyle) +
          "</style>\n</head>\n<body>\n<a class=\"skip\" href=\"#main\">Skip to the report</a>\n";
-  return out + body + "<script>" + std::string(kPageScript) + "</script>\n</body>\n</html>\n";
+  return out + body + elements + "</body>\n</html>\n";
 }
 
 std::string run_page(const PageData& page, const DocumentOptions& options) {
@@ -71,7 +79,9 @@ std::string run_page(const PageData& page, const DocumentOptions& options) {
           " from what the run recorded; nothing was simulated again.</p></footer>\n";
   body += data_block(page);
   const auto& name = page.scenario.empty() ? page.folder : page.scenario;
-  return html_document("parallax: " + name, body, options);
+  auto own = options;
+  own.has_many_dots = page.samples.size() > kMostDots;
+  return html_document("parallax: " + name, body, own);
 }
 
 }  // namespace parallax::tools

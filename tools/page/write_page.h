@@ -11,7 +11,8 @@ namespace parallax::tools {
 inline constexpr const char* kPageMark = "<meta name=\"generator\" content=\"parallax report\">";
 
 struct DocumentOptions {
-  int reload_s = 0;  // the page loads itself again after so many seconds; 0: never
+  int reload_s = 0;            // the page loads itself again after so many seconds; 0: never
+  bool has_many_dots = false;  // plots need the script that draws on a canvas
 };
 
 /// The page of one run folder, as one HTML file: no network, readable without scripts, and nothing

@@ -48,6 +48,14 @@ base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& co
 /// none.
 base::Status add_plan_proposals(const RepairInput& input, RepairResult& result, Context& context);
 
+/// What stands behind a proposal of `runs` recorded runs, and what it costs, as sentences.
+std::vector<std::string> proposal_sentences(const Proposal& proposal, std::size_t runs);
+/// What the runs refuted or others crowded out, and what they leave open; sentences.
+struct TieWords {
+  std::vector<std::string> refuted, open;
+};
+TieWords tie_words(const RepairResult& result);
+
 std::string repair_text(const RepairResult& result, const RepairOptions& options);
 std::string repair_json(const RepairResult& result);
 

@@ -58,87 +58,107 @@ std::string tie_text(const std::vector<std::size_t>& tied) {
 }
 
 /// What a change does to the properties that were asked about.
-std::string properties_text(const Proposal& proposal) {
-  std::string out;
+void add_properties(const Proposal& proposal, std::vector<std::string>& out) {
   for (const auto& [property, before, after] : proposal.properties) {
     const auto* what = "nothing is known of";
     if (after && !before) what = *after ? "there then holds" : "there then does not hold";
     if (after && before) {
       what = *after ? (*before ? "keeps" : "restores") : (*before ? "breaks" : "does not restore");
     }
-    out += fmt::format("   Property: {} `{}`.\n", what, property);
+    out.push_back(fmt::format("Property: {} `{}`.", what, property));
   }
-  return out;
 }
 
 std::string proposal_text(const Proposal& proposal, std::size_t rank, const RepairResult& result) {
   auto out = fmt::format("\n{}. {}{}.\n", rank, proposal.words, tie_text(proposal.tied));
-  const auto& verdict = proposal.verdict;
-  if (proposal.changes == Proposal::Changes::kPlan) {
-    const auto effects = proposal.effects.value_or(TraceEffects{});
-    for (const auto& sentence : proposal.evidence) out += "   " + sentence + "\n";
-    out += fmt::format("   Of the plan's traces there {} lost, {} gained.\n",
-                       number_text(effects.lost), number_text(effects.gained));
-    return out + properties_text(proposal) + "\n" + patch_of(proposal);
+  for (const auto& sentence : proposal_sentences(proposal, result.runs)) {
+    out += "   " + sentence + "\n";
   }
-  out += fmt::format("   Consistent with {} of {}", verdict.runs_consistent,
-                     plural(result.runs, "run"));
-  if (verdict.runs_whole < verdict.runs_consistent) {
-    out += fmt::format(", with {} of them to the end", verdict.runs_whole);
-  }
-  const auto effects = proposal.effects.value_or(TraceEffects{});
-  out += fmt::format("; traces lost: {}, gained: {}.\n", number_text(effects.lost),
-                     number_text(effects.gained));
-  for (const auto& sentence : proposal.evidence) out += "   " + sentence + "\n";
-  if (proposal.precaution) {
-    out += "   A precaution: what may fail is taken to fail; in the other runs it went well.\n";
-  }
-  if (verdict.refuses) {
-    out += "   What failed is then impossible: no plan of the model may try it.\n";
-  }
-  if (effects.reaches == false) {
-    out +=
-        "   No trace reaches the constraints any more: if this is how the world is, the plan is at "
-        "fault.\n";
-  }
-  for (const auto& name : proposal.read_by_world) {
-    out += fmt::format(
-        "   The world reads {}, too: applied, this changes the world with the model.\n", name);
-  }
-  return out + properties_text(proposal) + "\n" + patch_of(proposal);
+  return out + "\n" + patch_of(proposal);
 }
 
-/// What the runs refuted, and what they leave open.
 std::string tie_text(const RepairResult& result) {
   std::string out;
-  for (const auto& words : result.refuted) out += fmt::format("\nRefuted by a run: {}.", words);
-  for (const auto& words : result.crowded_out) {
-    out += fmt::format("\nNo run refutes it, but others are shown in its place: {}.", words);
-  }
+  const auto words = tie_words(result);
+  for (const auto& sentence : words.refuted) out += "\n" + sentence;
   if (!out.empty()) out += "\n";
+  for (const auto& sentence : words.open) out += "\n" + sentence + "\n";
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::string> proposal_sentences(const Proposal& proposal, std::size_t runs) {
+  std::vector<std::string> out;
+  const auto effects = proposal.effects.value_or(TraceEffects{});
+  if (proposal.changes == Proposal::Changes::kPlan) {
+    out = proposal.evidence;
+    out.push_back(fmt::format("Of the plan's traces there {} lost, {} gained.",
+                              number_text(effects.lost), number_text(effects.gained)));
+    add_properties(proposal, out);
+    return out;
+  }
+  const auto& verdict = proposal.verdict;
+  auto first =
+      fmt::format("Consistent with {} of {}", verdict.runs_consistent, plural(runs, "run"));
+  if (verdict.runs_whole < verdict.runs_consistent) {
+    first += fmt::format(", with {} of them to the end", verdict.runs_whole);
+  }
+  out.push_back(first + fmt::format("; traces lost: {}, gained: {}.", number_text(effects.lost),
+                                    number_text(effects.gained)));
+  out.insert(out.end(), proposal.evidence.begin(), proposal.evidence.end());
+  if (proposal.precaution) {
+    out.emplace_back(
+        "A precaution: what may fail is taken to fail; in the other runs it went well.");
+  }
+  if (verdict.refuses) {
+    out.emplace_back("What failed is then impossible: no plan of the model may try it.");
+  }
+  if (effects.reaches == false) {
+    out.emplace_back(
+        "No trace reaches the constraints any more: if this is how the world is, the plan is at "
+        "fault.");
+  }
+  for (const auto& name : proposal.read_by_world) {
+    out.push_back(fmt::format(
+        "The world reads {}, too: applied, this changes the world with the model.", name));
+  }
+  add_properties(proposal, out);
+  return out;
+}
+
+TieWords tie_words(const RepairResult& result) {
+  TieWords out;
+  for (const auto& words : result.refuted) {
+    out.refuted.push_back(fmt::format("Refuted by a run: {}.", words));
+  }
+  for (const auto& words : result.crowded_out) {
+    out.refuted.push_back(
+        fmt::format("No run refutes it, but others are shown in its place: {}.", words));
+  }
   if (result.not_compared > 0) {
-    out += fmt::format(
-        "\n{} as likely as the first {} not compared with it; --limit 0 compares all.\n",
-        plural(result.not_compared, "further proposal"), result.not_compared == 1 ? "was" : "were");
+    out.open.push_back(
+        fmt::format("{} as likely as the first {} not compared with it; --limit 0 compares all.",
+                    plural(result.not_compared, "further proposal"),
+                    result.not_compared == 1 ? "was" : "were"));
   }
   if (result.founded.size() < 2 && result.tied < 2) return out;
+  std::string tie;
   if (result.tied > 1) {
-    out += fmt::format("\nA tie: proposals 1 to {} are of one rank", result.tied);
+    tie = fmt::format("A tie: proposals 1 to {} are of one rank", result.tied);
     if (result.tied_hidden > 0) {
-      out += fmt::format(", of which the last {} {} not shown (--limit)", result.tied_hidden,
+      tie += fmt::format(", of which the last {} {} not shown (--limit)", result.tied_hidden,
                          result.tied_hidden == 1 ? "is" : "are");
     }
   } else {
     std::vector<std::size_t> ranks;
     for (const auto i : result.founded) ranks.push_back(i + 1);
-    out +=
-        fmt::format("\nThe runs speak for proposals {} alike, of which the first is the usual one",
-                    fmt::join(ranks, ", "));
+    tie = fmt::format("The runs speak for proposals {} alike, of which the first is the usual one",
+                      fmt::join(ranks, ", "));
   }
-  return out + (result.why_tied.empty() ? "" : "; " + result.why_tied) + ".\n";
+  out.open.push_back(tie + (result.why_tied.empty() ? "" : "; " + result.why_tied) + ".");
+  return out;
 }
-
-}  // namespace
 
 std::string repair_text(const RepairResult& result, const RepairOptions& options) {
   const auto& folder = options.folder.folder;

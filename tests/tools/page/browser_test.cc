@@ -33,6 +33,13 @@ std::string browser() {
   return {};
 }
 
+/// False, having said so, where there is no browser.
+bool has_browser() {
+  if (!browser().empty()) return true;
+  std::puts("SKIPPED: no Chromium; `tools/setup --browser` installs it");
+  return false;
+}
+
 std::string decoded(const std::string& base64) {
   std::string out;
   unsigned bits = 0, count = 0;
@@ -75,19 +82,32 @@ ProcessResult browse(const CliFixture& cli, const std::string& name, bool dark) 
 
 /// What the probe found in the page; checks that nothing was asked of a network or told on the
 /// console.
-Json probe(const CliFixture& cli, const std::string& name, bool dark) {
+struct ProbeOptions {
+  bool dark = false, with_axe = true;
+  int width = 0;  // of a frame that the page is put into; windows have a least width
+};
+Json probe(const CliFixture& cli, const std::string& name, const ProbeOptions& options = {}) {
   CAPTURE(name);
-  CAPTURE(dark);
+  CAPTURE(options.dark);
+  CAPTURE(options.width);
   const auto axe =
       content_of(fs::path(PARALLAX_SOURCE_DIR) / "build/browser/node_modules/axe-core/axe.min.js");
   const auto probing =
       content_of(fs::path(PARALLAX_SOURCE_DIR) / "tests/tools/page/browser_probe.js");
   REQUIRE_FALSE(probing.empty());
   std::vector<std::string> scripts;
-  if (!axe.empty()) scripts.push_back(axe);
+  if (options.with_axe && !axe.empty()) scripts.push_back(axe);
   scripts.push_back(probing);
   cli.write("probed.html", with_scripts(cli.read(name), scripts));
-  const auto result = browse(cli, "probed.html", dark);
+  if (options.width > 0) {
+    cli.write("frame.html",
+              "<!DOCTYPE html><body><iframe src=\"probed.html\" height=\"900\" width=\"" +
+                  std::to_string(options.width) +
+                  "\"></iframe><script>addEventListener('message', (event) => { "
+                  "document.body.dataset.probe = event.data; });</script>");
+  }
+  const auto* shown = options.width > 0 ? "frame.html" : "probed.html";
+  const auto result = browse(cli, shown, options.dark);
   CHECK(result.code == 0);
   std::istringstream lines(result.err);
   for (std::string line; std::getline(lines, line);) {
@@ -107,7 +127,7 @@ Json probe(const CliFixture& cli, const std::string& name, bool dark) {
 }
 
 TEST_CASE("a page that asks for something would be seen") {
-  if (browser().empty()) return;
+  if (!has_browser()) return;
   const CliFixture cli;
   cli.write("asks.html",
             "<!DOCTYPE html><img "
@@ -118,10 +138,7 @@ TEST_CASE("a page that asks for something would be seen") {
 }
 
 TEST_CASE("a page works in a browser, by light and by night") {
-  if (browser().empty()) {
-    std::puts("SKIPPED: no Chromium; `tools/setup --browser` installs it");
-    return;
-  }
+  if (!has_browser()) return;
   const CliFixture cli;
   REQUIRE(cli.parallax({"run", "edge.yaml", "--execution", "closed-loop", "--keep-going",
                         "--max-runs", "30", "--out", "loop"})
@@ -131,15 +148,100 @@ TEST_CASE("a page works in a browser, by light and by night") {
   REQUIRE(cli.parallax({"report", "edge", "-o", "edge.html", "--explain"}).code == 0);
   REQUIRE(cli.parallax({"report", "edge", "loop", "-o", "both.html"}).code == 0);
   for (const bool dark : {false, true}) {
-    const auto loop = probe(cli, "loop.html", dark);
+    const auto loop = probe(cli, "loop.html", {.dark = dark});
     CHECK(loop["rows"] == 30);
     CHECK(loop["discrepancies"] > 2);
     CHECK(loop["says"].get<std::string>().find("discrepancy") != std::string::npos);
-    const auto edge = probe(cli, "edge.html", dark);
+    const auto edge = probe(cli, "edge.html", {.dark = dark});
     CHECK(edge["rows"] == 1);
     CHECK(edge["focusable"] > 10);
   }
-  probe(cli, "both.html", false);
+  probe(cli, "both.html");
+  // On a telephone: nothing is cut, what is wider than the window can be moved in it.
+  for (const auto* name : {"loop.html", "edge.html", "both.html"}) {
+    probe(cli, name, {.width = 360});
+  }
+}
+
+/// Every text in it behind a hostile one.
+void make_hostile(Json& value, const std::string& with) {
+  if (value.is_string()) value = with + value.get<std::string>();
+  for (auto& part : value.is_structured() ? value : Json::array()) make_hostile(part, with);
+}
+
+const std::string kHostile =
+    "<script>window.hostile = 1</script></style><img src=x onerror='window.hostile = 2'>\"' "
+    "\xE2\x80\xAE"
+    "\xD9\x85";
+
+/// A run folder as a stranger may have left it: names that are markup, that turn the direction of
+/// writing, one of a megabyte, and very many simulations.
+void write_hostile_folder(const CliFixture& cli, const std::string& from, int samples) {
+  fs::create_directories(cli.folder() / "hostile");
+  std::istringstream lines(cli.read(from + "/journal.ndjson"));
+  std::string out, line;
+  Json sample;
+  while (std::getline(lines, line)) {
+    auto entry = Json::parse(line);
+    if (entry.contains("journal")) {
+      entry["scenario"] = kHostile + ".yaml";
+      entry["simulator"]["name"] = kHostile + std::string(1 << 20, 'n');
+    } else if (entry.contains("events")) {
+      make_hostile(entry["holds"], kHostile);
+      for (auto& event : entry["events"]) {
+        event["event"] = kHostile + event["event"].get<std::string>();
+        event["source"] = kHostile;
+      }
+    } else if (entry["phase"] == "certify") {
+      sample = entry;
+      continue;
+    } else {
+      continue;
+    }
+    out += entry.dump() + '\n';
+  }
+  REQUIRE_FALSE(sample.is_null());
+  sample["initial"][kHostile + ".mass"] = 1.5;
+  sample["initial"][kHostile + ".x"] = 0.5;
+  for (int i = 1; i <= samples; ++i) {
+    sample["sample"] = i;
+    sample["initial"][kHostile + ".mass"] = 0.001 * i;
+    out += sample.dump() + '\n';
+  }
+  cli.write("hostile/journal.ndjson", out);
+  auto report = Json::parse(cli.read(from + "/report.json"));
+  for (auto& trace : report["traces"]) {
+    for (const auto* part : {"events", "sources", "claim", "caveats"}) {
+      make_hostile(trace[part], kHostile);
+    }
+    trace["simulations"] = samples;
+    trace["clean"] = samples - 1;
+  }
+  for (auto& found : report["discrepancies"]) {
+    for (const auto* part : {"cause", "first", "fluents", "words", "start"}) {
+      make_hostile(found[part], kHostile);
+    }
+    found["start"][kHostile + std::string(1 << 20, 'v')] = kHostile;
+  }
+  report["scenario"] = kHostile;
+  report["verdict"] = "discrepancy";
+  cli.write("hostile/report.json", report.dump());
+}
+
+TEST_CASE("a hostile run folder is inert on the page, with ten thousand simulations") {
+  if (!has_browser()) return;
+  const CliFixture cli;
+  REQUIRE(cli.parallax({"run", "edge.yaml", "--out", "edge"}).code == 1);
+  write_hostile_folder(cli, "edge", 10'000);
+  const auto made = cli.parallax({"report", "hostile", "-o", "hostile.html"});
+  CHECK_MESSAGE(made.code == 0, made.err);
+  CHECK(cli.read("hostile.html").size() < 24'000'000);
+  const auto seen = probe(cli, "hostile.html", {.with_axe = false});
+  CHECK(seen["rows"] == 10'000);
+  CHECK(seen["canvases"] > 0);
+  CHECK(seen["hostile"] == 0);
+  CHECK(seen["images"] == 0);
+  CHECK(seen["turned"] == 0);
 }
 
 }  // namespace

@@ -13,14 +13,14 @@ const std::set<std::string, std::less<>> kBlocks = {
     "thead", "tbody",   "main", "header", "summary", "pre",     "dl",
     "svg",   "details", "text", "figure", "footer",  "article", "label"};
 const std::set<std::string, std::less<>> kKnown = {
-    "html",  "head",   "meta",   "title",    "style",   "body",    "a",        "header",
-    "p",     "h1",     "h2",     "h3",       "dl",      "div",     "dt",       "dd",
-    "nav",   "ul",     "li",     "main",     "section", "article", "table",    "caption",
-    "thead", "tbody",  "tr",     "th",       "td",      "span",    "figure",   "figcaption",
-    "pre",   "mark",   "b",      "i",        "code",    "details", "summary",  "input",
-    "label", "select", "option", "button",   "svg",     "desc",    "g",        "path",
-    "rect",  "line",   "text",   "polyline", "polygon", "circle",  "progress", "footer",
-    "script"};
+    "html",   "head",   "meta",    "title",    "style",   "body",    "a",        "header",
+    "p",      "h1",     "h2",      "h3",       "dl",      "div",     "dt",       "dd",
+    "nav",    "ul",     "li",      "main",     "section", "article", "table",    "caption",
+    "thead",  "tbody",  "tr",      "th",       "td",      "span",    "figure",   "figcaption",
+    "pre",    "mark",   "b",       "i",        "code",    "details", "summary",  "input",
+    "label",  "select", "option",  "button",   "svg",     "desc",    "g",        "path",
+    "rect",   "line",   "text",    "polyline", "polygon", "circle",  "progress", "footer",
+    "script", "br",     "noscript"};
 
 std::string unescaped(std::string_view text) {
   static const std::vector<std::pair<std::string_view, std::string_view>> kEntities = {

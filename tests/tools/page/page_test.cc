@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/confidence/clean_runs.h"
 #include "tests/tools/page/html_check.h"
 #include "tools/page/gather.h"
 #include "tools/page/markup.h"
@@ -88,9 +89,11 @@ PageData page_named(const std::string& name, std::int64_t samples) {
   PageBlame blame;
   blame.words = blame.more = blame.cause = name;
   blame.axioms = {{"plan.lisp:1", name}};
-  blame.rule = {{"b.mass", 0.5, true}};
   page.blame = blame;
-  page.proposals = {{name, name, "--- a\n+++ b\n-" + name + "\n+" + name + "\n"}};
+  page.rule = PageRule{{{"b.mass", 0.5, true}}, 9, 10, 1, 20};
+  page.proposals = {
+      {name, "--- a\n+++ b\n-" + name + "\n+" + name + "\n", {name}, {2}, true, name}};
+  page.repair_notes = {name};
   return page;
 }
 
@@ -158,6 +161,139 @@ TEST_CASE("a page without scripts has verdict, timeline, table and the decisive 
   CHECK(page.text.find("differs first") != std::string::npos);
   CHECK(page.text.find("Simulations fail where b.mass > 0.5") != std::string::npos);
   CHECK(page.text.find("parallax replay 'some name' --sample 1.30") != std::string::npos);
+}
+
+/// Executions of which every second one began where the start was chosen, and failed there.
+PageData executions(std::int64_t samples) {
+  auto page = page_named("plain", samples);
+  page.closed_loop = true;
+  page.confidence = 0.99;
+  auto& trace = page.traces.front();
+  trace.paths = {{"Go(r1), Go(r2): too-far", "failed: too-far", 3, 2}};
+  trace.certified_confidence = 0.99;
+  trace.certified_epsilon = harness::bound_after(samples / 2, 0.99);
+  for (auto& sample : page.samples) {
+    const bool chosen = sample.sample % 2 == 0;
+    sample.origin = chosen ? SampleOrigin::kChosen : SampleOrigin::kDrawn;
+    sample.verdict = chosen ? SampleVerdict::kDiscrepancy : SampleVerdict::kClean;
+  }
+  return page;
+}
+
+TEST_CASE("confidence is that of the runs whose starts were drawn") {
+  auto page = executions(60);
+  const auto shown = check_html(run_page(page)).text;
+  CHECK(shown.find("Executions: 30 runs, 0 not clean. Not counted: 30 with starts") !=
+        std::string::npos);
+  CHECK(shown.find("stop after 30: " + percent(harness::bound_after(30, 0.99))) !=
+        std::string::npos);
+  CHECK(shown.find("Certified with 99 % confidence: fewer than " +
+                   percent(harness::bound_after(30, 0.99))) != std::string::npos);
+  CHECK(shown.find("Trace 1") == std::string::npos);
+  CHECK(shown.find("Go(r1), Go(r2): too-far") != std::string::npos);
+  // With failures the certified level is another one, and it is the one that is told.
+  for (auto& sample : page.samples) {
+    if (sample.sample < 5) sample.verdict = SampleVerdict::kDiscrepancy;
+  }
+  page.traces.front().certified_confidence = 0.98;
+  page.traces.front().certified_epsilon = harness::mixture_upper(2, 30, 0.99);
+  const auto failing = check_html(run_page(page)).text;
+  CHECK(failing.find("stop after 30: " + percent(harness::mixture_upper(2, 30, 0.99))) !=
+        std::string::npos);
+  CHECK(failing.find("Certified with 98 % confidence") != std::string::npos);
+  // An execution that did not end: nothing is claimed, and no curve says otherwise.
+  page.samples[10].verdict = SampleVerdict::kClean;
+  page.samples[10].unfinished = true;
+  const auto unfinished = check_html(run_page(page)).text;
+  CHECK(unfinished.find("Nothing is claimed: an execution did not end") != std::string::npos);
+  CHECK(unfinished.find("stop after") == std::string::npos);
+  CHECK(unfinished.find("did not end") != std::string::npos);
+  // Nor where not every execution was judged.
+  page.samples[10].unfinished = false;
+  page.samples[12].verdict = SampleVerdict::kNotJudged;
+  const auto open = check_html(run_page(page)).text;
+  CHECK(open.find("1 are not judged one by one, so there is no curve") != std::string::npos);
+  CHECK(open.find("stop after") == std::string::npos);
+}
+
+TEST_CASE("simulations that no claim is about are told from others in map and table") {
+  auto page = page_named("plain", 6);
+  page.samples[1].origin = SampleOrigin::kSearch;
+  page.samples[2].origin = SampleOrigin::kChosen;
+  page.samples[3].origin = SampleOrigin::kFurther;
+  const auto text = run_page(page);
+  const auto shown = check_html(text);
+  for (const auto* word : {"search", "chosen start", "made afterwards", "pale: 3 whose starts"}) {
+    CHECK_MESSAGE(shown.text.find(word) != std::string::npos, word);
+  }
+  CHECK(text.find("class=\"dot clean aside ring\"") != std::string::npos);
+  const auto data = nlohmann::json::parse(shown.data);
+  CHECK(data["samples"][0][4] == 0);
+  CHECK(data["samples"][1][4] == 2);
+}
+
+TEST_CASE("what is claimed is told of the trace that decided the verdict first") {
+  auto page = page_named("plain", 3);
+  page.traces.push_back(page.traces.front());
+  page.traces[0].verdict = "no-discrepancy";
+  page.traces[0].claim = "the claim of one";
+  page.traces[1].number = 2;
+  page.traces[1].claim = "the claim of two";
+  page.discrepancies[0].trace = 2;
+  for (const auto& text : {run_page(page), comparison_page({page, page_named("other", 3)})}) {
+    const auto shown = check_html(text).text;
+    const auto two = shown.find("the claim of two"), one = shown.find("the claim of one");
+    CHECK(two != std::string::npos);
+    CHECK(two < one);
+  }
+}
+
+TEST_CASE("traces with the same events and other starts stay apart when runs are compared") {
+  auto first = page_named("plain", 3), second = first;
+  first.traces.front().initial_state = {"At(r1)", "Box(b)"};
+  first.traces.push_back(first.traces.front());
+  first.traces[1].number = 2;
+  first.traces[1].initial_state = {"At(r2)", "Box(b)"};
+  second.traces.front().initial_state = {"At(r2)", "Box(b)"};
+  const auto shown = check_html(comparison_page({first, second})).text;
+  CHECK(shown.find("1 in all runs, 1 lost (the first has them), 0 gained") != std::string::npos);
+  CHECK(shown.find("from At(r1)") != std::string::npos);
+  CHECK(shown.find("from At(r2)") != std::string::npos);
+  // Where the events say it all, another way to begin is no other trace.
+  first.traces.pop_back();
+  const auto same = check_html(comparison_page({first, second})).text;
+  CHECK(same.find("1 in all runs, 0 lost") != std::string::npos);
+}
+
+TEST_CASE("proposals come with their evidence, their ties, and the word precaution") {
+  auto page = page_named("plain", 3);
+  page.proposals = {{"one", "", {"Consistent with 3 of 4 runs."}, {2}, true, "model"},
+                    {"two", "", {"Other facts."}, {1}, false, "plan"}};
+  page.repair_notes = {"A tie: proposals 1 to 2 are of one rank."};
+  const auto shown = check_html(run_page(page)).text;
+  for (const auto* words : {"Consistent with 3 of 4 runs.", "tied with 2", "precaution",
+                            "of the plan", "A tie: proposals 1 to 2 are of one rank."}) {
+    CHECK_MESSAGE(shown.find(words) != std::string::npos, words);
+  }
+}
+
+TEST_CASE("the dots of very many simulations are a canvas's to draw") {
+  const auto page = page_named("plain", 5000);
+  const auto text = run_page(page);
+  CHECK(text.size() < 12'000'000);
+  const auto shown = check_html(text);
+  for (const auto& fault : shown.faults) FAIL_CHECK(fault);
+  std::size_t dots = 0;
+  for (auto at = text.find("h0M"); at != std::string::npos; at = text.find("h0M", at + 1)) ++dots;
+  CHECK(dots < 10 * kMostDots);
+  CHECK(text.find("data-dots=\"map\"") != std::string::npos);
+  CHECK(text.find("data-dots=\"starts\"") != std::string::npos);
+  CHECK(shown.text.find("Of 5000 simulations 1000 are drawn") != std::string::npos);
+  CHECK(shown.elements.at("script") == 3);
+  const auto data = nlohmann::json::parse(shown.data);
+  REQUIRE(data["samples"].size() == 5000);
+  CHECK(data["samples"][4999][5].size() == 2);
+  CHECK(check_html(run_page(page_named("plain", 30))).elements.at("script") == 2);
 }
 
 TEST_CASE("an empty page is one, too") {

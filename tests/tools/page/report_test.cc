@@ -10,6 +10,7 @@
 
 #include "tests/tools/cli_json.h"
 #include "tests/tools/page/html_check.h"
+#include "tools/page/markup.h"
 
 namespace parallax::test {
 namespace {
@@ -119,7 +120,7 @@ TEST_CASE("a run in a world of bodies has a map, and explain's rule once it was 
   CHECK(after.ids.contains("starts"));
   CHECK(after.text.find("Simulations fail where box.x > 1.7") != std::string::npos);
   CHECK(after.text.find("made afterwards") != std::string::npos);
-  CHECK(after.text.find("Proposed repairs of the model") != std::string::npos);
+  CHECK(after.text.find("Proposed repairs") != std::string::npos);
   const auto data = Json::parse(after.data);
   CHECK(data["samples"].size() > 20);
   CHECK(data["bodies"] == Json({"box", "robot"}));
@@ -198,6 +199,62 @@ TEST_CASE("a page that is watched loads itself until the run is over") {
   CHECK(was_seen);
   CHECK(cli.read("sticks/report.html") == whole);
   CHECK(cli.parallax({"report", folder, folder, "--watch"}).code == 2);
+}
+
+TEST_CASE("a folder that is none is not watched") {
+  const CliFixture cli;
+  cli.write("empty/other.txt", "");
+  for (const auto* folder : {"nowhere", "empty"}) {
+    const auto refused = cli.parallax({"report", folder, "--watch"});
+    CHECK(refused.code == 2);
+    CHECK(refused.err.find("E7111") != std::string::npos);
+  }
+}
+
+TEST_CASE("further executions of a plan are on the page, judged, and no part of the claim") {
+  const CliFixture cli;
+  REQUIRE(cli.parallax({"run", "edge.yaml", "--execution", "closed-loop", "--out", "loop"}).code ==
+          1);
+  REQUIRE(cli.parallax({"explain", "loop"}).code == 1);
+  CHECK(cli.parallax({"report", "loop", "-o", "page.html"}).code == 0);
+  const auto page = page_of(cli, "page.html");
+  const auto data = Json::parse(page.data);
+  const auto report = Json::parse(cli.read("loop/report.json"));
+  std::int64_t further = 0, failed = 0, drawn = 0;
+  for (const auto& sample : data["samples"]) {
+    if (sample[4] == 3) {
+      ++further;
+      failed += sample[1] == 1 ? 1 : 0;
+      CHECK(sample[1] != 3);
+    } else {
+      ++drawn;
+    }
+  }
+  CHECK(drawn == report["simulations"]);
+  CHECK(further >= 10);
+  CHECK(failed >= 5);
+  CHECK(page.text.find("made afterwards") != std::string::npos);
+  CHECK(page.text.find("Trace 1") == std::string::npos);
+  CHECK(page.text.find("It happens where box.x > 1.8") != std::string::npos);
+}
+
+TEST_CASE("the curve of confidence ends at what the report certifies") {
+  const CliFixture cli;
+  for (const auto& more : {std::vector<std::string>{}, {"--keep-going"}}) {
+    std::vector<std::string> words = {"run",        "edge.yaml", "--execution", "closed-loop",
+                                      "--max-runs", "30",        "--out",       "r"};
+    words.back() += std::to_string(more.size());
+    const auto folder = words.back();
+    words.insert(words.end(), more.begin(), more.end());
+    REQUIRE(cli.parallax(words).code == 1);
+    CHECK(cli.parallax({"report", folder, "-o", folder + ".html"}).code == 0);
+    const auto trace = Json::parse(cli.read(folder + "/report.json"))["traces"][0];
+    const auto page = page_of(cli, folder + ".html");
+    const auto bound = tools::percent(trace["certified"]["epsilon"]);
+    CHECK(page.text.find("stop after " + trace["simulations"].dump() + ": " + bound) !=
+          std::string::npos);
+    CHECK(page.text.find("Certified with 98 % confidence") != std::string::npos);
+  }
 }
 
 TEST_CASE("several folders are held against each other") {

@@ -11,6 +11,7 @@
   const block = byId("data");
   const data = block ? JSON.parse(block.textContent) : { bodies: [], samples: [] };
   const kVerdicts = ["clean", "discrepancy", "lost", "not judged"];
+  const kOrigins = ["", "chosen start", "search", "made afterwards"];
   for (const controls of document.querySelectorAll(".controls")) controls.hidden = false;
 
   // A link to a line of a source opens the text that it is in.
@@ -57,7 +58,7 @@
       let shown = 0;
       rows.forEach((row, i) => {
         const fits = (!verdict || row.cells[1].textContent.startsWith(verdict)) &&
-          (!cause || row.cells[2].textContent === cause) && (!words || texts[i].includes(words));
+          (!cause || row.cells[3].textContent === cause) && (!words || texts[i].includes(words));
         row.hidden = !fits;
         shown += fits ? 1 : 0;
       });
@@ -77,7 +78,7 @@
         const down = head.getAttribute("aria-sort") === "ascending";
         for (const other of heads) other.removeAttribute("aria-sort");
         head.setAttribute("aria-sort", down ? "descending" : "ascending");
-        const is_number = column >= 3 && column <= 5;
+        const is_number = column >= 4 && column <= 6;
         const key = (row) => column === 0 ? order.get(row)
           : is_number ? Number(row.cells[column].textContent) : row.cells[column].textContent;
         const keyed = rows.map((row) => [key(row), row]);
@@ -113,6 +114,7 @@
       text.style.fontSize = `${usual * size}px`;
       text.style.strokeWidth = `${3 * size}px`;
     }
+    map.dispatchEvent(new Event("view"));
   };
   const zoom = (factor, cx = view[0] + view[2] / 2, cy = view[1] + view[3] / 2) => {
     look([cx - (cx - view[0]) * factor, cy - (cy - view[1]) * factor, view[2] * factor]);
@@ -127,6 +129,7 @@
       const hides = shownBody() >= 0 && Number(element.dataset.body) !== shownBody();
       element.setAttribute("display", hides ? "none" : "inline");
     }
+    map.dispatchEvent(new Event("view"));
     show(-1);
   });
 
@@ -147,7 +150,9 @@
         hover.append(svgElement("path", { class: "dot hot", d: `M${x(a).toFixed(1)} ${y(b).toFixed(1)}h0` }));
       }
     });
-    says.textContent = `Simulation ${name}: ${kVerdicts[verdict]}${cause ? ", " + cause : ""}`;
+    const made = kOrigins[data.samples[index][4]];
+    says.textContent =
+      `Simulation ${name}: ${kVerdicts[verdict]}${cause ? ", " + cause : ""}${made ? ` (${made})` : ""}`;
     rowOf.get(name)?.classList.add("chosen");
   };
 
