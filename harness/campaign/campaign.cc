@@ -34,8 +34,10 @@ class Campaign {
         files_(files),
         sink_(sink),
         criterion_(make_criterion(scenario.criterion)),
+        recorder_(options.record, options.run_dir),
         bench_(
-            scenario, traces, make_simulator, {options.seed, options.jobs, options.stop},
+            scenario, traces, make_simulator,
+            {options.seed, options.jobs, options.stop, recorder_.taker()},
             [this](const SampleRecord& record) { keep(record); }, sink) {
     describe_run(scenario, options, bench_.fluents().ground(), result_);
     result_.exploration = "stopped";
@@ -46,6 +48,7 @@ class Campaign {
     if (!started) return sink_.already_reported();
     if (!*started) return finished(false);
     result_.simulator = bench_.simulator();
+    recorder_.set_simulator(result_.simulator);
     auto journal =
         Journal::open(std::move(folder_), journal_header(scenario_, options_, result_.simulator),
                       std::move(recorded_), scenario_.limits.max_lost_in_a_row, files_, sink_);
@@ -105,7 +108,7 @@ class Campaign {
     if (!trial || !announce(trial->plan())) return sink_.already_reported();
     trial->continue_from(*journal_);
     const TraceContext context{scenario_, options_,  *criterion_, run_limit(scenario_).max_runs,
-                               bench_,    *journal_, sink_};
+                               bench_,    *journal_, recorder_,   sink_};
     auto outcome = run_trace(context, *std::move(trial));
     if (!outcome) return sink_.already_reported();
     result_.simulations += outcome->result.simulations;
@@ -135,6 +138,11 @@ class Campaign {
     } else {
       journal_->append(line);
     }
+    std::vector<std::string> events;
+    for (std::size_t t = 0; t < plan.trace->event_count(); ++t) {
+      events.push_back(plan.trace->event(t));
+    }
+    recorder_.announce(plan.trace->number, std::move(events));
     lines_.push_back(std::move(line));
     return base::Unit{};
   }
@@ -154,6 +162,8 @@ class Campaign {
 
   base::Result<CampaignResult> finished(bool complete) {
     bench_.close();
+    if (complete) recorder_.finish(consumed_);
+    recorder_.report(sink_);
     if (complete && !journal_->rewrite(lines_, std::move(consumed_), sink_)) {
       return sink_.already_reported();
     }
@@ -186,7 +196,8 @@ class Campaign {
   std::vector<TraceLine> lines_;
   std::vector<SampleRecord> consumed_;
   bool limited_ = false;  // by max_traces
-  TrialBench bench_;      // last, so that its threads end before what they use
+  RunRecorder recorder_;
+  TrialBench bench_;  // last, so that its threads end before what they use
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "compiler/base/diagnostic.h"
 #include "harness/campaign/campaign_result.h"
+#include "harness/campaign/run_recorder.h"
 #include "harness/campaign/sample_runner.h"
 #include "harness/campaign/trace_input.h"
 #include "harness/config/scenario.h"
@@ -32,6 +33,7 @@ struct CampaignOptions {
   std::string start_folder;       // where the paths of the scenario start; empty: not recorded
   std::string scenario_hash;      // over every text that was read (hash_of_sources)
   std::string tool_version;
+  RecordMode record = RecordMode::kNone;
   const std::atomic<bool>* stop = nullptr;                // raised by SIGINT and SIGTERM
   std::function<void(const CampaignProgress&)> progress;  // called in the caller's thread
 };

@@ -196,7 +196,7 @@ base::Result<RunFolder> RunFolder::claim(const std::filesystem::path& path, bool
     return sink.error_about(DiagnosticCode::kRunFolderInUse, path.string());
   }
   // The journal comes first: without it these belong to somebody else.
-  for (const auto* name : {"report.txt", "report.json"}) {
+  for (const auto* name : {"report.txt", "report.json", "recordings"}) {
     if (has_run || !taken(name)) continue;
     return sink.error_about(DiagnosticCode::kFileNotWritable, (path / name).string(),
                             "it is there already, and no run to which it belongs");

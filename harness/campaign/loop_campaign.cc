@@ -41,8 +41,10 @@ class LoopCampaign {
         tally_(RegressionFrame{}),
         rated_(planned()),
         samples_(scenario, feed, bench_, options.seed, sink),
+        recorder_(options.record, options.run_dir),
         bench_(
-            scenario, *feed.symbols(), make_simulator, {options.seed, options.jobs, options.stop},
+            scenario, *feed.symbols(), make_simulator,
+            {options.seed, options.jobs, options.stop, recorder_.taker()},
             [this](const SampleRecord& record) { keep(record); }, sink) {
     describe_run(scenario, options, bench_.fluents().ground(), result_);
     result_.execution = Execution::kClosedLoop;
@@ -57,6 +59,7 @@ class LoopCampaign {
     if (!started) return sink_.already_reported();
     if (!*started) return finished(true);
     result_.simulator = bench_.simulator();
+    recorder_.set_simulator(result_.simulator);
     const auto prepared = samples_.prepare();
     if (!prepared) return sink_.already_reported();
     if (!*prepared) return finished(true);
@@ -180,6 +183,8 @@ class LoopCampaign {
     count(record);
     if (judgement.admitted == base::Known::kNo) return accept(std::move(record), judgement);
     const auto unfinished = why_unfinished(*record.path, scenario_);
+    using Kept = RunRecorder::Verdict;
+    recorder_.judge(record, unfinished.empty() ? Kept::kClean : Kept::kFinding);
     const bool is_rated = note(record, true);
     auto& loop = *stream_.loop;
     if (unfinished.empty()) {
@@ -232,6 +237,7 @@ class LoopCampaign {
   }
 
   std::optional<End> lost(SampleRecord record) {
+    recorder_.judge(record, RunRecorder::Verdict::kNothing);
     stream_.rejected += record.rejected;
     if (is_guided(record)) {
       note_guided();
@@ -257,6 +263,7 @@ class LoopCampaign {
   /// Repeats the first simulation of each cause once: a discrepancy that cannot be repeated says so
   /// in the report.
   std::optional<End> accept(SampleRecord record, const LoopJudgement& judgement) {
+    recorder_.judge(record, RunRecorder::Verdict::kFinding);
     auto& causes = stream_.loop->causes;
     const auto known = std::find_if(causes.begin(), causes.end(), [&](const CauseRate& rate) {
       return rate.cause == judgement.cause.text;
@@ -397,6 +404,8 @@ class LoopCampaign {
         consumed_.pop_back();
       }
     }
+    if (!interrupted && !result_.failed) recorder_.finish(consumed_);
+    recorder_.report(sink_);
     if (!interrupted && !result_.failed) {
       if (!journal_->rewrite({}, std::move(consumed_), sink_)) return sink_.already_reported();
     }
@@ -433,6 +442,7 @@ class LoopCampaign {
   std::vector<SampleRecord> consumed_;
   bool lost_too_often_ = false;
   LoopStream samples_;
+  RunRecorder recorder_;
   SimulatorBench bench_;  // last, so that its threads end before what they use
 };
 

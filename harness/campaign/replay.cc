@@ -57,7 +57,8 @@ std::optional<SampleId> parse_sample_id(std::string_view text) {
 }
 
 ReplayResult replay_sample(const RecordedRun& run, const std::string& scenario_hash,
-                           const SimulatorFactory& make_simulator) {
+                           const SimulatorFactory& make_simulator,
+                           std::optional<Recording>* moved) {
   const auto& record = run.record;
   ReplayResult result;
   result.id = run.id;
@@ -74,12 +75,20 @@ ReplayResult replay_sample(const RecordedRun& run, const std::string& scenario_h
   const auto info = simulator->info();
   result.reason = simulator_change(run.header, info);
   if (!result.reason.empty()) return result;
-  const auto again = repeat_sample(run.line.calls, may_repeat_losses(info), record, *simulator,
-                                   [] { return false; });
+  MotionTap tap(*simulator, moved != nullptr);
+  const auto again =
+      repeat_sample(run.line.calls, may_repeat_losses(info), record, tap, [] { return false; });
   if (again->status != SampleStatus::kOk) {
     result.reason =
         fmt::format("the simulator was {}: {}", to_string(again->status), again->reason);
     return result;
+  }
+  if (moved != nullptr) {
+    std::vector<std::string> events;
+    for (std::size_t t = 0; t < run.line.trace->event_count(); ++t) {
+      events.push_back(run.line.trace->event(t));
+    }
+    *moved = recording_of(info, *again, events, tap.log());
   }
   result.outcome = ReplayOutcome::kIdentical;
   if (auto differs = first_difference(record, *again)) {

@@ -10,6 +10,7 @@
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/journal.h"
 #include "harness/campaign/sample_record.h"
+#include "harness/recording/recording.h"
 
 namespace parallax::harness {
 
@@ -75,7 +76,9 @@ std::string simulator_change(const JournalHeader& header, const SimulatorInfo& s
 /// Repeats one recorded simulation and compares every observation, every outcome and the digest
 /// bit for bit. A simulator is made only if nothing that is on record forbids the repetition, above
 /// all a changed scenario.
+/// `moved`: the repetition is recorded there, where it came to its end, whether it differs or not.
 ReplayResult replay_sample(const RecordedRun& run, const std::string& scenario_hash,
-                           const SimulatorFactory& make_simulator);
+                           const SimulatorFactory& make_simulator,
+                           std::optional<Recording>* moved = nullptr);
 
 }  // namespace parallax::harness

@@ -71,6 +71,11 @@ class TraceCampaign {
     const bool is_lost =
         sample.verdict == SampleVerdict::kLost || sample.verdict == SampleVerdict::kLostTooOften;
     if (!is_lost && sample.record.retries > 0) ++result.retried;
+    using Kept = RunRecorder::Verdict;
+    context_.recorder.judge(sample.record, is_lost ? Kept::kNothing
+                                           : sample.verdict == SampleVerdict::kDiscrepancy
+                                               ? Kept::kFinding
+                                               : Kept::kClean);
     switch (sample.verdict) {
       case SampleVerdict::kLost:
       case SampleVerdict::kLostTooOften:

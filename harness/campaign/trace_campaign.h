@@ -33,6 +33,7 @@ struct TraceContext {
   std::int64_t max_runs;
   TrialBench& bench;
   const Journal& journal;
+  RunRecorder& recorder;
   base::DiagnosticSink& sink;
 };
 

@@ -70,7 +70,7 @@ SimulatorBench::SimulatorBench(const Scenario& scenario, const compiler::SymbolT
       options_(options),
       sink_(sink),
       fluents_(symbols),
-      pool_(options.jobs, make_simulator, std::move(finished), options.stop) {
+      pool_(options.jobs, make_simulator, std::move(finished), options.stop, options.moved) {
   PARALLAX_REQUIRE(scenario.mapping.has_value(), "a scenario that was loaded without errors");
 }
 

@@ -22,6 +22,8 @@ struct TrialOptions {
   std::uint64_t seed = 1;
   std::int64_t jobs = 1;
   const std::atomic<bool>* stop = nullptr;
+  /// Of the worker pool.
+  std::function<void(const SampleRecord&, const MotionLog&)> moved = {};
 };
 
 /// What a trace is simulated with.

@@ -14,8 +14,12 @@ constexpr auto kStopSlice = std::chrono::milliseconds(50);  // how late the stop
 
 WorkerPool::WorkerPool(std::int64_t jobs, SimulatorFactory make_simulator,
                        std::function<void(const SampleRecord&)> finished,
-                       const std::atomic<bool>* stop)
-    : make_simulator_(std::move(make_simulator)), finished_(std::move(finished)), stop_(stop) {
+                       const std::atomic<bool>* stop,
+                       std::function<void(const SampleRecord&, const MotionLog&)> moved)
+    : make_simulator_(std::move(make_simulator)),
+      finished_(std::move(finished)),
+      moved_(std::move(moved)),
+      stop_(stop) {
   PARALLAX_REQUIRE(jobs >= 1, "at least one job");
   for (std::int64_t i = 0; i < jobs; ++i) {
     try {
@@ -129,15 +133,17 @@ void WorkerPool::serve_jobs(Simulator* simulator) {
       PARALLAX_REQUIRE(own != nullptr, "the factory makes a simulator");
       simulator = own.get();
     }
-    simulate(job, *simulator);
+    MotionTap tap(*simulator, static_cast<bool>(moved_));
+    simulate(job, tap);
   }
 }
 
-void WorkerPool::simulate(const Job& job, Simulator& simulator) {
+void WorkerPool::simulate(const Job& job, MotionTap& simulator) {
   const auto abandoned = [&] { return closing_ || generation_ != job.generation || stopped(); };
   auto record = job.repeat ? job.maker->repeat(*job.repeat, simulator, abandoned)
                            : job.maker->make(job.sample, simulator, abandoned);
   if (!record) return;
+  if (moved_) moved_(*record, simulator.log());
   finished_(*record);
   ++runs_made_;
   const std::lock_guard lock(mutex_);

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "harness/campaign/motion_tap.h"
 #include "harness/campaign/sample_runner.h"
 
 namespace parallax::harness {
@@ -22,9 +23,11 @@ namespace parallax::harness {
 /// simulates a sample, and when, shows nowhere: the caller waits for samples in its own order.
 class WorkerPool {
  public:
-  /// `finished` is called in the worker's thread for each simulation, before `wait` returns it.
+  /// `finished` is called in the worker's thread for each simulation, before `wait` returns it;
+  /// `moved` before that, with what moved. Without it no simulator is asked what does.
   WorkerPool(std::int64_t jobs, SimulatorFactory make_simulator,
-             std::function<void(const SampleRecord&)> finished, const std::atomic<bool>* stop);
+             std::function<void(const SampleRecord&)> finished, const std::atomic<bool>* stop,
+             std::function<void(const SampleRecord&, const MotionLog&)> moved = {});
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
@@ -57,7 +60,7 @@ class WorkerPool {
 
   void work(std::size_t worker);
   void serve_jobs(Simulator* simulator);
-  void simulate(const Job& job, Simulator& simulator);
+  void simulate(const Job& job, MotionTap& simulator);
   void submit(Job job);
   template <typename Ready>
   bool wait_until(std::unique_lock<std::mutex>& lock, Ready ready);
@@ -65,6 +68,7 @@ class WorkerPool {
 
   SimulatorFactory make_simulator_;
   std::function<void(const SampleRecord&)> finished_;
+  std::function<void(const SampleRecord&, const MotionLog&)> moved_;
   const std::atomic<bool>* stop_;
   std::atomic<std::uint64_t> generation_ = 0;
   std::atomic<bool> closing_ = false;

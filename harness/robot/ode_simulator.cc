@@ -9,6 +9,7 @@
 #include "harness/engine/ode_world.h"
 #include "harness/engine/world_check.h"
 #include "harness/robot/controller.h"
+#include "harness/robot/motion_recorder.h"
 #include "harness/world/angles.h"
 #include "harness/world/arguments.h"
 #include "harness/world/world_layout.h"
@@ -105,6 +106,8 @@ struct OdeSimulator::Impl {
     } else if (!spec.robot.base_body.empty()) {
       line.emplace(spec, world);
     }
+    motion.emplace(spec, world, grasp, mobile ? &*mobile : nullptr,
+                   perception ? &*perception : nullptr);
   }
 
   bool can(const ControllerSpec& controller) const {
@@ -131,6 +134,7 @@ struct OdeSimulator::Impl {
   std::optional<LineRobot> line;
   std::optional<MobileRobot> mobile;
   std::optional<Perception> perception;
+  std::optional<MotionRecorder> motion;  // of all those before it
   Condition condition = Condition::kFresh;
   Watcher watcher = nullptr;
   void* watcher_context = nullptr;
@@ -151,6 +155,8 @@ void OdeSimulator::watch(Watcher watcher, void* context) {
   impl_->watcher_context = context;
 }
 
+void OdeSimulator::record_motion(double interval_s) { impl_->motion->set_interval(interval_s); }
+
 SimulatorInfo OdeSimulator::info() {
   SimulatorInfo info;
   info.name = "ode";
@@ -162,6 +168,7 @@ SimulatorInfo OdeSimulator::info() {
     if (impl_->can(spec)) info.actions.emplace_back(spec.name);
   }
   info.timestep_s = impl_->spec.solver.timestep_s;
+  info.scene = impl_->motion->scene();
   return info;
 }
 
@@ -180,7 +187,10 @@ Outcome OdeSimulator::reset(const State& initial, std::uint64_t seed) {
             {{"depth", overlap->depth_m}}};
   }
   impl_->condition = Impl::Condition::kReady;
-  return {};
+  impl_->motion->begin();
+  Outcome outcome;
+  outcome.motion = impl_->motion->take();
+  return outcome;
 }
 
 Outcome OdeSimulator::act(std::string_view action, const State& arguments,
@@ -213,23 +223,29 @@ Outcome OdeSimulator::act(std::string_view action, const State& arguments,
   for (std::int64_t steps = 1;; ++steps) {
     if (std::optional<Outcome> outcome = controller->tick(time_s)) {
       outcome->sim_time_s = time_s;
+      outcome->motion = impl_->motion->take();
       return *std::move(outcome);
     }
     if (!(static_cast<double>(steps) * timestep_s <= sim_time_limit_s)) break;
     impl_->drive_motors();
     if (!impl_->world.step()) {
       impl_->condition = Impl::Condition::kLost;
-      return {SimStatus::kLost, "the state of the world has exploded", time_s, {}};
+      Outcome outcome{SimStatus::kLost, "the state of the world has exploded", time_s, {}};
+      outcome.motion = impl_->motion->take();
+      return outcome;
     }
     impl_->grasp.update();
+    impl_->motion->step();
     time_s = static_cast<double>(steps) * timestep_s;
     if (impl_->watcher != nullptr) impl_->watcher(impl_->watcher_context, time_s, *this);
   }
   impl_->brake_all();  // takes effect in the next action
-  return {SimStatus::kTruncated,
-          fmt::format("`{}` took longer than {} s", action, sim_time_limit_s),
-          time_s,
-          {}};
+  Outcome outcome{SimStatus::kTruncated,
+                  fmt::format("`{}` took longer than {} s", action, sim_time_limit_s),
+                  time_s,
+                  {}};
+  outcome.motion = impl_->motion->take();
+  return outcome;
 }
 
 State OdeSimulator::state() const {

@@ -30,6 +30,7 @@ class OdeSimulator final : public Simulator {
   /// An unknown controller, or arguments that it does not take: kUnsupported, nothing moves.
   Outcome act(std::string_view action, const State& arguments, double sim_time_limit_s) override;
   State observe() override { return state(); }
+  void record_motion(double interval_s) override;
   State state() const;
 
   /// Called after each timestep of `act`, with the time since it began; for watching a motion.

@@ -327,7 +327,10 @@ Outcome ProcessSimulator::outcome_of(std::variant<ReplyBody, std::string> reply)
     return {SimStatus::kLost, lost_reason_, 0.0, {}};
   }
   auto& body = std::get<ReplyBody>(reply);
-  if (auto* outcome = std::get_if<OutcomeReply>(&body)) return std::move(outcome->outcome);
+  if (auto* done = std::get_if<OutcomeReply>(&body)) {
+    poses_.take(*done);
+    return std::move(done->outcome);
+  }
   const auto& error = std::get<ErrorReply>(body);
   if (is_refusal(error)) return {SimStatus::kUnsupported, error.message, 0.0, {}};
   lose(fmt::format("{}: {}", error.code, error.message));
@@ -338,7 +341,9 @@ Outcome ProcessSimulator::reset(const State& initial, std::uint64_t seed) {
   if (options_.recycle_after > 0 && resets_ >= options_.recycle_after) close();
   if (!ensure_started()) return {SimStatus::kLost, lost_reason_, 0.0, {}};
   ++resets_;
-  return outcome_of(link_->ask(ResetRequest{initial, seed}, options_.reset_timeout_s));
+  const double interval_s = info_.scene ? record_interval_s_ : 0.0;
+  poses_.begin(info_.scene ? &*info_.scene : nullptr, interval_s);
+  return outcome_of(link_->ask(ResetRequest{initial, seed, interval_s}, options_.reset_timeout_s));
 }
 
 Outcome ProcessSimulator::act(std::string_view action, const State& arguments,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "compiler/base/descriptor.h"
+#include "harness/simulator/pose_intake.h"
 #include "harness/simulator/protocol.h"
 #include "harness/simulator/simulator.h"
 
@@ -102,6 +103,7 @@ class ProcessSimulator final : public Simulator {
   Outcome reset(const State& initial, std::uint64_t seed) override;
   Outcome act(std::string_view action, const State& arguments, double sim_time_limit_s) override;
   State observe() override;
+  void record_motion(double interval_s) override { record_interval_s_ = interval_s; }
 
  private:
   class Link;
@@ -115,6 +117,8 @@ class ProcessSimulator final : public Simulator {
   SimulatorInfo info_;
   std::string lost_reason_ = "it was not started";
   std::int64_t resets_ = 0;  // of this child
+  double record_interval_s_ = 0.0;
+  PoseIntake poses_;
 };
 
 }  // namespace parallax::harness

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "compiler/base/json.h"
+#include "harness/recording/bytes.h"
+#include "harness/recording/scene_json.h"
 #include "harness/simulator/state_json.h"
 
 namespace parallax::harness {
@@ -26,14 +28,20 @@ OrderedJson info_to_json(std::int64_t protocol, const SimulatorInfo& info) {
   }
   OrderedJson actions = OrderedJson::array();
   for (const std::string& name : info.actions) actions.push_back(OrderedJson{{"name", name}});
-  return OrderedJson{{"protocol", protocol},
-                     {"name", info.name},
-                     {"version", info.version},
-                     {"determinism", info.determinism},
-                     {"seeds", info.seeds},
-                     {"time_step", info.timestep_s},
-                     {"params", std::move(parameters)},
-                     {"actions", std::move(actions)}};
+  OrderedJson out{{"protocol", protocol},
+                  {"name", info.name},
+                  {"version", info.version},
+                  {"determinism", info.determinism},
+                  {"seeds", info.seeds},
+                  {"time_step", info.timestep_s},
+                  {"params", std::move(parameters)},
+                  {"actions", std::move(actions)}};
+  if (info.scene) {
+    // A world so large that it does not go in a line is simulated without recordings.
+    const auto scene = scene_text(*info.scene);
+    if (scene.size() < kMaxLineBytes / 2) out["pose"] = OrderedJson::parse(scene);
+  }
+  return out;
 }
 
 OrderedJson outcome_to_json(const Outcome& outcome) {
@@ -42,6 +50,8 @@ OrderedJson outcome_to_json(const Outcome& outcome) {
   json["sim_time"] = outcome.sim_time_s;
   if (!outcome.margins.empty()) json["margins"] = state_json<OrderedJson>(outcome.margins);
   if (!outcome.object.empty()) json["object"] = outcome.object;
+  if (!outcome.motion.frames.empty()) json["motion"] = base64(outcome.motion.frames);
+  if (!outcome.motion.fault.empty()) json["motion_fault"] = outcome.motion.fault;
   return json;
 }
 
@@ -55,6 +65,7 @@ struct RequestEncoder {
     json["method"] = "reset";
     json["params"] =
         OrderedJson{{"state", state_json<OrderedJson>(reset.state)}, {"seed", reset.seed}};
+    if (reset.record_interval_s > 0.0) json["params"]["pose_interval"] = reset.record_interval_s;
   }
   void operator()(const ActRequest& act) const {
     json["method"] = "act";
@@ -212,6 +223,7 @@ ResetRequest read_reset(FieldReader& reader, const Json& params) {
   } else {
     reader.fail("`seed` is not an integer from 0 to 2^64 - 1");
   }
+  reset.record_interval_s = reader.number(params, "pose_interval", false);
   return reset;
 }
 
@@ -246,6 +258,11 @@ HelloReply read_info(FieldReader& reader, const Json& result) {
   if (hello.info.determinism.empty()) hello.info.determinism = "none";
   hello.info.seeds = reader.boolean(result, "seeds", false);
   hello.info.timestep_s = reader.number(result, "time_step", false);
+  // A scene that is wrong is none: what moves is told for people alone.
+  std::string unread;
+  if (const Json* scene = reader.member(result, "pose", false)) {
+    hello.info.scene = scene_from_text(base::json_text(*scene), unread);
+  }
   const Json* params = reader.member(result, "params", true);
   const Json* actions = reader.member(result, "actions", true);
   if (params == nullptr || actions == nullptr) return hello;
@@ -271,6 +288,76 @@ HelloReply read_info(FieldReader& reader, const Json& result) {
   return hello;
 }
 
+/// The pose of a body as a list of three or seven numbers.
+std::optional<Pose> pose_of(const Json& json) {
+  if (!json.is_array() || (json.size() != 3 && json.size() != 7)) return std::nullopt;
+  Pose pose;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const auto number = base::json_as<double>(json[i]);
+    if (!number) return std::nullopt;
+    (i < 3 ? pose.p[i] : pose.q[i - 3]) = *number;
+  }
+  return pose;
+}
+
+/// What is wrong with it; empty: nothing.
+std::string read_frame(const Json& json, PlainFrame& frame) {
+  const Json* time = base::json_member(json, "t");
+  const auto number = time == nullptr ? std::nullopt : base::json_as<double>(*time);
+  if (!number) return "`t` of a frame is missing or no number";
+  frame.time_s = *number;
+  if (const Json* poses = base::json_member(json, "bodies")) {
+    if (!poses->is_object()) return "`bodies` of a frame is no object";
+    for (const auto& [name, value] : poses->items()) {
+      const auto pose = pose_of(value);
+      if (!pose) return "the pose of `" + name + "` is no list of 3 or 7 numbers";
+      frame.poses.emplace_back(name, *pose);
+    }
+  }
+  const Json* held = base::json_member(json, "held");
+  if (held == nullptr) return {};
+  if (!held->is_object()) return "`held` of a frame is no object";
+  frame.held.emplace();
+  for (const auto& [name, value] : held->items()) {
+    const auto gripper = base::json_as<std::string>(value);
+    if (!gripper) return "what holds `" + name + "` is no name";
+    frame.held->emplace_back(name, *gripper);
+  }
+  return {};
+}
+
+/// Motion is told besides the outcome: what is wrong with it does not make the outcome wrong.
+void read_motion(const Json& result, OutcomeReply& reply) {
+  auto& motion = reply.outcome.motion;
+  if (const Json* packed = base::json_member(result, "motion")) {
+    const auto text = base::json_as<std::string>(*packed);
+    auto bytes = text ? from_base64(*text) : std::nullopt;
+    if (!bytes) {
+      motion.fault = "`motion` is no text in base64";
+      return;
+    }
+    motion.frames = *std::move(bytes);
+  }
+  if (const Json* fault = base::json_member(result, "motion_fault")) {
+    motion.fault = base::json_as<std::string>(*fault).value_or("`motion_fault` is no text");
+  }
+  const Json* poses = base::json_member(result, "poses");
+  if (poses == nullptr) return;
+  if (!poses->is_array()) {
+    motion.fault = "`poses` is no list of frames";
+    return;
+  }
+  for (const Json& item : *poses) {
+    PlainFrame frame;
+    auto why = read_frame(item, frame);
+    if (!why.empty()) {
+      motion.fault = std::move(why);
+      return;
+    }
+    reply.frames.push_back(std::move(frame));
+  }
+}
+
 OutcomeReply read_outcome(FieldReader& reader, const Json& result) {
   OutcomeReply reply;
   const std::string word = reader.string(result, "status");
@@ -287,6 +374,7 @@ OutcomeReply read_outcome(FieldReader& reader, const Json& result) {
   if (const Json* margins = reader.object(result, "margins", false)) {
     reply.outcome.margins = reader.state(*margins);
   }
+  read_motion(result, reply);
   return reply;
 }
 

@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -22,6 +24,7 @@ struct HelloRequest {
 struct ResetRequest {
   State state;
   std::uint64_t seed = 0;
+  double record_interval_s = 0.0;  // Simulator::record_motion
 };
 struct ActRequest {
   std::string action;
@@ -54,9 +57,18 @@ struct HelloReply {
   std::int64_t protocol = kProtocolVersion;
   SimulatorInfo info;
 };
-/// To reset and act.
+/// Where bodies were at one time, as a simulator says that does not pack frames itself.
+struct PlainFrame {
+  double time_s = 0.0;  // simulated, since reset
+  std::vector<std::pair<std::string, Pose>> poses;
+  /// What hangs in which gripper, all of it; none: as before.
+  std::optional<std::vector<std::pair<std::string, std::string>>> held;
+};
+/// To reset and act. Where something is wrong with the motion, `outcome.motion.fault` says what;
+/// the reply is good all the same.
 struct OutcomeReply {
   Outcome outcome;
+  std::vector<PlainFrame> frames = {};
 };
 struct ObserveReply {
   State state;

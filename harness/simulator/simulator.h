@@ -2,10 +2,13 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
+
+#include "harness/recording/recorded_scene.h"
 
 namespace parallax::harness {
 
@@ -33,12 +36,20 @@ std::string_view to_string(SimStatus status);
 /// kUnsupported for a word that is not in the protocol.
 SimStatus sim_status_from(std::string_view word);
 
+/// What moved since the last request, packed (motion_stream.h), where motion is recorded.
+struct RecordedMotion {
+  std::string frames;
+  std::string fault;  // why there is no more from here on; empty: there is
+  friend bool operator==(const RecordedMotion&, const RecordedMotion&) = default;
+};
+
 struct Outcome {
   SimStatus status = SimStatus::kOk;
   std::string reason;       // "target unreachable: 0.71 m, reach 0.60 m"
   double sim_time_s = 0.0;  // simulated time that the request took
   State margins;            // graded companions of the verdict, for guided search
   std::string object = {};  // the thing that it found, where it looked for one
+  RecordedMotion motion = {};
 };
 
 /// One variable of the continuous state: its name, unit, and whether reset takes it.
@@ -57,6 +68,8 @@ struct SimulatorInfo {
   std::vector<Parameter> parameters;
   std::vector<std::string> actions;  // controllers that `act` accepts
   double timestep_s = 0.0;
+  /// What it records of motion, if it does.
+  std::optional<RecordedScene> scene = {};
 };
 
 /// One simulated world. One instance per worker process, never shared.
@@ -65,6 +78,9 @@ class Simulator {
  public:
   virtual ~Simulator() = default;
   virtual SimulatorInfo info() = 0;
+  /// From the next reset on outcomes tell what moved, with a frame every `interval_s` of simulated
+  /// time in which something did; 0: no longer. One that cannot, or need not, does nothing.
+  virtual void record_motion(double interval_s) { (void)interval_s; }
   /// Puts the world into `initial` (settable parameters; others take their default) and seeds the
   /// engine's random numbers. kOk, kInvalidStart (the reason names the pair and the depth) or
   /// kLost; kUnsupported for an unknown parameter.

@@ -89,6 +89,7 @@ struct Dispatcher {
     return {HelloReply{kProtocolVersion, simulator.info()}};
   }
   Answer operator()(const ResetRequest& reset) const {
+    simulator.record_motion(reset.record_interval_s);
     Outcome outcome = simulator.reset(reset.state, reset.seed);
     reset_done = outcome.status == SimStatus::kOk;
     return {OutcomeReply{std::move(outcome)}};

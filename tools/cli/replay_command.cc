@@ -1,9 +1,13 @@
 #include <unistd.h>
 
+#include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/replay.h"
+#include "harness/recording/recording_file.h"
 #include "harness/report/report.h"
 #include "tools/app/file_kind.h"
 #include "tools/app/recorded_run.h"
@@ -17,8 +21,29 @@ namespace {
 struct ReplayOptions {
   RunFolderOptions run;
   std::string sample;
+  bool record = false;
   CommandPermission commands;
 };
+
+/// Of a repetition that differs as well: it is what the simulator does now.
+base::Status keep(const std::string& folder, const std::optional<harness::Recording>& moved,
+                  Invocation& invocation) {
+  auto& sink = invocation.sink();
+  if (!moved) {
+    return sink.error_about(base::DiagnosticCode::kReplayImpossible, folder,
+                            "its simulator tells nothing of motion, so there is nothing to record");
+  }
+  const auto name = harness::recording_name(moved->trace, moved->sample);
+  if (auto why = harness::write_recording(folder, *moved); !why.empty()) {
+    return sink.error_about(base::DiagnosticCode::kFileNotWritable,
+                            (std::filesystem::path(folder) / name).string(), why);
+  }
+  if (!moved->missing.empty()) {
+    sink.error_about(base::DiagnosticCode::kRecordingLost, folder, 1, moved->missing);
+  }
+  invocation.remark("recording: " + (std::filesystem::path(folder) / name).string());
+  return base::Unit{};
+}
 
 int replay(const ReplayOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
@@ -34,11 +59,14 @@ int replay(const ReplayOptions& options, Invocation& invocation) {
   if (!loaded || !check_recorded_run(*loaded, *run, invocation)) return 0;
   const auto simulator = permitted_simulator(*loaded, options.commands.allow, invocation);
   if (!simulator) return 0;
-  const auto result = harness::replay_sample(*run, loaded->sources_hash, *simulator);
+  std::optional<harness::Recording> moved;
+  const auto result = harness::replay_sample(*run, loaded->sources_hash, *simulator,
+                                             options.record ? &moved : nullptr);
   if (result.outcome == harness::ReplayOutcome::kCannot) {
     sink.error_about(base::DiagnosticCode::kReplayImpossible, options.run.folder, result.reason);
     return 0;
   }
+  if (options.record && !keep(options.run.folder, moved, invocation)) return 0;
   if (invocation.options().json) {
     invocation.document(harness::replay_json(result));
   } else {
@@ -56,9 +84,12 @@ Command replay_command() {
       "Examples:\n"
       "  parallax replay out/edge                the run's first discrepancy\n"
       "  parallax replay out/edge --sample 1.4   simulation 4 of trace 1\n"
+      "  parallax replay out/edge --sample 1.4 --record\n"
       "Exit codes: 0 identical, 1 differs, 3 the scenario has changed since.");
   command.option("run_dir", options->run.folder, "Folder of a run").required();
   command.option("--sample", options->sample, "TRACE.SAMPLE; default: the first discrepancy");
+  command.flag("--record", options->record,
+               "Write what moves into the run folder, for `report` and `export`");
   add_recorded_scenario_option(command, options->run.scenario);
   add_command_options(command, options->commands, false);
   return {std::move(command),

@@ -65,6 +65,7 @@ struct RunOptions {
   double confidence = 0.0;  // 0: as the scenario says
   double epsilon = 0.0;
   std::int64_t max_runs = 0;
+  std::string record = "discrepancies";
   std::string hits = "first";
   bool split_initial = false;
   CommandPermission commands;
@@ -100,6 +101,10 @@ harness::CampaignOptions campaign_options(const RunOptions& options, const Scena
   } else {
     campaign.run_dir =
         options.resume ? newest_run_folder(options.scenario) : default_run_folder(options.scenario);
+  }
+  for (const auto mode : {harness::RecordMode::kNone, harness::RecordMode::kDiscrepancies,
+                          harness::RecordMode::kAll}) {
+    if (options.record == to_string(mode)) campaign.record = mode;
   }
   std::error_code error;
   campaign.start_folder = std::filesystem::current_path(error).string();
@@ -233,6 +238,7 @@ Command run_command() {
       "  parallax run scenarios/two_regions/scenario.yaml\n"
       "  parallax run edge.yaml --jobs 2 --seed 7 --out out/edge7\n"
       "  parallax run edge.yaml --execution closed-loop\n"
+      "  parallax run edge.yaml --record all\n"
       "  parallax run edge.yaml --seed 7 --out out/edge7 --resume\n"
       "Exit codes: 0 no discrepancy, 1 discrepancy, 4 inconclusive, as without a trace.");
   command.option("scenario", options->scenario, "Scenario file (YAML)").required();
@@ -270,6 +276,13 @@ Command run_command() {
       .check(FiniteNumber{1e-6, 0.5});
   command.option("--max-runs", options->max_runs, "Simulations per trace before giving up")
       .check(WholeNumber{1, 1'000'000});
+  command
+      .option(
+          "--record", options->record,
+          "Of which simulations motion is kept in the run folder: all, discrepancies (and three "
+          "clean ones of each trace) or none")
+      .check(OneOf{{"all", "discrepancies", "none"}})
+      .show_default();
   add_hits_option(command, options->hits);
   command.flag("--split-initial", options->split_initial,
                "Try every initial state, not only every sequence of events");

@@ -14,6 +14,8 @@
 #include <cstring>
 #include <set>
 #include <thread>
+#include <utility>
+#include <vector>
 
 namespace parallax::harness {
 namespace {
@@ -54,6 +56,97 @@ TEST_CASE("a child that answers is a simulator like any other") {
   CHECK(std::get<double>(state.at("robot.x")) == 0.1);
   // A session of its own: no signal from the terminal, one group to end it by.
   CHECK(state.at("session") == state.at("pid"));
+}
+
+/// What came of an action that was recorded, or not.
+struct Moved {
+  SimulatorInfo info;
+  RecordedMotion motion;
+  Outcome outcome;
+};
+Moved moved(const std::string& mode, double interval_s = 0.1) {
+  auto options = options_for("answer");
+  options.command[1] = mode;
+  ProcessSimulator simulator(options);
+  Moved out{simulator.info(), {}, {}};
+  simulator.record_motion(interval_s);
+  const auto start = simulator.reset({{"robot.x", 0.0}}, 1);
+  CHECK(start.status == SimStatus::kOk);
+  out.outcome = simulator.act("going", {}, 5.0);
+  CHECK(out.outcome.status == SimStatus::kFailed);
+  CHECK(out.outcome.reason == "blocked");
+  out.motion.frames = start.motion.frames + out.outcome.motion.frames;
+  out.motion.fault = start.motion.fault + out.outcome.motion.fault;
+  return out;
+}
+
+TEST_CASE("poses of an external simulator: frames of what it says") {
+  const auto out = moved("poses");
+  REQUIRE(out.info.scene);
+  CHECK(out.info.scene->bodies.size() == 3);
+  CHECK(out.info.scene->moving() == std::vector<std::size_t>{1, 2});
+  CHECK(out.motion.fault == "");
+  MotionCursor cursor(out.motion.frames, {2, 1});
+  for (int i = 0; i <= 15; ++i) {
+    CAPTURE(i);
+    REQUIRE(cursor.next());
+    CHECK(cursor.time_s() == doctest::Approx(0.1 * i));
+    CHECK(cursor.poses()[0].p[0] == doctest::Approx(0.1 * i).epsilon(1e-3));
+    CHECK(cursor.poses()[1].p[0] == doctest::Approx(i < 5 ? 0.5 : 0.1 * i).epsilon(1e-3));
+    CHECK(cursor.poses()[1].p[2] == doctest::Approx(1.0));
+    CHECK(cursor.grips()[1] == (i < 5 ? 0 : kGripHeld));
+  }
+  CHECK_FALSE(cursor.next());
+  CHECK(cursor.fault() == "");
+}
+
+TEST_CASE("poses of an external simulator: asked for or not there") {
+  const auto unasked = moved("poses", 0.0);
+  CHECK(unasked.motion == RecordedMotion());
+  const auto unable = moved("answer");
+  CHECK_FALSE(unable.info.scene);
+  CHECK(unable.motion == RecordedMotion());
+  const auto wrong = moved("poses-wrong-scene");
+  CHECK_FALSE(wrong.info.scene);
+  CHECK(wrong.motion == RecordedMotion());
+}
+
+TEST_CASE("poses of an external simulator: more frames than were asked for are thinned out") {
+  const auto fast = moved("poses-fast");
+  CHECK(fast.motion.fault == "");
+  MotionCursor cursor(fast.motion.frames, {2, 1});
+  int frames = 0;
+  while (cursor.next()) ++frames;
+  CHECK(frames >= 15);
+  CHECK(frames <= 32);
+  CHECK(cursor.poses()[0].p[0] == doctest::Approx(1.5).epsilon(1e-3));  // the last one stays
+}
+
+TEST_CASE("poses of an external simulator: nonsense costs the motion, not the outcome") {
+  const std::vector<std::pair<std::string, std::string>> faults = {
+      {"poses-unknown", "no moving body `ghost` was announced"},
+      {"poses-static", "no moving body `table` was announced"},
+      {"poses-far", "`cup` has a place that is not finite, or beyond 1e6 m"},
+      {"poses-unturned", "`cup` has a turn that is no unit quaternion w-x-y-z"},
+      {"poses-short", "the pose of `cup` is no list of 3 or 7 numbers"},
+      {"poses-words", "the pose of `cup` is no list of 3 or 7 numbers"},
+      {"poses-back", "a frame at 0.01 s follows one at 0.6 s"},
+      {"poses-late", "a frame at 1e+300 s follows one at 0.6 s"},
+      {"poses-hand", "no gripper `foot` was announced"},
+      {"poses-no-time", "`t` of a frame is missing or no number"},
+      {"poses-no-list", "`poses` is no list of frames"},
+      {"poses-no-base64", "`motion` is no text in base64"},
+      {"poses-both", "it sends `poses` and `motion`"},
+      {"poses-partial", "the first frame does not say where `cup` is"}};
+  for (const auto& [mode, fault] : faults) {
+    CAPTURE(mode);
+    const auto out = moved(mode);
+    CHECK(out.motion.fault == fault);
+    // What was right before it is kept.
+    MotionCursor cursor(out.motion.frames, {2, 1});
+    while (cursor.next()) CHECK(cursor.time_s() < 0.75);
+    CHECK(cursor.fault() == "");
+  }
 }
 
 TEST_CASE("an invalid start and a refusal are answers, not losses") {

@@ -51,14 +51,57 @@ void misbehave(const std::string& mode, const std::string& method, int count) {
   }
 }
 
+/// What a simulator that has poses says of its bodies.
+Json bodies() {
+  return {{"bodies",
+           {{{"name", "table"}, {"shapes", {{{"box", {1, 1, 0.1}}}}}},
+            {{"name", "robot"}, {"kind", "robot"}, {"moves", true}},
+            {{"name", "cup"},
+             {"kind", "item"},
+             {"moves", true},
+             {"shapes", {{{"cylinder", {0.04, 0.1}}}}}}}},
+          {"grippers", {"hand"}}};
+}
+
+/// The robot goes along x at 1 m/s, and takes the cup with it from 0.5 s on.
+Json frames(const std::string& mode, double from_s, double to_s, double step_s) {
+  Json out = Json::array();
+  for (int i = 0; from_s + i * step_s < to_s + 1e-9; ++i) {
+    const double t = from_s + i * step_s;
+    const double cup = t < 0.5 ? 0.5 : t;
+    Json frame = {{"t", t},
+                  {"bodies", {{"robot", {t, 0.0, 0.0}}, {"cup", {cup, 0, 1, 1, 0, 0, 0}}}}};
+    if (t >= 0.5) frame["held"] = {{"cup", "hand"}};
+    if (t > 0.7 && t < 1.0) {
+      if (mode == "poses-unknown") frame["bodies"]["ghost"] = {0, 0, 0};
+      if (mode == "poses-static") frame["bodies"]["table"] = {0, 0, 0};
+      if (mode == "poses-far") frame["bodies"]["cup"] = {1e9, 0, 0};
+      if (mode == "poses-unturned") frame["bodies"]["cup"] = {0, 0, 0, 0, 0, 0, 0};
+      if (mode == "poses-short") frame["bodies"]["cup"] = {0, 0};
+      if (mode == "poses-words") frame["bodies"]["cup"] = {"a", "b", "c"};
+      if (mode == "poses-back") frame["t"] = 0.01;
+      if (mode == "poses-late") frame["t"] = 1e300;
+      if (mode == "poses-hand") frame["held"] = {{"cup", "foot"}};
+      if (mode == "poses-no-time") frame.erase("t");
+    }
+    out.push_back(std::move(frame));
+  }
+  return out;
+}
+
 Json reply_to(const std::string& mode, const std::string& method, const Json& params) {
   static Json state = Json::object();
   static int resets = 0;
+  static bool asked = false;
+  const bool has_poses = mode.starts_with("poses");
   if (method == "hello") {
-    return {{"protocol", 1},           {"name", "scripted"},
-            {"version", "2"},          {"determinism", "bitwise"},
-            {"seeds", true},           {"time_step", 0.01},
-            {"params", Json::array()}, {"actions", Json::array()}};
+    Json hello = {{"protocol", 1},           {"name", "scripted"},
+                  {"version", "2"},          {"determinism", "bitwise"},
+                  {"seeds", true},           {"time_step", 0.01},
+                  {"params", Json::array()}, {"actions", Json::array()}};
+    if (has_poses) hello["pose"] = bodies();
+    if (mode == "poses-wrong-scene") hello["pose"] = {{"bodies", 3}};
+    return hello;
   }
   if (method == "reset") {
     if (mode == "invalid") return {{"status", "invalid_start"}, {"reason", "box overlaps counter"}};
@@ -66,11 +109,21 @@ Json reply_to(const std::string& mode, const std::string& method, const Json& pa
     state["resets"] = ++resets;
     state["pid"] = static_cast<long>(::getpid());
     state["session"] = static_cast<long>(::getsid(0));
-    return {{"status", "ok"}};
+    Json result = {{"status", "ok"}};
+    asked = params.contains("pose_interval");
+    if (has_poses && asked) result["poses"] = frames(mode, 0.0, 0.0, 0.1);
+    if (mode == "poses-partial") result["poses"][0]["bodies"].erase("cup");
+    return result;
   }
   if (method == "act") {
     state["robot.x"] = 0.1;
-    return {{"status", "failed"}, {"reason", "blocked"}, {"sim_time", 1.5}};
+    Json result = {{"status", "failed"}, {"reason", "blocked"}, {"sim_time", 1.5}};
+    if (!has_poses || !asked) return result;
+    result["poses"] = frames(mode, 0.1, 1.5, mode == "poses-fast" ? 0.001 : 0.1);
+    if (mode == "poses-no-list") result["poses"] = "here";
+    if (mode == "poses-no-base64") result["motion"] = "*";
+    if (mode == "poses-both") result["motion"] = "AAAA";
+    return result;
   }
   return {{"state", state}};
 }

@@ -276,5 +276,42 @@ TEST_CASE("status words go there and back") {
   CHECK(sim_status_from("fine") == SimStatus::kUnsupported);
 }
 
+TEST_CASE("motion goes through the protocol as it is") {
+  const Request reset{3, ResetRequest{{{"robot.x", 0.5}}, 7, 0.05}};
+  const auto asked = decode_request(encode_request(reset));
+  REQUIRE(std::holds_alternative<Request>(asked));
+  CHECK(std::get<ResetRequest>(std::get<Request>(asked).body).record_interval_s == 0.05);
+  Outcome outcome;
+  outcome.motion = {std::string("\0\xff\n\"x", 5), "more than 8 MiB of frames"};
+  const auto answer = decode_reply(encode_reply(3, OutcomeReply{outcome}), reset);
+  REQUIRE(std::holds_alternative<ReplyBody>(answer));
+  CHECK(std::get<OutcomeReply>(std::get<ReplyBody>(answer)).outcome.motion == outcome.motion);
+}
+
+TEST_CASE("a scene goes through the protocol, unless it is too large for a line") {
+  const Request hello{1, HelloRequest{}};
+  const auto told = [&](const SimulatorInfo& info) {
+    const auto line = encode_reply(1, HelloReply{kProtocolVersion, info});
+    CHECK(line.size() < kMaxLineBytes);
+    const auto answer = decode_reply(line, hello);
+    REQUIRE(std::holds_alternative<ReplyBody>(answer));
+    return std::get<HelloReply>(std::get<ReplyBody>(answer)).info.scene;
+  };
+  SimulatorInfo info;
+  info.name = "x";
+  CHECK_FALSE(told(info));
+  info.scene.emplace();
+  info.scene->grippers = {"hand"};
+  info.scene->bodies = {
+      {"cup", BodyKind::kItem, "", {{ShapeKind::kBox, {1, 2, 3}, {}}}, true, {}, {}}};
+  CHECK(told(info) == info.scene);
+  for (int i = 0; i < 9000; ++i) {
+    RecordedBody body;
+    body.name = "box " + std::to_string(i) + std::string(50, '_');
+    info.scene->bodies.push_back(std::move(body));
+  }
+  CHECK_FALSE(told(info));
+}
+
 }  // namespace
 }  // namespace parallax::harness

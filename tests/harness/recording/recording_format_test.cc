@@ -1,0 +1,171 @@
+#include "harness/recording/recording_format.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <variant>
+
+#include "harness/recording/bytes.h"
+#include "harness/recording/scene_json.h"
+#include "tests/harness/recording/sample_recording.h"
+
+namespace parallax::harness {
+namespace {
+
+std::string fault_of(const std::string& bytes) {
+  const auto decoded = decode_recording(bytes);
+  const auto* bad = std::get_if<BadRecording>(&decoded);
+  return bad == nullptr ? "" : std::to_string(bad->byte) + ": " + bad->why;
+}
+
+/// A file with this head and these frames, and a checksum that is right.
+std::string file_of(const std::string& head, const std::string& frames) {
+  std::string out = "PLXREC\r\n";
+  put_u32(out, 1);
+  put_u32(out, static_cast<std::uint32_t>(head.size()));
+  out += head;
+  put_u32(out, static_cast<std::uint32_t>(frames.size()));
+  out += frames;
+  put_u32(out, crc32(out));
+  return out;
+}
+
+std::string head_of(const std::string& bytes) { return bytes.substr(16, u32_at(bytes, 12)); }
+
+TEST_CASE("checksum and base64: the published examples") {
+  CHECK(crc32("123456789") == 0xcbf43926U);
+  CHECK(crc32("6789", crc32("12345")) == 0xcbf43926U);
+  CHECK(base64("") == "");
+  CHECK(base64("f") == "Zg==");
+  CHECK(base64("fo") == "Zm8=");
+  CHECK(base64("foobar") == "Zm9vYmFy");
+  for (const auto* text : {"Zg=", "Z===", "Zg==Zg==", "Zm9v\n", "Zm9*"}) {
+    CHECK_FALSE(from_base64(text));
+  }
+  std::string all;
+  for (int i = 0; i < 256; ++i) all.push_back(static_cast<char>(i));
+  for (std::size_t size = 0; size <= all.size(); ++size) {
+    CHECK(from_base64(base64(all.substr(0, size))) == all.substr(0, size));
+  }
+}
+
+TEST_CASE("recording: what was written is what is read") {
+  const auto recording = sample_recording();
+  const auto bytes = encode(recording);
+  const auto decoded = decode_recording(bytes);
+  REQUIRE(std::holds_alternative<Recording>(decoded));
+  CHECK(std::get<Recording>(decoded) == recording);
+  CHECK(encode(std::get<Recording>(decoded)) == bytes);
+}
+
+TEST_CASE("recording: what hangs on a body goes with it") {
+  Recording recording;
+  recording.scene = sample_recording().scene;
+  recording.scene.bodies.resize(3);
+  recording.scene.arms.clear();
+  recording.scene.grippers.clear();
+  MotionWriter writer({1, 0});
+  const double half = std::sqrt(0.5);
+  writer.add(0.0, std::vector{Pose{{2, 0, 0}, {half, 0, 0, half}}}, {});  // a quarter turn left
+  recording.frames = writer.take();
+  Playback at(recording);
+  REQUIRE(at.next());
+  const auto pad = at.pose_of(2);
+  CHECK(pad.p[0] == doctest::Approx(2.0).epsilon(1e-3));
+  CHECK(pad.p[1] == doctest::Approx(0.5).epsilon(1e-3));
+  CHECK(at.pose_of(0) == recording.scene.bodies[0].pose);
+}
+
+TEST_CASE("recording: a file that was cut short says where it ends") {
+  const auto bytes = encode(sample_recording());
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const auto fault = fault_of(bytes.substr(0, size));
+    CHECK_FALSE(fault.empty());
+    if (size >= 8) CHECK(fault.starts_with(std::to_string(size) + ": the file ends within its "));
+  }
+  CHECK(fault_of(bytes + "x") == std::to_string(bytes.size()) + ": something follows its end");
+}
+
+TEST_CASE("recording: one changed bit is noticed") {
+  const auto bytes = encode(sample_recording());
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    auto changed = bytes;
+    changed[i] = static_cast<char>(changed[i] ^ 0x10);
+    CHECK_FALSE(fault_of(changed).empty());
+  }
+}
+
+TEST_CASE("recording: sizes that promise more than there is cost nothing") {
+  auto bytes = encode(sample_recording());
+  bytes.replace(12, 4, "\xff\xff\xff\xff", 4);
+  CHECK(fault_of(bytes) == "12: its head is too large");
+  bytes.replace(12, 4, std::string("\x00\x00\x10\x00", 4));
+  CHECK(fault_of(bytes).ends_with("the file ends within its head"));
+  bytes = encode(sample_recording());
+  bytes.replace(8, 4, std::string("\x09\x00\x00\x00", 4));
+  CHECK(fault_of(bytes) == "8: it is of version 9, this program reads version 1");
+  CHECK(fault_of("{\"journal\": 1}") == "0: the file does not begin as a recording does");
+}
+
+TEST_CASE("recording: heads that lie, with a checksum that is right") {
+  const auto recording = sample_recording();
+  const auto good = nlohmann::json::parse(head_of(encode(recording)));
+  const auto fault = [&](const nlohmann::json& head) {
+    return fault_of(file_of(head.dump(), recording.frames));
+  };
+  CHECK(fault(good) == "");
+  const auto with = [&](const char* pointer, nlohmann::json value) {
+    auto head = good;
+    head[nlohmann::json::json_pointer(pointer)] = std::move(value);
+    return fault(head);
+  };
+  CHECK(with("/trace", -1).ends_with("`trace` in the head is negative"));
+  CHECK(with("/trace", "1").ends_with("`trace` in the head is of another type"));
+  CHECK(with("/events/0/end_s", 1e300).ends_with("`end_s` is not within 0 to 1e9 s"));
+  CHECK(with("/events", 3).ends_with("`events` in the head is no list"));
+  CHECK(with("/observations/0/x", nlohmann::json::array())
+            .ends_with("`x` in the head is neither boolean, number nor text"));
+  CHECK(with("/bodies/1/name", "table").ends_with("two bodies are called `table`"));
+  CHECK(with("/bodies/1/kind", "ghost").ends_with("`base` is of no kind that there is"));
+  CHECK(with("/bodies/2/on", 2).ends_with("`pad` hangs on what does not move itself"));
+  CHECK(with("/bodies/2/on", 99).ends_with("`on` of `pad` is not the number of a body"));
+  CHECK(with("/bodies/0/pose", {1, 2}).ends_with("the pose of `table` is no list of 7 numbers"));
+  CHECK(with("/bodies/0/pose", {1, 2, 3, 4, 5, 6, 7}).ends_with("`table` is no unit quaternion"));
+  CHECK(with("/bodies/0/colour", "red").ends_with("the colour of `table` is not #rrggbb"));
+  CHECK(with("/bodies/0/shapes/0/box", {1, 2, -3}).ends_with("shape of `table` is negative"));
+  CHECK(with("/bodies/0/shapes/0", {{"mesh", "x.stl"}})
+            .ends_with("is neither box, sphere, cylinder nor capsule"));
+  CHECK(with("/arms/0/to", 99).ends_with("`to` of the arm `left` is not the number of a body"));
+  // Fewer bodies than the frames speak of.
+  auto fewer = good;
+  fewer["bodies"].erase(4);
+  CHECK(fault(fewer).ends_with("a frame moves more bodies than there are"));
+  CHECK(fault_of(file_of(std::string(100000, '['), "")).ends_with("its head is not JSON"));
+}
+
+TEST_CASE("recording: random damage behind a right checksum is survived") {
+  const auto recording = sample_recording();
+  const auto head = head_of(encode(recording));
+  Steps steps(5);
+  for (int i = 0; i < 2000; ++i) {
+    auto damaged = head;
+    auto frames = recording.frames;
+    for (int k = 0; k < 3; ++k) {
+      damaged[steps.next() % damaged.size()] = static_cast<char>(' ' + steps.next() % 95);
+      frames[steps.next() % frames.size()] = static_cast<char>(steps.next());
+    }
+    const bool in_head = steps.next() % 2 == 0;
+    const auto decoded =
+        decode_recording(file_of(in_head ? damaged : head, in_head ? recording.frames : frames));
+    const auto* read = std::get_if<Recording>(&decoded);
+    if (read == nullptr) continue;
+    for (Playback at(*read); at.next();) {
+      for (std::size_t body = 0; body < read->scene.bodies.size(); ++body) at.pose_of(body);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace parallax::harness
