@@ -20,32 +20,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Parks if it has to; opens the drawer, if that fails once more; closes it if it is open.
-const std::string kPlan = R"((def-cram-function open-it ()
-  (unless (holds '(parked)) (perform (an action (type parking-arms))))
-  (with-retry-counters ((tries 1))
-    (with-failure-handling
-        ((manipulation-low-level-failure (e) (do-retry tries (retry)) (return nil)))
-      (perform (an action (type opening) (object (an object (name top)))))))
-  (when (holds (list 'open 'top))
-    (perform (an action (type closing) (object (an object (name top)))))))
-(open-it)
-)";
-
-class ExecutedRuns : public TwoModels {
- public:
-  ExecutedRuns() {
-    write("two/start.e", "[drawer] !HoldsAt(Open(drawer),0).\n");
-    write("two/robot.bind", read("two/robot.bind") + "query open (?d) ok: Open(?d) @t\n");
-  }
-  std::string scenario(const std::string& model, const std::string& plan, const std::string& world,
-                       const std::string& more = "") const {
-    return executed(
-        *this, model, plan, world,
-        "mapping: {Sticks(): ignored, Parked(): {flag: \"Parked()\", drawn: true}}\n" + more);
-  }
-};
-
 /// Simulations by "line id".
 std::map<std::string, int> hits_of(const Json& group) {
   std::map<std::string, int> out;

@@ -13,6 +13,18 @@ inline const std::string kSticks =
 /// The same, anew at every timepoint.
 inline const std::string kSticksAtTimes = kSticks + "noninertial Sticks\n";
 
+/// Parks if it has to; opens the drawer, if that fails once more; closes it if it is open.
+inline const std::string kPlan = R"((def-cram-function open-it ()
+  (unless (holds '(parked)) (perform (an action (type parking-arms))))
+  (with-retry-counters ((tries 1))
+    (with-failure-handling
+        ((manipulation-low-level-failure (e) (do-retry tries (retry)) (return nil)))
+      (perform (an action (type opening) (object (an object (name top)))))))
+  (when (holds (list 'open 'top))
+    (perform (an action (type closing) (object (an object (name top)))))))
+(open-it)
+)";
+
 /// A scenario with this model, plan and world, executed in closed loop.
 inline std::string executed(const TwoModels& cli, const std::string& model, const std::string& plan,
                             const std::string& world, const std::string& more = "") {
@@ -25,5 +37,21 @@ inline std::string executed(const TwoModels& cli, const std::string& model, cons
                 more);
   return "two/own.yaml";
 }
+
+/// A folder for such plans: the drawer is shut at first, a plan can ask whether it is open, and
+/// what the world shows of sticking and parking is settled.
+class ExecutedRuns : public TwoModels {
+ public:
+  ExecutedRuns() {
+    write("two/start.e", "[drawer] !HoldsAt(Open(drawer),0).\n");
+    write("two/robot.bind", read("two/robot.bind") + "query open (?d) ok: Open(?d) @t\n");
+  }
+  std::string scenario(const std::string& model, const std::string& plan, const std::string& world,
+                       const std::string& more = "") const {
+    return executed(
+        *this, model, plan, world,
+        "mapping: {Sticks(): ignored, Parked(): {flag: \"Parked()\", drawn: true}}\n" + more);
+  }
+};
 
 }  // namespace parallax::test

@@ -12,50 +12,13 @@
 #include <string>
 
 #include "tests/tools/cli_json.h"
-#include "tests/tools/two_models.h"
+#include "tests/tools/executed_plan.h"
 
 namespace parallax::test {
 namespace {
 
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
-
-/// Opening succeeds unless the drawer sticks, which it may do or not at every timepoint.
-const std::string kSticks =
-    "load domain.e\nfluent Sticks()\nnoninertial Sticks\n"
-    "[drawer,time] !HoldsAt(Sticks(),time) -> Initiates(OpenDrawer(drawer),Open(drawer),time).\n";
-
-/// Parks if it has to; opens the drawer, if that fails once more; closes it if it is open.
-const std::string kPlan = R"((def-cram-function open-it ()
-  (unless (holds '(parked)) (perform (an action (type parking-arms))))
-  (with-retry-counters ((tries 1))
-    (with-failure-handling
-        ((manipulation-low-level-failure (e) (do-retry tries (retry)) (return nil)))
-      (perform (an action (type opening) (object (an object (name top)))))))
-  (when (holds (list 'open 'top))
-    (perform (an action (type closing) (object (an object (name top)))))))
-(open-it)
-)";
-
-class CoveredRuns : public TwoModels {
- public:
-  CoveredRuns() {
-    write("two/start.e", "[drawer] !HoldsAt(Open(drawer),0).\n");
-    write("two/robot.bind", read("two/robot.bind") + "query open (?d) ok: Open(?d) @t\n");
-    write("two/plan.lisp", kPlan);
-  }
-  std::string scenario(const std::string& model, const std::string& world,
-                       const std::string& more = "") const {
-    write("two/model.e", model);
-    write("two/world.e", world);
-    write("two/own.yaml",
-          "include: common.yaml\nsimulator: {model: world.e}\nexecution: closed-loop\n"
-          "model: [model.e, start.e]\nplan: plan.lisp\n"
-          "mapping: {Sticks(): ignored, Parked(): {flag: \"Parked()\", drawn: true}}\n" +
-              more);
-    return "two/own.yaml";
-  }
-};
 
 std::set<std::string> names(const Json& items) {
   std::set<std::string> out;
@@ -82,9 +45,9 @@ std::string in_one_line(const std::string& text) {
 }
 
 TEST_CASE("until covered: all that the model has is shown, and the run ends with the criterion") {
-  const CoveredRuns cli;
-  const auto report =
-      json_of(cli, {"run", cli.scenario(kSticks, kSticks), "--until-covered", "--out", "out"});
+  const ExecutedRuns cli;
+  const auto report = json_of(cli, {"run", cli.scenario(kSticksAtTimes, kPlan, kSticksAtTimes),
+                                    "--until-covered", "--out", "out"});
   const auto& cover = cover_of(report);
   CHECK(cover.at("end") == "all shown");
   CHECK(cover.at("left").empty());
@@ -110,8 +73,8 @@ TEST_CASE("until covered: all that the model has is shown, and the run ends with
 }
 
 TEST_CASE("until covered: what the world never shows ends the run once it is rare") {
-  const CoveredRuns cli;
-  const auto scenario = cli.scenario(kSticks, "load opens.e\n");
+  const ExecutedRuns cli;
+  const auto scenario = cli.scenario(kSticksAtTimes, kPlan, "load opens.e\n");
   const std::vector<std::string> run = {"run", scenario, "--until-covered", "--out", "out"};
   const auto report = json_of(cli, run);
   const auto& cover = cover_of(report);
@@ -158,8 +121,9 @@ TEST_CASE("until covered: what the world never shows ends the run once it is rar
 }
 
 TEST_CASE("until covered: a limit ends it, and what is left is said with its bound") {
-  const CoveredRuns cli;
-  const auto scenario = cli.scenario(kSticks, "load opens.e\n", "until_covered: true\n");
+  const ExecutedRuns cli;
+  const auto scenario =
+      cli.scenario(kSticksAtTimes, kPlan, "load opens.e\n", "until_covered: true\n");
   const auto report = json_of(cli, {"run", scenario, "--max-runs", "100", "--out", "out"}, 4);
   const auto& cover = cover_of(report);
   CHECK(report.at("verdict") == "inconclusive");
@@ -175,13 +139,13 @@ TEST_CASE("until covered: a limit ends it, and what is left is said with its bou
 }
 
 TEST_CASE("until covered: a discrepancy does not end it, and does not spoil the rates") {
-  const CoveredRuns cli;
+  const ExecutedRuns cli;
   // Behind a failure the model's drawer never opens; the world's does every other time.
   const std::string stuck =
       "load domain.e\nfluent Sticks()\n"
       "[drawer,time] !HoldsAt(Sticks(),time) -> "
       "Initiates(OpenDrawer(drawer),Open(drawer),time).\n";
-  const auto scenario = cli.scenario(stuck, kSticks);
+  const auto scenario = cli.scenario(stuck, kPlan, kSticksAtTimes);
   const auto report = json_of(cli, {"run", scenario, "--until-covered", "--out", "out"}, 1);
   const auto& stream = report.at("traces").at(0);
   CHECK(report.at("verdict") == "discrepancy");
@@ -194,9 +158,9 @@ TEST_CASE("until covered: a discrepancy does not end it, and does not spoil the 
 }
 
 TEST_CASE("until covered: rates are counted in as many runs as the criterion plans") {
-  const CoveredRuns cli;
+  const ExecutedRuns cli;
   // Opening takes the arm out of its place, which the model forgets, and never fails, which it may.
-  const auto scenario = cli.scenario(kSticks, "load unparks.e\n");
+  const auto scenario = cli.scenario(kSticksAtTimes, kPlan, "load unparks.e\n");
   const auto report = json_of(cli, {"run", scenario, "--until-covered", "--out", "out"}, 1);
   const auto& stream = report.at("traces").at(0);
   CHECK(cover_of(report).at("end") == "rarer than epsilon");
@@ -244,13 +208,14 @@ TEST_CASE("until covered: guided starts show what drawn ones hardly do; bounds a
 }
 
 TEST_CASE("until covered: events that an axiom demands are looked for, too") {
-  const CoveredRuns cli;
+  const ExecutedRuns cli;
   const std::string slams =
       "load opens.e\nevent Slam()\nfluent Loose()\n"
       "[time] Happens(CloseDrawer(top),time) & HoldsAt(Loose(),time) -> Happens(Slam(),time).\n"
       "[time] Happens(Slam(),time) -> Happens(CloseDrawer(top),time).\n"
       "[time] Terminates(Slam(),Parked(),time).\n";
-  auto scenario = cli.scenario(slams, slams, "actions: {Slam(): {controller: \"Slam()\"}}\n");
+  auto scenario =
+      cli.scenario(slams, kPlan, slams, "actions: {Slam(): {controller: \"Slam()\"}}\n");
   cli.replace("two/own.yaml", "Sticks(): ignored, ", "Loose(): {flag: \"Loose()\", drawn: true}, ");
   const auto both = json_of(cli, {"run", scenario, "--until-covered", "--out", "both"});
   CHECK(cover_of(both).at("end") == "all shown");
