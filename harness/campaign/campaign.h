@@ -9,6 +9,7 @@
 #include "compiler/base/diagnostic.h"
 #include "harness/campaign/campaign_result.h"
 #include "harness/campaign/run_recorder.h"
+#include "harness/campaign/sample_row.h"
 #include "harness/campaign/sample_runner.h"
 #include "harness/campaign/trace_input.h"
 #include "harness/config/scenario.h"
@@ -36,6 +37,7 @@ struct CampaignOptions {
   RecordMode record = RecordMode::kNone;
   const std::atomic<bool>* stop = nullptr;                // raised by SIGINT and SIGTERM
   std::function<void(const CampaignProgress&)> progress;  // called in the caller's thread
+  SampleListener on_sample;  // those that are on record already, too; none: nobody listens
 };
 
 /// The loop:

@@ -169,7 +169,8 @@ SampleRecord record_of(const Json& object) {
     record.outcomes.push_back(
         {word_of(outcome, "status", {SimStatus::kOk, SimStatus::kFailed, SimStatus::kTruncated}),
          get<std::string>(outcome, "reason"), duration_of(outcome, "sim_time_s"),
-         outcome.contains("object") ? get<std::string>(outcome, "object") : std::string()});
+         outcome.contains("object") ? get<std::string>(outcome, "object") : std::string(),
+         outcome.contains("margins") ? state_of(field(outcome, "margins"), "margins") : State()});
   }
   record.digest = get<std::string>(object, "digest");
   if (object.contains("path")) record.path = path_of(object);
@@ -300,6 +301,9 @@ std::string encode(const SampleRecord& record) {
                         {"reason", outcome.reason},
                         {"sim_time_s", outcome.sim_time_s}});
     if (!outcome.object.empty()) outcomes.back()["object"] = outcome.object;
+    if (!outcome.margins.empty()) {
+      outcomes.back()["margins"] = state_json<OrderedJson>(outcome.margins);
+    }
   }
   out["outcomes"] = std::move(outcomes);
   out["digest"] = record.digest;

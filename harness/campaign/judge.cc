@@ -118,15 +118,18 @@ Judgement judge(const StateMapping& mapping, const ModelFluents& fluents,
   return out;
 }
 
+std::int64_t event_of(const Judgement& judgement, Comparison comparison) {
+  return std::max<std::int64_t>(1, judgement.left_at(comparison)) - 1;
+}
+
 Cause cause_of(const CampaignTrace& trace, const Judgement& judgement, Comparison comparison,
                const std::vector<ActionOutcome>& outcomes) {
   PARALLAX_REQUIRE(!judgement.matches(comparison), "a simulation that left its trace");
   const bool final = comparison == Comparison::kFinal;
-  const auto timepoint = final ? *judgement.parted : *judgement.first_divergence;
   const auto& fluent = (final ? judgement.at_parting : judgement.first).front();
   const std::string changed = fmt::format("{}{}", fluent.observed ? "" : "not ", fluent.fluent);
   if (trace.event_count() == 0) return {fmt::format("start: {}", changed), {}};
-  const auto step = static_cast<std::size_t>(std::max<std::int64_t>(1, timepoint)) - 1;
+  const auto step = static_cast<std::size_t>(event_of(judgement, comparison));
   const std::string& event = trace.event(step);
   if (outcomes[step].status == SimStatus::kOk) return {fmt::format("{}: {}", event, changed), {}};
   const std::string& reason = outcomes[step].reason;

@@ -48,6 +48,11 @@ struct Judgement {
   std::vector<DivergingFluent> last;        // what differs at the last timepoint
   std::vector<ObservedState> states;        // by timepoint
   std::set<std::string> missing;            // variables that the mapping asks for in vain
+  /// Where a simulation that does not match left its trace: at once, or for good where only the end
+  /// is compared.
+  std::int64_t left_at(Comparison comparison) const {
+    return comparison == Comparison::kFinal ? *parted : *first_divergence;
+  }
   bool matches(Comparison comparison) const {
     return comparison == Comparison::kFinal ? last.empty() : !first_divergence;
   }
@@ -61,6 +66,9 @@ Judgement judge(const StateMapping& mapping, const ModelFluents& fluents,
 /// step is compared, and else where it left the trace for good.
 Cause cause_of(const CampaignTrace& trace, const Judgement& judgement, Comparison comparison,
                const std::vector<ActionOutcome>& outcomes);
+
+/// Number of the event behind which a judged simulation, which differs, left its trace; from 0.
+std::int64_t event_of(const Judgement& judgement, Comparison comparison);
 
 /// How each fluent symbol of the model is compared, sorted by symbol.
 std::vector<ComparedFluents> compared_fluents(const StateMapping& mapping,

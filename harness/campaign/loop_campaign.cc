@@ -195,6 +195,7 @@ class LoopCampaign {
       if (!is_guided(record)) ++drawn_unfinished_;
       if (loop.unfinished++ == 0) loop.why_unfinished = unfinished;
     }
+    tell(record, unfinished.empty() ? "clean" : "unfinished");
     consumed_.push_back(std::move(record));
     if (unfinished.empty() || options_.keep_going) return std::optional<End>();
     return std::optional(End::kUnfinished);
@@ -217,6 +218,18 @@ class LoopCampaign {
                      [&](const auto& binding) { return binding.event == event.symbol; });
     return sink_.error(code, action->source,
                        fmt::format("refused the action of `{}` {}", event.text, in), record.reason);
+  }
+
+  void tell(const SampleRecord& record, const char* outcome,
+            const LoopJudgement* judgement = nullptr) const {
+    if (!options_.on_sample) return;
+    auto row = sample_row(record, outcome);
+    if (judgement != nullptr) {
+      row.event = judgement->divergence.event;
+      row.cause = judgement->cause.text;
+      row.reason = judgement->cause.reason;
+    }
+    options_.on_sample(std::move(row));
   }
 
   /// Claims are about starts that were drawn; of others only what is found counts.
@@ -248,6 +261,7 @@ class LoopCampaign {
       (void)rated_.next();  // it has its place, but what it would have shown is not known
     }
     ++stream_.lost;
+    tell(record, "lost");
     lost_too_often_ = bench_.lost_too_often(record, samples_.on_record(record));
     consumed_.push_back(std::move(record));
     return lost_too_often_ ? std::optional(End::kLost) : std::nullopt;
@@ -270,12 +284,14 @@ class LoopCampaign {
     });
     if (known != causes.end()) {
       if (note_mismatch(record)) ++known->count;
+      tell(record, "discrepancy", &judgement);
       consumed_.push_back(std::move(record));
       return std::nullopt;
     }
     const auto again = samples_.repeat(record, options_.keep_going);
     if (!again) return End::kStopped;
     const std::int64_t rated = note_mismatch(record) ? 1 : 0;
+    tell(record, "discrepancy", &judgement);
     if (options_.keep_going) {
       causes.push_back({judgement.cause.text, rated, 0.0, 0.0, 0.0, record.sample,
                         judgement.cause.reason, record.initial});

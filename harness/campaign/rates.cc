@@ -99,23 +99,30 @@ class Estimator {
       case SampleVerdict::kLost:
       case SampleVerdict::kLostTooOften:
         ++rates.lost;
-        return;
+        return tell(sample, nullptr);
       case SampleVerdict::kAsPredicted:
       case SampleVerdict::kAdmitted:
         ++rates.runs;
-        return;
+        return tell(sample, nullptr);
       case SampleVerdict::kDiscrepancy:
         break;
     }
     ++rates.runs;
     ++rates.any.count;
     const Cause cause = cause_of(trace, sample.judgement, scenario_.comparison(), record.outcomes);
+    tell(sample, &cause);
     CauseRate& rate = causes[cause.text];
     if (rate.count++ == 0) {
       rate.cause = cause.text;
       rate.example = record.sample;
       rate.reason = cause.reason;
       rate.start = record.initial;
+    }
+  }
+
+  void tell(const TrialSample& sample, const Cause* cause) const {
+    if (options_.on_sample) {
+      options_.on_sample(judged_row(sample, scenario_.comparison(), cause));
     }
   }
 

@@ -26,6 +26,7 @@ struct RatesOptions {
   double confidence = 0.95;  // of each interval
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const CampaignProgress&)> progress;  // called in the caller's thread
+  SampleListener on_sample;                               // none: nobody listens
 };
 
 struct RatesResult {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "harness/campaign/sample_row.h"
+
 namespace parallax::harness {
 namespace {
 
@@ -108,6 +110,24 @@ std::optional<RecordDifference> first_difference(const SampleRecord& a, const Sa
     return RecordDifference{static_cast<std::int64_t>(timepoints), "digest", a.digest, b.digest};
   }
   return std::nullopt;
+}
+
+SampleRow sample_row(const SampleRecord& record, const char* outcome) {
+  SampleRow row;
+  row.trace = record.trace;
+  row.sample = record.sample;
+  row.seed = record.seed;
+  row.rejected = record.rejected;
+  row.retries = record.retries;
+  row.drawn = !record.path || record.path->target.empty();
+  row.outcome = outcome;
+  row.reason = record.reason;
+  row.start = record.initial;
+  for (const auto& one : record.outcomes) {
+    row.sim_time_s += one.sim_time_s;
+    row.margins.push_back(one.margins);
+  }
+  return row;
 }
 
 }  // namespace parallax::harness

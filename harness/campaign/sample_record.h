@@ -30,6 +30,7 @@ struct ActionOutcome {
   std::string reason;
   double sim_time_s = 0.0;
   std::string object = {};  // what it found; kept of executed plans only
+  State margins = {};       // by how much it went well or failed, as the simulator names them
   friend bool operator==(const ActionOutcome&, const ActionOutcome&) = default;
 };
 

@@ -46,7 +46,8 @@ class Attempt {
       }
       record_.outcomes.push_back(
           {outcome.status, base::with_invalid_utf8_replaced(outcome.reason), outcome.sim_time_s,
-           record_.path ? base::with_invalid_utf8_replaced(outcome.object) : std::string()});
+           record_.path ? base::with_invalid_utf8_replaced(outcome.object) : std::string(),
+           outcome.margins});
       if (const auto lost = observe()) return lost;
     }
     record_.digest = digest_of(record_);

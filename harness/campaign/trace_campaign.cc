@@ -97,9 +97,15 @@ class TraceCampaign {
         ++result.clean;
         break;
     }
+    tell(sample, nullptr);
     outcome_.consumed.push_back(std::move(sample.record));
     if (sample.verdict == SampleVerdict::kLostTooOften) return TraceEnd::kLostTooOften;
     return std::nullopt;
+  }
+
+  void tell(const TrialSample& sample, const Cause* cause) const {
+    if (!context_.options.on_sample) return;
+    context_.options.on_sample(judged_row(sample, context_.scenario.comparison(), cause));
   }
 
   /// Actions that failed in a clean run though the model does not let them.
@@ -130,6 +136,7 @@ class TraceCampaign {
     if (judgement.last.empty()) found.kind = DiscrepancyKind::kTransient;
     found.cause = cause_of(trace(), judgement, context_.scenario.comparison(), record.outcomes);
     found.confirmation = confirmation_of(record, *again);
+    tell(sample, &found.cause);
     found.record = record;
     found.end = mapped_part(*context_.scenario.mapping, context_.bench.fluents().ground(),
                             record.observations.back());
@@ -200,7 +207,7 @@ class TraceCampaign {
     if (trace().other_initial_states == base::Known::kYes) {
       result.caveats.push_back(
           "other initial states lead to the same events; only the first, in the model's order, was "
-          "sampled");
+          "sampled (`run --split-initial` samples each)");
     }
     if (!context_.criterion.is_anytime_valid()) {
       result.caveats.push_back(fmt::format(

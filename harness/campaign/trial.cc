@@ -98,6 +98,19 @@ base::Result<bool> SimulatorBench::start() {
   return true;
 }
 
+SampleRow judged_row(const TrialSample& sample, Comparison comparison, const Cause* cause) {
+  const char* outcome = "lost";
+  if (sample.verdict == SampleVerdict::kAsPredicted) outcome = "clean";
+  if (sample.verdict == SampleVerdict::kAdmitted) outcome = "admitted";
+  if (sample.verdict == SampleVerdict::kDiscrepancy) outcome = "discrepancy";
+  auto row = sample_row(sample.record, outcome);
+  if (cause == nullptr) return row;
+  row.event = event_of(sample.judgement, comparison);
+  row.cause = cause->text;
+  row.reason = cause->reason;
+  return row;
+}
+
 base::Result<Trial> Trial::prepare(TrialBench& bench, CampaignTrace trace) {
   PARALLAX_REQUIRE(trace.points.size() == trace.event_count() + 1,
                    "a trace has one state more than it has events");

@@ -9,6 +9,7 @@
 
 #include "compiler/base/diagnostic.h"
 #include "harness/campaign/judge.h"
+#include "harness/campaign/sample_row.h"
 #include "harness/campaign/sample_runner.h"
 #include "harness/campaign/trace_input.h"
 #include "harness/campaign/worker_pool.h"
@@ -106,6 +107,9 @@ struct TrialSample {
   SampleVerdict verdict = SampleVerdict::kLost;
   Judgement judgement;  // of what was observed; of a lost one nothing is said
 };
+
+/// As a row of a table; `cause` of a discrepancy, else null.
+SampleRow judged_row(const TrialSample& sample, Comparison comparison, const Cause* cause);
 
 /// The one loop that samples, taken apart: a trace is prepared, its samples are simulated by
 /// workers that may run ahead, and each is judged in the order of its number. How many there are

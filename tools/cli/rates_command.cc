@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
 #include "harness/campaign/rates.h"
 #include "harness/report/report.h"
 #include "tools/app/scenario_check.h"
@@ -8,7 +9,9 @@
 #include "tools/app/trace_feed.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
+#include "tools/cli/sample_output.h"
 #include "tools/cli/shared_options.h"
+#include "tools/page/rates_page.h"
 
 namespace parallax::tools {
 namespace {
@@ -18,7 +21,19 @@ struct RateOptions {
   JudgingOptions judging;
   harness::RatesOptions rates;
   CommandPermission commands;
+  std::string samples, plot;
 };
+
+base::Status check_plot(const std::string& path, Invocation& invocation) {
+  if (path.empty()) return base::Unit{};
+  auto& sink = invocation.sink();
+  if (!path.ends_with(".html")) {
+    return sink.error_about(base::DiagnosticCode::kUsage, path,
+                            "--plot writes a page; end the name in .html");
+  }
+  if (!base::check_output(path, invocation.files(), sink)) return sink.already_reported();
+  return check_replaceable(path, is_earlier_page, sink);
+}
 
 int run_rates(const RateOptions& options, Invocation& invocation) {
   auto loaded = load_scenario_model(options.scenario, invocation);
@@ -38,10 +53,19 @@ int run_rates(const RateOptions& options, Invocation& invocation) {
   auto rates = options.rates;
   rates.stop = &stop_flag();
   rates.progress = progress_on_terminal(invocation.options());
+  SampleOutput samples(options.samples);
+  if (!samples.check(invocation) || !check_plot(options.plot, invocation)) return 0;
+  if (!options.plot.empty()) samples.collect();
+  rates.on_sample = samples.listener();
   const auto result =
       harness::estimate_rates(loaded->scenario, traces, *simulator, rates, invocation.sink());
   if (rates.progress) write_error("\r\x1b[K");
-  if (!result) return 0;
+  if (!result || !samples.write(invocation)) return 0;
+  if (!options.plot.empty() &&
+      !base::write_output(options.plot, rates_page(*result, samples.rows()), invocation.files(),
+                          invocation.sink())) {
+    return 0;
+  }
   if (invocation.options().json) {
     invocation.document(harness::rates_json(*result));
   } else {
@@ -61,6 +85,8 @@ Command rates_command() {
       "Examples:\n"
       "  parallax rates scenarios/kitchen/plan2.yaml --trace 2 --runs 400 --jobs 2\n"
       "  parallax rates scenarios/two_regions/edge.yaml --runs 100 --json\n"
+      "  parallax rates scenarios/kitchen/plan3.yaml --runs 200 --plot rates.html --samples "
+      "rates.csv\n"
       "Sample N starts as simulation N of `parallax run` with the same seed does.\n"
       "Exit codes: 0 estimated, 1 no trace, 4 stopped before all runs were made.");
   command.option("scenario", options->scenario, "Scenario file (YAML)").required();
@@ -79,6 +105,10 @@ Command rates_command() {
   command.option("-j,--jobs", options->rates.jobs, "Simulations at the same time")
       .check(WholeNumber{1, 256})
       .show_default();
+  SampleOutput::add_option(command, options->samples);
+  command.option("--plot", options->plot,
+                 "Also draw the rates, how they settle, and how they depend on the start: a page "
+                 "(.html)");
   add_command_options(command, options->commands, true);
   return {std::move(command),
           [options](Invocation& invocation) { return run_rates(*options, invocation); }};

@@ -16,6 +16,7 @@
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
+#include "tools/cli/sample_output.h"
 #include "tools/cli/shared_options.h"
 
 namespace parallax::tools {
@@ -68,6 +69,7 @@ struct RunOptions {
   std::string record = "discrepancies";
   std::string hits = "first";
   bool split_initial = false;
+  std::string samples;
   CommandPermission commands;
 };
 
@@ -190,19 +192,23 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
     return 0;
   }
   const auto& model = loaded->compilation.model;
-  const auto campaign = campaign_options(options, *loaded, invocation);
+  auto campaign = campaign_options(options, *loaded, invocation);
   const auto simulator =
       permitted_simulator(*loaded, options.commands.allow || !options.commands.refuse, invocation);
   if (!simulator) return 0;
   for (const auto* name : {"report.txt", "report.json"}) {
     if (!base::check_output(campaign.run_dir / name, invocation.files(), sink)) return 0;
   }
+  SampleOutput samples(options.samples);
+  if (!samples.check(invocation)) return 0;
+  campaign.on_sample = samples.listener();
   const bool closed = loaded->scenario.execution == Execution::kClosedLoop;
   auto ran = closed ? run_closed(options, *loaded, *simulator, campaign, invocation)
                     : run_open(*loaded, *simulator, campaign, invocation);
   auto& result = ran.result;
   if (campaign.progress) write_error("\r\x1b[K");
   if (!result) return 0;
+  if (!samples.write(invocation)) return 0;
   result->coverage = coverage_of_run(*loaded, *result, invocation);
   if (result->journal_open && !harness::write_report(*result, campaign.run_dir, sink)) return 0;
   if (invocation.options().json) {
@@ -240,6 +246,7 @@ Command run_command() {
       "  parallax run edge.yaml --execution closed-loop\n"
       "  parallax run edge.yaml --record all\n"
       "  parallax run edge.yaml --seed 7 --out out/edge7 --resume\n"
+      "  parallax run edge.yaml --keep-going --samples edge.csv\n"
       "Exit codes: 0 no discrepancy, 1 discrepancy, 4 inconclusive, as without a trace.");
   command.option("scenario", options->scenario, "Scenario file (YAML)").required();
   command.option("--out", options->out, "Run folder; default out/NAME, numbered if taken");
@@ -286,6 +293,7 @@ Command run_command() {
   add_hits_option(command, options->hits);
   command.flag("--split-initial", options->split_initial,
                "Try every initial state, not only every sequence of events");
+  SampleOutput::add_option(command, options->samples);
   add_command_options(command, options->commands, true);
   return {std::move(command),
           [options](Invocation& invocation) { return run_scenario(*options, invocation); }};

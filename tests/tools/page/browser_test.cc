@@ -161,6 +161,10 @@ TEST_CASE("a page works in a browser, by light and by night") {
   for (const auto* name : {"loop.html", "edge.html", "both.html"}) {
     probe(cli, name, {.width = 360});
   }
+  REQUIRE(
+      cli.parallax({"rates", "wrong_model.yaml", "--runs", "40", "--plot", "rates.html"}).code ==
+      0);
+  for (const bool dark : {false, true}) probe(cli, "rates.html", {.dark = dark});
 }
 
 /// Every text in it behind a hostile one.

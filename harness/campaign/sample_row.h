@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/campaign/sample_record.h"
+
+namespace parallax::harness {
+
+/// What one simulation came to, as a row of a table. Repetitions of discrepancies have none.
+struct SampleRow {
+  std::int64_t trace = 0, sample = 0;
+  std::uint64_t seed = 0;             // handed to the simulator at reset
+  std::int64_t rejected = 0;          // invalid starts that were drawn before
+  std::int64_t retries = 0;           // attempts that were lost and made again
+  bool drawn = true;                  // else the start was chosen for what it leads to
+  const char* outcome = "clean";      // "clean", "admitted", "discrepancy", "unfinished", "lost"
+  std::optional<std::int64_t> event;  // behind which it left what is predicted; from 0
+  std::string cause, reason;          // of a discrepancy; the reason of a loss, too
+  double sim_time_s = 0.0;
+  State start;
+  std::vector<State> margins;  // by event
+};
+
+/// Called for each simulation in the order in which they count, in the caller's thread.
+using SampleListener = std::function<void(SampleRow)>;
+
+/// All but what was judged.
+SampleRow sample_row(const SampleRecord& record, const char* outcome);
+
+}  // namespace parallax::harness

@@ -1,0 +1,100 @@
+#include "harness/report/sample_table.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "harness/simulator/state_json.h"
+#include "runtime/trace/csv_format.h"
+
+namespace parallax::harness {
+namespace {
+
+using MarginKey = std::pair<std::size_t, std::string>;  // number of the event, name
+
+std::string cell(const State& state, const std::string& name) {
+  const auto found = state.find(name);
+  if (found == state.end()) return {};
+  return runtime::csv_field(std::visit(
+      [](const auto& value) {
+        using Plain = std::decay_t<decltype(value)>;
+        if constexpr (std::is_same_v<Plain, std::string>) {
+          return value;
+        } else {
+          return fmt::format("{}", value);  // of a double the shortest one that reads back
+        }
+      },
+      found->second));
+}
+
+}  // namespace
+
+bool is_sample_table(std::string_view head) {
+  if (head.starts_with(kSamplesCsvMark)) return true;
+  // The first two of these begin other lists of this program, too.
+  return head.starts_with("{\"trace\":") && head.find(",\"sample\":") < 40 &&
+         head.find(",\"start\":\"") < 100;
+}
+
+std::string samples_csv(const std::vector<SampleRow>& rows) {
+  std::set<std::string> variables;
+  std::set<MarginKey> margins;
+  for (const auto& row : rows) {
+    for (const auto& [name, value] : row.start) variables.insert(name);
+    for (std::size_t i = 0; i < row.margins.size(); ++i) {
+      for (const auto& [name, value] : row.margins[i]) margins.insert({i, name});
+    }
+  }
+  std::string out = std::string(kSamplesCsvMark) + "event,cause,reason,sim_time_s";
+  for (const auto& name : variables) out += ',' + runtime::csv_field("start." + name);
+  for (const auto& [event, name] : margins) {
+    out += ',' + runtime::csv_field(fmt::format("margin.{}.{}", event, name));
+  }
+  out += '\n';
+  for (const auto& row : rows) {
+    out +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{},{}", row.trace, row.sample, row.seed,
+                    row.drawn ? "drawn" : "chosen", row.rejected, row.retries, row.outcome,
+                    row.event ? std::to_string(*row.event) : std::string(),
+                    runtime::csv_field(row.cause), runtime::csv_field(row.reason), row.sim_time_s);
+    for (const auto& name : variables) out += ',' + cell(row.start, name);
+    for (const auto& [event, name] : margins) {
+      out += ',';
+      if (event < row.margins.size()) out += cell(row.margins[event], name);
+    }
+    out += '\n';
+  }
+  return out;
+}
+
+std::string samples_jsonl(const std::vector<SampleRow>& rows) {
+  using Json = nlohmann::ordered_json;
+  std::string out;
+  for (const auto& row : rows) {
+    Json object = {{"trace", row.trace},
+                   {"sample", row.sample},
+                   {"seed", row.seed},
+                   {"start", row.drawn ? "drawn" : "chosen"},
+                   {"rejected", row.rejected},
+                   {"retries", row.retries},
+                   {"outcome", row.outcome},
+                   {"event", row.event ? Json(*row.event) : Json()},
+                   {"cause", row.cause.empty() ? Json() : Json(row.cause)},
+                   {"reason", row.reason.empty() ? Json() : Json(row.reason)},
+                   {"sim_time_s", row.sim_time_s},
+                   {"state", state_json<Json>(row.start)}};
+    auto margins = Json::array();
+    for (std::size_t i = 0; i < row.margins.size(); ++i) {
+      if (row.margins[i].empty()) continue;
+      margins.push_back({{"event", i}, {"margins", state_json<Json>(row.margins[i])}});
+    }
+    object["margins"] = std::move(margins);
+    out += object.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+  }
+  return out;
+}
+
+}  // namespace parallax::harness

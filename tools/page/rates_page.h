@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/campaign/rates.h"
+#include "harness/campaign/sample_row.h"
+
+namespace parallax::tools {
+
+/// What `parallax rates` counted as a page with plots: of each trace how often each cause comes,
+/// how rate and bound settled with the number of runs, and how the rate depends on the variable of
+/// the start that tells failures best. `rows` are all its simulations.
+std::string rates_page(const harness::RatesResult& result,
+                       const std::vector<harness::SampleRow>& rows);
+
+}  // namespace parallax::tools
