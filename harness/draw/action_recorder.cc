@@ -96,13 +96,6 @@ Eigen::Vector3d driving_goal(const WorldSpec& spec, const State& arguments,
 
 }  // namespace
 
-std::optional<Eigen::Vector3d> origin_of(const Scene& scene, const std::string& body) {
-  for (const SceneBox& item : scene.boxes) {
-    if (item.body == body) return item.origin_W;
-  }
-  return std::nullopt;
-}
-
 void extend_tracks(const Scene& scene, const std::string& base, std::vector<SceneTrack>& tracks) {
   std::string last;
   for (const SceneBox& item : scene.boxes) {
@@ -213,6 +206,7 @@ Outcome ActionRecorder::act(const std::string& controller, const State& argument
   add_tracks();
   add_ghost();
   add_met(outcome);
+  add_failure_marks(moments_.back().scene, spec_, arguments, outcome, action_);
   return outcome;
 }
 

@@ -4,13 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "harness/draw/failure_marks.h"
 #include "harness/draw/scene.h"
 #include "harness/robot/ode_simulator.h"
 
 namespace parallax::harness {
-
-/// Where the body is, if the scene has it.
-std::optional<Eigen::Vector3d> origin_of(const Scene& scene, const std::string& body);
 
 /// Adds the places of the base, the hands, drawers and items as the next points of their tracks.
 /// All scenes are of one world. A robot without arms has one hand, in the middle of its pads.
@@ -44,6 +42,8 @@ class ActionRecorder {
   /// The action, as Simulator::act; then `action` tells of it and `scene` how the world stands.
   Outcome act(const std::string& controller, const State& arguments, double time_limit_s);
   const SceneAction& action() const { return action_; }
+  /// The world as it stood when the action began.
+  const Scene& before() const { return moments_.front().scene; }
   Scene scene() const { return scene_of(simulator_.world(), spec_); }
 
  private:

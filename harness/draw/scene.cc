@@ -85,6 +85,27 @@ std::vector<Eigen::Vector2d> hull(std::vector<Eigen::Vector2d> points) {
   return out;
 }
 
+std::vector<Eigen::Vector2d> clipped(std::vector<Eigen::Vector2d> polygon, const Rectangle& area) {
+  // One side of the rectangle after the other: `sign` * coordinate is at most `limit` inside.
+  const auto cut = [&polygon](Eigen::Index axis, double sign, double limit) {
+    std::vector<Eigen::Vector2d> out;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Eigen::Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+      const double from = limit - sign * a[axis], to = limit - sign * b[axis];
+      if (from >= 0.0) out.push_back(a);
+      if ((from > 0.0 && to < 0.0) || (from < 0.0 && to > 0.0)) {
+        out.push_back(a + from / (from - to) * (b - a));
+      }
+    }
+    polygon = std::move(out);
+  };
+  for (const Eigen::Index axis : {0, 1}) {
+    cut(axis, 1.0, area.high[axis]);
+    cut(axis, -1.0, -area.low[axis]);
+  }
+  return polygon.size() < 3 ? std::vector<Eigen::Vector2d>() : polygon;
+}
+
 std::vector<Eigen::Vector2d> closed(std::vector<Eigen::Vector2d> points) {
   if (!points.empty()) points.push_back(points.front());
   return points;
@@ -98,10 +119,15 @@ std::string point_list(const std::vector<Eigen::Vector2d>& points) {
   return out;
 }
 
+Eigen::Vector2d Projection::anywhere(const Eigen::Vector3d& p_W) const {
+  const double right = kind_ == ViewKind::kFront ? p_W.y() : p_W.x();
+  const double up = kind_ == ViewKind::kAbove ? p_W.y() : p_W.z();
+  return {left_px_ + px_per_m_ * (right - left_m()), top_px_ + px_per_m_ * (top_m() - up)};
+}
+
 Eigen::Vector2d Projection::pixel(const Eigen::Vector3d& p_W) const {
-  const double right = std::clamp(p_W.x(), frame_.low.x(), frame_.high.x());
-  const double up = std::clamp(kind_ == ViewKind::kAbove ? p_W.y() : p_W.z(), bottom_m(), top_m());
-  return {left_px_ + px_per_m_ * (right - frame_.low.x()), top_px_ + px_per_m_ * (top_m() - up)};
+  const Rectangle within = area();
+  return anywhere(p_W).cwiseMax(within.low).cwiseMin(within.high);
 }
 
 std::vector<Eigen::Vector2d> Projection::pixels(
@@ -117,13 +143,14 @@ std::vector<Eigen::Vector2d> Projection::outline(const Probe& box) const {
   for (int i = 0; i < 8; ++i) {
     const Eigen::Vector3d sign(i % 2 == 0 ? 0.5 : -0.5, i / 2 % 2 == 0 ? 0.5 : -0.5,
                                i / 4 == 0 ? 0.5 : -0.5);
-    corners.push_back(pixel(box.p_WS + box.R_WS * sign.cwiseProduct(box.size_m)));
+    corners.push_back(anywhere(box.p_WS + box.R_WS * sign.cwiseProduct(box.size_m)));
   }
-  return hull(corners);
+  return clipped(hull(corners), area());
 }
 
 double Projection::nearness(const Probe& box) const {
   const Eigen::Vector3d half = 0.5 * box.R_WS.cwiseAbs() * box.size_m;
+  if (kind_ == ViewKind::kFront) return box.p_WS.x() + half.x();
   return kind_ == ViewKind::kAbove ? box.p_WS.z() + half.z() : half.y() - box.p_WS.y();
 }
 

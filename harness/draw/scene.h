@@ -62,28 +62,48 @@ struct SceneSought {
   bool seen = false;
 };
 
+/// A length that says why something went wrong.
+struct SceneMeasure {
+  Eigen::Vector3d from_W = Eigen::Vector3d::Zero(), to_W = Eigen::Vector3d::Zero();
+  std::string label;  // "`base` and `drawer_mid` overlap by 43 mm"
+};
+
+/// How far an arm reaches.
+struct SceneReach {
+  Eigen::Vector3d shoulder_W = Eigen::Vector3d::Zero();
+  double min_m = 0.0, max_m = 0.0;
+};
+
 /// What one action did, to be drawn over the world as it stands at its end.
 struct SceneAction {
   std::vector<SceneTrack> tracks;
   std::optional<SceneGoal> goal;
   std::optional<SceneGaze> gaze;
   std::vector<SceneSought> sought;
-  Scene ghost;                     // what stood elsewhere at an earlier moment
-  Scene meeting;                   // where something would have met another body
-  std::vector<std::string> met;    // bodies that the reason of a failure names
+  Scene ghost;                      // what stood elsewhere at an earlier moment
+  Scene meeting;                    // where something would have met another body
+  std::vector<std::string> met;     // bodies that the reason of a failure names
+  std::optional<SceneReach> reach;  // where something was out of it
+  std::vector<SceneMeasure> measures;
+  Scene predicted;                             // where the model says that something is
+  std::vector<std::string> predicted_regions;  // in which the model says that something is
+  std::vector<std::string> differing;          // bodies that are not where the model says
   std::vector<std::string> notes;  // what the marks mean: "dashed: 5.3 s into the action"
 };
 
-/// What all pictures of a run show. A picture's shapes outside it are moved to its border.
+/// The part of the world that a picture shows. What lies outside is cut off; marks are moved to the
+/// border.
 struct SceneFrame {
   Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();  // [m]
 };
 
-enum class ViewKind : std::uint8_t { kAbove, kSide };
+/// kSide looks along +y, kFront along -x.
+enum class ViewKind : std::uint8_t { kAbove, kSide, kFront };
 
 struct Rectangle {
   Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();  // [px]
   Eigen::Vector2d size() const { return high - low; }
+  bool empty() const { return !(low.array() < high.array()).any(); }
   bool meets(const Rectangle& other) const {
     return (low.array() < other.high.array()).all() && (other.low.array() < high.array()).all();
   }
@@ -92,6 +112,9 @@ struct Rectangle {
   }
 };
 Rectangle around(const std::vector<Eigen::Vector2d>& points);
+
+/// The part of a convex polygon within the rectangle (Sutherland and Hodgman 1974); empty: none is.
+std::vector<Eigen::Vector2d> clipped(std::vector<Eigen::Vector2d> polygon, const Rectangle& area);
 
 /// Convex hull, counter-clockwise (Andrew 1979).
 std::vector<Eigen::Vector2d> hull(std::vector<Eigen::Vector2d> points);
@@ -103,7 +126,7 @@ std::vector<Eigen::Vector2d> closed(std::vector<Eigen::Vector2d> points);
 std::string point_list(const std::vector<Eigen::Vector2d>& points);
 
 /// From the world to the pixels of one view: from above x is to the right and y up; from the side,
-/// looking along +y, x is to the right and z up.
+/// looking along +y, x is to the right and z up; looking along -x, y is to the right.
 class Projection {
  public:
   Projection(const SceneFrame& frame, ViewKind kind, double left_px, double top_px, double px_per_m)
@@ -113,19 +136,26 @@ class Projection {
   const SceneFrame& frame() const { return frame_; }
   double top_m() const { return kind_ == ViewKind::kAbove ? frame_.high.y() : frame_.high.z(); }
   double bottom_m() const { return kind_ == ViewKind::kAbove ? frame_.low.y() : frame_.low.z(); }
-  double width_px() const { return px_per_m_ * (frame_.high.x() - frame_.low.x()); }
+  double left_m() const { return kind_ == ViewKind::kFront ? frame_.low.y() : frame_.low.x(); }
+  double right_m() const { return kind_ == ViewKind::kFront ? frame_.high.y() : frame_.high.x(); }
+  double width_px() const { return px_per_m_ * (right_m() - left_m()); }
   double height_px() const { return px_per_m_ * (top_m() - bottom_m()); }
   Rectangle area() const {
     return {{left_px_, top_px_}, {left_px_ + width_px(), top_px_ + height_px()}};
   }
 
+  double px_per_m() const { return px_per_m_; }
+  /// Moved to the border if it lies outside.
   Eigen::Vector2d pixel(const Eigen::Vector3d& p_W) const;
   std::vector<Eigen::Vector2d> pixels(const std::vector<Eigen::Vector3d>& points_W) const;
+  /// Cut off at the border; empty if all of it lies outside.
   std::vector<Eigen::Vector2d> outline(const Probe& box) const;
   /// Of the face that the viewer looks at; greater is nearer [m].
   double nearness(const Probe& box) const;
 
  private:
+  Eigen::Vector2d anywhere(const Eigen::Vector3d& p_W) const;
+
   SceneFrame frame_;
   ViewKind kind_;
   double left_px_, top_px_, px_per_m_;

@@ -4,21 +4,17 @@
 
 #include <algorithm>
 
-#include "compiler/base/utf8.h"
 #include "compiler/base/xml_text.h"
+#include "harness/draw/shown_text.h"
 
 namespace parallax::harness {
 namespace {
 
 constexpr double kFont_px = 10.0;
 constexpr double kHeight_px = kFont_px + 1.0;
-constexpr double kCharacter_px = 0.6 * kFont_px;  // of a sans-serif font, on average
 constexpr double kNear_px = 3.0, kStep_px = 10.0;
-constexpr int kRings = 10;
-
-double text_width_px(const std::string& text) {
-  return kCharacter_px * static_cast<double>(base::count_code_points(text));
-}
+constexpr int kRings = 16;
+constexpr std::size_t kLongestLabel = 60;  // characters
 
 /// Lower left corners of a text of this size inside of what it names, the best first.
 std::vector<Eigen::Vector2d> inside(const Rectangle& named, const Eigen::Vector2d& size) {
@@ -58,8 +54,15 @@ const char* fill_colour(SceneKind kind) {
   return "#ffffff";
 }
 
-bool is_drawn(const Region& region) {
-  return region.frame.empty() && (region.on(RegionAxis::kX) || region.on(RegionAxis::kY));
+/// Regions of the world's frame, as far as they lie in the picture.
+bool is_drawn(const Region& region, const SceneFrame& frame) {
+  if (!region.frame.empty()) return false;
+  const auto &x = region.on(RegionAxis::kX), &y = region.on(RegionAxis::kY);
+  const auto meets = [](const std::optional<Interval>& interval, double low, double high) {
+    return !interval || (interval->lower < high && low < interval->upper);
+  };
+  return (x || y) && meets(x, frame.low.x(), frame.high.x()) &&
+         meets(y, frame.low.y(), frame.high.y());
 }
 
 Rectangle rectangle_of(const Region& region, const Projection& projection) {
@@ -77,9 +80,10 @@ bool LabelLayout::is_free(const Rectangle& box, bool strict) const {
          !(strict && std::any_of(avoided_.begin(), avoided_.end(), meets));
 }
 
-std::string LabelLayout::place(const std::string& text, const char* colour,
+std::string LabelLayout::place(const std::string& name, const char* colour,
                                const Rectangle& named) {
-  const Eigen::Vector2d size(text_width_px(text), kHeight_px);
+  const auto text = shown_text(name, kLongestLabel);
+  const Eigen::Vector2d size(text_width_px(text, kFont_px), kHeight_px);
   auto corners = inside(named, size);
   for (int ring = 0; ring < kRings; ++ring) {
     const auto more = outside(named, size, kNear_px + kStep_px * ring);
@@ -125,11 +129,13 @@ const char* line_colour(SceneKind kind) {
   return "#000000";
 }
 
-SceneView::SceneView(const Projection& projection, const Scene& scene)
-    : projection_(projection), scene_(scene), labels_(projection.area()) {
+SceneView::SceneView(const Projection& projection, const Scene& scene,
+                     const std::set<std::string>* bright)
+    : projection_(projection), scene_(scene), bright_(bright), labels_(projection.area()) {
   for (const SceneBox& item : scene.boxes) {
-    order_.push_back(&item);
     const auto outline = projection_.outline(item.box);
+    if (outline.empty()) continue;
+    order_.push_back(&item);
     Body& body = bodies_[item.body];
     body.kind = item.kind;
     body.points.insert(body.points.end(), outline.begin(), outline.end());
@@ -141,10 +147,10 @@ SceneView::SceneView(const Projection& projection, const Scene& scene)
 
 std::string SceneView::polygon(const SceneBox& item) const {
   return fmt::format(
-      "<polygon points=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"1\">"
+      "<polygon points=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"1\"{}>"
       "<title>{}</title></polygon>\n",
       point_list(projection_.outline(item.box)), fill_colour(item.kind), line_colour(item.kind),
-      base::xml_escaped(item.body));
+      is_faint(item.body) ? " opacity=\"0.45\"" : "", shown_in_full(item.body));
 }
 
 std::string SceneView::covered() const {
@@ -156,7 +162,7 @@ std::string SceneView::covered() const {
     for (std::size_t later = i + 1; later < order_.size() && !is_covered; ++later) {
       is_covered = order_[later]->body != order_[i]->body && places[later].meets(places[i]);
     }
-    if (!is_covered) continue;
+    if (!is_covered || is_faint(order_[i]->body)) continue;
     out += fmt::format(
         "<polyline class=\"covered\" points=\"{}\" fill=\"none\" stroke=\"{}\" "
         "stroke-width=\"0.8\" stroke-dasharray=\"1.5 2\"/>\n",
@@ -173,7 +179,7 @@ std::string SceneView::arms() const {
         "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#33567a\" "
         "stroke-width=\"4\" stroke-opacity=\"0.5\" stroke-linecap=\"round\"><title>{}</title>"
         "</line>\n",
-        a.x(), a.y(), b.x(), b.y(), base::xml_escaped(arm.name));
+        a.x(), a.y(), b.x(), b.y(), shown_in_full(arm.name));
   }
   return out;
 }
@@ -187,8 +193,8 @@ std::string SceneView::bodies() const {
 std::string SceneView::floor() const {
   if (projection_.kind() == ViewKind::kAbove) return {};
   const SceneFrame& frame = projection_.frame();
-  const Eigen::Vector2d a = projection_.pixel({frame.low.x(), 0.0, 0.0});
-  const Eigen::Vector2d b = projection_.pixel({frame.high.x(), 0.0, 0.0});
+  const Eigen::Vector2d a = projection_.pixel({frame.low.x(), frame.low.y(), 0.0});
+  const Eigen::Vector2d b = projection_.pixel({frame.high.x(), frame.high.y(), 0.0});
   return fmt::format(
       "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#666\"/>\n", a.x(),
       a.y(), b.x(), b.y());
@@ -197,7 +203,7 @@ std::string SceneView::floor() const {
 std::string SceneView::regions(const RegionMap& regions) const {
   std::string out;
   for (const Region& region : regions.regions()) {
-    if (!is_drawn(region)) continue;
+    if (!is_drawn(region, projection_.frame())) continue;
     const Rectangle box = rectangle_of(region, projection_);
     out += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" "
@@ -207,10 +213,19 @@ std::string SceneView::regions(const RegionMap& regions) const {
   return out;
 }
 
+std::string SceneView::region(const Region& region, const char* colour) const {
+  if (!is_drawn(region, projection_.frame())) return {};
+  const Rectangle box = rectangle_of(region, projection_);
+  return fmt::format(
+      "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" "
+      "stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"7 4\"/>\n",
+      box.low.x(), box.low.y(), box.size().x(), box.size().y(), colour);
+}
+
 std::string SceneView::region_names(const RegionMap& regions) {
   std::string out;
   for (const Region& region : regions.regions()) {
-    if (!is_drawn(region)) continue;
+    if (!is_drawn(region, projection_.frame())) continue;
     out += labels_.place(region.name, kRegionColour, rectangle_of(region, projection_));
   }
   return out;
@@ -253,10 +268,11 @@ std::string SceneView::axes() const {
   const double x = area.low.x() + 2.0, y = area.high.y() + kLength_px + 10.0;
   return fmt::format(
       "<path d=\"M{0:.1f} {2:.1f}V{1:.1f}H{3:.1f}\" fill=\"none\" stroke=\"#444\"/>\n"
-      "<text x=\"{4:.1f}\" y=\"{5:.1f}\" font-size=\"10\" fill=\"#444\">x</text>\n"
+      "<text x=\"{4:.1f}\" y=\"{5:.1f}\" font-size=\"10\" fill=\"#444\">{9}</text>\n"
       "<text x=\"{6:.1f}\" y=\"{7:.1f}\" font-size=\"10\" fill=\"#444\">{8}</text>\n",
       x, y, y - kLength_px, x + kLength_px, x + kLength_px + 4.0, y + 3.0, x + 4.0,
-      y - kLength_px + 6.0, projection_.kind() == ViewKind::kAbove ? 'y' : 'z');
+      y - kLength_px + 6.0, projection_.kind() == ViewKind::kAbove ? 'y' : 'z',
+      projection_.kind() == ViewKind::kFront ? 'y' : 'x');
 }
 
 }  // namespace parallax::harness

@@ -3,8 +3,49 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace parallax::harness {
+namespace {
+
+struct Extent {
+  double low = 0.0, high = 0.0;
+};
+
+Extent extent_along(const Probe& box, const Eigen::Vector3d& direction) {
+  const double middle = box.p_WS.dot(direction);
+  const double half =
+      0.5 * (box.R_WS.transpose() * direction).cwiseAbs().dot(box.size_m.cwiseAbs());
+  return {middle - half, middle + half};
+}
+
+/// By how much two boxes overlap, seen along `ahead`: the least shift across it that takes them
+/// apart, sideways if the way is level; 0 where one passes the other. Exact, because both look like
+/// convex polygons, whose sides are edges of the boxes.
+double overlap_across(const Probe& a, const Probe& b, const Eigen::Vector3d& ahead) {
+  constexpr double kSmall = 1e-9;
+  const bool level = std::abs(ahead.z()) < kSmall;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Probe* box : {&a, &b}) {
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const Eigen::Vector3d normal = ahead.cross(box->R_WS.col(i));
+      if (normal.norm() < kSmall) continue;
+      const Eigen::Vector3d across = normal.normalized();
+      const Extent one = extent_along(a, across), other = extent_along(b, across);
+      const double overlap = std::min(one.high - other.low, other.high - one.low);
+      if (overlap <= 0.0) return 0.0;
+      if (!level || std::abs(across.z()) < kSmall) least = std::min(least, overlap);
+    }
+  }
+  if (level) {
+    const Eigen::Vector3d across = ahead.cross(Eigen::Vector3d::UnitZ());
+    const Extent one = extent_along(a, across), other = extent_along(b, across);
+    least = std::min({least, one.high - other.low, other.high - one.low});
+  }
+  return std::max(least, 0.0);
+}
+
+}  // namespace
 
 Sweep::Sweep(const OdeWorld& world, const BodyMask& bodies, const BodyMask& ignored,
              double tolerance_m)
@@ -38,6 +79,26 @@ std::optional<Obstacle> Sweep::at(const Eigen::Vector3d& offset, const Eigen::Ve
   return std::nullopt;
 }
 
+std::optional<double> Sweep::clearance_of(const Obstacle& hit, const Eigen::Vector3d& offset,
+                                          const Eigen::Vector3d& way) const {
+  const auto id = world_.layout().find_body(hit.obstacle);
+  if (!id || way.norm() == 0.0) return std::nullopt;
+  const Eigen::Vector3d ahead = way.normalized();
+  double most = 0.0;
+  for (const Part& part : parts_) {
+    if (part.name != hit.part) continue;
+    const Probe moved{part.probe.size_m, part.probe.p_WS + offset, part.probe.R_WS};
+    const Extent begin = extent_along(moved, ahead);
+    for (const BoxShape& shape : world_.layout().bodies[*id].shapes) {
+      const Probe box = world_.placed(*id, shape);
+      const Extent there = extent_along(box, ahead);
+      if (there.high < begin.low || there.low > begin.high + way.norm()) continue;
+      most = std::max(most, overlap_across(moved, box, ahead));
+    }
+  }
+  return -most;
+}
+
 std::optional<Obstacle> Sweep::along(const Eigen::Vector3d& offset, const Eigen::Vector3d& way,
                                      double step_m) const {
   const int steps = std::max(1, static_cast<int>(std::ceil(way.norm() / step_m)));
@@ -45,6 +106,7 @@ std::optional<Obstacle> Sweep::along(const Eigen::Vector3d& offset, const Eigen:
     const double share = static_cast<double>(i) / steps;
     if (auto hit = at(offset + share * way, Eigen::Vector3d::Zero(), 0.0)) {
       hit->way_m = share * way.norm();
+      hit->clearance_m = clearance_of(*hit, offset, way);
       return hit;
     }
   }

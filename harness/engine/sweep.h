@@ -14,6 +14,9 @@ struct Obstacle {
   std::string part;      // of what moves
   std::string obstacle;  // body, or "floor"
   double way_m = 0.0;    // how far the motion gets
+  /// Of a straight motion, the room across it, sideways if it is level [m]: below 0, as here, by
+  /// how much part and obstacle overlap where one would pass the other. None: a turn, or the floor.
+  std::optional<double> clearance_m = {};
 };
 
 /// Shapes that move as one, tried in other places without moving anything: the boxes of `bodies`
@@ -38,6 +41,8 @@ class Sweep {
   };
   std::optional<Obstacle> at(const Eigen::Vector3d& offset, const Eigen::Vector3d& axis_W,
                              double angle_rad) const;
+  std::optional<double> clearance_of(const Obstacle& hit, const Eigen::Vector3d& offset,
+                                     const Eigen::Vector3d& way) const;
 
   const OdeWorld& world_;
   BodyMask ignored_;

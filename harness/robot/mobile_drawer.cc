@@ -60,8 +60,11 @@ class MoveDrawer : public MobileController {
   void check_way_in(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
     const auto hit = arm_sweep(child_).along(from - arm().tool(), to - from, 0.01);
     if (!hit) return;
+    State margins;
+    if (hit->clearance_m) margins["clearance"] = *hit->clearance_m;
     refuse_with(kManipulationUnreachable,
-                fmt::format("at the handle `{}` would meet `{}`", hit->part, hit->obstacle));
+                fmt::format("at the handle `{}` would meet `{}`", hit->part, hit->obstacle),
+                std::move(margins));
   }
 
  private:

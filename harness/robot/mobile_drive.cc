@@ -32,6 +32,12 @@ class Drive final : public MobileController {
   }
 
  private:
+  static State margins_of(const Obstacle& hit) {
+    State margins = {{"free_way", hit.way_m}};
+    if (hit.clearance_m) margins["clearance"] = *hit.clearance_m;
+    return margins;
+  }
+
   bool is_blocked() {
     BodyMask moving = robot().parts();
     for (const Arm& arm : robot().arms()) {
@@ -49,8 +55,7 @@ class Drive final : public MobileController {
     }
     if (!hit) return false;
     refuse_with(kNavigationUnreachable,
-                fmt::format("`{}` would meet `{}`", hit->part, hit->obstacle),
-                {{"free_way", hit->way_m}});
+                fmt::format("`{}` would meet `{}`", hit->part, hit->obstacle), margins_of(*hit));
     return true;
   }
 

@@ -107,8 +107,12 @@ class PickUp final : public MobileController {
       hit = sweep.along(target_ - from, number("lift_m") * Eigen::Vector3d::UnitZ(), 0.01);
     }
     if (!hit) return;
-    refuse_with(kManipulationUnreachable, fmt::format("at `{}` `{}` would meet `{}`",
-                                                      name_of(object_), hit->part, hit->obstacle));
+    State margins;
+    if (hit->clearance_m) margins["clearance"] = *hit->clearance_m;
+    refuse_with(
+        kManipulationUnreachable,
+        fmt::format("at `{}` `{}` would meet `{}`", name_of(object_), hit->part, hit->obstacle),
+        std::move(margins));
   }
 
   Outcome judge(std::string_view overdue) override {

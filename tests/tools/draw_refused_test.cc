@@ -74,7 +74,7 @@ TEST_CASE("a run whose last line was cut off is drawn as far as it goes, with a 
   const auto result = cli.parallax({"draw", "run", "--sample", "1.1"});
   CHECK(result.code == 0);
   CHECK(result.err.find("run/journal.ndjson") != std::string::npos);
-  CHECK(files_below(cli.folder() / "run/pictures").size() == 5);
+  CHECK(files_below(cli.folder() / "run/pictures").size() == 6);  // with the page over them
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -124,6 +126,12 @@ double pixels_per_m(const XmlElement& svg) {
   return 0.0;
 }
 
+std::string fixed(double value, int digits) {
+  char out[32];
+  std::snprintf(out, sizeof out, "%.*f", digits, value);
+  return out;
+}
+
 std::string absolute(const std::string& scenario) {
   return std::string(PARALLAX_SOURCE_DIR) + "/scenarios/" + scenario;
 }
@@ -171,7 +179,7 @@ TEST_CASE("each action of a recorded simulation has its picture, which shows wha
   CHECK(result.code == 0);
   CHECK(result.out ==
         "run/pictures/00.svg\nrun/pictures/01.svg\nrun/pictures/02.svg\n"
-        "run/pictures/03.svg\nrun/pictures/04.svg\n");
+        "run/pictures/03.svg\nrun/pictures/04.svg\nrun/pictures/index.html\n");
   Json sample;  // the second simulation is the one that went wrong
   std::istringstream journal(cli.read("run/journal.ndjson"));
   for (std::string line; std::getline(journal, line);) {
@@ -182,7 +190,6 @@ TEST_CASE("each action of a recorded simulation has its picture, which shows wha
   const std::vector<std::string> titles = {
       "start", "event 0: Go(r2) (going)", "event 1: PickUp() (picking-up)",
       "event 2: Go(r1) (going)", "event 3: Place(r1) (placing)"};
-  std::string views;
   for (std::size_t i = 0; i < titles.size(); ++i) {
     CAPTURE(i);
     const auto svg = checked_picture(cli.read("run/pictures/0" + std::to_string(i) + ".svg"));
@@ -196,17 +203,66 @@ TEST_CASE("each action of a recorded simulation has its picture, which shows wha
     for (const auto* group : svg.all("g")) marks.insert(group->at("class"));
     CHECK(marks.contains("track") == (i > 0));
     CHECK(marks.contains("goal") == (i % 2 == 1));
-    // All pictures of a run show the same part of the world.
-    if (i == 0) views = svg.at("viewBox");
-    CHECK(svg.at("viewBox") == views);
+    CHECK(marks.contains("map"));
+    // The box ends 5.5 mm beyond r1: that is told where it comes to light, and nowhere else.
+    CHECK(marks.contains("differs") == (i == 4));
+    CHECK(marks.contains("measure") == (i == 4));
+    CHECK(has_text(svg, "predicted: BoxIn(r1); observed: it does not hold") == (i == 4));
+    CHECK(has_text(svg, "predicted: not BoxIn(r2); observed: it holds") == (i == 4));
+    if (i == 4) {
+      const double outside_m = seen["box.x"].get<double>() - 1.0;
+      CHECK(outside_m > 0.0);
+      CHECK(outside_m < 0.01);
+      CHECK(has_text(svg, "`box` " + fixed(1000.0 * outside_m, 1) + " mm outside `r1`"));
+      const auto texts = svg.all("text");
+      CHECK(std::none_of(texts.begin(), texts.end(),
+                         [](const auto* text) { return text->text.starts_with("ok "); }));
+    }
   }
   CHECK(has_text(parse_xml(cli.read("run/pictures/00.svg")), "simulation 1.2, at 0.00 s"));
 
   const auto before = files_below(cli.folder() / "run/pictures");
   REQUIRE(cli.parallax({"draw", "run", "--sample", "1.2", "-o", "again"}).code == 0);
   CHECK(files_below(cli.folder() / "again") == before);
+  const auto page = cli.read("run/pictures/index.html");
+  CHECK(page.find("<h1>Model and simulation part</h1>") != std::string::npos);
+  CHECK(page.find("event 3: Place(r1) (placing)") != std::string::npos);
+  CHECK(page.find("edge.lisp:17") != std::string::npos);
+  CHECK(page.find("\" style=") == std::string::npos);
+  CHECK(page.find(" src=") == std::string::npos);
   REQUIRE(cli.parallax({"draw", "run", "--sample", "1.1", "-o", "other"}).code == 0);
   CHECK(files_below(cli.folder() / "other") != before);
+  CHECK(cli.read("other/index.html").find("<h1>The simulation goes as the model says</h1>") !=
+        std::string::npos);
+}
+
+TEST_CASE("what is out of reach shows how far, and files of others stay") {
+  const CliFixture cli;
+  REQUIRE(cli.parallax({"run", "wrong_model.yaml", "--out", "run"}).code == 1);
+  std::filesystem::create_directory(cli.folder() / "pictures");
+  cli.write("pictures/01.svg", "<svg>mine</svg>");
+  auto refused = cli.parallax({"draw", "run", "-o", "pictures"});
+  CHECK(refused.code == 2);
+  CHECK(refused.err.find("it is there already") != std::string::npos);
+  CHECK(cli.read("pictures/01.svg") == "<svg>mine</svg>");
+  CHECK_FALSE(std::filesystem::exists(cli.folder() / "pictures/00.svg"));
+  cli.write("mine.svg", "<svg>mine</svg>");
+  CHECK(cli.parallax({"draw", "edge.yaml", "-o", "mine.svg"}).code == 2);
+
+  REQUIRE(cli.parallax({"draw", "run"}).code == 0);
+  REQUIRE(cli.parallax({"draw", "run"}).code == 0);  // its own are replaced
+  const auto svg = checked_picture(cli.read("run/pictures/01.svg"));
+  std::set<std::string> marks;
+  for (const auto* group : svg.all("g")) marks.insert(group->at("class"));
+  CHECK(marks.contains("reach"));
+  CHECK(marks.contains("measure"));
+  Json sample;
+  std::istringstream journal(cli.read("run/journal.ndjson"));
+  for (std::string line; std::getline(journal, line) && !sample.contains("outcomes");) {
+    sample = Json::parse(line);
+  }
+  const double beyond_m = -sample["outcomes"][0]["margins"]["reach"].get<double>();
+  CHECK(has_text(svg, "`box` " + fixed(1000.0 * beyond_m, 0) + " mm out of reach"));
 }
 
 TEST_CASE("an action that failed says so in red, with its time and reason") {
@@ -216,6 +272,7 @@ TEST_CASE("an action that failed says so in red, with its time and reason") {
   REQUIRE(cli.parallax({"draw", "run"}).code == 0);
   int warnings = 0;
   for (const auto& [path, text] : files_below(cli.folder() / "run/pictures")) {
+    if (path.ends_with(".html")) continue;
     const auto svg = checked_picture(text);
     for (const auto* line : svg.all("text")) {
       const bool failed = line->text.starts_with("failed after ");

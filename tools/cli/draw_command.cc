@@ -5,16 +5,21 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/path_gate.h"
+#include "harness/campaign/judge.h"
 #include "harness/campaign/replay.h"
 #include "harness/campaign/sample_record.h"
 #include "harness/draw/action_recorder.h"
+#include "harness/draw/difference.h"
 #include "harness/draw/scene_svg.h"
 #include "harness/robot/ode_simulator.h"
 #include "tools/app/file_kind.h"
 #include "tools/app/recorded_run.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
+#include "tools/cli/replaceable.h"
 #include "tools/cli/shared_options.h"
+#include "tools/page/gather.h"
+#include "tools/page/picture_index.h"
 
 namespace parallax::tools {
 namespace {
@@ -32,7 +37,8 @@ struct DrawOptions {
 /// What stands above a picture.
 struct Caption {
   std::string title, subtitle;
-  bool warns = false;
+  bool warns = false, parts = false;
+  std::vector<std::string> differences = {};
 };
 
 /// The pictures of one simulation.
@@ -41,39 +47,41 @@ struct Album {
   std::vector<harness::Picture> pictures;
 };
 
+/// A picture that this command made, by an earlier version, too.
+bool is_picture(std::string_view head) {
+  return head.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\"") &&
+         (head.find(" class=\"scene\" ") != std::string_view::npos ||
+          head.find(" font-family=\"sans-serif\">\n<rect width=\"100%\"") !=
+              std::string_view::npos);
+}
+
+std::string picture_name(std::size_t timepoint) { return fmt::format("{:02}.svg", timepoint); }
+
 class Writer {
  public:
-  Writer(const DrawOptions& options, const harness::Scenario& scenario,
-         const std::vector<harness::Picture>& pictures, Invocation& invocation)
-      : invocation_(invocation) {
-    if (!options.no_regions) svg_.regions = &scenario.mapping->regions();
-    frame_ = harness::frame_around(pictures, svg_.regions);
-  }
+  explicit Writer(Invocation& invocation) : invocation_(invocation) {}
 
-  bool write(const fs::path& path, const Caption& caption, const harness::Picture& picture) {
-    svg_.title = caption.title;
-    svg_.subtitle = caption.subtitle;
-    svg_.warns = caption.warns;
+  bool write(const fs::path& path, const std::string& text) {
     std::error_code error;
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
-    const auto text = harness::scene_svg(picture, frame_, svg_);
     if (!base::write_output(path, text, invocation_.files(), invocation_.sink())) return false;
     written_.push_back(path.string());
     return true;
   }
 
-  void report() const {
+  /// `index`: the page over them; empty: there is none.
+  void report(const std::string& index) const {
     if (invocation_.options().json) {
-      const nlohmann::ordered_json document = {{"status", "ok"}, {"pictures", written_}};
+      nlohmann::ordered_json document = {{"status", "ok"}, {"pictures", written_}};
+      if (!index.empty()) document["index"] = index;
       return invocation_.document(document.dump() + "\n");
     }
     for (const auto& path : written_) invocation_.result(path + "\n");
+    if (!index.empty()) invocation_.result(index + "\n");
   }
 
  private:
   Invocation& invocation_;
-  harness::SvgOptions svg_;
-  harness::SceneFrame frame_;
   std::vector<std::string> written_;
 };
 
@@ -94,26 +102,106 @@ int draw_start(const DrawOptions& options, Invocation& invocation) {
   }
   const harness::OdeWorld world(scenario->world);
   const std::vector<harness::Picture> pictures = {{harness::scene_of(world, scenario->world), {}}};
-  Writer writer(options, *scenario, pictures, invocation);
-  const auto& title = scenario->title.empty() ? scenario->name : scenario->title;
   const fs::path out = options.out.empty() ? fs::path("scene.svg") : fs::path(options.out);
-  if (writer.write(out, {title, "before a start is drawn"}, pictures.front())) writer.report();
+  if (!check_replaceable(out.string(), is_picture, sink)) return 0;
+  harness::SvgOptions svg;
+  svg.title = scenario->title.empty() ? scenario->name : scenario->title;
+  svg.subtitle = "before a start is drawn";
+  if (!options.no_regions) svg.regions = &scenario->mapping->regions();
+  const auto frame = harness::frame_around(pictures, svg.regions);
+  Writer writer(invocation);
+  if (writer.write(out, harness::scene_svg(pictures.front(), frame, svg))) writer.report({});
   return 0;
 }
 
+/// Where and in what model and simulation part.
+struct DrawnParting {
+  std::optional<std::size_t> event;
+  std::vector<harness::ShownDifference> differences;
+  std::string words;  // in a sentence, as the report has it
+  /// States were compared on the way: up to the parting they are as predicted.
+  bool every_step = false;
+  bool is_clean = false;  // it is known that they do not part
+};
+
+/// What the observations on record say, held against the trace; of an executed plan what the report
+/// says, which may be missing.
+DrawnParting drawn_parting(const harness::RecordedRun& run, const ScenarioModel& loaded,
+                           const harness::CampaignTrace& trace, const std::string& folder,
+                           Invocation& invocation) {
+  DrawnParting out;
+  Context own(invocation.form(), invocation.stop());  // a report that cannot be read is no matter
+  PageData report;
+  const auto text = base::read_file_of(folder, "report.json", own.sink());
+  const bool is_over = text && add_report(*text, report);
+  const PageDiscrepancy* told = nullptr;
+  for (const auto& found : report.discrepancies) {
+    if (found.trace == run.id.trace && found.sample == run.id.sample) told = &found;
+  }
+  if (told != nullptr) out.words = told->words;
+  const auto comparison = recorded_comparison(run.header).value_or(loaded.scenario.comparison());
+  out.every_step = comparison == harness::Comparison::kEveryStep;
+  if (run.record.path) {
+    if (told == nullptr || told->first_divergence < 1) return out;
+    out.event = static_cast<std::size_t>(told->first_divergence) - 1;
+    for (const auto& one : told->first) {
+      out.differences.push_back({one.fluent, one.predicted, one.observed});
+    }
+    return out;
+  }
+  if (run.record.observations.size() != trace.points.size()) return out;
+  const compiler::SymbolTable symbols(loaded.compilation.model);
+  const harness::ModelFluents fluents(symbols);
+  const auto judgement =
+      harness::judge(*loaded.scenario.mapping, fluents, trace, run.record.observations);
+  // Of one that went elsewhere the report knows whether the model admits that.
+  out.is_clean = judgement.matches(comparison) || (is_over && told == nullptr);
+  if (out.is_clean || trace.event_count() == 0) return out;
+  out.event = static_cast<std::size_t>(harness::event_of(judgement, comparison));
+  for (const auto& one : out.every_step ? judgement.first : judgement.at_parting) {
+    out.differences.push_back({one.fluent, one.predicted, one.observed});
+  }
+  return out;
+}
+
+/// The differences in words, the first of them.
+std::vector<std::string> lines_of(const std::vector<harness::ShownDifference>& differences) {
+  constexpr std::size_t kMost = 4;
+  std::vector<std::string> out;
+  for (const auto& one : differences) {
+    if (out.size() == kMost) {
+      out.push_back(fmt::format("and {} more", differences.size() - kMost));
+      break;
+    }
+    out.push_back(fmt::format("predicted: {}{}; observed: {}", one.predicted ? "" : "not ",
+                              one.fluent, one.observed ? "it holds" : "it does not hold"));
+  }
+  return out;
+}
+
 Caption caption_of(std::size_t number, const std::string& event, const std::string& controller,
-                   const harness::Outcome& outcome, double begin_s) {
-  return {fmt::format("event {}: {} ({})", number, event, controller),
-          fmt::format("{} after {:.2f} s, at {:.2f} s{}{}", to_string(outcome.status),
-                      outcome.sim_time_s, begin_s + outcome.sim_time_s,
-                      outcome.reason.empty() ? "" : ": ", outcome.reason),
-          outcome.status != harness::SimStatus::kOk};
+                   const harness::Outcome& outcome, double begin_s, const DrawnParting& parting) {
+  const bool parts = parting.event == number;
+  const bool failed = outcome.status != harness::SimStatus::kOk;
+  const bool before = parting.event ? number < *parting.event : parting.is_clean;
+  const bool foreseen = failed && before && parting.every_step;
+  Caption caption;
+  caption.title = fmt::format("event {}: {} ({})", number, event, controller);
+  caption.subtitle = fmt::format("{} after {:.2f} s, at {:.2f} s{}{}{}",
+                                 parts && !failed ? "not as predicted" : to_string(outcome.status),
+                                 outcome.sim_time_s, begin_s + outcome.sim_time_s,
+                                 outcome.reason.empty() ? "" : ": ", outcome.reason,
+                                 foreseen ? " (the states are as predicted)" : "");
+  caption.warns = parts || failed;
+  caption.parts = parts;
+  if (parts) caption.differences = lines_of(parting.differences);
+  return caption;
 }
 
 /// Simulates a recorded run again; fails, having reported, where it is another one than recorded.
 base::Result<Album> simulate(const harness::RecordedRun& run, const harness::Scenario& scenario,
-                             harness::OdeSimulator& simulator, const std::string& folder,
-                             base::DiagnosticSink& sink) {
+                             const DrawnParting& parting, harness::OdeSimulator& simulator,
+                             const std::string& folder, base::DiagnosticSink& sink) {
   const auto reset = simulator.reset(run.record.initial, run.record.seed);
   if (reset.status != harness::SimStatus::kOk) {
     return sink.error_about(DiagnosticCode::kReplayImpossible, folder, reset.reason);
@@ -136,14 +224,66 @@ base::Result<Album> simulate(const harness::RecordedRun& run, const harness::Sce
           fmt::format("event {}, {}, ended otherwise than recorded", i, run.line.trace->event(i)));
     }
     album.captions.push_back(
-        caption_of(i, run.line.trace->event(i), call.controller, outcome, time_s));
+        caption_of(i, run.line.trace->event(i), call.controller, outcome, time_s, parting));
     album.pictures.push_back({recorder.scene(), recorder.action()});
+    if (parting.event == i) {
+      harness::add_differences(*scenario.mapping, scenario.world, parting.differences,
+                               recorder.before(), album.pictures.back());
+    }
     time_s += outcome.sim_time_s;
   }
   return album;
 }
 
-/// A picture of the start and one after each action of a recorded simulation.
+/// The pictures as SVG; each shows where its action was, the first one where all of them were.
+std::vector<std::string> svgs_of(const Album& album, const harness::RegionMap& regions,
+                                 bool with_regions, bool with_style) {
+  std::vector<harness::SceneFrame> frames;
+  for (const auto& picture : album.pictures) {
+    frames.push_back(harness::action_frame(picture, regions));
+  }
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    frames[0] = harness::frame_of_both(frames[0], frames[i]);
+  }
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const auto& caption = album.captions[i];
+    harness::SvgOptions svg;
+    svg.title = caption.title;
+    svg.subtitle = caption.subtitle;
+    svg.warns = caption.warns;
+    svg.differences = caption.differences;
+    svg.is_of_action = true;
+    svg.has_style = with_style;
+    if (with_regions) svg.regions = &regions;
+    out.push_back(harness::scene_svg(album.pictures[i], frames[i], svg));
+  }
+  return out;
+}
+
+std::string index_of(const Album& album, const std::vector<std::string>& svgs,
+                     const harness::RecordedRun& run, const DrawnParting& parting) {
+  PictureIndex index;
+  index.scenario = run.header.scenario;
+  index.simulation = fmt::format("{}.{}, seed {}", run.id.trace, run.id.sample, run.record.seed);
+  index.words = parting.words;
+  index.is_clean = parting.is_clean;
+  index.style = harness::scene_style();
+  for (std::size_t i = 0; i < svgs.size(); ++i) {
+    const auto& caption = album.captions[i];
+    auto& step = index.steps.emplace_back();
+    step.file = picture_name(i);
+    step.title = caption.title;
+    if (i > 0 && i <= run.line.trace->plan.size()) step.place = run.line.trace->plan[i - 1].source;
+    step.outcome = caption.subtitle;
+    step.warns = caption.warns;
+    step.parts = caption.parts;
+    step.svg = svgs[i];
+  }
+  return picture_index(index);
+}
+
+/// A picture of the start and one after each action of a recorded simulation, and a page over them.
 int draw_run(const DrawOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto id = parse_sample_option(options.sample, sink);
@@ -152,22 +292,15 @@ int draw_run(const DrawOptions& options, Invocation& invocation) {
   if (!run) return 0;
   const auto loaded = load_recorded_scenario({options.what, options.scenario}, run->header,
                                              ScenarioUse::kRun, invocation);
-  if (!loaded || !check_recorded_run(*loaded, *run, invocation)) return 0;
+  if (!loaded) return 0;
+  const auto trace = check_recorded_run(*loaded, *run, invocation);
+  if (!trace) return 0;
   const auto& scenario = loaded->scenario;
   if (!scenario.simulator.is_built_in()) {
     sink.error_about(DiagnosticCode::kUsage, options.what,
                      "only worlds of the built-in simulator can be drawn");
     return 0;
   }
-  harness::OdeSimulator simulator(scenario.world);
-  const auto obstacle = harness::simulator_change(run->header, simulator.info());
-  if (!obstacle.empty()) {
-    sink.error_about(DiagnosticCode::kReplayImpossible, options.what, obstacle);
-    return 0;
-  }
-  const auto album = simulate(*run, scenario, simulator, options.what, sink);
-  if (!album) return 0;
-  Writer writer(options, scenario, album->pictures, invocation);
   const fs::path folder =
       options.out.empty() ? fs::path(options.what) / "pictures" : fs::path(options.out);
   if (options.out.empty() && !base::lies_below(folder, options.what)) {  // by a link
@@ -175,11 +308,30 @@ int draw_run(const DrawOptions& options, Invocation& invocation) {
                      base::real_path(folder).string());
     return 0;
   }
-  for (std::size_t i = 0; i < album->pictures.size(); ++i) {
-    const auto path = folder / fmt::format("{:02}.svg", i);
-    if (!writer.write(path, album->captions[i], album->pictures[i])) return 0;
+  for (std::size_t i = 0; i <= run->line.calls.size(); ++i) {
+    if (!check_replaceable((folder / picture_name(i)).string(), is_picture, sink)) return 0;
   }
-  writer.report();
+  if (!check_replaceable((folder / "index.html").string(), is_earlier_page, sink)) return 0;
+  harness::OdeSimulator simulator(scenario.world);
+  const auto obstacle = harness::simulator_change(run->header, simulator.info());
+  if (!obstacle.empty()) {
+    sink.error_about(DiagnosticCode::kReplayImpossible, options.what, obstacle);
+    return 0;
+  }
+  const auto parting = drawn_parting(*run, *loaded, *trace, options.what, invocation);
+  const auto album = simulate(*run, scenario, parting, simulator, options.what, sink);
+  if (!album) return 0;
+  const auto& regions = scenario.mapping->regions();
+  Writer writer(invocation);
+  const auto svgs = svgs_of(*album, regions, !options.no_regions, true);
+  for (std::size_t i = 0; i < svgs.size(); ++i) {
+    if (!writer.write(folder / picture_name(i), svgs[i])) return 0;
+  }
+  const auto inline_svgs = svgs_of(*album, regions, !options.no_regions, false);
+  const auto page = index_of(*album, inline_svgs, *run, parting);
+  const auto path = folder / "index.html";
+  if (!base::write_output(path, page, invocation.files(), sink)) return 0;
+  writer.report(path.string());
   return 0;
 }
 
@@ -201,9 +353,11 @@ Command draw_command() {
       "  parallax draw out/plan2                      the run's first discrepancy, action by "
       "action\n"
       "  parallax draw out/plan2 --sample 1.3 -o pictures\n"
-      "Each picture shows the world from above and from the side, dotted where something nearer\n"
-      "covers it; after an action also its way, a moment of it (dashed), the camera's cone, the\n"
-      "goal of a drive (cross) and, in red, what went wrong.\n"
+      "Each picture shows the world from above and from the side; of an action the part where it\n"
+      "was, its way, a moment of it (dashed), the camera's cone, the goal of a drive (cross) and, "
+      "in\n"
+      "red, what went wrong and by how much. Where model and simulation part: predicted dashed in\n"
+      "violet, observed in red. index.html in the folder shows them all.\n"
       "Exit codes: 0 drawn, 3 the scenario has changed since the run.");
   command.option("what", options->what, "Scenario file, or folder of a run").required();
   command.option("-o,--out", options->out,

@@ -293,8 +293,8 @@ std::string rates_page(const harness::RatesResult& result,
     body += trace_part(trace, own, result.confidence);
   }
   if (result.traces.size() > kMostRatedTraces) {
-    body +=
-        fmt::format("<p>{} further traces are left out.</p>\n", result.traces.size() - kMostRatedTraces);
+    body += fmt::format("<p>{} further traces are left out.</p>\n",
+                        result.traces.size() - kMostRatedTraces);
   }
   return html_document("parallax rates: " + result.scenario, body + "</main>\n");
 }

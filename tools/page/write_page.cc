@@ -39,8 +39,9 @@ std::string html_document(const std::string& title, const std::string& body,
     elements += "<script>" + std::string(script) + "</script>\n";
   }
   const auto policy = fmt::format(
-      "default-src 'none'; style-src '{}'; script-src {}; base-uri 'none'; form-action 'none'",
-      csp_hash(kPageStyle), hashes);
+      "default-src 'none'; style-src '{}'{}; script-src {}; base-uri 'none'; form-action 'none'",
+      csp_hash(kPageStyle), options.style.empty() ? "" : " '" + csp_hash(options.style) + "'",
+      hashes);
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   out += kPageMark;
   out += '\n';
@@ -53,7 +54,8 @@ std::string html_document(const std::string& title, const std::string& body,
     out += fmt::format("<meta http-equiv=\"refresh\" content=\"{}\">\n", options.reload_s);
   }
   out += "<title>" + html_short(title) + "</title>\n<style>" + std::string(kPageStyle) +
-         "</style>\n</head>\n<body>\n<a class=\"skip\" href=\"#main\">Skip to the report</a>\n";
+         "</style>\n" + (options.style.empty() ? "" : "<style>" + options.style + "</style>\n") +
+         "</head>\n<body>\n<a class=\"skip\" href=\"#main\">Skip to the report</a>\n";
   return out + body + elements + "</body>\n</html>\n";
 }
 

@@ -46,6 +46,18 @@ std::set<std::string> marks_of(const std::string& svg) {
   return kinds;
 }
 
+/// Where the corners of a box begin and end along a direction.
+std::pair<double, double> ends_along(const Probe& box, const Eigen::Vector3d& direction) {
+  std::pair<double, double> out{1e9, -1e9};
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d sign(corner % 2 == 0 ? 0.5 : -0.5, corner / 2 % 2 == 0 ? 0.5 : -0.5,
+                               corner / 4 == 0 ? 0.5 : -0.5);
+    const double at = (box.p_WS + box.R_WS * sign.cwiseProduct(box.size_m)).dot(direction);
+    out = {std::min(out.first, at), std::max(out.second, at)};
+  }
+  return out;
+}
+
 using Kinds = std::set<std::string>;
 
 TEST_CASE("a refused drive shows the straight way, its goal and the body that is met") {
@@ -73,7 +85,29 @@ TEST_CASE("a refused drive shows the straight way, its goal and the body that is
   const Eigen::Vector3d moved = stopped.box.p_WS - same->box.p_WS;
   CHECK(moved.norm() == doctest::Approx(std::get<double>(outcome.margins.at("free_way"))));
   CHECK(moved.cross(action.goal->to_W - action.goal->from_W).norm() < 1e-6);
-  CHECK(marks_of(watched.svg()) == Kinds{"ghost", "goal", "met"});
+  CHECK(marks_of(watched.svg()) == Kinds{"ghost", "goal", "measure", "met"});
+
+  // What is missing to pass it: corners of both, seen along the way.
+  const Eigen::Vector3d way = action.goal->to_W - action.goal->from_W;
+  const Eigen::Vector3d across = way.cross(Eigen::Vector3d::UnitZ()).normalized();
+  double missing_m = 0.0;
+  for (const SceneBox& part : now.boxes) {
+    for (const SceneBox& obstacle : now.boxes) {
+      if (part.body != "base" || obstacle.body != "drawer_mid") continue;
+      const auto [left, right] = ends_along(part.box, across);
+      const auto [from, to] = ends_along(obstacle.box, across);
+      const auto [low, high] = ends_along(part.box, Eigen::Vector3d::UnitZ());
+      const auto [bottom, top] = ends_along(obstacle.box, Eigen::Vector3d::UnitZ());
+      if (low >= top || bottom >= high) continue;
+      missing_m = std::max(missing_m, std::min(right - from, to - left));
+    }
+  }
+  CHECK(missing_m > 0.0);
+  CHECK(std::get<double>(outcome.margins.at("clearance")) == doctest::Approx(-missing_m));
+  REQUIRE(action.measures.size() == 1);
+  CHECK(action.measures[0].label ==
+        "`base` and `drawer_mid`: " + length_text(missing_m) + " too little room");
+  CHECK((action.measures[0].to_W - action.measures[0].from_W).norm() == doctest::Approx(missing_m));
 }
 
 TEST_CASE("a drive that worked shows the way from its start to its end") {

@@ -40,9 +40,9 @@ TEST_CASE("a table of values after RFC 4180 reads back to the same texts and the
   const auto table = test::parse_csv(samples_csv(hostile_rows()));
   REQUIRE(table.size() == 3);
   const std::vector<std::string> header = {
-      "trace",       "sample",          "seed",           "start",          "rejected",
-      "retries",     "outcome",         "event",          "cause",          "reason",
-      "sim_time_s",  "start.box.x",     "start.kind",     "start.n",        "start.say, \"hi\"",
+      "trace",         "sample",         "seed",           "start",   "rejected",
+      "retries",       "outcome",        "event",          "cause",   "reason",
+      "sim_time_s",    "start.box.x",    "start.kind",     "start.n", "start.say, \"hi\"",
       "margin.1.goal", "margin.2.reach", "margin.10.reach"};
   CHECK(table[0] == header);
   const auto rows = hostile_rows();

@@ -161,10 +161,14 @@ TEST_CASE("a page works in a browser, by light and by night") {
   for (const auto* name : {"loop.html", "edge.html", "both.html"}) {
     probe(cli, name, {.width = 360});
   }
+  REQUIRE(cli.parallax({"draw", "edge"}).code == 0);
   REQUIRE(
       cli.parallax({"rates", "wrong_model.yaml", "--runs", "40", "--plot", "rates.html"}).code ==
       0);
-  for (const bool dark : {false, true}) probe(cli, "rates.html", {.dark = dark});
+  for (const bool dark : {false, true}) {
+    probe(cli, "edge/pictures/index.html", {.dark = dark});
+    probe(cli, "rates.html", {.dark = dark});
+  }
 }
 
 /// Every text in it behind a hostile one.
