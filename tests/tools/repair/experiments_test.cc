@@ -142,7 +142,7 @@ TEST_CASE("whatever the world is like: experiments never drop what is right") {
       {"[time] Initiates(Pull(),Lit(),time).\n", "becomes `Initiates(Pull(),Lit(),time)`"},
       {"", "is dropped"},
   };
-  int made = 0, fewer = 0;
+  int made = 0, fewer = 0, known = 0;
   for (const auto& world : worlds) {
     for (const std::string seed : {"2", "3"}) {
       CAPTURE(world.truth);
@@ -155,7 +155,11 @@ TEST_CASE("whatever the world is like: experiments never drop what is right") {
       const auto before = json_of(cli, {"repair", "out", "--runs", "0", "--limit", "0"}, 1);
       const auto after = json_of(cli, {"repair", "out", "--limit", "0"}, 1);
       CAPTURE(after.dump());
-      if (proposes(before, world.right)) CHECK(proposes(after, world.right));
+      // What one run shows need not be enough to find it.
+      if (proposes(before, world.right)) {
+        ++known;
+        CHECK(proposes(after, world.right));
+      }
       for (const auto& proposal : after.at("proposals")) {
         CHECK(proposal.at("runs_to_the_end") == after.at("runs"));
       }
@@ -163,6 +167,7 @@ TEST_CASE("whatever the world is like: experiments never drop what is right") {
       fewer += after.at("proposals").size() < before.at("proposals").size() ? 1 : 0;
     }
   }
+  CHECK(known >= 12);  // of 14
   CHECK(made > 8);
   CHECK(fewer > 5);
 }
