@@ -29,6 +29,9 @@ class EditSearch {
   EditSearch(const compiler::CompiledModel& guarded, const std::vector<compiler::Edit>& edits,
              const std::vector<Evidence>& evidence, const std::atomic<bool>& stop);
 
+  /// From now on that edit is in no set.
+  void exclude(std::size_t edit) { require({~selector(edit)}); }
+
   struct Found {
     std::vector<std::vector<std::size_t>> sets;  // of edits, ascending
     bool complete = false;                       // there is no further one

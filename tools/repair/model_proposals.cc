@@ -134,28 +134,55 @@ class ModelSearch {
     auto& known = searches_[mode];
     if (!known) {
       known = std::make_unique<Prepared>();
-      known->edits =
-          compiler::edits_in_scope(domain_.ast, *domain_.typed, domain_.forms, scope(mode));
-      if (mode == Mode::kWide) keep_few(known->edits);
-      result_.edits = std::max(result_.edits, known->edits.size());
-      std::size_t horizon = 1;
-      for (const auto& seen : evidence) horizon = std::max(horizon, seen.needed());
-      std::string why;
-      do {
-        const auto guarded =
-            compiler::guarded_text(domain_.ast, domain_.files, domain_.forms, known->edits);
-        known->model = compile_text(guarded, static_cast<std::int64_t>(horizon), context_, why);
-      } while (!known->model && !context_.stopped() && fewer(known->edits));
-      if (known->model) {
+      known->guarded = guarded(mode);
+      if (known->guarded->model) {
+        const auto& edits = known->guarded->edits;
         known->evidence = ways(evidence);
-        known->search = std::make_unique<EditSearch>(*known->model, known->edits, known->evidence,
+        known->search = std::make_unique<EditSearch>(*known->guarded->model, edits, known->evidence,
                                                      context_.stop());
-      } else {
-        result_.remarks.push_back("the edits could not be compiled together: " + why);
+        for (std::size_t i = 0; i < edits.size() && mode == Mode::kCautious; ++i) {
+          if (opens(edits[i])) known->search->exclude(i);
+        }
       }
     }
     if (!known->search) return false;
     return take(*known, known->search->find(size, kMostSets), evidence, mode, whole);
+  }
+
+  /// A model with the edits in it, compiled.
+  struct Guarded {
+    std::vector<Edit> edits;
+    std::optional<compiler::CompiledModel> model;
+  };
+
+  /// What is taken to fail is asked of the model in which outcomes may be open, too: it is compiled
+  /// once, which takes longer than all that is asked.
+  std::shared_ptr<const Guarded> guarded(Mode mode) {
+    auto& known = guarded_[mode == Mode::kCautious ? Mode::kOpen : mode];
+    if (known) return known;
+    auto out = std::make_shared<Guarded>();
+    known = out;
+    out->edits = compiler::edits_in_scope(domain_.ast, *domain_.typed, domain_.forms,
+                                          scope(mode == Mode::kCautious ? Mode::kOpen : mode));
+    if (mode == Mode::kWide) keep_few(out->edits);
+    result_.edits = std::max(result_.edits, out->edits.size());
+    std::size_t horizon = 1;
+    for (const auto& seen : evidence_) horizon = std::max(horizon, seen.needed());
+    std::string why;
+    do {
+      const auto text =
+          compiler::guarded_text(domain_.ast, domain_.files, domain_.forms, out->edits);
+      out->model = compile_text(text, static_cast<std::int64_t>(horizon), context_, why);
+    } while (!out->model && !context_.stopped() && fewer(out->edits));
+    if (!out->model) {
+      result_.remarks.push_back("the edits could not be compiled together: " + why);
+    }
+    return known;
+  }
+
+  static bool opens(const Edit& edit) {
+    return edit.kind == Edit::Kind::kOpenEvent ||
+           (edit.kind == Edit::Kind::kAddEffect && edit.text.starts_with("Releases"));
   }
 
   /// Of a model that is too large with all edits: without conditions of new effects, then the less
@@ -194,20 +221,20 @@ class ModelSearch {
   }
 
   struct Prepared {
-    std::vector<Edit> edits;
+    std::shared_ptr<const Guarded> guarded;
     std::vector<Evidence> evidence;  // that the search is asked about; all of it is checked later
-    std::optional<compiler::CompiledModel> model;
     std::unique_ptr<EditSearch> search;
   };
 
   bool take(const Prepared& prepared, const EditSearch::Found& found,
             const std::vector<Evidence>& evidence, Mode mode, std::optional<std::size_t> whole) {
-    const compiler::EditText texts(domain_.ast, domain_.files, domain_.forms, prepared.edits);
+    const auto& edits = prepared.guarded->edits;
+    const compiler::EditText texts(domain_.ast, domain_.files, domain_.forms, edits);
     std::vector<Proposal> tried;
     std::vector<std::vector<std::size_t>> sets = found.sets;
     const auto oddity = [&](const std::vector<std::size_t>& set) {
       int out = 0;
-      for (const auto edit : set) out += prepared.edits[edit].oddity;
+      for (const auto edit : set) out += edits[edit].oddity;
       return out;
     };
     std::stable_sort(sets.begin(), sets.end(), [&](const auto& a, const auto& b) {
@@ -233,7 +260,7 @@ class ModelSearch {
       // An effect and one condition are one axiom.
       proposal.size = set.size();
       for (const auto edit : set) {
-        if (prepared.edits[edit].kind != Edit::Kind::kAddCondition) continue;
+        if (edits[edit].kind != Edit::Kind::kAddCondition) continue;
         --proposal.size;
         break;
       }
@@ -241,12 +268,10 @@ class ModelSearch {
       proposal.words = texts.words(set);
       proposal.files = changed_files(domain_.files, changes);
       for (const auto edit : set) {
-        const auto& each = prepared.edits[edit];
-        const bool opens =
-            each.kind == Edit::Kind::kOpenEvent ||
-            (each.kind == Edit::Kind::kAddEffect && each.text.starts_with("Releases"));
-        if (opens) tell_failures(each.event, proposal);
-        proposal.open = proposal.open || opens;
+        const auto& each = edits[edit];
+        if (!opens(each)) continue;
+        tell_failures(each.event, proposal);
+        proposal.open = true;
       }
       tried.push_back(std::move(proposal));
     }
@@ -276,7 +301,8 @@ class ModelSearch {
   void find_nearest_miss() {
     auto& known = searches_[input_.contradictions.empty() ? Mode::kExact : Mode::kOpen];
     if (!known || !known->search) return;
-    const compiler::EditText texts(domain_.ast, domain_.files, domain_.forms, known->edits);
+    const compiler::EditText texts(domain_.ast, domain_.files, domain_.forms,
+                                   known->guarded->edits);
     for (std::size_t i = 0; i < known->evidence.size(); ++i) {
       if (!known->evidence[i].divergence) continue;
       const auto set = known->search->find_for({i}, 1);
@@ -293,6 +319,7 @@ class ModelSearch {
   const std::vector<Evidence>& evidence_;
   std::vector<Evidence> cautious_;
   Context& context_;
+  std::map<Mode, std::shared_ptr<const Guarded>> guarded_;
   std::map<Mode, std::unique_ptr<Prepared>> searches_;
   FoundProposals result_;
 };
