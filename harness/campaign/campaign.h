@@ -30,6 +30,7 @@ struct CampaignOptions {
   bool resume = false;
   /// How the traces were enumerated that it is handed: for the record.
   bool all_hits = false, split_initial = false;
+  bool random_sequences = false;  // they are of events, not of traces of the model
   std::filesystem::path run_dir;  // made if missing; holds journal.ndjson
   std::string start_folder;       // where the paths of the scenario start; empty: not recorded
   std::string scenario_hash;      // over every text that was read (hash_of_sources)

@@ -121,6 +121,7 @@ std::string recorded_options_json(const Scenario& scenario, const CampaignOption
   if (scenario.until_covered) json["until_covered"] = true;
   if (options.all_hits) json["hits"] = "all";
   if (options.split_initial) json["split_initial"] = true;
+  if (options.random_sequences) json["random_sequences"] = true;
   if (scenario.execution == Execution::kClosedLoop) {
     json["execution"] = to_string(scenario.execution);
     if (scenario.starts == Starts::kGuided) json["starts"] = to_string(scenario.starts);
@@ -153,6 +154,7 @@ std::variant<RecordedOptions, std::string> recorded_options(std::string_view tex
   out.keep_going = fields.flag("keep_going");
   out.until_covered = fields.flag("until_covered");
   out.split_initial = fields.flag("split_initial");
+  out.random_sequences = fields.flag("random_sequences");
   out.all_hits = fields.word("hits", std::array{"first"sv, "all"sv}) == std::size_t{1};
   if (const auto word = fields.word("compare", kComparisons)) {
     out.compare = static_cast<Comparison>(*word);

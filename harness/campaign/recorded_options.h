@@ -26,6 +26,7 @@ struct RecordedOptions {
   Starts starts = Starts::kUniform;
   bool keep_going = false, until_covered = false;
   bool all_hits = false, split_initial = false;
+  bool random_sequences = false;  // what was simulated is no trace of the model
 
   /// Asks for the same of another run of the scenario.
   void apply(Scenario& scenario, CampaignOptions& options) const;

@@ -8,7 +8,6 @@
 
 #include "compiler/base/contract.h"
 #include "compiler/base/diagnostic_codes.h"
-#include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/whole_number.h"
 #include "harness/campaign/journal.h"
 #include "harness/campaign/sample_record.h"
@@ -169,10 +168,8 @@ base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir
 std::string scenario_change(const JournalHeader& header, const std::string& scenario_hash) {
   if (header.scenario_hash == scenario_hash) return {};
   return fmt::format(
-      "the scenario, or a file that it reads, has changed: its hash was {}, now it is {}; what it "
-      "is "
-      "now is run by `parallax run {} --out DIR`, with a new folder",
-      header.scenario_hash, scenario_hash, base::printable(header.scenario));
+      "the scenario, or a file that it reads, has changed: its hash was {}, now it is {}",
+      header.scenario_hash, scenario_hash);
 }
 
 std::string simulator_change(const JournalHeader& header, const SimulatorInfo& simulator) {

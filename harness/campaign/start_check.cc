@@ -88,6 +88,12 @@ base::DiagnosticBuilder report_rejected(const Scenario& scenario, const Campaign
                           places.empty() ? scenario.sampling_source : places.front().source,
                           rejected, sample, trace.number, reason);
   for (const auto& place : places) error.note(place.source, place.note);
+  if (!scenario.simulator.models.empty()) {
+    error.note(
+        "the world is a model: what it says of timepoint 0 has to admit the starts of the "
+        "scenario's "
+        "model");
+  }
   return error;
 }
 

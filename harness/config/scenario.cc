@@ -203,7 +203,17 @@ class ScenarioReader {
     for (auto& model : scenario.simulator.models) resolve(model, false);
     // Another simulator has a world of its own; the built-in one needs ours.
     const bool built_in = !unknown && scenario.simulator.is_built_in();
-    const auto* world = built_in ? fields_.require(Key::kWorld) : fields_.find(Key::kWorld);
+    const auto* world = fields_.find(Key::kWorld);
+    if (world == nullptr && built_in && fields_.node().is_map()) {
+      auto error = sink_.error(DiagnosticCode::kMissingKey, fields_.node().range, "the scenario",
+                               Key::kWorld);
+      if (fields_.find(Key::kSimulator) == nullptr) {
+        error.note(
+            "if the world is a model, `simulator: {model: FILE}` names it; then `world`, "
+            "`actions`, "
+            "`regions` and `mapping` may be left out");
+      }
+    }
     if (world != nullptr) {
       scenario.world = read_world(*world, sink_);
       if (const auto* bodies = world->find(Key::kBodies)) {

@@ -189,6 +189,17 @@ ProcessResult with_streams(const CliFixture& cli, const std::string& arguments) 
   return run_process({"sh", "-c", "exec " PARALLAX_BINARY_DIR "/parallax " + arguments}, options);
 }
 
+TEST_CASE("a command that is none is named, with the one that may be meant") {
+  const CliFixture cli;
+  const auto far = cli.parallax({"frobnicate"});
+  CHECK(far.code == 2);
+  CHECK(far.err.find("there is no command `frobnicate`") != std::string::npos);
+  const auto near = cli.parallax({"repiar", "out"});
+  CHECK(near.err.find("there is no command `repiar`") != std::string::npos);
+  CHECK(near.err.find("replace `repiar` with `repair`") != std::string::npos);
+  CHECK(cli.parallax({}).err.find("A subcommand is required") != std::string::npos);
+}
+
 TEST_CASE("streams that are full or closed cost the text, not the program") {
   const CliFixture cli;
   const auto full = with_streams(cli, "traces scenario.yaml >/dev/full");
@@ -196,6 +207,12 @@ TEST_CASE("streams that are full or closed cost the text, not the program") {
   CHECK(full.err.find("standard output") != std::string::npos);
   CHECK(with_streams(cli, "check scenario.yaml --json >/dev/full").code == 2);
   CHECK(with_streams(cli, "run nowhere.yaml 2>/dev/full").code == 2);
+  // What was not looked for, as nobody would see it, is no message of its own.
+  cli.write("no.e", "fluent F()\n\nHoldsAt(F(),0).\n!HoldsAt(F(),0).\n");
+  const auto explained = with_streams(cli, "explain no.e --horizon 2 >/dev/full");
+  CHECK(explained.code == 2);
+  CHECK(explained.err.find("standard output") != std::string::npos);
+  CHECK(explained.err.find("E7306") == std::string::npos);
   CHECK(with_streams(cli, "check scenario.yaml 2>&-").code == 0);
   const auto head = with_streams(cli, "traces start.e domain.e --horizon 3 --limit 0 | head -2");
   CHECK(head.code == 0);

@@ -267,5 +267,17 @@ TEST_CASE("a link out of the folder is refused alike, whether it leads to a file
   CHECK(cli.parallax({"check", "two/own.yaml"}).err.find("E0001") != std::string::npos);
 }
 
+TEST_CASE("who forgets the world, or what holds there at first, is told what a model needs") {
+  const TwoModels cli;
+  cli.write("two/none.yaml", "include: common.yaml\nmodel: [opens.e, start.e]\n");
+  const auto none = cli.parallax({"run", "two/none.yaml"});
+  CHECK(none.code == 3);
+  CHECK(none.err.find("`simulator: {model: FILE}` names it") != std::string::npos);
+  const auto start =
+      cli.parallax({"run", cli.world("load opens.e\n\n[drawer] HoldsAt(Open(drawer),0).\n")});
+  CHECK(start.code == 3);
+  CHECK(start.err.find("what it says of timepoint 0 has to admit the starts") != std::string::npos);
+}
+
 }  // namespace
 }  // namespace parallax::test

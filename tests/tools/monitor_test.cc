@@ -45,7 +45,7 @@ TEST_CASE("a log of what the plan does is consistent, as a file, a pipe and CSV"
   CHECK(result.at("unreported").empty());
   const auto text = cli.parallax({"monitor", "scenario.yaml", "log.jsonl"});
   CHECK(text.out ==
-        "consistent: 5 observations (5 compared), 4 steps; at most 1 states possible at "
+        "consistent: 5 observations (5 compared), 4 steps; at most 1 state possible at "
         "once, 1 at last\n");
 
   REQUIRE(::mkfifo((cli.folder() / "fifo").c_str(), 0600) == 0);
@@ -131,6 +131,15 @@ TEST_CASE("what is not reported is not known, and what is under way is not compa
   CHECK(
       text.out.find("never reported: box.x, box.held\nthe log has `box.X`; is `box.x` meant?\n") !=
       std::string::npos);
+  // With events, too: no name of a variable is right, so that nothing was compared.
+  cli.write("log.jsonl",
+            "{\"t\": 0, \"state\": {\"robot.X\": 0.5}}\n{\"t\": 1, \"event\": \"Go(r2)\"}\n"
+            "{\"t\": 1.1, \"state\": {\"robot.X\": 1.2}}\n");
+  const auto misspelt = json_of(cli, {"monitor", "scenario.yaml", "log.jsonl"}, 4);
+  CHECK(misspelt.at("verdict") == "undecided");
+  CHECK(misspelt.at("compared") == 0);
+  CHECK(cli.parallax({"monitor", "scenario.yaml", "log.jsonl"})
+            .out.find("so that nothing was compared") != std::string::npos);
   // A log that says nothing of the model decides nothing.
   cli.write("log.jsonl", "{\"t\": 0, \"state\": {\"arm.q\": 1}}\n");
   CHECK(json_of(cli, {"monitor", "scenario.yaml", "log.jsonl"}, 4).at("verdict") == "undecided");
@@ -297,7 +306,7 @@ TEST_CASE("bad lines are located, and what came before them is not lost") {
     const auto result = cli.parallax({"monitor", "scenario.yaml", "log"});
     CHECK(result.code == 3);
     CHECK(result.err.find(wanted) != std::string::npos);
-    CHECK(result.out.find("consistent as far as the log can be read: 1 observations") == 0);
+    CHECK(result.out.find("consistent as far as the log can be read: 1 observation ") == 0);
     const auto json = json_of(cli, {"monitor", "scenario.yaml", "log"}, 3);
     CHECK(json.at("status") == "error");
     CHECK(json.at("diagnostics").size() == 1);

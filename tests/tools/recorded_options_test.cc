@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -119,6 +120,41 @@ TEST_CASE("a run of every initial state is explained with further runs of its ow
   json_of(cli, {"run", "two/own.yaml", "--out", "out", "--split-initial"}, 1);
   const auto told = json_of(cli, {"explain", "out"}, 1);
   CHECK(told.at("evidence").at("further") > 0);
+}
+
+TEST_CASE(
+    "a lost execution has its place among those that rates count, and shows no cause or none") {
+  const TwoModels cli;
+  cli.write("two/own.yaml",
+            "include: common.yaml\nsimulator: {model: sticks.e}\nmodel: [opens.e, start.e]\n");
+  const std::vector<std::string> run = {
+      "run", "two/own.yaml", "--execution", "closed-loop", "--keep-going", "--out", "out"};
+  const auto before = json_of(cli, run, 1).at("traces").at(0);
+  REQUIRE(before.at("causes_runs") == 90);
+  // One that is on record as lost, and went wrong before.
+  std::string text;
+  bool failed = false;
+  std::istringstream lines(cli.read("out/journal.ndjson"));
+  for (std::string line; std::getline(lines, line);) {
+    auto record = Json::parse(line);
+    if (record.value("sample", 0) == 5 && record.at("phase") == "confirm") continue;
+    if (record.value("sample", 0) == 5) {
+      failed = record.at("end") == "failed";
+      record["status"] = "lost";
+      record["reason"] = "gone";
+      record["digest"] = "";
+      for (const auto* name : {"observations", "outcomes", "path"}) record[name] = Json::array();
+    }
+    text += record.dump() + "\n";
+  }
+  cli.write("out/journal.ndjson", text);
+  auto again = run;
+  again.emplace_back("--resume");
+  const auto after = json_of(cli, again, 1).at("traces").at(0);
+  CHECK(after.at("lost") == 1);
+  CHECK(after.at("causes_runs") == 89);
+  const int count = before.at("causes").at(0).at("count");
+  CHECK(after.at("causes").at(0).at("count") == count - (failed ? 1 : 0));
 }
 
 }  // namespace

@@ -102,6 +102,7 @@ class Collector {
     auto journal = harness::read_journal(folder, context_.files(), sink);
     if (!journal) return sink.already_reported();
     if (!journal->header) return sink.error_about(DiagnosticCode::kNoJournal, folder);
+    if (!expect_traces({folder, {}}, *journal->header, sink)) return sink.already_reported();
     RunRecord run{folder, *std::move(journal), false, {}};
     const auto& header = *run.journal.header;
     run.executed = recorded_execution(header) == harness::Execution::kClosedLoop;

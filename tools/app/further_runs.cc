@@ -45,6 +45,7 @@ class FurtherRuns {
     if (!*trace) return std::vector<SampleRecord>();
     auto trial = harness::Trial::prepare(bench, *std::move(*trace));
     if (!trial) return sink.already_reported();
+    if (!check_draws(**journal, trial->plan())) return sink.already_reported();
     trial->continue_from(**journal);
     if ((*journal)->find(found_.path.id.trace) == nullptr) {
       (*journal)->append(found_.journal.traces.at(found_.path.id.trace));
@@ -90,6 +91,19 @@ class FurtherRuns {
       }
       if ((*trace)->number >= id.trace) return std::optional<harness::CampaignTrace>();
     }
+  }
+
+  /// Those on record must be what is drawn for their numbers.
+  base::Status check_draws(const harness::Journal& journal, const harness::TracePlan& plan) {
+    for (const auto& [key, record] : journal.recorded().samples) {
+      const auto place = journal.recorded().places.find(key);
+      if (place == journal.recorded().places.end() || is_recorded(record)) continue;
+      const auto why =
+          harness::wrong_draw(record, plan.sampler, plan.campaign_seed, plan.trace_key);
+      if (why.empty()) continue;
+      return context_.sink().error(base::DiagnosticCode::kForeignJournalLine, place->second, why);
+    }
+    return base::Unit{};
   }
 
   bool is_recorded(const SampleRecord& record) const {

@@ -270,6 +270,11 @@ class LogWatcher {
       result_.undecided_because =
           "the log says nothing of the model: no event, and no variable "
           "that a compared fluent is read from";
+    } else if (result_.observations > result_.under_way && result_.compared == 0) {
+      result_.verdict = MonitorVerdict::kUndecided;
+      result_.undecided_because =
+          "none of its observations has a variable that the mapping asks for, so that nothing was "
+          "compared";
     }
   }
 

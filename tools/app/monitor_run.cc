@@ -126,6 +126,7 @@ base::Result<std::vector<MonitorResult>> monitor_run(const RunFolderOptions& run
   if (!journal->header) {
     return sink.error_about(base::DiagnosticCode::kNoJournal, run.folder);
   }
+  if (!expect_traces(run, *journal->header, sink)) return sink.already_reported();
   const auto loaded = load_recorded_scenario(run, *journal->header, ScenarioUse::kRun, context);
   if (!loaded) return sink.already_reported();
   auto as_recorded = options;

@@ -14,6 +14,11 @@ using Json = nlohmann::ordered_json;
 /// So many fluents and plan steps are spelled out in the text.
 constexpr std::size_t kMostShown = 8;
 
+template <typename Count>
+std::string counted(Count count, const std::string& noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
 std::string value_text(const harness::Value& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return fmt::format("\"{}\"", *text);
   if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
@@ -136,13 +141,13 @@ MonitorVerdict verdict_of(const std::vector<MonitorResult>& runs) {
 std::string monitor_text(const MonitorResult& result) {
   std::string out = first_text(result);
   out += fmt::format(
-      "{}: {} observations ({} compared",
+      "{}: {} ({} compared",
       result.failed ? "consistent as far as the log can be read" : to_string(result.verdict),
-      result.observations, result.compared);
+      counted(result.observations, "observation"), result.compared);
   if (result.under_way > 0)
     out += fmt::format(", {} while an action was under way", result.under_way);
-  out += fmt::format("), {} steps; at most {} states possible at once", result.events,
-                     result.most_states);
+  out += fmt::format("), {}; at most {} possible at once", counted(result.events, "step"),
+                     counted(result.most_states, "state"));
   if (result.states) out += fmt::format(", {} at last", *result.states);
   out += "\n";
   for (const auto& action : result.unended) {
@@ -168,9 +173,10 @@ std::string monitor_text(const std::vector<MonitorResult>& runs) {
     out += first_text(run);
   }
   if (unchecked > 0)
-    out += fmt::format("not checked: {} simulations, as it was stopped\n", unchecked);
-  return out + fmt::format("{}: {} of {} simulations are consistent with the model\n",
-                           to_string(verdict_of(runs)), consistent, runs.size());
+    out += fmt::format("not checked: {}, as it was stopped\n", counted(unchecked, "simulation"));
+  return out + fmt::format("{}: {} of {} {} consistent with the model\n",
+                           to_string(verdict_of(runs)), consistent,
+                           counted(runs.size(), "simulation"), runs.size() == 1 ? "is" : "are");
 }
 
 std::string monitor_json(const MonitorResult& result, const std::string& scenario) {

@@ -177,10 +177,22 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
   }
   if (is_recorded) sink = before;
   if (!loaded && !is_recorded) return sink.already_reported();
-  if (loaded) return refuse(change);
   const auto name = base::printable(path.string());
+  if (loaded) {
+    return refuse(fmt::format(
+        "{}; as it is now it is run by `parallax run {} --out DIR`, DIR being a new folder", change,
+        name));
+  }
   return refuse(fmt::format(
       "the scenario `{}` cannot be loaded any more; `parallax check {}` says why", name, name));
+}
+
+base::Status expect_traces(const RunFolderOptions& options, const harness::JournalHeader& header,
+                           base::DiagnosticSink& sink) {
+  if (!header.asked.random_sequences) return base::Unit{};
+  return sink.error_about(DiagnosticCode::kReplayImpossible, options.folder,
+                          "it has random sequences of events, which no trace of the model and no "
+                          "plan has; `parallax replay` repeats them");
 }
 
 base::Result<harness::CampaignTrace> check_recorded_run(const ScenarioModel& loaded,
@@ -202,7 +214,7 @@ base::Result<harness::CampaignTrace> check_recorded_run(const ScenarioModel& loa
     if (!why.empty()) return foreign(run.source, why);
     return *std::move(trace);
   }
-  if (why.empty()) why = wrong_trace(model, *trace, context);
+  if (why.empty() && !run.header.asked.random_sequences) why = wrong_trace(model, *trace, context);
   if (!why.empty()) return foreign(run.trace_source, why);
   why = wrong_start(loaded.scenario, *trace, run);
   if (!why.empty()) return foreign(run.source, why);

@@ -34,6 +34,11 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
                                                    const harness::JournalHeader& header,
                                                    ScenarioUse use, Context& context);
 
+/// Reports kReplayImpossible for a run of random sequences of events (`learn --explore`): they are
+/// no traces of the model, so that nothing but to repeat them makes sense.
+base::Status expect_traces(const RunFolderOptions& options, const harness::JournalHeader& header,
+                           base::DiagnosticSink& sink);
+
 /// Can the scenario have had this simulation? Its trace must be one of the model, its calls those
 /// of the actions, its start and seed what is drawn for its number; an executed plan must have gone
 /// as it is on record after what was seen and reported (ExecutionCheck). What was observed is

@@ -43,6 +43,7 @@ void Invocation::result(const std::string& text) {
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
   if (written && std::fflush(stdout) == 0) return;
   output_error_ = errno != 0 ? errno : EIO;
+  before_output_error_ = sink();
   stop_flag().store(true);
 }
 
@@ -87,6 +88,8 @@ void Invocation::print_diagnostics(const std::vector<base::Diagnostic>& diagnost
 }
 
 int Invocation::finish(int code) {
+  // What was reported after that is about having been stopped by it.
+  if (output_error_ != 0) sink() = before_output_error_;
   report_output_error();
   const auto diagnostics = sink().sorted();
   print_diagnostics(diagnostics);

@@ -60,6 +60,7 @@ class Invocation final : public Context {
   std::string document_;
   bool answered_ = false;
   int output_error_ = 0;  // errno of the first failed write
+  base::DiagnosticSink before_output_error_;
 };
 
 /// A subcommand: how it is spelled, and what runs it.

@@ -37,7 +37,11 @@ bool wants_json(int argc, char** argv) {
 int usage_error(const ParsedLine& line, std::string_view command, int argc, char** argv) {
   base::DiagnosticSink sink;
   const base::SourceFiles files;
-  auto built = sink.error_about(base::DiagnosticCode::kUsage, "", line.error);
+  const bool no_such_command = command.empty() && argc > 1 && argv[1][0] != '-';
+  auto built = sink.error_about(
+      base::DiagnosticCode::kUsage, "",
+      no_such_command ? fmt::format("there is no command `{}`", base::printable(argv[1]))
+                      : line.error);
   for (int i = 1; i < argc; ++i) {
     const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
     bool known = false;

@@ -130,7 +130,8 @@ int repair(const RepairCommandOptions& options, Invocation& invocation) {
   invocation.options().json ? invocation.document(repair_json(*result))
                             : invocation.result(repair_text(*result, repair));
   if (result->partings.empty()) {
-    return invocation.stopped() || !result->remarks.empty() ? kNoneFound : 0;
+    const bool decided = !invocation.stopped() && result->finished && result->remarks.empty();
+    return decided ? 0 : kNoneFound;
   }
   if (options.apply > 0 && !result->proposals.empty()) {
     return apply(*result, options.apply, invocation);

@@ -86,6 +86,7 @@ class SequenceExplorer {
     header.scenario_hash = loaded_.sources_hash;
     header.tool_version = options_.tool_version;
     header.keep_going = true;
+    header.random_sequences = true;
     std::error_code error;
     header.start_folder = std::filesystem::current_path(error).string();
     auto folder = harness::RunFolder::claim(options_.run_dir, false, sink);

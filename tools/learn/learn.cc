@@ -9,6 +9,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
 #include "harness/campaign/journal.h"
 #include "harness/report/report.h"
 #include "tools/app/closed_loop.h"
@@ -190,8 +191,8 @@ class ScenarioLearner {
     const auto include = error || from.empty() ? loaded().scenario.file : from;
     const auto scenario = fmt::format(
         "# A model that was learned from runs of this scenario.\n\n"
-        "include: \"{}\"\nmodel: [{}]\nexpect:\n",
-        include.generic_string(), model);
+        "include: {}\nmodel: [{}]\nexpect:\n",
+        base::json_quoted(include.generic_string()), model);
     auto& sink = context_.sink();
     return base::write_file_atomically(folder / model, taught_->text(), sink).has_value() &&
            base::write_file_atomically(folder / name, scenario, sink).has_value();

@@ -31,6 +31,16 @@ bool performs_one_of(const PlanScope& scope, const std::set<std::string>& types,
   });
 }
 
+/// A constant may be written as `:d-mid` or `d-mid`; both mean the same.
+std::string without_colons(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins = i == 0 || text[i - 1] == ' ' || text[i - 1] == '(' || text[i - 1] == '\'';
+    if (text[i] != ':' || !begins) out += text[i];
+  }
+  return out;
+}
+
 std::vector<std::string> constants_of_argument(const PlanScope& scope, const std::string& symbol,
                                                std::size_t argument) {
   std::vector<std::string> out;
@@ -92,7 +102,7 @@ std::vector<PlanEdit> plan_insertions(const PlanScope& scope, const std::set<std
   for (const auto site : scope.sites) {
     std::set<std::string> known;
     const auto add = [&](const std::string& text, int oddity) {
-      if (out.size() == kMostInsertions || !known.insert(text).second) return;
+      if (out.size() == kMostInsertions || !known.insert(without_colons(text)).second) return;
       PlanEdit edit;
       edit.at = site;
       edit.action = text;

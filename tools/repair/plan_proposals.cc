@@ -47,8 +47,9 @@ class PlanRepair {
     }
     // The best for each way that the world may be, then the second ones.
     std::stable_sort(kept_.begin(), kept_.end(), [](const Kept& a, const Kept& b) {
-      return std::tuple(a.proposal.size, a.kind, a.round) <
-             std::tuple(b.proposal.size, b.kind, b.round);
+      // What only hides a failure comes last, however small it is.
+      return std::tuple(a.proposal.hides_failure, a.proposal.size, a.kind, a.round) <
+             std::tuple(b.proposal.hides_failure, b.proposal.size, b.kind, b.round);
     });
     for (auto& each : kept_) found_.proposals.push_back(std::move(each.proposal));
     return std::move(found_);
@@ -388,6 +389,14 @@ class PlanRepair {
     proposal.files = changed_files(plan_->files(), changes);
     if (world.from != nullptr) proposal.verdict = world.from->verdict;
     proposal.evidence.push_back(evidence(world, handles, length));
+    proposal.hides_failure = std::any_of(edits.begin(), edits.end(), [](const PlanEdit& edit) {
+      return edit.kind == PlanEdit::Kind::kHandle;
+    });
+    if (proposal.hides_failure) {
+      proposal.evidence.emplace_back(
+          "It hides the failure: nothing is done about it, and what follows goes on as if the step "
+          "had been done.");
+    }
     tried.changes = changes;
     if (!tried.around()) add_effects(before, world, tried);
     out.push_back(std::move(tried));
@@ -434,6 +443,7 @@ class PlanRepair {
   /// the fewest traces.
   void keep(const World& world, PlanModel& before, std::vector<Tried> tried) {
     std::stable_sort(tried.begin(), tried.end(), [](const Tried& a, const Tried& b) {
+      if (a.proposal.hides_failure != b.proposal.hides_failure) return b.proposal.hides_failure;
       if (a.proposal.size != b.proposal.size) return a.proposal.size < b.proposal.size;
       if (a.kind != b.kind) return a.kind < b.kind;
       // Of retries and handlers the innermost takes the least.

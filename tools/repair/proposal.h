@@ -36,6 +36,7 @@ struct Proposal {
   std::vector<PropertyEffect> properties;  // of those that were asked about, in their order
   bool precaution = false;                 // what may fail is taken to fail
   bool open = false;                       // it leaves open what happens
+  bool hides_failure = false;  // of a plan: the failure is taken, and nothing is done about it
   Verdict verdict;
   /// What it does to the traces. Of a change of the model alone the ranking finds it out.
   std::optional<TraceEffects> effects;

@@ -82,6 +82,7 @@ base::Result<RepairResult> propose_repairs(const RepairInput& input, Context& co
   result.partings = input.partings;
   result.contradictions = input.contradictions;
   result.remarks = input.remarks;
+  result.finished = input.finished;
   if (input.partings.empty()) return result;
   result.causes = causes_of(input);
   for (const auto source : kSources) {

@@ -22,6 +22,7 @@ struct RepairResult {
   std::size_t edits = 0;     // single edits that were considered
   std::string nearest_miss;  // where there is no proposal; may be empty
   std::vector<std::string> remarks, hints;
+  bool finished = true;              // the run came to a verdict of its own
   std::size_t experiments = 0;       // of the runs were made to tell proposals apart
   std::vector<std::string> refuted;  // proposals, in words, that these have refuted
   /// Such that no run refutes, but others came before them: no more than some are looked at.

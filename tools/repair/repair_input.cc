@@ -7,6 +7,8 @@
 #include <system_error>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
 #include "tools/app/evidence.h"
 
 namespace parallax::tools {
@@ -22,6 +24,16 @@ base::Result<ScenarioModel> load(const RepairOptions& options, const harness::Jo
   const auto path =
       options.folder.scenario.empty() ? scenario_path(header) : fs::path(options.folder.scenario);
   return load_plain_run(path, recorded_execution(header), context);
+}
+
+/// A run that was ended before its verdict has no report, or one that decides nothing.
+bool is_finished(const fs::path& folder) {
+  base::DiagnosticSink unread;
+  const auto text = base::read_file_of(folder, "report.json", unread);
+  if (!text) return false;
+  const auto report = nlohmann::json::parse(*text, nullptr, false);
+  const auto* verdict = base::json_member(report, "verdict");
+  return verdict != nullptr && *verdict != "inconclusive";
 }
 
 /// Adds what was made of the same scenario besides: by `explain` to tell the kind of cause, which
@@ -146,6 +158,7 @@ base::Result<RepairInput> load_repair_input(const RepairOptions& options, Contex
   if (!journal->header) {
     return sink.error_about(base::DiagnosticCode::kNoJournal, options.folder.folder);
   }
+  if (!expect_traces(options.folder, *journal->header, sink)) return sink.already_reported();
   auto loaded = load(options, *journal->header, context);
   if (!loaded) return sink.already_reported();
   auto paths = observed_paths(*loaded, *journal, context);
@@ -165,6 +178,7 @@ base::Result<RepairInput> load_repair_input(const RepairOptions& options, Contex
   RepairInput input{options,         *journal->header,  *std::move(loaded), std::move(domain),
                     std::move(text), *std::move(paths), std::move(evidence)};
   for (const auto& seen : input.evidence) input.runs += seen.runs();
+  input.finished = is_finished(options.folder.folder);
   input.experiments = static_cast<std::size_t>(std::count_if(
       input.paths.begin(), input.paths.end(), [](const auto& path) { return path.experiment; }));
   find_partings(input, context);

@@ -46,6 +46,7 @@ struct RepairInput {
   /// that begin where the model cannot.
   std::vector<Evidence> evidence;
   std::size_t runs = 0, failed = 0;  // recorded; those that the model cannot follow
+  bool finished = true;              // the run came to a verdict of its own
   std::size_t experiments = 0;       // of them were made to tell proposals apart
   std::vector<RunParting> partings = {};
   /// Runs that went the same way up to a step and then differently: chance, or the simulator.

@@ -114,7 +114,10 @@ class Rounds {
       return false;
     }
     if (found->partings.empty()) {
-      end(LoopEnd::kNothing, "the model admits all runs of " + folder.folder);
+      found->finished
+          ? end(LoopEnd::kNothing, "the model admits all runs of " + folder.folder)
+          : end(LoopEnd::kInconclusive,
+                "the model admits all runs of " + folder.folder + ", which came to no verdict");
       return false;
     }
     const auto input = load_repair_input(repair, context_);

@@ -167,6 +167,13 @@ std::string repair_text(const RepairResult& result, const RepairOptions& options
     return fmt::format("{}: {}, and nothing that an edit of the model could mend:\n  {}\n", folder,
                        plural(result.runs, "run"), fmt::join(result.remarks, "\n  "));
   }
+  if (result.partings.empty() && !result.finished) {
+    return fmt::format(
+        "{}: {}, and the model admits all of them, but the run came to no verdict: `parallax run` "
+        "with "
+        "--resume goes on with it.\n",
+        folder, plural(result.runs, "run"));
+  }
   if (result.partings.empty()) {
     return fmt::format(
         "{}: {}, and the model admits all of them: there is nothing to repair.\nMore runs may find "
@@ -211,6 +218,7 @@ std::string repair_json(const RepairResult& result) {
   out["runs"] = result.runs;
   out["failed"] = result.failed;
   out["experiments"] = result.experiments;
+  out["finished"] = result.finished;
   auto& partings = out["partings"] = Json::array();
   for (const auto& parting : result.partings) {
     Json seen = Json::array();
@@ -252,6 +260,7 @@ std::string repair_json(const RepairResult& result) {
                          {"patch", patch_of(proposal)},
                          {"read_by_world", proposal.read_by_world},
                          {"precaution", proposal.precaution},
+                         {"hides_failure", proposal.hides_failure},
                          {"runs_consistent", proposal.verdict.runs_consistent},
                          {"runs_to_the_end", proposal.verdict.runs_whole},
                          {"runs", result.runs},

@@ -107,6 +107,32 @@ TEST_CASE("with random sequences the conditions come, and other plans go as in t
   CHECK(traces.at("gained").at("answer") == "none");
 }
 
+TEST_CASE("random sequences on record are repeated by replay, and are no runs of the plan") {
+  const CliFixture cli;
+  const auto scenario = regions_world(cli, "[domain.e, start.e]");
+  cli.write("a \"b\".yaml", "include: " + scenario + "\n");
+  json_of(cli, {"learn", "a \"b\".yaml", "--explore", "12", "--out", "out"});
+  int repeated = 0;
+  for (const auto& round : fs::directory_iterator(cli.folder() / "out" / "rounds")) {
+    const auto run = fs::relative(round.path() / "run", cli.folder()).string();
+    if (!fs::exists(cli.folder() / run / "journal.ndjson")) continue;
+    if (cli.read(run + "/journal.ndjson").find("\"random_sequences\":true") == std::string::npos) {
+      continue;
+    }
+    ++repeated;
+    const auto again = cli.parallax({"replay", run, "--allow-outside"});
+    CAPTURE(again.err);
+    CHECK(again.code == 0);
+    CHECK(again.out.find("identical") != std::string::npos);
+    for (const std::string command : {"repair", "coverage"}) {
+      const auto refused = cli.parallax({command, run, "--allow-outside"});
+      CHECK(refused.code == 3);
+      CHECK(refused.err.find("random sequences of events") != std::string::npos);
+    }
+  }
+  CHECK(repeated > 0);
+}
+
 TEST_CASE("the warehouse: the traces of the plan are those of the true model") {
   const CliFixture cli;
   fs::copy(fs::path(PARALLAX_SOURCE_DIR) / "scenarios" / "warehouse", cli.folder() / "store");

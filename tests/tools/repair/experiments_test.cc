@@ -101,6 +101,42 @@ TEST_CASE("a run cannot tell which condition is missing; further ones from other
   }
 }
 
+TEST_CASE("an experiment that was not drawn for its number is no evidence") {
+  for (const std::string execution : {"open-loop", "closed-loop"}) {
+    CAPTURE(execution);
+    const Drawer cli(kLit, execution);
+    json_of(cli, {"run", "drawer.yaml", "--out", "out"}, 1);
+    json_of(cli, {"repair", "out", "--runs", "1"}, 1);
+    const std::string place = "out/experiments/journal.ndjson";
+    auto journal = cli.read(place);
+    const auto sample = journal.find("\"phase\":\"certify\",\"seed\":");
+    REQUIRE(sample != std::string::npos);
+    auto& digit = journal[sample + std::string("\"phase\":\"certify\",\"seed\":").size()];
+    digit = digit == '1' ? '2' : '1';
+    cli.write(place, journal);
+    const auto refused = cli.parallax({"repair", "out"});
+    CAPTURE(refused.err);
+    CHECK(refused.code == 3);
+    CHECK(refused.err.find("E7103") != std::string::npos);
+    CHECK(refused.err.starts_with(place + ":"));
+  }
+}
+
+TEST_CASE("a tie that --limit hides is told with its number") {
+  const Drawer cli(kLit);
+  cli.write("start.e",
+            "!HoldsAt(Open(),0).\nHoldsAt(Lit(),0) <-> HoldsAt(Parked(),0).\nHoldsAt(Full(),0).\n");
+  json_of(cli, {"run", "drawer.yaml", "--out", "out"}, 1);
+  const auto all = json_of(cli, {"repair", "out", "--limit", "0"}, 1);
+  CHECK(all.at("tied") == 2);
+  CHECK(all.at("tied_hidden") == 0);
+  const auto one = json_of(cli, {"repair", "out", "--limit", "1"}, 1);
+  CHECK(one.at("tied") == 2);
+  CHECK(one.at("tied_hidden") == 1);
+  const auto text = cli.parallax({"repair", "out", "--limit", "1"}).out;
+  CHECK(text.find("not shown (--limit)") != std::string::npos);
+}
+
 TEST_CASE("what no run of the plan tells apart is shown as a tie") {
   // The lamp burns if and only if the arm is parked, in every state that the plan can begin in.
   const Drawer cli(kLit);

@@ -209,6 +209,7 @@ TEST_CASE("what fails at random is tried again") {
   REQUIRE(!report.at("contradictions").empty());
   const auto found = plan_proposals(report, {"is tried again", "container-manipulation"});
   REQUIRE(!found.empty());
+  CHECK(found.front().at("hides_failure") == false);
   cli.apply(found.front());
   // Of a model that says so the plan is right.
   cli.write("w/model.e",
@@ -224,6 +225,16 @@ TEST_CASE("what fails for good and is not needed is done without") {
   CAPTURE(report.dump(1));
   const auto found = plan_proposals(report, {"the plan goes on behind it"});
   REQUIRE(!found.empty());
+  // It says that it mends nothing, and stands last.
+  for (const auto& each : found) {
+    CHECK(each.at("hides_failure") == true);
+    CHECK(each.at("evidence").dump().find("It hides the failure") != std::string::npos);
+  }
+  bool hidden = false;
+  for (const auto& each : plan_proposals(report)) {
+    CHECK((!hidden || each.at("hides_failure") == true));
+    hidden = each.at("hides_failure");
+  }
   // The event went well in no run: nothing is said of what it may need.
   CHECK(plan_proposals(report).size() == found.size());
   cli.apply(found.front());

@@ -169,6 +169,15 @@ TEST_CASE("nothing to repair is said, with what to do instead") {
   CHECK(result.out.find("there is nothing to repair") != std::string::npos);
   CHECK(result.out.find("More runs may find something") != std::string::npos);
   CHECK(json_of(cli, {"repair", "out"}).at("proposals").empty());
+
+  // Of a run that came to no verdict that is not said.
+  CHECK(cli.parallax({"run", "two/agree.yaml", "--max-runs", "5", "--out", "short"}).code == 4);
+  const auto open = cli.parallax({"repair", "short"});
+  CHECK(open.code == 4);
+  CHECK(open.out.find("nothing to repair") == std::string::npos);
+  CHECK(open.out.find("the run came to no verdict") != std::string::npos);
+  std::filesystem::remove(cli.folder() / "out" / "report.json");
+  CHECK(json_of(cli, {"repair", "out"}, 4).at("finished") == false);
 }
 
 TEST_CASE(
