@@ -1,7 +1,14 @@
-# cmake -DOUTPUT=assets.cc -DSTYLE=page.css -DSCRIPT=page.js -DDOTS=dots.js -P embed.cmake
+# cmake -DOUTPUT=assets.cc -DSTYLE=page.css -DSCRIPT=page.js -DDOTS=dots.js -DREPLAY=replay.js
+#       -DTHREE=three.min.js -DTHREE_LICENCE=three_licence.js -P embed.cmake
 # Writes C++ that holds the files as raw string literals, in pieces that every compiler takes.
-function(literal name file out)
-  file(READ ${file} text)
+cmake_policy(SET CMP0053 NEW)  # @names@ are replaced by file(CONFIGURE) alone
+
+function(literal name out)
+  set(text "")
+  foreach(file ${ARGN})
+    file(READ ${file} part)
+    string(APPEND text "${part}")
+  endforeach()
   string(LENGTH "${text}" length)
   set(code "const std::string_view ${name} =\n")
   set(at 0)
@@ -13,16 +20,23 @@ function(literal name file out)
   set(${out} "${code};\n" PARENT_SCOPE)
 endfunction()
 
-literal(kPageStyle ${STYLE} style)
-literal(kPageScript ${SCRIPT} script)
-literal(kDotsScript ${DOTS} dots)
+literal(kPageStyle style ${STYLE})
+literal(kPageScript script ${SCRIPT})
+literal(kDotsScript dots ${DOTS})
+literal(kReplayScript replay ${REPLAY})
+literal(kThreeScript three ${THREE_LICENCE} ${THREE})
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "// Made by tools/page/embed.cmake.
 #include \"tools/page/assets.h\"
+
+// three.js is longer than what the standard asks compilers to take.
+#pragma GCC diagnostic ignored \"-Woverlength-strings\"
 
 namespace parallax::tools {
 
 @style@
 @script@
 @dots@
+@replay@
+@three@
 }  // namespace parallax::tools
 " @ONLY)

@@ -137,6 +137,7 @@ base::Result<PageData> gather_page(const PageOptions& options, Context& context)
     judge_executions(*journal, *loaded, own, page);
   }
   add_timelines(*journal, loaded ? &*loaded : nullptr, page);
+  add_motion(page);
   if (!loaded) return page;
   add_world(*loaded, own.files(), page);
   if (further) add_further(*further, *loaded, own, page);

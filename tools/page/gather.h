@@ -54,6 +54,9 @@ void add_further(const harness::JournalText& further, const ScenarioModel& loade
 /// it.
 void add_rule(PageData& page);
 
+/// Recorded motion of the simulations that matter most; `page` has all of them, judged.
+void add_motion(PageData& page);
+
 /// Regions and furniture, sources, axioms by event.
 void add_world(const ScenarioModel& loaded, const base::SourceFiles& files, PageData& page);
 

@@ -15,11 +15,19 @@ void add_regions(const harness::Scenario& scenario, PageData& page) {
   using harness::RegionAxis;
   if (!scenario.mapping) return;
   for (const auto& region : scenario.mapping->regions().regions()) {
-    PageRegion out{region.name, {}, {}, !region.frame.empty()};
+    PageRegion out;
+    out.name = region.name;
+    out.moves = !region.frame.empty();
     const double dx = out.moves ? region.frame_start[0] : 0.0;
     const double dy = out.moves ? region.frame_start[1] : 0.0;
     if (const auto& x = region.on(RegionAxis::kX)) out.x = {x->lower + dx, x->upper + dx};
     if (const auto& y = region.on(RegionAxis::kY)) out.y = {y->lower + dy, y->upper + dy};
+    for (const auto axis : {RegionAxis::kBottom, RegionAxis::kZ}) {
+      const double dz = out.moves ? region.frame_start[2] : 0.0;
+      if (const auto& z = region.on(axis)) out.z = {z->lower + dz, z->upper + dz};
+    }
+    out.frame = region.frame;
+    out.frame_start = region.frame_start;
     if (out.x || out.y) page.regions.push_back(std::move(out));
   }
 }

@@ -2,10 +2,15 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+namespace parallax::harness {
+struct Recording;
+}  // namespace parallax::harness
 
 namespace parallax::tools {
 
@@ -119,6 +124,18 @@ struct PageRegion {
   std::string name;
   std::optional<std::array<double, 2>> x, y;  // none: not bounded there
   bool moves = false;  // it is one of a body's frame, drawn where that starts
+  std::optional<std::array<double, 2>> z;
+  std::string frame;  // that body
+  std::array<double, 3> frame_start{};
+};
+
+/// The recorded motion of one simulation.
+struct PageMotion {
+  std::int64_t trace = 0, sample = 0;
+  SampleVerdict verdict = SampleVerdict::kNotJudged;
+  std::string cause;
+  std::optional<std::size_t> parting;  // timepoint of the first difference
+  std::shared_ptr<const harness::Recording> recording;
 };
 
 /// A border of the rule that tells failing simulations.
@@ -177,6 +194,9 @@ struct PageData {
   std::vector<PageSource> sources;
   /// By event symbol, the axioms that speak of it.
   std::vector<std::pair<std::string, std::vector<PagePlace>>> axioms;
+  std::vector<PageMotion> motion;  // of some simulations
+  std::size_t motion_left_out = 0;
+  std::optional<std::pair<std::int64_t, std::int64_t>> not_recorded;  // that one would want to see
   std::optional<PageBlame> blame;
   std::optional<PageRule> rule;
   std::vector<PageProposal> proposals;

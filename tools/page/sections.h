@@ -51,6 +51,8 @@ std::string discrepancy_section(const PageData& page, const SourceLinks& links);
 std::string timeline_section(const PageData& page);
 std::string map_section(const PageData& page);
 std::string scatter_section(const PageData& page);
+/// Recorded motion, or how it is made; with what assets/replay.js reads.
+std::string motion_section(const PageData& page);
 std::string confidence_section(const PageData& page);
 std::string blame_section(const PageData& page, const SourceLinks& links);
 std::string samples_section(const PageData& page);

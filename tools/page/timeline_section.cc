@@ -43,7 +43,7 @@ std::string heading(const PageTimeline& timeline) {
     const bool parts = timeline.parting == i + 1;
     const bool failed = !step.outcome.empty() && step.outcome != "ok";
     out += fmt::format("<th scope=\"col\" class=\"ev{}{}\"><span>{} {}{}</span></th>",
-                       parts ? " p" : "", failed && parts ? " failed" : "", i + 1,
+                       parts ? " p" : "", failed && parts ? " failed" : "", i,
                        html_short(step.event), failed ? " failed" : "");
   }
   return out + "</tr></thead>\n";

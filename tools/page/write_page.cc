@@ -33,6 +33,10 @@ std::string html_document(const std::string& title, const std::string& body,
   // A data block is no script to the policy: browsers never run it.
   std::vector<std::string_view> scripts = {kPageScript};
   if (options.has_many_dots) scripts.insert(scripts.begin(), kDotsScript);
+  if (options.has_motion) {
+    scripts.push_back(kThreeScript);
+    scripts.push_back(kReplayScript);
+  }
   std::string hashes, elements;
   for (const auto& script : scripts) {
     hashes += fmt::format("{}'{}'", hashes.empty() ? "" : " ", csp_hash(script));
@@ -61,11 +65,12 @@ std::string html_document(const std::string& title, const std::string& body,
 
 std::string run_page(const PageData& page, const DocumentOptions& options) {
   const SourceLinks links(page);
-  // In the order in which a reader asks: what, where, from which starts, how sure, why. A section
-  // on recorded motion goes behind the confidence.
+  // In the order in which a reader asks: what, where, how it looked, from which starts, how sure,
+  // why.
   const std::vector<Part> parts = {
       {"discrepancy", "Where they part", discrepancy_section(page, links)},
       {"timeline", "Timeline", timeline_section(page)},
+      {"motion", "Motion", motion_section(page)},
       {"map", "Map of starts", map_section(page)},
       {"starts", "Start variables", scatter_section(page)},
       {"confidence", "Confidence", confidence_section(page)},
@@ -77,12 +82,16 @@ std::string run_page(const PageData& page, const DocumentOptions& options) {
   };
   auto body = verdict_section(page) + navigation(parts) + "<main id=\"main\">\n";
   for (const auto& part : parts) body += part.html;
-  body += "</main>\n<footer><p>Made by parallax " + html_short(page.tool_version) +
-          " from what the run recorded; nothing was simulated again.</p></footer>\n";
+  body +=
+      "</main>\n<footer><p>Made by parallax " + html_short(page.tool_version) +
+      " from what the run recorded; nothing was simulated again." +
+      (page.motion.empty() ? "" : " Motion is drawn with three.js (MIT licence, in the page).") +
+      "</p></footer>\n";
   body += data_block(page);
   const auto& name = page.scenario.empty() ? page.folder : page.scenario;
   auto own = options;
   own.has_many_dots = page.samples.size() > kMostDots;
+  own.has_motion = !page.motion.empty();
   return html_document("parallax: " + name, body, own);
 }
 

@@ -13,6 +13,7 @@ inline constexpr const char* kPageMark = "<meta name=\"generator\" content=\"par
 struct DocumentOptions {
   int reload_s = 0;            // the page loads itself again after so many seconds; 0: never
   bool has_many_dots = false;  // plots need the script that draws on a canvas
+  bool has_motion = false;     // there is something to be drawn with WebGL
   std::string style = {};      // beside that of all pages; not from a run folder
 };
 

@@ -44,7 +44,8 @@ addEventListener("load", async () => {
   seen.images = document.images.length;
   seen.turned = (document.body.textContent.match(/[\u202a-\u202e\u2066-\u2069\u200e\u200f]/g) ?? []).length;
   for (const control of document.querySelectorAll("button, select, input")) {
-    const name = control.labels?.length ? control.labels[0].textContent : control.textContent;
+    const name = control.getAttribute("aria-label") ??
+      (control.labels?.length ? control.labels[0].textContent : control.textContent);
     expect(name.trim(), `a control without a name: ${control.outerHTML.slice(0, 80)}`);
   }
   for (const image of document.querySelectorAll("svg")) {
@@ -124,6 +125,80 @@ addEventListener("load", async () => {
   }
   seen.focusable = [...document.querySelectorAll("a[href], button, select, input, summary, [tabindex='0']")]
     .filter((element) => element.checkVisibility()).length;
+  for (let i = 0; i < 200 && byId("motion-data") && !byId("motion").dataset.state; ++i) {
+    await new Promise((done) => setTimeout(done, 50));
+  }
+  const replay = byId("motion")?.replay;
+  if (replay) {
+    const stage = byId("motion-stage"), motion = { stats: [], poses: [] };
+    // What is on the canvas, as numbers: the drawing is kept for as long as the task lasts.
+    const look = () => {
+      replay.draw();
+      const copy = document.createElement("canvas");
+      [copy.width, copy.height] = [replay.canvas.width, replay.canvas.height];
+      const pen = copy.getContext("2d");
+      pen.drawImage(replay.canvas, 0, 0);
+      const pixels = pen.getImageData(0, 0, copy.width, copy.height).data;
+      let sum = 0, squares = 0, mark = 0;
+      for (let i = 0; i < pixels.length; i += 4) {
+        const grey = pixels[i] + pixels[i + 1] + pixels[i + 2];
+        sum += grey;
+        squares += grey * grey;
+        mark = (mark * 31 + grey) % 1000000007;
+      }
+      const count = pixels.length / 4;
+      return { mean: sum / count, spread: Math.sqrt(squares / count - (sum / count) ** 2), mark };
+    };
+    const data = JSON.parse(byId("motion-data").textContent), run = data.runs[0];
+    replay.choose(0, run.beside);
+    motion.names = replay.names();
+    const end = run.events[run.events.length - 1].end;
+    for (const share of [0, 0.5, 1]) {
+      replay.seek(share * end);
+      motion.stats.push(look());
+    }
+    const moving = data.scenes[run.scene].bodies.filter((body) => body.moves).map((body) => body.name);
+    const steps = [...byId("motion-events").children];
+    expect(steps.length === run.events.length, "not a button for each event");
+    for (const step of steps) {
+      step.querySelector("button").click();
+      const places = {};
+      for (const name of moving) places[name] = replay.poseOf(name);
+      motion.poses.push({ time: replay.time(), places, says: byId("motion-says").textContent });
+    }
+    stage.focus();
+    expect(document.activeElement === stage, "the stage takes no focus");
+    replay.seek(0);
+    press(stage, "ArrowRight");
+    const first = replay.time();
+    press(stage, "ArrowRight");
+    expect(first > 0 && replay.time() > first, "the arrow does not go from event to event");
+    press(stage, "ArrowLeft");
+    expect(Math.abs(replay.time() - first) < 1e-9, "the arrow does not go back");
+    press(stage, " ");
+    expect(replay.playing() && byId("motion-play").textContent === "Pause", "space does not play");
+    press(stage, " ");
+    expect(!replay.playing(), "space does not pause");
+    const before = look().mark;
+    press(stage, "ArrowUp");
+    expect(look().mark !== before, "the view does not turn");
+    for (const view of ["top", "front", "robot", "world"]) {
+      document.querySelector(`[data-view=${view}]`).click();
+      motion[view] = look();
+      expect(motion[view].spread > 5, `nothing is seen from ${view}`);
+    }
+    const follow = byId("motion-follow");
+    follow.value = follow.options[follow.options.length - 1].value;
+    follow.dispatchEvent(new Event("input"));
+    expect(look().mark !== motion.world.mark, "following a body changes nothing");
+    const shows = document.querySelectorAll("#samples-table button.show");
+    expect(shows.length === data.runs.length, "not a button for each recorded run");
+    shows[shows.length - 1].click();
+    motion.shown = replay.names()[0];
+    motion.row = shows[shows.length - 1].closest("tr").cells[0].textContent;
+    seen.motion = motion;
+  }
+  seen.needs = byId("motion-needs")?.checkVisibility() ? byId("motion-needs").textContent : "";
   if (window.axe) {
     const found = await axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"] });
     seen.axe = found.passes.length;

@@ -3,12 +3,16 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
+#include "harness/recording/recording_file.h"
 #include "tests/tools/cli_fixture.h"
 #include "tools/page/sha256.h"
 
@@ -69,21 +73,37 @@ std::string with_scripts(std::string page, const std::vector<std::string>& scrip
 /// In a log of the network, of requests that a page from a file makes.
 constexpr const char* kAskedByPage = "\"initiator\":\"null\"";
 
-ProcessResult browse(const CliFixture& cli, const std::string& name, bool dark) {
-  return run_process(
-      {browser(), "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-       "--no-first-run", "--disable-background-networking", "--disable-component-update",
-       "--disable-sync", "--user-data-dir=" + (cli.folder() / "profile").string(),
-       "--enable-logging=stderr", "--log-net-log=" + (cli.folder() / "net.json").string(),
-       "--window-size=1280,900",
-       std::string("--blink-settings=preferredColorScheme=") + (dark ? "0" : "1"),
-       "--virtual-time-budget=20000", "--dump-dom", "file://" + (cli.folder() / name).string()});
+ProcessResult browse(const CliFixture& cli, const std::string& name, bool dark,
+                     bool with_gl = false) {
+  std::vector<std::string> words = {
+      browser(),
+      "--headless",
+      "--no-sandbox",
+      "--disable-dev-shm-usage",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+      "--user-data-dir=" + (cli.folder() / "profile").string(),
+      "--enable-logging=stderr",
+      "--log-net-log=" + (cli.folder() / "net.json").string(),
+      "--window-size=1280,900",
+      std::string("--blink-settings=preferredColorScheme=") + (dark ? "0" : "1"),
+      "--virtual-time-budget=20000"};
+  // Drawn by the processor, as there may be nothing else.
+  const std::vector<std::string> drawing =
+      with_gl ? std::vector<std::string>{"--use-gl=angle", "--use-angle=swiftshader",
+                                         "--enable-unsafe-swiftshader"}
+              : std::vector<std::string>{"--disable-gpu", "--disable-3d-apis"};
+  words.insert(words.end(), drawing.begin(), drawing.end());
+  words.insert(words.end(), {"--dump-dom", "file://" + (cli.folder() / name).string()});
+  return run_process(words);
 }
 
 /// What the probe found in the page; checks that nothing was asked of a network or told on the
 /// console.
 struct ProbeOptions {
-  bool dark = false, with_axe = true;
+  bool dark = false, with_axe = true, with_gl = false;
   int width = 0;  // of a frame that the page is put into; windows have a least width
 };
 Json probe(const CliFixture& cli, const std::string& name, const ProbeOptions& options = {}) {
@@ -107,7 +127,7 @@ Json probe(const CliFixture& cli, const std::string& name, const ProbeOptions& o
                   "document.body.dataset.probe = event.data; });</script>");
   }
   const auto* shown = options.width > 0 ? "frame.html" : "probed.html";
-  const auto result = browse(cli, shown, options.dark);
+  const auto result = browse(cli, shown, options.dark, options.with_gl);
   CHECK(result.code == 0);
   std::istringstream lines(result.err);
   for (std::string line; std::getline(lines, line);) {
@@ -234,6 +254,63 @@ void write_hostile_folder(const CliFixture& cli, const std::string& from, int sa
   report["scenario"] = kHostile;
   report["verdict"] = "discrepancy";
   cli.write("hostile/report.json", report.dump());
+}
+
+TEST_CASE("recorded motion is played, and drawn where the recording has it") {
+  if (!has_browser()) return;
+  const CliFixture cli;
+  REQUIRE(cli.parallax({"run", "edge.yaml", "--execution", "closed-loop", "--keep-going",
+                        "--max-runs", "8", "--out", "loop"})
+              .code <= 4);
+  REQUIRE(cli.parallax({"report", "loop", "-o", "loop.html"}).code == 0);
+  CHECK(cli.read("loop.html").size() < 4'000'000);
+  // Without WebGL a sentence says so.
+  const auto flat = probe(cli, "loop.html");
+  CHECK(flat["needs"].get<std::string>().find("WebGL") != std::string::npos);
+  for (const bool dark : {false, true}) {
+    const auto seen = probe(cli, "loop.html", {.dark = dark, .with_axe = dark, .with_gl = true});
+    REQUIRE(seen.contains("motion"));
+    CHECK(seen["needs"] == "");
+    const auto& motion = seen["motion"];
+    std::set<std::int64_t> pictures;
+    for (const auto& stats : motion["stats"]) {
+      CHECK(stats["spread"] > 10.0);
+      pictures.insert(stats["mark"].get<std::int64_t>());
+    }
+    CHECK(pictures.size() == 3);
+    CHECK(motion["shown"] == motion["row"]);
+    // The discrepancy beside a clean one.
+    REQUIRE(motion["names"].size() == 2);
+    const auto id = harness::recording_id(motion["names"][0].get<std::string>() + ".rec");
+    REQUIRE(id);
+    std::string why;
+    const auto recording =
+        harness::find_recording(cli.folder() / "loop", id->first, id->second, why);
+    REQUIRE_MESSAGE(recording, why);
+    REQUIRE(motion["poses"].size() == recording->events.size());
+    for (std::size_t i = 0; i < recording->events.size(); ++i) {
+      CAPTURE(i);
+      const auto& drawn = motion["poses"][i]["places"];
+      std::map<std::string, harness::Pose> expected;
+      for (harness::Playback at(*recording);
+           at.next() && at.time_s() <= recording->events[i].end_s + 1e-6;) {
+        for (std::size_t body = 0; body < recording->scene.bodies.size(); ++body) {
+          expected[recording->scene.bodies[body].name] = at.pose_of(body);
+        }
+      }
+      CHECK(drawn.size() > 1);
+      for (const auto& [name, place] : drawn.items()) {
+        CAPTURE(name);
+        for (std::size_t k = 0; k < 3; ++k) {
+          CHECK(place[k].get<double>() == doctest::Approx(expected.at(name).p[k]).epsilon(0.002));
+        }
+      }
+      // And where the log says that it is.
+      const auto& seen_x = recording->observations[i + 1].find("box.x");
+      REQUIRE(seen_x != recording->observations[i + 1].end());
+      CHECK(std::abs(drawn["box"][0].get<double>() - std::get<double>(seen_x->second)) < 0.003);
+    }
+  }
 }
 
 TEST_CASE("a hostile run folder is inert on the page, with ten thousand simulations") {

@@ -13,14 +13,14 @@ const std::set<std::string, std::less<>> kBlocks = {
     "thead", "tbody",   "main", "header", "summary", "pre",     "dl",
     "svg",   "details", "text", "figure", "footer",  "article", "label"};
 const std::set<std::string, std::less<>> kKnown = {
-    "html",   "head",   "meta",    "title",    "style",   "body",    "a",        "header",
-    "p",      "h1",     "h2",      "h3",       "dl",      "div",     "dt",       "dd",
-    "nav",    "ul",     "li",      "main",     "section", "article", "table",    "caption",
-    "thead",  "tbody",  "tr",      "th",       "td",      "span",    "figure",   "figcaption",
-    "pre",    "mark",   "b",       "i",        "code",    "details", "summary",  "input",
-    "label",  "select", "option",  "button",   "svg",     "desc",    "g",        "path",
-    "rect",   "line",   "text",    "polyline", "polygon", "circle",  "progress", "footer",
-    "script", "br",     "noscript"};
+    "html",   "head",   "meta",     "title",    "style",   "body",    "a",        "header",
+    "p",      "h1",     "h2",       "h3",       "dl",      "div",     "dt",       "dd",
+    "nav",    "ul",     "li",       "main",     "section", "article", "table",    "caption",
+    "thead",  "tbody",  "tr",       "th",       "td",      "span",    "figure",   "figcaption",
+    "pre",    "mark",   "b",        "i",        "code",    "details", "summary",  "input",
+    "label",  "select", "option",   "button",   "svg",     "desc",    "g",        "path",
+    "rect",   "line",   "text",     "polyline", "polygon", "circle",  "progress", "footer",
+    "script", "br",     "noscript", "ol",       "output"};
 
 std::string unescaped(std::string_view text) {
   static const std::vector<std::pair<std::string_view, std::string_view>> kEntities = {
@@ -163,7 +163,12 @@ class Scanner {
   void raw(const std::string& name, const std::map<std::string, std::string>& attributes) {
     const auto end = text_.find("</" + name, at_);
     const std::string body(text_.substr(at_, end - at_));
-    (name == "style" ? out_.style : attributes.contains("type") ? out_.data : out_.script) += body;
+    const auto id = attributes.find("id");
+    const bool is_motion = id != attributes.end() && id->second == "motion-data";
+    (name == "style"               ? out_.style
+     : is_motion                   ? out_.motion
+     : attributes.contains("type") ? out_.data
+                                   : out_.script) += body;
     at_ = text_.find('>', end) + 1;
   }
 

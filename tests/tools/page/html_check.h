@@ -13,7 +13,7 @@ struct HtmlPage {
   std::vector<std::string> faults;  // badly nested, doubtful attributes, links to nowhere
   std::map<std::string, std::size_t> elements;
   std::set<std::string> ids;
-  std::string style, script, policy, data;
+  std::string style, script, policy, data, motion;
   std::string text;  // what is shown, a line for each block
 };
 

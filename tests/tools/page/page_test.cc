@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/confidence/clean_runs.h"
+#include "harness/recording/recording.h"
 #include "tests/tools/page/html_check.h"
 #include "tools/page/gather.h"
 #include "tools/page/markup.h"
@@ -82,7 +83,10 @@ PageData page_named(const std::string& name, std::int64_t samples) {
     sample.ways = {{{at, 0.0F}, {at, 1.0F}, {0.0F, at}}};
     page.samples.push_back(sample);
   }
-  page.regions = {{name, {{0.0, 1.0}}, {}, false}};
+  PageRegion region;
+  region.name = name;
+  region.x = {0.0, 1.0};
+  page.regions = {region};
   page.sources = {{name + ".lisp", name + "\n"},
                   {"plan.lisp", "; one\n(perform \"" + name + "\")\n"}};
   page.axioms = {{name, {{"plan.lisp:1", name}}}};
@@ -131,6 +135,58 @@ TEST_CASE("names of a run folder are text on the page, whatever they hold") {
     CHECK(shown.policy == plain.policy);
     CHECK(nlohmann::json::accept(shown.data));
   }
+}
+
+/// A simulation in which something moves, everything of which is called `name`.
+std::shared_ptr<const harness::Recording> recording_named(const std::string& name) {
+  auto out = std::make_shared<harness::Recording>();
+  out->trace = out->sample = 1;
+  out->missing = name;
+  out->interval_s = 0.1;
+  harness::RecordedBody body;
+  body.name = name;
+  body.moves = true;
+  body.shapes = {{harness::ShapeKind::kBox, {0.1, 0.2, 0.3}, {}}};
+  out->scene.bodies = {body};
+  out->scene.grippers = {name};
+  out->scene.arms = {{name, 0, 0, {0.0, 0.0, 1.0}, 0.2, 0.9}};
+  out->events = {{name, 0.0, 1.0, name, name, {{name, 0.5}}}};
+  out->observations = {{}, {}};
+  harness::MotionWriter frames({1, 1});
+  const harness::Pose poses[] = {{{1.0, 2.0, 3.0}}};
+  CHECK(frames.add(0.0, poses, {}));
+  out->frames = frames.take();
+  return out;
+}
+
+TEST_CASE("motion brings its scripts, and nothing in it is markup") {
+  for (const auto& name : {std::string("plain"), std::string("</script><img src=x>\" \xE2\x80\xAE"),
+                           std::string(1 << 20, 'x')}) {
+    CAPTURE(name.substr(0, 60));
+    auto page = page_named("plain", 3);
+    page.motion = {{1, 1, SampleVerdict::kDiscrepancy, name, 1, recording_named(name)},
+                   {1, 2, SampleVerdict::kClean, name, {}, recording_named(name)}};
+    const auto text = run_page(page);
+    const auto shown = check_html(text);
+    for (const auto& fault : shown.faults) FAIL_CHECK(fault);
+    CHECK(shown.elements.at("script") == 5);
+    CHECK(text.find("\xE2\x80\xAE") == std::string::npos);
+    std::size_t hashes = 0;
+    for (auto at = shown.policy.find("sha256-"); at != std::string::npos;
+         at = shown.policy.find("sha256-", at + 1)) {
+      ++hashes;
+    }
+    CHECK(hashes == 4);
+    const auto motion = nlohmann::json::parse(shown.motion);
+    REQUIRE(motion["runs"].size() == 2);
+    CHECK(motion["scenes"].size() == 1);
+    CHECK(motion["runs"][0]["beside"] == 1);
+    CHECK(motion["runs"][0]["parting"] == 0);
+    CHECK(shown.text.find("Recorded motion of 2 simulations") != std::string::npos);
+    CHECK(text.find("The MIT License") != std::string::npos);
+  }
+  // Where there is none, there are no scripts for it either.
+  CHECK(run_page(page_named("plain", 3)).find("The MIT License") == std::string::npos);
 }
 
 TEST_CASE("the policy lets run what is in the page, by its hash, and nothing else") {

@@ -201,6 +201,26 @@ TEST_CASE("a page that is watched loads itself until the run is over") {
   CHECK(cli.parallax({"report", folder, folder, "--watch"}).code == 2);
 }
 
+TEST_CASE("a missing recording comes with the command that makes it, and a broken one is said") {
+  const CliFixture cli;
+  REQUIRE(cli.parallax({"run", "edge.yaml", "--record", "none", "--out", "edge"}).code == 1);
+  CHECK(cli.parallax({"report", "edge", "-o", "page.html"}).code == 0);
+  const auto before = page_of(cli, "page.html");
+  CHECK(before.motion.empty());
+  CHECK(before.text.find("parallax replay edge --sample 1.1 --record") != std::string::npos);
+  REQUIRE(cli.parallax({"replay", "edge", "--sample", "1.1", "--record"}).code == 0);
+  CHECK(cli.parallax({"report", "edge", "-o", "page.html"}).code == 0);
+  const auto after = page_of(cli, "page.html");
+  CHECK(Json::parse(after.motion)["runs"][0]["name"] == "1.1");
+  CHECK(after.text.find("--record") == std::string::npos);
+  const auto recording = cli.read("edge/recordings/1.1.rec");
+  cli.write("edge/recordings/1.1.rec", recording.substr(0, recording.size() / 2));
+  const auto made = cli.parallax({"report", "edge", "-o", "page.html"});
+  CHECK(made.code == 0);
+  CHECK(made.err.find("The recording of simulation 1.1 cannot be shown") != std::string::npos);
+  CHECK(page_of(cli, "page.html").motion.empty());
+}
+
 TEST_CASE("a folder that is none is not watched") {
   const CliFixture cli;
   cli.write("empty/other.txt", "");

@@ -85,12 +85,15 @@
     svg.classList.add("painted");
     svg.after(canvas);
     const again = () => draw(svg, canvas);
-    setTimeout(again);  // one after the other, so that the page answers meanwhile
-    let width = svg.clientWidth;
-    new ResizeObserver(() => {
-      if (svg.clientWidth !== width) again();
-      width = svg.clientWidth;
-    }).observe(svg);
+    // One after the other, and later, so that the page answers meanwhile.
+    setTimeout(() => {
+      again();
+      let width = svg.clientWidth;
+      new ResizeObserver(() => {
+        if (svg.clientWidth !== width) again();
+        width = svg.clientWidth;
+      }).observe(svg);
+    });
     svg.addEventListener("view", again);
     later.push(again);
   }
