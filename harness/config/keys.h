@@ -23,6 +23,7 @@ struct Key {
   static constexpr std::string_view kBase = "base";
   static constexpr std::string_view kBaseBody = "base_body";
   static constexpr std::string_view kBaseJoint = "base_joint";
+  static constexpr std::string_view kBecause = "because";
   static constexpr std::string_view kBetween = "between";
   static constexpr std::string_view kBiasM = "bias_m";
   static constexpr std::string_view kBiasRad = "bias_rad";
@@ -32,6 +33,7 @@ struct Key {
   static constexpr std::string_view kBonferroni = "bonferroni";
   static constexpr std::string_view kCamera = "camera";
   static constexpr std::string_view kCarryM = "carry_m";
+  static constexpr std::string_view kCase = "case";
   static constexpr std::string_view kCases = "cases";
   static constexpr std::string_view kCells = "cells";
   static constexpr std::string_view kCfm = "cfm";
@@ -41,6 +43,7 @@ struct Key {
   static constexpr std::string_view kCommand = "command";
   static constexpr std::string_view kCompare = "compare";
   static constexpr std::string_view kExecution = "execution";
+  static constexpr std::string_view kQuarantine = "quarantine";
   static constexpr std::string_view kStarts = "starts";
   static constexpr std::string_view kStartWeights = "start_weights";
   static constexpr std::string_view kUntilCovered = "until_covered";

@@ -5,55 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/cli_json.h"
+#include "tests/tools/suite/suite_fixture.h"
 
 namespace parallax::test {
 namespace {
-
-namespace fs = std::filesystem;
-
-constexpr const char* kLamp =
-    "range time 0 1\n"
-    "fluent On()\n"
-    "event Press()\n"
-    "[time] Initiates(Press(),On(),time).\n"
-    "!HoldsAt(On(),0).\n";  // pressed or not: two traces
-
-/// A folder `s` with a model of two traces and a manifest of two cases.
-class SuiteFixture : public CliFixture {
- public:
-  SuiteFixture() {
-    fs::create_directories(folder() / "s");
-    write("s/lamp.e", kLamp);
-    write("s/suite.yaml",
-          "cases:\n"
-          "  - id: both\n"
-          "    model: lamp.e\n"
-          "    expect: {traces: 2, golden: expected/both.txt}\n"
-          "  - id: lit\n"
-          "    model: lamp.e\n"
-          "    constraints: HoldsAt(On(),time)\n"
-          "    expect: {traces: 1}\n");
-  }
-  ProcessResult suite(const std::vector<std::string>& arguments) const {
-    return suite_with({}, arguments);
-  }
-  ProcessResult suite_under_ci(const std::vector<std::string>& arguments) const {
-    return suite_with({"CI=true"}, arguments);
-  }
-
- private:
-  /// `env SETTINGS... parallax suite s ARGUMENTS...`
-  ProcessResult suite_with(const std::vector<std::string>& settings,
-                           const std::vector<std::string>& arguments) const {
-    std::vector<std::string> command = {"/usr/bin/env"};
-    command.insert(command.end(), settings.begin(), settings.end());
-    command.insert(command.end(), {std::string(PARALLAX_BINARY_DIR) + "/parallax", "suite", "s"});
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    ProcessOptions options;
-    options.folder = folder().string();
-    return run_process(command, options);
-  }
-};
 
 bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -68,12 +23,12 @@ TEST_CASE("a golden file is written on demand, held against, and its difference 
 
   CHECK(cli.suite({"--update-goldens"}).code == 0);
   CHECK(cli.read("s/expected/both.txt") == cli.parallax({"traces", "s/lamp.e"}).out);
-  const auto passed = cli.suite({});
+  const auto passed = cli.suite({"--no-cache"});
   CHECK(passed.code == 0);
   CHECK(passed.out == "2 passed, 0 failed\n");
 
   cli.replace("s/expected/both.txt", "> Press()", "> Pull()");
-  const auto failed = cli.suite({});
+  const auto failed = cli.suite({"--no-cache"});
   CHECK(failed.code == 1);
   CHECK(holds(failed.err, "FAIL  s/suite.yaml:both"));
   CHECK(holds(failed.err, "-       > Pull()"));

@@ -1,5 +1,6 @@
 #include "tools/cli/command.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,6 +12,8 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
+#include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
 #include "tools/app/version.h"
 #include "tools/cli/limits.h"
 
@@ -87,10 +90,25 @@ void Invocation::print_diagnostics(const std::vector<base::Diagnostic>& diagnost
   if (!options_.quiet) rest(sink().warning_count(), "warnings are");
 }
 
+/// What was read and how much memory it took, for who wants to know when the answer may change.
+void Invocation::write_footprint() {
+  if (options_.footprint.empty()) return;
+  const std::set<std::string> inputs(files().inputs().begin(), files().inputs().end());
+  rusage own{}, children{};
+  ::getrusage(RUSAGE_SELF, &own);
+  ::getrusage(RUSAGE_CHILDREN, &children);
+  const nlohmann::json json = {
+      {"schema_version", 1},
+      {"inputs", inputs},
+      {"peak_memory_mb", (own.ru_maxrss + children.ru_maxrss + 1023) / 1024}};
+  (void)base::write_output(options_.footprint, base::json_text(json) + '\n', files(), sink());
+}
+
 int Invocation::finish(int code) {
   // What was reported after that is about having been stopped by it.
   if (output_error_ != 0) sink() = before_output_error_;
   report_output_error();
+  write_footprint();
   const auto diagnostics = sink().sorted();
   print_diagnostics(diagnostics);
   if (!document_.empty()) {
@@ -130,6 +148,8 @@ void add_common_options(OptionTable& table, CommonOptions& options) {
       .check(WholeNumber{16, 10'000'000});
   table.flag("--allow-outside", options.allow_outside,
              "Let files name files outside their folder (docs/trust.md)");
+  table.option("--footprint", options.footprint,
+               "Write which files were read, and how much memory was used, as JSON");
 }
 
 }  // namespace parallax::tools

@@ -26,6 +26,7 @@ struct CommonOptions {
   double time_limit_s = 0.0;         // 0: none
   std::int64_t memory_limit_mb = 0;  // 0: none
   bool allow_outside = false;
+  std::string footprint;  // the file that says what was read; empty: none
 };
 
 /// One run of one command: where results go, and what ends it.
@@ -54,6 +55,7 @@ class Invocation final : public Context {
 
  private:
   void report_output_error();
+  void write_footprint();
   void print_diagnostics(const std::vector<base::Diagnostic>& diagnostics) const;
 
   CommonOptions options_;

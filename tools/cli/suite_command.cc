@@ -1,54 +1,46 @@
 #include <algorithm>
-#include <atomic>
 #include <cstdlib>
 #include <memory>
-#include <mutex>
-#include <thread>
+#include <set>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
-#include "compiler/base/json.h"
-#include "compiler/base/subprocess.h"
+#include "compiler/base/whole_number.h"
+#include "harness/config/quarantine.h"
+#include "tools/app/version.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/shared_options.h"
+#include "tools/suite/input_hashes.h"
+#include "tools/suite/result_cache.h"
 #include "tools/suite/suite_case.h"
+#include "tools/suite/suite_loop.h"
+#include "tools/suite/suite_merge.h"
 #include "tools/suite/suite_record.h"
-#include "tools/suite/suite_runner.h"
+#include "tools/suite/suite_summary.h"
 
 namespace parallax::tools {
 namespace {
 
 struct SuiteOptions {
-  std::vector<std::string> paths;
+  std::vector<std::string> paths, merge;
   std::string only;
   std::string out = "out/suite";
-  std::string junit;
+  std::string junit, markdown, annotations, quarantine, cache, verify_cache;
   std::string shard = "1/1";
   std::uint64_t seed = 1;
-  std::int64_t jobs = 1;
+  std::int64_t jobs = 1, memory_mb = 0, retries = 0;
   bool update_goldens = false;
   bool force = false;
-  bool rerun_failed = false;
+  bool rerun_failed = false, resume = false;
+  bool no_cache = false;
   bool fast = false;
   CommandPermission commands;
 };
 
-std::string environment(const char* name) {
-  const char* value = std::getenv(name);
+std::string environment(const std::string& name) {
+  const char* value = std::getenv(name.c_str());
   return value == nullptr ? "" : value;
-}
-
-/// `slurm` stands for the task of a job array, whose tasks count from 1.
-base::Result<Shard> shard_of(const SuiteOptions& options, base::DiagnosticSink& sink) {
-  auto text = options.shard;
-  if (text == "slurm") {
-    text = environment("SLURM_ARRAY_TASK_ID") + '/' + environment("SLURM_ARRAY_TASK_COUNT");
-  }
-  if (const auto shard = parse_shard(text)) return *shard;
-  return sink.error_about(
-      base::DiagnosticCode::kUsage, "",
-      fmt::format("--shard: `{}` is not of the form I/N with 1 <= I <= N <= {}", text, kMaxShards));
 }
 
 /// Expectations of models bring a limit of their own; scenarios say that they are fast.
@@ -59,7 +51,7 @@ bool is_fast(const SuiteCase& one) {
 
 /// The cases that are asked for; those that passed last time leave under --rerun-failed.
 base::Result<std::vector<SuiteCase>> wanted_cases(const SuiteOptions& options,
-                                                  const EarlierResults& earlier,
+                                                  const StoredCases& earlier,
                                                   Invocation& invocation) {
   auto cases = find_cases(options.paths, invocation.form().allow_outside, invocation.files(),
                           invocation.sink());
@@ -73,92 +65,12 @@ base::Result<std::vector<SuiteCase>> wanted_cases(const SuiteOptions& options,
   if (options.rerun_failed) {
     std::erase_if(*cases, [&](const SuiteCase& one) {
       const auto at = earlier.find(one.name());
-      return at == earlier.end() || at->second == "passed";
+      if (at == earlier.end()) return true;
+      const auto outcome = at->second.result.outcome;
+      return outcome == Outcome::kPassed || outcome == Outcome::kSkipped;
     });
   }
   return cases;
-}
-
-std::string line_of(const SuiteCase& one, const CaseResult& result) {
-  const auto* mark = result.outcome == Outcome::kPassed   ? "ok   "
-                     : result.outcome == Outcome::kFailed ? "FAIL "
-                                                          : "ERROR";
-  auto line = fmt::format("{} {} ({:.1f} s)", mark, one.name(), result.wall_s);
-  if (!result.golden_written.empty()) {
-    line += "\n       golden file written: " + result.golden_written;
-  }
-  std::string details;
-  for (const auto& problem : result.problems) details += problem + '\n';
-  // Of a case without an answer, what the program said of it is the answer.
-  if (result.outcome == Outcome::kError) details += result.messages;
-  while (details.ends_with('\n')) details.pop_back();
-  if (details.empty()) return line;
-  line += "\n       ";
-  for (const char c : details) line += c == '\n' ? "\n       " : std::string(1, c);
-  return line;
-}
-
-void run_all(SuiteRecord& record, const SuiteOptions& options, Invocation& invocation) {
-  const RunnerOptions runner{options.out, options.seed, options.update_goldens,
-                             options.commands.allow, invocation.form().allow_outside};
-  std::vector<std::size_t> queue;
-  for (std::size_t i = 0; i < record.cases().size(); ++i) {
-    if (record.results()[i].outcome != Outcome::kSkipped) queue.push_back(i);
-  }
-  std::atomic<std::size_t> next{0};
-  std::mutex printing;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < queue.size() && !stop_flag().load(); i = next++) {
-      const auto& one = record.cases()[queue[i]];
-      if (!one.command.empty() && options.commands.allow) {
-        const std::lock_guard lock(printing);
-        invocation.remark(
-            fmt::format("{} starts `{}`", one.name(), base::command_text(one.command)));
-      }
-      auto result = run_case(one, runner, stop_flag());
-      if (result.outcome != Outcome::kNotFinished) {
-        const std::lock_guard lock(printing);
-        invocation.remark(line_of(one, result));
-      }
-      record.finish(queue[i], std::move(result));
-    }
-  };
-  std::vector<std::thread> threads;
-  for (std::int64_t i = 0; i < options.jobs; ++i) threads.emplace_back(work);
-  for (auto& thread : threads) thread.join();
-}
-
-std::string summary_text(const SuiteRecord& record) {
-  auto text = fmt::format("{} passed, {} failed", record.count(Outcome::kPassed),
-                          record.count(Outcome::kFailed));
-  const auto append = [&](Outcome outcome, std::string_view words) {
-    const auto count = record.count(outcome);
-    if (count > 0) text += fmt::format(", {} {}", count, words);
-  };
-  append(Outcome::kError, "without an answer");
-  append(Outcome::kNotFinished, "not run");
-  append(Outcome::kSkipped, "in other shards");
-  return text + '\n';
-}
-
-std::string summary_document(const SuiteRecord& record) {
-  auto list = nlohmann::json::array();
-  for (std::size_t i = 0; i < record.cases().size(); ++i) {
-    const auto& result = record.results()[i];
-    list.push_back({{"case", record.cases()[i].name()},
-                    {"outcome", to_string(result.outcome)},
-                    {"problems", result.problems},
-                    {"timing", {{"wall_s", result.wall_s}}}});
-    if (!result.golden_written.empty()) list.back()["golden_written"] = result.golden_written;
-  }
-  const nlohmann::json document = {{"status", "ok"},
-                                   {"passed", record.count(Outcome::kPassed)},
-                                   {"failed", record.count(Outcome::kFailed)},
-                                   {"errors", record.count(Outcome::kError)},
-                                   {"not_run", record.count(Outcome::kNotFinished)},
-                                   {"skipped", record.count(Outcome::kSkipped)},
-                                   {"cases", list}};
-  return base::json_text(document) + '\n';
 }
 
 /// A JUnit report, as far as one can see.
@@ -167,6 +79,25 @@ bool is_junit(std::string_view text) {
   return text.starts_with("<") &&
          text.substr(0, kHead).find("<testsuite") != std::string_view::npos;
 }
+
+/// May `file` be replaced: is it new, empty, or something that `is_ours`?
+bool may_replace(const std::string& file, const std::string& option,
+                 bool (*is_ours)(std::string_view), Invocation& invocation) {
+  if (file.empty()) return true;
+  auto& sink = invocation.sink();
+  if (!base::check_output(file, invocation.files(), sink)) return false;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return true;
+  const auto text = base::read_file(file, sink);
+  if (!text) return false;
+  if (text->empty() || is_ours(*text)) return true;
+  sink.error_about(
+      base::DiagnosticCode::kUsage, file,
+      fmt::format("this file is there already and is no report that {} could replace", option));
+  return false;
+}
+
+bool is_markdown(std::string_view text) { return text.starts_with(kMarkdownMark); }
 
 /// Results replace earlier results, a report replaces an earlier report, or an empty file, and no
 /// file that the suite reads.
@@ -182,38 +113,29 @@ bool may_write(const SuiteOptions& options, Invocation& invocation) {
                      "this file is there already and holds no results that --out could replace");
     return false;
   }
-  if (options.junit.empty()) return true;
-  if (!base::check_output(options.junit, invocation.files(), sink)) return false;
-  if (!std::filesystem::is_regular_file(options.junit, error)) return true;
-  const auto text = base::read_file(options.junit, sink);
-  if (!text) return false;
-  if (text->empty() || is_junit(*text)) return true;
-  sink.error_about(base::DiagnosticCode::kUsage, options.junit,
-                   "this file is there already and is no report that --junit could replace");
-  return false;
+  return may_replace(options.junit, "--junit", is_junit, invocation) &&
+         may_replace(options.markdown, "--markdown", is_markdown, invocation);
 }
 
-int run_suite(const SuiteOptions& options, Invocation& invocation) {
+/// "5%" or "5" as 0.05; nothing if it is no share.
+std::optional<double> share_of(std::string text) {
+  if (text.ends_with('%')) text.pop_back();
+  const auto percent = base::whole_number<std::uint32_t>(text);
+  constexpr std::uint32_t kAll = 100;
+  if (!percent || *percent > kAll) return std::nullopt;
+  return static_cast<double>(*percent) / kAll;
+}
+
+/// Prints and writes what came out; the exit code.
+int conclude(SuiteRecord& record, const SuiteOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
-  if (options.update_goldens && !options.force && !environment("CI").empty()) {
-    sink.error_about(base::DiagnosticCode::kGoldenUpdateRefused, "--update-goldens");
-    return 0;
+  bool saved = record.save(sink).has_value();
+  if (!options.markdown.empty()) {
+    saved =
+        base::write_file_atomically(options.markdown, summary_markdown(record), sink).has_value() &&
+        saved;
   }
-  const auto shard = shard_of(options, sink);
-  EarlierResults earlier;
-  if (options.rerun_failed) {
-    auto read = read_results(options.out, sink);
-    if (!read) return 0;
-    earlier = *std::move(read);
-  }
-  auto cases = wanted_cases(options, earlier, invocation);
-  if (!shard || !cases || !may_write(options, invocation)) return 0;
-  std::vector<bool> skipped;
-  for (const auto& one : *cases) skipped.push_back(!in_shard(one.id, *shard));
-  SuiteRecord record(*std::move(cases), skipped, options.out, options.junit, std::move(earlier));
-  if (!record.save(sink)) return 0;
-  run_all(record, options, invocation);
-  const bool saved = record.save(sink).has_value();
+  if (options.annotations == "github") write_error(github_annotations(record));
   if (invocation.options().json) {
     invocation.document(summary_document(record));
   } else {
@@ -221,6 +143,157 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
   }
   if (record.count(Outcome::kFailed) + record.count(Outcome::kError) > 0) return 1;
   return saved && record.count(Outcome::kNotFinished) > 0 ? 4 : 0;
+}
+
+base::Result<harness::Quarantine> quarantine_of(const SuiteOptions& options,
+                                                Invocation& invocation) {
+  if (options.quarantine.empty()) return harness::Quarantine{};
+  return harness::load_quarantine(options.quarantine, invocation.files(), invocation.sink());
+}
+
+/// A list of known failures must not outlive them.
+void speak_of_quarantine(const SuiteRecord& record, bool whole, const Invocation& invocation) {
+  std::set<std::string> known;
+  for (std::size_t i = 0; i < record.cases().size(); ++i) {
+    const auto name = record.cases()[i].name();
+    known.insert(name);
+    if (!record.quarantine().contains(name)) continue;
+    const auto& result = record.results()[i];
+    if (result.outcome == Outcome::kPassed && !result.flaky()) {
+      invocation.remark(fmt::format("{} passes: take it from the quarantine list", name));
+    }
+  }
+  if (!whole) return;
+  for (const auto& [name, reason] : record.quarantine()) {
+    if (!known.contains(name)) {
+      invocation.remark(fmt::format("the quarantine list names {}, which is no case", name));
+    }
+  }
+}
+
+int merge_suite(const SuiteOptions& options, Invocation& invocation) {
+  auto& sink = invocation.sink();
+  const auto quarantine = quarantine_of(options, invocation);
+  auto merged = merge_suites(options.merge, sink);
+  if (!quarantine || !merged || !may_write(options, invocation)) return 0;
+  for (const auto& folder : options.merge) {
+    std::error_code error;
+    if (!std::filesystem::equivalent(folder, options.out, error)) continue;
+    sink.error_about(base::DiagnosticCode::kUsage, options.out,
+                     "--out: the merged results would replace those of a shard");
+    return 0;
+  }
+  StoredResults stored{merged->identity, {}};
+  const std::vector<bool> none(merged->cases.size(), false);
+  SuiteRecord record(std::move(merged->cases), none, options.out, options.junit, std::move(stored),
+                     *quarantine);
+  for (std::size_t i = 0; i < merged->results.size(); ++i) {
+    const auto& result = merged->results[i];
+    if (result.outcome != Outcome::kPassed) {
+      invocation.remark(line_of(record.cases()[i], result));
+    }
+    record.finish(i, std::move(merged->results[i]));
+  }
+  for (const auto& shard : merged->missing) {
+    invocation.remark(fmt::format("shard {0} is missing: run it with --shard {0} and merge again",
+                                  to_string(shard)));
+  }
+  speak_of_quarantine(record, true, invocation);
+  return conclude(record, options, invocation);
+}
+
+int usage_error(const std::string& message, Invocation& invocation) {
+  invocation.sink().error_about(base::DiagnosticCode::kUsage, "", message);
+  return 0;
+}
+
+LoopOptions loop_options(const SuiteOptions& options, bool keep_passes,
+                         const Invocation& invocation) {
+  LoopOptions out;
+  out.runner.out = options.out;
+  out.runner.seed = options.seed;
+  out.runner.retries = options.retries;
+  out.runner.update_goldens = options.update_goldens;
+  out.runner.allow_commands = options.commands.allow;
+  out.runner.allow_outside = invocation.form().allow_outside;
+  out.jobs = options.jobs;
+  out.memory_mb = options.memory_mb;
+  out.keep_passes = keep_passes;
+  return out;
+}
+
+int run_suite(const SuiteOptions& options, Invocation& invocation) {
+  auto& sink = invocation.sink();
+  if (!options.merge.empty()) {
+    if (!options.paths.empty()) {
+      return usage_error("--merge takes the folders of shards and no PATH", invocation);
+    }
+    return merge_suite(options, invocation);
+  }
+  if (options.paths.empty()) {
+    return usage_error("name a scenario, a manifest or a folder, or folders with --merge",
+                       invocation);
+  }
+  if (options.resume && options.rerun_failed) {
+    return usage_error("--resume and --rerun-failed exclude each other", invocation);
+  }
+  const auto verified = share_of(options.verify_cache.empty() ? "0" : options.verify_cache);
+  if (!verified) {
+    return usage_error(
+        fmt::format("--verify-cache: `{}` is no share from 0% to 100%", options.verify_cache),
+        invocation);
+  }
+  if (options.update_goldens && !options.force && !environment("CI").empty()) {
+    sink.error_about(base::DiagnosticCode::kGoldenUpdateRefused, "--update-goldens");
+    return 0;
+  }
+  const auto shard = chosen_shard(options.shard, environment, sink);
+  if (!shard) return 0;
+  const SuiteIdentity identity{kVersion,      program_hash(), options.seed, *shard,
+                               options.paths, options.only,   options.fast};
+  StoredResults earlier;
+  if (options.rerun_failed || options.resume) {
+    auto read = read_results(options.out, sink);
+    if (!read) return 0;
+    earlier = *std::move(read);
+  } else {
+    base::DiagnosticSink unread;  // their times and needs are of use all the same
+    if (auto read = read_results(options.out, unread)) earlier = *std::move(read);
+  }
+  if (options.resume) {
+    auto what = difference(earlier.identity, identity);
+    if (what.empty() && !(earlier.identity.shard == *shard)) {
+      what = fmt::format("shard {} and {}", to_string(earlier.identity.shard), to_string(*shard));
+    }
+    if (!what.empty()) {
+      sink.error_about(base::DiagnosticCode::kUsage,
+                       (std::filesystem::path(options.out) / kResultsFile).string(),
+                       fmt::format("--resume: that suite and this one are different: {}", what));
+      return 0;
+    }
+  }
+  const auto quarantine = quarantine_of(options, invocation);
+  auto cases = wanted_cases(options, earlier.cases, invocation);
+  if (!quarantine || !cases || !may_write(options, invocation)) return 0;
+  std::vector<bool> skipped;
+  for (const auto& one : *cases) skipped.push_back(!in_shard(one.id, *shard));
+  StoredResults stored{identity, options.rerun_failed ? earlier.cases : StoredCases{}};
+  SuiteRecord record(*std::move(cases), skipped, options.out, options.junit, std::move(stored),
+                     *quarantine);
+  const auto folder = options.cache.empty() ? std::filesystem::path(options.out) / "cache"
+                                            : std::filesystem::path(options.cache);
+  const ResultCache cache(folder, {program_hash(), options.seed, invocation.form().allow_outside});
+  const auto remark = [&](const std::string& text) { invocation.remark(text); };
+  const bool caches = !options.no_cache && !options.update_goldens;
+  Reuse reuse(record, cache, remark);
+  if (options.resume) reuse.resume(earlier.cases);
+  if (caches) reuse.look_up(*verified);
+  if (!record.save(sink)) return 0;
+  run_open_cases(record, loop_options(options, caches, invocation), earlier.cases, reuse, cache,
+                 remark, stop_flag());
+  speak_of_quarantine(record, options.only.empty() && !options.fast && !options.rerun_failed,
+                      invocation);
+  return conclude(record, options, invocation);
 }
 
 }  // namespace
@@ -234,19 +307,41 @@ Command suite_command() {
       "  parallax suite scenarios --jobs 2\n"
       "  parallax suite scenarios --fast              without the long simulations\n"
       "  parallax suite scenarios/classics --only zoo\n"
-      "  parallax suite scenarios --shard 2/5 --junit suite.xml");
-  command.option("paths", options->paths, "Scenarios, manifests, or folders that hold some")
-      .required();
+      "  parallax suite scenarios --shard 2/5 --junit suite.xml\n"
+      "  parallax suite scenarios --resume            goes on where a suite was ended\n"
+      "  parallax suite --merge out/1 out/2 --out out/all --junit suite.xml");
+  command.option("paths", options->paths, "Scenarios, manifests, or folders that hold some");
   command.option("--only", options->only, "Only cases whose name (file:id) contains this");
   command.flag("--fast", options->fast,
                "Only expectations of models, and scenarios that say `fast: true`");
   command.option("--out", options->out, "Folder of the runs, made anew, and the results")
       .show_default();
   command.option("--junit", options->junit, "Write a JUnit report to this file");
-  command.option("--shard", options->shard, "Part I of N, as I/N; `slurm`: from a job array")
+  command.option("--markdown", options->markdown, "Write a summary in Markdown to this file");
+  command
+      .option("--annotations", options->annotations,
+              "Say on standard error what is wrong, as the runners of `github` read it")
+      .check(OneOf{{"github"}});
+  command
+      .option("--shard", options->shard,
+              "Part I of N, as I/N; `env`: from a job array, a matrix or a parallel job")
       .show_default();
+  command.option("--merge", options->merge,
+                 "Put the results of shards (their --out folders) together; nothing is run");
+  command.flag("--resume", options->resume,
+               "Go on with the suite in --out: cases that finished, with the same files, stay");
   command.flag("--rerun-failed", options->rerun_failed,
                "Only cases that did not pass in the last suite with this --out");
+  command.option("--retry", options->retries, "More attempts where a case does not pass")
+      .check(WholeNumber{0, 100})
+      .show_default();
+  command.option("--quarantine", options->quarantine,
+                 "A list of cases that may fail for now, each with its reason");
+  command.option("--cache", options->cache,
+                 "Folder of passes that need not be run again; without it `cache` in --out");
+  command.flag("--no-cache", options->no_cache, "Run every case, and keep no result");
+  command.option("--verify-cache", options->verify_cache,
+                 "Run this share of the cached passes all the same (5%) and compare");
   command.flag("--update-goldens", options->update_goldens,
                "Write the golden files of cases that are otherwise as expected");
   command.flag("--force", options->force, "Write golden files even where `CI` is set");
@@ -257,6 +352,10 @@ Command suite_command() {
   command.option("-j,--jobs", options->jobs, "Cases at the same time")
       .check(WholeNumber{1, 256})
       .show_default();
+  command
+      .option("--memory", options->memory_mb,
+              "MB that the cases at the same time may need together, by what they took before")
+      .check(WholeNumber{16, 10'000'000});
   return {std::move(command),
           [options](Invocation& invocation) { return run_suite(*options, invocation); }};
 }

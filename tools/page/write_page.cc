@@ -6,7 +6,7 @@
 #include "tools/page/markup.h"
 #include "tools/page/plot.h"
 #include "tools/page/sections.h"
-#include "tools/page/sha256.h"
+#include "tools/page/csp_hash.h"
 
 namespace parallax::tools {
 namespace {

@@ -33,12 +33,26 @@ enum class Outcome : std::uint8_t {
 };
 std::string_view to_string(Outcome outcome);
 
+/// A file or folder that was looked at.
+struct InputFile {
+  std::string path;
+  std::string sha256;  // of the content, of a folder its list; empty: there is none
+};
+
 struct CaseResult {
   Outcome outcome = Outcome::kNotFinished;
   std::vector<std::string> problems;  // a sentence each; further lines are details
   std::string messages;               // what the program wrote to standard error
   std::string golden_written;         // the file, if one was
   double wall_s = 0.0;
+  std::uint32_t attempts = 1;     // that were made; a pass after the first one is flaky
+  std::string reused;             // empty: it was run; else `cached` or `resumed`
+  std::string answer;             // SHA-256 of what the program answered, timings left out
+  std::vector<InputFile> inputs;  // what the program read, by path
+  std::int64_t peak_memory_mb = 0;
+  bool repeatable = false;  // no limit and no foreign program had a say in the answer
+
+  bool flaky() const { return outcome == Outcome::kPassed && attempts > 1; }
 };
 
 /// The cases below the paths, sorted by group and id: manifests (a key `cases` at the outermost
@@ -49,20 +63,5 @@ struct CaseResult {
 base::Result<std::vector<SuiteCase>> find_cases(const std::vector<std::string>& paths,
                                                 bool allow_outside, base::SourceFiles& files,
                                                 base::DiagnosticSink& sink);
-
-/// The part `index` of `count`, counted from 1.
-struct Shard {
-  std::uint32_t index = 1;
-  std::uint32_t count = 1;
-};
-
-inline constexpr std::uint32_t kMaxShards = 10'000;
-
-/// "2/5"; nothing for anything else than 1 <= i <= n <= kMaxShards.
-std::optional<Shard> parse_shard(std::string_view text);
-
-/// Whether the case belongs to the shard. It depends on the case's id and on the count alone
-/// (FNV-1a of the id, 64 bits, folded), so that new cases move no other.
-bool in_shard(std::string_view id, const Shard& shard);
 
 }  // namespace parallax::tools

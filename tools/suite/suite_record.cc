@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <ctime>
-#include <system_error>
 
 #include "compiler/base/contract.h"
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
-#include "compiler/base/json.h"
 #include "compiler/base/xml_text.h"
 
 namespace parallax::tools {
@@ -25,9 +22,13 @@ struct Tally {
   std::size_t tests = 0, failures = 0, errors = 0, skipped = 0;
   double wall_s = 0.0;
 
-  void add(const CaseResult& result) {
+  void add(const CaseResult& result, bool quarantined) {
     ++tests;
     wall_s += result.wall_s;
+    if (quarantined) {
+      ++skipped;
+      return;
+    }
     failures += result.outcome == Outcome::kFailed ? 1 : 0;
     skipped += result.outcome == Outcome::kSkipped ? 1 : 0;
     errors += result.outcome == Outcome::kError || result.outcome == Outcome::kNotFinished ? 1 : 0;
@@ -47,13 +48,23 @@ void append_problem(std::string& out, std::string_view element, const CaseResult
                      xml_escaped(headline), to_string(result.outcome), xml_escaped(all));
 }
 
-void append_case(std::string& out, const SuiteCase& one, const CaseResult& result) {
+/// A failure that is known and does not count; what it is stays to be read.
+void append_quarantined(std::string& out, const std::string& reason, const CaseResult& result) {
+  out += fmt::format("      <skipped message=\"quarantined: {}\">", xml_escaped(reason));
+  for (const auto& problem : result.problems) out += xml_escaped(problem + '\n');
+  out += "</skipped>\n";
+}
+
+void append_case(std::string& out, const SuiteCase& one, const CaseResult& result,
+                 const harness::Quarantine& quarantine) {
   const auto slash = one.id == one.file ? one.id.rfind('/') : std::string::npos;
   const auto name = slash == std::string::npos ? one.id : one.id.substr(slash + 1);
   out +=
       fmt::format("    <testcase classname=\"{}\" name=\"{}\" file=\"{}\" time=\"{:.3f}\">\n",
                   xml_escaped(one.group), xml_escaped(name), xml_escaped(one.file), result.wall_s);
-  switch (result.outcome) {
+  const bool quarantined = is_quarantined(one, result, quarantine);
+  if (quarantined) append_quarantined(out, quarantine.at(one.name()), result);
+  switch (quarantined ? Outcome::kPassed : result.outcome) {
     case Outcome::kPassed:
       break;
     case Outcome::kFailed:
@@ -63,11 +74,20 @@ void append_case(std::string& out, const SuiteCase& one, const CaseResult& resul
       append_problem(out, "error", result);
       break;
     case Outcome::kNotFinished:
-      out += "      <error message=\"not finished\" type=\"not finished\"/>\n";
+      if (result.problems.empty()) {
+        out += "      <error message=\"not finished\" type=\"not finished\"/>\n";
+      } else {
+        append_problem(out, "error", result);
+      }
       break;
     case Outcome::kSkipped:
       out += "      <skipped message=\"not in this shard\"/>\n";
       break;
+  }
+  if (result.flaky() || !result.reused.empty()) {
+    const auto note = result.flaky() ? fmt::format("flaky: passed in attempt {}", result.attempts)
+                                     : result.reused;
+    out += fmt::format("      <system-out>{}</system-out>\n", xml_escaped(note));
   }
   if (!result.messages.empty()) {
     out += fmt::format("      <system-err>{}</system-err>\n", xml_escaped(result.messages));
@@ -89,10 +109,12 @@ std::string utc_now() {
 }  // namespace
 
 std::string to_junit(const std::vector<SuiteCase>& cases, const std::vector<CaseResult>& results,
-                     std::string_view timestamp) {
+                     std::string_view timestamp, const harness::Quarantine& quarantine) {
   PARALLAX_REQUIRE(cases.size() == results.size(), "a result for every case");
   Tally total;
-  for (const auto& result : results) total.add(result);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    total.add(results[i], is_quarantined(cases[i], results[i], quarantine));
+  }
   std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
   out += fmt::format("<testsuites name=\"parallax suite\" {}>\n", total.attributes());
   for (std::size_t i = 0; i < cases.size();) {
@@ -100,8 +122,8 @@ std::string to_junit(const std::vector<SuiteCase>& cases, const std::vector<Case
     std::string body;
     const auto& group = cases[i].group;
     for (; i < cases.size() && cases[i].group == group; ++i) {
-      tally.add(results[i]);
-      append_case(body, cases[i], results[i]);
+      tally.add(results[i], is_quarantined(cases[i], results[i], quarantine));
+      append_case(body, cases[i], results[i], quarantine);
     }
     out += fmt::format("  <testsuite name=\"{}\" {} timestamp=\"{}\">\n{}  </testsuite>\n",
                        xml_escaped(group), tally.attributes(), xml_escaped(timestamp), body);
@@ -109,14 +131,21 @@ std::string to_junit(const std::vector<SuiteCase>& cases, const std::vector<Case
   return out + "</testsuites>\n";
 }
 
+bool is_quarantined(const SuiteCase& one, const CaseResult& result,
+                    const harness::Quarantine& quarantine) {
+  const bool bad = result.outcome == Outcome::kFailed || result.outcome == Outcome::kError;
+  return bad && quarantine.contains(one.name());
+}
+
 SuiteRecord::SuiteRecord(std::vector<SuiteCase> cases, const std::vector<bool>& skipped,
                          std::filesystem::path folder, std::filesystem::path junit,
-                         EarlierResults earlier)
+                         StoredResults stored, harness::Quarantine quarantine)
     : cases_(std::move(cases)),
       results_(cases_.size()),
       folder_(std::move(folder)),
       junit_(std::move(junit)),
-      earlier_(std::move(earlier)),
+      stored_(std::move(stored)),
+      quarantine_(std::move(quarantine)),
       timestamp_(utc_now()) {
   for (std::size_t i = 0; i < cases_.size(); ++i) {
     if (skipped[i]) results_[i].outcome = Outcome::kSkipped;
@@ -133,44 +162,27 @@ void SuiteRecord::finish(std::size_t index, CaseResult result) {
 
 base::Status SuiteRecord::save(base::DiagnosticSink& sink) {
   last_save_ = std::chrono::steady_clock::now();
-  auto saved = write_results(folder_, earlier_, cases_, results_, sink);
+  auto saved = write_results(folder_, stored_, cases_, results_, sink);
   if (!saved || junit_.empty()) return saved;
-  return base::write_file_atomically(junit_, to_junit(cases_, results_, timestamp_), sink);
+  return base::write_file_atomically(junit_, to_junit(cases_, results_, timestamp_, quarantine_),
+                                     sink);
 }
 
 std::size_t SuiteRecord::count(Outcome outcome) const {
   std::size_t count = 0;
-  for (const auto& result : results_) count += result.outcome == outcome ? 1 : 0;
+  for (std::size_t i = 0; i < cases_.size(); ++i) {
+    const bool counts = !is_quarantined(cases_[i], results_[i], quarantine_);
+    count += counts && results_[i].outcome == outcome ? 1 : 0;
+  }
   return count;
 }
 
-base::Result<EarlierResults> read_results(const fs::path& folder, base::DiagnosticSink& sink) {
-  const auto path = folder / kResultsFile;
-  base::DiagnosticSink unread;
-  const auto text = base::read_file(path, unread);
-  const auto json = text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
-  const bool usable = json.is_object() && json.contains("cases") && json["cases"].is_object();
-  if (!usable) return sink.error_about(base::DiagnosticCode::kNoEarlierResults, path.string());
-  EarlierResults results;
-  for (const auto& [name, outcome] : json["cases"].items()) {
-    results[name] = outcome.is_string() ? outcome.get<std::string>() : "";
+std::size_t SuiteRecord::quarantined() const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < cases_.size(); ++i) {
+    count += is_quarantined(cases_[i], results_[i], quarantine_) ? 1 : 0;
   }
-  return results;
-}
-
-base::Status write_results(const fs::path& folder, EarlierResults earlier,
-                           const std::vector<SuiteCase>& cases,
-                           const std::vector<CaseResult>& results, base::DiagnosticSink& sink) {
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    if (results[i].outcome == Outcome::kSkipped) continue;
-    earlier[cases[i].name()] = to_string(results[i].outcome);
-  }
-  std::error_code error;
-  fs::create_directories(folder, error);
-  const nlohmann::json json = {{"schema_version", 1}, {"cases", earlier}};
-  // Names are bytes of paths: what is no UTF-8 is replaced rather than refused.
-  const auto text = base::json_text(json, 2) + '\n';
-  return base::write_file_atomically(folder / kResultsFile, text, sink);
+  return count;
 }
 
 }  // namespace parallax::tools

@@ -7,144 +7,23 @@
 #include <chrono>
 #include <csignal>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "compiler/base/file_io.h"
-#include "compiler/base/line_diff.h"
 #include "compiler/base/path_gate.h"
 #include "compiler/base/subprocess.h"
 #include "harness/config/scenario.h"
+#include "tools/suite/expectation.h"
+#include "tools/suite/footprint.h"
 
 namespace parallax::tools {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr std::size_t kContext = 2;    // common lines around a difference
-constexpr std::size_t kMaxShown = 40;  // lines
-
-using Lines = std::vector<std::string_view>;
-
-struct Edit {
-  char mark;  // ' ', '-' or '+'
-  std::string_view line;
-};
-
-/// The lines with their ends, so that a missing last line end is a difference too.
-Lines lines_of(std::string_view text) {
-  Lines lines;
-  while (!text.empty()) {
-    const auto end = std::min(text.find('\n'), text.size() - 1) + 1;
-    lines.push_back(text.substr(0, end));
-    text.remove_prefix(end);
-  }
-  return lines;
-}
-
-/// Every line of both texts once, deleted ones before the added ones.
-std::vector<Edit> edits_between(const Lines& a, const Lines& b) {
-  std::vector<Edit> edits;
-  std::size_t next = 0;  // in `a`
-  const auto keep_until = [&](std::size_t end) {
-    for (; next < end; ++next) edits.push_back({' ', a[next]});
-  };
-  for (const auto& change : base::line_changes(a, b)) {
-    keep_until(change.a_begin);
-    for (; next < change.a_end; ++next) edits.push_back({'-', a[next]});
-    for (auto k = change.b_begin; k < change.b_end; ++k) edits.push_back({'+', b[k]});
-  }
-  keep_until(a.size());
-  return edits;
-}
-
-/// Which edits are shown: the differences and their surroundings.
-std::vector<bool> near_differences(const std::vector<Edit>& edits) {
-  std::vector<bool> near(edits.size(), false);
-  for (std::size_t i = 0; i < edits.size(); ++i) {
-    if (edits[i].mark == ' ') continue;
-    const auto begin = i - std::min(i, kContext);
-    const auto end = std::min(edits.size(), i + kContext + 1);
-    for (auto k = begin; k < end; ++k) near[k] = true;
-  }
-  return near;
-}
-
-void append(std::string& out, const Edit& edit) {
-  auto line = edit.line;
-  const bool ended = line.ends_with('\n');
-  if (ended) line.remove_suffix(1);
-  out += fmt::format("{} {}{}\n", edit.mark, line, ended ? "" : " (no line end)");
-}
-
-/// What the document of `parallax run --json` says against the expectation, one sentence each;
-/// empty if it is met. A document that is no result of a run is itself a sentence.
-std::vector<std::string> unmet(const harness::Expectation& expect, std::string_view run_document);
-
-/// The same for the document of `parallax rates --json` of one trace.
-std::vector<std::string> unmet(const harness::RateExpectation& expect,
-                               std::string_view rates_document);
-
-std::vector<std::string> unmet(const harness::Expectation& expect, std::string_view run_document) {
-  const auto run = nlohmann::json::parse(run_document, nullptr, false);
-  if (run.is_discarded() || !run.is_object() || run.value("status", "") != "ok") {
-    return {"the run gave no result"};
-  }
-  std::vector<std::string> out;
-  const auto verdict = run.value("verdict", "");
-  if (expect.verdict && verdict != *expect.verdict) {
-    out.push_back(fmt::format("verdict {}, expected {}", verdict, *expect.verdict));
-  }
-  const auto iterations = run.value("iterations", std::int64_t{-1});
-  if (expect.iterations && iterations != *expect.iterations) {
-    out.push_back(fmt::format("{} iterations, expected {}", iterations, *expect.iterations));
-  }
-  const auto simulations = run.value("simulations", std::int64_t{-1});
-  if (expect.max_simulations && simulations > *expect.max_simulations) {
-    out.push_back(
-        fmt::format("{} simulations, expected at most {}", simulations, *expect.max_simulations));
-  }
-  std::set<std::string> diverging, earlier;
-  for (const auto& discrepancy : run.value("discrepancies", nlohmann::json::array())) {
-    for (const auto& fluent : discrepancy.value("fluents", nlohmann::json::array())) {
-      diverging.insert(fluent.value("fluent", ""));
-    }
-    for (const auto& fluent : discrepancy.value("first", nlohmann::json::array())) {
-      earlier.insert(fluent.value("fluent", ""));
-    }
-  }
-  if (run.value("compare", "") != "final") diverging.merge(earlier);
-  for (const auto& fluent : expect.fluents) {
-    if (diverging.contains(fluent)) continue;
-    out.push_back(fmt::format("{} {}", fluent,
-                              earlier.contains(fluent)
-                                  ? "diverged on the way, but not in the end, which is what counts"
-                                  : "did not diverge"));
-  }
-  return out;
-}
-
-std::vector<std::string> unmet(const harness::RateExpectation& expect,
-                               std::string_view rates_document) {
-  const auto rates = nlohmann::json::parse(rates_document, nullptr, false);
-  if (rates.is_discarded() || !rates.is_object() || rates.value("status", "") != "ok" ||
-      rates.value("traces", nlohmann::json::array()).size() != 1) {
-    return {"the runs gave no rate"};
-  }
-  const auto& any = rates["traces"][0]["any"];
-  const double rate = any.value("rate", -1.0);
-  const double lower = any.value("lower", 2.0), upper = any.value("upper", -1.0);
-  if (lower <= expect.upper && upper >= expect.lower) return {};
-  return {fmt::format(
-      "discrepancies in {} of {} runs of trace {}, {:.1f} % [{:.1f}, {:.1f}], expected {:g} to "
-      "{:g} %",
-      any.value("count", std::int64_t{-1}), rates["traces"][0].value("runs", std::int64_t{-1}),
-      expect.trace, 100 * rate, 100 * lower, 100 * upper, 100 * expect.lower, 100 * expect.upper)};
-}
 
 /// Why a command that ended with this code gave no answer.
 std::string no_answer(int code) {
@@ -153,27 +32,6 @@ std::string no_answer(int code) {
   if (code == 4) return "inconclusive: a limit ended it first";
   if (code > 128) return fmt::format("the program was ended by signal {}", code - 128);
   return fmt::format("the program ended with exit code {}", code);
-}
-
-/// The first error in a document of `--json`, or empty.
-std::string first_error(const std::string& document) {
-  const auto json = nlohmann::json::parse(document, nullptr, false);
-  if (!json.is_object()) return {};
-  for (const auto& diagnostic : json.value("diagnostics", nlohmann::json::array())) {
-    if (diagnostic.value("severity", "") != "error") continue;
-    return fmt::format("{}: {}", diagnostic.value("code", ""), diagnostic.value("message", ""));
-  }
-  return {};
-}
-
-/// What the first discrepancy of a run is, in words; empty without one.
-std::string first_discrepancy(const std::string& run_document) {
-  const auto run = nlohmann::json::parse(run_document, nullptr, false);
-  for (const auto& found : run.value("discrepancies", nlohmann::json::array())) {
-    return fmt::format("{}.{}: {}", found.value("trace", std::int64_t{0}),
-                       found.value("sample", std::int64_t{0}), found.value("words", ""));
-  }
-  return {};
 }
 
 constexpr std::size_t kMaxMessageBytes = std::size_t{64} << 10U;
@@ -187,9 +45,11 @@ struct CommandWords {
 
 /// Runs this program again with other arguments. When `stop` is raised it is asked to end and
 /// waited for all the same.
-base::Captured run_this_program(const CommandWords& words, const std::atomic<bool>& stop) {
+base::Captured run_this_program(const CommandWords& words, Footprint& footprint,
+                                const std::atomic<bool>& stop) {
   std::vector<std::string> command = {"parallax"};
   command.insert(command.end(), words.options.begin(), words.options.end());
+  command.insert(command.end(), {"--footprint", footprint.file()});
   command.emplace_back("--");
   command.insert(command.end(), words.files.begin(), words.files.end());
   base::CaptureOptions options;
@@ -201,7 +61,9 @@ base::Captured run_this_program(const CommandWords& words, const std::atomic<boo
     told = true;
     return SIGTERM;
   };
-  return base::capture(command, options);
+  auto child = base::capture(command, options);
+  footprint.add(child);
+  return child;
 }
 
 void report_no_answer(const base::Captured& child, CaseResult& result) {
@@ -210,12 +72,6 @@ void report_no_answer(const base::Captured& child, CaseResult& result) {
   if (auto error = first_error(child.out); !error.empty()) {
     result.problems.push_back(std::move(error));
   }
-}
-
-/// Did an error end the command, whatever its exit code?
-bool has_failed(const std::string& document) {
-  const auto json = nlohmann::json::parse(document, nullptr, false);
-  return !json.is_object() || json.value("status", "") != "ok";
 }
 
 /// What the process of a case may do is what the suite may.
@@ -231,7 +87,8 @@ void add_limit(const harness::Expectation& expect, std::vector<std::string>& wor
 }
 
 void run_rates(const SuiteCase& one, const harness::Expectation& expect,
-               const RunnerOptions& options, const std::atomic<bool>& stop, CaseResult& result) {
+               const RunnerOptions& options, Footprint& footprint, const std::atomic<bool>& stop,
+               CaseResult& result) {
   const auto& rate = *expect.rate;
   std::vector<std::string> words = {"rates",   "--json",
                                     "--seed",  std::to_string(options.seed),
@@ -240,7 +97,7 @@ void run_rates(const SuiteCase& one, const harness::Expectation& expect,
                                     "--quiet", "--color=never"};
   add_permissions(options, true, words);
   add_limit(expect, words);
-  const auto child = run_this_program({std::move(words), {one.file}}, stop);
+  const auto child = run_this_program({std::move(words), {one.file}}, footprint, stop);
   result.messages += child.err;
   if (child.code != 0) return report_no_answer(child, result);
   for (auto& problem : unmet(rate, child.out)) result.problems.push_back(std::move(problem));
@@ -259,8 +116,9 @@ bool clear_run_folder(const fs::path& folder) {
 }
 
 void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
-                  const RunnerOptions& options, const std::atomic<bool>& stop, CaseResult& result) {
-  if (expect.rate) run_rates(one, expect, options, stop, result);
+                  const RunnerOptions& options, Footprint& footprint, const std::atomic<bool>& stop,
+                  CaseResult& result) {
+  if (expect.rate) run_rates(one, expect, options, footprint, stop, result);
   if (expect.rate && (!expect.of_run() || result.outcome == Outcome::kError)) return;
   auto name = one.file;
   std::replace(name.begin(), name.end(), '/', '_');
@@ -277,7 +135,7 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
       "--out", folder.string(), "--quiet", "--color=never"};
   add_permissions(options, true, words);
   add_limit(expect, words);
-  const auto child = run_this_program({std::move(words), {one.file}}, stop);
+  const auto child = run_this_program({std::move(words), {one.file}}, footprint, stop);
   result.messages += child.err;
   // Exit code 1 is a finding and 4 a verdict that may be the expected one; both give a document.
   const bool answered = child.code == 0 || child.code == 1 || child.code == 4;
@@ -389,67 +247,70 @@ void compare_golden(const std::string& path, const std::string& text, const fs::
 }
 
 void run_traces(const harness::ManifestCase& one, const fs::path& manifest,
-                const RunnerOptions& options, const std::atomic<bool>& stop, CaseResult& result) {
+                const RunnerOptions& options, Footprint& footprint, const std::atomic<bool>& stop,
+                CaseResult& result) {
   const auto command = traces_command(one, options);
   if (one.expect.traces) {
     auto words = command;
     words.options.emplace_back("--json");
     // Counting goes on to the end, so it answers only whether these are all.
     if (one.expect.complete) words.options.emplace_back("--count");
-    const auto child = run_this_program(words, stop);
+    const auto child = run_this_program(words, footprint, stop);
     result.messages = child.err;
     if (child.code != 0) return report_no_answer(child, result);
     compare_count(one.expect, child.out, result);
   }
   if (one.expect.golden) {
-    const auto child = run_this_program(command, stop);
+    const auto child = run_this_program(command, footprint, stop);
     result.messages = child.err;
     if (child.code != 0) return report_no_answer(child, result);
+    footprint.add_input(one.expect.golden->text);
     compare_golden(one.expect.golden->text, child.out, manifest, options.update_goldens, result);
   }
 }
 
-}  // namespace
-
-std::string text_difference(std::string_view expected, std::string_view actual) {
-  if (expected == actual) return {};
-  const auto edits = edits_between(lines_of(expected), lines_of(actual));
-  const auto near = near_differences(edits);
-  std::string out = "- expected, + found\n";
-  std::size_t line = 1;  // in `expected`
-  std::size_t shown = 0;
-  std::size_t hidden = 0;  // differing lines beyond the limit
-  for (std::size_t i = 0; i < edits.size(); ++i) {
-    if (near[i] && shown < kMaxShown) {
-      if (i == 0 || !near[i - 1]) out += fmt::format("@ line {}\n", line);
-      append(out, edits[i]);
-      ++shown;
-    } else if (near[i] && edits[i].mark != ' ') {
-      ++hidden;
-    }
-    if (edits[i].mark != '+') ++line;
-  }
-  if (hidden > 0) out += fmt::format("... {} more differing lines\n", hidden);
-  return out;
-}
-
-CaseResult run_case(const SuiteCase& one, const RunnerOptions& options,
+/// One attempt.
+CaseResult try_case(const SuiteCase& one, const RunnerOptions& options,
                     const std::atomic<bool>& stop) {
   const auto begin = std::chrono::steady_clock::now();
+  Footprint footprint(one, options.out);
   CaseResult result;
   result.outcome = Outcome::kPassed;
   if (const auto* scenario = std::get_if<harness::Expectation>(&one.check)) {
-    run_scenario(one, *scenario, options, stop, result);
+    run_scenario(one, *scenario, options, footprint, stop, result);
   } else {
-    run_traces(std::get<harness::ManifestCase>(one.check), one.file, options, stop, result);
+    run_traces(std::get<harness::ManifestCase>(one.check), one.file, options, footprint, stop,
+               result);
   }
   if (result.outcome == Outcome::kPassed && !result.problems.empty()) {
     result.outcome = Outcome::kFailed;
   }
   // A process that was cut off says nothing about the case.
-  if (stop.load()) result = CaseResult{};
+  if (stop.load()) return {};
+  footprint.into(result);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   result.wall_s = wall.count();
+  return result;
+}
+
+}  // namespace
+
+CaseResult run_case(const SuiteCase& one, const RunnerOptions& options,
+                    const std::atomic<bool>& stop) {
+  auto result = try_case(one, options, stop);
+  for (std::int64_t i = 0; i < options.retries; ++i) {
+    if (result.outcome != Outcome::kFailed && result.outcome != Outcome::kError) break;
+    auto again = try_case(one, options, stop);
+    again.attempts = result.attempts + 1;
+    again.wall_s += result.wall_s;
+    // What went wrong before is what makes it flaky, so it stays to be read.
+    if (again.outcome == Outcome::kPassed) {
+      for (const auto& problem : result.problems) {
+        again.messages += fmt::format("attempt {}: {}\n", result.attempts, problem);
+      }
+    }
+    result = std::move(again);
+  }
   return result;
 }
 

@@ -13,15 +13,17 @@ namespace parallax::tools {
 struct RunnerOptions {
   std::filesystem::path out;  // run folders of scenarios are made below it
   std::uint64_t seed = 1;
+  std::int64_t retries = 0;  // more attempts where one did not pass
   bool update_goldens = false;
   bool allow_commands = false;  // start what scenarios name as their simulators
   bool allow_outside = false;   // files may name any other
 };
 
-/// Runs one case in processes of its own, so that neither a crash nor a limit ends the suite, and
-/// holds the answer against the expectation. A case that `stop` has cut off is kNotFinished.
-/// With `update_goldens` a golden that differs or is missing is written, provided that everything
-/// else is as expected, and only below the folder of its manifest.
+/// Runs one case in processes of its own, again where it did not pass and `retries` allow it, so
+/// that neither a crash nor a limit ends the suite, and holds the answer against the expectation. A
+/// case that `stop` has cut off is kNotFinished. With `update_goldens` a golden that differs or is
+/// missing is written, provided that everything else is as expected, and only below the folder of
+/// its manifest.
 CaseResult run_case(const SuiteCase& one, const RunnerOptions& options,
                     const std::atomic<bool>& stop);
 

@@ -14,7 +14,7 @@
 
 #include "harness/recording/recording_file.h"
 #include "tests/tools/cli_fixture.h"
-#include "tools/page/sha256.h"
+#include "tools/page/csp_hash.h"
 
 namespace parallax::test {
 namespace {

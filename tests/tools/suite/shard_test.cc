@@ -1,9 +1,10 @@
+#include "tools/suite/shard.h"
+
 #include <doctest/doctest.h>
 
+#include <map>
 #include <string>
 #include <vector>
-
-#include "tools/suite/suite_case.h"
 
 namespace parallax::tools {
 namespace {
@@ -49,6 +50,59 @@ TEST_CASE("a case keeps its shard from version to version") {
   CHECK(shard_of("stuffy_room", 5) == 5);
   CHECK(shard_of("coin_toss", 5) == 1);
   CHECK(shard_of("", 5) == 1);
+}
+
+/// The part that --shard TEXT names under these variables; "" if it is refused.
+std::string chosen(const std::string& text, const std::map<std::string, std::string>& variables) {
+  base::DiagnosticSink sink;
+  const auto shard = chosen_shard(
+      text,
+      [&](const std::string& name) {
+        const auto at = variables.find(name);
+        return at == variables.end() ? std::string() : at->second;
+      },
+      sink);
+  CHECK(sink.has_errors() == !shard.has_value());
+  return shard ? to_string(*shard) : "";
+}
+
+TEST_CASE("the environment says which part this is") {
+  CHECK(chosen("2/5", {{"CI_NODE_INDEX", "1"}, {"CI_NODE_TOTAL", "9"}}) == "2/5");
+  // GitLab counts from 1, a matrix of GitHub from 0.
+  CHECK(chosen("env", {{"CI_NODE_INDEX", "3"}, {"CI_NODE_TOTAL", "3"}}) == "3/3");
+  CHECK(chosen("env", {{"PARALLAX_SHARD_INDEX", "0"}, {"PARALLAX_SHARD_TOTAL", "4"}}) == "1/4");
+  CHECK(chosen("env", {{"PARALLAX_SHARD_INDEX", "4"}, {"PARALLAX_SHARD_TOTAL", "4"}}).empty());
+  CHECK(chosen("env", {{"CI_NODE_INDEX", "0"}, {"CI_NODE_TOTAL", "3"}}).empty());
+  CHECK(chosen("env", {{"CI_NODE_INDEX", "x"}, {"CI_NODE_TOTAL", "3"}}).empty());
+  CHECK(chosen("env", {{"CI_NODE_INDEX", "1"}}).empty());
+  CHECK(chosen("env", {}).empty());
+  // What the job itself says goes first, then the cluster it runs on.
+  CHECK(chosen("env", {{"PARALLAX_SHARD_INDEX", "1"},
+                       {"PARALLAX_SHARD_TOTAL", "2"},
+                       {"SLURM_ARRAY_TASK_ID", "7"},
+                       {"CI_NODE_INDEX", "1"}}) == "2/2");
+}
+
+TEST_CASE("a job array may count from any number in any steps, but without gaps") {
+  const auto task = [](const std::string& id, const std::string& count, const std::string& lowest,
+                       const std::string& highest, const std::string& step) {
+    return chosen("slurm", {{"SLURM_ARRAY_TASK_ID", id},
+                            {"SLURM_ARRAY_TASK_COUNT", count},
+                            {"SLURM_ARRAY_TASK_MIN", lowest},
+                            {"SLURM_ARRAY_TASK_MAX", highest},
+                            {"SLURM_ARRAY_TASK_STEP", step}});
+  };
+  CHECK(task("1", "4", "1", "4", "1") == "1/4");
+  CHECK(task("0", "4", "0", "3", "1") == "1/4");
+  CHECK(task("3", "4", "0", "3", "1") == "4/4");
+  CHECK(task("30", "4", "10", "40", "10") == "3/4");
+  CHECK(task("5", "3", "1", "9", "1").empty());  // --array=1,5,9
+  CHECK(task("11", "4", "10", "40", "10").empty());
+  CHECK(task("1", "0", "1", "4", "1").empty());
+  CHECK(task("", "", "", "", "").empty());
+  // A system that tells only these two counts from 1.
+  CHECK(chosen("slurm", {{"SLURM_ARRAY_TASK_ID", "2"}, {"SLURM_ARRAY_TASK_COUNT", "2"}}) == "2/2");
+  CHECK(chosen("slurm", {{"SLURM_ARRAY_TASK_ID", "3"}, {"SLURM_ARRAY_TASK_COUNT", "2"}}).empty());
 }
 
 }  // namespace

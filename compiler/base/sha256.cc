@@ -1,8 +1,8 @@
-#include "tools/page/sha256.h"
+#include "compiler/base/sha256.h"
 
 #include <bit>
 
-namespace parallax::tools {
+namespace parallax::base {
 namespace {
 
 /// The first 32 bits of the fractional parts of the cube roots of the first 64 primes.
@@ -65,22 +65,14 @@ std::array<std::uint8_t, 32> sha256(std::string_view bytes) {
   return out;
 }
 
-std::string csp_hash(std::string_view text) {
-  static constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const auto hash = sha256(text);
-  std::string out = "sha256-";
-  for (std::size_t i = 0; i < hash.size(); i += 3) {
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      bits = bits << 8U | (i + k < hash.size() ? hash[i + k] : std::uint32_t{0});
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      const bool is_padding = i + k > hash.size();
-      out += is_padding ? '=' : kDigits[bits >> (18U - 6U * k) & 63U];
-    }
+std::string sha256_hex(std::string_view bytes) {
+  static constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string out;
+  for (const auto byte : sha256(bytes)) {
+    out += kDigits[byte >> 4U];
+    out += kDigits[byte & 15U];
   }
   return out;
 }
 
-}  // namespace parallax::tools
+}  // namespace parallax::base

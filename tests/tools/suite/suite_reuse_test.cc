@@ -1,0 +1,249 @@
+// Suites that were ended, repeated or tampered with, as real processes.
+
+#include <doctest/doctest.h>
+
+#include <csignal>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <regex>
+
+#include "compiler/base/sha256.h"
+#include "tests/tools/cli_json.h"
+#include "tests/tools/suite/suite_fixture.h"
+
+namespace parallax::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// What differs between two runs of the same suite although nothing has changed: times, and whether
+/// a result was taken over.
+std::string without_times(std::string junit) {
+  static const std::regex time(R"( (time|timestamp)="[^"]*")");
+  static const std::regex reused(" *<system-out>(cached|resumed)</system-out>\n");
+  junit = std::regex_replace(junit, time, "");
+  return std::regex_replace(junit, reused, "");
+}
+
+/// A manifest of forty cases on the lamp: most are as expected, every seventh is not, one is
+/// refused.
+std::string many_cases() {
+  std::string text = "cases:\n";
+  for (int i = 0; i < 40; ++i) {
+    const int horizon = i % 8;
+    const int traces = (1 << horizon) + (i % 7 == 3 ? 1 : 0);
+    text += "  - {id: c" + std::to_string(i) + ", model: " + (i == 20 ? "bad.e" : "lamp.e") +
+            ", horizon: " + std::to_string(horizon) +
+            ", expect: {traces: " + std::to_string(traces) + "}}\n";
+  }
+  return text;
+}
+
+TEST_CASE("a suite killed at random moments and resumed gives the report of one that was not") {
+  const SuiteFixture cli;
+  cli.write("s/suite.yaml", many_cases());
+  cli.write("s/bad.e", "fluent On(\n");
+  const auto whole = cli.suite({"--out", "whole", "--junit", "whole.xml", "--no-cache"});
+  CHECK(whole.code == 1);
+  const auto expected = without_times(cli.read("whole.xml"));
+  std::mt19937 random(11);
+  int kills = 0;
+  for (int round = 0; round < 4; ++round) {
+    const std::string out = "out" + std::to_string(round);
+    std::vector<std::string> arguments = {"suite",      "s",      "--out", out,         "--junit",
+                                          out + ".xml", "--jobs", "2",     "--no-cache"};
+    for (int attempt = 0; attempt < 5; ++attempt) {
+      if (fs::exists(cli.folder() / out / "results.json") && attempt > 0) {
+        if (arguments.back() != "--resume") arguments.emplace_back("--resume");
+      }
+      ProcessOptions options;
+      auto looks = random() % 60;
+      options.signal_when = [&looks] { return looks-- == 0 ? SIGKILL : 0; };
+      const auto result = cli.parallax(arguments, options);
+      kills += result.code == 128 + SIGKILL ? 1 : 0;
+    }
+    if (arguments.back() != "--resume") arguments.emplace_back("--resume");
+    const auto last = cli.parallax(arguments);
+    CAPTURE(last.err);
+    CHECK(last.code == 1);
+    CHECK(without_times(cli.read(out + ".xml")) == expected);
+    // A further one has nothing left to do.
+    const auto again = json_of(cli, arguments, 1);
+    CHECK(again["reused"] == 40);
+  }
+  CHECK(kills >= 10);  // else nothing was shown
+}
+
+TEST_CASE("a resumed suite runs again what has changed since") {
+  const SuiteFixture cli;
+  REQUIRE(cli.suite({"--update-goldens"}).code == 0);
+  // A golden file that was written meanwhile is one that has changed.
+  CHECK(json_of(cli, {"suite", "s", "--resume", "--no-cache"})["reused"] == 1);
+  CHECK(json_of(cli, {"suite", "s", "--resume", "--no-cache"})["reused"] == 2);
+  cli.replace("s/lamp.e", "time 0 1", "time 0 2");
+  const auto result = cli.suite({"--resume", "--no-cache"});
+  CHECK(result.code == 1);
+  CHECK(result.out == "0 passed, 2 failed\n");
+}
+
+TEST_CASE("results of another suite are not gone on with") {
+  const SuiteFixture cli;
+  CHECK(cli.suite({"--resume"}).code == 2);
+  REQUIRE(cli.suite({"--update-goldens"}).code == 0);
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& why) {
+    const auto result = cli.suite(arguments);
+    CHECK(result.code == 2);
+    CHECK_MESSAGE(holds(result.err, why), result.err);
+  };
+  refused({"--resume", "--seed", "2"}, "seed 1 and 2");
+  refused({"--resume", "--shard", "1/2"}, "1 shards and 2");
+  refused({"--resume", "--only", "lit"}, "--only `` and `lit`");
+  refused({"--resume", "--rerun-failed"}, "exclude each other");
+  CHECK(cli.suite({"--resume"}).code == 0);
+}
+
+TEST_CASE("what passed is not run again until a file of it changes, and says so") {
+  const SuiteFixture cli;
+  REQUIRE(cli.suite({"--update-goldens"}).code == 0);
+  CHECK(cli.suite({}).out == "2 passed, 0 failed\n");
+  const auto cached = cli.suite({});
+  CHECK(cached.out == "2 passed, 0 failed, 2 not run again\n");
+  CHECK(holds(cached.err, "ok    s/suite.yaml:both (cached)"));
+  CHECK(cli.suite({"--no-cache"}).out == "2 passed, 0 failed\n");
+  CHECK(cli.suite({"--seed", "2"}).out == "2 passed, 0 failed\n");
+  // The golden file belongs to one case, the model to both.
+  cli.replace("s/expected/both.txt", "> Press()", "> Pull()");
+  CHECK(cli.suite({}).out == "1 passed, 1 failed, 1 not run again\n");
+  cli.replace("s/expected/both.txt", "> Pull()", "> Press()");
+  CHECK(cli.suite({}).out == "2 passed, 0 failed, 2 not run again\n");
+  cli.replace("s/suite.yaml", "traces: 1}", "traces: 2}");
+  CHECK(cli.suite({}).out == "1 passed, 1 failed, 1 not run again\n");
+  cli.replace("s/suite.yaml", "traces: 2}", "traces: 1}");
+  cli.write("s/lamp.e", std::string(kLamp) + "; a remark\n");
+  CHECK(cli.suite({}).out == "2 passed, 0 failed\n");
+}
+
+TEST_CASE("every file that a scenario reads is one whose change runs it again") {
+  const SuiteFixture cli;
+  const std::vector<std::string> run = {"suite", "wrong_model.yaml"};
+  REQUIRE(cli.parallax(run).code == 0);
+  const auto results = Json::parse(cli.read("out/suite/results.json"));
+  const auto inputs = results["cases"]["wrong_model.yaml"]["inputs"];
+  const auto loaded = json_of(cli, {"suite", "wrong_model.yaml"});
+  CHECK(loaded["reused"] == 1);
+  for (const auto* file : {"wrong_model.yaml", "common.yaml", "world.yaml", "wrong_domain.e",
+                           "start.e", "hasty.lisp", "robot.bind"}) {
+    CAPTURE(file);
+    CHECK(inputs.contains(file));
+    const auto text = cli.read(file);
+    const bool is_yaml = fs::path(file).extension() == ".yaml";
+    cli.write(file, text + (is_yaml ? "\n# a remark\n" : "\n; a remark\n"));
+    CHECK(json_of(cli, run)["reused"] == 0);
+    cli.write(file, text);
+    CHECK(json_of(cli, run)["reused"] == 1);
+  }
+}
+
+/// The entries of the cache in `out/suite`.
+std::vector<fs::path> entries(const SuiteFixture& cli) {
+  std::vector<fs::path> out;
+  for (const auto& at : fs::recursive_directory_iterator(cli.folder() / "out/suite/cache")) {
+    if (at.is_regular_file()) out.push_back(at.path());
+  }
+  return out;
+}
+
+TEST_CASE("a share of the cached passes is run all the same, and must answer the same bytes") {
+  const SuiteFixture cli;
+  REQUIRE(cli.suite({"--update-goldens"}).code == 0);
+  REQUIRE(cli.suite({}).code == 0);
+  CHECK(cli.suite({"--verify-cache", "50%"}).out == "2 passed, 0 failed, 1 not run again\n");
+  CHECK(cli.suite({"--verify-cache", "100%"}).out == "2 passed, 0 failed\n");
+  CHECK(cli.suite({"--verify-cache", "101%"}).code == 2);
+  CHECK(cli.suite({"--verify-cache", "some"}).code == 2);
+  // An answer that the program never gave, with the right hash.
+  for (const auto& path : entries(cli)) {
+    auto json = Json::parse(std::ifstream(path));
+    json["entry"]["answer"] = std::string(64, '0');
+    json["sha256"] = base::sha256_hex(json["entry"].dump());
+    std::ofstream(path) << json.dump();
+  }
+  CHECK(cli.suite({}).out == "2 passed, 0 failed, 2 not run again\n");
+  const auto caught = cli.suite({"--verify-cache", "50%"});
+  CHECK(caught.code == 1);
+  CHECK(caught.out == "1 passed, 0 failed, 1 without an answer, 1 not run again\n");
+  CHECK(holds(caught.err, "are not the same bytes"));
+  // Each time those that nobody has looked at for the longest time: the other one now.
+  CHECK(cli.suite({"--verify-cache", "50%"}).code == 1);
+  CHECK(cli.suite({"--verify-cache", "100%"}).code == 0);
+}
+
+TEST_CASE("a cache that was edited by hand is not believed") {
+  const SuiteFixture cli;
+  REQUIRE(cli.suite({"--update-goldens"}).code == 0);
+  REQUIRE(cli.suite({}).code == 0);
+  for (const auto& path : entries(cli)) {
+    auto json = Json::parse(std::ifstream(path));
+    json["entry"]["inputs"]["s/lamp.e"] = std::string(64, '0');
+    std::ofstream(path) << json.dump();
+  }
+  const auto result = cli.suite({});
+  CHECK(result.out == "2 passed, 0 failed\n");
+  CHECK(holds(result.err, "2 cached results are not what was written; not used"));
+}
+
+TEST_CASE("a case in quarantine may fail, and its list must not outlive it") {
+  const SuiteFixture cli;
+  cli.write("known.yaml",
+            "quarantine:\n"
+            "  - {case: 's/suite.yaml:both', because: the golden file is on its way}\n"
+            "  - {case: 's/suite.yaml:gone', because: nobody knows}\n");
+  const auto result = cli.suite({"--quarantine", "known.yaml", "--junit", "r.xml"});
+  CHECK(result.code == 0);
+  CHECK(result.out == "1 passed, 0 failed, 1 quarantined\n");
+  CHECK(holds(result.err, "names s/suite.yaml:gone, which is no case"));
+  CHECK(holds(cli.read("r.xml"), "quarantined: the golden file is on its way"));
+  REQUIRE(cli.suite({"--update-goldens"}).code == 0);
+  const auto passes = cli.suite({"--quarantine", "known.yaml"});
+  CHECK(holds(passes.err, "s/suite.yaml:both passes: take it from the quarantine list"));
+  for (const auto* bad : {"quarantine: 3\n", "cases: []\n", "quarantine: [{case: x}]\n",
+                          "quarantine: [{case: x, because: ' '}]\n",
+                          "quarantine: [{case: x, because: y}, {case: x, because: z}]\n"}) {
+    cli.write("known.yaml", bad);
+    CHECK_MESSAGE(cli.suite({"--quarantine", "known.yaml"}).code == 3, bad);
+  }
+  CHECK(cli.suite({"--quarantine", "absent.yaml"}).code == 2);
+}
+
+TEST_CASE("a summary replaces a summary and nothing else") {
+  const SuiteFixture cli;
+  cli.write("notes.md", "# mine\n");
+  CHECK(cli.suite({"--markdown", "notes.md"}).code == 2);
+  CHECK(cli.read("notes.md") == "# mine\n");
+  const auto result = cli.suite({"--markdown", "summary.md", "--annotations", "github"});
+  CHECK(result.code == 1);
+  CHECK(holds(cli.read("summary.md"), "### Suite: 1 passed, 1 failed"));
+  CHECK(holds(result.err, "::error file=s/suite.yaml,title=failed%3A both::"));
+  CHECK(cli.suite({"--markdown", "summary.md"}).code == 1);
+}
+
+TEST_CASE("a footprint names every file that was read, and replaces none of them") {
+  const SuiteFixture cli;
+  cli.write("s/all.e", "load lamp.e\n");
+  REQUIRE(cli.parallax({"traces", "s/all.e", "--footprint", "fp.json"}).code == 0);
+  const auto json = Json::parse(cli.read("fp.json"));
+  CHECK(json["inputs"] == Json({"s/all.e", "s/lamp.e"}));
+  CHECK(json["peak_memory_mb"].get<int>() > 0);
+  const auto lamp = cli.read("s/lamp.e");
+  CHECK(cli.parallax({"traces", "s/all.e", "--footprint", "s/lamp.e"}).code == 2);
+  CHECK(cli.read("s/lamp.e") == lamp);
+}
+
+}  // namespace
+}  // namespace parallax::test

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/config/scenario.h"
+
+namespace parallax::tools {
+
+/// What the document of `parallax run --json` says against the expectation, one sentence each;
+/// empty if it is met. A document that is no result of a run is itself a sentence.
+std::vector<std::string> unmet(const harness::Expectation& expect, std::string_view run_document);
+
+/// The same for the document of `parallax rates --json` of one trace.
+std::vector<std::string> unmet(const harness::RateExpectation& expect,
+                               std::string_view rates_document);
+
+/// The first error in a document of `--json`, or empty.
+std::string first_error(const std::string& document);
+
+/// What the first discrepancy of a run is, in words; empty without one.
+std::string first_discrepancy(const std::string& run_document);
+
+/// Did an error end the command that wrote the document, whatever its exit code?
+bool has_failed(const std::string& document);
+
+}  // namespace parallax::tools

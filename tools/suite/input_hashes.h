@@ -1,0 +1,27 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tools/suite/suite_case.h"
+
+namespace parallax::tools {
+
+/// Hashes of files and folders as they are now, each looked at once. Not thread-safe.
+class InputHashes {
+ public:
+  /// SHA-256 of a file's bytes; of a folder, of its sorted entries' names; empty: neither.
+  const std::string& of(const std::string& path);
+  /// Are these files all as they were?
+  bool unchanged(const std::vector<InputFile>& inputs);
+
+ private:
+  std::map<std::string, std::string> known_;
+};
+
+/// SHA-256 of this program's file and of those of the libraries it has loaded: what a result was
+/// made with.
+const std::string& program_hash();
+
+}  // namespace parallax::tools

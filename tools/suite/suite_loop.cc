@@ -1,0 +1,151 @@
+#include "tools/suite/suite_loop.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <system_error>
+#include <thread>
+
+#include "compiler/base/subprocess.h"
+#include "tools/suite/schedule.h"
+
+namespace parallax::tools {
+namespace {
+
+/// What is known of a case that is to be run: how long it took, and what it needs.
+Task task_of(std::size_t index, const SuiteCase& one, const StoredCases& earlier) {
+  constexpr std::int64_t kUnknownMb = 500;
+  Task task{index, std::nullopt, kUnknownMb};
+  if (const auto* traces = std::get_if<harness::ManifestCase>(&one.check)) {
+    task.memory_mb = traces->memory_limit_mb.value_or(kUnknownMb);
+  }
+  const auto at = earlier.find(one.name());
+  if (at == earlier.end() || at->second.result.wall_s <= 0) return task;
+  task.wall_s = at->second.result.wall_s;
+  if (at->second.result.peak_memory_mb > 0) task.memory_mb = at->second.result.peak_memory_mb;
+  return task;
+}
+
+}  // namespace
+
+std::string line_of(const SuiteCase& one, const CaseResult& result) {
+  const auto* mark = result.outcome == Outcome::kPassed   ? "ok   "
+                     : result.outcome == Outcome::kFailed ? "FAIL "
+                                                          : "ERROR";
+  const auto how = result.reused.empty() ? fmt::format("{:.1f} s", result.wall_s) : result.reused;
+  auto line = fmt::format("{} {} ({})", mark, one.name(), how);
+  if (result.flaky()) line += fmt::format(", flaky: passed in attempt {}", result.attempts);
+  if (!result.golden_written.empty()) {
+    line += "\n       golden file written: " + result.golden_written;
+  }
+  std::string details;
+  for (const auto& problem : result.problems) details += problem + '\n';
+  // Of a case without an answer, what the program said of it is the answer.
+  if (result.outcome == Outcome::kError) details += result.messages;
+  while (details.ends_with('\n')) details.pop_back();
+  if (details.empty()) return line;
+  line += "\n       ";
+  for (const char c : details) line += c == '\n' ? "\n       " : std::string(1, c);
+  return line;
+}
+
+void Reuse::resume(const StoredCases& earlier) {
+  for (std::size_t i = 0; i < record_.cases().size(); ++i) {
+    const auto at = earlier.find(record_.cases()[i].name());
+    if (!is_open(i) || at == earlier.end()) continue;
+    auto result = at->second.result;
+    const bool finished =
+        result.outcome != Outcome::kNotFinished && result.outcome != Outcome::kSkipped;
+    if (!finished || result.inputs.empty() || !hashes_.unchanged(result.inputs)) continue;
+    result.reused = "resumed";
+    take(i, std::move(result));
+  }
+}
+
+void Reuse::look_up(double verified_share) {
+  std::vector<std::pair<std::size_t, ResultCache::Hit>> hits;
+  std::size_t damaged = 0;
+  for (std::size_t i = 0; i < record_.cases().size(); ++i) {
+    if (!is_open(i) || !record_.cases()[i].command.empty()) continue;
+    if (auto hit = cache_.find(record_.cases()[i], hashes_, damaged)) {
+      hits.emplace_back(i, *std::move(hit));
+    }
+  }
+  if (damaged > 0) {
+    remark_(fmt::format("{} cached result{} not what was written; not used", damaged,
+                        damaged == 1 ? " is" : "s are"));
+  }
+  std::stable_sort(hits.begin(), hits.end(), [](const auto& a, const auto& b) {
+    return a.second.age_order < b.second.age_order;
+  });
+  const auto verified =
+      static_cast<std::size_t>(std::ceil(verified_share * static_cast<double>(hits.size())));
+  for (std::size_t k = 0; k < hits.size(); ++k) {
+    auto& [index, hit] = hits[k];
+    if (k < verified) {
+      to_verify_.emplace(index, std::move(hit));
+    } else {
+      take(index, std::move(hit.result));
+    }
+  }
+}
+
+bool Reuse::is_open(std::size_t i) const {
+  return record_.results()[i].outcome == Outcome::kNotFinished;
+}
+
+void Reuse::verify(std::size_t i, CaseResult& result) const {
+  const auto at = to_verify_.find(i);
+  if (at == to_verify_.end()) return;
+  auto what = disagreement(at->second.result, result);
+  if (what.empty()) return;
+  result.outcome = Outcome::kError;
+  result.problems.insert(result.problems.begin(), std::move(what));
+  std::error_code error;
+  std::filesystem::remove(at->second.file, error);
+}
+
+void Reuse::take(std::size_t i, CaseResult result) {
+  remark_(line_of(record_.cases()[i], result));
+  record_.finish(i, std::move(result));
+}
+
+void run_open_cases(SuiteRecord& record, const LoopOptions& options, const StoredCases& earlier,
+                    const Reuse& reuse, const ResultCache& cache, const Remark& remark,
+                    const std::atomic<bool>& stop) {
+  std::vector<Task> tasks;
+  for (std::size_t i = 0; i < record.cases().size(); ++i) {
+    if (reuse.is_open(i)) tasks.push_back(task_of(i, record.cases()[i], earlier));
+  }
+  Schedule schedule(std::move(tasks), options.memory_mb);
+  std::mutex printing;
+  const auto say = [&](const std::string& text) {
+    const std::lock_guard lock(printing);
+    remark(text);
+  };
+  const auto work = [&] {
+    while (!stop.load()) {
+      const auto index = schedule.take();
+      if (!index) return;
+      const auto& one = record.cases()[*index];
+      if (!one.command.empty() && options.runner.allow_commands) {
+        say(fmt::format("{} starts `{}`", one.name(), base::command_text(one.command)));
+      }
+      auto result = run_case(one, options.runner, stop);
+      if (result.outcome != Outcome::kNotFinished) {
+        reuse.verify(*index, result);
+        if (options.keep_passes) (void)cache.store(one, result);
+        say(line_of(one, result));
+      }
+      record.finish(*index, std::move(result));
+      schedule.done(*index);
+    }
+  };
+  std::vector<std::thread> threads;
+  for (std::int64_t i = 0; i < options.jobs; ++i) threads.emplace_back(work);
+  for (auto& thread : threads) thread.join();
+}
+
+}  // namespace parallax::tools

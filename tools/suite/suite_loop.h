@@ -1,0 +1,62 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "tools/suite/input_hashes.h"
+#include "tools/suite/result_cache.h"
+#include "tools/suite/suite_record.h"
+#include "tools/suite/suite_runner.h"
+
+namespace parallax::tools {
+
+/// Where lines about a running suite go.
+using Remark = std::function<void(const std::string&)>;
+
+/// A finished case in a line, what is wrong with it in further ones.
+std::string line_of(const SuiteCase& one, const CaseResult& result);
+
+/// Cases of a suite whose results are taken over, and what is left to do.
+class Reuse {
+ public:
+  Reuse(SuiteRecord& record, const ResultCache& cache, Remark remark)
+      : record_(record), cache_(cache), remark_(std::move(remark)) {}
+
+  /// Takes over the results of an interrupted suite whose files are as they were.
+  void resume(const StoredCases& earlier);
+  /// Takes over cached passes; `verified_share` of them, from 0 to 1, is run all the same, those
+  /// first that nobody has looked at for the longest time.
+  void look_up(double verified_share);
+
+  /// Has the case no result yet?
+  bool is_open(std::size_t i) const;
+  /// Of a case that was run: holds it against what the cache said. Thread-safe.
+  void verify(std::size_t i, CaseResult& result) const;
+
+ private:
+  void take(std::size_t i, CaseResult result);
+
+  SuiteRecord& record_;
+  const ResultCache& cache_;
+  Remark remark_;
+  InputHashes hashes_;
+  std::map<std::size_t, ResultCache::Hit> to_verify_;
+};
+
+struct LoopOptions {
+  RunnerOptions runner;
+  std::int64_t jobs = 1;
+  std::int64_t memory_mb = 0;  // that the cases at the same time may need; 0: any
+  bool keep_passes = true;     // in the cache
+};
+
+/// Runs the cases that are open, in processes of their own, until `stop` is raised. `earlier` tells
+/// how long they took.
+void run_open_cases(SuiteRecord& record, const LoopOptions& options, const StoredCases& earlier,
+                    const Reuse& reuse, const ResultCache& cache, const Remark& remark,
+                    const std::atomic<bool>& stop);
+
+}  // namespace parallax::tools

@@ -1,0 +1,125 @@
+#include "tools/suite/suite_merge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "compiler/base/diagnostic_codes.h"
+
+namespace parallax::tools {
+namespace {
+
+struct Part {
+  std::string folder;
+  StoredResults results;
+};
+
+using Parts = std::map<std::uint32_t, Part>;  // by the shard's index
+
+base::Reported refused(const std::string& folder, const std::string& why,
+                       base::DiagnosticSink& sink) {
+  return sink.error_about(base::DiagnosticCode::kUsage, folder, "--merge: " + why);
+}
+
+/// The first name that one list of cases has and the other has not.
+std::string only_in_one(const StoredCases& a, const StoredCases& b) {
+  for (const auto& [name, one] : a) {
+    if (!b.contains(name)) return name;
+  }
+  for (const auto& [name, one] : b) {
+    if (!a.contains(name)) return name;
+  }
+  return {};
+}
+
+base::Result<Parts> read_parts(const std::vector<std::string>& folders,
+                               base::DiagnosticSink& sink) {
+  Parts parts;
+  for (const auto& folder : folders) {
+    auto results = read_results(folder, sink);
+    if (!results) return sink.already_reported();
+    if (results->identity.program.empty()) {
+      return refused(folder, "these results are of an older version; run the shard again", sink);
+    }
+    if (!parts.empty()) {
+      const auto& first = parts.begin()->second;
+      const auto other = difference(first.results.identity, results->identity);
+      if (!other.empty()) {
+        return refused(folder,
+                       fmt::format("this and {} are of different suites: {}", first.folder, other),
+                       sink);
+      }
+      const auto name = only_in_one(first.results.cases, results->cases);
+      if (!name.empty()) {
+        return refused(folder,
+                       fmt::format("this and {} are of different revisions: only one has the case "
+                                   "{}",
+                                   first.folder, name),
+                       sink);
+      }
+    }
+    const auto shard = results->identity.shard;
+    const auto [at, is_new] = parts.try_emplace(shard.index, Part{folder, *std::move(results)});
+    if (!is_new) {
+      return refused(
+          folder, fmt::format("this and {} both are shard {}", at->second.folder, to_string(shard)),
+          sink);
+    }
+  }
+  return parts;
+}
+
+/// The result of a case, of the shard it belongs to.
+base::Result<CaseResult> result_of(const std::string& name, const SuiteCase& one,
+                                   const Parts& parts, base::DiagnosticSink& sink) {
+  CaseResult out;
+  for (const auto& [index, part] : parts) {
+    const auto& shard = part.results.identity.shard;
+    const auto& result = part.results.cases.at(name).result;
+    const bool has_it = result.outcome != Outcome::kSkipped;
+    if (has_it == in_shard(one.id, shard)) {
+      if (has_it) out = result;
+      continue;
+    }
+    return refused(part.folder,
+                   fmt::format("the case {} {} shard {}, but the results say it {}", name,
+                               has_it ? "is not in" : "is in", to_string(shard),
+                               has_it ? "was run there" : "was not"),
+                   sink);
+  }
+  return out;
+}
+
+}  // namespace
+
+base::Result<MergedSuite> merge_suites(const std::vector<std::string>& folders,
+                                       base::DiagnosticSink& sink) {
+  auto parts = read_parts(folders, sink);
+  if (!parts) return sink.already_reported();
+  const auto& first = parts->begin()->second.results;
+  MergedSuite out;
+  out.identity = first.identity;
+  const auto count = first.identity.shard.count;
+  out.identity.shard = {};
+  for (std::uint32_t i = 1; i <= count; ++i) {
+    if (!parts->contains(i)) out.missing.push_back({i, count});
+  }
+  for (const auto& [name, stored] : first.cases) out.cases.push_back(stored.one);
+  std::sort(out.cases.begin(), out.cases.end(), [](const SuiteCase& a, const SuiteCase& b) {
+    return std::tie(a.group, a.id) < std::tie(b.group, b.id);
+  });
+  for (const auto& one : out.cases) {
+    auto result = result_of(one.name(), one, *parts, sink);
+    if (!result) return sink.already_reported();
+    for (const auto& shard : out.missing) {
+      if (!in_shard(one.id, shard)) continue;
+      result->problems = {fmt::format("not finished: shard {} is missing", to_string(shard))};
+    }
+    out.results.push_back(*std::move(result));
+  }
+  return out;
+}
+
+}  // namespace parallax::tools

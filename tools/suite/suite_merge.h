@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "tools/suite/suite_results.h"
+
+namespace parallax::tools {
+
+/// The results of the shards of one suite, as if one process had run them all.
+struct MergedSuite {
+  SuiteIdentity identity;  // shard 1/1
+  std::vector<SuiteCase> cases;
+  std::vector<CaseResult> results;  // parallel; of a shard that is not there: kNotFinished
+  std::vector<Shard> missing;       // no folder has these
+};
+
+/// Reads the folders of shards (--out of each). Refused (kUsage), with both folders named: results
+/// of different programs, seeds or selections, a shard twice, a case that two shards have or that
+/// its own does not have, lists of cases that differ.
+base::Result<MergedSuite> merge_suites(const std::vector<std::string>& folders,
+                                       base::DiagnosticSink& sink);
+
+}  // namespace parallax::tools

@@ -1,0 +1,209 @@
+#include "tools/suite/suite_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
+
+namespace parallax::tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Json = nlohmann::json;
+
+template <typename T>
+void read(const Json& object, const char* name, T& into) {
+  const auto* member = base::json_member(object, name);
+  if (member == nullptr) return;
+  if (auto value = base::json_as<T>(*member)) into = *std::move(value);
+}
+
+void read_texts(const Json& object, const char* name, std::vector<std::string>& into) {
+  const auto* member = base::json_member(object, name);
+  if (member == nullptr || !member->is_array()) return;
+  for (const auto& item : *member) {
+    if (item.is_string()) into.push_back(item.get<std::string>());
+  }
+}
+
+Json to_json(const SuiteIdentity& identity) {
+  return {{"tool_version", identity.version},
+          {"program", identity.program},
+          {"seed", identity.seed},
+          {"shard", to_string(identity.shard)},
+          {"paths", identity.paths},
+          {"only", identity.only},
+          {"fast", identity.fast}};
+}
+
+SuiteIdentity identity_from_json(const Json& json) {
+  SuiteIdentity out;
+  read(json, "tool_version", out.version);
+  read(json, "program", out.program);
+  read(json, "seed", out.seed);
+  std::string shard;
+  read(json, "shard", shard);
+  out.shard = parse_shard(shard).value_or(Shard{});
+  read_texts(json, "paths", out.paths);
+  read(json, "only", out.only);
+  read(json, "fast", out.fast);
+  return out;
+}
+
+constexpr std::array kOutcomes = {Outcome::kPassed, Outcome::kFailed, Outcome::kError,
+                                  Outcome::kNotFinished, Outcome::kSkipped};
+
+std::optional<Outcome> outcome_of(const std::string& text) {
+  for (const auto outcome : kOutcomes) {
+    if (text == to_string(outcome)) return outcome;
+  }
+  return std::nullopt;
+}
+
+/// Of the first form of these files: the outcome alone.
+std::optional<StoredCase> bare_case(const std::string& name, const std::string& outcome) {
+  const auto known = outcome_of(outcome);
+  if (!known) return std::nullopt;
+  StoredCase out{{name, name, name, harness::Expectation{}}, {}};
+  out.result.outcome = *known;
+  return out;
+}
+
+Json to_json(const CaseResult& result) {
+  auto inputs = Json::object();
+  for (const auto& input : result.inputs) inputs[input.path] = input.sha256;
+  return {{"outcome", to_string(result.outcome)},
+          {"problems", result.problems},
+          {"messages", result.messages},
+          {"golden_written", result.golden_written},
+          {"wall_s", result.wall_s},
+          {"attempts", result.attempts},
+          {"answer", result.answer},
+          {"inputs", inputs},
+          {"peak_memory_mb", result.peak_memory_mb},
+          {"repeatable", result.repeatable}};
+}
+
+std::optional<CaseResult> result_from_json(const Json& json) {
+  std::string outcome;
+  read(json, "outcome", outcome);
+  const auto known = outcome_of(outcome);
+  if (!known) return std::nullopt;
+  CaseResult out;
+  out.outcome = *known;
+  read_texts(json, "problems", out.problems);
+  read(json, "messages", out.messages);
+  read(json, "golden_written", out.golden_written);
+  read(json, "wall_s", out.wall_s);
+  std::uint64_t attempts = 1;
+  read(json, "attempts", attempts);
+  out.attempts = static_cast<std::uint32_t>(std::min<std::uint64_t>(attempts, 1000));
+  read(json, "answer", out.answer);
+  read(json, "peak_memory_mb", out.peak_memory_mb);
+  read(json, "repeatable", out.repeatable);
+  if (const auto* inputs = base::json_member(json, "inputs"); inputs != nullptr) {
+    if (!inputs->is_object()) return std::nullopt;
+    for (const auto& [path, hash] : inputs->items()) {
+      if (!hash.is_string()) return std::nullopt;
+      out.inputs.push_back({path, hash.get<std::string>()});
+    }
+  }
+  return out;
+}
+
+std::optional<StoredCase> case_from_json(const std::string& name, const Json& json) {
+  if (json.is_string()) return bare_case(name, json.get<std::string>());
+  auto result = result_from_json(json);
+  if (!result) return std::nullopt;
+  StoredCase out{{"", "", "", harness::Expectation{}}, *std::move(result)};
+  read(json, "file", out.one.file);
+  read(json, "id", out.one.id);
+  read(json, "group", out.one.group);
+  if (out.one.file.empty() || out.one.name() != name) return std::nullopt;
+  return out;
+}
+
+std::string words(const std::vector<std::string>& texts) {
+  return fmt::format("`{}`", fmt::join(texts, " "));
+}
+
+}  // namespace
+
+std::string difference(const SuiteIdentity& a, const SuiteIdentity& b) {
+  if (a.version != b.version) return fmt::format("version {} and {}", a.version, b.version);
+  if (a.program != b.program) {
+    return fmt::format("another build of version {} (program {:.12} and {:.12})", a.version,
+                       a.program, b.program);
+  }
+  if (a.seed != b.seed) return fmt::format("seed {} and {}", a.seed, b.seed);
+  if (a.shard.count != b.shard.count) {
+    return fmt::format("{} shards and {}", a.shard.count, b.shard.count);
+  }
+  if (a.paths != b.paths) return fmt::format("{} and {}", words(a.paths), words(b.paths));
+  if (a.only != b.only) return fmt::format("--only `{}` and `{}`", a.only, b.only);
+  if (a.fast != b.fast) return "one with --fast and one without";
+  return {};
+}
+
+std::string result_text(const CaseResult& result) { return base::json_text(to_json(result)); }
+
+std::optional<CaseResult> result_from_text(std::string_view text) {
+  return result_from_json(Json::parse(text, nullptr, false));
+}
+
+base::Result<StoredResults> read_results(const fs::path& folder, base::DiagnosticSink& sink) {
+  const auto path = folder / kResultsFile;
+  base::DiagnosticSink unread;
+  const auto text = base::read_file(path, unread);
+  const auto json = text ? Json::parse(*text, nullptr, false) : Json();
+  const auto* cases = base::json_member(json, "cases");
+  const auto refused = [&] {
+    return sink.error_about(base::DiagnosticCode::kNoEarlierResults, path.string());
+  };
+  if (cases == nullptr || !cases->is_object()) return refused();
+  StoredResults out;
+  if (const auto* suite = base::json_member(json, "suite")) {
+    out.identity = identity_from_json(*suite);
+  }
+  for (const auto& [name, value] : cases->items()) {
+    auto stored = case_from_json(name, value);
+    if (!stored) return refused();
+    out.cases.emplace(name, *std::move(stored));
+  }
+  return out;
+}
+
+base::Status write_results(const fs::path& folder, StoredResults stored,
+                           const std::vector<SuiteCase>& cases,
+                           const std::vector<CaseResult>& results, base::DiagnosticSink& sink) {
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    StoredCase one{cases[i], results[i]};
+    if (results[i].outcome == Outcome::kSkipped) {
+      stored.cases.try_emplace(cases[i].name(), std::move(one));
+    } else {
+      stored.cases.insert_or_assign(cases[i].name(), std::move(one));
+    }
+  }
+  auto list = Json::object();
+  for (const auto& [name, one] : stored.cases) {
+    auto& item = list[name] = to_json(one.result);
+    item["file"] = one.one.file;
+    item["id"] = one.one.id;
+    item["group"] = one.one.group;
+  }
+  std::error_code error;
+  fs::create_directories(folder, error);
+  const Json json = {
+      {"schema_version", 2}, {"suite", to_json(stored.identity)}, {"cases", std::move(list)}};
+  // Names are bytes of paths: what is no UTF-8 is replaced rather than refused.
+  return base::write_file_atomically(folder / kResultsFile, base::json_text(json, 2) + '\n', sink);
+}
+
+}  // namespace parallax::tools

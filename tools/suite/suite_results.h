@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "tools/suite/shard.h"
+#include "tools/suite/suite_case.h"
+
+namespace parallax::tools {
+
+/// What makes the results of two suites comparable.
+struct SuiteIdentity {
+  std::string version;  // of the program, for people
+  std::string program;  // program_hash()
+  std::uint64_t seed = 1;
+  Shard shard;
+  std::vector<std::string> paths;
+  std::string only;
+  bool fast = false;
+};
+
+/// How two suites differ, "seed 1 and seed 2"; empty: in nothing but the index of their shards.
+std::string difference(const SuiteIdentity& a, const SuiteIdentity& b);
+
+/// A case as a results file keeps it; `expect` is not kept.
+struct StoredCase {
+  SuiteCase one;
+  CaseResult result;
+};
+
+/// By the name of the case.
+using StoredCases = std::map<std::string, StoredCase>;
+
+struct StoredResults {
+  SuiteIdentity identity;
+  StoredCases cases;
+};
+
+/// The file in the suite's output folder that --resume, --rerun-failed and --merge read.
+inline constexpr const char* kResultsFile = "results.json";
+
+/// Reads the results of an earlier suite; kNoEarlierResults if there are none or they are broken.
+base::Result<StoredResults> read_results(const std::filesystem::path& folder,
+                                         base::DiagnosticSink& sink);
+
+/// Writes `stored` with the given results laid over it.
+base::Status write_results(const std::filesystem::path& folder, StoredResults stored,
+                           const std::vector<SuiteCase>& cases,
+                           const std::vector<CaseResult>& results, base::DiagnosticSink& sink);
+
+/// A result as a JSON object on one line, and back; nothing if the text is no result.
+std::string result_text(const CaseResult& result);
+std::optional<CaseResult> result_from_text(std::string_view text);
+
+}  // namespace parallax::tools

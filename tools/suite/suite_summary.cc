@@ -1,0 +1,176 @@
+#include "tools/suite/suite_summary.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "compiler/base/json.h"
+
+namespace parallax::tools {
+namespace {
+
+constexpr std::size_t kMaxRows = 200;
+
+/// How a case stands, in a word that people read.
+std::string standing(const SuiteRecord& record, std::size_t i) {
+  const auto& result = record.results()[i];
+  if (is_quarantined(record.cases()[i], result, record.quarantine())) return "quarantined";
+  if (result.flaky()) return "flaky";
+  return std::string(to_string(result.outcome));
+}
+
+std::string first_line(const CaseResult& result) {
+  if (result.problems.empty()) return {};
+  const auto& problem = result.problems.front();
+  return problem.substr(0, problem.find('\n'));
+}
+
+/// Why the case wants attention, in a line.
+std::string reason(const SuiteRecord& record, std::size_t i) {
+  const auto& one = record.cases()[i];
+  const auto& result = record.results()[i];
+  if (is_quarantined(one, result, record.quarantine())) {
+    return fmt::format("{} ({})", record.quarantine().at(one.name()), first_line(result));
+  }
+  if (result.flaky()) return fmt::format("passed in attempt {}", result.attempts);
+  auto text = first_line(result);
+  return text.empty() && result.outcome == Outcome::kNotFinished ? "the suite ended first" : text;
+}
+
+bool wants_attention(const SuiteRecord& record, std::size_t i) {
+  const auto& result = record.results()[i];
+  return result.flaky() ||
+         (result.outcome != Outcome::kPassed && result.outcome != Outcome::kSkipped);
+}
+
+/// Text for a cell of a Markdown table: nothing in it is markup, a link or another cell.
+std::string markdown_cell(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F) {
+      out += ' ';
+    } else if (c == '<') {
+      out += "&lt;";
+    } else if (c == '>') {
+      out += "&gt;";
+    } else if (c == '&') {
+      out += "&amp;";
+    } else if (c == '@') {
+      out += "&#64;";  // names nobody
+    } else {
+      if (std::string_view(R"(\`*_{}[]()#+-.!|~$:)").find(c) != std::string_view::npos) out += '\\';
+      out += c;
+    }
+  }
+  return out;
+}
+
+/// As workflow commands want it: data, or the value of a property.
+std::string github_text(std::string_view text, bool is_property) {
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool special = c == '%' || byte < 0x20 || (is_property && (c == ':' || c == ','));
+    if (special) {
+      out += fmt::format("%{:02X}", byte);
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::size_t count_if(const SuiteRecord& record, bool (*holds)(const CaseResult&)) {
+  std::size_t count = 0;
+  for (const auto& result : record.results()) count += holds(result) ? 1 : 0;
+  return count;
+}
+
+std::size_t flaky_cases(const SuiteRecord& record) {
+  return count_if(record, [](const CaseResult& result) { return result.flaky(); });
+}
+
+std::size_t reused_cases(const SuiteRecord& record) {
+  return count_if(record, [](const CaseResult& result) { return !result.reused.empty(); });
+}
+
+}  // namespace
+
+std::string summary_text(const SuiteRecord& record) {
+  auto text = fmt::format("{} passed, {} failed", record.count(Outcome::kPassed),
+                          record.count(Outcome::kFailed));
+  const auto append = [&](std::size_t count, std::string_view words) {
+    if (count > 0) text += fmt::format(", {} {}", count, words);
+  };
+  append(record.count(Outcome::kError), "without an answer");
+  append(record.count(Outcome::kNotFinished), "not run");
+  append(record.count(Outcome::kSkipped), "in other shards");
+  append(record.quarantined(), "quarantined");
+  append(flaky_cases(record), "flaky");
+  append(reused_cases(record), "not run again");
+  return text + '\n';
+}
+
+std::string summary_document(const SuiteRecord& record) {
+  auto list = nlohmann::json::array();
+  for (std::size_t i = 0; i < record.cases().size(); ++i) {
+    const auto& result = record.results()[i];
+    list.push_back({{"case", record.cases()[i].name()},
+                    {"outcome", to_string(result.outcome)},
+                    {"problems", result.problems},
+                    {"timing", {{"wall_s", result.wall_s}}}});
+    auto& item = list.back();
+    if (!result.golden_written.empty()) item["golden_written"] = result.golden_written;
+    if (!result.reused.empty()) item["reused"] = result.reused;
+    if (result.attempts > 1) item["attempts"] = result.attempts;
+    if (is_quarantined(record.cases()[i], result, record.quarantine())) {
+      item["quarantined"] = record.quarantine().at(record.cases()[i].name());
+    }
+  }
+  const nlohmann::json document = {{"status", "ok"},
+                                   {"passed", record.count(Outcome::kPassed)},
+                                   {"failed", record.count(Outcome::kFailed)},
+                                   {"errors", record.count(Outcome::kError)},
+                                   {"not_run", record.count(Outcome::kNotFinished)},
+                                   {"skipped", record.count(Outcome::kSkipped)},
+                                   {"quarantined", record.quarantined()},
+                                   {"flaky", flaky_cases(record)},
+                                   {"reused", reused_cases(record)},
+                                   {"cases", list}};
+  return base::json_text(document) + '\n';
+}
+
+std::string summary_markdown(const SuiteRecord& record) {
+  auto out = fmt::format("{}\n### Suite: {}\n", kMarkdownMark, summary_text(record));
+  std::size_t rows = 0, hidden = 0;
+  for (std::size_t i = 0; i < record.cases().size(); ++i) {
+    if (!wants_attention(record, i)) continue;
+    if (rows == kMaxRows) {
+      ++hidden;
+      continue;
+    }
+    if (rows++ == 0) out += "| case | | what | s |\n|---|---|---|---:|\n";
+    out += fmt::format("| {} | {} | {} | {:.1f} |\n", markdown_cell(record.cases()[i].name()),
+                       standing(record, i), markdown_cell(reason(record, i)),
+                       record.results()[i].wall_s);
+  }
+  if (hidden > 0) out += fmt::format("\n{} more cases are not listed.\n", hidden);
+  return out;
+}
+
+std::string github_annotations(const SuiteRecord& record) {
+  std::string out;
+  for (std::size_t i = 0; i < record.cases().size(); ++i) {
+    if (!wants_attention(record, i)) continue;
+    const auto& one = record.cases()[i];
+    const auto how = standing(record, i);
+    const bool is_error = how == "failed" || how == "error";
+    out += fmt::format("::{} file={},title={}::{}\n", is_error ? "error" : "warning",
+                       github_text(one.file, true), github_text(how + ": " + one.id, true),
+                       github_text(reason(record, i), false));
+  }
+  return out;
+}
+
+}  // namespace parallax::tools
