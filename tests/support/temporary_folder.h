@@ -1,8 +1,8 @@
 #pragma once
 
 #include <doctest/doctest.h>
-#include <cstdlib>
 
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <system_error>

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include "tools/page/assets.h"
+#include "tools/page/csp_hash.h"
 #include "tools/page/markup.h"
 #include "tools/page/plot.h"
 #include "tools/page/sections.h"
-#include "tools/page/csp_hash.h"
 
 namespace parallax::tools {
 namespace {
