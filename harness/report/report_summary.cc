@@ -276,7 +276,7 @@ class Summary {
   void pointers() {
     if (!result_.journal_open) return;
     const auto folder = shell_word(result_.replay_folder);
-    std::vector<std::string> commands;
+    std::vector<std::string> commands = {fmt::format("parallax report {}", folder)};
     if (!result_.discrepancies.empty()) {
       const auto& found = result_.discrepancies.front();
       commands.push_back(replay_command(result_.replay_folder, found));

@@ -152,7 +152,8 @@ TEST_CASE("the summary says first what parted them, then where and how often") {
         "  trace 1  no discrepancy found  7 clean of 7  p < 48.3 % with 99 % confidence\n",
         "  trace 2  discrepancy           3 clean of 4\n",
         "trace 1: no regression evidence for: Holding()", "seed 7, compared",
-        "  next      parallax replay out/two --sample 2.4\n",
+        "  next      parallax report out/two\n",
+        "            parallax replay out/two --sample 2.4\n",
         "            parallax explain out/two\n"}) {
     CAPTURE(part);
     CHECK(text.find(part) != std::string::npos);
