@@ -202,6 +202,13 @@ int merge_suite(const SuiteOptions& options, Invocation& invocation) {
   return conclude(record, options, invocation);
 }
 
+/// Is the folder there, or can it be made?
+bool is_folder(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  return std::filesystem::is_directory(path, error);
+}
+
 int usage_error(const std::string& message, Invocation& invocation) {
   invocation.sink().error_about(base::DiagnosticCode::kUsage, "", message);
   return 0;
@@ -282,6 +289,11 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
                      *quarantine);
   const auto folder = options.cache.empty() ? std::filesystem::path(options.out) / "cache"
                                             : std::filesystem::path(options.cache);
+  if (!options.no_cache && !options.cache.empty() && !is_folder(folder)) {
+    sink.error_about(base::DiagnosticCode::kUsage, options.cache,
+                     "--cache: this is no folder, and none can be made here");
+    return 0;
+  }
   const ResultCache cache(folder, {program_hash(), options.seed, invocation.form().allow_outside});
   const auto remark = [&](const std::string& text) { invocation.remark(text); };
   const bool caches = !options.no_cache && !options.update_goldens;

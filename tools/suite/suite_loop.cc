@@ -82,14 +82,12 @@ void Reuse::look_up(double verified_share) {
   });
   const auto verified =
       static_cast<std::size_t>(std::ceil(verified_share * static_cast<double>(hits.size())));
-  for (std::size_t k = 0; k < hits.size(); ++k) {
-    auto& [index, hit] = hits[k];
-    if (k < verified) {
-      to_verify_.emplace(index, std::move(hit));
-    } else {
-      take(index, std::move(hit.result));
-    }
+  const auto open = hits.begin() + static_cast<std::ptrdiff_t>(verified);
+  for (auto hit = hits.begin(); hit != open; ++hit) {
+    to_verify_.emplace(hit->first, std::move(hit->second));
   }
+  std::sort(open, hits.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (auto hit = open; hit != hits.end(); ++hit) take(hit->first, std::move(hit->second.result));
 }
 
 bool Reuse::is_open(std::size_t i) const {

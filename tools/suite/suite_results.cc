@@ -137,6 +137,8 @@ std::string words(const std::vector<std::string>& texts) {
 }  // namespace
 
 std::string difference(const SuiteIdentity& a, const SuiteIdentity& b) {
+  // Files of the first form say nothing of it.
+  if (a.program.empty() || b.program.empty()) return "one was made by an older version";
   if (a.version != b.version) return fmt::format("version {} and {}", a.version, b.version);
   if (a.program != b.program) {
     return fmt::format("another build of version {} (program {:.12} and {:.12})", a.version,

@@ -184,6 +184,19 @@ TEST_CASE("a share of the cached passes is run all the same, and must answer the
   CHECK(cli.suite({"--verify-cache", "100%"}).code == 0);
 }
 
+TEST_CASE("a cache that cannot be kept is refused before anything runs") {
+  const SuiteFixture cli;
+  for (const auto* place : {"s/lamp.e", "s/lamp.e/cache", "/proc/cache"}) {
+    const auto result = cli.suite({"--cache", place});
+    CHECK(result.code == 2);
+    CHECK_MESSAGE(holds(result.err, "--cache: this is no folder"), result.err);
+  }
+  cli.write("results.json", "{\"cases\": {\"s/suite.yaml:lit\": \"passed\"}}");
+  const auto old = cli.suite({"--resume", "--out", "."});
+  CHECK(old.code == 2);
+  CHECK(holds(old.err, "one was made by an older version"));
+}
+
 TEST_CASE("a cache that was edited by hand is not believed") {
   const SuiteFixture cli;
   REQUIRE(cli.suite({"--update-goldens"}).code == 0);
