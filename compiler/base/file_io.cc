@@ -14,6 +14,24 @@
 #include "compiler/base/utf8.h"
 
 namespace parallax::base {
+namespace {
+
+/// A link to what a process has open, as /dev/stdout is one.
+bool leads_to_open_file(std::filesystem::path path) {
+  constexpr int kMostLinks = 40;
+  for (int links = 0; links < kMostLinks; ++links) {
+    std::error_code error;
+    const auto folder = std::filesystem::weakly_canonical(path.parent_path() / ".", error);
+    if (folder.native().starts_with("/proc/")) return true;
+    const auto target = std::filesystem::read_symlink(path, error);
+    if (error) return false;
+    path = path.parent_path() / target;
+  }
+  return false;
+}
+
+}  // namespace
+
 bool write_all(int fd, std::string_view text) {
   while (!text.empty()) {
     const auto written = ::write(fd, text.data(), text.size());
@@ -99,8 +117,9 @@ Result<FileId> register_text(std::string name, std::string text, SourceFiles& fi
 Status write_file_atomically(const std::filesystem::path& path, std::string_view text,
                              DiagnosticSink& sink) {
   struct ::stat status {};
-  // Renaming over a device or a pipe would replace it.
-  if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
+  // Renaming over a device or a pipe would replace it, and over /dev/stdout that link.
+  if (::stat(path.c_str(), &status) == 0 &&
+      (!S_ISREG(status.st_mode) || leads_to_open_file(path))) {
     return sink.error_about(DiagnosticCode::kNotARegularFile, path.string());
   }
   // A name that nothing has: what stands there may be another's file, or a link to one.

@@ -8,6 +8,8 @@
 namespace parallax::harness {
 namespace {
 
+constexpr std::string_view kMotionCsvHead = "time,body,x,y,z,qw,qx,qy,qz,event\r\n";
+
 /// As RFC 4180 wants a field that has what separates fields.
 std::string csv_field(std::string_view text) {
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
@@ -21,8 +23,10 @@ std::string csv_field(std::string_view text) {
 
 }  // namespace
 
+bool is_motion_csv(std::string_view head) { return head.starts_with(kMotionCsvHead); }
+
 std::string csv_of(const Recording& recording) {
-  std::string out = "time,body,x,y,z,qw,qx,qy,qz,event\r\n";
+  std::string out(kMotionCsvHead);
   const auto marks = marks_of(recording);
   std::size_t marked = 0;
   const auto mark_to = [&](double time_s) {

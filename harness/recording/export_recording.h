@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "harness/recording/recording.h"
 
@@ -14,5 +15,9 @@ std::string csv_of(const Recording& recording);
 /// events and grips as foxglove.Log on /events, and observed variables as JSON on /observations.
 /// Simulated time, from 0.
 std::string mcap_of(const Recording& recording);
+
+/// Whether a file that begins like this is an earlier one of these exports.
+bool is_motion_csv(std::string_view head);
+bool is_motion_mcap(std::string_view head);
 
 }  // namespace parallax::harness

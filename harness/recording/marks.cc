@@ -19,21 +19,27 @@ std::vector<Mark> marks_of(const Recording& recording) {
   const auto moving = scene.moving();
   std::set<std::pair<std::size_t, std::size_t>> held;  // gripper, body
   for (Playback at(recording); at.next();) {
-    if (!at.cursor().grips_changed()) continue;
-    for (std::size_t gripper = 0; gripper < scene.grippers.size(); ++gripper) {
-      for (const auto body : moving) {
-        const bool holds = (at.grip_of(body, gripper) & kGripHeld) != 0;
-        const std::pair grip(gripper, body);
-        if (holds == held.contains(grip)) continue;
-        out.push_back({at.time_s(),
-                       scene.grippers[gripper] + (holds ? " holds " : " lets go of ") +
-                           scene.bodies[body].name,
-                       false});
-        if (holds) {
-          held.insert(grip);
-        } else {
-          held.erase(grip);
-        }
+    // Those that the frame tells alone: there may be very many others.
+    auto slots = at.cursor().gripped();
+    const auto order = [&](std::size_t slot) {
+      return std::pair(slot % scene.grippers.size(), slot / scene.grippers.size());
+    };
+    std::sort(slots.begin(), slots.end(),
+              [&](std::size_t a, std::size_t b) { return order(a) < order(b); });
+    for (const auto slot : slots) {
+      const auto [gripper, index] = order(slot);
+      const auto body = moving[index];
+      const bool holds = (at.cursor().grips()[slot] & kGripHeld) != 0;
+      const std::pair grip(gripper, body);
+      if (holds == held.contains(grip)) continue;
+      out.push_back(
+          {at.time_s(),
+           scene.grippers[gripper] + (holds ? " holds " : " lets go of ") + scene.bodies[body].name,
+           false});
+      if (holds) {
+        held.insert(grip);
+      } else {
+        held.erase(grip);
       }
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "harness/recording/bytes.h"
+#include "harness/recording/export_recording.h"
 
 namespace parallax::harness {
 namespace {
@@ -41,6 +42,11 @@ void put_map(std::string& out, const std::map<std::uint16_t, std::uint64_t>& map
 }
 
 }  // namespace
+
+bool is_motion_mcap(std::string_view head) {
+  // Behind the magic, the size of the header and that of the profile: what wrote it.
+  return head.starts_with(kMcapMagic) && head.substr(0, 64).find("parallax") != head.npos;
+}
 
 std::uint16_t McapWriter::add_topic(const std::string& topic, const std::string& schema_name,
                                     const std::string& schema) {

@@ -206,9 +206,9 @@ bool MotionCursor::read_pose(std::size_t body) {
 }
 
 bool MotionCursor::read_grips() {
+  gripped_.clear();
   std::uint64_t count = 0;
   if (!varint(count)) return false;
-  grips_changed_ = count > 0;
   if (count > grips_.size()) return fail("a frame changes more grips than there are");
   std::uint64_t slot = 0;
   for (std::uint64_t i = 0; i < count; ++i, ++slot) {
@@ -222,6 +222,7 @@ bool MotionCursor::read_grips() {
     const auto grip = static_cast<unsigned char>(bytes_[at_++]);
     if (grip > 15U) return fail("a grip has a bit that means nothing");
     grips_[static_cast<std::size_t>(slot)] = grip;
+    gripped_.push_back(static_cast<std::size_t>(slot));
   }
   return true;
 }

@@ -83,7 +83,8 @@ class MotionCursor {
   const std::vector<Pose>& poses() const { return poses_; }          // by moving body
   const std::vector<std::uint8_t>& grips() const { return grips_; }  // by body, then gripper
   const std::vector<std::size_t>& moved() const { return moved_; }   // moving bodies, ascending
-  bool grips_changed() const { return grips_changed_; }
+  bool grips_changed() const { return !gripped_.empty(); }
+  const std::vector<std::size_t>& gripped() const { return gripped_; }  // in grips(), ascending
 
  private:
   bool fail(const char* why);
@@ -100,7 +101,7 @@ class MotionCursor {
   std::vector<Pose> poses_;
   std::vector<std::uint8_t> grips_;
   std::vector<std::size_t> moved_;
-  bool grips_changed_ = false;
+  std::vector<std::size_t> gripped_;
   std::string fault_;
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "compiler/base/json.h"
 #include "harness/recording/bytes.h"
@@ -19,6 +20,8 @@ constexpr std::string_view kMagic = "PLXREC\r\n";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kHeadAt = kMagic.size() + 8;  // behind version and size of the head
 constexpr std::size_t kLargestHead = std::size_t{4} << 20U;
+constexpr std::size_t kLargestFrames = kMaxMotionBytes + (std::size_t{1} << 20U);
+constexpr std::size_t kLargestTable = std::size_t{512} << 20U;
 
 OrderedHeadJson value_json(const RecordedValues::mapped_type& value) {
   return std::visit([](const auto& plain) { return OrderedHeadJson(plain); }, value);
@@ -178,6 +181,33 @@ class HeadReader {
   std::string why_;
 };
 
+/// Goes through the frames and keeps what is wrong with them. A short file could be a table without
+/// end: everything hangs on one body that moves in all frames, or names are long.
+std::optional<BadRecording> fault_of_frames(const Recording& recording) {
+  constexpr std::size_t kRow = 64;  // bytes beside the names
+  const auto& scene = recording.scene;
+  const auto moving = scene.moving();
+  // By what moves, of all that goes along.
+  std::vector<std::size_t> row_bytes(scene.bodies.size(), 0);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    row_bytes[scene.bodies[i].on.value_or(i)] += kRow + scene.bodies[i].name.size();
+  }
+  std::size_t bytes = 0;
+  MotionCursor cursor(recording.frames, {moving.size(), scene.grippers.size()});
+  while (cursor.next()) {
+    for (const auto index : cursor.moved()) bytes += row_bytes[moving[index]];
+    for (const auto slot : cursor.gripped()) {
+      bytes += kRow + scene.grippers[slot % scene.grippers.size()].size() +
+               scene.bodies[moving[slot / scene.grippers.size()]].name.size();
+    }
+    if (bytes > kLargestTable) {
+      return BadRecording{cursor.byte(), "its motion would fill more than 512 MiB as a table"};
+    }
+  }
+  if (cursor.fault().empty()) return std::nullopt;
+  return BadRecording{cursor.byte(), cursor.fault()};
+}
+
 }  // namespace
 
 std::string encode(const Recording& recording) {
@@ -213,6 +243,7 @@ std::variant<Recording, BadRecording> decode_recording(std::string_view bytes) {
   }
   const auto frames_at = kHeadAt + head_size + 4;
   const std::size_t frames_size = u32_at(bytes, frames_at - 4);
+  if (frames_size > kLargestFrames) return BadRecording{frames_at - 4, "its frames are too large"};
   if (bytes.size() - frames_at < frames_size || bytes.size() - frames_at - frames_size < 4) {
     return BadRecording{bytes.size(), "the file ends within its frames"};
   }
@@ -232,10 +263,7 @@ std::variant<Recording, BadRecording> decode_recording(std::string_view bytes) {
   if (!scene) return BadRecording{kHeadAt, why};
   recording->scene = *std::move(scene);
   recording->frames = bytes.substr(frames_at, frames_size);
-  MotionCursor cursor(recording->frames,
-                      {recording->scene.moving().size(), recording->scene.grippers.size()});
-  while (cursor.next()) continue;
-  if (!cursor.fault().empty()) return BadRecording{frames_at + cursor.byte(), cursor.fault()};
+  if (auto bad = fault_of_frames(*recording)) return BadRecording{frames_at + bad->byte, bad->why};
   return *std::move(recording);
 }
 

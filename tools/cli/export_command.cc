@@ -14,6 +14,7 @@
 #include "harness/report/text_layout.h"
 #include "tools/app/file_kind.h"
 #include "tools/cli/command.h"
+#include "tools/cli/replaceable.h"
 #include "tools/cli/shared_options.h"
 
 namespace parallax::tools {
@@ -83,6 +84,8 @@ int export_motion(const ExportOptions& options, Invocation& invocation) {
     invocation.result(text);
     return 0;
   }
+  if (!check_replaceable(output, is_csv ? harness::is_motion_csv : harness::is_motion_mcap, sink))
+    return 0;
   if (!base::write_output(output, text, invocation.files(), sink)) return 0;
   const auto sample = fmt::format("{}.{}", id->trace, id->sample);
   if (json) {

@@ -78,6 +78,10 @@ void add_motion(PageData& page) {
     std::string why;
     auto recording = harness::find_recording(page.folder, sample->trace, sample->sample, why);
     const auto name = sample_name(sample->trace, sample->sample);
+    if (recording && recording->seed != sample->seed) {
+      why = fmt::format("it is that of another run, of seed {}", recording->seed);
+      recording.reset();
+    }
     if (!recording) {
       page.banners.push_back(
           fmt::format("The recording of simulation {0} cannot be shown: {1}. `parallax replay {2} "

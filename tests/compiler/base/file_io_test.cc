@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
@@ -88,6 +89,26 @@ TEST_CASE_FIXTURE(FileIo, "writing replaces the file at once and leaves no tempo
   CHECK(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()) == 1);
   CHECK_FALSE(write_file_atomically(folder_ / "none" / "a", "x", sink_));
   CHECK(only_code() == "E0005");
+}
+
+TEST_CASE_FIXTURE(FileIo, "a link to what is open, as /dev/stdout is, stays one") {
+  const auto log = write("log", "so far\n");
+  std::FILE* open = std::fopen(log.c_str(), "a");
+  REQUIRE(open != nullptr);
+  fs::create_symlink("/proc/self/fd/" + std::to_string(::fileno(open)), folder_ / "first");
+  fs::create_symlink("first", folder_ / "second");
+  for (const auto* name : {"first", "second"}) {
+    sink_ = DiagnosticSink();
+    CHECK_FALSE(write_file_atomically(folder_ / name, "x", sink_));
+    CHECK(only_code() == "E0003");
+    CHECK(fs::is_symlink(folder_ / name));
+  }
+  std::fclose(open);
+  CHECK(*read_file(log, sink_) == "so far\n");
+  // Other links are replaced.
+  fs::create_symlink("log", folder_ / "third");
+  CHECK(write_file_atomically(folder_ / "third", "x", sink_));
+  CHECK(*read_file(log, sink_) == "so far\n");
 }
 
 }  // namespace

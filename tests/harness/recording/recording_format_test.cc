@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "harness/recording/bytes.h"
+#include "harness/recording/marks.h"
 #include "harness/recording/scene_json.h"
 #include "tests/harness/recording/sample_recording.h"
 
@@ -143,6 +145,64 @@ TEST_CASE("recording: heads that lie, with a checksum that is right") {
   fewer["bodies"].erase(4);
   CHECK(fault(fewer).ends_with("a frame moves more bodies than there are"));
   CHECK(fault_of(file_of(std::string(100000, '['), "")).ends_with("its head is not JSON"));
+}
+
+/// A first frame with all of `bodies`, then `frames` in which the first one moves and has another
+/// grip.
+std::string restless(std::size_t bodies, std::size_t frames) {
+  MotionWriter writer({bodies, 1});
+  std::vector<Pose> poses(bodies);
+  std::vector<std::uint8_t> grips(bodies, 0);
+  writer.add(0.0, poses, grips);
+  std::string out = writer.take();
+  poses[0].p[0] = 0.01;
+  grips[0] = kGripHeld;
+  writer.add(0.001, poses, grips);
+  poses[0].p[0] = 0.0;
+  grips[0] = 0;
+  writer.add(0.002, poses, grips);
+  const auto there_and_back = writer.take();
+  for (std::size_t i = 0; i < frames; i += 2) out += there_and_back;
+  return out;
+}
+
+TEST_CASE("recording: a short file that would be a table without end is refused") {
+  auto head = nlohmann::json::parse(head_of(encode(Recording())));
+  head["grippers"] = nlohmann::json::array({"hand"});
+  const nlohmann::json base = {{"name", "base"}, {"moves", true}};
+  constexpr const char* kTooMuch = "its motion would fill more than 512 MiB as a table";
+  head["bodies"] = nlohmann::json::array({base});
+  CHECK(fault_of(file_of(head.dump(), restless(1, 1000))) == "");
+  for (int i = 1; i < 10'000; ++i) {
+    head["bodies"].push_back({{"name", std::to_string(i)}, {"moves", true}, {"on", 0}});
+  }
+  CHECK(fault_of(file_of(head.dump(), restless(1, 100))) == "");
+  CHECK(fault_of(file_of(head.dump(), restless(1, 1000))).ends_with(kTooMuch));
+  head["bodies"] = nlohmann::json::array({base});
+  head["bodies"][0]["name"] = std::string(1'000'000, 'x');
+  CHECK(fault_of(file_of(head.dump(), restless(1, 100))) == "");
+  CHECK(fault_of(file_of(head.dump(), restless(1, 1000))).ends_with(kTooMuch));
+  head["bodies"] = nlohmann::json::array({base});
+  CHECK(fault_of(file_of(head.dump(), std::string(10U << 20U, '\0'))).ends_with("too large"));
+}
+
+TEST_CASE("recording: grips that change cost nothing for those that do not") {
+  constexpr std::size_t kBodies = 9000, kGrippers = 64, kFrames = 20'000;
+  Recording recording;
+  for (std::size_t i = 0; i < kBodies; ++i) {
+    RecordedBody body;
+    body.name = std::to_string(i);
+    body.moves = true;
+    recording.scene.bodies.push_back(body);
+  }
+  for (std::size_t i = 0; i < kGrippers; ++i) {
+    recording.scene.grippers.push_back("hand" + std::to_string(i));
+  }
+  recording.frames = restless(kBodies, kFrames);
+  const auto marks = marks_of(recording);
+  REQUIRE(marks.size() == kFrames);
+  CHECK(marks[0].text == "hand0 holds 0");
+  CHECK(marks[1].text == "hand0 lets go of 0");
 }
 
 TEST_CASE("recording: random damage behind a right checksum is survived") {

@@ -219,6 +219,13 @@ TEST_CASE("a missing recording comes with the command that makes it, and a broke
   CHECK(made.code == 0);
   CHECK(made.err.find("The recording of simulation 1.1 cannot be shown") != std::string::npos);
   CHECK(page_of(cli, "page.html").motion.empty());
+  // One of another run, whole, of the same number.
+  cli.parallax({"run", "edge.yaml", "--seed", "7", "--record", "all", "--out", "other"});
+  cli.write("edge/recordings/1.1.rec", cli.read("other/recordings/1.1.rec"));
+  const auto mixed = cli.parallax({"report", "edge", "-o", "page.html"});
+  CHECK(mixed.code == 0);
+  CHECK(mixed.err.find("it is that of another run") != std::string::npos);
+  CHECK(page_of(cli, "page.html").motion.empty());
 }
 
 TEST_CASE("a folder that is none is not watched") {

@@ -150,6 +150,21 @@ TEST_CASE("what is missing or broken is told with the command that makes it") {
   const auto whole = cli.read("my run/recordings/1.1.rec");
   CHECK(cli.parallax({"export", "my run", "--sample", "1.1"}).code == 0);
 
+  // What is there is replaced if it is an earlier export, and else refused.
+  const auto journal = cli.read("my run/journal.ndjson");
+  for (const auto* format : {"csv", "mcap"}) {
+    const auto over = cli.parallax(
+        {"export", "my run", "--sample", "1.1", "--format", format, "-o", "my run/journal.ndjson"});
+    CHECK(over.code == 2);
+    CHECK(holds_text(over.err, "E0005"));
+    CHECK(cli.read("my run/journal.ndjson") == journal);
+    const auto out = std::string("out.") + format;
+    for (int time = 0; time < 2; ++time) {
+      CHECK(cli.parallax({"export", "my run", "--sample", "1.1", "--format", format, "-o", out})
+                .code == 0);
+    }
+  }
+
   for (const auto& [bytes, why] : std::vector<std::pair<std::string, std::string>>{
            {whole.substr(0, whole.size() / 2), "the file ends within its frames"},
            {"", "the file does not begin as a recording does"},
