@@ -10,12 +10,14 @@
 #include "harness/campaign/sample_record.h"
 #include "harness/draw/action_recorder.h"
 #include "harness/draw/difference.h"
+#include "harness/draw/recorded_actions.h"
 #include "harness/draw/scene_svg.h"
 #include "harness/robot/ode_simulator.h"
 #include "tools/app/file_kind.h"
 #include "tools/app/recorded_run.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
+#include "tools/cli/recording_to_draw.h"
 #include "tools/cli/replaceable.h"
 #include "tools/cli/shared_options.h"
 #include "tools/page/gather.h"
@@ -198,23 +200,20 @@ Caption caption_of(std::size_t number, const std::string& event, const std::stri
   return caption;
 }
 
-/// Simulates a recorded run again; fails, having reported, where it is another one than recorded.
-base::Result<Album> simulate(const harness::RecordedRun& run, const harness::Scenario& scenario,
-                             const DrawnParting& parting, harness::OdeSimulator& simulator,
-                             const std::string& folder, base::DiagnosticSink& sink) {
-  const auto reset = simulator.reset(run.record.initial, run.record.seed);
-  if (reset.status != harness::SimStatus::kOk) {
-    return sink.error_about(DiagnosticCode::kReplayImpossible, folder, reset.reason);
-  }
-  harness::ActionRecorder recorder(simulator, scenario.world);
+/// Pictures of the actions of a run, as `watched` shows them; fails, having reported, where that is
+/// another simulation than the one on record. `act` does the call of this number.
+template <typename Watched, typename Act>
+base::Result<Album> album_of(const harness::RecordedRun& run, const harness::Scenario& scenario,
+                             const DrawnParting& parting, const std::string& folder,
+                             base::DiagnosticSink& sink, Watched& watched, const Act& act) {
   Album album;
   album.captions.push_back(
       {"start", fmt::format("simulation {}.{}, at 0.00 s", run.id.trace, run.id.sample)});
-  album.pictures.push_back({recorder.scene(), {}});
+  album.pictures.push_back({watched.scene(), {}});
   double time_s = 0.0;
   for (std::size_t i = 0; i < run.line.calls.size() && !stop_flag().load(); ++i) {
     const auto& call = run.line.calls[i];
-    const auto outcome = recorder.act(call.controller, call.arguments, call.time_limit_s);
+    const harness::Outcome outcome = act(i, call);
     if (outcome.status == harness::SimStatus::kLost) break;  // there is no state to draw
     const auto& recorded = run.record.outcomes;
     if (i < recorded.size() && (recorded[i].status != outcome.status ||
@@ -225,14 +224,56 @@ base::Result<Album> simulate(const harness::RecordedRun& run, const harness::Sce
     }
     album.captions.push_back(
         caption_of(i, run.line.trace->event(i), call.controller, outcome, time_s, parting));
-    album.pictures.push_back({recorder.scene(), recorder.action()});
+    album.pictures.push_back({watched.scene(), watched.action()});
     if (parting.event == i) {
       harness::add_differences(*scenario.mapping, scenario.world, parting.differences,
-                               recorder.before(), album.pictures.back());
+                               watched.before(), album.pictures.back());
     }
     time_s += outcome.sim_time_s;
   }
   return album;
+}
+
+/// Simulates a recorded run again.
+base::Result<Album> simulate(const harness::RecordedRun& run, const harness::Scenario& scenario,
+                             const DrawnParting& parting, const std::string& folder,
+                             base::DiagnosticSink& sink) {
+  harness::OdeSimulator simulator(scenario.world);
+  const auto obstacle = harness::simulator_change(run.header, simulator.info());
+  if (!obstacle.empty()) {
+    return sink.error_about(DiagnosticCode::kReplayImpossible, folder, obstacle);
+  }
+  const auto reset = simulator.reset(run.record.initial, run.record.seed);
+  if (reset.status != harness::SimStatus::kOk) {
+    return sink.error_about(DiagnosticCode::kReplayImpossible, folder, reset.reason);
+  }
+  harness::ActionRecorder recorder(simulator, scenario.world);
+  return album_of(run, scenario, parting, folder, sink, recorder,
+                  [&](std::size_t, const harness::ActionCall& call) {
+                    return recorder.act(call.controller, call.arguments, call.time_limit_s);
+                  });
+}
+
+/// From its recording, without a simulator; simulated again where that cannot stand for it.
+base::Result<Album> album_of_run(const harness::RecordedRun& run, const harness::Scenario& scenario,
+                                 const DrawnParting& parting, const std::string& folder,
+                                 Invocation& invocation) {
+  std::string why;
+  const auto recording = recording_to_draw(folder, run, scenario.world, why);
+  if (!recording) {
+    invocation.remark(fmt::format("simulation {}.{} is simulated again, without its recording: {}",
+                                  run.id.trace, run.id.sample, why));
+    return simulate(run, scenario, parting, folder, invocation.sink());
+  }
+  harness::RecordedActions recorded(*recording, scenario.world);
+  return album_of(run, scenario, parting, folder, invocation.sink(), recorded,
+                  [&](std::size_t i, const harness::ActionCall& call) {
+                    auto outcome = recorded.act(call.controller, call.arguments);
+                    // The difference of two times would not be what it was to the last bit.
+                    const auto& known = run.record.outcomes;
+                    if (i < known.size()) outcome.sim_time_s = known[i].sim_time_s;
+                    return outcome;
+                  });
 }
 
 /// The pictures as SVG; each shows where its action was, the first one where all of them were.
@@ -312,14 +353,8 @@ int draw_run(const DrawOptions& options, Invocation& invocation) {
     if (!check_replaceable((folder / picture_name(i)).string(), is_picture, sink)) return 0;
   }
   if (!check_replaceable((folder / "index.html").string(), is_earlier_page, sink)) return 0;
-  harness::OdeSimulator simulator(scenario.world);
-  const auto obstacle = harness::simulator_change(run->header, simulator.info());
-  if (!obstacle.empty()) {
-    sink.error_about(DiagnosticCode::kReplayImpossible, options.what, obstacle);
-    return 0;
-  }
   const auto parting = drawn_parting(*run, *loaded, *trace, options.what, invocation);
-  const auto album = simulate(*run, scenario, parting, simulator, options.what, sink);
+  const auto album = album_of_run(*run, scenario, parting, options.what, invocation);
   if (!album) return 0;
   const auto& regions = scenario.mapping->regions();
   Writer writer(invocation);
@@ -357,7 +392,8 @@ Command draw_command() {
       "was, its way, a moment of it (dashed), the camera's cone, the goal of a drive (cross) and, "
       "in\n"
       "red, what went wrong and by how much. Where model and simulation part: predicted dashed in\n"
-      "violet, observed in red. index.html in the folder shows them all.\n"
+      "violet, observed in red. index.html in the folder shows them all. What moved is taken from\n"
+      "the run's recording; without one it is simulated again.\n"
       "Exit codes: 0 drawn, 3 the scenario has changed since the run.");
   command.option("what", options->what, "Scenario file, or folder of a run").required();
   command.option("-o,--out", options->out,

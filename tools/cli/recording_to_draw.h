@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "harness/campaign/replay.h"
+#include "harness/recording/recording.h"
+#include "harness/world/world_spec.h"
+
+namespace parallax::tools {
+
+/// The recording of a simulation, if it can stand for it: it is whole, of this world, and says what
+/// the journal says. None, and `why`, otherwise.
+std::optional<harness::Recording> recording_to_draw(const std::string& folder,
+                                                    const harness::RecordedRun& run,
+                                                    const harness::WorldSpec& spec,
+                                                    std::string& why);
+
+}  // namespace parallax::tools
