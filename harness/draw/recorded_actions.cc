@@ -17,6 +17,8 @@ namespace {
 
 /// Half a step of the recording's time, and what sums of times are off by.
 constexpr double kSameTime_s = 0.75 * kFrameTime_s;
+/// Three moments of a recorder are farther apart: its steps, and the end of the action.
+constexpr double kDense_s = 0.04;
 /// Farther away a body was not recorded where it was observed.
 constexpr double kRecorded_m = 2e-3;
 /// Of the recorded gaze: farther off it went elsewhere.
@@ -191,7 +193,15 @@ Outcome RecordedActions::act(const std::string& controller, const State& argumen
   while (is_ahead_ && playback_.time_s() <= event.end_s + kSameTime_s) {
     const double time_s = playback_.time_s() - event.begin_s;
     read_frame();
-    moments.push_back({time_s, shown()});
+    // Of frames that come more often than a recorder writes them, some: what is kept follows from
+    // the time that the action took.
+    const bool is_dense =
+        moments.size() > 2 && time_s - moments[moments.size() - 2].time_s < kDense_s;
+    if (is_dense) {
+      moments.back() = {time_s, shown()};
+    } else {
+      moments.push_back({time_s, shown()});
+    }
   }
   observe(next_);
   scene_ = shown();

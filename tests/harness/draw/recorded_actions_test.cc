@@ -173,6 +173,22 @@ TEST_CASE("a recording shows the ways, grips, gazes and lengths that a simulatio
   }
   CHECK(recorded.act("park", {{"arm", left}}).status == SimStatus::kLost);  // there is no more
 
+  // Frames of every millisecond do not fill the memory.
+  auto dense = *read;
+  MotionWriter writer({dense.scene.moving().size(), dense.scene.grippers.size()});
+  std::vector<Pose> poses(dense.scene.moving().size());
+  for (int ms = 0; ms < 2000; ++ms) {
+    poses.front().p[0] = 0.001 * ms;
+    REQUIRE(writer.add(0.001 * ms, poses, {}));
+  }
+  dense.frames = writer.take();
+  dense.events = {{"long", 0.0, 2.0, "ok", "", {}}};
+  dense.observations.clear();
+  RecordedActions often(dense, spec);
+  REQUIRE(ok(often.act("park", {{"arm", left}})));
+  CHECK(often.moments().size() > 40);
+  CHECK(often.moments().size() < 110);
+
   auto other = *read;
   other.scene.bodies.front().name += "'";
   CHECK_FALSE(unlike_world(other, spec).empty());
