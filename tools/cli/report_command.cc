@@ -88,6 +88,11 @@ int watch(const ReportOptions& options, Invocation& invocation) {
   std::uintmax_t seen = 0;
   while (!is_over(folder) && !invocation.stopped()) {
     std::error_code error;
+    // Removed while it was watched: it will never be over.
+    if (!fs::is_directory(folder, error)) {
+      invocation.sink().error_about(base::DiagnosticCode::kNoJournal, folder);
+      return 0;
+    }
     const auto size = fs::file_size(journal, error);
     if (!error && size != seen) {
       seen = size;

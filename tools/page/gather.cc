@@ -9,6 +9,7 @@
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "harness/campaign/journal.h"
+#include "harness/report/text_layout.h"
 #include "tools/app/evidence.h"
 #include "tools/app/recorded_run.h"
 
@@ -70,7 +71,7 @@ void read_report(const std::string& folder, Context& context, PageData& page) {
     page.banners.push_back(
         "There is no report.json yet: the run goes on, or was ended before it wrote one. "
         "`parallax run SCENARIO --out " +
-        folder + " --resume` continues it.");
+        harness::shell_word(folder) + " --resume` continues it.");
     return;
   }
   const auto text = base::read_file_of(folder, "report.json", context.sink(), kMaxReportBytes);

@@ -8,6 +8,7 @@
 
 #include "compiler/base/file_io.h"
 #include "harness/recording/recording_file.h"
+#include "harness/report/text_layout.h"
 #include "tools/page/gather.h"
 
 namespace parallax::tools {
@@ -86,7 +87,7 @@ void add_motion(PageData& page) {
       page.banners.push_back(
           fmt::format("The recording of simulation {0} cannot be shown: {1}. `parallax replay {2} "
                       "--sample {0} --record` makes it again.",
-                      name, why, page.folder));
+                      name, why, harness::shell_word(page.folder)));
       continue;
     }
     if (!page.motion.empty() && bytes + recording->frames.size() > kMostFrameBytes) {

@@ -201,6 +201,29 @@ TEST_CASE("a page that is watched loads itself until the run is over") {
   CHECK(cli.parallax({"report", folder, folder, "--watch"}).code == 2);
 }
 
+TEST_CASE("a folder that is removed while it is watched ends the watch") {
+  const CliFixture cli;
+  const auto folder = exact_run(cli);
+  std::filesystem::rename(cli.folder() / "sticks", cli.folder() / "my sticks");
+  std::filesystem::remove(cli.folder() / "my sticks/report.json");
+  ProcessOptions options;
+  options.folder = kSource;
+  options.signal_when = [&] {
+    if (std::filesystem::exists(cli.folder() / "page.html")) {
+      std::filesystem::remove_all(cli.folder() / "my sticks");
+    }
+    return 0;
+  };
+  const auto page = (cli.folder() / "page.html").string();
+  const auto ran = (cli.folder() / "my sticks").string();
+  const auto made = cli.parallax({"report", ran, "-o", page});
+  CHECK(made.err.find("--out '" + ran + "' --resume") != std::string::npos);
+  std::filesystem::remove(page);
+  const auto watched = cli.parallax({"report", ran, "-o", page, "--watch"}, options);
+  CHECK(watched.code == 2);
+  CHECK(watched.err.find("E7111") != std::string::npos);
+}
+
 TEST_CASE("a missing recording comes with the command that makes it, and a broken one is said") {
   const CliFixture cli;
   REQUIRE(cli.parallax({"run", "edge.yaml", "--record", "none", "--out", "edge"}).code == 1);
