@@ -105,7 +105,7 @@ int draw_start(const DrawOptions& options, Invocation& invocation) {
   const harness::OdeWorld world(scenario->world);
   const std::vector<harness::Picture> pictures = {{harness::scene_of(world, scenario->world), {}}};
   const fs::path out = options.out.empty() ? fs::path("scene.svg") : fs::path(options.out);
-  if (!check_replaceable(out.string(), is_picture, sink)) return 0;
+  if (!check_replaceable(out.string(), is_picture, invocation.files(), sink)) return 0;
   harness::SvgOptions svg;
   svg.title = scenario->title.empty() ? scenario->name : scenario->title;
   svg.subtitle = "before a start is drawn";
@@ -350,9 +350,13 @@ int draw_run(const DrawOptions& options, Invocation& invocation) {
     return 0;
   }
   for (std::size_t i = 0; i <= run->line.calls.size(); ++i) {
-    if (!check_replaceable((folder / picture_name(i)).string(), is_picture, sink)) return 0;
+    if (!check_replaceable((folder / picture_name(i)).string(), is_picture, invocation.files(),
+                           sink))
+      return 0;
   }
-  if (!check_replaceable((folder / "index.html").string(), is_earlier_page, sink)) return 0;
+  if (!check_replaceable((folder / "index.html").string(), is_earlier_page, invocation.files(),
+                         sink))
+    return 0;
   const auto parting = drawn_parting(*run, *loaded, *trace, options.what, invocation);
   const auto album = album_of_run(*run, scenario, parting, options.what, invocation);
   if (!album) return 0;

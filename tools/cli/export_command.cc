@@ -84,7 +84,8 @@ int export_motion(const ExportOptions& options, Invocation& invocation) {
     invocation.result(text);
     return 0;
   }
-  if (!check_replaceable(output, is_csv ? harness::is_motion_csv : harness::is_motion_mcap, sink))
+  if (!check_replaceable(output, is_csv ? harness::is_motion_csv : harness::is_motion_mcap,
+                         invocation.files(), sink))
     return 0;
   if (!base::write_output(output, text, invocation.files(), sink)) return 0;
   const auto sample = fmt::format("{}.{}", id->trace, id->sample);

@@ -31,8 +31,7 @@ base::Status check_plot(const std::string& path, Invocation& invocation) {
     return sink.error_about(base::DiagnosticCode::kUsage, path,
                             "--plot writes a page; end the name in .html");
   }
-  if (!base::check_output(path, invocation.files(), sink)) return sink.already_reported();
-  return check_replaceable(path, is_earlier_page, sink);
+  return check_replaceable(path, is_earlier_page, invocation.files(), sink);
 }
 
 int run_rates(const RateOptions& options, Invocation& invocation) {

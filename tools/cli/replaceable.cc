@@ -9,7 +9,8 @@
 namespace parallax::tools {
 
 base::Status check_replaceable(const std::string& path, bool (*is_ours)(std::string_view head),
-                               base::DiagnosticSink& sink) {
+                               const base::SourceFiles& files, base::DiagnosticSink& sink) {
+  if (!base::check_output(path, files, sink)) return sink.already_reported();
   namespace fs = std::filesystem;
   std::error_code error;
   const auto status = fs::status(path, error);

@@ -25,8 +25,7 @@ base::Status SampleOutput::check(Invocation& invocation) const {
     return sink.error_about(base::DiagnosticCode::kUsage, path_,
                             "--samples writes .csv or .jsonl; end the name in one of them");
   }
-  if (!base::check_output(path_, invocation.files(), sink)) return sink.already_reported();
-  return check_replaceable(path_, harness::is_sample_table, sink);
+  return check_replaceable(path_, harness::is_sample_table, invocation.files(), sink);
 }
 
 harness::SampleListener SampleOutput::listener() {
