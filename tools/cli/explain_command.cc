@@ -190,9 +190,6 @@ int explain_discrepancy(const RecordedDiscrepancy& found, const ExplainOptions& 
   for (const auto& set : sets_found->sets) {
     sets.push_back(search.look_at(set));
     words.push_back(blame_words(model, found.path, *found.parting, sets.back().clauses));
-    if (cause_first && sets.size() == 1) {
-      words.back() = "From one and the same start it went wrong and went well. " + words.back();
-    }
     if (as_json) continue;
     const bool is_first = sets.size() == 1;
     if (is_first) {
