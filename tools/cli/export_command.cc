@@ -45,6 +45,20 @@ std::int64_t frame_count(const harness::Recording& recording) {
   return frames;
 }
 
+/// Where the journal knows the simulation, the recording has its seed; one that was copied from
+/// another run has not.
+bool is_of_the_run(const harness::Recording& recording, const std::string& folder,
+                   harness::SampleId id, base::DiagnosticSink& sink) {
+  base::SourceFiles own;
+  base::DiagnosticSink unread;  // a recording is of use without a journal, too
+  const auto run = harness::read_recorded_run(folder, id, own, unread);
+  if (!run || recording.seed == run->record.seed) return true;
+  const auto file = std::filesystem::path(folder) / harness::recording_name(id.trace, id.sample);
+  sink.error_about(base::DiagnosticCode::kBadRecording, file.string(),
+                   fmt::format("it is that of another run, of seed {}", recording.seed));
+  return false;
+}
+
 int export_motion(const ExportOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   if (!expect_kind(options.folder, {FileKind::kRun}, "the folder of a run", invocation)) return 0;
@@ -61,7 +75,7 @@ int export_motion(const ExportOptions& options, Invocation& invocation) {
   const auto make = fmt::format("parallax replay {} --sample {}.{} --record",
                                 harness::shell_word(options.folder), id->trace, id->sample);
   const auto recording = harness::read_recording(options.folder, id->trace, id->sample, make, sink);
-  if (!recording) return 0;
+  if (!recording || !is_of_the_run(*recording, options.folder, *id, sink)) return 0;
   if (!recording->missing.empty()) {
     sink.error_about(base::DiagnosticCode::kRecordingLost, options.folder, 1, recording->missing);
   }

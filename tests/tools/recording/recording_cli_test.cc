@@ -138,6 +138,26 @@ TEST_CASE("an executed plan is recorded like a trace") {
   }
 }
 
+TEST_CASE("a recording of another run is not exported as this one's") {
+  const CliFixture cli;
+  for (const auto* seed : {"1", "7"}) {
+    const auto run = std::string("run") + seed;
+    CHECK(cli.parallax({"run", "edge.yaml", "--out", run, "--seed", seed, "--record", "all",
+                        "--max-runs", "1"})
+              .code != 2);
+  }
+  CHECK(cli.parallax({"export", "run1", "--sample", "1.1"}).code == 0);
+  fs::copy_file(cli.folder() / "run7/recordings/1.1.rec", cli.folder() / "run1/recordings/1.1.rec",
+                fs::copy_options::overwrite_existing);
+  const auto result = cli.parallax({"export", "run1", "--sample", "1.1"});
+  CHECK(result.code == 3);
+  CHECK(result.out.empty());
+  CHECK(result.err.find("it is that of another run, of seed") != std::string::npos);
+  // Without a journal nothing is known of the run.
+  fs::remove(cli.folder() / "run1/journal.ndjson");
+  CHECK(cli.parallax({"export", "run1", "--sample", "1.1"}).code != 5);
+}
+
 TEST_CASE("what is missing or broken is told with the command that makes it") {
   const CliFixture cli;
   REQUIRE(cli.parallax({"run", "edge.yaml", "--record", "none", "--out", "my run"}).code == 1);
