@@ -10,10 +10,6 @@
 namespace parallax::test {
 namespace {
 
-bool holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 TEST_CASE("a golden file is written on demand, held against, and its difference is shown") {
   const SuiteFixture cli;
   const auto missing = cli.suite({});

@@ -229,6 +229,29 @@ LoopOptions loop_options(const SuiteOptions& options, bool keep_passes,
   return out;
 }
 
+/// What stands in --out. Reported are none where the options ask for some, and those of another
+/// suite where they are to be gone on with.
+base::Result<StoredResults> earlier_results(const SuiteOptions& options,
+                                            const SuiteIdentity& identity,
+                                            base::DiagnosticSink& sink) {
+  if (!options.rerun_failed && !options.resume) {
+    base::DiagnosticSink unread;  // their times and needs are of use all the same
+    auto read = read_results(options.out, unread);
+    return read ? *std::move(read) : StoredResults{};
+  }
+  auto earlier = read_results(options.out, sink);
+  if (!earlier || !options.resume) return earlier;
+  auto what = difference(earlier->identity, identity);
+  if (what.empty() && !(earlier->identity.shard == identity.shard)) {
+    what = fmt::format("shard {} and {}", to_string(earlier->identity.shard),
+                       to_string(identity.shard));
+  }
+  if (what.empty()) return earlier;
+  return sink.error_about(base::DiagnosticCode::kUsage,
+                          (std::filesystem::path(options.out) / kResultsFile).string(),
+                          fmt::format("--resume: that suite and this one are different: {}", what));
+}
+
 int run_suite(const SuiteOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   if (!options.merge.empty()) {
@@ -258,33 +281,14 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
   if (!shard) return 0;
   const SuiteIdentity identity{kVersion,      program_hash(), options.seed, *shard,
                                options.paths, options.only,   options.fast};
-  StoredResults earlier;
-  if (options.rerun_failed || options.resume) {
-    auto read = read_results(options.out, sink);
-    if (!read) return 0;
-    earlier = *std::move(read);
-  } else {
-    base::DiagnosticSink unread;  // their times and needs are of use all the same
-    if (auto read = read_results(options.out, unread)) earlier = *std::move(read);
-  }
-  if (options.resume) {
-    auto what = difference(earlier.identity, identity);
-    if (what.empty() && !(earlier.identity.shard == *shard)) {
-      what = fmt::format("shard {} and {}", to_string(earlier.identity.shard), to_string(*shard));
-    }
-    if (!what.empty()) {
-      sink.error_about(base::DiagnosticCode::kUsage,
-                       (std::filesystem::path(options.out) / kResultsFile).string(),
-                       fmt::format("--resume: that suite and this one are different: {}", what));
-      return 0;
-    }
-  }
+  const auto earlier = earlier_results(options, identity, sink);
+  if (!earlier) return 0;
   const auto quarantine = quarantine_of(options, invocation);
-  auto cases = wanted_cases(options, earlier.cases, invocation);
+  auto cases = wanted_cases(options, earlier->cases, invocation);
   if (!quarantine || !cases || !may_write(options, invocation)) return 0;
   std::vector<bool> skipped;
   for (const auto& one : *cases) skipped.push_back(!in_shard(one.id, *shard));
-  StoredResults stored{identity, options.rerun_failed ? earlier.cases : StoredCases{}};
+  StoredResults stored{identity, options.rerun_failed ? earlier->cases : StoredCases{}};
   SuiteRecord record(*std::move(cases), skipped, options.out, options.junit, std::move(stored),
                      *quarantine);
   const auto folder = options.cache.empty() ? std::filesystem::path(options.out) / "cache"
@@ -298,10 +302,10 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
   const auto remark = [&](const std::string& text) { invocation.remark(text); };
   const bool caches = !options.no_cache && !options.update_goldens;
   Reuse reuse(record, cache, remark);
-  if (options.resume) reuse.resume(earlier.cases);
+  if (options.resume) reuse.resume(earlier->cases);
   if (caches) reuse.look_up(*verified);
   if (!record.save(sink)) return 0;
-  run_open_cases(record, loop_options(options, caches, invocation), earlier.cases, reuse, cache,
+  run_open_cases(record, loop_options(options, caches, invocation), earlier->cases, reuse, cache,
                  remark, stop_flag());
   speak_of_quarantine(record, options.only.empty() && !options.fast && !options.rerun_failed,
                       invocation);

@@ -120,14 +120,8 @@ TEST_CASE("an error in a later round: what was done is on record") {
   CHECK(cli.read("two/opens.e").find(kUnparks) == std::string::npos);  // it did not end clean
 }
 
-TEST_CASE("a repair that takes starts from the plan does not end clean") {
-  const CliFixture cli;
-  cli.write("domain.e",
-            "fluent Open()\nfluent Lit()\n\nevent Pull()\nevent Push()\n\n"
-            "[time] Terminates(Push(),Open(),time).\n[time] Initiates(Pull(),Open(),time).\n");
-  cli.write("model.e", "load domain.e\n");
-  cli.write("truth.e", "load domain.e\n\n[time] Happens(Pull(),time) -> HoldsAt(Lit(),time).\n");
-  cli.write("start.e", "!HoldsAt(Open(),0).\n");
+/// A drawer is pulled and pushed; `model.e` is to hold against the world `truth.e` from `start.e`.
+void write_drawer_scenario(const CliFixture& cli) {
   cli.write("pull.lisp",
             "(def-cram-function pull ()\n  (perform (an action (type pulling)))\n"
             "  (perform (an action (type pushing))))\n(pull)\n");
@@ -138,6 +132,17 @@ TEST_CASE("a repair that takes starts from the plan does not end clean") {
   cli.write("drawer.yaml",
             "model: [model.e, start.e]\nsimulator: {model: truth.e}\nplan: pull.lisp\n"
             "bind: robot.bind\nhorizon: 2\nconstraints: \"Happens(Push(),time-1)\"\n");
+}
+
+TEST_CASE("a repair that takes starts from the plan does not end clean") {
+  const CliFixture cli;
+  cli.write("domain.e",
+            "fluent Open()\nfluent Lit()\n\nevent Pull()\nevent Push()\n\n"
+            "[time] Terminates(Push(),Open(),time).\n[time] Initiates(Pull(),Open(),time).\n");
+  cli.write("model.e", "load domain.e\n");
+  cli.write("truth.e", "load domain.e\n\n[time] Happens(Pull(),time) -> HoldsAt(Lit(),time).\n");
+  cli.write("start.e", "!HoldsAt(Open(),0).\n");
+  write_drawer_scenario(cli);
   json_of(cli, {"run", "drawer.yaml", "--out", "out"}, 1);
   const auto report = json_of(cli, {"repair", "out", "--loop", "--out", "fixed"}, 1);
   CAPTURE(report.dump());
@@ -159,16 +164,7 @@ TEST_CASE("it ends at a tie, with a clean folder, and where there is no room for
   cli.write("model.e", model);
   cli.write("truth.e", domain + "[time] HoldsAt(Lit(),time) -> Initiates(Pull(),Open(),time).\n");
   cli.write("start.e", "!HoldsAt(Open(),0).\nHoldsAt(Lit(),0) <-> HoldsAt(Parked(),0).\n");
-  cli.write("pull.lisp",
-            "(def-cram-function pull ()\n  (perform (an action (type pulling)))\n"
-            "  (perform (an action (type pushing))))\n(pull)\n");
-  cli.write("robot.bind",
-            "action pulling () -> Pull()  ok: Open() | !Open() @t+1 "
-            "else manipulation-goal-not-reached\n"
-            "action pushing () -> Push()  ok: !Open() @t+1 else manipulation-goal-not-reached\n");
-  cli.write("drawer.yaml",
-            "model: [model.e, start.e]\nsimulator: {model: truth.e}\nplan: pull.lisp\n"
-            "bind: robot.bind\nhorizon: 2\nconstraints: \"Happens(Push(),time-1)\"\n");
+  write_drawer_scenario(cli);
   json_of(cli, {"run", "drawer.yaml", "--out", "out"}, 1);
   const auto alone = json_of(cli, {"repair", "out", "--limit", "0"}, 1);
   CAPTURE(alone.dump());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -53,5 +54,18 @@ class SuiteFixture : public CliFixture {
     return run_process(command, options);
   }
 };
+
+inline bool holds(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// A JUnit report without what differs between two runs of a suite although nothing has changed:
+/// times, and whether a result was taken over.
+inline std::string without_times(std::string junit) {
+  static const std::regex time(R"( (time|timestamp)="[^"]*")");
+  static const std::regex reused(" *<system-out>(cached|resumed)</system-out>\n");
+  junit = std::regex_replace(junit, time, "");
+  return std::regex_replace(junit, reused, "");
+}
 
 }  // namespace parallax::test

@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <set>
 
 #include "tests/tools/cli_json.h"
@@ -14,14 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-bool holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-std::string without_times(const std::string& junit) {
-  return std::regex_replace(junit, std::regex(R"( (time|timestamp)="[^"]*")"), "");
-}
 
 constexpr int kCases = 24;
 

@@ -6,7 +6,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
-#include <regex>
 
 #include "compiler/base/sha256.h"
 #include "tests/tools/cli_json.h"
@@ -17,19 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-bool holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-/// What differs between two runs of the same suite although nothing has changed: times, and whether
-/// a result was taken over.
-std::string without_times(std::string junit) {
-  static const std::regex time(R"( (time|timestamp)="[^"]*")");
-  static const std::regex reused(" *<system-out>(cached|resumed)</system-out>\n");
-  junit = std::regex_replace(junit, time, "");
-  return std::regex_replace(junit, reused, "");
-}
 
 /// A manifest of forty cases on the lamp: most are as expected, every seventh is not, one is
 /// refused.
