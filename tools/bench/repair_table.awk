@@ -17,7 +17,7 @@ function row(key,   judged, ms) {
   ms = median(times[key])
   printf "| %s | %d | %d | %d | %d | %s | %s | %d | %s | %s |\n", key, total[key], same[key], unseen[key], judged,
     share(first[key], judged), share(three[key], judged), none[key], median(runs[key]),
-    ms == "-" ? "-" : sprintf("%.1f s", ms / 1000)
+    ms == "-" ? "-" : sprintf(ms < 1000 ? "%.2f s" : "%.1f s", ms / 1000)
 }
 function count(keys, k, outcome, simulations, ms,   i, key) {
   for (i = 1; i <= k; ++i) {
