@@ -136,10 +136,8 @@ void add_repair(const PageOptions& options, Context& context, PageData& page) {
     page.banners.push_back("No repair could be looked for. " + messages_of(context));
     return;
   }
-  std::error_code error;
-  const auto here = std::filesystem::current_path(error).string();
   for (const auto& proposal : result->proposals) {
-    page.proposals.push_back({proposal.words, unified_diff(proposal.files, here),
+    page.proposals.push_back({proposal.words, patch_from_here(proposal.files),
                               proposal_sentences(proposal, result->runs), proposal.tied,
                               proposal.precaution, name_of(proposal.changes)});
   }

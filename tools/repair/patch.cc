@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
+#include <string_view>
+#include <system_error>
 
 #include "compiler/base/line_diff.h"
 
 namespace parallax::tools {
+
+namespace fs = std::filesystem;
+
 namespace {
 
 constexpr std::size_t kContext = 3;
@@ -63,6 +67,18 @@ std::string hunks(const std::string& before, const std::string& after) {
   return out;
 }
 
+/// Without links, so that a file has one name whatever the folder is called.
+fs::path real_path(const fs::path& path) {
+  std::error_code error;
+  auto real = fs::weakly_canonical(path, error);
+  return error ? path.lexically_normal() : real;
+}
+
+bool is_below(const fs::path& path, const fs::path& folder) {
+  const auto name = path.lexically_relative(folder);
+  return !name.empty() && *name.begin() != "..";
+}
+
 }  // namespace
 
 std::vector<ChangedFile> changed_files(const base::SourceFiles& files,
@@ -79,18 +95,50 @@ std::vector<ChangedFile> changed_files(const base::SourceFiles& files,
   return out;
 }
 
-std::string unified_diff(const std::vector<ChangedFile>& files, const std::string& folder) {
+std::string patch_folder(const std::vector<ChangedFile>& files, const fs::path& folder) {
+  const auto here = real_path(folder);
+  std::vector<fs::path> paths;
+  for (const auto& file : files) paths.push_back(real_path(folder / file.name));
+  const auto has_all = [&](const fs::path& top) {
+    return std::all_of(paths.begin(), paths.end(),
+                       [&](const fs::path& path) { return is_below(path, top); });
+  };
+  if (has_all(here)) return ".";
+  std::error_code error;
+  for (auto top = paths.front().parent_path(); top.has_relative_path(); top = top.parent_path()) {
+    if (!fs::exists(top / ".git", error)) continue;
+    if (has_all(top)) return top.lexically_relative(here).generic_string();
+    break;
+  }
+  return "/";
+}
+
+std::string unified_diff(const std::vector<ChangedFile>& files, const fs::path& folder) {
+  const auto top = real_path(folder / patch_folder(files, folder));
   std::string out;
   for (const auto& file : files) {
-    const auto path = std::filesystem::path(file.name).lexically_normal();
-    auto name = path.generic_string();
-    if (path.is_absolute()) {
-      const auto below = path.lexically_relative(folder).generic_string();
-      name = below.empty() || below.starts_with("..") ? name.substr(1) : below;
-    }
-    out += "--- a/" + name + "\n+++ b/" + name + "\n" + hunks(file.before, file.after);
+    const auto name = real_path(folder / file.name).lexically_relative(top).generic_string();
+    // git takes what follows a blank for a time, but for a tab.
+    const auto* end = name.find(' ') == std::string::npos ? "\n" : "\t\n";
+    out += "--- a/" + name + end + "+++ b/" + name + end + hunks(file.before, file.after);
   }
   return out;
+}
+
+std::string patch_folder(const std::vector<ChangedFile>& files) {
+  std::error_code error;
+  return patch_folder(files, fs::current_path(error));
+}
+
+std::string patch_from_here(const std::vector<ChangedFile>& files) {
+  std::error_code error;
+  return unified_diff(files, fs::current_path(error));
+}
+
+std::string patch_place_words(const std::vector<ChangedFile>& files) {
+  const auto top = patch_folder(files);
+  if (top == ".") return "";
+  return fmt::format("The patch begins at {0}: `git -C {0} apply`, or `patch -p1 -d {0}`.", top);
 }
 
 }  // namespace parallax::tools

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "compiler/base/source_file.h"
@@ -18,8 +18,22 @@ struct ChangedFile {
 std::vector<ChangedFile> changed_files(const base::SourceFiles& files,
                                        const std::vector<compiler::TextChange>& changes);
 
-/// A unified diff with three lines of context, as `git apply` and `patch -p1` read it. Names below
-/// `folder`, an absolute path, are told from there.
-std::string unified_diff(const std::vector<ChangedFile>& files, const std::string& folder);
+/// Where the names in a patch of these files begin, seen from `folder`, an absolute path: ".", if
+/// they all lie below it, as `git apply` asks for; else the top of the git repository that has them
+/// all, as "../.."; else "/".
+std::string patch_folder(const std::vector<ChangedFile>& files,
+                         const std::filesystem::path& folder);
+
+/// A unified diff with three lines of context, as `git apply` and `patch -p1` read it in the
+/// `patch_folder`.
+std::string unified_diff(const std::vector<ChangedFile>& files,
+                         const std::filesystem::path& folder);
+
+/// Both for the current folder.
+std::string patch_folder(const std::vector<ChangedFile>& files);
+std::string patch_from_here(const std::vector<ChangedFile>& files);
+
+/// A sentence that says where to apply it; empty: in the current folder.
+std::string patch_place_words(const std::vector<ChangedFile>& files);
 
 }  // namespace parallax::tools

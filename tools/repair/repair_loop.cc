@@ -130,8 +130,7 @@ class Rounds {
     if (!apply_proposal(*first, context_)) return sink.already_reported();
     round.words = first->words;
     round.effects = first->effects;
-    std::error_code error;
-    round.patch = unified_diff(first->files, fs::current_path(error).string());
+    round.patch = patch_from_here(first->files);
     evidence_.insert(evidence_.end(), input->evidence.begin(), input->evidence.end());
     // What it takes to fail is not asked of later rounds either.
     if (first->precaution) set_aside(input->evidence, evidence_);
@@ -252,8 +251,7 @@ class Rounds {
   base::Status write_log() {
     auto& sink = context_.sink();
     const fs::path out = options_.out;
-    std::error_code error;
-    const auto patch = unified_diff(loop_.files, fs::current_path(error).string());
+    const auto patch = patch_from_here(loop_.files);
     if (!base::write_file_atomically(out / "rounds.txt", loop_text(loop_), sink) ||
         !base::write_file_atomically(out / "rounds.json", loop_json(loop_), sink) ||
         !base::write_file_atomically(out / "repair.patch", patch, sink)) {
@@ -313,8 +311,9 @@ std::string loop_text(const RepairLoop& loop) {
         "change is one of the world as well.\n",
         name);
   }
-  std::error_code error;
-  return out + "\n" + unified_diff(loop.files, fs::current_path(error).string());
+  const auto place = patch_place_words(loop.files);
+  if (!place.empty()) out += place + "\n";
+  return out + "\n" + patch_from_here(loop.files);
 }
 
 std::string loop_json(const RepairLoop& loop) {
@@ -340,8 +339,8 @@ std::string loop_json(const RepairLoop& loop) {
     rounds.push_back(std::move(one));
   }
   out["read_by_world"] = loop.read_by_world;
-  std::error_code error;
-  out["patch"] = unified_diff(loop.files, fs::current_path(error).string());
+  out["patch"] = patch_from_here(loop.files);
+  out["patch_folder"] = patch_folder(loop.files);
   return base::json_text(out);
 }
 

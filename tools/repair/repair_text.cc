@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <filesystem>
-
 #include "compiler/base/json.h"
 #include "tools/repair/repair.h"
 #include "tools/repair/trace_numbers.h"
@@ -11,11 +9,6 @@ namespace parallax::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string patch_of(const Proposal& proposal) {
-  std::error_code error;
-  return unified_diff(proposal.files, std::filesystem::current_path(error).string());
-}
 
 std::string plural(std::size_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
@@ -74,7 +67,9 @@ std::string proposal_text(const Proposal& proposal, std::size_t rank, const Repa
   for (const auto& sentence : proposal_sentences(proposal, result.runs)) {
     out += "   " + sentence + "\n";
   }
-  return out + "\n" + patch_of(proposal);
+  const auto place = patch_place_words(proposal.files);
+  if (!place.empty()) out += "   " + place + "\n";
+  return out + "\n" + patch_from_here(proposal.files);
 }
 
 std::string tie_text(const RepairResult& result) {
@@ -257,7 +252,8 @@ std::string repair_json(const RepairResult& result) {
                          {"changes", name_of(proposal.changes)},
                          {"evidence", proposal.evidence},
                          {"edits", proposal.size},
-                         {"patch", patch_of(proposal)},
+                         {"patch", patch_from_here(proposal.files)},
+                         {"patch_folder", patch_folder(proposal.files)},
                          {"read_by_world", proposal.read_by_world},
                          {"precaution", proposal.precaution},
                          {"hides_failure", proposal.hides_failure},
