@@ -1,6 +1,7 @@
 #include "runtime/compare/circuit.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace parallax::runtime {
 
@@ -13,14 +14,15 @@ Circuit::Clause Circuit::simplified(std::vector<Literal> literals) const {
   std::sort(literals.begin(), literals.end(), [](Literal a, Literal b) {
     return std::pair(a.var(), a.dimacs()) < std::pair(b.var(), b.dimacs());
   });
-  Clause out;
+  std::size_t kept = 0;
   for (const auto literal : literals) {
     if (literal == ~truth_) continue;
-    const bool opposite = !out.literals.empty() && out.literals.back() == ~literal;
+    const bool opposite = kept > 0 && literals[kept - 1] == ~literal;
     if (literal == truth_ || opposite) return {{}, true};
-    if (out.literals.empty() || out.literals.back() != literal) out.literals.push_back(literal);
+    if (kept == 0 || literals[kept - 1] != literal) literals[kept++] = literal;
   }
-  return out;
+  literals.resize(kept, truth_);
+  return {std::move(literals), false};
 }
 
 Literal Circuit::conjunction(std::vector<Literal> literals) {
@@ -33,18 +35,15 @@ Literal Circuit::disjunction(std::vector<Literal> literals) {
   if (clause.satisfied) return truth_;
   if (clause.literals.empty()) return ~truth_;
   if (clause.literals.size() == 1) return clause.literals.front();
-  std::vector<std::int32_t> key;
-  for (const auto literal : clause.literals) key.push_back(literal.dimacs());
-  const auto known = gates_.find(key);
-  if (known != gates_.end()) return known->second;
+  if (const auto known = gates_.find(clause.literals)) return *known;
   const auto gate = new_variable();
+  gates_.emplace(clause.literals, gate);
   for (const auto literal : clause.literals) {
     const Literal implies[] = {gate, ~literal};
     solver_->add_clause(implies);
   }
   clause.literals.push_back(~gate);
   solver_->add_clause(clause.literals);
-  gates_.emplace(std::move(key), gate);
   return gate;
 }
 

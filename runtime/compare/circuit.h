@@ -2,10 +2,10 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <span>
 #include <vector>
 
+#include "runtime/compare/literal_lists.h"
 #include "runtime/solver/sat_solver.h"
 
 namespace parallax::runtime {
@@ -37,7 +37,7 @@ class Circuit {
   SatSolver* solver_;
   std::int32_t next_;
   Literal truth_;
-  std::map<std::vector<std::int32_t>, Literal> gates_;
+  LiteralLists gates_;  // by the alternatives of each
 };
 
 class Circuit;

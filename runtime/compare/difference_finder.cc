@@ -45,18 +45,6 @@ class NameMatcher {
   SharedVocabulary& out_;
 };
 
-/// By variable - 1: what the models are compared on.
-std::vector<bool> observed_in(const CompiledModel& model, const SharedVocabulary& vocabulary,
-                              std::optional<Literal> SharedAtom::*side) {
-  std::vector<bool> observed(static_cast<std::size_t>(model.variable_count()), false);
-  for (const auto& atom : vocabulary.shared) {
-    if (atom.needed_horizon() > model.horizon) continue;
-    const auto& literal = atom.*side;
-    if (literal) observed[static_cast<std::size_t>(literal->var()) - 1] = true;
-  }
-  return observed;
-}
-
 }  // namespace
 
 SharedVocabulary shared_vocabulary(const CompiledModel& first, const CompiledModel& second,
@@ -110,6 +98,17 @@ CompiledModel truncated(const CompiledModel& model, Timepoint n) {
     out.clause_is_definition.push_back(model.clause_is_definition[i]);
   }
   return out;
+}
+
+std::vector<bool> observed_in(const CompiledModel& model, const SharedVocabulary& vocabulary,
+                              std::optional<Literal> SharedAtom::*side) {
+  std::vector<bool> observed(static_cast<std::size_t>(model.variable_count()), false);
+  for (const auto& atom : vocabulary.shared) {
+    if (atom.needed_horizon() > model.horizon) continue;
+    const auto& literal = atom.*side;
+    if (literal) observed[static_cast<std::size_t>(literal->var()) - 1] = true;
+  }
+  return observed;
 }
 
 std::shared_ptr<const Definitions> definitions_for(const CompiledModel& model,

@@ -51,6 +51,10 @@ SharedVocabulary exchanged(const SharedVocabulary& vocabulary);
 /// Sections, which describe how a file is written, are not kept.
 CompiledModel truncated(const CompiledModel& model, Timepoint n);
 
+/// By variable - 1: what the models are compared on.
+std::vector<bool> observed_in(const CompiledModel& model, const SharedVocabulary& vocabulary,
+                              std::optional<Literal> SharedAtom::*side);
+
 /// How the variables of a side of the vocabulary follow from what is compared.
 std::shared_ptr<const Definitions> definitions_for(const CompiledModel& model,
                                                    const SharedVocabulary& vocabulary,

@@ -2,8 +2,6 @@
 
 #include <map>
 
-#include "compiler/base/hash.h"
-
 namespace parallax::runtime {
 
 MappedModel::MappedModel(const compiler::CompiledModel& model, const Definitions& definitions,
@@ -42,6 +40,7 @@ std::optional<Literal> MappedModel::find(Literal literal) const {
 
 std::optional<Circuit::Clause> MappedModel::clause(std::size_t index) const {
   std::vector<Literal> literals;
+  literals.reserve(model_->clauses[index].size());
   for (const auto literal : model_->clauses[index]) {
     const auto mapped = find(literal);
     if (!mapped) return std::nullopt;
@@ -60,6 +59,7 @@ void MappedModel::define(std::int32_t variable) {
 
 std::optional<Literal> MappedModel::gate(const Definition& definition) const {
   std::vector<Literal> children;
+  children.reserve(definition.children.size());
   for (const auto child : definition.children) {
     const auto mapped = find(child);
     if (!mapped) return std::nullopt;
@@ -87,21 +87,6 @@ std::optional<Literal> MappedModel::forced(std::int32_t variable,
 }
 
 using compiler::Timepoint;
-
-std::size_t ClauseSet::Hash::operator()(const Key& key) const {
-  auto hash = base::kFnvStart;
-  for (const auto literal : key) {
-    hash = base::fnv1a64_word(hash, static_cast<std::uint32_t>(literal));
-  }
-  return static_cast<std::size_t>(hash);
-}
-
-ClauseSet::Key ClauseSet::key(const Circuit::Clause& clause) {
-  Key key;
-  key.reserve(clause.literals.size());
-  for (const auto literal : clause.literals) key.push_back(literal.dimacs());
-  return key;
-}
 
 Refutation::Refutation(const compiler::CompiledModel& model, const Definitions& definitions,
                        Circuit& circuit, SatSolver& solver, const ClauseSet& asserted,

@@ -2,7 +2,6 @@
 
 #include <functional>
 #include <optional>
-#include <unordered_set>
 #include <vector>
 
 #include "runtime/compare/circuit.h"
@@ -40,16 +39,13 @@ class MappedModel {
 /// Clauses by their literals, for look-up.
 class ClauseSet {
  public:
-  void insert(const Circuit::Clause& clause) { keys_.insert(key(clause)); }
-  bool contains(const Circuit::Clause& clause) const { return keys_.contains(key(clause)); }
+  void insert(const Circuit::Clause& clause) {
+    clauses_.emplace(clause.literals, Literal::positive(1));
+  }
+  bool contains(const Circuit::Clause& clause) const { return clauses_.contains(clause.literals); }
 
  private:
-  using Key = std::vector<std::int32_t>;
-  struct Hash {
-    std::size_t operator()(const Key& key) const;
-  };
-  static Key key(const Circuit::Clause& clause);
-  std::unordered_set<Key, Hash> keys_;
+  LiteralLists clauses_;
 };
 
 /// "The observables are no trace of this model", in the clauses of a solver. For given values of

@@ -383,20 +383,49 @@ void count_with_graphs(const CompiledModel& first, const CompiledModel& second,
 
 }  // namespace
 
-TraceDifference compare_traces(const CompiledModel& first, const CompiledModel& second,
+const CompiledModel& ComparedModel::up_to(Timepoint horizon) {
+  if (horizon == model_->horizon) return *model_;
+  if (shorter_ == nullptr || shorter_->horizon != horizon) {
+    shorter_ = std::make_unique<const CompiledModel>(truncated(*model_, horizon));
+  }
+  return *shorter_;
+}
+
+std::shared_ptr<const Definitions> ComparedModel::definitions(
+    const SharedVocabulary& vocabulary, std::optional<Literal> SharedAtom::*side, Timepoint horizon,
+    const std::atomic<bool>* stop) {
+  const auto& model = up_to(horizon);
+  auto observed = observed_in(model, vocabulary, side);
+  auto& known = known_[{horizon, observed}];
+  if (known == nullptr) {
+    known = std::make_shared<const Definitions>(find_definitions(model, observed, stop));
+  }
+  return known;
+}
+
+TraceDifference compare_traces(ComparedModel& first, ComparedModel& second,
                                const DifferenceOptions& options) {
   TraceDifference out;
-  out.horizon = std::min(first.horizon, second.horizon);
-  const auto a = truncated(first, out.horizon), b = truncated(second, out.horizon);
+  out.horizon = std::min(first.model().horizon, second.model().horizon);
+  const auto& a = first.up_to(out.horizon);
+  const auto& b = second.up_to(out.horizon);
   out.vocabulary = shared_vocabulary(a, b, out.horizon);
-  const auto of_a = definitions_for(a, out.vocabulary, &SharedAtom::first, options.stop);
-  const auto of_b = definitions_for(b, out.vocabulary, &SharedAtom::second, options.stop);
+  const auto of_a =
+      first.definitions(out.vocabulary, &SharedAtom::first, out.horizon, options.stop);
+  const auto of_b =
+      second.definitions(out.vocabulary, &SharedAtom::second, out.horizon, options.stop);
   out.lost = Direction(a, b, out.vocabulary, of_a, of_b, options.second_edited, options).run();
   out.gained =
       Direction(b, a, exchanged(out.vocabulary), of_b, of_a, options.first_edited, options).run();
   const bool open = !out.lost.count.exact || !out.gained.count.exact;
   if (open && out.vocabulary.is_same()) count_with_graphs(a, b, options, out);
   return out;
+}
+
+TraceDifference compare_traces(const CompiledModel& first, const CompiledModel& second,
+                               const DifferenceOptions& options) {
+  ComparedModel a(first), b(second);
+  return compare_traces(a, b, options);
 }
 
 }  // namespace parallax::runtime

@@ -5,8 +5,11 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runtime/compare/difference_finder.h"
@@ -62,7 +65,29 @@ struct DifferenceOptions {
   const std::atomic<bool>* stop = nullptr;
 };
 
+/// A model that is compared with several others. What was found out about it for one of them is
+/// kept for the next.
+class ComparedModel {
+ public:
+  /// The model outlives the object.
+  explicit ComparedModel(const CompiledModel& model) : model_(&model) {}
+  const CompiledModel& model() const { return *model_; }
+
+  const CompiledModel& up_to(Timepoint horizon);
+  /// Of the model up to there.
+  std::shared_ptr<const Definitions> definitions(const SharedVocabulary& vocabulary,
+                                                 std::optional<Literal> SharedAtom::*side,
+                                                 Timepoint horizon, const std::atomic<bool>* stop);
+
+ private:
+  const CompiledModel* model_;
+  std::unique_ptr<const CompiledModel> shorter_;
+  std::map<std::pair<Timepoint, std::vector<bool>>, std::shared_ptr<const Definitions>> known_;
+};
+
 /// Compares the traces of two models without state constraints up to the smaller of their horizons.
+TraceDifference compare_traces(ComparedModel& first, ComparedModel& second,
+                               const DifferenceOptions& options);
 TraceDifference compare_traces(const CompiledModel& first, const CompiledModel& second,
                                const DifferenceOptions& options);
 

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "harness/region/state_mapping.h"
-#include "runtime/compare/difference_finder.h"
+#include "runtime/compare/trace_difference.h"
 #include "runtime/trace/trace.h"
 #include "tools/app/trace_feed.h"
 
@@ -29,6 +29,7 @@ std::string experiment_key(const harness::CampaignTrace& trace) {
 /// A model with the scenario's plan; without a compilation it can be no run of it.
 struct ExperimentChooser::Model {
   std::optional<compiler::Compilation> compilation;
+  std::optional<runtime::ComparedModel> compared;
   std::unique_ptr<runtime::SolverSession> session;
 };
 
@@ -52,6 +53,7 @@ std::size_t ExperimentChooser::number_of(const std::string& text) {
   context_.sink() = before;
   if (compiled) {
     model->compilation = *std::move(compiled);
+    model->compared.emplace(model->compilation->model);
     model->session = std::make_unique<runtime::SolverSession>(
         model->compilation->model, runtime::make_cadical_solver(&context_.stop()));
   }
@@ -103,17 +105,21 @@ bool ExperimentChooser::admits(Model& model, const harness::CampaignTrace& trace
 void ExperimentChooser::find(Pair pair,
                              const std::function<bool(const harness::CampaignTrace&)>& usable,
                              std::map<std::string, harness::CampaignTrace>& found) {
-  const auto& first = *models_[pair.first]->compilation;
-  const auto& second = *models_[pair.second]->compilation;
-  const auto horizon = std::min(first.model.horizon, second.model.horizon);
-  const auto a = runtime::truncated(first.model, horizon);
-  const auto b = runtime::truncated(second.model, horizon);
+  auto& first = *models_[pair.first]->compared;
+  auto& second = *models_[pair.second]->compared;
+  const auto horizon = std::min(first.model().horizon, second.model().horizon);
+  const auto& a = first.up_to(horizon);
+  const auto& b = second.up_to(horizon);
   auto vocabulary = runtime::shared_vocabulary(a, b, horizon);
   std::erase_if(vocabulary.shared, [&](const runtime::SharedAtom& atom) {
     return atom.kind == compiler::AtomKind::kHoldsAt &&
            !observed_.contains(vocabulary.names[atom.name]);
   });
-  runtime::DifferenceFinder finder(a, b, vocabulary, kMostRefinements, &context_.stop());
+  const auto* stop = &context_.stop();
+  const auto of_first = first.definitions(vocabulary, &runtime::SharedAtom::first, horizon, stop);
+  const auto of_second =
+      second.definitions(vocabulary, &runtime::SharedAtom::second, horizon, stop);
+  runtime::DifferenceFinder finder(a, of_first, b, of_second, vocabulary, kMostRefinements, stop);
   for (int i = 0; i < kMostTries && !context_.stopped(); ++i) {
     auto answer = finder.find();
     if (answer == runtime::Answer::kNone && i == 0) nothing_.insert(pair);

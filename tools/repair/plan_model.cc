@@ -37,6 +37,7 @@ std::unique_ptr<PlanModel> PlanModel::compile(const harness::Scenario& scenario,
 
 PlanModel::PlanModel(compiler::Compilation compilation, const std::atomic<bool>& stop)
     : compilation_(std::move(compilation)),
+      compared_(compilation_.model),
       session_(compilation_.model, runtime::make_cadical_solver(&stop)),
       index_(compilation_.model) {}
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/pipeline/compile.h"
+#include "runtime/compare/trace_difference.h"
 #include "runtime/session/solver_session.h"
 #include "tools/app/edited_scenario.h"
 #include "tools/repair/evidence.h"
@@ -47,6 +48,7 @@ class PlanModel {
                                             Wrong& wrong);
 
   const compiler::CompiledModel& model() const { return compilation_.model; }
+  runtime::ComparedModel& compared() { return compared_; }
   const compiler::PlanGraph& graph() const { return *compilation_.plan; }
   runtime::SolverSession& session() { return session_; }
   compiler::Timepoint horizon() const { return compilation_.model.horizon; }
@@ -78,6 +80,7 @@ class PlanModel {
   PlanModel(compiler::Compilation compilation, const std::atomic<bool>& stop);
 
   compiler::Compilation compilation_;
+  runtime::ComparedModel compared_;
   runtime::SolverSession session_;
   compiler::AtomIndex index_;
   std::optional<runtime::Literal> clean_;

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <tuple>
 
 #include "compiler/base/file_io.h"
 #include "compiler/repair/edit_grammar.h"
-#include "runtime/compare/trace_difference.h"
 #include "tools/repair/plan_candidates.h"
 #include "tools/repair/plan_search.h"
 
@@ -78,6 +78,7 @@ class PlanRepair {
                      [&](const Evidence& each) { return each.ids.front() == parting.ids.front(); });
     if (seen == input_.evidence.end()) return;
     task_ = {};
+    can_be_run_.clear();
     task_.scenario = &input_.loaded.scenario;
     task_.plan = &*plan_;
     task_.evidence = &*seen;
@@ -348,6 +349,23 @@ class PlanRepair {
     return sum;
   }
 
+  /// With the model as it is the plan must have that execution, too, or nobody can run it. That is
+  /// the same for each way that the world may be.
+  bool can_be_run(const std::vector<compiler::TextChange>& changes) {
+    std::string key = task_.goal.event;
+    for (const auto& file : changed_files(plan_->files(), changes)) {
+      key += "\n" + file.name + "\n" + file.after;
+    }
+    const auto known = can_be_run_.find(key);
+    if (known != can_be_run_.end()) return known->second;
+    PlanModel::Wrong wrong;
+    const auto as_is = compile(input_.text, changes, has_constraints(), wrong);
+    const auto start = as_is ? as_is->start(*task_.evidence) : std::nullopt;
+    const bool reaches = start && as_is->reaches(task_.goal, *start) == true;
+    if (!context_.stopped()) can_be_run_.emplace(std::move(key), reaches);
+    return reaches;
+  }
+
   void try_text(const World& world, const std::vector<PlanEdit>& edits, bool handles,
                 PlanModel& before, std::vector<Tried>& out) {
     const auto changes = compiler::plan_changes(*plan_, edits);
@@ -369,13 +387,8 @@ class PlanRepair {
       edited->set_bad(task_.bad);
       if (edited->can_be_bad() != false) return refuse("another execution comes to such a step");
     }
-    // With the model as it is the plan must have that execution, too, or nobody can run it.
-    if (world.rank != 0 && !handles) {
-      const auto as_is = compile(input_.text, changes, has_constraints(), wrong);
-      const auto start = as_is ? as_is->start(*task_.evidence) : std::nullopt;
-      if (!start || as_is->reaches(task_.goal, *start) != true) {
-        return refuse("the model as it is does not get there");
-      }
+    if (world.rank != 0 && !handles && !can_be_run(changes)) {
+      return refuse("the model as it is does not get there");
     }
     Tried tried;
     auto& proposal = tried.proposal;
@@ -398,7 +411,8 @@ class PlanRepair {
           "had been done.");
     }
     tried.changes = changes;
-    if (!tried.around()) add_effects(before, world, tried);
+    // Without constraints it is compiled already.
+    if (!tried.around()) add_effects(before, world, tried, has_constraints() ? nullptr : &*edited);
     out.push_back(std::move(tried));
   }
 
@@ -421,16 +435,19 @@ class PlanRepair {
         world_words, event, run, target, length);
   }
 
-  void add_effects(PlanModel& before, const World& world, Tried& tried) {
+  void add_effects(PlanModel& before, const World& world, Tried& tried,
+                   PlanModel* behind = nullptr) {
     auto& out = tried.proposal.effects.emplace();
     if (task_.goal.constraints) out.reaches = true;
     PlanModel::Wrong wrong;
-    const auto behind = compile(world.text, tried.changes, false, wrong);
-    if (!behind) return;
+    const auto compiled =
+        behind == nullptr ? compile(world.text, tried.changes, false, wrong) : nullptr;
+    if (behind == nullptr) behind = compiled.get();
+    if (behind == nullptr) return;
     runtime::DifferenceOptions options;
     options.stop = &context_.stop();
     options.counts_only = true;
-    const auto difference = runtime::compare_traces(before.model(), behind->model(), options);
+    const auto difference = runtime::compare_traces(before.compared(), behind->compared(), options);
     const auto number = [](const runtime::OneSided& side) -> std::optional<runtime::TraceNumber> {
       if (side.answer == runtime::Answer::kUnknown) return std::nullopt;
       return side.count;
@@ -481,6 +498,7 @@ class PlanRepair {
   std::optional<compiler::PlanText> plan_;
   std::optional<compiler::PlanBinding> binding_;
   PlanTask task_;
+  std::map<std::string, bool> can_be_run_;  // by the goal's event and the edited texts
   PlanScope scope_;
   Evidence::State differing_;
   bool went_well_ = false;  // the event did, in some run

@@ -41,7 +41,9 @@ Verdict verify(const std::string& text, const std::vector<Evidence>& evidence,
 }
 
 TraceComparer::TraceComparer(const ScenarioModel& loaded, const std::string& text, Context& context)
-    : loaded_(loaded), context_(context), original_(compile(text, false)) {}
+    : loaded_(loaded), context_(context), original_(compile(text, false)) {
+  if (original_) compared_.emplace(original_->model);
+}
 
 std::optional<compiler::Compilation> TraceComparer::compile(const std::string& text,
                                                             bool constraints) {
@@ -61,7 +63,8 @@ TraceEffects TraceComparer::compare(const std::string& edited) {
   runtime::DifferenceOptions options;
   options.stop = &context_.stop();
   options.counts_only = true;
-  const auto difference = runtime::compare_traces(original_->model, other->model, options);
+  runtime::ComparedModel edited_model(other->model);
+  const auto difference = runtime::compare_traces(*compared_, edited_model, options);
   const auto number = [](const runtime::OneSided& side) -> std::optional<runtime::TraceNumber> {
     if (side.answer == runtime::Answer::kUnknown) return std::nullopt;
     return side.count;

@@ -44,6 +44,7 @@ class TraceComparer {
   const ScenarioModel& loaded_;
   Context& context_;
   std::optional<compiler::Compilation> original_;
+  std::optional<runtime::ComparedModel> compared_;
 };
 
 }  // namespace parallax::tools
