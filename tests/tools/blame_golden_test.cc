@@ -1,4 +1,4 @@
-// What `parallax explain RUN_DIR` says of 23 discrepancies, word by word: tests/tools/blame/*.txt.
+// What `parallax explain RUN_DIR` says of 24 discrepancies, word by word: tests/tools/blame/*.txt.
 // PARALLAX_UPDATE_GOLDENS=1 writes them anew; read the difference as carefully as code.
 
 #include <doctest/doctest.h>

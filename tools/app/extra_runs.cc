@@ -50,7 +50,6 @@ base::Result<std::unique_ptr<ExtraRuns>> ExtraRuns::open(
   if (!journal) return sink.already_reported();
   out->journal_ = *std::move(journal);
   out->samples_ = out->journal_->recorded().samples;
-  out->places_ = out->journal_->recorded().places;
   return out;
 }
 

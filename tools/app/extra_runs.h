@@ -48,9 +48,6 @@ class ExtraRuns {
   const std::map<std::int64_t, harness::TraceLine>& traces() const { return traces_; }
   const std::map<harness::SampleKey, harness::SampleRecord>& samples() const { return samples_; }
 
-  /// Where one of those on record stands in the journal.
-  const base::SourceRange& place_of(const harness::SampleKey& key) const { return places_.at(key); }
-
   /// A trace in the ids of the scenario's model, which the bench judges by.
   harness::CampaignTrace in_symbols(const harness::CampaignTrace& trace) const;
   /// Its start with a sampler; reports as prepare_trace does.
@@ -88,7 +85,6 @@ class ExtraRuns {
   std::unique_ptr<harness::Journal> journal_;
   std::map<std::int64_t, harness::TraceLine> traces_;
   std::map<harness::SampleKey, harness::SampleRecord> samples_;
-  std::map<harness::SampleKey, base::SourceRange> places_;  // of those that were on record
   std::int64_t made_ = 0;
   bool rejected_ = false;
   std::unique_ptr<harness::SimulatorBench> bench_;  // last: its threads use the journal

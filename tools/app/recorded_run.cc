@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <set>
 #include <system_error>
@@ -113,20 +114,27 @@ std::string wrong_calls(const harness::Scenario& scenario, const harness::TraceL
   return {};
 }
 
-/// What is wrong with the start of a simulation of the trace, whose ids are the model's.
-std::string wrong_start(const harness::Scenario& scenario, const harness::CampaignTrace& trace,
-                        const harness::RecordedRun& run) {
+/// What draws the starts of simulations of the trace, whose ids are the model's. None: nothing can.
+std::optional<harness::Sampler> sampler_of(const harness::Scenario& scenario,
+                                           const harness::CampaignTrace& trace) {
   base::DiagnosticSink unread;
   const harness::ModelFluents fluents(*trace.symbols);
   const auto holds = trace.holds(0);
   auto cuboid = scenario.mapping->start_cuboid(fluents.ground(),
                                                std::set<std::string>(holds.begin(), holds.end()),
                                                scenario.sampling, scenario.sampling_source, unread);
-  if (!cuboid) return "its trace starts where no start can be drawn";
-  const auto sampler = harness::Sampler::make(*std::move(cuboid), scenario.sampling_inset_m,
-                                              scenario.sampling_source, unread);
+  if (!cuboid) return std::nullopt;
+  auto sampler = harness::Sampler::make(*std::move(cuboid), scenario.sampling_inset_m,
+                                        scenario.sampling_source, unread);
+  if (!sampler) return std::nullopt;
+  return *std::move(sampler);
+}
+
+std::string wrong_start(const std::optional<harness::Sampler>& sampler,
+                        const harness::SampleRecord& record, std::uint64_t seed,
+                        const harness::CampaignTrace& trace) {
   if (!sampler) return "its trace starts where no start can be drawn";
-  return harness::wrong_draw(run.record, *sampler, run.header.seed, base::fnv1a64(trace.key));
+  return harness::wrong_draw(record, *sampler, seed, base::fnv1a64(trace.key));
 }
 
 }  // namespace
@@ -216,9 +224,33 @@ base::Result<harness::CampaignTrace> check_recorded_run(const ScenarioModel& loa
   }
   if (why.empty() && !run.header.asked.random_sequences) why = wrong_trace(model, *trace, context);
   if (!why.empty()) return foreign(run.trace_source, why);
-  why = wrong_start(loaded.scenario, *trace, run);
+  why = wrong_start(sampler_of(loaded.scenario, *trace), run.record, run.header.seed, *trace);
   if (!why.empty()) return foreign(run.source, why);
   return *std::move(trace);
+}
+
+base::Status check_recorded_starts(const ScenarioModel& loaded, const harness::JournalText& journal,
+                                   Context& context) {
+  auto& sink = context.sink();
+  std::map<std::int64_t, std::optional<harness::Sampler>> samplers;  // by trace
+  for (const auto& [key, record] : journal.samples) {
+    const auto line = journal.traces.find(record.trace);
+    if (record.path || record.phase != harness::DrawPhase::kCertify) continue;
+    if (line == journal.traces.end()) continue;
+    const auto& recorded = *line->second.trace;
+    if (!samplers.contains(record.trace)) {
+      const auto trace = in_ids_of(loaded.compilation.model, recorded);
+      if (!trace) {
+        return sink.error(DiagnosticCode::kForeignJournalLine,
+                          journal.trace_places.at(record.trace), "it names what the model has not");
+      }
+      samplers.emplace(record.trace, sampler_of(loaded.scenario, *trace));
+    }
+    const auto why = wrong_start(samplers.at(record.trace), record, journal.header->seed, recorded);
+    if (why.empty()) continue;
+    return sink.error(DiagnosticCode::kForeignJournalLine, journal.places.at(key), why);
+  }
+  return base::Unit{};
 }
 
 }  // namespace parallax::tools

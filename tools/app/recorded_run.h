@@ -48,4 +48,9 @@ base::Result<harness::CampaignTrace> check_recorded_run(const ScenarioModel& loa
                                                         const harness::RecordedRun& run,
                                                         Context& context);
 
+/// Is the start and seed of each simulation of a trace what is drawn for its number? The journal
+/// has a header. Reports kForeignJournalLine.
+base::Status check_recorded_starts(const ScenarioModel& loaded, const harness::JournalText& journal,
+                                   Context& context);
+
 }  // namespace parallax::tools

@@ -33,7 +33,6 @@ base::Result<std::unique_ptr<ExperimentRuns>> ExperimentRuns::open(
     if (!prepared) return sink.already_reported();
     if (!*prepared) return std::unique_ptr<ExperimentRuns>();
   }
-  if (!out->check_draws()) return sink.already_reported();
   return out;
 }
 
@@ -44,34 +43,6 @@ base::Result<bool> ExperimentRuns::prepare_loop() {
   stream_ = std::make_unique<harness::LoopStream>(as_run_.scenario, *loop_, runs_->bench(),
                                                   runs_->seed(), context_.sink());
   return stream_->prepare();
-}
-
-/// Those on record must be what is drawn for their numbers.
-base::Status ExperimentRuns::check_draws() {
-  const auto check = [&](const harness::SampleKey& key, const std::string& why) -> base::Status {
-    if (why.empty()) return base::Unit{};
-    return context_.sink().error(base::DiagnosticCode::kForeignJournalLine, runs_->place_of(key),
-                                 why);
-  };
-  if (stream_ != nullptr) {
-    for (const auto& [key, record] : runs_->samples()) {
-      if (!check(key, stream_->samples()->wrong_draw(record))) {
-        return context_.sink().already_reported();
-      }
-    }
-    return base::Unit{};
-  }
-  for (const auto& [number, line] : runs_->traces()) {
-    const auto prepared = runs_->prepare_start(runs_->in_symbols(*line.trace));
-    if (!prepared) return context_.sink().already_reported();
-    for (const auto& [key, record] : runs_->samples()) {
-      if (record.trace != number) continue;
-      const auto why = harness::wrong_draw(record, prepared->sampler, runs_->seed(),
-                                           base::fnv1a64(line.trace->key));
-      if (!check(key, why)) return context_.sink().already_reported();
-    }
-  }
-  return base::Unit{};
 }
 
 /// The initial state of executions that looks like the trace's.

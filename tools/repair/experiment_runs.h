@@ -43,7 +43,6 @@ class ExperimentRuns {
       : as_run_(as_run), last_sample_(last_sample), context_(context) {}
 
   base::Result<bool> prepare_loop();
-  base::Status check_draws();
   base::Result<bool> batch(const harness::TraceLine& line, std::int64_t budget);
   base::Result<bool> batch_from(std::int64_t start, std::int64_t budget);
   std::int64_t samples_of(std::int64_t trace) const;

@@ -52,6 +52,10 @@ base::Status add_paths(const char* name, const RepairOptions& options, const Sce
     context.remark(fmt::format("{}: runs of something else, left out", folder.string()));
     return base::Unit{};
   }
+  // A scenario that may be another one draws other starts.
+  if (!options.other_model && !check_recorded_starts(loaded, *journal, context)) {
+    return context.sink().already_reported();
+  }
   auto further = observed_paths(loaded, *journal, context);
   if (!further) return context.sink().already_reported();
   const auto known = paths.size();

@@ -114,12 +114,43 @@ TEST_CASE("an experiment that was not drawn for its number is no evidence") {
     auto& digit = journal[sample + std::string("\"phase\":\"certify\",\"seed\":").size()];
     digit = digit == '1' ? '2' : '1';
     cli.write(place, journal);
-    const auto refused = cli.parallax({"repair", "out"});
-    CAPTURE(refused.err);
-    CHECK(refused.code == 3);
-    CHECK(refused.err.find("E7103") != std::string::npos);
-    CHECK(refused.err.starts_with(place + ":"));
+    // Whether or not there may be more of them.
+    for (const std::string runs : {"60", "0"}) {
+      CAPTURE(runs);
+      const auto refused = cli.parallax({"repair", "out", "--runs", runs});
+      CAPTURE(refused.err);
+      CHECK(refused.code == 3);
+      CHECK(refused.err.find("E7103") != std::string::npos);
+      CHECK(refused.err.starts_with(place + ":"));
+    }
+    CHECK(cli.read(place) == journal);
   }
+}
+
+TEST_CASE("how many as likely as the first were not compared is told") {
+  // It opens only in the light; twelve lamps burn together.
+  const Drawer cli(kLit);
+  std::string lamps, start = "!HoldsAt(Open(),0).\nHoldsAt(Full(),0).\n!HoldsAt(Parked(),0).\n";
+  for (int i = 1; i <= 12; ++i) {
+    const auto lamp = "Lamp" + std::to_string(i) + "()";
+    lamps += "fluent " + lamp + "\n";
+    start += "HoldsAt(Lit(),0) <-> HoldsAt(" + lamp + ",0).\n";
+  }
+  cli.write("domain.e", lamps + cli.read("domain.e"));
+  cli.write("start.e", start);
+  json_of(cli, {"run", "drawer.yaml", "--out", "out"}, 1);
+  const auto all = json_of(cli, {"repair", "out", "--limit", "0"}, 1);
+  const std::size_t tied = all.at("tied");
+  CHECK(tied >= 12);
+  CHECK(all.at("not_compared") == 0);
+  const auto few = json_of(cli, {"repair", "out", "--limit", "2"}, 1);
+  const std::size_t hidden = few.at("tied_hidden"), left_out = few.at("not_compared");
+  CHECK(left_out > 0);
+  CHECK(few.at("tied").get<std::size_t>() + left_out == tied);
+  CHECK(hidden == few.at("tied").get<std::size_t>() - 2);
+  CHECK(cli.parallax({"repair", "out", "--limit", "2"})
+            .out.find(std::to_string(left_out) + " further proposals as likely as the first were "
+                                                 "not compared with it") != std::string::npos);
 }
 
 TEST_CASE("a tie that --limit hides is told with its number") {

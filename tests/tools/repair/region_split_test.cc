@@ -76,6 +76,23 @@ TEST_CASE("the split is the first proposal; git takes it, and then both halves a
   CHECK(cli.parallax({"run", "edge.yaml", "--out", "old", "--seed", "1"}).code == 1);
 }
 
+TEST_CASE("rounds in physics: split, run again, clean") {
+  const CliFixture cli;
+  REQUIRE(cli.parallax({"run", "edge.yaml", "--out", "out", "--epsilon", "0.5"}).code == 1);
+  REQUIRE(json_of(cli, {"explain", "out"}, 1).at("cause") == "region");
+  const auto report = json_of(cli, {"repair", "out", "--loop", "--out", "fixed"});
+  CAPTURE(report.dump(1));
+  CHECK(report.at("end") == "clean");
+  REQUIRE(report.at("rounds").size() == 1);
+  const auto& round = report.at("rounds").at(0);
+  CHECK(round.at("words").get<std::string>().find("is split at `box.x` = 1.76") !=
+        std::string::npos);
+  CHECK(round.at("verdict") == "no-discrepancy");
+  // The mapping that was run again is that of the copy, which has the border.
+  CHECK(cli.read("fixed/files/common.yaml").find(kBorder) != std::string::npos);
+  CHECK(cli.read("common.yaml").find("BoxFarX") == std::string::npos);
+}
+
 /// What holds and happens in each trace, without one fluent; how often each.
 std::map<std::string, int> traces_without(const CliFixture& cli, const std::string& fluent) {
   const auto result =

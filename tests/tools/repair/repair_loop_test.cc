@@ -191,5 +191,53 @@ TEST_CASE("it ends at a tie, with a clean folder, and where there is no room for
   CHECK(clean.at("patch") == "");
 }
 
+TEST_CASE("what a precaution takes to fail is asked of no later round") {
+  // In the dark the drawer may be stuck. Pushing puts out the light, which shows in the next round.
+  const CliFixture cli;
+  cli.write("domain.e",
+            "fluent Open()\nfluent Lit()\n\nevent Pull()\nevent Push()\n\n"
+            "[time] Terminates(Push(),Open(),time).\n");
+  const std::string pull = "[time] Initiates(Pull(),Open(),time).\n";
+  cli.write("model.e", "load domain.e\n\n" + pull);
+  cli.write("truth.e",
+            "load domain.e\n\nfluent Stuck()\nnoninertial Stuck\n\n" + pull +
+                "[time] Happens(Pull(),time) -> HoldsAt(Lit(),time) | !HoldsAt(Stuck(),time).\n"
+                "[time] HoldsAt(Lit(),time) -> Terminates(Push(),Lit(),time).\n");
+  cli.write("start.e", "!HoldsAt(Open(),0).\n");
+  write_drawer_scenario(cli);
+  cli.write("robot.bind",
+            "action pulling () -> Pull()  ok: Open() @t+1 else manipulation-goal-not-reached\n"
+            "action pushing () -> Push()  ok: !Open() @t+1 else manipulation-goal-not-reached\n");
+  json_of(cli, {"run", "drawer.yaml", "--out", "out"}, 1);
+  json_of(cli, {"explain", "out"}, 1);  // from the same start it goes well and fails
+  const auto report = json_of(cli, {"repair", "out", "--loop", "--out", "fixed"}, 1);
+  CAPTURE(report.dump(1));
+  const auto& rounds = report.at("rounds");
+  REQUIRE(rounds.size() == 2);
+  CHECK(rounds.at(0).at("words") == "`Pull()` can happen only if `HoldsAt(Lit(),time)`");
+  CHECK(rounds.at(0).at("failed") < rounds.at(0).at("runs"));
+  CHECK(rounds.at(0).at("verdict") == "discrepancy");
+  // The runs in which the drawer opened in the dark do not stand in its way.
+  CHECK(rounds.at(1).at("words") == "an effect is missing: `Terminates(Push(),Lit(),time)`");
+  CHECK(rounds.at(1).at("verdict") == "no-discrepancy");
+  // From the dark the plan has no execution any more.
+  CHECK(report.at("end") == "plan-at-fault");
+  CHECK(report.at("why").get<std::string>().find("from 1 of 2 initial states") !=
+        std::string::npos);
+}
+
+TEST_CASE("rounds in physics") {
+  // The model of two regions that forgets where the box must be to be picked up.
+  const CliFixture cli;
+  json_of(cli, {"run", "wrong_model.yaml", "--out", "out"}, 1);
+  const auto before = files_below(cli.folder());
+  const auto wrong = json_of(cli, {"repair", "out", "--loop", "--out", "fixed"}, 1);
+  CAPTURE(wrong.dump(1));
+  // The plan picks up what is out of reach: a model that says so leaves nothing to run.
+  CHECK(wrong.at("end") == "plan-at-fault");
+  CHECK(wrong.at("rounds").at(0).at("failed") > 0);
+  for (const auto& [path, text] : before) CHECK(cli.read(path) == text);
+}
+
 }  // namespace
 }  // namespace parallax::test
