@@ -84,6 +84,23 @@ TEST_CASE("a marker, or the option, lets a scenario use what lies beside its fol
   CHECK(cli.parallax(rates).code == 0);
 }
 
+TEST_CASE("a run of a scenario that reads what lies beside its folder: what repeats it is named") {
+  const Stranger cli;
+  fs::rename(cli.folder() / "inner/domain.e", cli.folder() / "domain.e");
+  cli.variant("model: [../domain.e, start.e]\n");
+  const auto run = cli.parallax({"run", "inner/s.yaml", "--out", "out", "--allow-outside"});
+  CAPTURE(run.err);
+  REQUIRE(run.code == 1);
+  for (const auto* command : {"replay", "explain", "repair"}) {
+    CAPTURE(command);
+    const auto refused = cli.parallax({command, "out"});
+    CHECK(refused.code == 3);
+    CHECK(holds(refused.err, "E7113"));
+    CHECK(holds(refused.err, "outside of its folder, which --allow-outside permits"));
+  }
+  CHECK(cli.parallax({"replay", "out", "--allow-outside"}).code == 0);
+}
+
 TEST_CASE("a model of a scenario loads from the scenario's folder, from wherever one stands") {
   const CliFixture cli;
   fs::create_directory(cli.folder() / "models");

@@ -183,6 +183,10 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
     }
     return loaded;
   }
+  const auto said = sink.sorted();
+  const bool outside = std::any_of(said.begin(), said.end(), [](const auto& diagnostic) {
+    return diagnostic.code == DiagnosticCode::kLoadOutside;
+  });
   if (is_recorded) sink = before;
   if (!loaded && !is_recorded) return sink.already_reported();
   const auto name = base::printable(path.string());
@@ -190,6 +194,12 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
     return refuse(fmt::format(
         "{}; as it is now it is run by `parallax run {} --out DIR`, DIR being a new folder", change,
         name));
+  }
+  if (outside) {
+    return refuse(fmt::format(
+        "the scenario `{}` reads a file that lies outside of its folder, which --allow-outside "
+        "permits; `parallax check {}` says which",
+        name, name));
   }
   return refuse(fmt::format(
       "the scenario `{}` cannot be loaded any more; `parallax check {}` says why", name, name));

@@ -116,6 +116,7 @@ void add_blame(const PageOptions& options, Context& context, PageData& page) {
   if (const auto evidence =
           gather_evidence(discrepancy, further_records(options.folder), context)) {
     blame.cause = evidence->words();
+    blame.cause_first = evidence->finding.contradictory_starts > 0;
     if (const auto& rule = evidence->finding.rule) page.rule = rule_of(*rule, evidence->parameters);
   }
   if (context.stopped()) {

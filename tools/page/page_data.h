@@ -155,7 +155,8 @@ struct PageRule {
 struct PageBlame {
   std::string words, more;
   std::vector<PagePlace> axioms;
-  std::string cause;  // the kind of cause in words, by the runs on record
+  std::string cause;         // the kind of cause in words, by the runs on record
+  bool cause_first = false;  // runs from one start contradict each other
 };
 
 struct PageProposal {

@@ -88,10 +88,14 @@ std::string blame_section(const PageData& page, const SourceLinks& links) {
   std::string out;
   if (page.blame) {
     const auto& blame = *page.blame;
+    const auto cause = blame.cause.empty()
+                           ? std::string()
+                           : "<p><b>Kind of cause:</b> " + html_words(blame.cause) + "</p>\n";
+    // Where runs contradict each other it is no axiom that has to change at once.
+    if (blame.cause_first) out += cause;
     out += "<p class=\"lead\">" + html_words(blame.words) + "</p>\n";
     if (!blame.more.empty()) out += "<p>" + html_words(blame.more) + "</p>\n";
-    if (!blame.cause.empty())
-      out += "<p><b>Kind of cause:</b> " + html_words(blame.cause) + "</p>\n";
+    if (!blame.cause_first) out += cause;
     if (!blame.axioms.empty()) {
       out += "<h3>Axioms that contradict what was observed</h3>\n<ul class=\"axioms\">\n";
       for (const auto& axiom : blame.axioms) {

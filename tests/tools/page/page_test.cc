@@ -321,6 +321,20 @@ TEST_CASE("proposals come with their evidence, their ties, and the word precauti
   }
 }
 
+TEST_CASE("that runs from one start contradict each other is told before what to change") {
+  auto page = page_named("plain", 3);
+  page.blame->words = "The model says otherwise.";
+  page.blame->cause = "It is chance.";
+  const auto at = [&](const std::string& words) {
+    const auto place = check_html(run_page(page)).text.find(words);
+    CHECK(place != std::string::npos);
+    return place;
+  };
+  CHECK(at(page.blame->words) < at(page.blame->cause));
+  page.blame->cause_first = true;
+  CHECK(at(page.blame->cause) < at(page.blame->words));
+}
+
 TEST_CASE("the dots of very many simulations are a canvas's to draw") {
   const auto page = page_named("plain", 5000);
   const auto text = run_page(page);
