@@ -86,6 +86,7 @@ struct LoopResult {
   std::vector<CauseRate> causes;
   double causes_level = 0.0;         // confidence of their intervals
   std::int64_t causes_runs = 0;      // the first ones with a drawn start, which they are counted in
+  std::int64_t causes_unseen = 0;    // of these, what was not seen to its end, or not made
   std::optional<CoverResult> cover;  // where a run goes on until everything was shown
 };
 

@@ -374,7 +374,14 @@ class LoopCampaign {
     }
     auto& causes = stream.loop->causes;
     stream.loop->causes_level = kRateLevel;
-    for (auto& rate : causes) set_interval(rate, stream.loop->causes_runs, kRateLevel);
+    const auto rated = lost_too_often_ ? rated_.planned() : rated_.counted();
+    stream.loop->causes_unseen = rated - stream.loop->causes_runs;
+    for (auto& rate : causes) {
+      set_interval(rate, stream.loop->causes_runs, stream.loop->causes_unseen, kRateLevel);
+    }
+    if (!causes.empty() && stream.loop->causes_unseen > 0) {
+      stream.caveats.push_back(unseen_text(stream.loop->causes_unseen));
+    }
     if (!causes.empty() && (guided > 0 || rated_.goes_on())) {
       stream.caveats.push_back(fmt::format(
           "how often each cause comes is counted in the first {} executions with a drawn start: a "

@@ -70,15 +70,18 @@ class Estimator {
       rates.trace += (t == 0 ? "" : " ") + trace.event(t);
     }
     std::map<std::string, CauseRate> causes;
+    bool lost_too_often = false;
     trial->submit_to(options_.runs);
     while (complete && trial->next_sample() <= options_.runs) {
       const auto sample = trial->next();
       if (!sample) return sink_.already_reported();
-      complete = *sample && (*sample)->verdict != SampleVerdict::kLostTooOften;
+      lost_too_often = *sample && (*sample)->verdict == SampleVerdict::kLostTooOften;
+      complete = *sample && !lost_too_often;
       if (*sample) count(trace, **sample, rates, causes);
       report_progress(trace.number, trial->next_sample() - 1);
     }
     trial->end();
+    rates.unseen = lost_too_often ? options_.runs - rates.runs : rates.lost;
     finish(rates, causes);
     return rates;
   }
@@ -130,9 +133,11 @@ class Estimator {
     for (const auto& [text, rate] : causes) rates.causes.push_back(rate);
     std::stable_sort(rates.causes.begin(), rates.causes.end(),
                      [](const CauseRate& a, const CauseRate& b) { return a.count > b.count; });
-    for (CauseRate& rate : rates.causes) set_interval(rate, rates.runs, options_.confidence);
+    for (CauseRate& rate : rates.causes) {
+      set_interval(rate, rates.runs, rates.unseen, options_.confidence);
+    }
     rates.any.cause = "any";
-    set_interval(rates.any, rates.runs, options_.confidence);
+    set_interval(rates.any, rates.runs, rates.unseen, options_.confidence);
   }
 
   const Scenario& scenario_;

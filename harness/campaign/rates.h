@@ -10,9 +10,12 @@ namespace parallax::harness {
 
 struct TraceRates {
   std::int64_t number = 0;
-  std::string trace;  // its events
-  std::int64_t runs = 0;
+  std::string trace;      // its events
+  std::int64_t runs = 0;  // seen to their end
   std::int64_t lost = 0;
+  /// Lost, or not made because the simulator was lost too often: what they would have shown is not
+  /// known, and intervals allow for either.
+  std::int64_t unseen = 0;
   std::int64_t rejected = 0;      // invalid starts that were drawn again
   CauseRate any;                  // any discrepancy at all
   std::vector<CauseRate> causes;  // most frequent first

@@ -77,12 +77,20 @@ void note_timing(const SimulatorBench& bench, std::chrono::steady_clock::time_po
   result.timing.simulated_s = bench.simulated_s();
 }
 
-void set_interval(CauseRate& rate, std::int64_t runs, double confidence) {
-  const auto k = static_cast<double>(rate.count), n = static_cast<double>(runs);
+void set_interval(CauseRate& rate, std::int64_t runs, std::int64_t unseen, double confidence) {
+  const auto all = static_cast<double>(runs + unseen);
+  const auto least = static_cast<double>(rate.count);
+  const auto most = static_cast<double>(rate.count + unseen);
   const double tail = 0.5 * (1.0 - confidence);
-  rate.rate = runs == 0 ? 0.0 : k / n;
-  rate.lower = rate.count == 0 ? 0.0 : beta_quantile(tail, k, n - k + 1.0);
-  rate.upper = rate.count == runs ? 1.0 : beta_quantile(1.0 - tail, k + 1.0, n - k);
+  rate.rate = runs == 0 ? 0.0 : least / static_cast<double>(runs);
+  rate.lower = rate.count == 0 ? 0.0 : beta_quantile(tail, least, all - least + 1.0);
+  rate.upper = rate.count == runs ? 1.0 : beta_quantile(1.0 - tail, most + 1.0, all - most);
+}
+
+std::string unseen_text(std::int64_t unseen) {
+  return fmt::format("{} not seen to {} end: the intervals allow for whatever {} would have shown",
+                     unseen == 1 ? "1 run was" : fmt::format("{} runs were", unseen),
+                     unseen == 1 ? "its" : "their", unseen == 1 ? "it" : "they");
 }
 
 void add_loss_caveats(TraceResult& result) {

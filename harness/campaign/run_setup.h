@@ -52,8 +52,14 @@ Confirmation confirmation_of(const SampleRecord& record, const SampleRecord& aga
 void note_timing(const SimulatorBench& bench, std::chrono::steady_clock::time_point started,
                  CampaignResult& result);
 
-/// Fills in the rate among so many runs, and its interval.
-void set_interval(CauseRate& rate, std::int64_t runs, double confidence);
+/// Fills in the rate among `runs` that were seen to their end, and its interval (Clopper and
+/// Pearson 1934) among these and `unseen` more, whose number is part of one that was fixed in
+/// advance: its lower end takes all of the unseen for clean, its upper end all of them for
+/// failures.
+void set_interval(CauseRate& rate, std::int64_t runs, std::int64_t unseen, double confidence);
+
+/// "15 runs were not seen to their end: the intervals allow for whatever they would have shown"
+std::string unseen_text(std::int64_t unseen);
 
 /// Caveats about losses that were repeated and runs that strayed.
 void add_loss_caveats(TraceResult& result);

@@ -50,6 +50,7 @@ class FixedCount {
   /// One more run. Is it among those that count?
   bool next() { return ++seen_ <= size_; }
   bool goes_on() const { return seen_ > size_; }  // were there more runs than count?
+  std::int64_t planned() const { return size_; }
   std::int64_t counted() const { return seen_ < size_ ? seen_ : size_; }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/campaign/run_setup.h"
 #include "harness/report/report.h"
 #include "harness/simulator/state_json.h"
 
@@ -38,6 +39,7 @@ std::string rates_text(const RatesResult& result) {
   for (const TraceRates& trace : result.traces) {
     out += fmt::format("\ntrace {}: {} runs, {} starts rejected, {} lost\n  {}\n", trace.number,
                        trace.runs, trace.rejected, trace.lost, trace.trace);
+    if (trace.unseen > 0) out += "  " + unseen_text(trace.unseen) + "\n";
     out += fmt::format("  {:>6} of {:<6} {:<26} any discrepancy\n", trace.any.count, trace.runs,
                        percent(trace.any));
     for (const CauseRate& rate : trace.causes) {
@@ -68,6 +70,7 @@ std::string rates_json(const RatesResult& result) {
                                   {"runs", trace.runs},
                                   {"rejected", trace.rejected},
                                   {"lost", trace.lost},
+                                  {"unseen", trace.unseen},
                                   {"any", rate_object(trace.any)},
                                   {"causes", std::move(causes)}});
   }

@@ -147,6 +147,7 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
   }
   if (result.loop && !result.loop->causes.empty()) {
     out["causes_runs"] = result.loop->causes_runs;
+    out["causes_unseen"] = result.loop->causes_unseen;
     out["causes"] = Json::array();
     for (const auto& rate : result.loop->causes) {
       out["causes"].push_back({{"cause", rate.cause},

@@ -77,7 +77,7 @@ std::string causes_plot(const TraceRates& trace) {
 }
 
 bool failed(const SampleRow& row) { return std::string_view(row.outcome) == "discrepancy"; }
-bool counts(const SampleRow& row) { return std::string_view(row.outcome) != "lost"; }
+bool was_lost(const SampleRow& row) { return std::string_view(row.outcome) == "lost"; }
 
 /// The rate after each run and the bound that holds whenever one looks.
 std::string settling_plot(const TraceRates& trace, const std::vector<const SampleRow*>& rows,
@@ -87,16 +87,19 @@ std::string settling_plot(const TraceRates& trace, const std::vector<const Sampl
   const PlotAxis x{0.0, 1.02 * static_cast<double>(runs), 56.0, kSettleWide - 14.0};
   const PlotAxis y{0.0, 1.0, kSettleHigh - 42.0, 14.0};
   std::vector<std::pair<double, double>> rate, bound;
-  std::int64_t failures = 0;
+  std::int64_t failures = 0, lost = 0;
   double last_bound = 1.0;
   const std::int64_t stride = std::max<std::int64_t>(1, runs / 150);
   for (std::int64_t i = 1; i <= runs; ++i) {
-    failures += failed(*rows[static_cast<std::size_t>(i - 1)]) ? 1 : 0;
+    const auto& row = *rows[static_cast<std::size_t>(i - 1)];
+    failures += failed(row) ? 1 : 0;
+    lost += was_lost(row) ? 1 : 0;
     if (i % stride != 0 && i != runs) continue;
-    last_bound = failures == 0 ? harness::bound_after(i, confidence)
-                               : harness::mixture_upper(failures, i, confidence);
+    last_bound = harness::mixture_upper(failures + lost, i, confidence);
     const double at = x.at(static_cast<double>(i));
-    rate.emplace_back(at, y.at(static_cast<double>(failures) / static_cast<double>(i)));
+    if (lost < i) {
+      rate.emplace_back(at, y.at(static_cast<double>(failures) / static_cast<double>(i - lost)));
+    }
     bound.emplace_back(at, y.at(last_bound));
   }
   auto out = fmt::format(
@@ -114,6 +117,7 @@ std::string settling_plot(const TraceRates& trace, const std::vector<const Sampl
   }
   out += label(0.5 * (x.from + x.to), kSettleHigh - 6.0, "middle name", "runs");
   out += path_of(bound, "curve ideal") + path_of(rate, "curve bad");
+  if (rate.empty()) return out + "</svg>\n";
   return out + dot(rate.back().first, rate.back().second) + "</svg>\n";
 }
 
@@ -151,11 +155,11 @@ std::string variable_plot(const std::vector<const SampleRow*>& rows, const std::
     high = std::max(high, start_number(row->start, variable));
   }
   std::array<CauseRate, kParts> rates;
-  std::array<std::int64_t, kParts> runs{};
+  std::array<std::int64_t, kParts> runs{}, lost{};
   for (const auto* row : rows) {
     const double share = (start_number(row->start, variable) - low) / (high - low);
     const auto part = std::min(kParts - 1, static_cast<std::size_t>(share * kParts));
-    ++runs[part];
+    ++(was_lost(*row) ? lost : runs)[part];
     if (failed(*row)) ++rates[part].count;
   }
   const PlotAxis x{low, high, 56.0, kSettleWide - 14.0};
@@ -180,7 +184,7 @@ std::string variable_plot(const std::vector<const SampleRow*>& rows, const std::
   for (std::size_t part = 0; part < kParts; ++part) {
     if (runs[part] == 0) continue;
     auto& rate = rates[part];
-    harness::set_interval(rate, runs[part], confidence);
+    harness::set_interval(rate, runs[part], lost[part], confidence);
     const double middle = x.at(low + (static_cast<double>(part) + 0.5) / kParts * (high - low));
     out += path_of({{middle, y.at(rate.lower)}, {middle, y.at(rate.upper)}}, "curve bad") +
            dot(middle, y.at(rate.rate));
@@ -194,6 +198,7 @@ std::string decisive_part(const std::vector<const SampleRow*>& rows, double conf
   const auto variables = rows.empty() ? std::vector<std::string>() : drawn_variables(rows);
   std::vector<harness::CauseRun> runs;
   for (const auto* row : rows) {
+    if (was_lost(*row)) continue;
     auto& run = runs.emplace_back();
     run.failed = failed(*row);
     for (const auto& name : variables) run.start.push_back(start_number(row->start, name));
@@ -246,6 +251,7 @@ std::string trace_part(const TraceRates& trace, const std::vector<const SampleRo
                        double confidence) {
   std::string body = fmt::format("<p><code>{}</code></p>\n<p>{} runs, {} starts rejected, {} lost.",
                                  html_short(trace.trace), trace.runs, trace.rejected, trace.lost);
+  if (trace.unseen > 0) body += " " + html_short(harness::unseen_text(trace.unseen)) + ".";
   body +=
       "</p>\n<figure><figcaption>How often each cause is the first to lead away from what is "
       "predicted, with ";
@@ -260,7 +266,7 @@ std::string trace_part(const TraceRates& trace, const std::vector<const SampleRo
     body +=
         "<div class=\"panels\"><figure><figcaption>Share of discrepancies after so many runs; "
         "thin: the bound above it that holds, with the same confidence, whenever one "
-        "looks</figcaption>" +
+        "looks, and takes lost runs for discrepancies</figcaption>" +
         settling + "</figure></div>\n";
   }
   body += decisive_part(rows, confidence) + causes_table(trace);
@@ -288,7 +294,7 @@ std::string rates_page(const harness::RatesResult& result,
     const auto& trace = result.traces[i];
     std::vector<const SampleRow*> own;
     for (const auto& row : rows) {
-      if (row.trace == trace.number && counts(row)) own.push_back(&row);
+      if (row.trace == trace.number) own.push_back(&row);
     }
     body += trace_part(trace, own, result.confidence);
   }

@@ -47,6 +47,66 @@ TEST_CASE("what is counted is what the drawn starts lead to, cause by cause") {
   CHECK(trace.causes[0].upper > trace.causes[0].rate);
 }
 
+/// P(X <= count) of a binomial variable, summed term by term.
+double binomial_below(std::int64_t count, std::int64_t runs, double p) {
+  double sum = 0.0;
+  for (std::int64_t k = 0; k <= count; ++k) {
+    double term = 1.0;
+    for (std::int64_t i = 0; i < k; ++i) {
+      term *= p * static_cast<double>(runs - i) / static_cast<double>(k - i);
+    }
+    for (std::int64_t i = k; i < runs; ++i) term *= 1.0 - p;
+    sum += term;
+  }
+  return sum;
+}
+
+TEST_CASE("a lost run may have been either: intervals reach from the best to the worst case") {
+  RatesBench bench;
+  bench.rates.runs = 60;
+  bench.rates.jobs = 2;
+  bench.script.seeds = false;
+  bench.scenario.limits.max_lost_in_a_row = 30;
+  bench.script.drops = box_far;
+  bench.script.loses = [](const State& start) {
+    const double x = number(start, "box.x");
+    return x > 1.5 && x < 1.7;
+  };
+  const auto result = bench.estimate();
+  REQUIRE(result.has_value());
+  const auto& trace = result->traces[0];
+  REQUIRE(trace.lost > 0);
+  REQUIRE(trace.any.count > 0);
+  CHECK(trace.runs + trace.lost == 60);
+  CHECK(trace.unseen == trace.lost);
+  CHECK(trace.any.rate ==
+        doctest::Approx(static_cast<double>(trace.any.count) / static_cast<double>(trace.runs)));
+  CHECK(1.0 - binomial_below(trace.any.count - 1, 60, trace.any.lower) ==
+        doctest::Approx(0.025).epsilon(1e-6));
+  CHECK(binomial_below(trace.any.count + trace.lost, 60, trace.any.upper) ==
+        doctest::Approx(0.025).epsilon(1e-6));
+}
+
+TEST_CASE("where losses end it, what was not made may have been either, too") {
+  RatesBench bench;
+  bench.rates.runs = 40;
+  bench.scenario.limits.max_lost_in_a_row = 3;
+  bench.script.seeds = false;
+  std::atomic<int> resets = 0;
+  bench.script.resets = &resets;
+  bench.script.drops = [](const State&) { return true; };
+  bench.script.loses = [&](const State&) { return resets > 20; };
+  const auto result = bench.estimate();
+  REQUIRE(result.has_value());
+  CHECK_FALSE(result->complete);
+  const auto& trace = result->traces[0];
+  CHECK(trace.any.count == trace.runs);
+  CHECK(trace.unseen == 40 - trace.runs);
+  CHECK(1.0 - binomial_below(trace.runs - 1, 40, trace.any.lower) ==
+        doctest::Approx(0.025).epsilon(1e-6));
+  CHECK(trace.any.upper == 1.0);
+}
+
 TEST_CASE("a simulator that does not start where it was put gives no rate") {
   RatesBench bench;
   bench.rates.runs = 3;
