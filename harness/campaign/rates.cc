@@ -29,8 +29,12 @@ class Estimator {
             [](const SampleRecord&) {}, sink) {}
 
   base::Result<RatesResult> run() {
-    RatesResult result{scenario_.name,         options_.seed, options_.confidence,
-                       scenario_.comparison(), true,          {}};
+    RatesResult result;
+    result.scenario = scenario_.name;
+    result.seed = options_.seed;
+    result.confidence = options_.confidence;
+    result.until_width = options_.until_width;
+    result.comparison = scenario_.comparison();
     const auto started = bench_.start();
     if (!started) return sink_.already_reported();
     result.complete = *started;
@@ -71,19 +75,36 @@ class Estimator {
     }
     std::map<std::string, CauseRate> causes;
     bool lost_too_often = false;
-    trial->submit_to(options_.runs);
-    while (complete && trial->next_sample() <= options_.runs) {
+    bool narrow = false;
+    while (complete && !narrow && trial->next_sample() <= options_.runs) {
+      trial->submit_to(last_wanted(trial->next_sample()));
       const auto sample = trial->next();
       if (!sample) return sink_.already_reported();
       lost_too_often = *sample && (*sample)->verdict == SampleVerdict::kLostTooOften;
       complete = *sample && !lost_too_often;
       if (*sample) count(trace, **sample, rates, causes);
+      narrow = is_narrow(rates);
       report_progress(trace.number, trial->next_sample() - 1);
     }
     trial->end();
-    rates.unseen = lost_too_often ? options_.runs - rates.runs : rates.lost;
+    // Bounds that hold at any time need nothing of what was not made.
+    const bool fixed = options_.until_width <= 0.0;
+    rates.unseen = fixed && lost_too_often ? options_.runs - rates.runs : rates.lost;
     finish(rates, causes);
     return rates;
+  }
+
+  /// Workers run ahead of what is counted; where the count may end it, not far.
+  std::int64_t last_wanted(std::int64_t next) const {
+    if (options_.until_width <= 0.0) return options_.runs;
+    return std::min(options_.runs, next + 2 * options_.jobs - 1);
+  }
+
+  bool is_narrow(const TraceRates& rates) const {
+    if (options_.until_width <= 0.0 || rates.runs == 0) return false;
+    CauseRate any = rates.any;
+    set_anytime_interval(any, rates.runs, rates.lost, options_.confidence);
+    return any.upper - any.lower <= options_.until_width;
   }
 
   void report_progress(std::int64_t trace, std::int64_t done) const {
@@ -133,11 +154,10 @@ class Estimator {
     for (const auto& [text, rate] : causes) rates.causes.push_back(rate);
     std::stable_sort(rates.causes.begin(), rates.causes.end(),
                      [](const CauseRate& a, const CauseRate& b) { return a.count > b.count; });
-    for (CauseRate& rate : rates.causes) {
-      set_interval(rate, rates.runs, rates.unseen, options_.confidence);
-    }
+    const auto set = options_.until_width > 0.0 ? set_anytime_interval : set_interval;
+    for (CauseRate& rate : rates.causes) set(rate, rates.runs, rates.unseen, options_.confidence);
     rates.any.cause = "any";
-    set_interval(rates.any, rates.runs, rates.unseen, options_.confidence);
+    set(rates.any, rates.runs, rates.unseen, options_.confidence);
   }
 
   const Scenario& scenario_;

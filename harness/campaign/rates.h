@@ -24,8 +24,11 @@ struct TraceRates {
 struct RatesOptions {
   std::uint64_t seed = 1;
   std::int64_t jobs = 1;
-  std::int64_t runs = 300;   // of each trace
-  std::int64_t trace = 0;    // 0: all of them
+  std::int64_t runs = 300;  // of each trace
+  std::int64_t trace = 0;   // 0: all of them
+  /// Above 0: `runs` are the most, and a trace ends as soon as the interval of any discrepancy is
+  /// no wider. Intervals then hold whenever one looks: the mixture's bound from either side.
+  double until_width = 0.0;
   double confidence = 0.95;  // of each interval
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const CampaignProgress&)> progress;  // called in the caller's thread
@@ -36,6 +39,7 @@ struct RatesResult {
   std::string scenario;
   std::uint64_t seed = 0;
   double confidence = 0.0;
+  double until_width = 0.0;  // above 0: intervals hold at any time, else for a fixed number of runs
   Comparison comparison = Comparison::kEveryStep;
   bool complete = true;  // false: stopped, or the simulator was lost too often
   std::vector<TraceRates> traces;

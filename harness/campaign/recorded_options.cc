@@ -96,9 +96,11 @@ PaperRuleSpec paper_of(const Fields& fields) {
 
 void read_criterion(const Fields& fields, std::string& wrong, RecordedOptions& out) {
   using namespace std::string_view_literals;
-  if (const auto kind = fields.word("kind", std::array{"clean-runs"sv, "paper"sv})) {
+  if (const auto kind = fields.word("kind", kCriterionWords)) {
     out.criterion = static_cast<CriterionKind>(*kind);
   }
+  fields.count("runs");
+  out.criterion_runs = fields.get<std::int64_t>("runs");
   out.confidence_level = fields.share("confidence");
   out.epsilon = fields.share("epsilon");
   if (const auto* paper = fields.find("paper")) {
@@ -173,6 +175,7 @@ void RecordedOptions::apply(Scenario& scenario, CampaignOptions& options) const 
   spec.kind = criterion.value_or(spec.kind);
   spec.confidence_level = confidence_level.value_or(spec.confidence_level);
   spec.epsilon = epsilon.value_or(spec.epsilon);
+  spec.runs = criterion_runs.value_or(0);
   spec.paper = paper.value_or(spec.paper);
   scenario.match_model = match_model.value_or(scenario.match_model);
   scenario.compare = compare.value_or(scenario.comparison());

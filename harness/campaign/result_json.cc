@@ -33,8 +33,8 @@ const char* word(InterceptKind kind) {
 
 std::string criterion_json(const CriterionSpec& criterion) {
   const auto& paper = criterion.paper;
-  const nlohmann::ordered_json out = {
-      {"kind", criterion.kind == CriterionKind::kPaper ? "paper" : "clean-runs"},
+  nlohmann::ordered_json out = {
+      {"kind", to_string(criterion.kind)},
       {"confidence", criterion.confidence_level},
       {"epsilon", criterion.epsilon},
       {"paper",
@@ -47,6 +47,7 @@ std::string criterion_json(const CriterionSpec& criterion) {
         {"exempt_inherited", paper.exempt_inherited},
         {"tolerance_m", paper.tolerance_m},
         {"bonferroni", paper.bonferroni}}}};
+  if (criterion.runs > 0) out["runs"] = criterion.runs;
   return out.dump();
 }
 

@@ -23,11 +23,11 @@ constexpr std::int64_t kLeastRunLimit = 300;
 
 RunLimit run_limit(const Scenario& scenario) {
   const auto& criterion = scenario.criterion;
-  RunLimit limit{scenario.limits.max_runs, 0};
-  if (criterion.kind == CriterionKind::kCleanRuns) {
-    limit.needed = runs_needed(criterion.confidence_level, criterion.epsilon);
-  }
+  RunLimit limit{scenario.limits.max_runs, planned_runs(criterion)};
   if (limit.max_runs == 0) limit.max_runs = std::max(kLeastRunLimit, 2 * limit.needed);
+  // It looks once: what came later would have no part in its answer.
+  const bool looks_once = criterion.kind == CriterionKind::kClopperPearson;
+  if (looks_once) limit.max_runs = std::min(limit.max_runs, limit.needed);
   return limit;
 }
 
@@ -85,6 +85,15 @@ void set_interval(CauseRate& rate, std::int64_t runs, std::int64_t unseen, doubl
   rate.rate = runs == 0 ? 0.0 : least / static_cast<double>(runs);
   rate.lower = rate.count == 0 ? 0.0 : beta_quantile(tail, least, all - least + 1.0);
   rate.upper = rate.count == runs ? 1.0 : beta_quantile(1.0 - tail, most + 1.0, all - most);
+}
+
+void set_anytime_interval(CauseRate& rate, std::int64_t runs, std::int64_t unseen,
+                          double confidence) {
+  const std::int64_t all = runs + unseen;
+  const double level = 0.5 * (1.0 + confidence);
+  rate.rate = runs == 0 ? 0.0 : static_cast<double>(rate.count) / static_cast<double>(runs);
+  rate.lower = all == 0 ? 0.0 : 1.0 - mixture_upper(all - rate.count, all, level);
+  rate.upper = all == 0 ? 1.0 : mixture_upper(rate.count + unseen, all, level);
 }
 
 std::string unseen_text(std::int64_t unseen) {

@@ -58,6 +58,11 @@ void note_timing(const SimulatorBench& bench, std::chrono::steady_clock::time_po
 /// failures.
 void set_interval(CauseRate& rate, std::int64_t runs, std::int64_t unseen, double confidence);
 
+/// The same with an interval that holds whenever one looks, for a number of runs that may depend on
+/// what was seen: mixture_upper of failures and of successes, each at half of the error.
+void set_anytime_interval(CauseRate& rate, std::int64_t runs, std::int64_t unseen,
+                          double confidence);
+
 /// "15 runs were not seen to their end: the intervals allow for whatever they would have shown"
 std::string unseen_text(std::int64_t unseen);
 

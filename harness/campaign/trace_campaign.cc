@@ -209,11 +209,13 @@ class TraceCampaign {
           "other initial states lead to the same events; only the first, in the model's order, was "
           "sampled (`run --split-initial` samples each)");
     }
-    if (!context_.criterion.is_anytime_valid()) {
+    const auto kind = context_.criterion.kind();
+    const bool looks_once = kind == CriterionKind::kClopperPearson;
+    if (!context_.criterion.is_anytime_valid() && !looks_once) {
       result.caveats.push_back(fmt::format(
           "the criterion `{}` looks again after every run and is not made for it: its level is not "
           "the probability of a false stop",
-          context_.criterion.name()));
+          to_string(kind)));
     }
     add_loss_caveats(result);
     for (const auto& [event, noted] : failures_) {

@@ -92,12 +92,80 @@ Decision PaperCriterion::decide(const Tally& tally) const {
   return decision;
 }
 
+AnytimeCriterion::AnytimeCriterion(double confidence_level, double epsilon)
+    : confidence_level_(confidence_level), epsilon_(epsilon) {}
+
+Decision AnytimeCriterion::decide(const Tally& tally) const {
+  Decision decision;
+  decision.certified = certified_bound(tally, confidence_level_);
+  if (tally.mismatch() > 0) {
+    decision.why = "a run gave a discrepancy";
+    return decision;
+  }
+  const auto needed = mixture_runs_needed(tally.lost(), confidence_level_, epsilon_);
+  decision.runs_needed = needed;
+  decision.stop = tally.runs() >= needed;
+  decision.why = fmt::format("{} of {} runs, {} lost", tally.runs(), needed, tally.lost());
+  return decision;
+}
+
+FixedRunsCriterion::FixedRunsCriterion(double confidence_level, double epsilon, std::int64_t runs)
+    : confidence_level_(confidence_level), epsilon_(epsilon), runs_(runs) {
+  PARALLAX_REQUIRE(runs > 0, "a number of runs");
+}
+
+Decision FixedRunsCriterion::decide(const Tally& tally) const {
+  Decision decision;
+  decision.certified = certified_bound(tally, confidence_level_);
+  decision.runs_needed = runs_;
+  if (tally.mismatch() > 0) {
+    decision.why = "a run gave a discrepancy";
+    return decision;
+  }
+  decision.stop = tally.runs() == runs_ &&
+                  clopper_pearson_upper(tally.lost(), runs_, confidence_level_) <= epsilon_;
+  decision.why = fmt::format("{} of {} runs, {} lost", tally.runs(), runs_, tally.lost());
+  return decision;
+}
+
+CertifiedBound stated_bound(const Tally& tally, const CriterionSpec& spec) {
+  const double level = spec.confidence_level;
+  const std::int64_t failures = tally.lost() + tally.mismatch();
+  if (spec.kind == CriterionKind::kAnytime && tally.runs() > 0) {
+    return {level, mixture_upper(failures, tally.runs(), level)};
+  }
+  if (spec.kind == CriterionKind::kClopperPearson && tally.runs() == planned_runs(spec)) {
+    return {level, clopper_pearson_upper(failures, tally.runs(), level)};
+  }
+  return certified_bound(tally, level);
+}
+
+std::int64_t planned_runs(const CriterionSpec& spec) {
+  const double level = spec.confidence_level;
+  switch (spec.kind) {
+    case CriterionKind::kCleanRuns:
+      return runs_needed(level, spec.epsilon);
+    case CriterionKind::kAnytime:
+      return mixture_runs_needed(0, level, spec.epsilon);
+    case CriterionKind::kClopperPearson:
+      return spec.runs > 0 ? spec.runs : runs_needed(level, spec.epsilon);
+    case CriterionKind::kPaper:
+      break;
+  }
+  return 0;
+}
+
 std::unique_ptr<ConfidenceCriterion> make_criterion(const CriterionSpec& spec) {
   switch (spec.kind) {
     case CriterionKind::kCleanRuns:
       return std::make_unique<CleanRunsCriterion>(spec.confidence_level, spec.epsilon);
     case CriterionKind::kPaper:
       return std::make_unique<PaperCriterion>(spec.confidence_level, spec.paper);
+    case CriterionKind::kAnytime:
+      return std::make_unique<AnytimeCriterion>(spec.confidence_level, spec.epsilon);
+    case CriterionKind::kClopperPearson:
+      return std::make_unique<FixedRunsCriterion>(spec.confidence_level, spec.epsilon,
+                                                  planned_runs(spec));
   }
   PARALLAX_REQUIRE(false, "a known kind of criterion");
   return nullptr;
@@ -138,12 +206,12 @@ std::string claim_about(const Tally& tally, const CriterionSpec& spec, std::stri
     return fmt::format("{} of {} gave a discrepancy", tally.mismatch(),
                        counted(tally.runs(), "run", "runs"));
   }
-  const auto bound = certified_bound(tally, spec.confidence_level);
+  const auto bound = stated_bound(tally, spec);
   if (tally.clean() == 0 || bound.epsilon >= 1.0 || bound.confidence_level <= 0.0) {
     return fmt::format("nothing is claimed ({})", runs_text(tally));
   }
   // Runs that were planned for an epsilon support that one; the bound itself is a little smaller.
-  const bool as_planned = spec.kind == CriterionKind::kCleanRuns && bound.epsilon <= spec.epsilon;
+  const bool as_planned = spec.kind != CriterionKind::kPaper && bound.epsilon <= spec.epsilon;
   return fmt::format(
       "with {} confidence, fewer than {} of {} {} ({})", level_text(bound.confidence_level),
       percent_up(as_planned ? spec.epsilon : bound.epsilon), what, does, runs_text(tally));
@@ -201,12 +269,16 @@ std::vector<std::string> caveats(const Tally& tally, const CriterionSpec& spec,
   std::vector<std::string> result;
   if (tally.rejected() > 0) result.push_back(rejected_text(tally));
   if (tally.lost() > 0) {
-    const auto bound = certified_bound(tally, spec.confidence_level);
-    result.push_back(fmt::format(
-        "{} (crash, hang or invalid numbers), counted as discrepancies; the stated confidence is "
-        "{} instead of {}, as the runs may end with either of two bounds",
-        counted(tally.lost(), "run was lost", "runs were lost"), level_text(bound.confidence_level),
-        level_text(spec.confidence_level)));
+    const auto bound = stated_bound(tally, spec);
+    auto text = fmt::format("{} (crash, hang or invalid numbers), counted as discrepancies",
+                            counted(tally.lost(), "run was lost", "runs were lost"));
+    if (bound.confidence_level < spec.confidence_level) {
+      text += fmt::format(
+          "; the stated confidence is {} instead of {}, as the runs may end with either of two "
+          "bounds",
+          level_text(bound.confidence_level), level_text(spec.confidence_level));
+    }
+    result.push_back(std::move(text));
   }
   if (paper_stopped_at && !tally.frame().not_covered.empty()) {
     result.push_back(not_covered_text(tally.frame().not_covered));

@@ -37,7 +37,7 @@ class ConfidenceCriterion {
   /// May one look after every run without spoiling what is stated? If not, the stated level is
   /// not the probability of a false stop.
   virtual bool is_anytime_valid() const = 0;
-  virtual std::string_view name() const = 0;  // "clean-runs", "paper"
+  virtual CriterionKind kind() const = 0;
 };
 
 /// `confidence_level` and `epsilon` of the spec in (0, 1).
@@ -50,12 +50,42 @@ class CleanRunsCriterion final : public ConfidenceCriterion {
   CleanRunsCriterion(double confidence_level, double epsilon);
   Decision decide(const Tally& tally) const override;
   bool is_anytime_valid() const override { return true; }
-  std::string_view name() const override { return "clean-runs"; }
+  CriterionKind kind() const override { return CriterionKind::kCleanRuns; }
 
  private:
   double confidence_level_;
   double epsilon_;
   std::int64_t runs_needed_;
+};
+
+/// Stop when the mixture bound (Ville 1939; log_mixture_wealth) reaches eps, with any number of
+/// lost runs. One procedure with one bound, so its level stays C after a loss. Never after a
+/// mismatch.
+class AnytimeCriterion final : public ConfidenceCriterion {
+ public:
+  AnytimeCriterion(double confidence_level, double epsilon);
+  Decision decide(const Tally& tally) const override;
+  bool is_anytime_valid() const override { return true; }
+  CriterionKind kind() const override { return CriterionKind::kAnytime; }
+
+ private:
+  double confidence_level_;
+  double epsilon_;
+};
+
+/// Make a number of runs that is fixed in advance and look once: stop if the bound of Clopper and
+/// Pearson (1934), lost runs counted as failures, is at most eps. Never after a mismatch.
+class FixedRunsCriterion final : public ConfidenceCriterion {
+ public:
+  FixedRunsCriterion(double confidence_level, double epsilon, std::int64_t runs);
+  Decision decide(const Tally& tally) const override;
+  bool is_anytime_valid() const override { return false; }
+  CriterionKind kind() const override { return CriterionKind::kClopperPearson; }
+
+ private:
+  double confidence_level_;
+  double epsilon_;
+  std::int64_t runs_;
 };
 
 /// Stop when the paper's rule holds for the clean runs. Never after a mismatch or a lost run.
@@ -64,7 +94,7 @@ class PaperCriterion final : public ConfidenceCriterion {
   PaperCriterion(double confidence_level, PaperRuleSpec spec);
   Decision decide(const Tally& tally) const override;
   bool is_anytime_valid() const override { return false; }
-  std::string_view name() const override { return "paper"; }
+  CriterionKind kind() const override { return CriterionKind::kPaper; }
 
  private:
   double confidence_level_;
@@ -75,6 +105,13 @@ class PaperCriterion final : public ConfidenceCriterion {
 /// failures (lost runs and mismatches): mixture_upper at C, stated with 1 - 2(1-C), as a procedure
 /// that may end with either bound errs with at most the sum of both chances.
 CertifiedBound certified_bound(const Tally& tally, double confidence_level);
+
+/// What the criterion itself states of these runs: of `anytime` the mixture's bound at C, of
+/// `clopper-pearson` its bound at C once all its runs were made. Else the certified bound.
+CertifiedBound stated_bound(const Tally& tally, const CriterionSpec& spec);
+
+/// Runs after which it stops if all are clean; 0: it cannot be told (`paper`).
+std::int64_t planned_runs(const CriterionSpec& spec);
 
 /// Exactly what the runs of one trace support, as one sentence without a full stop: "with 99 %
 /// confidence, fewer than 5 % of start states drawn uniformly from the start region give a

@@ -1,14 +1,24 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace parallax::harness {
 
 enum class CriterionKind : std::uint8_t {
-  kCleanRuns,  // stop after ceil(ln(1-C) / ln(1-eps)) clean, independent, uniform runs
-  kPaper,      // Meywerk et al., Section III-C
+  kCleanRuns,       // stop after ceil(ln(1-C) / ln(1-eps)) clean, independent, uniform runs
+  kPaper,           // Meywerk et al., Section III-C
+  kAnytime,         // stop when the mixture's bound is below eps, whatever failed before
+  kClopperPearson,  // so many runs, fixed in advance; then one look
 };
+/// As they are typed and recorded, by value.
+inline constexpr std::array<std::string_view, 4> kCriterionWords = {"clean-runs", "paper",
+                                                                    "anytime", "clopper-pearson"};
+inline std::string_view to_string(CriterionKind kind) {
+  return kCriterionWords[static_cast<std::size_t>(kind)];
+}
 
 enum class SigmaKind : std::uint8_t { kSse, kRmse, kResidualSd };
 enum class RootKind : std::uint8_t { kInitial, kFinal };
@@ -37,8 +47,9 @@ PaperRuleSpec paper_repaired();
 struct CriterionSpec {
   CriterionKind kind = CriterionKind::kCleanRuns;
   double confidence_level = 0.99;  // C
-  double epsilon = 0.05;           // clean-runs: the discrepancy probability to exclude
-  PaperRuleSpec paper;             // also computed, for the report, when kind is clean-runs
+  double epsilon = 0.05;           // all but paper: the discrepancy probability to exclude
+  std::int64_t runs = 0;           // clopper-pearson: 0 for as many as suffice if all are clean
+  PaperRuleSpec paper;             // also computed, for the report, with the other kinds
 };
 
 }  // namespace parallax::harness

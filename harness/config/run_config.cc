@@ -16,7 +16,9 @@ constexpr std::int64_t kMaxPerforms = 10'000;
 constexpr double kMaxTimeoutS = 86400.0;
 constexpr NumberBounds kTimeout{0.0, kMaxTimeoutS, true, false};
 
-constexpr std::array<std::string_view, 2> kKinds = {"clean-runs", "paper"};
+/// Those of kCriterionWords, then readings of the paper's.
+constexpr std::array<std::string_view, 6> kKinds = {
+    "clean-runs", "paper", "anytime", "clopper-pearson", "paper-literal", "paper-repaired"};
 constexpr std::array<std::string_view, 2> kPresets = {"paper-literal", "paper-repaired"};
 constexpr std::array<std::string_view, 3> kSigmas = {"sse", "rmse", "residual-sd"};
 constexpr std::array<std::string_view, 2> kRoots = {"initial", "final"};
@@ -35,7 +37,7 @@ bool read_enum(const YamlFields& fields, std::string_view key,
 /// A preset, and single readings laid over it; the report then calls the result "custom".
 void read_paper_rule(const YamlFields& fields, PaperRuleSpec& rule) {
   const auto preset = fields.choice(Key::kPreset, Key::kPreset, kPresets);
-  if (preset == std::size_t{1}) rule = paper_repaired();
+  if (preset) rule = *preset == 1 ? paper_repaired() : paper_literal();
   bool changed = read_enum(fields, Key::kSigma, kSigmas, rule.sigma);
   changed = read_enum(fields, Key::kRoot, kRoots, rule.root) || changed;
   changed = read_enum(fields, Key::kIntercept, kIntercepts, rule.intercept) || changed;
@@ -93,12 +95,20 @@ CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink) {
     map.entries.push_back({std::string(Key::kKind), node.range, node});
   }
   YamlFields fields(map, key_text(Key::kCriterion), sink);
-  fields.only({Key::kKind, Key::kConfidence, Key::kEpsilon, Key::kPreset, Key::kSigma, Key::kRoot,
-               Key::kIntercept, Key::kInterval, Key::kExtraRuns, Key::kExemptInherited,
-               Key::kToleranceM, Key::kBonferroni});
-  if (fields.choice(Key::kKind, Key::kCriterion, kKinds) == std::size_t{1}) {
-    criterion.kind = CriterionKind::kPaper;
+  if (const auto kind = fields.choice(Key::kKind, Key::kCriterion, kKinds)) {
+    const bool reading = *kind >= kCriterionWords.size();
+    criterion.kind = reading ? CriterionKind::kPaper : static_cast<CriterionKind>(*kind);
+    if (kKinds[*kind] == "paper-repaired") criterion.paper = paper_repaired();
   }
+  std::vector<std::string_view> keys = {
+      Key::kKind,       Key::kConfidence, Key::kEpsilon,  Key::kPreset,    Key::kSigma,
+      Key::kRoot,       Key::kIntercept,  Key::kInterval, Key::kExtraRuns, Key::kExemptInherited,
+      Key::kToleranceM, Key::kBonferroni};
+  if (criterion.kind == CriterionKind::kClopperPearson) {
+    keys.push_back(Key::kRuns);
+    fields.integer(Key::kRuns, 1, kMaxRuns, criterion.runs);
+  }
+  fields.only(std::span<const std::string_view>(keys));
   fields.number(Key::kConfidence, kOpenUnit, criterion.confidence_level);
   fields.number(Key::kEpsilon, kOpenUnit, criterion.epsilon);
   read_paper_rule(fields, criterion.paper);

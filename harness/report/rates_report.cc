@@ -31,11 +31,10 @@ std::string percent(const CauseRate& rate) {
 }  // namespace
 
 std::string rates_text(const RatesResult& result) {
-  std::string out =
-      fmt::format("{}, seed {}; {} compared; intervals with {:g} % confidence (Clopper-Pearson)\n",
-                  result.scenario, result.seed,
-                  result.comparison == Comparison::kFinal ? "last states" : "every step",
-                  100.0 * result.confidence);
+  std::string out = fmt::format(
+      "{}, seed {}; {} compared; intervals with {:g} % confidence ({})\n", result.scenario,
+      result.seed, result.comparison == Comparison::kFinal ? "last states" : "every step",
+      100.0 * result.confidence, interval_name(result));
   for (const TraceRates& trace : result.traces) {
     out += fmt::format("\ntrace {}: {} runs, {} starts rejected, {} lost\n  {}\n", trace.number,
                        trace.runs, trace.rejected, trace.lost, trace.trace);
@@ -54,11 +53,16 @@ std::string rates_text(const RatesResult& result) {
   return out;
 }
 
+std::string_view interval_name(const RatesResult& result) {
+  return result.until_width > 0.0 ? "valid whenever one looks" : "Clopper-Pearson";
+}
+
 std::string rates_json(const RatesResult& result) {
   Json document = {{"status", "ok"},
                    {"scenario", result.scenario},
                    {"seed", result.seed},
                    {"confidence", result.confidence},
+                   {"intervals", result.until_width > 0.0 ? "anytime" : "clopper-pearson"},
                    {"compare", to_string(result.comparison)},
                    {"complete", result.complete},
                    {"traces", Json::array()}};

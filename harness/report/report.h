@@ -38,6 +38,8 @@ std::string replay_json(const ReplayResult& result);
 
 /// A table: per trace the causes with counts, rates and intervals.
 std::string rates_text(const RatesResult& result);
+/// "Clopper-Pearson", "valid whenever one looks"
+std::string_view interval_name(const RatesResult& result);
 std::string rates_json(const RatesResult& result);
 
 /// 0 no discrepancy, 1 discrepancy, 4 inconclusive, also without a trace; an interruption's 130 or

@@ -34,9 +34,21 @@ std::string criterion_text(const CriterionSpec& criterion) {
     return fmt::format("paper ({}) at C = {}; not a probability of error", criterion.paper.preset,
                        level(criterion.confidence_level));
   }
-  return fmt::format("clean-runs: {} clean runs exclude p >= {} with {} confidence",
-                     runs_needed(criterion.confidence_level, criterion.epsilon),
-                     percent_up(criterion.epsilon), level(criterion.confidence_level));
+  const auto runs = planned_runs(criterion);
+  const auto epsilon = percent_up(criterion.epsilon);
+  const auto confidence = level(criterion.confidence_level);
+  if (criterion.kind == CriterionKind::kAnytime) {
+    return fmt::format(
+        "anytime: {} clean runs exclude p >= {} with {} confidence, more after lost ones", runs,
+        epsilon, confidence);
+  }
+  if (criterion.kind == CriterionKind::kClopperPearson) {
+    return fmt::format(
+        "clopper-pearson: {} runs, then one look; p >= {} is to be excluded with {} confidence",
+        runs, epsilon, confidence);
+  }
+  return fmt::format("clean-runs: {} clean runs exclude p >= {} with {} confidence", runs, epsilon,
+                     confidence);
 }
 
 std::string end_of(PathEnd end, const std::string& detail) {

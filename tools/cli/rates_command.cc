@@ -16,10 +16,13 @@
 namespace parallax::tools {
 namespace {
 
+constexpr std::int64_t kMostRunsUntilWidth = 100'000;
+
 struct RateOptions {
   std::string scenario;
   JudgingOptions judging;
   harness::RatesOptions rates;
+  std::int64_t runs = 0;  // 0: not given
   CommandPermission commands;
   std::string samples, plot;
 };
@@ -50,6 +53,11 @@ int run_rates(const RateOptions& options, Invocation& invocation) {
   EnumeratedTraces traces(model, invocation);
   traces.explain_absence_by([&] { return reasons_for_absence(*loaded, invocation); });
   auto rates = options.rates;
+  if (options.runs > 0) {
+    rates.runs = options.runs;
+  } else if (rates.until_width > 0.0) {
+    rates.runs = kMostRunsUntilWidth;
+  }
   rates.stop = &stop_flag();
   rates.progress = progress_on_terminal(invocation.options());
   SampleOutput samples(options.samples);
@@ -84,6 +92,7 @@ Command rates_command() {
       "Examples:\n"
       "  parallax rates scenarios/kitchen/plan2.yaml --trace 2 --runs 400 --jobs 2\n"
       "  parallax rates scenarios/two_regions/edge.yaml --runs 100 --json\n"
+      "  parallax rates scenarios/two_regions/edge.yaml --until-width 0.2\n"
       "  parallax rates scenarios/kitchen/plan3.yaml --runs 200 --plot rates.html --samples "
       "rates.csv\n"
       "Sample N starts as simulation N of `parallax run` with the same seed does.\n"
@@ -91,9 +100,15 @@ Command rates_command() {
   command.option("scenario", options->scenario, "Scenario file (YAML)").required();
   command.option("--trace", options->rates.trace, "Only this trace; default: all")
       .check(WholeNumber{1, 1'000'000});
-  command.option("--runs", options->rates.runs, "Simulations of each trace")
-      .check(WholeNumber{1, 1'000'000})
-      .show_default();
+  command
+      .option("--runs", options->runs,
+              "Simulations of each trace (300); with --until-width, the most (100,000)")
+      .check(WholeNumber{1, 1'000'000});
+  command
+      .option("--until-width", options->rates.until_width,
+              "Go on until the interval of any discrepancy is no wider than this (0.1: ten "
+              "points); intervals then hold whenever one looks, and are wider for as many runs")
+      .check(FiniteNumber{0.001, 1.0});
   add_judging_options(command, options->judging);
   command.option("--confidence", options->rates.confidence, "Confidence of each interval")
       .check(FiniteNumber{0.5, 0.999999})

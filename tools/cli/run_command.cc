@@ -76,8 +76,15 @@ struct RunOptions {
 /// The command line has the last word over the scenario.
 void apply(const RunOptions& options, harness::Scenario& scenario) {
   auto& criterion = scenario.criterion;
-  if (options.criterion == "paper") criterion.kind = harness::CriterionKind::kPaper;
-  if (options.criterion == "clean-runs") criterion.kind = harness::CriterionKind::kCleanRuns;
+  if (!options.criterion.empty()) {
+    criterion.kind = harness::CriterionKind::kPaper;
+    if (options.criterion == "paper-literal") criterion.paper = harness::paper_literal();
+    if (options.criterion == "paper-repaired") criterion.paper = harness::paper_repaired();
+  }
+  for (const auto kind : {harness::CriterionKind::kCleanRuns, harness::CriterionKind::kAnytime,
+                          harness::CriterionKind::kClopperPearson}) {
+    if (options.criterion == to_string(kind)) criterion.kind = kind;
+  }
   apply(options.judging, scenario);
   if (options.confidence > 0) criterion.confidence_level = options.confidence;
   for (const auto one : {harness::Starts::kUniform, harness::Starts::kGuided}) {
@@ -156,6 +163,11 @@ base::Status check_closed(const RunOptions& options, const harness::Scenario& sc
   }
   if (options.split_initial) {
     return refuse("--split-initial", "in closed loop executions begin in every initial state");
+  }
+  if (scenario.until_covered &&
+      scenario.criterion.kind == harness::CriterionKind::kClopperPearson) {
+    return refuse("until_covered",
+                  "the criterion clopper-pearson has a number of runs that nothing seen decides");
   }
   if (!scenario.match_model) {
     return refuse(options.judging.match == "trace" ? "--match=trace" : "match: trace",
@@ -265,7 +277,8 @@ Command run_command() {
                "every behaviour of plan and model, or those that they did not show are rarer than "
                "epsilon. Includes --keep-going");
   command.option("--criterion", options->criterion, "When a trace has been tried enough")
-      .check(OneOf{{"clean-runs", "paper"}});
+      .check(OneOf{{"clean-runs", "anytime", "clopper-pearson", "paper", "paper-literal",
+                    "paper-repaired"}});
   add_judging_options(command, options->judging);
   command
       .option("--execution", options->execution,

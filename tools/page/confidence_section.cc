@@ -54,7 +54,8 @@ Curve curve_of(const PageData& page, const PageTrace& trace) {
 }
 
 std::string plot(const PageData& page, const PageTrace& trace, const Curve& curve) {
-  const auto needed = harness::runs_needed(page.confidence, page.epsilon);
+  const auto needed = page.planned_runs > 0 ? page.planned_runs
+                                            : harness::runs_needed(page.confidence, page.epsilon);
   const double most = static_cast<double>(std::max({curve.runs, needed, std::int64_t{2}})) * 1.08;
   double least = page.epsilon;
   for (const auto& [runs, bound] : curve.bounds) least = std::min(least, bound);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "compiler/base/json.h"
+#include "harness/confidence/criterion.h"
 #include "harness/report/report_words.h"
 #include "tools/page/gather.h"
 #include "tools/page/markup.h"
@@ -190,8 +191,12 @@ void add_criterion(const json& criterion, PageData& page) {
   harness::CriterionSpec spec;
   spec.confidence_level = page.confidence;
   spec.epsilon = page.epsilon;
+  for (std::size_t i = 0; i < harness::kCriterionWords.size(); ++i) {
+    if (kind == harness::kCriterionWords[i]) spec.kind = static_cast<harness::CriterionKind>(i);
+  }
+  spec.runs = std::max<std::int64_t>(0, whole(criterion, "runs"));
+  page.planned_runs = harness::planned_runs(spec);
   if (page.is_paper) {
-    spec.kind = harness::CriterionKind::kPaper;
     if (const auto* paper = base::json_member(criterion, "paper")) {
       spec.paper.preset = text(*paper, "preset");
     }

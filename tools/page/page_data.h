@@ -180,6 +180,7 @@ struct PageData {
   bool interrupted = false, closed_loop = false;
   bool running = false;  // there is no report yet
   double confidence = 0.99, epsilon = 0.05;
+  std::int64_t planned_runs = 0;     // of the criterion, if all are clean; 0: it cannot tell
   bool is_paper = false;             // the criterion that ends a trace is the paper's
   std::vector<std::string> banners;  // what is missing or wrong, one sentence each
   std::vector<PageTrace> traces;

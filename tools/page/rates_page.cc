@@ -10,6 +10,7 @@
 #include "harness/campaign/run_setup.h"
 #include "harness/cause/failure_rule.h"
 #include "harness/confidence/clean_runs.h"
+#include "harness/report/report.h"
 #include "tools/page/markup.h"
 #include "tools/page/plot.h"
 #include "tools/page/sections.h"
@@ -248,15 +249,16 @@ std::string causes_table(const TraceRates& trace) {
 }
 
 std::string trace_part(const TraceRates& trace, const std::vector<const SampleRow*>& rows,
-                       double confidence) {
+                       const harness::RatesResult& result) {
+  const double confidence = result.confidence;
   std::string body = fmt::format("<p><code>{}</code></p>\n<p>{} runs, {} starts rejected, {} lost.",
                                  html_short(trace.trace), trace.runs, trace.rejected, trace.lost);
   if (trace.unseen > 0) body += " " + html_short(harness::unseen_text(trace.unseen)) + ".";
   body +=
       "</p>\n<figure><figcaption>How often each cause is the first to lead away from what is "
       "predicted, with ";
-  body += percent(confidence) + " intervals (Clopper and Pearson)</figcaption>" +
-          causes_plot(trace) + "</figure>\n";
+  body += fmt::format("{} intervals ({})</figcaption>{}</figure>\n", percent(confidence),
+                      harness::interval_name(result), causes_plot(trace));
   if (trace.causes.size() > kMostCauses) {
     body += fmt::format("<p>{} rarer causes are in the table alone.</p>\n",
                         trace.causes.size() - kMostCauses);
@@ -296,7 +298,7 @@ std::string rates_page(const harness::RatesResult& result,
     for (const auto& row : rows) {
       if (row.trace == trace.number) own.push_back(&row);
     }
-    body += trace_part(trace, own, result.confidence);
+    body += trace_part(trace, own, result);
   }
   if (result.traces.size() > kMostRatedTraces) {
     body += fmt::format("<p>{} further traces are left out.</p>\n",

@@ -1,5 +1,7 @@
 #include "harness/campaign/rates.h"
 
+#include "harness/campaign/run_setup.h"
+#include "harness/sampling/sampler.h"
 #include "tests/harness/campaign/two_regions.h"
 
 namespace parallax::harness::test {
@@ -85,6 +87,51 @@ TEST_CASE("a lost run may have been either: intervals reach from the best to the
         doctest::Approx(0.025).epsilon(1e-6));
   CHECK(binomial_below(trace.any.count + trace.lost, 60, trace.any.upper) ==
         doctest::Approx(0.025).epsilon(1e-6));
+}
+
+TEST_CASE("until the interval is narrow: the same runs for any jobs, and no more than it takes") {
+  std::vector<RatesResult> results;
+  for (const int jobs : {1, 4}) {
+    RatesBench bench;
+    bench.rates.runs = 5000;
+    bench.rates.jobs = jobs;
+    bench.rates.until_width = 0.25;
+    bench.script.drops = box_far;
+    auto result = bench.estimate();
+    REQUIRE(result.has_value());
+    results.push_back(*std::move(result));
+  }
+  const auto& trace = results[0].traces[0];
+  CHECK(trace.any.upper - trace.any.lower <= 0.25);
+  CHECK(trace.runs > 20);
+  CHECK(trace.runs < 500);
+  CHECK(trace.any.lower < trace.any.rate);
+  CHECK(trace.any.upper > trace.any.rate);
+  CHECK(results[1].traces[0].runs == trace.runs);
+  CHECK(results[1].traces[0].any.count == trace.any.count);
+  CHECK(results[1].traces[0].any.upper == trace.any.upper);
+}
+
+TEST_CASE("an interval that holds whenever one looks is missed by the worst peeker that seldom") {
+  // Looks after every one of 400 runs and takes it for false as soon as p is outside.
+  constexpr std::uint64_t kLoops = 2000;
+  for (const double p : {0.02, 0.3}) {
+    std::uint64_t missed = 0;
+    for (std::uint64_t loop = 0; loop < kLoops; ++loop) {
+      const CounterRng rng({.campaign_seed = 99, .sample = loop});
+      CauseRate rate;
+      for (std::int64_t run = 1; run <= 400; ++run) {
+        if (rng.uniform(static_cast<std::uint64_t>(run)) < p) ++rate.count;
+        if (run % 5 != 0) continue;
+        set_anytime_interval(rate, run, 0, 0.95);
+        if (rate.lower <= p && p <= rate.upper) continue;
+        ++missed;
+        break;
+      }
+    }
+    // 5 % and four standard errors.
+    CHECK(missed <= 2000 * 0.05 + 4 * std::sqrt(2000 * 0.05 * 0.95));
+  }
 }
 
 TEST_CASE("where losses end it, what was not made may have been either, too") {

@@ -26,7 +26,7 @@ Tally constant_goal(std::int64_t runs) {
 
 TEST_CASE("clean-runs: stops at 90 clean runs for 99 % and 5 %, not one earlier") {
   const auto criterion = make_criterion({});
-  CHECK(criterion->name() == "clean-runs");
+  CHECK(criterion->kind() == CriterionKind::kCleanRuns);
   CHECK(criterion->is_anytime_valid());
   auto tally = empty_tally();
   add_clean(tally, 89);
@@ -77,7 +77,7 @@ TEST_CASE("paper: stops when the rule holds and states the certified bound besid
   CriterionSpec spec;
   spec.kind = CriterionKind::kPaper;
   const auto criterion = make_criterion(spec);
-  CHECK(criterion->name() == "paper");
+  CHECK(criterion->kind() == CriterionKind::kPaper);
   CHECK_FALSE(criterion->is_anytime_valid());
   CHECK_FALSE(criterion->decide(constant_goal(2)).stop);
   const auto decision = criterion->decide(constant_goal(4));

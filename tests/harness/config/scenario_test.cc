@@ -129,6 +129,25 @@ TEST_CASE("a criterion may be named by one word") {
   CHECK(scenario->criterion.kind == CriterionKind::kPaper);
 }
 
+TEST_CASE("every criterion has a word, and readings of the paper's rule have theirs") {
+  Workspace workspace;
+  for (std::size_t i = 0; i < kCriterionWords.size(); ++i) {
+    const auto scenario = workspace.load(std::string(kScenario) +
+                                         "criterion: " + std::string(kCriterionWords[i]) + "\n");
+    REQUIRE(scenario.has_value());
+    CHECK(scenario->criterion.kind == static_cast<CriterionKind>(i));
+  }
+  const auto repaired = workspace.load(std::string(kScenario) + "criterion: paper-repaired\n");
+  REQUIRE(repaired.has_value());
+  CHECK(repaired->criterion.kind == CriterionKind::kPaper);
+  CHECK(repaired->criterion.paper.preset == "paper-repaired");
+  const auto fixed =
+      workspace.load(std::string(kScenario) + "criterion: {kind: clopper-pearson, runs: 120}\n");
+  REQUIRE(fixed.has_value());
+  CHECK(fixed->criterion.runs == 120);
+  CHECK_FALSE(workspace.load(std::string(kScenario) + "criterion: {kind: anytime, runs: 120}\n"));
+}
+
 TEST_CASE("the scenario is held against the ground model") {
   Workspace workspace;
   const auto scenario = workspace.load(kScenario);
