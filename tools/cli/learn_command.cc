@@ -63,8 +63,10 @@ int run_learn(const LearnCommandOptions& options, Invocation& invocation) {
   if (invocation.options().verbosity > 0) {
     for (const auto& each : result->remarks) invocation.remark(each);
   }
+  for (const auto& formula : result->refuted) invocation.remark(refuted_text(formula));
   for (const auto& each : result->contradictions) invocation.remark("left open: " + each);
   for (const auto& each : result->not_learnable) invocation.remark("not learned: " + each);
+  if (result->judged_in_closed_loop) invocation.remark(std::string(kJudgedInClosedLoop));
   for (const auto& claim : result->claims) invocation.remark(claim);
   invocation.remark(fmt::format("{}: {} axioms about events from {} simulations (seed {}); {}",
                                 result->clean ? "clean" : "not clean, " + result->why,

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "compiler/repair/axiom_form.h"
+#include "compiler/syntax/printer.h"
 
 namespace parallax::tools {
 namespace {
@@ -37,6 +38,77 @@ About about_formula(const Ast& ast, const Statement& statement) {
   return out;
 }
 
+bool mentions(const Ast& ast, const Statement& statement, std::string_view word) {
+  for (auto i = statement.first_node.index(); i <= statement.formula.index(); ++i) {
+    const auto& node = ast[NodeId(i)];
+    if (node.kind == NodeKind::kApply && ast.name(node) == word) return true;
+  }
+  return false;
+}
+
+/// "time2" is a variable of the sort `time`.
+bool is_time(std::string_view variable) {
+  const auto last = variable.find_last_not_of("0123456789");
+  return last != std::string_view::npos && variable.substr(0, last + 1) == "time";
+}
+
+/// `HoldsAt(F(x1,..,xn),time) <-> right`, with the variables that are quantified in front.
+std::optional<StateFormula::Definition> definition_of(const Ast& ast, NodeId body,
+                                                      const StateFormula& formula,
+                                                      const compiler::TypedModel& typed) {
+  const auto& root = ast[body];
+  const bool iff = root.kind == NodeKind::kBinary && root.op == compiler::Operator::kIff &&
+                   root.child_count == 2;
+  if (!iff || formula.time.empty()) return std::nullopt;
+  const auto& left = ast[ast.child(root, 0)];
+  const bool holds =
+      left.kind == NodeKind::kApply && ast.name(left) == "HoldsAt" && left.child_count == 2;
+  if (!holds || ast.name(ast[ast.child(left, 1)]) != formula.time) return std::nullopt;
+  const auto& fluent = ast[ast.child(left, 0)];
+  StateFormula::Definition out;
+  out.fluent = std::string(ast.name(fluent));
+  const auto declared = std::find_if(typed.symbols.begin(), typed.symbols.end(),
+                                     [&](const auto& symbol) { return symbol.name == out.fluent; });
+  if (fluent.kind != NodeKind::kApply || declared == typed.symbols.end() ||
+      !declared->noninertial) {
+    return std::nullopt;
+  }
+  for (std::uint32_t i = 0; i < fluent.child_count; ++i) {
+    const auto& argument = ast[ast.child(fluent, i)];
+    if (argument.kind != NodeKind::kName) return std::nullopt;
+    const std::string name(ast.name(argument));
+    const auto& known = formula.variables;
+    if (std::find(known.begin(), known.end(), name) == known.end()) return std::nullopt;
+    const auto& others = out.arguments;
+    if (std::find(others.begin(), others.end(), name) != others.end()) return std::nullopt;
+    out.arguments.push_back(name);
+  }
+  // Whatever else is quantified in front would be so for each half by itself.
+  if (out.arguments.size() + 1 != formula.variables.size()) return std::nullopt;
+  out.left = compiler::print_formula(ast, ast.child(root, 0));
+  out.right = compiler::print_formula(ast, ast.child(root, 1));
+  return out;
+}
+
+StateFormula state_formula(const DomainModel& model, const Ast& ast, const Statement& statement,
+                           std::string text) {
+  StateFormula out;
+  out.text = std::move(text);
+  out.place = model.files.place(ast.source(statement.source));
+  auto body = statement.formula;
+  while (ast[body].kind == NodeKind::kForall) {
+    const auto& node = ast[body];
+    for (std::uint32_t i = 0; i + 1 < node.child_count; ++i) {
+      out.variables.emplace_back(ast.name(ast[ast.child(node, i)]));
+      if (out.time.empty() && is_time(out.variables.back())) out.time = out.variables.back();
+    }
+    body = ast.child(node, node.child_count - 1);
+  }
+  out.body = compiler::print_formula(ast, body);
+  out.definition = definition_of(ast, body, out, *model.typed);
+  return out;
+}
+
 About about(const Ast& ast, const Statement& statement) {
   const auto kind = statement.kind;
   if (kind == StatementKind::kFormula) return about_formula(ast, statement);
@@ -46,6 +118,12 @@ About about(const Ast& ast, const Statement& statement) {
 }
 
 }  // namespace
+
+std::string StateFormula::quantifier() const {
+  std::string out;
+  for (const auto& variable : variables) out += (out.empty() ? "[" : ",") + variable;
+  return out.empty() ? out : out + "] ";
+}
 
 Declarations declarations_of(const DomainModel& model) {
   Declarations out;
@@ -59,7 +137,7 @@ Declarations declarations_of(const DomainModel& model) {
       const bool implicit =
           std::find(kImplicit.begin(), kImplicit.end(), file.name()) != kImplicit.end();
       if (!implicit && foundations.insert(file.name()).second) {
-        out.states += "load " + file.name() + "\n";
+        out.states.push_back({"load " + file.name() + "\n", std::nullopt});
       }
       continue;
     }
@@ -68,15 +146,27 @@ Declarations declarations_of(const DomainModel& model) {
       ++out.dropped;
       continue;
     }
-    const auto text = file.text();
+    const auto whole = file.text();
     const auto end = statement.kind == StatementKind::kFormula
-                         ? compiler::end_of_formula(text, statement.source.end)
+                         ? compiler::end_of_formula(whole, statement.source.end)
                          : statement.source.end;
-    auto& to = kind == About::kStart ? out.start : out.states;
+    std::string text(whole.substr(statement.source.begin, end - statement.source.begin));
+    text += "\n";
+    if (kind == About::kStart) {
+      out.start += text;
+      continue;
+    }
+    Declarations::Piece piece;
     // A blank line between kinds of statements, as a person would leave it.
-    if (kind == About::kStates && statement.kind != last && !to.empty()) to += "\n";
-    if (kind == About::kStates) last = statement.kind;
-    to += std::string(text.substr(statement.source.begin, end - statement.source.begin)) + "\n";
+    if (statement.kind != last && !out.states.empty()) piece.text = "\n";
+    last = statement.kind;
+    if (statement.kind == StatementKind::kFormula && mentions(ast, statement, "HoldsAt")) {
+      piece.formula = out.formulas.size();
+      out.formulas.push_back(state_formula(model, ast, statement, text));
+    } else {
+      piece.text += text;
+    }
+    out.states.push_back(std::move(piece));
   }
   return out;
 }

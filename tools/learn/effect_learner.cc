@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
+#include "tools/learn/opening_search.h"
 #include "tools/learn/rule_search.h"
 
 namespace parallax::tools {
@@ -15,19 +18,60 @@ using compiler::SymbolKind;
 
 namespace {
 
+/// Bits, of which one is tried after the other as OpeningProblem::most_outside.
+constexpr std::array<double, 4> kMostOutside = {1e9, 160.0, 80.0, 40.0};
+constexpr double kUnexplained = 60.0;  // bits: what no rule says
+
+/// What keeps an effect out of where an outcome is left open, in the words of the effect; none if
+/// that takes more than one condition.
+std::optional<RuleUnit> guard_against(const LearnedRule& opening, const LearnedRule& effect,
+                                      std::size_t event_arguments) {
+  if (opening.units.size() != 1) return std::nullopt;
+  std::map<std::size_t, RuleTerm> terms;  // of the effect, by variable of the opening
+  for (std::size_t i = 0; i < opening.terms.size(); ++i) {
+    const auto& here = opening.terms[i];
+    const auto& there = effect.terms[i];
+    const bool own = here.kind == RuleTerm::Kind::kHead && here.index >= event_arguments;
+    if (!own && here != there) return std::nullopt;
+    if (own && !terms.emplace(here.index, there).second) return std::nullopt;
+  }
+  auto out = opening.units.front();
+  out.negated = !out.negated;
+  for (auto& literal : out.literals) {
+    for (auto& term : literal.terms) {
+      const auto other = terms.find(term.index);
+      if (term.kind == RuleTerm::Kind::kHead && other != terms.end()) term = other->second;
+    }
+  }
+  return out;
+}
+
+/// Effects are for where no outcome is left open.
+void keep_apart(const std::vector<LearnedRule>& openings, std::size_t event_arguments,
+                LearnedRule& effect) {
+  for (const auto& opening : openings) {
+    const auto guard = guard_against(opening, effect, event_arguments);
+    if (!guard) {
+      effect.unless_open = true;
+      continue;
+    }
+    const bool there = std::any_of(effect.units.begin(), effect.units.end(), [&](const auto& unit) {
+      return unit.negated == guard->negated && unit.literals == guard->literals &&
+             unit.own == guard->own;
+    });
+    if (!there) effect.units.insert(effect.units.begin(), *guard);
+  }
+}
+
 class EffectLearner {
  public:
   EffectLearner(const Observations& observations, const std::set<std::string>& attempted,
-                const std::atomic<bool>& stop)
+                const std::set<std::string>& from_outcomes, const std::atomic<bool>& stop)
       : observations_(observations),
         vocabulary_(observations.vocabulary()),
         attempted_(attempted),
-        stop_(stop) {
-    const auto& steps = observations.transitions();
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-      alike_[{steps[i].before, {steps[i].event, steps[i].arguments}}].push_back(i);
-    }
-  }
+        from_outcomes_(from_outcomes),
+        stop_(stop) {}
 
   LearnedEffects learn() {
     const auto& symbols = vocabulary_.symbols();
@@ -72,81 +116,129 @@ class EffectLearner {
     std::move(answer.rules.begin(), answer.rules.end(), std::back_inserter(out_.rules));
   }
 
-  /// Did a step from the same state with the same event end otherwise?
-  bool is_open(std::size_t i, std::size_t atom) const {
-    const auto& at = step(i);
-    const auto here = observations_.state(at.after)[atom];
-    const auto& others = alike_.at({at.before, {at.event, at.arguments}});
-    return std::any_of(others.begin(), others.end(), [&](auto other) {
-      const auto there = observations_.state(step(other).after)[atom];
-      return there != here && there != Truth::kUnknown && here != Truth::kUnknown;
-    });
-  }
+  /// What was seen behind one state and one event, of one fluent.
+  struct Outcome {
+    RuleExample example;
+    Truth before = Truth::kUnknown;
+    Truth after = Truth::kUnknown;
+    std::size_t opening = 0;  // place in the problem of openings
+  };
 
-  void learn_fluent(std::size_t event, std::size_t fluent) {
-    RuleProblem begins{RuleKind::kInitiates, event, fluent, {}, {}};
-    RuleProblem ends{RuleKind::kTerminates, event, fluent, {}, {}};
-    std::vector<RuleExample> open, plain;
+  /// Every outcome that was seen, and the same by state for find_openings.
+  std::vector<Outcome> outcomes(std::size_t fluent, OpeningProblem& problem) const {
+    std::vector<Outcome> out;
     for (std::size_t k = 0; k < vocabulary_.atoms().size(); ++k) {
       const auto& atom = vocabulary_.atoms()[k];
       if (atom.symbol != fluent) continue;
+      std::map<std::pair<std::size_t, std::vector<std::size_t>>, std::size_t> places;
       for (const auto i : steps_) {
-        const RuleExample example{i, atom.arguments};
-        if (is_open(i, k)) {
-          open.push_back(example);
-          begins.against.push_back(example);
-          ends.against.push_back(example);
-          continue;
-        }
-        const auto before = observations_.state(step(i).before)[k];
-        const auto after = observations_.state(step(i).after)[k];
+        const auto& at = step(i);
+        const auto after = observations_.state(at.after)[k];
         if (after == Truth::kUnknown) continue;
-        plain.push_back(example);
-        const bool holds = after == Truth::kTrue;
-        (holds ? ends : begins).against.push_back(example);
-        if (before == (holds ? Truth::kFalse : Truth::kTrue)) {
-          (holds ? begins : ends).shown.push_back(example);
+        const auto [place, is_new] =
+            places.emplace(std::pair(at.before, at.arguments), problem.examples.size());
+        if (is_new) {
+          problem.examples.push_back({at.before, at.arguments, atom.arguments, 0, 0, false, {}});
         }
+        auto& example = problem.examples[place->second];
+        (after == Truth::kTrue ? example.held : example.failed) += at.runs.size();
+        example.open = example.held > 0 && example.failed > 0;
+        example.runs.insert(example.runs.end(), at.runs.begin(), at.runs.end());
+        out.push_back(
+            {{i, atom.arguments}, observations_.state(at.before)[k], after, place->second});
       }
     }
-    const auto first = out_.rules.size();
-    for (const auto* problem : {&begins, &ends}) {
-      if (problem->shown.empty()) continue;
-      auto answer = find_rules(*problem, observations_, stop_);
-      std::move(answer.rules.begin(), answer.rules.end(), std::back_inserter(out_.rules));
-      open.insert(open.end(), answer.unexplained.begin(), answer.unexplained.end());
-    }
-    if (open.empty() || stop_.load()) return;
-    leave_open(event, fluent, first, open, plain);
+    return out;
   }
 
-  void leave_open(std::size_t event, std::size_t fluent, std::size_t first,
-                  const std::vector<RuleExample>& open, const std::vector<RuleExample>& plain) {
-    tell_open(fluent, open);
-    RuleProblem problem{RuleKind::kReleases, event, fluent, open, {}};
-    // At best only what was seen to go both ways; in any case not what other axioms decide.
-    for (const auto& example : plain) {
-      if (std::find(open.begin(), open.end(), example) == open.end()) {
-        problem.against.push_back(example);
+  /// What the rules say that were found for one event and fluent.
+  struct Account {
+    std::vector<LearnedRule> openings, effects;
+    std::vector<RuleExample> unexplained;
+    /// As long as it takes to tell the rules, and what they leave open.
+    double length = 0.0;
+  };
+
+  Account account(const OpeningProblem& problem, const std::vector<Outcome>& seen,
+                  std::vector<LearnedRule> openings) const {
+    Account out;
+    out.openings = std::move(openings);
+    RuleProblem begins{RuleKind::kInitiates, problem.event, problem.fluent, {}, {}};
+    RuleProblem ends{RuleKind::kTerminates, problem.event, problem.fluent, {}, {}};
+    const bool told = from_outcomes_.contains(vocabulary_.symbols()[problem.fluent].name);
+    std::vector<std::optional<std::size_t>> open(problem.examples.size());
+    for (const auto& one : seen) {
+      const auto rule = std::find_if(out.openings.begin(), out.openings.end(),
+                                     [&](auto& each) { return may_fire(each, one.example); });
+      if (rule != out.openings.end()) {  // nothing else is said there
+        open[one.opening] = static_cast<std::size_t>(rule - out.openings.begin());
+        continue;
       }
+      const bool holds = one.after == Truth::kTrue;
+      (holds ? ends : begins).against.push_back(one.example);
+      // What no one observes was not so before, as far as anyone knows.
+      const bool changed = one.before == (holds ? Truth::kFalse : Truth::kTrue) ||
+                           (told && one.before == Truth::kUnknown);
+      if (changed) (holds ? begins : ends).shown.push_back(one.example);
     }
-    auto answer = find_rules(problem, observations_, stop_);
-    std::vector<LearnedRule> found = std::move(answer.rules);
-    if (!answer.unexplained.empty()) {
-      std::erase_if(problem.against, [&](const auto& example) {
-        return std::none_of(out_.rules.begin() + static_cast<std::ptrdiff_t>(first),
-                            out_.rules.end(),
-                            [&](const auto& rule) { return may_fire(rule, example); });
-      });
-      problem.shown = std::move(answer.unexplained);
-      answer = find_rules(problem, observations_, stop_);
-      std::move(answer.rules.begin(), answer.rules.end(), std::back_inserter(found));
+    for (const auto& rule : out.openings) out.length += rule.cost;
+    out.length += bits_of(problem, open);
+    for (const auto* effect : {&begins, &ends}) {
+      if (effect->shown.empty()) continue;
+      auto answer = find_rules(*effect, observations_, stop_);
+      for (const auto& rule : answer.rules) out.length += rule.cost;
+      out.length += kUnexplained * static_cast<double>(answer.unexplained.size());
+      std::move(answer.rules.begin(), answer.rules.end(), std::back_inserter(out.effects));
+      std::move(answer.unexplained.begin(), answer.unexplained.end(),
+                std::back_inserter(out.unexplained));
     }
-    std::move(found.begin(), found.end(), std::back_inserter(out_.rules));
-    for (const auto& example : answer.unexplained) {
-      const auto& at = step(example.transition);
-      out_.unexplained.push_back(fmt::format("what {} does to {} in run {}", event_text(at),
-                                             fluent_text(fluent, example), at.runs.front()));
+    const auto arguments = vocabulary_.symbols()[problem.event].sorts.size();
+    for (auto& rule : out.effects) keep_apart(out.openings, arguments, rule);
+    return out;
+  }
+
+  /// The shortest account: how much of what went one way each time is chance as well, and how much
+  /// other rules explain, shows when both are told.
+  Account best_account(OpeningProblem& problem, const std::vector<Outcome>& seen) const {
+    std::optional<Account> best;
+    std::set<std::string> known;
+    for (const auto most : kMostOutside) {
+      problem.most_outside = most;
+      auto openings = find_openings(problem, vocabulary_, observations_.states(), stop_);
+      std::string text;
+      for (const auto& rule : openings) text += print(rule, vocabulary_);
+      if (!known.insert(text).second) continue;
+      auto next = account(problem, seen, std::move(openings));
+      if (!best || next.length < best->length) best = std::move(next);
+      if (text.empty() || stop_.load()) break;  // nothing is open
+    }
+    return *std::move(best);
+  }
+
+  void learn_fluent(std::size_t event, std::size_t fluent) {
+    OpeningProblem problem{RuleKind::kReleases, event, fluent, {}, 0.0};
+    const auto seen = outcomes(fluent, problem);
+    tell_open(fluent, seen, problem);
+    while (!stop_.load()) {
+      auto found = best_account(problem, seen);
+      // What no rule explains is left open, too.
+      bool all = true;
+      for (const auto& example : found.unexplained) {
+        const auto one = std::find_if(seen.begin(), seen.end(),
+                                      [&](const auto& each) { return each.example == example; });
+        auto& opening = problem.examples[one->opening];
+        if (opening.open) continue;
+        opening.open = true;
+        all = false;
+        out_.contradictions.push_back(fmt::format(
+            "what {} does to {} in run {} is said by none of the rules that are looked for",
+            event_text(step(example.transition)), fluent_text(fluent, example),
+            step(example.transition).runs.front()));
+      }
+      if (!all) continue;
+      std::move(found.openings.begin(), found.openings.end(), std::back_inserter(out_.rules));
+      std::move(found.effects.begin(), found.effects.end(), std::back_inserter(out_.rules));
+      return;
     }
   }
 
@@ -163,17 +255,15 @@ class EffectLearner {
   }
 
   /// Once for each event and fluent, with a run of either kind.
-  void tell_open(std::size_t fluent, const std::vector<RuleExample>& open) {
-    std::map<std::pair<std::string, std::string>, std::map<Truth, std::string>> seen;
-    for (const auto& example : open) {
-      const auto& at = step(example.transition);
-      const auto atom = *vocabulary_.atom(fluent, example.arguments);
-      if (!is_open(example.transition, atom)) continue;
-      seen[{event_text(at), fluent_text(fluent, example)}].emplace(
-          observations_.state(at.after)[atom], at.runs.front());
+  void tell_open(std::size_t fluent, const std::vector<Outcome>& seen,
+                 const OpeningProblem& problem) {
+    std::map<std::pair<std::string, std::string>, std::map<Truth, std::string>> told;
+    for (const auto& one : seen) {
+      if (!problem.examples[one.opening].open) continue;
+      const auto& at = step(one.example.transition);
+      told[{event_text(at), fluent_text(fluent, one.example)}].emplace(one.after, at.runs.front());
     }
-    for (const auto& [what, runs] : seen) {
-      if (runs.size() < 2) continue;
+    for (const auto& [what, runs] : told) {
       out_.contradictions.push_back(
           fmt::format("after {} {} holds in run {} and not in run {}, from the same state",
                       what.first, what.second, runs.at(Truth::kTrue), runs.at(Truth::kFalse)));
@@ -183,11 +273,9 @@ class EffectLearner {
   const Observations& observations_;
   const LearnVocabulary& vocabulary_;
   const std::set<std::string>& attempted_;
+  const std::set<std::string>& from_outcomes_;
   const std::atomic<bool>& stop_;
   std::vector<std::size_t> steps_;  // of the event at hand
-  std::map<std::pair<std::size_t, std::pair<std::size_t, std::vector<std::size_t>>>,
-           std::vector<std::size_t>>
-      alike_;  // steps by state and event
   LearnedEffects out_;
 };
 
@@ -195,8 +283,9 @@ class EffectLearner {
 
 LearnedEffects learn_effects(const Observations& observations,
                              const std::set<std::string>& attempted,
+                             const std::set<std::string>& from_outcomes,
                              const std::atomic<bool>& stop) {
-  return EffectLearner(observations, attempted, stop).learn();
+  return EffectLearner(observations, attempted, from_outcomes, stop).learn();
 }
 
 }  // namespace parallax::tools

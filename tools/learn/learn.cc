@@ -16,6 +16,7 @@
 #include "tools/app/observed_path.h"
 #include "tools/app/trace_feed.h"
 #include "tools/learn/explorer.h"
+#include "tools/learn/outcome_facts.h"
 #include "tools/learn/taught_model.h"
 
 namespace parallax::tools {
@@ -29,6 +30,8 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kBatch = 10;  // sequences between two models
 constexpr std::int64_t kMostRounds = 400;
+/// What more clean rounds than these would sharpen is left as it is: they contradict nothing.
+constexpr std::int64_t kSharpened = 1;
 
 /// Gives traces until a number of simulations is used up.
 class BoundedTraces final : public harness::TraceFeed {
@@ -138,6 +141,11 @@ class ScenarioLearner {
         result_.clean = true;
         return;
       }
+      if (taught_->leaves_open()) {
+        result_.clean = true;
+        result_.judged_in_closed_loop = true;
+        return;
+      }
       if (over()) return;
       const auto traced = trace_round();
       if (!traced) return;
@@ -155,6 +163,7 @@ class ScenarioLearner {
     std::unique_ptr<Context> context;
     std::optional<ScenarioModel> loaded;
     harness::SimulatorFactory simulator;
+    std::unique_ptr<ClosedLoop> loop;  // the plan was executed
   };
 
   /// Writes the model and its scenario, and loads it as `parallax run` does.
@@ -191,8 +200,9 @@ class ScenarioLearner {
     const auto include = error || from.empty() ? loaded().scenario.file : from;
     const auto scenario = fmt::format(
         "# A model that was learned from runs of this scenario.\n\n"
-        "include: {}\nmodel: [{}]\nexpect:\n",
-        base::json_quoted(include.generic_string()), model);
+        "include: {}\nmodel: [{}]\n{}expect:\n",
+        base::json_quoted(include.generic_string()), model,
+        result_.judged_in_closed_loop ? "execution: closed-loop\n" : "");
     auto& sink = context_.sink();
     return base::write_file_atomically(folder / model, taught_->text(), sink).has_value() &&
            base::write_file_atomically(folder / name, scenario, sink).has_value();
@@ -228,8 +238,9 @@ class ScenarioLearner {
     limit_runs(scenario, most);
     auto loop = ClosedLoop::make(*round->loaded, *round->context);
     if (!loop) return failed(*round);
+    round->loop = *std::move(loop);
     const auto options = campaign(*round);
-    auto ran = harness::run_loop_campaign(scenario, **loop, round->simulator, options,
+    auto ran = harness::run_loop_campaign(scenario, *round->loop, round->simulator, options,
                                           round->context->files(), round->context->sink());
     return judge(*round, ran, most.has_value());
   }
@@ -271,9 +282,11 @@ class ScenarioLearner {
     round.told.simulations = ran->simulations;
     result_.simulations += ran->simulations;
     const auto outcome = std::string(harness::to_string(ran->verdict));
-    const bool taught = take(round);
+    const bool clean = ran->verdict == CampaignVerdict::kNoDiscrepancy;
+    if (clean) ++clean_rounds_;
+    const bool taught = take(round, !clean || clean_rounds_ <= kSharpened);
     close(round, outcome);
-    if (ran->verdict == CampaignVerdict::kNoDiscrepancy) {
+    if (clean) {
       result_.claims.clear();
       for (const auto& trace : ran->traces) {
         auto& claims = result_.claims;
@@ -368,16 +381,23 @@ class ScenarioLearner {
   // --- what was seen
 
   /// Learns from the simulations of a round; false if they have changed nothing.
-  bool take(const Round& round) {
-    const auto before = taught_->axioms();
+  bool take(const Round& round, bool learns = true) {
+    const auto before = taught_->all_axioms();
     const auto journal =
         harness::read_journal(round.folder / "run", round.context->files(), round.context->sink());
     if (!journal) return false;
     auto paths = observed_paths(*round.loaded, *journal, *round.context);
     if (!paths) return false;
-    taught_->add(*std::move(paths), round.loaded->compilation.model, round.told.number);
-    taught_->relearn();
-    return taught_->axioms() != before;
+    const auto& compiled = round.loaded->compilation;
+    std::set<std::string> told;  // fluents
+    for (auto& path : *paths) {
+      if (!round.loop) break;
+      add_outcome_facts(*compiled.plan, round.loop->scenario_plan().questions(), compiled.model,
+                        path, told);
+    }
+    taught_->add(*std::move(paths), compiled.model, round.told.number, told);
+    learns ? taught_->relearn() : taught_->confirm();
+    return taught_->all_axioms() != before;
   }
 
   // --- the end
@@ -386,6 +406,7 @@ class ScenarioLearner {
     result_.model = taught_->text();
     result_.axioms = taught_->axioms().size();
     result_.contradictions = taught_->contradictions();
+    result_.refuted = taught_->refuted();
     result_.not_learnable = taught_->not_learned();
     // Whoever has stopped it does not wait for the runs to be held against the model.
     const auto check = context_.stopped() ? RunsCheck() : taught_->check(taught_->runs());
@@ -423,6 +444,7 @@ class ScenarioLearner {
   Context& context_;
   std::optional<base::Result<ScenarioModel>> loaded_;
   Execution own_execution_ = Execution::kOpenLoop;
+  std::int64_t clean_rounds_ = 0;
   harness::SimulatorFactory simulator_;
   std::unique_ptr<TaughtModel> taught_;
   std::set<std::string> known_axioms_;

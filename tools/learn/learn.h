@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/base/result.h"
@@ -11,6 +12,7 @@
 #include "harness/campaign/sample_runner.h"
 #include "tools/app/context.h"
 #include "tools/app/scenario_model.h"
+#include "tools/learn/state_axioms.h"
 
 namespace parallax::tools {
 
@@ -44,11 +46,15 @@ struct LearnResult {
   std::size_t dropped = 0;  // statements about events that the scenario's model had
   bool clean = false;       // the scenario's run ended without a discrepancy
   std::vector<std::string> claims;
-  std::string why;                     // it is not clean
-  std::int64_t simulations = 0;        // in all, repetitions of discrepancies included
-  std::int64_t sequences = 0;          // of them random ones
-  std::int64_t sequences_clean = 0;    // the last so many of them taught nothing
-  std::size_t runs = 0, admitted = 0;  // that were learned from; that the model admits
+  /// The plan's executions were judged alone although the scenario simulates traces: the model
+  /// leaves outcomes open, and a trace is only one way that they can go.
+  bool judged_in_closed_loop = false;
+  std::vector<RefutedFormula> refuted;  // formulas about states that runs contradict
+  std::string why;                      // it is not clean
+  std::int64_t simulations = 0;         // in all, repetitions of discrepancies included
+  std::int64_t sequences = 0;           // of them random ones
+  std::int64_t sequences_clean = 0;     // the last so many of them taught nothing
+  std::size_t runs = 0, admitted = 0;   // that were learned from; that the model admits
   std::vector<LearnRound> rounds;
   std::vector<std::string> not_learnable, contradictions, remarks;
 };
@@ -66,6 +72,11 @@ base::Result<LearnResult> learn(
         make_simulator,
     Context& context);
 
+constexpr std::string_view kJudgedInClosedLoop =
+    "judged in closed loop: the model leaves outcomes open, and a trace that is simulated is only "
+    "one way that they can go";
+/// "formula contradicted by run 1/1.4: common.e:47: ..."
+std::string refuted_text(const RefutedFormula& formula);
 std::string learn_log(const LearnResult& result);
 std::string learn_json(const LearnResult& result, const LearnOptions& options);
 

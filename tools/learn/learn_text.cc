@@ -3,8 +3,15 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/learn/learn.h"
+#include "tools/learn/learned_model.h"
 
 namespace parallax::tools {
+
+std::string refuted_text(const RefutedFormula& formula) {
+  return fmt::format("formula contradicted by {}: {}: {} Instead: {}", named_runs(formula.runs),
+                     formula.place, formula.text,
+                     formula.instead.empty() ? "nothing." : formula.instead);
+}
 
 std::string learn_log(const LearnResult& result) {
   std::string out;
@@ -20,7 +27,9 @@ std::string learn_log(const LearnResult& result) {
                        result.sequences, result.sequences_clean);
   }
   out += result.clean ? "clean\n" : "not clean: " + result.why + "\n";
+  if (result.judged_in_closed_loop) out += std::string(kJudgedInClosedLoop) + "\n";
   for (const auto& claim : result.claims) out += "  " + claim + "\n";
+  for (const auto& formula : result.refuted) out += refuted_text(formula) + "\n";
   for (const auto& each : result.contradictions) out += "left open: " + each + "\n";
   for (const auto& each : result.not_learnable) out += "not learned: " + each + "\n";
   for (const auto& each : result.remarks) out += "remark: " + each + "\n";
@@ -43,6 +52,16 @@ std::string learn_json(const LearnResult& result, const LearnOptions& options) {
   out["runs"] = result.runs;
   out["runs_admitted"] = result.admitted;
   out["claims"] = result.claims;
+  out["judged_in_closed_loop"] = result.judged_in_closed_loop;
+  out["contradicted_formulas"] = nlohmann::ordered_json::array();
+  for (const auto& formula : result.refuted) {
+    nlohmann::ordered_json told;
+    told["formula"] = formula.text;
+    told["place"] = formula.place;
+    told["runs"] = formula.runs;
+    told["instead"] = formula.instead;
+    out["contradicted_formulas"].push_back(std::move(told));
+  }
   out["contradictions"] = result.contradictions;
   out["not_learned"] = result.not_learnable;
   out["remarks"] = result.remarks;

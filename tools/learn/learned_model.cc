@@ -8,6 +8,7 @@
 #include "compiler/syntax/formatter.h"
 #include "runtime/enumerate/path_admission.h"
 #include "runtime/session/solver_session.h"
+#include "tools/repair/domain_model.h"
 
 namespace parallax::tools {
 
@@ -17,16 +18,6 @@ using compiler::Timepoint;
 using runtime::SolveStatus;
 
 namespace {
-
-std::string named(const std::vector<std::string>& runs) {
-  constexpr std::size_t kNamed = 4;
-  std::string out = runs.size() == 1 ? "run " : "runs ";
-  for (std::size_t i = 0; i < std::min(runs.size(), kNamed); ++i) {
-    out += (i == 0 ? "" : ", ") + runs[i];
-  }
-  if (runs.size() > kNamed) out += fmt::format(" and {} more", runs.size() - kNamed);
-  return out;
-}
 
 /// Asks a model without a plan whether it goes as a run went.
 class RunAdmission {
@@ -97,18 +88,29 @@ class RunAdmission {
 
 }  // namespace
 
-std::string learned_text(const Declarations& declarations, const LearnedEffects& effects,
-                         const LearnVocabulary& vocabulary, const std::string& heading) {
-  auto text = heading + "\n" + declarations.states;
+std::string named_runs(const std::vector<std::string>& runs) {
+  constexpr std::size_t kNamed = 4;
+  std::string out = runs.size() == 1 ? "run " : "runs ";
+  for (std::size_t i = 0; i < std::min(runs.size(), kNamed); ++i) {
+    out += (i == 0 ? "" : ", ") + runs[i];
+  }
+  if (runs.size() > kNamed) out += fmt::format(" and {} more", runs.size() - kNamed);
+  return out;
+}
+
+std::string learned_text(const std::string& heading, const std::string& states,
+                         const LearnedEffects& effects, const LearnVocabulary& vocabulary,
+                         const std::string& start) {
+  auto text = heading + "\n" + states;
   std::optional<std::size_t> event;
   for (const auto& rule : effects.rules) {
     if (event != rule.event) text += "\n";
     event = rule.event;
-    text += print(rule, vocabulary) + "\n; Taught by " + named(rule.taught_by);
-    if (!rule.held_by.empty()) text += "; held back by " + named(rule.held_by);
+    text += print(rule, vocabulary) + "\n; Taught by " + named_runs(rule.taught_by);
+    if (!rule.held_by.empty()) text += "; held back by " + named_runs(rule.held_by);
     text += ".\n";
   }
-  if (!declarations.start.empty()) text += "\n; The start.\n" + declarations.start;
+  if (!start.empty()) text += "\n; The start.\n" + start;
   base::SourceFiles files;
   base::DiagnosticSink sink;
   const auto file = files.add("learned.e", text);

@@ -6,15 +6,18 @@
 #include <vector>
 
 #include "tools/app/context.h"
-#include "tools/learn/declarations.h"
 #include "tools/learn/effect_learner.h"
 
 namespace parallax::tools {
 
-/// The declarations, each rule with the runs that taught it, and the start, in the standard layout.
-/// `heading`: comment lines.
-std::string learned_text(const Declarations& declarations, const LearnedEffects& effects,
-                         const LearnVocabulary& vocabulary, const std::string& heading);
+/// What says nothing about events (`states`), each rule with the runs that taught it, and the
+/// start, in the standard layout. `heading`: comment lines.
+std::string learned_text(const std::string& heading, const std::string& states,
+                         const LearnedEffects& effects, const LearnVocabulary& vocabulary,
+                         const std::string& start);
+
+/// "runs 1/1.1, 1/1.2, 2/1.1, 2/1.4 and 7 more"
+std::string named_runs(const std::vector<std::string>& runs);
 
 /// How a model stands to the runs that it was learned from, asked of the compiled text.
 struct RunsCheck {

@@ -43,6 +43,7 @@ class LearnVocabulary {
   const std::vector<Symbol>& symbols() const { return symbols_; }
   const std::vector<Atom>& atoms() const { return atoms_; }  // of fluents and predicates
   const std::string& constant(std::size_t number) const { return constants_[number]; }
+  std::size_t constant_count() const { return constants_.size(); }
   const std::vector<std::size_t>& domain(compiler::SortId sort) const;
   /// None: there is no such atom; the arguments are outside of its sorts.
   std::optional<std::size_t> atom(std::size_t symbol,
@@ -105,6 +106,7 @@ class Observations {
   const LearnVocabulary& vocabulary() const { return vocabulary_; }
   const std::vector<Transition>& transitions() const { return transitions_; }
   const std::vector<Truth>& state(std::size_t number) const { return states_[number]; }
+  const std::vector<std::vector<Truth>>& states() const { return states_; }
   /// Fluent symbols of which something was ever seen.
   const std::set<std::size_t>& observed() const { return observed_; }
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
+#include <unordered_map>
+#include <utility>
 
 namespace parallax::tools {
 
@@ -31,15 +34,14 @@ class UnitQuestion {
     return term.kind == RuleTerm::Kind::kHead ? binding_[term.index] : own_[term.index];
   }
 
-  Truth truth(const RuleLiteral& literal) const {
+  Truth truth(const RuleLiteral& literal) {
     if (literal.equation) {
       const bool same = value(literal.terms[0]) == value(literal.terms[1]);
       return same != literal.negated ? Truth::kTrue : Truth::kFalse;
     }
-    std::vector<std::size_t> arguments;
-    arguments.reserve(literal.terms.size());
-    for (const auto& term : literal.terms) arguments.push_back(value(term));
-    const auto atom = vocabulary_.atom(literal.symbol, arguments);
+    arguments_.clear();
+    for (const auto& term : literal.terms) arguments_.push_back(value(term));
+    const auto atom = vocabulary_.atom(literal.symbol, arguments_);
     return atom ? state_[*atom] : Truth::kFalse;
   }
 
@@ -69,14 +71,17 @@ class UnitQuestion {
   const LearnVocabulary& vocabulary_;
   const std::vector<Truth>& state_;
   const std::vector<std::size_t>& binding_;
-  std::vector<std::size_t> own_;
+  std::vector<std::size_t> own_, arguments_;
   Truth best_ = Truth::kFalse;
 };
 
 /// Names for the variables of a rule: their sorts, numbered where there are several of one.
 class RuleNames {
  public:
-  RuleNames(const LearnedRule& rule, const LearnVocabulary& vocabulary) : vocabulary_(vocabulary) {
+  RuleNames(const LearnedRule& rule, const LearnVocabulary& vocabulary,
+            std::vector<std::string> given = {})
+      : vocabulary_(vocabulary), head_(std::move(given)) {
+    const std::set<std::string> taken(head_.begin(), head_.end());
     std::map<std::string, int> count, next;
     const auto sort_name = [&](auto sort) { return vocabulary.typed().sorts[sort].name; };
     for (const auto sort : rule.variables) ++count[sort_name(sort)];
@@ -85,9 +90,14 @@ class RuleNames {
     }
     const auto name = [&](auto sort) {
       const auto base = sort_name(sort);
-      return count[base] == 1 ? base : base + std::to_string(++next[base]);
+      if (count[base] == 1 && !taken.contains(base)) return base;
+      auto out = base + std::to_string(++next[base]);
+      while (taken.contains(out)) out = base + std::to_string(++next[base]);
+      return out;
     };
-    for (const auto sort : rule.variables) head_.push_back(name(sort));
+    if (head_.empty()) {
+      for (const auto sort : rule.variables) head_.push_back(name(sort));
+    }
     for (const auto& unit : rule.units) {
       auto& names = own_.emplace_back();
       for (const auto sort : unit.own) names.push_back(name(sort));
@@ -115,14 +125,14 @@ class RuleNames {
 };
 
 std::string print_literal(const RuleLiteral& literal, std::size_t unit, const RuleNames& names,
-                          const LearnVocabulary& vocabulary) {
+                          const LearnVocabulary& vocabulary, const std::string& time) {
   if (literal.equation) {
     return names.term(literal.terms[0], unit) + (literal.negated ? "!=" : "=") +
            names.term(literal.terms[1], unit);
   }
   const auto atom = names.call(literal.symbol, literal.terms, unit);
   const bool fluent = vocabulary.symbols()[literal.symbol].kind == compiler::SymbolKind::kFluent;
-  return fluent ? "HoldsAt(" + atom + ",time)" : atom;
+  return fluent ? "HoldsAt(" + atom + "," + time + ")" : atom;
 }
 
 std::string listed(const std::vector<std::string>& names) {
@@ -132,13 +142,13 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 std::string print_unit(const RuleUnit& unit, std::size_t number, const RuleNames& names,
-                       const LearnVocabulary& vocabulary) {
+                       const LearnVocabulary& vocabulary, const std::string& time) {
   std::string out;
   for (const auto& literal : unit.literals) {
-    out += (out.empty() ? "" : " & ") + print_literal(literal, number, names, vocabulary);
+    out += (out.empty() ? "" : " & ") + print_literal(literal, number, names, vocabulary, time);
   }
   if (!unit.negated) return out;
-  if (unit.own.empty()) return "!" + out;
+  if (unit.own.empty()) return unit.literals.size() == 1 ? "!" + out : "!(" + out + ")";
   return "!({" + listed(names.own(number)) + "} " + out + ")";
 }
 
@@ -169,6 +179,42 @@ Truth value_of(const RuleUnit& unit, const LearnVocabulary& vocabulary,
   return holds == Truth::kTrue ? Truth::kFalse : Truth::kTrue;
 }
 
+std::vector<Truth> values_of(const RuleUnit& unit, const LearnVocabulary& vocabulary,
+                             const std::vector<std::vector<Truth>>& states,
+                             const std::vector<RuleInstance>& instances) {
+  // It is the same wherever the state is, and the variables of the head that it mentions.
+  std::vector<std::size_t> mentioned;
+  for (const auto& literal : unit.literals) {
+    for (const auto& term : literal.terms) {
+      if (term.kind != RuleTerm::Kind::kHead) continue;
+      if (std::find(mentioned.begin(), mentioned.end(), term.index) == mentioned.end()) {
+        mentioned.push_back(term.index);
+      }
+    }
+  }
+  std::vector<Truth> out;
+  out.reserve(instances.size());
+  std::unordered_map<std::uint64_t, Truth> known;
+  const auto constants = static_cast<std::uint64_t>(vocabulary.constant_count());
+  double keys = static_cast<double>(states.size());
+  for (std::size_t i = 0; i < mentioned.size(); ++i) keys *= static_cast<double>(constants);
+  const bool has_keys = keys < 1e18;
+  for (const auto& instance : instances) {
+    if (!has_keys) {
+      out.push_back(value_of(unit, vocabulary, states[instance.state], instance.binding));
+      continue;
+    }
+    std::uint64_t key = instance.state;
+    for (const auto variable : mentioned) key = key * constants + instance.binding[variable];
+    const auto [place, is_new] = known.try_emplace(key, Truth::kUnknown);
+    if (is_new) {
+      place->second = value_of(unit, vocabulary, states[instance.state], instance.binding);
+    }
+    out.push_back(place->second);
+  }
+  return out;
+}
+
 Truth value_of(const std::vector<RuleUnit>& units, const LearnVocabulary& vocabulary,
                const std::vector<Truth>& state, const std::vector<std::size_t>& binding) {
   auto out = Truth::kTrue;
@@ -176,6 +222,19 @@ Truth value_of(const std::vector<RuleUnit>& units, const LearnVocabulary& vocabu
     const auto here = value_of(unit, vocabulary, state, binding);
     if (here == Truth::kFalse) return here;
     if (here == Truth::kUnknown) out = here;
+  }
+  return out;
+}
+
+std::string print_condition(const LearnedRule& rule, const LearnVocabulary& vocabulary,
+                            const std::vector<std::string>& head, const std::string& time) {
+  const RuleNames names(rule, vocabulary, head);
+  std::string out;
+  for (std::size_t i = 0; i < rule.units.size(); ++i) {
+    const auto& unit = rule.units[i];
+    auto text = print_unit(unit, i, names, vocabulary, time);
+    if (!unit.negated && !unit.own.empty()) text = "({" + listed(names.own(i)) + "} " + text + ")";
+    out += (i == 0 ? "" : " & ") + text;
   }
   return out;
 }
@@ -190,7 +249,7 @@ std::string print(const LearnedRule& rule, const LearnVocabulary& vocabulary) {
     if (!unit.negated) {
       variables.insert(variables.end(), names.own(i).begin(), names.own(i).end());
     }
-    condition += (i == 0 ? "" : " & ") + print_unit(unit, i, names, vocabulary);
+    condition += (i == 0 ? "" : " & ") + print_unit(unit, i, names, vocabulary, "time");
   }
   variables.emplace_back("time");
   std::vector<RuleTerm> arguments;
@@ -198,6 +257,8 @@ std::string print(const LearnedRule& rule, const LearnVocabulary& vocabulary) {
     arguments.push_back({RuleTerm::Kind::kHead, i});
   }
   const auto event = names.call(rule.event, arguments, 0);
+  const auto effect = event + "," + names.call(rule.fluent, rule.terms, 0) + ",time)";
+  if (rule.unless_open) condition += (condition.empty() ? "!Releases(" : " & !Releases(") + effect;
   std::string head;
   if (rule.kind == RuleKind::kForbids) {
     head = "!Happens(" + event + ",time)";
@@ -205,7 +266,7 @@ std::string print(const LearnedRule& rule, const LearnVocabulary& vocabulary) {
     const auto* kind = rule.kind == RuleKind::kInitiates    ? "Initiates("
                        : rule.kind == RuleKind::kTerminates ? "Terminates("
                                                             : "Releases(";
-    head = kind + event + "," + names.call(rule.fluent, rule.terms, 0) + ",time)";
+    head = kind + effect;
   }
   return "[" + listed(variables) + "] " + (condition.empty() ? "" : condition + " -> ") + head +
          ".";

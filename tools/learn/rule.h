@@ -23,6 +23,7 @@ struct RuleLiteral {
   bool negated = false;  // of an equation
   std::size_t symbol = 0;
   std::vector<RuleTerm> terms;
+  friend bool operator==(const RuleLiteral&, const RuleLiteral&) = default;
 };
 
 /// Part of a condition: there are values of the unit's own variables for which all its literals
@@ -34,11 +35,12 @@ struct RuleUnit {
   int cost = 0;
 };
 
-enum class RuleKind : std::uint8_t { kInitiates, kTerminates, kReleases, kForbids };
+enum class RuleKind : std::uint8_t { kInitiates, kTerminates, kReleases, kForbids, kAdmits };
 
 /// `[variables] units -> Initiates(event(x1,..,xn),fluent(terms),time)`, or, of kForbids,
 /// `units -> !Happens(event(x1,..,xn),time)`. The head's variables are the event's arguments, then
-/// further ones of the fluent.
+/// further ones of the fluent. Of kAdmits there is no event: where the units hold, the fluent may
+/// be otherwise than a formula about states says.
 struct LearnedRule {
   RuleKind kind = RuleKind::kInitiates;
   std::size_t event = 0, fluent = 0;
@@ -46,6 +48,7 @@ struct LearnedRule {
   std::vector<RuleTerm> terms;  // of the fluent
   std::vector<RuleUnit> units;
   int cost = 0;
+  bool unless_open = false;            // an effect only where no rule leaves the outcome open
   std::vector<std::string> taught_by;  // runs that show the effect
   std::vector<std::string> held_by;    // runs that show that it needs its condition
 
@@ -58,9 +61,23 @@ struct LearnedRule {
 /// Does the unit hold in a state, for these values of the head's variables?
 Truth value_of(const RuleUnit& unit, const LearnVocabulary& vocabulary,
                const std::vector<Truth>& state, const std::vector<std::size_t>& binding);
+/// A state, and values of the head's variables.
+struct RuleInstance {
+  std::size_t state = 0;
+  std::vector<std::size_t> binding;
+};
+/// The same for many.
+std::vector<Truth> values_of(const RuleUnit& unit, const LearnVocabulary& vocabulary,
+                             const std::vector<std::vector<Truth>>& states,
+                             const std::vector<RuleInstance>& instances);
 /// Do all of them?
 Truth value_of(const std::vector<RuleUnit>& units, const LearnVocabulary& vocabulary,
                const std::vector<Truth>& state, const std::vector<std::size_t>& binding);
+
+/// Its conditions, of kAdmits: "HoldsAt(Near(item),time) & ({base} HoldsAt(RobotAt(base),time))".
+/// `head` names the head's variables, `time` the timepoint. Empty if there are none.
+std::string print_condition(const LearnedRule& rule, const LearnVocabulary& vocabulary,
+                            const std::vector<std::string>& head, const std::string& time);
 
 /// As the language writes it, with its period.
 std::string print(const LearnedRule& rule, const LearnVocabulary& vocabulary);

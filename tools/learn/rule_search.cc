@@ -1,64 +1,26 @@
 #include "tools/learn/rule_search.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstdint>
 #include <limits>
 #include <optional>
-#include <set>
 
+#include "tools/learn/example_set.h"
+#include "tools/learn/rule_heads.h"
 #include "tools/learn/rule_units.h"
 
 namespace parallax::tools {
 
 namespace {
 
-constexpr int kRule = 20, kNewVariable = 2, kHeadConstant = 25;
-constexpr int kAnotherRule = 30;             // what a rule may cost more that makes others needless
 constexpr int kCheapCondition = 30;          // cheaper than this, no further stage is asked
 constexpr std::size_t kMostUnits = 3;        // of one rule
 constexpr std::size_t kMostSteps = 200'000;  // of one search
 constexpr int kNone = std::numeric_limits<int>::max();
 
-/// A set of examples by number.
-class ExampleSet {
- public:
-  explicit ExampleSet(std::size_t count, bool all = false) : words_((count + 63) / 64, 0) {
-    for (std::size_t i = 0; all && i < count; ++i) insert(i);
-  }
-  void insert(std::size_t i) { words_[i / 64] |= std::uint64_t{1} << (i % 64); }
-  bool contains(std::size_t i) const { return (words_[i / 64] >> (i % 64) & 1U) != 0; }
-  std::optional<std::size_t> first() const {
-    for (std::size_t i = 0; i < words_.size(); ++i) {
-      if (words_[i] != 0) return i * 64 + static_cast<std::size_t>(std::countr_zero(words_[i]));
-    }
-    return std::nullopt;
-  }
-  std::size_t size() const {
-    std::size_t out = 0;
-    for (const auto word : words_) out += static_cast<std::size_t>(std::popcount(word));
-    return out;
-  }
-  ExampleSet both(const ExampleSet& other) const {
-    auto out = *this;
-    for (std::size_t i = 0; i < words_.size(); ++i) out.words_[i] &= other.words_[i];
-    return out;
-  }
-  ExampleSet without(const ExampleSet& other) const {
-    auto out = *this;
-    for (std::size_t i = 0; i < words_.size(); ++i) out.words_[i] &= ~other.words_[i];
-    return out;
-  }
-
- private:
-  std::vector<std::uint64_t> words_;
-};
-
-/// An example in the words of a head.
-struct Instance {
-  std::size_t example = 0;  // place among `shown` or `against`
-  std::size_t state = 0;
-  std::vector<std::size_t> binding;
+/// Examples in the words of a head.
+struct Instances {
+  std::vector<std::size_t> examples;  // places among `shown` or `against`
+  std::vector<RuleInstance> values;
 };
 
 struct RatedUnit {
@@ -154,52 +116,17 @@ class RuleFinder {
                Truth::kTrue;
   }
 
-  /// Every way to say of the seed's fluent what it is: arguments of the event, variables,
-  /// constants. Cheapest first.
-  std::vector<LearnedRule> heads(const RuleExample& seed) const {
-    LearnedRule bare;
-    bare.kind = problem_.kind;
-    bare.event = problem_.event;
-    bare.fluent = problem_.fluent;
-    bare.variables = vocabulary_.symbols()[problem_.event].sorts;
-    bare.cost = kRule;
-    std::vector<LearnedRule> out = {bare};
-    const auto& arguments = step(seed).arguments;
-    for (std::size_t i = 0; i < seed.arguments.size(); ++i) {
-      const auto sort = vocabulary_.symbols()[problem_.fluent].sorts[i];
-      std::vector<LearnedRule> next;
-      for (const auto& begun : out) {
-        for (std::size_t k = 0; k < arguments.size(); ++k) {
-          if (arguments[k] != seed.arguments[i]) continue;
-          next.push_back(begun);
-          next.back().terms.push_back({RuleTerm::Kind::kHead, k});
-        }
-        next.push_back(begun);
-        next.back().terms.push_back({RuleTerm::Kind::kHead, begun.variables.size()});
-        next.back().variables.push_back(sort);
-        next.back().cost += kNewVariable;
-        next.push_back(begun);
-        next.back().terms.push_back({RuleTerm::Kind::kConstant, seed.arguments[i]});
-        next.back().cost += kHeadConstant;
-      }
-      out = std::move(next);
-    }
-    std::stable_sort(out.begin(), out.end(),
-                     [](const auto& a, const auto& b) { return a.cost < b.cost; });
-    return out;
-  }
-
-  std::vector<Instance> instances(const LearnedRule& head, const std::vector<RuleExample>& examples,
-                                  const ExampleSet* only) const {
-    std::vector<Instance> out;
+  Instances instances(const LearnedRule& head, const std::vector<RuleExample>& examples,
+                      const ExampleSet* only) const {
+    Instances out;
+    RuleInstance instance;
     for (std::size_t i = 0; i < examples.size(); ++i) {
       if (only != nullptr && !only->contains(i)) continue;
-      Instance instance;
       const auto& at = step(examples[i]);
       if (!head.bind(at.arguments, examples[i].arguments, instance.binding)) continue;
-      instance.example = i;
       instance.state = at.before;
-      out.push_back(std::move(instance));
+      out.examples.push_back(i);
+      out.values.push_back(instance);
     }
     return out;
   }
@@ -207,7 +134,9 @@ class RuleFinder {
   std::optional<LearnedRule> best_rule(std::size_t seed) const {
     std::optional<LearnedRule> best;
     int score = kNone;
-    const auto all_heads = heads(problem_.shown[seed]);
+    const auto& example = problem_.shown[seed];
+    const auto all_heads = rule_heads(problem_.kind, problem_.event, step(example).arguments,
+                                      problem_.fluent, example.arguments, vocabulary_);
     for (const auto stage :
          {UnitStage::kPlain, UnitStage::kJoined, UnitStage::kConstants, UnitStage::kChained}) {
       for (const auto& head : all_heads) {
@@ -219,7 +148,7 @@ class RuleFinder {
         if (constants && stage < UnitStage::kConstants) continue;
         try_head(head, seed, stage, best, score);
       }
-      if (best && score <= kRule + kCheapCondition) break;
+      if (best && score <= kRuleCost + kCheapCondition) break;
     }
     return best;
   }
@@ -228,29 +157,36 @@ class RuleFinder {
                 std::optional<LearnedRule>& best, int& score) const {
     const auto shown = instances(head, problem_.shown, &open_);
     const auto against = instances(head, problem_.against, nullptr);
-    const auto at = std::find_if(shown.begin(), shown.end(),
-                                 [&](const auto& each) { return each.example == seed; });
+    const auto at = static_cast<std::size_t>(
+        std::find(shown.examples.begin(), shown.examples.end(), seed) - shown.examples.begin());
     const RuleHead about{head.kind, head.fluent, head.variables, head.terms};
     std::vector<RuleUnit> units;
-    if (!against.empty()) {
-      units =
-          units_that_hold(about, vocabulary_, observations_.state(at->state), at->binding, stage);
+    if (!against.values.empty()) {
+      units = units_that_hold(about, vocabulary_, observations_.state(shown.values[at].state),
+                              shown.values[at].binding, stage);
     }
     std::vector<RatedUnit> rated;
     for (const auto& unit : units) {
-      if (head.cost + unit.cost >= score) break;
-      RatedUnit one{&unit, ExampleSet(shown.size()), ExampleSet(against.size())};
-      for (std::size_t i = 0; i < against.size(); ++i) {
-        if (value(unit, against[i]) == Truth::kFalse) one.excludes.insert(i);
+      if (head.cost + unit.cost >= score || stop_.load()) break;
+      RatedUnit one{&unit, ExampleSet(shown.values.size()), ExampleSet(against.values.size())};
+      const auto denied = values_of(unit, vocabulary_, observations_.states(), against.values);
+      for (std::size_t i = 0; i < denied.size(); ++i) {
+        if (denied[i] == Truth::kFalse) one.excludes.insert(i);
       }
       if (!one.excludes.first()) continue;
-      for (std::size_t i = 0; i < shown.size(); ++i) {
-        if (value(unit, shown[i]) == Truth::kTrue) one.shows.insert(i);
+      const auto met = values_of(unit, vocabulary_, observations_.states(), shown.values);
+      for (std::size_t i = 0; i < met.size(); ++i) {
+        if (met[i] == Truth::kTrue) one.shows.insert(i);
       }
-      rated.push_back(std::move(one));
+      // A dearer one that says no more of what was seen is not tried.
+      const bool needless = std::any_of(rated.begin(), rated.end(), [&](const auto& other) {
+        return one.excludes.without(other.excludes).first() == std::nullopt &&
+               one.shows.without(other.shows).first() == std::nullopt;
+      });
+      if (!needless) rated.push_back(std::move(one));
     }
-    const ConditionSearch search(rated, shown.size(), against.size(), open_.size(), head.cost,
-                                 score);
+    const ConditionSearch search(rated, shown.values.size(), against.values.size(), open_.size(),
+                                 head.cost, score);
     if (!search.chosen()) return;
     score = search.best();
     best = head;
@@ -258,10 +194,6 @@ class RuleFinder {
       best->units.push_back(*rated[i].unit);
       best->cost += rated[i].unit->cost;
     }
-  }
-
-  Truth value(const RuleUnit& unit, const Instance& at) const {
-    return value_of(unit, vocabulary_, observations_.state(at.state), at.binding);
   }
 
   /// Which runs say so: those that show the effect, and those that the bare rule would contradict.

@@ -99,8 +99,10 @@ class UnitMaker {
 
   void add_literal(std::size_t symbol, std::vector<RuleTerm> terms) {
     const auto& declared = vocabulary_.symbols()[symbol];
-    const bool own = head_.kind != RuleKind::kForbids && symbol == head_.fluent;
-    if (own && terms == head_.terms) return;
+    // An effect is not about what is so already; whether something stays open may be.
+    const bool effect = head_.kind == RuleKind::kInitiates || head_.kind == RuleKind::kTerminates;
+    if (effect && symbol == head_.fluent && terms == head_.terms) return;
+    if (head_.kind == RuleKind::kAdmits && symbol == head_.fluent) return;
     RuleUnit unit;
     bool about_head = terms.empty();
     unit.cost = declared.kind == SymbolKind::kPredicate ? kPredicate : kLiteral;

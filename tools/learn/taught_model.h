@@ -10,6 +10,7 @@
 #include "tools/app/observed_path.h"
 #include "tools/app/scenario_model.h"
 #include "tools/learn/learned_model.h"
+#include "tools/learn/state_axioms.h"
 
 namespace parallax::tools {
 
@@ -22,17 +23,25 @@ class TaughtModel {
                                                          const std::string& scenario,
                                                          Context& context);
 
-  /// Takes runs of a round into account; their ids become "3/1.4".
+  /// Takes runs of a round into account; their ids become "3/1.4". `from_outcomes`: fluent symbols
+  /// that no one observes, of which outcomes have said something (add_outcome_facts).
   void add(std::vector<ObservedPath> paths, const compiler::CompiledModel& model,
-           std::int64_t round);
+           std::int64_t round, const std::set<std::string>& from_outcomes);
   void add(Evidence run, std::int64_t round);
   /// The model that explains them all; the one before if it was stopped meanwhile.
   void relearn();
+  /// Takes what was added as more of what the model says already.
+  void confirm() { settle_states(false); }
 
   const std::string& text() const { return text_; }
   std::vector<std::string> axioms() const;  // about events, printed
+  /// The same, and what is left of the formulas about states.
+  std::vector<std::string> all_axioms() const;
   const std::vector<Evidence>& runs() const { return runs_; }
   const std::vector<std::string>& contradictions() const { return effects_.contradictions; }
+  std::vector<RefutedFormula> refuted() const { return axioms_->refuted(); }
+  /// Is there something that may go one way or another?
+  bool leaves_open() const;
   std::size_t dropped() const { return declarations_.dropped; }
   RunsCheck check(const std::vector<Evidence>& runs) const;
   /// What runs cannot teach, or have not taught, in words.
@@ -42,21 +51,26 @@ class TaughtModel {
   TaughtModel(std::string scenario, Context& context)
       : scenario_(std::move(scenario)), context_(context) {}
   void leave_off(const std::string& id, std::size_t t);
+  void settle_states(bool learns = true);
 
   std::string scenario_;
   Context& context_;
   std::unique_ptr<DomainModel> domain_;
   Declarations declarations_;
   std::unique_ptr<LearnVocabulary> vocabulary_;
+  std::unique_ptr<StateAxioms> axioms_;
+  std::optional<std::size_t> version_;  // of the formulas that what follows was made of
   std::optional<compiler::CompiledModel> states_;
   std::unique_ptr<StateCompletion> completion_;
   std::unique_ptr<Observations> observations_;
-  std::vector<Evidence> runs_;
-  std::set<std::string> attempted_;  // symbols of events
+  std::vector<Evidence> seen_;            // as it was
+  std::vector<Evidence> runs_;            // up to where no state of the model looks like it
+  std::set<std::string> attempted_;       // symbols of events
+  std::set<std::string> from_outcomes_;   // symbols of fluents
+  std::vector<std::string> in_no_state_;  // "run 1/1.1 at 3", told by the mapping
+  std::vector<std::string> left_off_;     // the same, and by the formulas about states
   LearnedEffects effects_;
   std::string text_;
-  std::size_t left_off_ = 0;
-  std::string first_left_off_;
 };
 
 }  // namespace parallax::tools

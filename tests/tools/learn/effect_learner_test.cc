@@ -15,6 +15,7 @@
 #include "compiler/syntax/loader.h"
 #include "tools/learn/learned_model.h"
 #include "tools/learn/rule_units.h"
+#include "tools/repair/domain_model.h"
 
 namespace parallax::tools {
 namespace {
@@ -76,7 +77,7 @@ class Runs {
 
   LearnedEffects learn() const {
     const std::atomic<bool> stop{false};
-    return learn_effects(*observations_, {}, stop);
+    return learn_effects(*observations_, {}, {}, stop);
   }
   std::set<std::string> axioms() const {
     std::set<std::string> out;
@@ -85,7 +86,7 @@ class Runs {
   }
   RunsCheck check() {
     const auto effects = learn();
-    const auto text = learned_text({kWorld, "", 0}, effects, *vocabulary_, "; Learned.");
+    const auto text = learned_text("; Learned.", kWorld, effects, *vocabulary_, "");
     return check_runs(text, all_, effects.rules, *vocabulary_, context_);
   }
 

@@ -1,0 +1,253 @@
+// `parallax learn` in worlds that contradict what a model says of states, and in which chance
+// decides what events do. The worlds are models; what is learned is held against them by `parallax
+// diff`.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/tools/cli_json.h"
+
+namespace parallax::test {
+namespace {
+
+using Json = nlohmann::json;
+
+/// How many traces the learned scenario OUT has that `truth` has not, and the other way round.
+struct Traces {
+  Json lost, gained;
+};
+Traces traces(const CliFixture& cli, const std::string& truth, const std::string& out) {
+  const auto result =
+      cli.parallax({"diff", truth, out + "/learned.yaml", "--json", "--allow-outside"});
+  CAPTURE(result.err);
+  REQUIRE(Json::accept(result.out));
+  const auto found = Json::parse(result.out).at("traces");
+  return {found.at("lost"), found.at("gained")};
+}
+
+/// A camera looks along three cells for a cup. It sees what lies where it looks; the world's camera
+/// also what lies on the next cell.
+class CameraWorld : public CliFixture {
+ public:
+  CameraWorld() {
+    write("words.e",
+          "sort cell\nsort item\ncell left, middle, right\nitem cup\n"
+          "predicate Beside(cell,cell)\n"
+          "fluent LookingAt(cell)\nfluent At(item,cell)\nfluent Seen(item)\nfluent Visible(item)\n"
+          "noninertial Visible\n"
+          "event Look(cell)\nevent Detect(item)\n"
+          "[cell1,cell2] Beside(cell1,cell2) <->\n"
+          "  cell1=left & cell2=middle | cell1=middle & cell2=left |\n"
+          "  cell1=middle & cell2=right | cell1=right & cell2=middle.\n"
+          "[cell1,cell2,time] HoldsAt(LookingAt(cell1),time) & HoldsAt(LookingAt(cell2),time) ->\n"
+          "  cell1=cell2.\n"
+          "[item,cell1,cell2,time] HoldsAt(At(item,cell1),time) & HoldsAt(At(item,cell2),time) ->\n"
+          "  cell1=cell2.\n"
+          "[item,time] {cell} HoldsAt(At(item,cell),time).\n"
+          "[cell,time] Initiates(Look(cell),LookingAt(cell),time).\n"
+          "[cell1,cell2,time] cell1!=cell2 -> Terminates(Look(cell1),LookingAt(cell2),time).\n"
+          "[item,time] HoldsAt(Visible(item),time) -> Initiates(Detect(item),Seen(item),time).\n");
+    const std::string looks = "HoldsAt(LookingAt(cell1),time) & HoldsAt(At(item,cell2),time)";
+    camera("narrow.e", looks + " & cell1=cell2");
+    camera("wide.e", looks + " & (cell1=cell2 | Beside(cell1,cell2))");
+    camera("fickle.e", looks + " & (cell1=cell2 | Beside(cell1,cell2) & HoldsAt(Bright(),time))");
+    write("fickle.e", "fluent Bright()\nnoninertial Bright\n" + read("fickle.e"));
+    write("start.e", "[cell] !HoldsAt(LookingAt(cell),0).\n[item] !HoldsAt(Seen(item),0).\n");
+    write("find.lisp",
+          "(defun find-cup ()\n"
+          "  (dolist (?cell '(:left :middle :right))\n"
+          "    (perform (an action (type looking) (object (an object (name ?cell)))))\n"
+          "    (cpl:with-failure-handling\n"
+          "        ((common-fail:perception-low-level-failure (e) (return)))\n"
+          "      (return-from find-cup\n"
+          "        (perform (an action (type detecting) (object (an object (name cup)))))))))\n"
+          "(def-cram-function look-around () (find-cup))\n(look-around)\n");
+    write("robot.bind",
+          "action looking (:object name ?c) -> Look(?c)\n"
+          "    ok: LookingAt(?c) @t+1 else ptu-goal-unreachable\n"
+          "action detecting (:object name ?o) -> Detect(?o)\n"
+          "    ok: Visible(?o) @t else perception-object-not-found\n");
+  }
+
+  /// A scenario in which `world` is the world, and `model` what is said of it.
+  void scenario(const std::string& name, const std::string& model, const std::string& world,
+                const std::string& more = "") const {
+    write(name, more +
+                    "plan: find.lisp\nbind: robot.bind\nhorizon: 7\n"
+                    "constraints: \"{item} HoldsAt(Seen(item),time)\"\n"
+                    "model: [" +
+                    model + ", start.e]\nsimulator: {model: " + world + "}\n");
+  }
+
+ private:
+  void camera(const std::string& name, const std::string& condition) const {
+    write(name, "load words.e\n[item,time] HoldsAt(Visible(item),time) <-> ({cell1,cell2} " +
+                    condition + ").\n");
+  }
+};
+
+TEST_CASE("half of a definition that runs contradict gets exceptions, and is named with the runs") {
+  const CameraWorld cli;
+  cli.scenario("own.yaml", "narrow.e", "wide.e");
+  const auto report = json_of(cli, {"learn", "own.yaml", "--out", "out"});
+  CHECK(report.at("clean") == true);
+  CHECK(report.at("runs") == report.at("runs_admitted"));
+  CHECK(report.at("claims").size() == 1);
+  REQUIRE(report.at("contradicted_formulas").size() == 1);
+  const auto& told = report.at("contradicted_formulas").at(0);
+  CHECK(told.at("place").get<std::string>().starts_with("narrow.e:2"));
+  // What lies where the camera looks is visible all the same.
+  CHECK(told.at("formula").get<std::string>().starts_with(
+      "[item,time] HoldsAt(Visible(item),time) ->"));
+  CHECK(!told.at("runs").empty());
+  CHECK(report.at("model").get<std::string>().find("contradicted by runs") != std::string::npos);
+  CHECK(cli.parallax({"check", "out/learned.e", "--horizon", "3"}).code == 0);
+  CHECK(cli.parallax({"run", "out/learned.yaml", "--allow-outside", "--out", "again"}).code == 0);
+  cli.scenario("truth.yaml", "wide.e", "wide.e", "execution: closed-loop\n");
+  CHECK(traces(cli, "truth.yaml", "out").lost.at("answer") == "none");
+}
+
+TEST_CASE("a definition that the world agrees with stays as it is") {
+  const CameraWorld cli;
+  cli.scenario("own.yaml", "wide.e", "wide.e");
+  const auto report = json_of(cli, {"learn", "own.yaml", "--out", "out"});
+  CHECK(report.at("clean") == true);
+  CHECK(report.at("judged_in_closed_loop") == false);
+  CHECK(report.at("contradicted_formulas").empty());
+  const auto found = traces(cli, "own.yaml", "out");
+  CHECK(found.lost.at("answer") == "none");
+  CHECK(found.gained.at("answer") == "none");
+}
+
+/// A robot drives from the counter to the table, past drawers that may be open and things that lie
+/// here or there. In the world the lowest drawer, when open, stops it or does not.
+class DriveWorld : public CliFixture {
+ public:
+  DriveWorld() {
+    write("words.e",
+          "sort base\nsort cell\nsort drawer\nsort item\n"
+          "base work, table\ncell cl, cm, cr\ndrawer upper, middle, lower\nitem cup, bowl, milk\n"
+          "fluent RobotAt(base)\nfluent At(item,cell)\nfluent Open(drawer)\nevent Go(base)\n"
+          "[base1,base2,time] HoldsAt(RobotAt(base1),time) & HoldsAt(RobotAt(base2),time) ->\n"
+          "  base1=base2.\n"
+          "[time] {base} HoldsAt(RobotAt(base),time).\n"
+          "[item,cell1,cell2,time] HoldsAt(At(item,cell1),time) & HoldsAt(At(item,cell2),time) ->\n"
+          "  cell1=cell2.\n"
+          "[item,time] {cell} HoldsAt(At(item,cell),time).\n");
+    const std::string open = "HoldsAt(Open(lower),time)";
+    write("free.e", "load words.e\n" + arriving(""));
+    write("world.e", "load words.e\nfluent Lucky()\nnoninertial Lucky\n" +
+                         arriving("(!" + open + " | HoldsAt(Lucky(),time)) & "));
+    write("truth.e", "load words.e\n" + arriving("!" + open + " & ") + "[base1,base2,time] " +
+                         open + " -> Releases(Go(base1),RobotAt(base2),time).\n");
+    write("start.e", "HoldsAt(RobotAt(work),0).\n");
+    write("go.lisp",
+          "(def-cram-function go-there ()\n"
+          "  (perform (an action (type going) (object (an object (name table))))))\n(go-there)\n");
+    write("robot.bind",
+          "action going (:object name ?b) -> Go(?b)\n"
+          "    ok: RobotAt(?b) @t+1 else navigation-pose-unreachable\n");
+    scenario("own.yaml", "free.e", "");
+    scenario("truth.yaml", "truth.e", "execution: closed-loop\n");
+  }
+
+ private:
+  static std::string arriving(const std::string& condition) {
+    return "[base,time] " + condition + "base=base -> Initiates(Go(base),RobotAt(base),time).\n" +
+           "[base1,base2,time] " + condition +
+           "base1!=base2 -> Terminates(Go(base1),RobotAt(base2),time).\n";
+  }
+  void scenario(const std::string& name, const std::string& model, const std::string& more) const {
+    write(name, more +
+                    "plan: go.lisp\nbind: robot.bind\nhorizon: 2\n"
+                    "constraints: \"HoldsAt(RobotAt(table),time)\"\n"
+                    "model: [" +
+                    model + ", start.e]\nsimulator: {model: world.e}\n");
+  }
+};
+
+TEST_CASE("chance that depends on the state: its condition is found, and rounds come to an end") {
+  const DriveWorld cli;
+  const auto report = json_of(cli, {"learn", "own.yaml", "--out", "out"});
+  CHECK(report.at("clean") == true);
+  CHECK(report.at("runs") == report.at("runs_admitted"));
+  CHECK(report.at("judged_in_closed_loop") == true);
+  // There are 216 initial states; nothing is said of one of them by itself.
+  CHECK(report.at("axioms").get<int>() <= 6);
+  const auto found = traces(cli, "truth.yaml", "out");
+  CAPTURE(cli.read("out/learned.e"));
+  CHECK(found.lost.at("answer") == "none");
+  CHECK(found.gained.at("answer") == "none");
+  CHECK(cli.parallax({"run", "out/learned.yaml", "--allow-outside", "--out", "again"}).code == 0);
+  // What was seen both ways is named once for each way.
+  CHECK(!report.at("contradictions").empty());
+}
+
+TEST_CASE("what is learned where chance decides does not depend on jobs") {
+  const DriveWorld cli;
+  const auto one = json_of(cli, {"learn", "own.yaml", "--out", "a", "--seed", "5"});
+  const auto two = json_of(cli, {"learn", "own.yaml", "--out", "b", "--seed", "5", "--jobs", "2"});
+  CHECK(one.at("model") == two.at("model"));
+  CHECK(one.at("rounds") == two.at("rounds"));
+}
+
+TEST_CASE("a formula that is no definition goes where runs contradict it, but for the start") {
+  const CliFixture cli;
+  const std::string words =
+      "sort cell\nsort item\ncell shelf, ledge\nitem cup\n"
+      "fluent At(item,cell)\nfluent Held(item)\nevent Take(item)\nevent Put(item,cell)\n"
+      "[item,cell1,cell2,time] HoldsAt(At(item,cell1),time) & HoldsAt(At(item,cell2),time) ->\n"
+      "  cell1=cell2.\n"
+      "[item,time] Initiates(Take(item),Held(item),time).\n"
+      "[item,cell,time] Terminates(Take(item),At(item,cell),time).\n"
+      "[item,cell,time] Terminates(Put(item,cell),Held(item),time).\n";
+  cli.write("model.e", words +
+                           "[item,time] {cell} HoldsAt(At(item,cell),time) | "
+                           "HoldsAt(Held(item),time).\n"
+                           "[item,cell,time] Initiates(Put(item,cell),At(item,cell),time).\n");
+  // What is put on the ledge falls.
+  cli.write("world.e", words +
+                           "[item,cell,time] cell!=ledge -> "
+                           "Initiates(Put(item,cell),At(item,cell),time).\n");
+  cli.write("start.e", "[item] !HoldsAt(Held(item),0).\n");
+  cli.write("put.lisp",
+            "(def-cram-function put-there ()\n"
+            "  (perform (an action (type taking) (object (an object (name cup)))))\n"
+            "  (perform (an action (type putting) (object (an object (name cup)))\n"
+            "                      (target (an object (name ledge))))))\n(put-there)\n");
+  cli.write("robot.bind",
+            "action taking (:object name ?o) -> Take(?o)\n"
+            "    ok: Held(?o) @t+1 else manipulation-pose-unreachable\n"
+            "action putting (:object name ?o :target name ?c) -> Put(?o,?c)\n"
+            "    ok: At(?o,?c) @t+1 else manipulation-goal-not-reached\n");
+  const std::string common =
+      "plan: put.lisp\nbind: robot.bind\nhorizon: 3\n"
+      "constraints: \"{item,cell} Happens(Put(item,cell),time-1)\"\nsimulator: {model: world.e}\n";
+  cli.write("own.yaml", common + "model: [model.e, start.e]\n");
+  const auto report = json_of(cli, {"learn", "own.yaml", "--out", "out"});
+  CHECK(report.at("clean") == true);
+  CHECK(report.at("judged_in_closed_loop") == false);
+  CHECK(report.at("runs") == report.at("runs_admitted"));
+  REQUIRE(report.at("contradicted_formulas").size() == 1);
+  const auto& told = report.at("contradicted_formulas").at(0);
+  CHECK(told.at("place").get<std::string>().starts_with("model.e:"));
+  CHECK(told.at("instead").get<std::string>().find("time=0 -> ") != std::string::npos);
+  // The start is what it was: the cup is somewhere.
+  cli.write("truth.e", words +
+                           "[item] {cell} HoldsAt(At(item,cell),0) | HoldsAt(Held(item),0).\n"
+                           "[item,cell,time] cell!=ledge -> "
+                           "Initiates(Put(item,cell),At(item,cell),time).\n");
+  cli.write("truth.yaml", common + "model: [truth.e, start.e]\n");
+  const auto found = traces(cli, "truth.yaml", "out");
+  CAPTURE(cli.read("out/learned.e"));
+  CHECK(found.lost.at("answer") == "none");
+  CHECK(found.gained.at("answer") == "none");
+  const auto told_so = cli.parallax({"learn", "own.yaml", "--out", "again"});
+  CHECK(told_so.err.find("formula contradicted by runs ") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace parallax::test

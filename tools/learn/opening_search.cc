@@ -1,0 +1,214 @@
+#include "tools/learn/opening_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "tools/learn/example_set.h"
+#include "tools/learn/rule_heads.h"
+#include "tools/learn/rule_units.h"
+
+namespace parallax::tools {
+
+namespace {
+
+constexpr double kGoodCondition = 30.0;     // shorter than this, no further stage is asked
+constexpr std::size_t kBeam = 24;           // conditions that are made longer
+constexpr std::size_t kMostConditions = 3;  // of one rule
+
+struct Counts {
+  double held = 0, failed = 0;
+
+  double all() const { return held + failed; }
+  void add(const OpeningExample& example) {
+    held += static_cast<double>(example.held);
+    failed += static_cast<double>(example.failed);
+  }
+  /// To tell of each which way it went, where nothing else is known.
+  double bits() const {
+    const auto part = [&](double count) {
+      return count > 0 ? count * std::log2(all() / count) : 0.0;
+    };
+    return part(held) + part(failed);
+  }
+};
+
+class OpeningFinder {
+ public:
+  OpeningFinder(const OpeningProblem& problem, const LearnVocabulary& vocabulary,
+                const std::vector<std::vector<Truth>>& states, const std::atomic<bool>& stop)
+      : problem_(problem), vocabulary_(vocabulary), states_(states), stop_(stop) {}
+
+  std::vector<LearnedRule> find() {
+    std::vector<LearnedRule> out;
+    std::vector<bool> covered(problem_.examples.size(), false);
+    for (std::size_t seed = 0; seed < covered.size(); ++seed) {
+      if (!problem_.examples[seed].open || covered[seed]) continue;
+      if (stop_.load()) break;
+      auto rule = best_rule(seed, covered);
+      if (!rule) break;  // stopped
+      for (std::size_t i = 0; i < covered.size(); ++i) {
+        const auto& example = problem_.examples[i];
+        std::vector<std::size_t> binding;
+        if (!rule->bind(example.event_arguments, example.fluent_arguments, binding)) continue;
+        const bool here =
+            value_of(rule->units, vocabulary_, states_[example.state], binding) == Truth::kTrue;
+        if (here) covered[i] = true;
+        if (here ? example.open : !example.open && !rule->units.empty()) {
+          auto& runs = here ? rule->taught_by : rule->held_by;
+          for (const auto& run : example.runs) {
+            if (std::find(runs.begin(), runs.end(), run) == runs.end()) runs.push_back(run);
+          }
+        }
+      }
+      out.push_back(*std::move(rule));
+    }
+    return out;
+  }
+
+ private:
+  struct Candidate {
+    std::vector<const RuleUnit*> units;
+    int cost = 0;
+    double score = 0;
+    ExampleSet sure, perhaps;  // instances where it holds; where it is not known not to
+  };
+  struct RatedUnit {
+    const RuleUnit* unit = nullptr;
+    ExampleSet sure, perhaps;
+  };
+  struct Best {
+    std::optional<LearnedRule> rule;
+    double score = std::numeric_limits<double>::infinity();
+  };
+
+  std::optional<LearnedRule> best_rule(std::size_t seed, const std::vector<bool>& covered) const {
+    Best best;
+    const auto& example = problem_.examples[seed];
+    const auto heads = rule_heads(problem_.kind, problem_.event, example.event_arguments,
+                                  problem_.fluent, example.fluent_arguments, vocabulary_);
+    for (const auto stage : {UnitStage::kPlain, UnitStage::kJoined, UnitStage::kConstants}) {
+      for (const auto& head : heads) {
+        if (stop_.load()) return best.rule;
+        if (head.cost < best.score) try_head(head, seed, covered, stage, best);
+      }
+      if (best.rule && best.score <= kRuleCost + kGoodCondition) break;
+    }
+    return best.rule;
+  }
+
+  void try_head(const LearnedRule& head, std::size_t seed, const std::vector<bool>& covered,
+                UnitStage stage, Best& best) const {
+    std::vector<const OpeningExample*> examples;
+    std::vector<RuleInstance> instances;
+    ExampleSet wanted_here(problem_.examples.size());  // open, and no rule covers it yet
+    Counts elsewhere;                                  // what is wanted and not in the head's words
+    std::size_t own = 0;
+    RuleInstance instance;
+    for (std::size_t i = 0; i < problem_.examples.size(); ++i) {
+      const auto& example = problem_.examples[i];
+      const bool open = example.open && !covered[i];
+      if (!head.bind(example.event_arguments, example.fluent_arguments, instance.binding)) {
+        if (open) elsewhere.add(example);
+        continue;
+      }
+      if (i == seed) own = instances.size();
+      if (open) wanted_here.insert(instances.size());
+      instance.state = example.state;
+      instances.push_back(instance);
+      examples.push_back(&example);
+    }
+    const auto score = [&](int cost, const ExampleSet& sure, const ExampleSet& perhaps) {
+      // Of another rule, which covers what is open and not covered, no more is known.
+      Counts inside, outside, left = elsewhere;
+      for (std::size_t i = 0; i < instances.size(); ++i) {
+        const bool needed = wanted_here.contains(i) && !sure.contains(i);
+        (perhaps.contains(i) ? inside : needed ? left : outside).add(*examples[i]);
+        if (needed && perhaps.contains(i)) left.add(*examples[i]);
+      }
+      return cost + inside.bits() + std::min(outside.bits(), problem_.most_outside) + left.bits() +
+             (left.all() > 0 ? kAnotherRule : 0);
+    };
+    const auto take = [&](const Candidate& candidate) {
+      if (candidate.score >= best.score) return;
+      best.score = candidate.score;
+      best.rule = head;
+      best.rule->cost = candidate.cost;
+      for (const auto* unit : candidate.units) best.rule->units.push_back(*unit);
+    };
+    const ExampleSet all(instances.size(), true);
+    Candidate bare{{}, head.cost, score(head.cost, all, all), all, all};
+    take(bare);
+    const RuleHead about{head.kind, head.fluent, head.variables, head.terms};
+    const auto units = units_that_hold(about, vocabulary_, states_[instances[own].state],
+                                       instances[own].binding, stage);
+    std::vector<RatedUnit> rated;
+    for (const auto& unit : units) {
+      if (head.cost + unit.cost >= best.score || stop_.load()) break;
+      RatedUnit one{&unit, ExampleSet(instances.size()), ExampleSet(instances.size())};
+      const auto truths = values_of(unit, vocabulary_, states_, instances);
+      for (std::size_t i = 0; i < truths.size(); ++i) {
+        if (truths[i] == Truth::kTrue) one.sure.insert(i);
+        if (truths[i] != Truth::kFalse) one.perhaps.insert(i);
+      }
+      // Of those that say the same of all that was seen the first is the shortest.
+      const bool known =
+          one.perhaps == all || std::any_of(rated.begin(), rated.end(), [&](const auto& other) {
+            return other.perhaps == one.perhaps && other.sure == one.sure;
+          });
+      if (!known) rated.push_back(std::move(one));
+    }
+    std::vector<Candidate> beam = {std::move(bare)};
+    for (std::size_t length = 1; length <= kMostConditions && !beam.empty(); ++length) {
+      std::vector<Candidate> longer;
+      for (const auto& from : beam) {
+        for (const auto& unit : rated) {
+          const auto cost = from.cost + unit.unit->cost;
+          if (cost >= best.score || stop_.load()) break;
+          auto perhaps = from.perhaps.both(unit.perhaps);
+          if (perhaps == from.perhaps) continue;
+          auto sure = from.sure.both(unit.sure);
+          Candidate next{from.units, cost, score(cost, sure, perhaps), std::move(sure),
+                         std::move(perhaps)};
+          next.units.push_back(unit.unit);
+          longer.push_back(std::move(next));
+        }
+      }
+      std::stable_sort(longer.begin(), longer.end(),
+                       [](const auto& a, const auto& b) { return a.score < b.score; });
+      if (longer.size() > kBeam) longer.erase(longer.begin() + kBeam, longer.end());
+      for (const auto& candidate : longer) take(candidate);
+      beam = std::move(longer);
+    }
+  }
+
+  const OpeningProblem& problem_;
+  const LearnVocabulary& vocabulary_;
+  const std::vector<std::vector<Truth>>& states_;
+  const std::atomic<bool>& stop_;
+};
+
+}  // namespace
+
+double bits_of(const OpeningProblem& problem,
+               const std::vector<std::optional<std::size_t>>& rules) {
+  std::map<std::size_t, Counts> counts;
+  for (std::size_t i = 0; i < rules.size(); ++i) {
+    if (rules[i]) counts[*rules[i]].add(problem.examples[i]);
+  }
+  double out = 0.0;
+  for (const auto& [rule, counted] : counts) out += counted.bits();
+  return out;
+}
+
+std::vector<LearnedRule> find_openings(const OpeningProblem& problem,
+                                       const LearnVocabulary& vocabulary,
+                                       const std::vector<std::vector<Truth>>& states,
+                                       const std::atomic<bool>& stop) {
+  return OpeningFinder(problem, vocabulary, states, stop).find();
+}
+
+}  // namespace parallax::tools
