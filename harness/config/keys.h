@@ -7,9 +7,10 @@
 
 namespace parallax::harness {
 
-/// Every key of scenario files and suite manifests (docs/scenario_format.md, docs/suite_format.md),
-/// written here alone: what reads a key, what refuses others and what speaks of it in a message say
-/// the same word, and a misspelt one does not compile. Region axes are keys under their own names
+/// Every key of scenario files, suite manifests and ledgers (docs/scenario_format.md,
+/// docs/suite_format.md, docs/ledger.md), written here alone: what reads a key, what refuses others
+/// and what speaks of it in a message say the same word, and a misspelt one does not compile.
+/// Region axes are keys under their own names
 /// (`to_string`).
 struct Key {
   static constexpr std::string_view kAbove = "above";
@@ -35,6 +36,7 @@ struct Key {
   static constexpr std::string_view kCarryM = "carry_m";
   static constexpr std::string_view kCase = "case";
   static constexpr std::string_view kCases = "cases";
+  static constexpr std::string_view kCause = "cause";
   static constexpr std::string_view kCells = "cells";
   static constexpr std::string_view kCfm = "cfm";
   static constexpr std::string_view kChild = "child";
@@ -61,11 +63,13 @@ struct Key {
   static constexpr std::string_view kDefaults = "defaults";
   static constexpr std::string_view kDetection = "detection";
   static constexpr std::string_view kDiameterM = "diameter_m";
+  static constexpr std::string_view kDiscrepancies = "discrepancies";
   static constexpr std::string_view kDrawn = "drawn";
   static constexpr std::string_view kEffortN = "effort_n";
   static constexpr std::string_view kEpsilon = "epsilon";
   static constexpr std::string_view kEquals = "equals";
   static constexpr std::string_view kErp = "erp";
+  static constexpr std::string_view kEvent = "event";
   static constexpr std::string_view kEvents = "events";
   static constexpr std::string_view kExemptInherited = "exempt_inherited";
   static constexpr std::string_view kExpect = "expect";
@@ -74,6 +78,7 @@ struct Key {
   static constexpr std::string_view kFarPadBody = "far_pad_body";
   static constexpr std::string_view kFast = "fast";
   static constexpr std::string_view kFingerJoint = "finger_joint";
+  static constexpr std::string_view kFirstSeen = "first_seen";
   static constexpr std::string_view kFlag = "flag";
   static constexpr std::string_view kFloorMaterial = "floor_material";
   static constexpr std::string_view kFluents = "fluents";
@@ -135,6 +140,7 @@ struct Key {
   static constexpr std::string_view kOnly = "only";
   static constexpr std::string_view kOnlyIf = "only_if";
   static constexpr std::string_view kOpeningM = "opening_m";
+  static constexpr std::string_view kOutcome = "outcome";
   static constexpr std::string_view kPalmBody = "palm_body";
   static constexpr std::string_view kParent = "parent";
   static constexpr std::string_view kPlaces = "places";
@@ -156,6 +162,8 @@ struct Key {
   static constexpr std::string_view kRoot = "root";
   static constexpr std::string_view kRuns = "runs";
   static constexpr std::string_view kSampling = "sampling";
+  static constexpr std::string_view kSays = "says";
+  static constexpr std::string_view kScenario = "scenario";
   static constexpr std::string_view kSets = "sets";
   static constexpr std::string_view kSettable = "settable";
   static constexpr std::string_view kShapes = "shapes";
@@ -170,6 +178,7 @@ struct Key {
   static constexpr std::string_view kSolver = "solver";
   static constexpr std::string_view kStart = "start";
   static constexpr std::string_view kStartPenetrationM = "start_penetration_m";
+  static constexpr std::string_view kStatus = "status";
   static constexpr std::string_view kSurfaceLayerM = "surface_layer_m";
   static constexpr std::string_view kText = "text";
   static constexpr std::string_view kTiltRad = "tilt_rad";

@@ -16,6 +16,9 @@ namespace parallax::harness {
 
 inline constexpr std::int64_t kMaxHorizon = 1'000'000;  // of scenarios and cases alike
 
+/// Ids become file names and are typed in shells: what is wrong with this one, or nothing.
+std::string id_problem(std::string_view id);
+
 /// The text, or list of texts, under a key.
 std::vector<LocatedText> located_texts(const YamlNode& node, std::string_view key,
                                        base::DiagnosticSink& sink);

@@ -17,20 +17,7 @@ namespace {
 using base::DiagnosticCode;
 
 constexpr std::int64_t kMaxTraces = 1'000'000'000;
-constexpr std::size_t kMaxIdLength = 100;
 constexpr NumberBounds kTimeLimit{0.0, 86400.0, true, false};
-
-/// Ids become file names and are typed in shells: what is wrong with this one, or nothing.
-std::string id_problem(std::string_view id) {
-  if (id.size() > kMaxIdLength) return fmt::format("it is longer than {} bytes", kMaxIdLength);
-  if (id.empty() || !base::is_name_character(id.front()) || id.front() == '_') {
-    return "it does not begin with a letter or a digit";
-  }
-  const auto bad = std::find_if(id.begin(), id.end(), [](char c) {
-    return !base::is_name_character(c) && c != '-' && c != '.';
-  });
-  return bad == id.end() ? "" : "it has other characters than letters, digits, `_`, `-` and `.`";
-}
 
 class ManifestReader {
  public:
@@ -153,6 +140,18 @@ class ManifestReader {
 };
 
 }  // namespace
+
+std::string id_problem(std::string_view id) {
+  constexpr std::size_t kMaxIdLength = 100;
+  if (id.size() > kMaxIdLength) return fmt::format("it is longer than {} bytes", kMaxIdLength);
+  if (id.empty() || !base::is_name_character(id.front()) || id.front() == '_') {
+    return "it does not begin with a letter or a digit";
+  }
+  const auto bad = std::find_if(id.begin(), id.end(), [](char c) {
+    return !base::is_name_character(c) && c != '-' && c != '.';
+  });
+  return bad == id.end() ? "" : "it has other characters than letters, digits, `_`, `-` and `.`";
+}
 
 bool looks_like_manifest(std::string_view text) {
   return text.starts_with("cases:") || text.find("\ncases:") != std::string_view::npos;

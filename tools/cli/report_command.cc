@@ -11,18 +11,22 @@
 #include <thread>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
 #include "tools/cli/command.h"
 #include "tools/cli/shared_options.h"
+#include "tools/history/change_points.h"
 #include "tools/page/gather.h"
+#include "tools/page/history_page.h"
 #include "tools/page/write_page.h"
 
 namespace parallax::tools {
 namespace {
 
 struct ReportOptions {
-  std::vector<std::string> folders;
-  std::string out, scenario;
+  std::vector<std::string> folders, properties;
+  std::string out, scenario, ledger, history;
   bool explain = false, repair = false, watch = false;
 };
 
@@ -98,7 +102,7 @@ int watch(const ReportOptions& options, Invocation& invocation) {
       seen = size;
       // What could not be read of a line that is being written is no news.
       Context own(invocation.form(), invocation.stop());
-      const auto page = gather_page({folder, options.scenario, false, false}, own);
+      const auto page = gather_page({folder, options.scenario, false, false, {}, {}}, own);
       if (page && !base::write_output(page_path(options), run_page(*page, {2}), invocation.files(),
                                       invocation.sink())) {
         return 0;
@@ -112,14 +116,71 @@ int watch(const ReportOptions& options, Invocation& invocation) {
   return 0;
 }
 
+/// A history of suites as a page, and what changed as text.
+int report_history(const ReportOptions& options, Invocation& invocation) {
+  auto& sink = invocation.sink();
+  const auto path = options.out.empty() ? std::string("history.html") : options.out;
+  if (!options.folders.empty() || options.explain || options.repair || options.watch ||
+      !options.ledger.empty()) {
+    sink.error_about(base::DiagnosticCode::kUsage, "--history",
+                     "a page is about a history or about runs; leave the others out");
+    return 0;
+  }
+  if (!may_write(path, sink)) return 0;
+  const auto history = read_history(options.history, sink);
+  if (!history) return 0;
+  invocation.files().note_input(options.history);
+  const auto remarks = remarks_on(*history, options.history);
+  for (const auto& remark : remarks) invocation.remark(base::printable(remark));
+  const auto page = history_page(*history, options.history, kHistoryConfidence);
+  if (!base::write_output(path, page, invocation.files(), sink)) return 0;
+  std::string text;
+  auto list = nlohmann::ordered_json::array();
+  for (const auto& suite : suites_of(*history)) {
+    const auto name = history->lines[suite.front()].suite_text();
+    for (const auto& point : find_changes(*history, suite, kHistoryConfidence).points) {
+      const auto& line = history->lines[suite[point.line]];
+      text += base::printable(change_text(point, *history, suite)) + '\n';
+      list.push_back({{"suite", name},
+                      {"line", history->numbers[suite[point.line]]},
+                      {"revision", line.revision},
+                      {"case", point.name},
+                      {"words", point.words}});
+      if (point.kind == ChangePoint::Kind::kRate) list.back()["p_value"] = point.p_value;
+    }
+  }
+  if (invocation.options().json) {
+    const nlohmann::ordered_json document = {
+        {"status", "ok"},       {"page", path},
+        {"bytes", page.size()}, {"lines", history->lines.size()},
+        {"changes", list},      {"missing", remarks}};
+    invocation.document(base::json_text(document) + '\n');
+  } else {
+    invocation.result((text.empty() ? "nothing changed\n" : text) + path + '\n');
+  }
+  return 0;
+}
+
 int report(const ReportOptions& options, Invocation& invocation) {
+  if (!options.history.empty()) return report_history(options, invocation);
+  if (options.folders.empty()) {
+    invocation.sink().error_about(base::DiagnosticCode::kUsage, "",
+                                  "name the folders of runs, or a file with --history");
+    return 0;
+  }
+  if (!options.ledger.empty() && options.folders.size() > 1) {
+    invocation.sink().error_about(base::DiagnosticCode::kUsage, "--ledger",
+                                  "one run is held against a ledger at a time; name one folder");
+    return 0;
+  }
   if (!may_write(page_path(options), invocation.sink())) return 0;
   if (options.watch) watch(options, invocation);
   if (invocation.sink().has_errors() || (options.watch && invocation.stopped())) return 0;
   std::vector<PageData> pages;
   for (const auto& folder : options.folders) {
-    auto page =
-        gather_page({folder, options.scenario, options.explain, options.repair}, invocation);
+    auto page = gather_page({folder, options.scenario, options.explain, options.repair,
+                             options.ledger, options.properties},
+                            invocation);
     if (!page) return 0;
     for (const auto& banner : page->banners) invocation.remark(folder + ": " + banner);
     for (const auto* name : {"report.json", "journal.ndjson"}) {
@@ -156,11 +217,12 @@ Command report_command() {
       "  parallax report out/plan2                         writes out/plan2/report.html\n"
       "  parallax report out/plan2 --explain --repair -o plan2.html\n"
       "  parallax report out/plan2 --watch                 while `parallax run` is at it\n"
+      "  parallax report out/plan2 --ledger ledger.yaml --property \"!HoldsAt(Spilled(),time)\"\n"
+      "  parallax report --history history.jsonl -o history.html\n"
       "  parallax report out/before out/after -o comparison.html\n"
       "The page needs no network and can be read without scripts. Nothing is simulated for it.\n"
       "Exit codes: 0 written; what could not be shown is told on the page and on standard error.");
-  command.option("run_dirs", options->folders, "Folders of runs; of several, what differs")
-      .required();
+  command.option("run_dirs", options->folders, "Folders of runs; of several, what differs");
   command.option("-o,--out", options->out,
                  "The page; default report.html in the run folder, comparison.html of several");
   command.flag(
@@ -169,6 +231,17 @@ Command report_command() {
       "where that has been at the folder");
   command.flag("--repair", options->repair,
                "Propose changes of the model, as `parallax repair` does");
+  command.option("--history", options->history,
+                 "No run: draw a history of suites (`suite --history`) and say what changed");
+  command.option("--ledger", options->ledger,
+                 "Say what this file of known discrepancies has of the run (docs/ledger.md)");
+  command
+      .option(
+          "--property", options->properties,
+          "Say whether this formula holds at all times of the scenario's model, and which known "
+          "discrepancies that rests on; may be repeated")
+      .list(ListForm::kOneEachTime)
+      .needs("--ledger");
   command.flag(
       "--watch", options->watch,
       "While the run goes on: write a page that loads itself again, until the run is over");

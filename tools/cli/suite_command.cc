@@ -4,6 +4,7 @@
 #include <set>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/whole_number.h"
 #include "harness/config/quarantine.h"
@@ -11,9 +12,12 @@
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/shared_options.h"
+#include "tools/history/change_points.h"
+#include "tools/history/git.h"
 #include "tools/suite/input_hashes.h"
 #include "tools/suite/result_cache.h"
 #include "tools/suite/suite_case.h"
+#include "tools/suite/suite_history.h"
 #include "tools/suite/suite_loop.h"
 #include "tools/suite/suite_merge.h"
 #include "tools/suite/suite_record.h"
@@ -26,7 +30,8 @@ struct SuiteOptions {
   std::vector<std::string> paths, merge;
   std::string only;
   std::string out = "out/suite";
-  std::string junit, markdown, annotations, quarantine, cache, verify_cache;
+  std::string junit, markdown, annotations, quarantine, cache, verify_cache, ledger;
+  std::string history, revision;
   std::string shard = "1/1";
   std::uint64_t seed = 1;
   std::int64_t jobs = 1, memory_mb = 0, retries = 0;
@@ -151,6 +156,63 @@ base::Result<harness::Quarantine> quarantine_of(const SuiteOptions& options,
   return harness::load_quarantine(options.quarantine, invocation.files(), invocation.sink());
 }
 
+/// Why the suite can have no line in a history; empty: it can.
+std::string unfit_for_history(const SuiteOptions& options) {
+  if (options.history.empty()) return {};
+  if (options.rerun_failed) return "--history is of whole suites, without --rerun-failed";
+  if (options.merge.empty() && options.shard != "1/1") {
+    return "--history is of whole suites: merge the shards, and append with --merge";
+  }
+  return {};
+}
+
+/// Appends the suite to its history, and says what changed since the line before it.
+void append_to_history(const SuiteRecord& record, const SuiteIdentity& suite,
+                       const SuiteOptions& options, Invocation& invocation) {
+  if (options.history.empty()) return;
+  if (record.count(Outcome::kNotFinished) > 0) {
+    return invocation.remark("the suite was ended, so nothing is appended to " + options.history);
+  }
+  auto& sink = invocation.sink();
+  std::error_code error;
+  auto revision = options.revision;
+  if (revision.empty() && !suite.paths.empty()) {
+    revision = revision_at(suite.paths.front()).value_or("");
+  }
+  if (!append_history(options.history, history_line(record, suite, revision), sink)) return;
+  const auto history = read_history(options.history, sink);
+  if (!history || history->lines.empty()) return;
+  for (const auto& remark : remarks_on(*history, options.history)) invocation.remark(remark);
+  for (const auto& lines : suites_of(*history)) {
+    if (!history->lines[lines.front()].is_same_suite(history->lines.back())) continue;
+    const auto changes = find_changes(*history, lines, kHistoryConfidence);
+    for (const auto& point : changes.points) {
+      if (point.line + 1 != lines.size()) continue;
+      invocation.remark(base::printable(change_text(point, *history, lines)));
+    }
+    for (const auto& slower : slower_cases(*history, lines)) {
+      invocation.remark(base::printable(slower));
+    }
+  }
+}
+
+/// May the history be appended to? Asked before the first case.
+bool may_append(const SuiteOptions& options, Invocation& invocation) {
+  std::error_code error;
+  if (options.history.empty() || !std::filesystem::exists(options.history, error)) return true;
+  if (!base::check_output(options.history, invocation.files(), invocation.sink())) return false;
+  return read_history(options.history, invocation.sink()).has_value();
+}
+
+/// The ledger, if one was named.
+base::Result<std::optional<SuiteLedger>> ledger_of(const SuiteOptions& options,
+                                                   Invocation& invocation) {
+  if (options.ledger.empty()) return std::optional<SuiteLedger>();
+  auto ledger = harness::load_ledger(options.ledger, invocation.files(), invocation.sink());
+  if (!ledger) return invocation.sink().already_reported();
+  return std::optional(SuiteLedger{*std::move(ledger), options.ledger});
+}
+
 /// A list of known failures must not outlive them.
 void speak_of_quarantine(const SuiteRecord& record, bool whole, const Invocation& invocation) {
   std::set<std::string> known;
@@ -175,7 +237,10 @@ int merge_suite(const SuiteOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto quarantine = quarantine_of(options, invocation);
   auto merged = merge_suites(options.merge, sink);
-  if (!quarantine || !merged || !may_write(options, invocation)) return 0;
+  if (!quarantine || !merged || !may_write(options, invocation) ||
+      !may_append(options, invocation)) {
+    return 0;
+  }
   for (const auto& folder : options.merge) {
     std::error_code error;
     if (!std::filesystem::equivalent(folder, options.out, error)) continue;
@@ -183,7 +248,8 @@ int merge_suite(const SuiteOptions& options, Invocation& invocation) {
                      "--out: the merged results would replace those of a shard");
     return 0;
   }
-  StoredResults stored{merged->identity, {}};
+  const auto suite = merged->identity;
+  StoredResults stored{suite, {}};
   const std::vector<bool> none(merged->cases.size(), false);
   SuiteRecord record(std::move(merged->cases), none, options.out, options.junit, std::move(stored),
                      *quarantine);
@@ -199,6 +265,7 @@ int merge_suite(const SuiteOptions& options, Invocation& invocation) {
                                   to_string(shard)));
   }
   speak_of_quarantine(record, true, invocation);
+  append_to_history(record, suite, options, invocation);
   return conclude(record, options, invocation);
 }
 
@@ -214,9 +281,10 @@ int usage_error(const std::string& message, Invocation& invocation) {
   return 0;
 }
 
-LoopOptions loop_options(const SuiteOptions& options, bool keep_passes,
+LoopOptions loop_options(const SuiteOptions& options, bool keep_passes, const SuiteLedger* ledger,
                          const Invocation& invocation) {
   LoopOptions out;
+  out.runner.ledger = ledger;
   out.runner.out = options.out;
   out.runner.seed = options.seed;
   out.runner.retries = options.retries;
@@ -254,9 +322,15 @@ base::Result<StoredResults> earlier_results(const SuiteOptions& options,
 
 int run_suite(const SuiteOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
+  if (const auto why = unfit_for_history(options); !why.empty()) {
+    return usage_error(why, invocation);
+  }
   if (!options.merge.empty()) {
     if (!options.paths.empty()) {
       return usage_error("--merge takes the folders of shards and no PATH", invocation);
+    }
+    if (!options.ledger.empty()) {
+      return usage_error("--ledger belongs to the suites whose results are merged", invocation);
     }
     return merge_suite(options, invocation);
   }
@@ -285,7 +359,12 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
   if (!earlier) return 0;
   const auto quarantine = quarantine_of(options, invocation);
   auto cases = wanted_cases(options, earlier->cases, invocation);
-  if (!quarantine || !cases || !may_write(options, invocation)) return 0;
+  const auto ledger = ledger_of(options, invocation);
+  if (!quarantine || !cases || !ledger || !may_write(options, invocation) ||
+      !may_append(options, invocation)) {
+    return 0;
+  }
+  const auto* known = *ledger ? &**ledger : nullptr;
   std::vector<bool> skipped;
   for (const auto& one : *cases) skipped.push_back(!in_shard(one.id, *shard));
   StoredResults stored{identity, options.rerun_failed ? earlier->cases : StoredCases{}};
@@ -298,17 +377,24 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
                      "--cache: this is no folder, and none can be made here");
     return 0;
   }
-  const ResultCache cache(folder, {program_hash(), options.seed, invocation.form().allow_outside});
+  const ResultCache cache(folder,
+                          {program_hash(), options.seed, invocation.form().allow_outside, known});
   const auto remark = [&](const std::string& text) { invocation.remark(text); };
   const bool caches = !options.no_cache && !options.update_goldens;
   Reuse reuse(record, cache, remark);
   if (options.resume) reuse.resume(earlier->cases);
   if (caches) reuse.look_up(*verified);
   if (!record.save(sink)) return 0;
-  run_open_cases(record, loop_options(options, caches, invocation), earlier->cases, reuse, cache,
-                 remark, stop_flag());
+  run_open_cases(record, loop_options(options, caches, known, invocation), earlier->cases, reuse,
+                 cache, remark, stop_flag());
   speak_of_quarantine(record, options.only.empty() && !options.fast && !options.rerun_failed,
                       invocation);
+  if (known != nullptr) {
+    for (const auto& text : known->stale(record.results())) {
+      invocation.remark("ledger: " + text);
+    }
+  }
+  append_to_history(record, identity, options, invocation);
   return conclude(record, options, invocation);
 }
 
@@ -353,6 +439,15 @@ Command suite_command() {
       .show_default();
   command.option("--quarantine", options->quarantine,
                  "A list of cases that may fail for now, each with its reason");
+  command.option("--ledger", options->ledger,
+                 "Known discrepancies: one that it does not know fails its case (docs/ledger.md)");
+  command.option("--history", options->history,
+                 "Append outcomes, rates and times to this file, and say what changed "
+                 "(docs/history.md)");
+  command
+      .option("--revision", options->revision,
+              "What the line of the history is of; else the commit that git has checked out")
+      .needs("--history");
   command.option("--cache", options->cache,
                  "Folder of passes that need not be run again; without it `cache` in --out");
   command.flag("--no-cache", options->no_cache, "Run every case, and keep no result");

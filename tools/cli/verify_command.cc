@@ -7,8 +7,12 @@
 #include <optional>
 
 #include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/json.h"
+#include "harness/config/ledger.h"
+#include "harness/report/text_layout.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/app/certify.h"
+#include "tools/app/rests_on.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_check.h"
 #include "tools/app/trace_feed.h"
@@ -25,6 +29,7 @@ struct VerifyOptions {
   std::string property;
   CertifyOption certify;
   bool check = false;
+  std::string ledger;
 };
 
 /// A folder for a proof that nobody asked to keep.
@@ -56,6 +61,7 @@ struct Answer {
   std::string proof;         // "proof checked"; empty where there is nothing to prove
   std::string proof_origin;  // what made it, if it was accepted
   std::string proof_file;    // where it is kept
+  std::optional<std::vector<RestsOn>> rests_on;  // none: no ledger was named
 };
 
 Answer ask(const compiler::CompiledModel& model, TraceCertifier& certifier) {
@@ -146,6 +152,22 @@ std::string answer_text(const compiler::CompiledModel& model, const Answer& answ
   return out + '\n';
 }
 
+/// What the answer rests on that the world has refuted.
+std::string rests_on_text(const Answer& answer) {
+  if (!answer.rests_on || verdict(answer) == "inconclusive") return {};
+  if (answer.rests_on->empty()) {
+    return answer.violation ? "the trace goes through no discrepancy that is open or accepted\n"
+                            : "it rests on no discrepancy that is open or accepted\n";
+  }
+  std::string out = answer.violation
+                        ? "the trace goes through known discrepancies, and the world does not "
+                          "follow the model behind them\n"
+                        : "it rests on executions through known discrepancies, behind which the "
+                          "world does not follow the model\n";
+  for (const auto& one : *answer.rests_on) out += harness::wrapped("  ", rests_on_words(one), 4);
+  return out;
+}
+
 std::string answer_json(const compiler::CompiledModel& model, const Answer& answer, double wall_s) {
   nlohmann::ordered_json out;
   out["status"] = "ok";
@@ -167,11 +189,35 @@ std::string answer_json(const compiler::CompiledModel& model, const Answer& answ
     out["performed"] = std::move(performed);
     out["trace"] = nlohmann::ordered_json::parse(runtime::to_jsonl(*answer.violation));
   }
+  if (answer.rests_on) {
+    out["rests_on"] = nlohmann::ordered_json::array();
+    for (const auto& one : *answer.rests_on) {
+      out["rests_on"].push_back({{"id", one.entry->id},
+                                 {"status", to_string(one.entry->status)},
+                                 {"certain", one.goes_through == base::Known::kYes},
+                                 {"words", rests_on_words(one)}});
+    }
+  }
   if (!answer.proof.empty()) out["proof"] = answer.proof.substr(std::string("proof ").size());
   if (!answer.proof_origin.empty()) out["proof_origin"] = answer.proof_origin;
   if (!answer.proof_file.empty()) out["proof_file"] = answer.proof_file;
   out["timing"]["wall_s"] = wall_s;
-  return out.dump() + '\n';
+  return base::json_text(out) + '\n';
+}
+
+/// The ledger, if one was named; it speaks of scenarios.
+base::Result<std::optional<harness::Ledger>> ledger_of(const VerifyOptions& options,
+                                                       Invocation& invocation) {
+  if (options.ledger.empty()) return std::optional<harness::Ledger>();
+  const auto& models = options.model.models;
+  if (models.size() != 1 ||
+      (!models.front().ends_with(".yaml") && !models.front().ends_with(".yml"))) {
+    return invocation.sink().error_about(base::DiagnosticCode::kUsage, models.front(),
+                                         "--ledger: discrepancies are of scenarios; name one");
+  }
+  auto ledger = harness::load_ledger(options.ledger, invocation.files(), invocation.sink());
+  if (!ledger) return invocation.sink().already_reported();
+  return std::optional(*std::move(ledger));
 }
 
 int verify(const VerifyOptions& options, Invocation& invocation) {
@@ -182,6 +228,8 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
         "verify needs the texts of the model and --property instead of --until");
     return 0;
   }
+  const auto ledger = ledger_of(options, invocation);
+  if (!ledger) return 0;
   auto model_options = options.model;
   model_options.property = options.property;
   const auto compilation = compile_models(model_options, invocation);
@@ -199,6 +247,12 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   }
   const bool holds = !answer.violation && answer.exploration != runtime::Exploration::kStopped;
   if (holds) prove(certify, certifier, answer);
+  if (*ledger) {
+    const auto name = harness::ledger_name(options.model.models.front(), options.ledger);
+    answer.rests_on = answer.violation ? rests_on(*answer.violation, **ledger, name)
+                      : holds          ? rests_on(model, **ledger, name, invocation)
+                                       : std::vector<RestsOn>();
+  }
   if (answer.violation && options.check) {
     TraceCheck check(*compilation->typed, &stop_flag(), invocation.sink());
     check.check(*answer.violation);
@@ -207,7 +261,7 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   if (invocation.options().json) {
     invocation.document(answer_json(model, answer, wall.count()));
   } else {
-    invocation.result(answer_text(model, answer));
+    invocation.result(answer_text(model, answer) + rests_on_text(answer));
     for (const auto& bound : answer.bounds) invocation.remark(bound);
   }
   if (answer.violation) return 1;
@@ -238,6 +292,9 @@ Command verify_command() {
   command.option("--property", options->property, "Formula that should hold at all times")
       .required();
   add_certify_option(command, options->certify);
+  command.option("--ledger", options->ledger,
+                 "Also say which known discrepancies of this file the answer rests on "
+                 "(docs/ledger.md)");
   command.flag("--check", options->check,
                "Evaluate the model on the trace by independent means; exit 5 if it differs");
   return {std::move(command),

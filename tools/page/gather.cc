@@ -129,6 +129,15 @@ base::Result<PageData> gather_page(const PageOptions& options, Context& context)
   if (page.scenario.empty()) page.scenario = header.scenario;
   if (page.simulator.empty()) page.simulator = header.simulator.name;
   const auto loaded = scenario_of(options, header, own, page);
+  if (!options.ledger.empty()) {
+    const auto named = options.scenario.empty() ? scenario_path(header).string() : options.scenario;
+    if (!loaded && !options.properties.empty()) {
+      return context.sink().error_about(base::DiagnosticCode::kReplayImpossible, folder,
+                                        "its scenario is not the one that was run, so nothing can "
+                                        "be said of its properties");
+    }
+    if (!add_ledger(options, named, context, page)) return context.sink().already_reported();
+  }
   const auto further = loaded ? further_of(folder, own) : std::nullopt;
   for (const auto& [key, record] : journal->samples) {
     page.closed_loop = page.closed_loop || record.path.has_value();

@@ -15,6 +15,8 @@ struct PageOptions {
   std::string scenario;  // where it lies by now; empty: where the journal says
   bool explain = false;  // also where `explain` has not been at the folder
   bool repair = false;
+  std::string ledger;                   // file of known discrepancies; empty: none is asked
+  std::vector<std::string> properties;  // of the scenario; with a ledger
 };
 
 /// What a page shows of a run folder: report.json and journal as they are, nothing is simulated.
@@ -63,6 +65,12 @@ void add_world(const ScenarioModel& loaded, const base::SourceFiles& files, Page
 /// What `explain` and `repair` say of the folder, without further simulations.
 void add_blame(const PageOptions& options, Context& context, PageData& page);
 void add_repair(const PageOptions& options, Context& context, PageData& page);
+
+/// What the ledger says of the run, and of each property whether it rests on an open discrepancy.
+/// `scenario`: the file, empty where it is not what was run any more. Fails, having reported, where
+/// the ledger or a property cannot be read.
+base::Status add_ledger(const PageOptions& options, const std::string& scenario, Context& context,
+                        PageData& page);
 
 /// The messages of a sink, each on a line.
 std::string messages_of(const Context& context);

@@ -171,6 +171,23 @@ struct PageSource {
   std::string name, text;
 };
 
+/// What a ledger says of the run, and which properties of its scenario rest on that.
+struct PageLedger {
+  struct Row {
+    std::string id, is, words;  // the entry; how it stands; what the run showed
+    bool is_wrong = false;      // not known, or repaired and back
+  };
+  std::string file;
+  std::vector<Row> rows;
+  std::vector<std::string> gone;  // sentences
+  struct Property {
+    std::string formula, answer;
+    bool holds = false, asks_for_review = false;  // it rests on an open discrepancy
+    std::vector<std::string> rests_on;            // sentences
+  };
+  std::vector<Property> properties;
+};
+
 /// Everything that the page of one run folder shows.
 struct PageData {
   std::string folder;  // as the user named it
@@ -199,6 +216,7 @@ struct PageData {
   std::vector<PageMotion> motion;  // of some simulations
   std::size_t motion_left_out = 0;
   std::optional<std::pair<std::int64_t, std::int64_t>> not_recorded;  // that one would want to see
+  std::optional<PageLedger> ledger;
   std::optional<PageBlame> blame;
   std::optional<PageRule> rule;
   std::vector<PageProposal> proposals;

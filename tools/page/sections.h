@@ -54,6 +54,7 @@ std::string scatter_section(const PageData& page);
 /// Recorded motion, or how it is made; with what assets/replay.js reads.
 std::string motion_section(const PageData& page);
 std::string confidence_section(const PageData& page);
+std::string ledger_section(const PageData& page);
 std::string blame_section(const PageData& page, const SourceLinks& links);
 std::string samples_section(const PageData& page);
 std::string coverage_section(const PageData& page);

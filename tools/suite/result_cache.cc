@@ -70,7 +70,8 @@ std::string case_definition(const SuiteCase& one, const CaseKey& key) {
   Json json = {{"program", key.program},
                {"seed", key.seed},
                {"allow_outside", key.allow_outside},
-               {"case", one.name()}};
+               {"case", one.name()},
+               {"ledger", ledger_digest_of(key.ledger, one)}};
   if (const auto* traces = std::get_if<harness::ManifestCase>(&one.check)) {
     const auto& expect = traces->expect;
     json["models"] = texts(traces->models);

@@ -7,6 +7,7 @@
 
 #include "tools/suite/input_hashes.h"
 #include "tools/suite/suite_case.h"
+#include "tools/suite/suite_ledger.h"
 
 namespace parallax::tools {
 
@@ -16,6 +17,7 @@ struct CaseKey {
   std::string program;  // program_hash()
   std::uint64_t seed = 1;
   bool allow_outside = false;
+  const SuiteLedger* ledger = nullptr;  // of known discrepancies; outlives what has the key
 };
 std::string case_definition(const SuiteCase& one, const CaseKey& key);
 
@@ -31,6 +33,7 @@ class ResultCache {
     std::filesystem::path file;
     std::int64_t age_order = 0;  // the lower, the longer ago it was made or verified
   };
+  const CaseKey& key() const { return key_; }
   /// `damaged` counts entries that are not what was written.
   std::optional<Hit> find(const SuiteCase& one, InputHashes& hashes, std::size_t& damaged) const;
   /// Keeps a pass; anything else, and a result that another run need not repeat, is passed over.

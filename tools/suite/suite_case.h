@@ -9,6 +9,7 @@
 
 #include "harness/config/scenario.h"
 #include "harness/config/suite_manifest.h"
+#include "tools/history/history_file.h"
 
 namespace parallax::tools {
 
@@ -50,7 +51,11 @@ struct CaseResult {
   std::string answer;             // SHA-256 of what the program answered, timings left out
   std::vector<InputFile> inputs;  // what the program read, by path
   std::int64_t peak_memory_mb = 0;
-  bool repeatable = false;  // no limit and no foreign program had a say in the answer
+  bool repeatable = false;               // no limit and no foreign program had a say in the answer
+  std::string ledger;                    // what it was judged by (ledger_digest_of); empty: by none
+  std::string verdict;                   // of a scenario's run
+  std::vector<MeasuredRate> rates;       // of a scenario whose rate is expected
+  std::vector<std::string> shown, gone;  // ids of the ledger: seen again, looked for in vain
 
   bool flaky() const { return outcome == Outcome::kPassed && attempts > 1; }
 };

@@ -59,6 +59,7 @@ void Reuse::resume(const StoredCases& earlier) {
     const bool finished =
         result.outcome != Outcome::kNotFinished && result.outcome != Outcome::kSkipped;
     if (!finished || result.inputs.empty() || !hashes_.unchanged(result.inputs)) continue;
+    if (result.ledger != ledger_digest_of(cache_.key().ledger, record_.cases()[i])) continue;
     result.reused = "resumed";
     take(i, std::move(result));
   }

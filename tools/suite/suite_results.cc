@@ -88,7 +88,12 @@ Json to_json(const CaseResult& result) {
           {"answer", result.answer},
           {"inputs", inputs},
           {"peak_memory_mb", result.peak_memory_mb},
-          {"repeatable", result.repeatable}};
+          {"repeatable", result.repeatable},
+          {"ledger", result.ledger},
+          {"verdict", result.verdict},
+          {"rates", Json::parse(encode_rates(result.rates))},
+          {"shown", result.shown},
+          {"gone", result.gone}};
 }
 
 std::optional<CaseResult> result_from_json(const Json& json) {
@@ -108,6 +113,13 @@ std::optional<CaseResult> result_from_json(const Json& json) {
   read(json, "answer", out.answer);
   read(json, "peak_memory_mb", out.peak_memory_mb);
   read(json, "repeatable", out.repeatable);
+  read(json, "ledger", out.ledger);
+  read(json, "verdict", out.verdict);
+  if (const auto* rates = base::json_member(json, "rates")) {
+    out.rates = decode_rates(base::json_text(*rates));
+  }
+  read_texts(json, "shown", out.shown);
+  read_texts(json, "gone", out.gone);
   if (const auto* inputs = base::json_member(json, "inputs"); inputs != nullptr) {
     if (!inputs->is_object()) return std::nullopt;
     for (const auto& [path, hash] : inputs->items()) {

@@ -18,6 +18,7 @@
 #include "harness/config/scenario.h"
 #include "tools/suite/expectation.h"
 #include "tools/suite/footprint.h"
+#include "tools/suite/suite_history.h"
 
 namespace parallax::tools {
 
@@ -101,6 +102,8 @@ void run_rates(const SuiteCase& one, const harness::Expectation& expect,
   result.messages += child.err;
   if (child.code != 0) return report_no_answer(child, result);
   for (auto& problem : unmet(rate, child.out)) result.problems.push_back(std::move(problem));
+  note_rates(child.out, result);
+  if (options.ledger != nullptr) options.ledger->judge(one, shown_rates(child.out), result);
 }
 
 /// Makes room for a new run. Removes nothing but what a run has left there.
@@ -140,12 +143,14 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
   // Exit code 1 is a finding and 4 a verdict that may be the expected one; both give a document.
   const bool answered = child.code == 0 || child.code == 1 || child.code == 4;
   if (!answered || has_failed(child.out)) return report_no_answer(child, result);
-  auto problems = unmet(expect, child.out);
-  if (problems.empty()) return;
-  for (auto& problem : problems) result.problems.push_back(std::move(problem));
-  if (auto why = first_discrepancy(child.out); !why.empty()) {
+  note_verdict(child.out, result);
+  const auto problems = unmet(expect, child.out);
+  result.problems.insert(result.problems.end(), problems.begin(), problems.end());
+  if (auto why = first_discrepancy(child.out); !problems.empty() && !why.empty()) {
     result.problems.push_back(std::move(why));
   }
+  if (options.ledger != nullptr) options.ledger->judge(one, shown_run(child.out), result);
+  if (result.problems.empty()) return;
   result.problems.push_back("report: " + (folder / "report.txt").string());
 }
 
@@ -288,6 +293,7 @@ CaseResult try_case(const SuiteCase& one, const RunnerOptions& options,
   // A process that was cut off says nothing about the case.
   if (stop.load()) return {};
   footprint.into(result);
+  result.ledger = ledger_digest_of(options.ledger, one);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   result.wall_s = wall.count();
   return result;

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "tools/suite/suite_case.h"
+#include "tools/suite/suite_ledger.h"
 
 namespace parallax::tools {
 
@@ -15,8 +16,9 @@ struct RunnerOptions {
   std::uint64_t seed = 1;
   std::int64_t retries = 0;  // more attempts where one did not pass
   bool update_goldens = false;
-  bool allow_commands = false;  // start what scenarios name as their simulators
-  bool allow_outside = false;   // files may name any other
+  bool allow_commands = false;          // start what scenarios name as their simulators
+  bool allow_outside = false;           // files may name any other
+  const SuiteLedger* ledger = nullptr;  // of known discrepancies; null: none is asked
 };
 
 /// Runs one case in processes of its own, again where it did not pass and `retries` allow it, so

@@ -124,6 +124,7 @@ std::string summary_document(const SuiteRecord& record) {
     if (!result.golden_written.empty()) item["golden_written"] = result.golden_written;
     if (!result.reused.empty()) item["reused"] = result.reused;
     if (result.attempts > 1) item["attempts"] = result.attempts;
+    if (!result.shown.empty()) item["known"] = result.shown;
     if (is_quarantined(record.cases()[i], result, record.quarantine())) {
       item["quarantined"] = record.quarantine().at(record.cases()[i].name());
     }

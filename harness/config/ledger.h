@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "compiler/base/source_file.h"
+
+namespace parallax::harness {
+
+enum class LedgerStatus : std::uint8_t { kOpen, kRepaired, kAccepted };
+/// "open", "repaired", "accepted"
+std::string_view to_string(LedgerStatus status);
+
+/// A known discrepancy, and what was decided about it. It is known again by its scenario, its event
+/// and those of outcome, fluents and trace that the entry has; the rest is told to people.
+struct LedgerEntry {
+  std::string id;
+  std::string scenario;  // starts at the ledger's folder
+  std::string event;     // the last one before model and world part; "start": they never agreed
+  std::optional<std::string> outcome;               // what became of the event: "path-blocked"
+  std::optional<std::vector<std::string>> fluents;  // what differs, as observed: "not F(a)"
+  std::optional<std::vector<std::string>> trace;    // the events before it
+  std::string says, cause, model, first_seen;
+  LedgerStatus status = LedgerStatus::kOpen;
+  std::string decision;  // the revision that repaired it, or why it is accepted
+
+  base::SourceRange source;  // of the whole entry's first token
+  base::SourceRange id_source, status_source;
+};
+
+/// "open", "repaired in 3f2a1c0", "accepted because ...": as the file has it, and people read it.
+std::string status_text(const LedgerEntry& entry);
+
+/// The known discrepancies of a project, in the order of the file (docs/ledger.md).
+struct Ledger {
+  base::FileId file;
+  std::vector<LedgerEntry> entries;
+
+  const LedgerEntry* find(std::string_view id) const;
+};
+
+/// Reads a ledger. Ids are distinct; unknown keys, a status that is none of the three and an entry
+/// without a decision where there has to be one are refused where they stand.
+base::Result<Ledger> load_ledger(const std::filesystem::path& path, base::SourceFiles& files,
+                                 base::DiagnosticSink& sink);
+/// The same of a text that is not yet a file.
+base::Result<Ledger> parse_ledger(base::FileId file, base::SourceFiles& files,
+                                  base::DiagnosticSink& sink);
+
+/// The name that a scenario has in a ledger: the way there from the ledger's folder, links
+/// resolved.
+std::string ledger_name(const std::filesystem::path& scenario, const std::filesystem::path& ledger);
+
+}  // namespace parallax::harness

@@ -1,0 +1,346 @@
+#include "tools/history/bisect.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+
+#include "compiler/base/ascii.h"
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
+#include "compiler/base/path_gate.h"
+#include "tools/history/git.h"
+
+namespace parallax::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+using nlohmann::json;
+
+/// A folder in the temporary one that goes with the object.
+class Scratch {
+ public:
+  Scratch() {
+    std::error_code error;
+    auto name = fs::temp_directory_path(error).string() + "/parallax_bisect_XXXXXX";
+    if (!error && ::mkdtemp(name.data()) != nullptr) path_ = base::real_path(name);
+  }
+  ~Scratch() {
+    std::error_code error;
+    if (!path_.empty()) fs::remove_all(path_, error);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  /// Empty if there is none.
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// The user's repository, and the scenario's place in it.
+struct Place {
+  std::string folder;    // of the checkout in which git is asked
+  std::string scenario;  // from the top of the checkout
+};
+
+base::Reported refuse(const std::string& subject, const std::string& why,
+                      base::DiagnosticSink& sink) {
+  return sink.error_about(base::DiagnosticCode::kUsage, subject, why);
+}
+
+base::Result<Place> place_of(const std::string& scenario, base::DiagnosticSink& sink) {
+  std::error_code error;
+  auto folder = fs::absolute(scenario, error).lexically_normal().parent_path();
+  fs::path rest = fs::path(scenario).filename();
+  // It may be gone from the checkout by now, with its folder.
+  while (!fs::is_directory(folder, error) && folder.has_relative_path()) {
+    rest = folder.filename() / rest;
+    folder = folder.parent_path();
+  }
+  const auto top = ask_git(folder.string(), {"rev-parse", "--show-toplevel"});
+  if (!top || top->empty()) {
+    return refuse(scenario, "it lies in no checkout of a git repository that may be read", sink);
+  }
+  const auto inside = (base::real_path(folder) / rest).lexically_relative(base::real_path(*top));
+  if (inside.empty() || *inside.begin() == "..") {
+    return refuse(scenario, "it lies outside of the checkout", sink);
+  }
+  return Place{folder.string(), inside.generic_string()};
+}
+
+bool is_hash(std::string_view word) {
+  constexpr std::size_t kShortest = 40;
+  return word.size() >= kShortest && std::all_of(word.begin(), word.end(), [](char c) {
+           return base::is_digit(c) || (c >= 'a' && c <= 'f');
+         });
+}
+
+base::Result<std::string> commit_of(const Place& place, const std::string& revision,
+                                    base::DiagnosticSink& sink) {
+  const auto hash =
+      revision.empty() || revision.front() == '-'
+          ? std::nullopt
+          : ask_git(place.folder, {"rev-parse", "--verify", "--quiet", revision + "^{commit}"});
+  if (!hash || !is_hash(*hash)) return refuse(revision, "git knows no such revision here", sink);
+  return *hash;
+}
+
+/// What git says first of why it failed.
+std::string complaint(const base::Captured& git) {
+  if (git.code < 0 || git.code == 127) return "git cannot be started";
+  auto text = git.err.empty() ? git.out : git.err;
+  while (text.ends_with('\n')) text.pop_back();
+  return "git: " + text.substr(0, text.find('\n'));
+}
+
+/// A repository of our own that borrows the user's objects.
+class Borrowed {
+ public:
+  explicit Borrowed(fs::path folder) : folder_(std::move(folder)) {}
+
+  std::string path() const { return folder_.string(); }
+
+  base::Status make(const Place& place, const std::string& first, base::DiagnosticSink& sink) {
+    const auto format = ask_git(place.folder, {"rev-parse", "--show-object-format"});
+    const auto objects = git_path(place, "objects"), shallow = git_path(place, "shallow");
+    if (objects.empty() || objects.string().find_first_of("\n\"#") != std::string::npos) {
+      return refuse(objects.string(), "git cannot borrow objects from a folder of this name", sink);
+    }
+    const auto made = run_git(
+        "/",
+        {"init", "--quiet", "--template=", "--object-format=" + format.value_or("sha1"), path()});
+    if (made.code != 0) return refuse(path(), complaint(made), sink);
+    const auto own = folder_ / ".git";
+    std::error_code error;
+    fs::create_directories(own / "objects/info", error);
+    if (!base::write_file_atomically(own / "objects/info/alternates", objects.string() + '\n',
+                                     sink)) {
+      return sink.already_reported();
+    }
+    if (fs::exists(shallow, error)) fs::copy_file(shallow, own / "shallow", error);
+    return check_out(first, sink);
+  }
+
+  base::Status check_out(const std::string& revision, base::DiagnosticSink& sink) {
+    const auto done = run_git(path(), {"checkout", "--quiet", "--force", "--detach", revision});
+    if (done.code != 0) return refuse(revision, complaint(done), sink);
+    return base::Unit{};
+  }
+
+  std::string subject(const std::string& revision) const {
+    return ask_git(path(), {"log", "-1", "--no-show-signature", "--format=%s", revision})
+        .value_or("");
+  }
+
+ private:
+  static fs::path git_path(const Place& place, const char* name) {
+    const auto path = ask_git(place.folder, {"rev-parse", "--git-path", name});
+    return path ? base::real_path(fs::path(place.folder) / *path) : fs::path();
+  }
+
+  fs::path folder_;
+};
+
+class Bisection {
+ public:
+  Bisection(const BisectOptions& options, const std::function<void(const RevisionVerdict&)>& tell,
+            const std::atomic<bool>& stop, base::DiagnosticSink& sink)
+      : options_(options), tell_(tell), stop_(stop), sink_(sink) {}
+
+  base::Result<BisectResult> run() {
+    const auto place = place_of(options_.scenario, sink_);
+    if (!place) return sink_.already_reported();
+    scenario_ = place->scenario;
+    const auto before = commit_of(*place, options_.old_revision, sink_);
+    const auto after = commit_of(*place, options_.new_revision, sink_);
+    if (!before || !after) return sink_.already_reported();
+    if (scratch_.path().empty()) return refuse("", "no temporary folder can be made", sink_);
+    repository_.emplace(scratch_.path() / "repository");
+    if (!repository_->make(*place, *before, sink_)) return sink_.already_reported();
+    if (!try_end(*before, out_.old_end) || !try_end(*after, out_.new_end)) {
+      return sink_.already_reported();
+    }
+    const bool changed =
+        out_.ends_have_verdicts() && out_.old_end.verdict != out_.new_end.verdict && !stopped();
+    if (changed && !search(*before, *after)) return sink_.already_reported();
+    if (out_.changed_by.size() == 1 && !stopped()) compare(out_.changed_by.front().revision);
+    out_.stopped = stopped();
+    return std::move(out_);
+  }
+
+ private:
+  bool stopped() const { return stop_.load(); }
+
+  base::Status try_end(const std::string& revision, RevisionVerdict& end) {
+    if (!repository_->check_out(revision, sink_)) return sink_.already_reported();
+    end = try_here(revision);
+    if (!stopped()) tell_(end);
+    return base::Unit{};
+  }
+
+  /// Runs the scenario as it is checked out.
+  RevisionVerdict try_here(const std::string& revision) {
+    RevisionVerdict out{revision, repository_->subject(revision), {}, {}, false};
+    std::error_code error;
+    if (!fs::is_regular_file(fs::path(repository_->path()) / scenario_, error)) {
+      out.words = "the scenario is missing";
+      out.input_is_wrong = true;
+      return out;
+    }
+    const auto folder = scratch_.path() / "run";
+    fs::remove_all(folder, error);
+    std::vector<std::string> words = {"parallax",      "run",   "--json",       "--quiet",
+                                      "--color=never", "--out", folder.string()};
+    words.emplace_back(options_.allow_commands ? "--allow-commands" : "--no-commands");
+    if (options_.allow_outside) words.emplace_back("--allow-outside");
+    words.insert(words.end(), options_.run_options.begin(), options_.run_options.end());
+    words.insert(words.end(), {"--", scenario_});
+    judge(this_program(words, repository_->path()), out);
+    return out;
+  }
+
+  base::Captured this_program(const std::vector<std::string>& words, const std::string& folder) {
+    base::CaptureOptions how;
+    how.program = "/proc/self/exe";
+    how.folder = folder;
+    how.ends_with_us = true;
+    how.without_input = true;
+    how.signal_when = [this, told = false]() mutable {
+      if (told || !stopped()) return 0;
+      told = true;
+      return SIGTERM;
+    };
+    return base::capture(words, how);
+  }
+
+  static void judge(const base::Captured& run, RevisionVerdict& out) {
+    const auto document = json::parse(run.out, nullptr, false);
+    const auto text = [](const json& object, const char* name) {
+      const auto* value = base::json_member(object, name);
+      return value == nullptr ? "" : base::json_as<std::string>(*value).value_or("");
+    };
+    const auto verdict = text(document, "verdict");
+    const bool answered = (run.code == 0 || run.code == 1) && text(document, "status") == "ok";
+    if (answered && (verdict == "discrepancy" || verdict == "no-discrepancy")) {
+      out.verdict = verdict;
+      const auto* list = base::json_member(document, "discrepancies");
+      if (list != nullptr && list->is_array() && !list->empty()) {
+        out.words = text(list->front(), "words");
+      }
+      return;
+    }
+    out.input_is_wrong = run.code == 2 || run.code == 3;
+    const auto* diagnostics = base::json_member(document, "diagnostics");
+    for (const auto& one :
+         diagnostics != nullptr && diagnostics->is_array() ? *diagnostics : json::array()) {
+      if (text(one, "severity") != "error") continue;
+      out.words = fmt::format("{}: {}", text(one, "code"), text(one, "message"));
+      return;
+    }
+    out.words =
+        run.code == 4 ? "inconclusive" : fmt::format("the run ended with exit code {}", run.code);
+  }
+
+  /// `git bisect`, told one revision after the other.
+  base::Status search(const std::string& before, const std::string& after) {
+    std::vector<std::string> start = {"bisect", "start"};
+    if (options_.first_parent) start.emplace_back("--first-parent");
+    start.insert(start.end(), {after, before});
+    auto answer = run_git(repository_->path(), start);
+    // Each revision is told once, so that this ends.
+    while (answer.code == 0 && !stopped()) {
+      // Subjects of commits stand in other lines, and may say anything.
+      const auto line = answer.out.substr(0, answer.out.find('\n'));
+      const auto hash = line.substr(0, line.find(' '));
+      if (is_hash(hash) && line == hash + " is the first bad commit") return found({hash});
+      const auto here = ask_git(repository_->path(), {"rev-parse", "--verify", "HEAD"});
+      if (!here) break;
+      auto one = try_here(*here);
+      if (stopped()) return base::Unit{};
+      tell_(one);
+      const auto* word = one.verdict.empty()                   ? "skip"
+                         : one.verdict == out_.new_end.verdict ? "bad"
+                                                               : "good";
+      out_.tried.push_back(std::move(one));
+      answer = run_git(repository_->path(), {"bisect", word});
+    }
+    if (stopped()) return base::Unit{};
+    constexpr int kOnlySkipped = 2;
+    if (answer.code == kOnlySkipped) return found(hashes_in(answer.out));
+    return refuse("", complaint(answer), sink_);
+  }
+
+  /// The lines that are a hash and nothing else.
+  static std::vector<std::string> hashes_in(std::string_view text) {
+    std::vector<std::string> out;
+    for (std::size_t at = 0; at < text.size();) {
+      const auto end = std::min(text.find('\n', at), text.size());
+      const auto line = text.substr(at, end - at);
+      if (is_hash(line)) out.emplace_back(line);
+      at = end + 1;
+    }
+    return out;
+  }
+
+  base::Status found(const std::vector<std::string>& hashes) {
+    for (const auto& hash : hashes) {
+      const auto is_it = [&](const RevisionVerdict& one) { return one.revision == hash; };
+      const auto at = std::find_if(out_.tried.begin(), out_.tried.end(), is_it);
+      out_.changed_by.push_back(at != out_.tried.end() ? *at : out_.new_end);
+      if (at == out_.tried.end() && out_.new_end.revision != hash) {
+        out_.changed_by.back() = {hash, repository_->subject(hash), {}, "not tried", false};
+      }
+    }
+    return base::Unit{};
+  }
+
+  /// What the revision changed in what the scenario says.
+  void compare(const std::string& revision) {
+    const std::vector<std::pair<std::string, std::string>> sides = {{"before", revision + "^1"},
+                                                                    {"after", revision}};
+    for (const auto& [name, commit] : sides) {
+      const auto made =
+          run_git(repository_->path(), {"worktree", "add", "--quiet", "--force", "--detach",
+                                        (scratch_.path() / name).string(), commit});
+      std::error_code error;
+      if (made.code != 0 || !fs::is_regular_file(scratch_.path() / name / scenario_, error)) {
+        out_.difference =
+            fmt::format("nothing to compare: {} it there is no such scenario\n", name);
+        return;
+      }
+    }
+    const auto child = this_program({"parallax", "diff", "--stat", "--quiet", "--color=never", "--",
+                                     "before/" + scenario_, "after/" + scenario_},
+                                    scratch_.path().string());
+    out_.difference = child.out;
+    if (child.code > 1) {
+      out_.difference +=
+          "the scenarios cannot be compared: " + child.err.substr(0, child.err.find('\n')) + '\n';
+    }
+  }
+
+  const BisectOptions& options_;
+  const std::function<void(const RevisionVerdict&)>& tell_;
+  const std::atomic<bool>& stop_;
+  base::DiagnosticSink& sink_;
+  Scratch scratch_;
+  std::optional<Borrowed> repository_;
+  std::string scenario_;  // from the top of the checkout
+  BisectResult out_;
+};
+
+}  // namespace
+
+base::Result<BisectResult> bisect_verdict(const BisectOptions& options,
+                                          const std::function<void(const RevisionVerdict&)>& tell,
+                                          const std::atomic<bool>& stop,
+                                          base::DiagnosticSink& sink) {
+  return Bisection(options, tell, stop, sink).run();
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+
+namespace parallax::tools {
+
+struct BisectOptions {
+  std::string old_revision, new_revision;  // as git reads them
+  std::string scenario;                    // where it lies, or lay, in the user's checkout
+  std::vector<std::string> run_options;    // of `parallax run`
+  bool allow_commands = false;             // start what the scenario names as its simulator
+  bool allow_outside = false;
+  bool first_parent = false;
+};
+
+/// What came of the scenario at one revision.
+struct RevisionVerdict {
+  std::string revision;  // its full hash
+  std::string subject;
+  std::string verdict;  // "no-discrepancy" or "discrepancy"; empty: it says nothing of the change
+  std::string words;    // the first discrepancy; or why there is no verdict
+  bool input_is_wrong = false;  // the scenario is missing, or was refused
+};
+
+struct BisectResult {
+  RevisionVerdict old_end, new_end;
+  /// Those between them that were tried, in order.
+  std::vector<RevisionVerdict> tried;
+  /// The revision that changed the verdict; several where only skipped ones are left between the
+  /// two verdicts; none if the verdicts of the ends are equal, or one of them has none.
+  std::vector<RevisionVerdict> changed_by;
+  /// `parallax diff --stat` of the scenario before and at the one revision, or why there is none.
+  std::string difference;
+  bool stopped = false;
+
+  bool ends_have_verdicts() const { return !old_end.verdict.empty() && !new_end.verdict.empty(); }
+};
+
+/// Looks for the revision that changed the verdict of a scenario with `git bisect`, in a repository
+/// of its own in a temporary folder, which borrows the objects of the user's: that one, its
+/// checkout and its refs are only read, and none of its hooks, filters and settings count. Each
+/// revision is run in a process of its own. Reports what git does not know as kUsage. `tell` hears
+/// of each revision that was tried.
+base::Result<BisectResult> bisect_verdict(const BisectOptions& options,
+                                          const std::function<void(const RevisionVerdict&)>& tell,
+                                          const std::atomic<bool>& stop,
+                                          base::DiagnosticSink& sink);
+
+}  // namespace parallax::tools

@@ -1,0 +1,224 @@
+#include "tools/history/change_points.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "harness/confidence/clean_runs.h"
+#include "harness/confidence/quantiles.h"
+
+namespace parallax::tools {
+namespace {
+
+std::string standing_of(const HistoryCase& one) {
+  return one.verdict.empty() ? one.outcome : fmt::format("{} ({})", one.outcome, one.verdict);
+}
+
+bool says_something(const HistoryCase& one) {
+  return one.outcome != "not finished" && one.outcome != "skipped";
+}
+
+/// What else changed with it.
+std::string reason_words(const HistoryLine& old_line, const HistoryCase& before,
+                         const HistoryLine& new_line, const HistoryCase& after) {
+  if (before.files.empty() || after.files.empty()) return {};
+  if (before.files != after.files) return "; files that it reads changed";
+  const bool program = old_line.program != new_line.program;
+  const bool seed = old_line.seed != new_line.seed;
+  return fmt::format("; its files are the same{}{}", program ? ", the program is another one" : "",
+                     seed ? ", the seed is another one" : "");
+}
+
+std::string rate_words(const MeasuredRate& rate) {
+  return fmt::format("{} of {} ({:.1f} to {:.1f} %)", rate.count, rate.runs, 100.0 * rate.lower,
+                     100.0 * rate.upper);
+}
+
+/// Fisher's exact test of one side: the probability that so many or more of all failures are
+/// among the second runs if these are no worse. Lost runs failed before and not afterwards.
+double fisher_worse(const MeasuredRate& before, const MeasuredRate& after) {
+  const auto runs_before = before.runs + before.lost, runs_after = after.runs + after.lost;
+  const auto failures = before.count + before.lost + after.count;
+  const auto log_choose = [](std::int64_t n, std::int64_t k) {
+    return -std::log(static_cast<double>(n) + 1.0) -
+           harness::log_beta(static_cast<double>(k) + 1.0, static_cast<double>(n - k) + 1.0);
+  };
+  const double all = log_choose(runs_before + runs_after, failures);
+  double tail = 0.0;
+  for (auto k = std::max(after.count, failures - runs_before); k <= std::min(failures, runs_after);
+       ++k) {
+    tail += std::exp(log_choose(runs_after, k) + log_choose(runs_before, failures - k) - all);
+  }
+  return std::min(1.0, tail);
+}
+
+double two_sided(const MeasuredRate& before, const MeasuredRate& after) {
+  return std::min(1.0, 2.0 * std::min(fisher_worse(before, after), fisher_worse(after, before)));
+}
+
+const MeasuredRate* find_rate(const HistoryCase& one, const std::string& of) {
+  const auto at = std::find_if(one.rates.begin(), one.rates.end(),
+                               [&](const MeasuredRate& rate) { return rate.of == of; });
+  return at == one.rates.end() ? nullptr : &*at;
+}
+
+/// A cause that was not seen came in none of the runs of its trace.
+std::optional<MeasuredRate> rate_or_none(const HistoryCase& one, const std::string& of) {
+  if (const auto* rate = find_rate(one, of)) return *rate;
+  const auto any = of.substr(0, of.find(": ")) + ": any discrepancy";
+  const auto* runs = find_rate(one, any);
+  if (runs == nullptr) return std::nullopt;
+  auto out = *runs;
+  out.of = of;
+  out.count = 0;
+  out.lower = 0.0;
+  out.upper = harness::clopper_pearson_upper(0, runs->runs, 0.5 * (1.0 + runs->confidence));
+  return out;
+}
+
+/// One case through the lines of its suite.
+class CaseHistory {
+ public:
+  CaseHistory(const History& history, const std::vector<std::size_t>& suite, std::string name)
+      : history_(history), suite_(suite), name_(std::move(name)) {}
+
+  void outcomes(std::vector<ChangePoint>& out) const {
+    std::optional<std::size_t> last;
+    for (std::size_t i = 0; i < suite_.size(); ++i) {
+      const auto* now = at(i);
+      const bool was_there = i > 0 && at(i - 1) != nullptr;
+      if (i > 0 && (now != nullptr) != was_there) {
+        out.push_back(
+            {ChangePoint::Kind::kCases, i, name_,
+             now == nullptr ? "is no case any more" : fmt::format("is new: {}", standing_of(*now)),
+             0.0});
+      }
+      if (now == nullptr || !says_something(*now)) continue;
+      if (last && standing_of(*at(*last)) != standing_of(*now)) {
+        out.push_back({ChangePoint::Kind::kOutcome, i, name_,
+                       fmt::format("{}, then {}{}", standing_of(*at(*last)), standing_of(*now),
+                                   reason_words(line(*last), *at(*last), line(i), *now)),
+                       0.0});
+      }
+      last = i;
+    }
+  }
+
+  /// Everything that was measured of the case.
+  std::vector<std::string> rate_names() const {
+    std::vector<std::string> out;
+    for (std::size_t i = 0; i < suite_.size(); ++i) {
+      if (at(i) == nullptr) continue;
+      for (const auto& rate : at(i)->rates) out.push_back(rate.of);
+    }
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+  }
+
+  /// Lines in which it was measured.
+  std::vector<std::size_t> measured(const std::string& of) const {
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < suite_.size(); ++i) {
+      if (at(i) != nullptr && rate_or_none(*at(i), of)) out.push_back(i);
+    }
+    return out;
+  }
+
+  void rates(const std::string& of, std::size_t comparisons, double confidence,
+             std::vector<ChangePoint>& out) const {
+    std::optional<std::size_t> reference;
+    for (const auto i : measured(of)) {
+      if (!reference) {
+        reference = i;
+        continue;
+      }
+      const auto before = *rate_or_none(*at(*reference), of), now = *rate_or_none(*at(i), of);
+      const double p = std::min(1.0, static_cast<double>(comparisons) * two_sided(before, now));
+      if (p >= 1.0 - confidence) continue;
+      out.push_back({ChangePoint::Kind::kRate, i, name_,
+                     fmt::format("{}: {}, then {}{}", of, rate_words(before), rate_words(now),
+                                 reason_words(line(*reference), *at(*reference), line(i), *at(i))),
+                     p});
+      reference = i;
+    }
+  }
+
+ private:
+  const HistoryLine& line(std::size_t i) const { return history_.lines[suite_[i]]; }
+  const HistoryCase* at(std::size_t i) const {
+    const auto found = line(i).cases.find(name_);
+    return found == line(i).cases.end() ? nullptr : &found->second;
+  }
+
+  const History& history_;
+  const std::vector<std::size_t>& suite_;
+  std::string name_;
+};
+
+std::vector<std::string> case_names(const History& history, const std::vector<std::size_t>& suite) {
+  std::map<std::string, bool> names;
+  for (const auto i : suite) {
+    for (const auto& [name, one] : history.lines[i].cases) names.emplace(name, true);
+  }
+  std::vector<std::string> out;
+  for (const auto& [name, is_there] : names) out.push_back(name);
+  return out;
+}
+
+}  // namespace
+
+Changes find_changes(const History& history, const std::vector<std::size_t>& suite,
+                     double confidence) {
+  Changes out;
+  out.confidence = confidence;
+  const auto names = case_names(history, suite);
+  for (const auto& name : names) {
+    const CaseHistory one(history, suite, name);
+    for (const auto& of : one.rate_names()) {
+      const auto times = one.measured(of).size();
+      out.comparisons += times > 0 ? times - 1 : 0;
+    }
+  }
+  for (const auto& name : names) {
+    const CaseHistory one(history, suite, name);
+    one.outcomes(out.points);
+    for (const auto& of : one.rate_names()) one.rates(of, out.comparisons, confidence, out.points);
+  }
+  std::stable_sort(out.points.begin(), out.points.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.line, a.name) < std::tie(b.line, b.name);
+  });
+  return out;
+}
+
+std::vector<std::string> slower_cases(const History& history,
+                                      const std::vector<std::size_t>& suite) {
+  constexpr double kTimes = 3.0, kLongerS = 1.0;
+  std::vector<std::string> out;
+  if (suite.size() < 2) return out;
+  const auto& before = history.lines[suite[suite.size() - 2]].cases;
+  for (const auto& [name, now] : history.lines[suite.back()].cases) {
+    const auto at = before.find(name);
+    if (at == before.end() || !says_something(now) || !says_something(at->second)) continue;
+    const double old_s = at->second.wall_s;
+    if (old_s > 0.0 && now.wall_s > kTimes * old_s && now.wall_s > old_s + kLongerS) {
+      out.push_back(fmt::format("{} took {:.1f} s, and {:.1f} s before", name, now.wall_s, old_s));
+    }
+  }
+  return out;
+}
+
+std::string change_text(const ChangePoint& point, const History& history,
+                        const std::vector<std::size_t>& suite) {
+  const auto index = suite[point.line];
+  const auto& revision = history.lines[index].revision;
+  const auto where = revision.empty() ? fmt::format("line {}", history.numbers[index]) : revision;
+  auto out = fmt::format("{}: {}: {}", where, point.name, point.words);
+  if (point.kind == ChangePoint::Kind::kRate) out += fmt::format("; p = {:.2g}", point.p_value);
+  return out;
+}
+
+}  // namespace parallax::tools

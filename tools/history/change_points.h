@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/history/history_file.h"
+
+namespace parallax::tools {
+
+/// Where something changed in the history of one suite.
+struct ChangePoint {
+  enum class Kind : std::uint8_t {
+    kOutcome,  // outcome or verdict of a case
+    kRate,     // more or fewer failures than chance explains
+    kCases,    // a case came, or left
+  };
+  Kind kind = Kind::kOutcome;
+  std::size_t line = 0;  // index into the suite's lines: the first with what is new
+  std::string name;      // of the case
+  std::string words;     // "passed (no-discrepancy), then failed (discrepancy)"
+  double p_value = 0.0;  // kRate: corrected for the number of comparisons
+};
+
+/// With which changes of rates are named.
+inline constexpr double kHistoryConfidence = 0.95;
+
+struct Changes {
+  std::vector<ChangePoint> points;  // by line, then by name
+  std::size_t comparisons = 0;      // of rates; what was corrected for
+  double confidence = kHistoryConfidence;
+};
+
+/// The changes in the lines of one suite, `suite` being indices into the history. Rates are held
+/// against the first measurement since their last change by Fisher's exact test of two sides; the
+/// probability that any of them is named although none has changed is at most 1 - confidence
+/// (Bonferroni over all comparisons of the suite). Lost runs count for whichever answer is less
+/// remarkable.
+Changes find_changes(const History& history, const std::vector<std::size_t>& suite,
+                     double confidence);
+
+/// Remarks about times, which depend on the machine: cases that took more than three times as long
+/// as in the line before, and more than a second longer.
+std::vector<std::string> slower_cases(const History& history,
+                                      const std::vector<std::size_t>& suite);
+
+/// A line for people: "3f2a1c0: scenarios/edge.yaml: passed, then failed".
+std::string change_text(const ChangePoint& point, const History& history,
+                        const std::vector<std::size_t>& suite);
+
+}  // namespace parallax::tools

@@ -1,0 +1,241 @@
+#include "tools/history/history_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "compiler/base/descriptor.h"
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
+
+namespace parallax::tools {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr std::int64_t kFormat = 1;
+constexpr std::size_t kMaxHistoryBytes = std::size_t{256} << 20U;
+
+template <typename T>
+void take(const json& object, const char* name, T& into) {
+  const auto* member = base::json_member(object, name);
+  if (member == nullptr) return;
+  if (auto value = base::json_as<T>(*member)) into = *std::move(value);
+}
+
+ordered_json rate_json(const MeasuredRate& rate) {
+  ordered_json out = {{"of", rate.of},       {"count", rate.count},
+                      {"runs", rate.runs},   {"lower", rate.lower},
+                      {"upper", rate.upper}, {"confidence", rate.confidence}};
+  if (rate.lost > 0) out["lost"] = rate.lost;
+  return out;
+}
+
+/// None if the counts are none.
+std::optional<MeasuredRate> rate_of(const json& object) {
+  constexpr std::int64_t kMostRuns = 1'000'000'000;
+  MeasuredRate out;
+  take(object, "of", out.of);
+  take(object, "count", out.count);
+  take(object, "runs", out.runs);
+  take(object, "lost", out.lost);
+  take(object, "lower", out.lower);
+  take(object, "upper", out.upper);
+  take(object, "confidence", out.confidence);
+  const bool counts = out.count >= 0 && out.lost >= 0 && out.runs > 0 && out.runs <= kMostRuns &&
+                      out.count <= out.runs && out.lost <= out.runs;
+  const bool bounds = out.lower >= 0.0 && out.lower <= out.upper && out.upper <= 1.0;
+  if (!counts || !bounds || out.of.empty()) return std::nullopt;
+  return out;
+}
+
+std::vector<MeasuredRate> rates_of(const json& list) {
+  std::vector<MeasuredRate> out;
+  for (const auto& one : list.is_array() ? list : json::array()) {
+    if (auto rate = rate_of(one)) out.push_back(*std::move(rate));
+  }
+  return out;
+}
+
+HistoryCase case_of(const json& object) {
+  HistoryCase out;
+  take(object, "outcome", out.outcome);
+  take(object, "verdict", out.verdict);
+  take(object, "files", out.files);
+  take(object, "flaky", out.flaky);
+  if (const auto* timing = base::json_member(object, "timing")) take(*timing, "wall_s", out.wall_s);
+  if (const auto* rates = base::json_member(object, "rates")) out.rates = rates_of(*rates);
+  return out;
+}
+
+std::optional<HistoryLine> decode(std::string_view text) {
+  const auto object = json::parse(text, nullptr, false);
+  std::int64_t format = 0;
+  take(object, "history", format);
+  const auto* cases = base::json_member(object, "cases");
+  if (format != kFormat || cases == nullptr || !cases->is_object()) return std::nullopt;
+  HistoryLine out;
+  take(object, "revision", out.revision);
+  take(object, "only", out.only);
+  take(object, "fast", out.fast);
+  take(object, "seed", out.seed);
+  take(object, "tool_version", out.version);
+  take(object, "program", out.program);
+  if (const auto* timing = base::json_member(object, "timing")) take(*timing, "wall_s", out.wall_s);
+  const auto* paths = base::json_member(object, "paths");
+  for (const auto& one : paths != nullptr && paths->is_array() ? *paths : json::array()) {
+    if (one.is_string()) out.paths.push_back(one.get<std::string>());
+  }
+  for (const auto& [name, value] : cases->items()) out.cases.emplace(name, case_of(value));
+  return out;
+}
+
+base::Reported cannot_write(const std::filesystem::path& path, base::DiagnosticSink& sink) {
+  return sink.error_about(base::DiagnosticCode::kFileNotWritable, path.string(),
+                          std::strerror(errno));
+}
+
+/// Does the file end in the middle of a line?
+bool ends_inside(int fd) {
+  const auto end = ::lseek(fd, 0, SEEK_END);
+  char last = '\n';
+  return end > 0 && ::pread(fd, &last, 1, end - 1) == 1 && last != '\n';
+}
+
+std::string listed(const std::vector<std::size_t>& numbers) {
+  constexpr std::size_t kMost = 5;
+  std::string out;
+  for (std::size_t i = 0; i < numbers.size() && i < kMost; ++i) {
+    out += fmt::format("{}{}", i > 0 ? ", " : "", numbers[i]);
+  }
+  return numbers.size() > kMost ? out + fmt::format(" and {} more", numbers.size() - kMost) : out;
+}
+
+}  // namespace
+
+bool HistoryLine::is_same_suite(const HistoryLine& other) const {
+  return paths == other.paths && only == other.only && fast == other.fast;
+}
+
+std::string HistoryLine::suite_text() const {
+  std::string out;
+  for (const auto& path : paths) out += (out.empty() ? "" : " ") + path;
+  if (fast) out += " --fast";
+  if (!only.empty()) out += " --only " + only;
+  return out;
+}
+
+std::string encode_rates(const std::vector<MeasuredRate>& rates) {
+  auto out = ordered_json::array();
+  for (const auto& rate : rates) out.push_back(rate_json(rate));
+  return base::json_text(out);
+}
+
+std::vector<MeasuredRate> decode_rates(std::string_view text) {
+  return rates_of(json::parse(text, nullptr, false));
+}
+
+std::string encode(const HistoryLine& line) {
+  ordered_json out = {{"history", kFormat},
+                      {"revision", line.revision},
+                      {"paths", line.paths},
+                      {"only", line.only},
+                      {"fast", line.fast},
+                      {"seed", line.seed},
+                      {"tool_version", line.version},
+                      {"program", line.program}};
+  auto cases = ordered_json::object();
+  for (const auto& [name, one] : line.cases) {
+    auto& item = cases[name];
+    item["outcome"] = one.outcome;
+    if (!one.verdict.empty()) item["verdict"] = one.verdict;
+    for (const auto& rate : one.rates) item["rates"].push_back(rate_json(rate));
+    if (!one.files.empty()) item["files"] = one.files;
+    if (one.flaky) item["flaky"] = true;
+    item["timing"] = {{"wall_s", one.wall_s}};
+  }
+  out["cases"] = std::move(cases);
+  out["timing"] = {{"wall_s", line.wall_s}};
+  return base::json_text(out);
+}
+
+base::Result<History> read_history(const std::filesystem::path& path, base::DiagnosticSink& sink) {
+  const auto text = base::read_file(path, sink, kMaxHistoryBytes);
+  if (!text) return sink.already_reported();
+  History out;
+  std::size_t number = 0;
+  for (std::size_t at = 0; at < text->size();) {
+    const auto newline = text->find('\n', at);
+    const auto end = std::min(newline, text->size());
+    const auto line = std::string_view(*text).substr(at, end - at);
+    ++number;
+    at = end + 1;
+    // A line without its end may be read, and be wrong: half of a number is a number.
+    if (newline == std::string::npos) {
+      out.half_written = true;
+    } else if (auto read = decode(line)) {
+      out.lines.push_back(*std::move(read));
+      out.numbers.push_back(number);
+    } else if (!line.empty()) {
+      out.unreadable.push_back(number);
+    }
+  }
+  if (out.lines.empty() && !out.unreadable.empty()) {
+    return sink.error_about(base::DiagnosticCode::kUsage, path.string(),
+                            "this file is there already and is no history of suites");
+  }
+  constexpr std::string_view kHead = "{\"history\":";
+  if (out.lines.empty() && out.half_written && !text->starts_with(kHead)) {
+    return sink.error_about(base::DiagnosticCode::kUsage, path.string(),
+                            "this file is there already and is no history of suites");
+  }
+  return out;
+}
+
+base::Status append_history(const std::filesystem::path& path, const HistoryLine& line,
+                            base::DiagnosticSink& sink) {
+  const base::Descriptor fd(::open(path.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0644));
+  if (fd.get() < 0 || ::flock(fd.get(), LOCK_EX) != 0) return cannot_write(path, sink);
+  auto text = encode(line) + '\n';
+  if (ends_inside(fd.get())) text.insert(0, "\n");
+  if (!base::write_all(fd.get(), text) || ::fsync(fd.get()) != 0) return cannot_write(path, sink);
+  return base::Unit{};
+}
+
+std::vector<std::string> remarks_on(const History& history, const std::string& path) {
+  std::vector<std::string> out;
+  if (!history.unreadable.empty()) {
+    out.push_back(fmt::format("{}: line{} {} could not be read and {} passed over", path,
+                              history.unreadable.size() == 1 ? "" : "s", listed(history.unreadable),
+                              history.unreadable.size() == 1 ? "is" : "are"));
+  }
+  if (history.half_written) {
+    out.push_back(fmt::format("{}: the last line is half written and is passed over", path));
+  }
+  return out;
+}
+
+std::vector<std::vector<std::size_t>> suites_of(const History& history) {
+  std::vector<std::vector<std::size_t>> out;
+  for (std::size_t i = 0; i < history.lines.size(); ++i) {
+    const auto is_its = [&](const std::vector<std::size_t>& suite) {
+      return history.lines[suite.front()].is_same_suite(history.lines[i]);
+    };
+    const auto at = std::find_if(out.begin(), out.end(), is_its);
+    if (at == out.end()) {
+      out.push_back({i});
+    } else {
+      at->push_back(i);
+    }
+  }
+  return out;
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,98 @@
+#include "tools/suite/suite_history.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compiler/base/json.h"
+#include "compiler/base/sha256.h"
+
+namespace parallax::tools {
+namespace {
+
+using Json = nlohmann::json;
+
+template <typename T>
+T value_or(const Json& object, const char* name, T otherwise) {
+  const auto* member = base::json_member(object, name);
+  return member == nullptr ? otherwise : base::json_as<T>(*member).value_or(otherwise);
+}
+
+const Json& list_of(const Json& object, const char* name) {
+  static const Json kNone = Json::array();
+  const auto* member = base::json_member(object, name);
+  return member != nullptr && member->is_array() ? *member : kNone;
+}
+
+MeasuredRate measured(const Json& rate, std::string of, const Json& trace, double confidence) {
+  MeasuredRate out;
+  out.of = std::move(of);
+  out.count = value_or<std::int64_t>(rate, "count", 0);
+  out.runs = value_or<std::int64_t>(trace, "runs", 0);
+  out.lost = value_or<std::int64_t>(trace, "unseen", 0);
+  out.lower = value_or(rate, "lower", 0.0);
+  out.upper = value_or(rate, "upper", 1.0);
+  out.confidence = confidence;
+  return out;
+}
+
+/// All that was read, wherever the checkout lies.
+std::string hash_of(const std::vector<InputFile>& inputs) {
+  std::vector<std::string> contents;
+  for (const auto& input : inputs) contents.push_back(input.sha256);
+  std::sort(contents.begin(), contents.end());
+  std::string all;
+  for (const auto& content : contents) all += content + '\n';
+  return all.empty() ? all : base::sha256_hex(all);
+}
+
+}  // namespace
+
+void note_verdict(std::string_view run_document, CaseResult& result) {
+  const auto run = Json::parse(run_document, nullptr, false);
+  result.verdict = value_or<std::string>(run, "verdict", {});
+}
+
+void note_rates(std::string_view rates_document, CaseResult& result) {
+  constexpr std::size_t kMostCauses = 20;  // the most frequent ones come first
+  const auto rates = Json::parse(rates_document, nullptr, false);
+  const auto confidence = value_or(rates, "confidence", 0.95);
+  for (const auto& trace : list_of(rates, "traces")) {
+    const auto head = fmt::format("trace {}: ", value_or<std::int64_t>(trace, "trace", 0));
+    const auto* any = base::json_member(trace, "any");
+    if (any == nullptr || value_or<std::int64_t>(trace, "runs", 0) <= 0) continue;
+    result.rates.push_back(measured(*any, head + "any discrepancy", trace, confidence));
+    std::size_t causes = 0;
+    for (const auto& cause : list_of(trace, "causes")) {
+      if (++causes > kMostCauses) break;
+      const auto name = value_or<std::string>(cause, "cause", {});
+      result.rates.push_back(measured(cause, head + name, trace, confidence));
+    }
+  }
+}
+
+HistoryLine history_line(const SuiteRecord& record, const SuiteIdentity& suite,
+                         std::string revision) {
+  HistoryLine out;
+  out.revision = std::move(revision);
+  out.paths = suite.paths;
+  out.only = suite.only;
+  out.fast = suite.fast;
+  out.seed = suite.seed;
+  out.version = suite.version;
+  out.program = suite.program;
+  for (std::size_t i = 0; i < record.cases().size(); ++i) {
+    const auto& result = record.results()[i];
+    auto& one = out.cases[record.cases()[i].name()];
+    one.outcome = to_string(result.outcome);
+    one.verdict = result.verdict;
+    one.rates = result.rates;
+    one.files = hash_of(result.inputs);
+    one.flaky = result.flaky();
+    one.wall_s = result.wall_s;
+    out.wall_s += result.wall_s;
+  }
+  return out;
+}
+
+}  // namespace parallax::tools
