@@ -32,7 +32,9 @@ struct DivergingFluent {
 /// What led a simulation away from its trace: the action that failed there, or else what changed.
 struct Cause {
   std::string text;  // "Go(bTable): navigation-pose-unreachable", "Go(bTable): not Holding(left,m)"
-  std::string reason;  // in the simulator's words; empty where no action failed
+  std::string reason = {};                // in the simulator's words; empty where no action failed
+  std::string event = {};                 // behind which it left; empty: at the start
+  std::vector<std::string> fluents = {};  // that differed there
 };
 
 /// How often one cause was the first to lead a simulation away from what was predicted.
@@ -43,6 +45,9 @@ struct CauseRate {
   std::int64_t example = 0;                     // number of the first such sample
   std::string reason;                           // what that one said
   State start;                                  // how that one began
+  std::string event = {};
+  std::vector<std::string> fluents = {};  // that differed there in each of these samples
+  std::string kind = {};                  // of the cause, where it was asked for
 };
 
 /// What the one repetition of a discrepancy showed before it was accepted.

@@ -126,16 +126,27 @@ Cause cause_of(const CampaignTrace& trace, const Judgement& judgement, Compariso
                const std::vector<ActionOutcome>& outcomes) {
   PARALLAX_REQUIRE(!judgement.matches(comparison), "a simulation that left its trace");
   const bool final = comparison == Comparison::kFinal;
-  const auto& fluent = (final ? judgement.at_parting : judgement.first).front();
+  const auto& differing = final ? judgement.at_parting : judgement.first;
+  const auto& fluent = differing.front();
   const std::string changed = fmt::format("{}{}", fluent.observed ? "" : "not ", fluent.fluent);
-  if (trace.event_count() == 0) return {fmt::format("start: {}", changed), {}};
+  Cause cause;
+  for (const auto& each : differing) cause.fluents.push_back(each.fluent);
+  if (trace.event_count() == 0) {
+    cause.text = fmt::format("start: {}", changed);
+    return cause;
+  }
   const auto step = static_cast<std::size_t>(event_of(judgement, comparison));
-  const std::string& event = trace.event(step);
-  if (outcomes[step].status == SimStatus::kOk) return {fmt::format("{}: {}", event, changed), {}};
+  cause.event = trace.event(step);
+  if (outcomes[step].status == SimStatus::kOk) {
+    cause.text = fmt::format("{}: {}", cause.event, changed);
+    return cause;
+  }
   const std::string& reason = outcomes[step].reason;
   const std::string condition = reason.empty() ? std::string(to_string(outcomes[step].status))
                                                : reason.substr(0, reason.find(':'));
-  return {fmt::format("{}: {}", event, condition), reason};
+  cause.text = fmt::format("{}: {}", cause.event, condition);
+  cause.reason = reason;
+  return cause;
 }
 
 std::vector<ComparedFluents> compared_fluents(const StateMapping& mapping,

@@ -145,25 +145,28 @@ class PathJudge {
   }
 
   void note_cause(std::size_t length) {
-    if (length == 0) {
-      out_.cause = {"start", {}};
-      return;
-    }
+    out_.cause = {"start"};
+    if (length > 0) name_cause(length);
+    for (const auto& fluent : out_.fluents) out_.cause.fluents.push_back(fluent.fluent);
+  }
+
+  void name_cause(std::size_t length) {
     const auto& step = performs_[length - 1];
     const auto& outcome = record_.outcomes[length - 1];
     if (outcome.status != SimStatus::kOk) {
       out_.cause = {fmt::format("{}: {}", step.event, reason_word(outcome)), outcome.reason};
     } else if (out_.divergence.impossible) {
-      out_.cause = {fmt::format("{}: happens", step.event), {}};
+      out_.cause = {fmt::format("{}: happens", step.event)};
     } else if (out_.divergence.outcome && !step.object.empty()) {
-      out_.cause = {fmt::format("{}: found {}", step.event, step.object), {}};
+      out_.cause = {fmt::format("{}: found {}", step.event, step.object)};
     } else if (out_.divergence.outcome) {
-      out_.cause = {fmt::format("{}: {}", step.event, step.succeeded ? "succeeds" : "fails"), {}};
+      out_.cause = {fmt::format("{}: {}", step.event, step.succeeded ? "succeeds" : "fails")};
     } else {
       const auto& first = out_.fluents.front();
-      out_.cause = {fmt::format("{}: {}{}", step.event, first.observed ? "" : "not ", first.fluent),
-                    {}};
+      out_.cause = {
+          fmt::format("{}: {}{}", step.event, first.observed ? "" : "not ", first.fluent)};
     }
+    out_.cause.event = step.event;
   }
 
   const StateMapping& mapping_;

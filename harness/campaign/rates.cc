@@ -141,7 +141,12 @@ class Estimator {
       rate.example = record.sample;
       rate.reason = cause.reason;
       rate.start = record.initial;
+      rate.event = cause.event;
+      rate.fluents = cause.fluents;
     }
+    std::erase_if(rate.fluents, [&](const std::string& fluent) {
+      return std::find(cause.fluents.begin(), cause.fluents.end(), fluent) == cause.fluents.end();
+    });
   }
 
   void tell(const TrialSample& sample, const Cause* cause) const {

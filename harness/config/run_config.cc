@@ -11,10 +11,7 @@ namespace {
 
 using base::DiagnosticCode;
 
-constexpr std::int64_t kMaxRuns = 1'000'000;
 constexpr std::int64_t kMaxPerforms = 10'000;
-constexpr double kMaxTimeoutS = 86400.0;
-constexpr NumberBounds kTimeout{0.0, kMaxTimeoutS, true, false};
 
 /// Those of kCriterionWords, then readings of the paper's.
 constexpr std::array<std::string_view, 6> kKinds = {
@@ -165,54 +162,6 @@ Limits read_limits(const YamlNode& node, base::DiagnosticSink& sink) {
   fields.integer(Key::kMaxPerforms, 0, kMaxPerforms, limits.max_performs);
   fields.number(Key::kMaxSimulatedS, kPositive, limits.max_simulated_s);
   return limits;
-}
-
-namespace {
-
-RateExpectation read_rate(const YamlNode& node, base::DiagnosticSink& sink) {
-  RateExpectation rate;
-  YamlFields fields(node, key_text(Key::kRate), sink);
-  fields.only({Key::kBetween, Key::kTrace, Key::kRuns});
-  fields.integer(Key::kTrace, 1, kMaxRuns, rate.trace);
-  fields.integer(Key::kRuns, 1, kMaxRuns, rate.runs);
-  const auto* between = fields.require(Key::kBetween);
-  const auto bounds = fields.numbers(Key::kBetween, 2);
-  if (between == nullptr || !bounds) return rate;
-  rate.lower = (*bounds)[0];
-  rate.upper = (*bounds)[1];
-  if (!(rate.lower >= 0.0 && rate.lower <= rate.upper && rate.upper <= 1.0)) {
-    sink.error(DiagnosticCode::kYamlOutOfBounds, between->range, key_text(Key::kBetween),
-               fmt::format("{:g} and {:g}", rate.lower, rate.upper),
-               "two numbers from 0 to 1, the lower first");
-  }
-  return rate;
-}
-
-}  // namespace
-
-Expectation read_expectation(const YamlNode& node, base::DiagnosticSink& sink) {
-  static constexpr std::array<std::string_view, 3> kVerdicts = {"discrepancy", "no-discrepancy",
-                                                                "inconclusive"};
-  const auto errors_before = sink.error_count();
-  Expectation expect;
-  YamlFields fields(node, key_text(Key::kExpect), sink);
-  fields.only({Key::kVerdict, Key::kIterations, Key::kMaxSimulations, Key::kFluents, Key::kRate,
-               Key::kTimeLimitS, Key::kFast});
-  if (const auto verdict = fields.choice(Key::kVerdict, Key::kVerdict, kVerdicts)) {
-    expect.verdict = std::string(kVerdicts[*verdict]);
-  }
-  fields.integer(Key::kIterations, 0, kMaxRuns, expect.iterations);
-  fields.integer(Key::kMaxSimulations, 0, std::numeric_limits<std::int64_t>::max(),
-                 expect.max_simulations);
-  fields.texts(Key::kFluents, expect.fluents);
-  if (const auto* fluents = fields.find(Key::kFluents)) expect.fluents_source = fluents->range;
-  if (const auto* rate = fields.find(Key::kRate)) expect.rate = read_rate(*rate, sink);
-  fields.number(Key::kTimeLimitS, kTimeout, expect.time_limit_s);
-  fields.boolean(Key::kFast, expect.fast);
-  if (!expect.of_run() && !expect.rate && sink.error_count() == errors_before) {
-    sink.error(DiagnosticCode::kCaseExpectsNothing, node.range, Key::kExpect);
-  }
-  return expect;
 }
 
 }  // namespace parallax::harness

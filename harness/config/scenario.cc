@@ -153,7 +153,9 @@ class ScenarioReader {
     // An empty one takes back what an included file expects.
     if (const auto* node = fields_.find(Key::kExpect);
         node != nullptr && node->kind != YamlNode::Kind::kNull) {
+      const auto errors_before = sink_.error_count();
       scenario.expect = read_expectation(*node, sink_);
+      if (sink_.error_count() == errors_before) check_expectation(scenario, sink_);
     }
   }
 

@@ -77,25 +77,41 @@ struct Limits {
   double max_simulated_s = 3600.0;
 };
 
-/// What `parallax suite` and the tests hold the result against.
+/// What the discrepancies of a case must come of; what is empty is not compared.
+struct CauseExpectation {
+  std::string event;   // behind which they part from the model: "Place(r1)"
+  std::string fluent;  // among those that differ there: "BoxIn(r1)"
+  std::string reason;  // of an action that failed, in the simulator's word
+  std::string kind;    // as `parallax explain` tells it: "always", "region", ...
+  base::SourceRange source, event_source, fluent_source;
+};
+
 /// How often uniform runs of one trace give any discrepancy (`parallax rates`).
 struct RateExpectation {
   std::int64_t trace = 1, runs = 100;
-  double lower = 0.0, upper = 1.0;  // meets the interval that was measured, with 95 % confidence
+  double lower = 0.0, upper = 1.0;
+  /// None: the interval measured with 95 % confidence has to meet this one, which few runs nearly
+  /// always do. Else the runs have to show with this confidence that the rate lies in it.
+  std::optional<double> confidence;
+  std::optional<CauseExpectation> cause;  // of each discrepancy
 };
 
+/// What `parallax suite` and the tests hold the result against.
 struct Expectation {
   std::optional<std::string> verdict;
   std::optional<std::int64_t> iterations;
   std::optional<std::int64_t> max_simulations;
   std::vector<std::string> fluents;  // each of these must be among the diverging ones
-  base::SourceRange fluents_source;
+  std::optional<CauseExpectation> cause;
+  base::SourceRange source, fluents_source;
   std::optional<RateExpectation> rate;
   std::optional<double> time_limit_s;  // of each process of the case
   bool fast = false;                   // belongs to the part of a suite that is always run
 
   /// Is anything expected of a whole run?
-  bool of_run() const { return verdict || iterations || max_simulations || !fluents.empty(); }
+  bool of_run() const {
+    return verdict || iterations || max_simulations || cause || !fluents.empty();
+  }
 };
 
 /// A scenario file as checked data. Paths are resolved against the file's folder.

@@ -51,20 +51,33 @@ void check_event(const Scenario& scenario, const GroundFluent& event, base::Diag
 }
 
 /// What a suite waits for must be something that can diverge.
-void check_expected_fluents(const Scenario& scenario, const std::vector<GroundFluent>& fluents,
-                            base::DiagnosticSink& sink) {
-  if (!scenario.expect || scenario.expect->fluents.empty()) return;
+void check_expected_names(const Scenario& scenario, const std::vector<GroundFluent>& fluents,
+                          const std::vector<std::string>& events, base::DiagnosticSink& sink) {
+  if (!scenario.expect) return;
+  const auto& expect = *scenario.expect;
   std::vector<std::string> known;
   for (const auto& fluent : fluents) {
     known.push_back(fluent.text);
     const auto outside = scenario.mapping->outside_text(fluent);
     if (!outside.empty()) known.push_back(outside);
   }
-  for (const auto& text : scenario.expect->fluents) {
-    if (std::find(known.begin(), known.end(), text) != known.end()) continue;
-    auto error =
-        sink.error(DiagnosticCode::kExpectedFluentUnknown, scenario.expect->fluents_source, text);
+  const auto is_known = [](const std::string& text, const std::vector<std::string>& names) {
+    return text.empty() || std::find(names.begin(), names.end(), text) != names.end();
+  };
+  const auto check_fluent = [&](const std::string& text, const base::SourceRange& source) {
+    if (is_known(text, known)) return;
+    auto error = sink.error(DiagnosticCode::kExpectedFluentUnknown, source, text);
     add_suggestion(error, text, known, "fluents");
+  };
+  for (const auto& text : expect.fluents) check_fluent(text, expect.fluents_source);
+  for (const auto* cause : {expect.cause ? &*expect.cause : nullptr,
+                            expect.rate && expect.rate->cause ? &*expect.rate->cause : nullptr}) {
+    if (cause == nullptr) continue;
+    check_fluent(cause->fluent, cause->fluent_source);
+    if (is_known(cause->event, events)) continue;
+    auto error =
+        sink.error(DiagnosticCode::kExpectedEventUnknown, cause->event_source, cause->event);
+    add_suggestion(error, cause->event, events, "events");
   }
 }
 
@@ -232,7 +245,7 @@ base::Status check_against_model(const Scenario& scenario, const std::vector<std
     const auto& event = ground_events.back();
     if (event_symbols.insert(event.symbol).second) check_event(scenario, event, sink);
   }
-  if (mapped) check_expected_fluents(scenario, ground, sink);
+  if (mapped) check_expected_names(scenario, ground, events, sink);
   if (scenario.simulator.is_built_in() && sink.error_count() == errors_before) {
     check_fluent_variables(scenario, ground, observables(scenario.world), sink);
     check_action_names(scenario, ground_events, sink);

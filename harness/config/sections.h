@@ -56,10 +56,17 @@ std::vector<StartWeight> read_start_weights(const YamlNode& node, base::Diagnost
 /// `compare`, of a scenario or of one fluent; none: it is not said.
 std::optional<Comparison> read_comparison(const YamlFields& fields);
 
+inline constexpr std::int64_t kMaxRuns = 1'000'000;
+inline constexpr NumberBounds kTimeout{0.0, 86400.0, true, false};  // [s]
+
 CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink);
 SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink);
 Limits read_limits(const YamlNode& node, base::DiagnosticSink& sink);
 Expectation read_expectation(const YamlNode& node, base::DiagnosticSink& sink);
+
+/// Reports where limits and criterion, or the expectations among themselves, leave no result that
+/// is as expected.
+void check_expectation(const Scenario& scenario, base::DiagnosticSink& sink);
 
 /// The names that the actions give their controllers must be names of the world: those that are
 /// the same whatever the event, or, with `events`, those that depend on its arguments. Reports each

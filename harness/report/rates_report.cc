@@ -20,6 +20,11 @@ Json rate_object(const CauseRate& rate) {
   if (rate.example > 0) object["example"] = rate.example;
   if (!rate.reason.empty()) object["reason"] = rate.reason;
   if (!rate.start.empty()) object["start"] = state_json<Json>(rate.start);
+  if (rate.example > 0) {
+    object["event"] = rate.event;
+    object["fluents"] = rate.fluents;
+  }
+  if (!rate.kind.empty()) object["kind"] = rate.kind;
   return object;
 }
 
@@ -46,6 +51,7 @@ std::string rates_text(const RatesResult& result) {
                          rate.cause);
       out += fmt::format("{:46}first in sample {}{}{}\n", "", rate.example,
                          rate.reason.empty() ? "" : ": ", rate.reason);
+      if (!rate.kind.empty()) out += fmt::format("{:46}kind of cause: {}\n", "", rate.kind);
     }
   }
   if (result.complete && result.traces.empty()) out += "\nno trace, so nothing was simulated\n";

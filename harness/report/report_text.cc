@@ -325,7 +325,7 @@ class TextReport {
   }
 
   static std::string cause(const Discrepancy& found) {
-    const auto& [text, reason] = found.cause;
+    const auto &text = found.cause.text, &reason = found.cause.reason;
     const auto colon = reason.find(':');
     return colon == std::string::npos ? text : text + reason.substr(colon);
   }

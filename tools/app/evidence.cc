@@ -18,14 +18,14 @@ std::optional<double> number_of(const harness::Value& value) {
 }
 
 /// The start parameters that are numbers in every run, and not always the same.
-std::vector<std::string> varying_parameters(const std::vector<const ObservedPath*>& paths) {
+std::vector<std::string> varying_parameters(const std::vector<const harness::State*>& starts) {
   std::vector<std::string> out;
-  if (paths.empty()) return out;
-  for (const auto& [name, value] : paths.front()->start) {
+  if (starts.empty()) return out;
+  for (const auto& [name, value] : *starts.front()) {
     std::set<double> seen;
-    const bool is_number = std::all_of(paths.begin(), paths.end(), [&](const auto* path) {
-      const auto found = path->start.find(name);
-      const auto number = found == path->start.end() ? std::nullopt : number_of(found->second);
+    const bool is_number = std::all_of(starts.begin(), starts.end(), [&](const auto* start) {
+      const auto found = start->find(name);
+      const auto number = found == start->end() ? std::nullopt : number_of(found->second);
       if (number) seen.insert(*number);
       return number.has_value();
     });
@@ -85,16 +85,16 @@ class EvidenceReader {
 
 }  // namespace
 
-CauseEvidence cause_of(const std::vector<const ObservedPath*>& paths,
+CauseEvidence cause_of(const std::vector<const harness::State*>& starts,
                        const std::vector<bool>& failed, bool world_is_model) {
   CauseEvidence out;
-  out.parameters = varying_parameters(paths);
+  out.parameters = varying_parameters(starts);
   std::vector<harness::CauseRun> runs;
-  for (std::size_t i = 0; i < paths.size(); ++i) {
+  for (std::size_t i = 0; i < starts.size(); ++i) {
     auto& run = runs.emplace_back();
     run.failed = failed[i];
     for (const auto& name : out.parameters) {
-      run.start.push_back(*number_of(paths[i]->start.find(name)->second));
+      run.start.push_back(*number_of(starts[i]->find(name)->second));
     }
   }
   out.finding = harness::tell_cause(runs, world_is_model);
@@ -147,7 +147,7 @@ base::Result<CauseEvidence> gather_evidence(const RecordedDiscrepancy& found,
   const auto paths = observed_paths(found.loaded, journal, context);
   if (!paths) return context.sink().already_reported();
   EvidenceReader reader(found, context);
-  std::vector<const ObservedPath*> bearing;
+  std::vector<const harness::State*> bearing;
   std::vector<bool> failed;
   for (const auto& path : *paths) {
     const auto how = reader.bearing(path);
@@ -155,7 +155,7 @@ base::Result<CauseEvidence> gather_evidence(const RecordedDiscrepancy& found,
       ++out.otherwise;
       continue;
     }
-    bearing.push_back(&path);
+    bearing.push_back(&path.start);
     failed.push_back(how == Bearing::kSame);
   }
   if (context.stopped()) {

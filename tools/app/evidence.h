@@ -28,7 +28,7 @@ struct CauseEvidence {
 };
 
 /// What the starts of simulations of one trace say of why some of them failed.
-CauseEvidence cause_of(const std::vector<const ObservedPath*>& paths,
+CauseEvidence cause_of(const std::vector<const harness::State*>& starts,
                        const std::vector<bool>& failed, bool world_is_model);
 
 /// Those of the journal (and `further`, of the same trace) that get as far as the discrepancy: does

@@ -8,7 +8,9 @@
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "tools/cli/command.h"
+#include "tools/cli/diff_gate.h"
 #include "tools/diff/model_difference.h"
+#include "tools/diff/rates_revision.h"
 #include "tools/diff/revision.h"
 #include "tools/diff/textconv.h"
 #include "tools/diff/trace_set.h"
@@ -23,6 +25,7 @@ using Json = nlohmann::ordered_json;
 struct DiffOptions {
   std::string old_path, new_path;
   std::string textconv;
+  std::string gate, markdown;
   bool fallback = false;
   bool stat = false;
   bool exit_code = false;
@@ -193,13 +196,22 @@ int diff_plans(const DiffOptions& options, RevisionKind kind, Invocation& invoca
   return print(options, out, invocation);
 }
 
-int diff_runs(const DiffOptions& options, Invocation& invocation) {
-  const auto before = load_run_facts(options.old_path, invocation);
-  const auto after = load_run_facts(options.new_path, invocation);
+base::Result<std::vector<compiler::Fact>> result_facts(const std::string& path, RevisionKind kind,
+                                                       Invocation& invocation) {
+  if (kind == RevisionKind::kRun) return load_run_facts(path, invocation);
+  const auto rates = load_rates(path, invocation);
+  if (!rates) return invocation.sink().already_reported();
+  return rates_facts(*rates);
+}
+
+/// Runs, or results of `parallax rates`.
+int diff_results(const DiffOptions& options, RevisionKind kind, Invocation& invocation) {
+  const auto before = result_facts(options.old_path, kind, invocation);
+  const auto after = result_facts(options.new_path, kind, invocation);
   if (!before || !after) return 0;
   const auto report = compare(*before, *after);
   Comparison out;
-  out.kind = "run";
+  out.kind = kind == RevisionKind::kRun ? "run" : "rates";
   out.differs = !report.difference.empty();
   out.fields = facts_fields(report, "settings", "results");
   out.text = facts_text(report, "settings", "results", options.stat);
@@ -283,6 +295,9 @@ bool is_usable(const DiffOptions& options, Invocation& invocation) {
   if (options.no_traces && options.traces_only) {
     return refuse("--no-traces and --traces-only leave nothing to compare");
   }
+  if (!options.gate.empty() && (options.no_traces || options.traces_only || options.stat)) {
+    return refuse("--gate compares what its rules ask for: no --stat, --no-traces, --traces-only");
+  }
   return true;
 }
 
@@ -293,18 +308,24 @@ int run(const DiffOptions& given, Invocation& invocation) {
   options.models.facts = !options.traces_only;
   options.models.traces = !options.no_traces;
   const auto old_kind = kind_of(options.old_path), new_kind = kind_of(options.new_path);
-  if (old_kind && new_kind && has_traces(*old_kind) && has_traces(*new_kind)) {
-    return diff_models(options, *old_kind, *new_kind, invocation);
+  const bool models = old_kind && new_kind && has_traces(*old_kind) && has_traces(*new_kind);
+  if (!options.gate.empty() && old_kind && (models || old_kind == new_kind)) {
+    const GateInput input{options.old_path, options.new_path, *old_kind, *new_kind, options.models};
+    return run_gate(input, {options.gate, options.markdown}, invocation);
   }
+  if (models) return diff_models(options, *old_kind, *new_kind, invocation);
   if (!old_kind || old_kind != new_kind) {
     invocation.sink().error_about(
         DiagnosticCode::kUsage, options.new_path,
         fmt::format("cannot be compared with {}: name two models (.e, .dec.cnf, .yaml), two plans "
-                    "(.lisp), two tables (.bind), two trace files (.jsonl) or two run folders",
+                    "(.lisp), two tables (.bind), two trace files (.jsonl), two run folders or two "
+                    "results of `rates --json` (.json)",
                     base::printable(options.old_path)));
     return 0;
   }
-  if (*old_kind == RevisionKind::kRun) return diff_runs(options, invocation);
+  if (*old_kind == RevisionKind::kRun || *old_kind == RevisionKind::kRates) {
+    return diff_results(options, *old_kind, invocation);
+  }
   if (*old_kind == RevisionKind::kTraces) return diff_trace_files(options, invocation);
   return diff_plans(options, *old_kind, invocation);
 }
@@ -342,12 +363,21 @@ Command diff_command() {
       "  parallax diff old.dec.cnf new.dec.cnf --json\n"
       "  parallax diff out/monday out/tuesday --stat\n"
       "  parallax diff --textconv domain.e\n"
+      "  parallax diff --gate rules.yaml old.e new.e --markdown gate.md\n"
       "Exit code 1 if there is a difference, 0 if there is none. docs/git.md shows how git uses "
       "it.");
   command.option("old", options->old_path,
-                 "Model (.e, .dec.cnf, .yaml), plan (.lisp, .bind), traces (.jsonl) or run");
+                 "Model (.e, .dec.cnf, .yaml), plan (.lisp, .bind), traces (.jsonl), run or rates "
+                 "(.json)");
   command.option("new", options->new_path, "The other revision");
   command.option("--textconv", options->textconv, "Print the canonical text of one file instead");
+  command.option(
+      "--gate", options->gate,
+      "Say instead which of these rules (YAML) the change keeps; exit code 1 unless all");
+  command
+      .option("--markdown", options->markdown,
+              "With --gate: write what it says to this file, for a pull request")
+      .needs("--gate");
   command.flag("--fallback", options->fallback,
                "With --textconv: print a file that has errors as it is");
   command.flag("--stat", options->stat, "Print numbers only");

@@ -4,6 +4,7 @@
 #include "compiler/base/file_io.h"
 #include "harness/campaign/rates.h"
 #include "harness/report/report.h"
+#include "tools/app/evidence.h"
 #include "tools/app/scenario_check.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_feed.h"
@@ -25,6 +26,7 @@ struct RateOptions {
   std::int64_t runs = 0;  // 0: not given
   CommandPermission commands;
   std::string samples, plot;
+  bool cause_kinds = false;
 };
 
 base::Status check_plot(const std::string& path, Invocation& invocation) {
@@ -35,6 +37,27 @@ base::Status check_plot(const std::string& path, Invocation& invocation) {
                             "--plot writes a page; end the name in .html");
   }
   return check_replaceable(path, is_earlier_page, invocation.files(), sink);
+}
+
+/// The kind of each cause, by all runs of its trace that went wrong in this way or not at all.
+void add_cause_kinds(const std::vector<harness::SampleRow>& rows, bool world_is_model,
+                     harness::RatesResult& result) {
+  for (auto& trace : result.traces) {
+    for (auto& rate : trace.causes) {
+      std::vector<const harness::State*> starts;
+      std::vector<bool> failed;
+      for (const auto& row : rows) {
+        const std::string_view outcome = row.outcome;
+        const bool same = outcome == "discrepancy" && row.cause == rate.cause;
+        if (row.trace != trace.number || (!same && outcome != "clean" && outcome != "admitted")) {
+          continue;
+        }
+        starts.push_back(&row.start);
+        failed.push_back(same);
+      }
+      rate.kind = to_string(cause_of(starts, failed, world_is_model).finding.kind);
+    }
+  }
 }
 
 int run_rates(const RateOptions& options, Invocation& invocation) {
@@ -62,12 +85,13 @@ int run_rates(const RateOptions& options, Invocation& invocation) {
   rates.progress = progress_on_terminal(invocation.options());
   SampleOutput samples(options.samples);
   if (!samples.check(invocation) || !check_plot(options.plot, invocation)) return 0;
-  if (!options.plot.empty()) samples.collect();
+  if (!options.plot.empty() || options.cause_kinds) samples.collect();
   rates.on_sample = samples.listener();
-  const auto result =
+  auto result =
       harness::estimate_rates(loaded->scenario, traces, *simulator, rates, invocation.sink());
   if (rates.progress) write_error("\r\x1b[K");
   if (!result || !samples.write(invocation)) return 0;
+  if (options.cause_kinds) add_cause_kinds(samples.rows(), loaded->world != nullptr, *result);
   if (!options.plot.empty() &&
       !base::write_output(options.plot, rates_page(*result, samples.rows()), invocation.files(),
                           invocation.sink())) {
@@ -109,6 +133,8 @@ Command rates_command() {
               "Go on until the interval of any discrepancy is no wider than this (0.1: ten "
               "points); intervals then hold whenever one looks, and are wider for as many runs")
       .check(FiniteNumber{0.001, 1.0});
+  command.flag("--cause-kinds", options->cause_kinds,
+               "Also tell what kind of cause each is: always, region, random or simulator");
   add_judging_options(command, options->judging);
   command.option("--confidence", options->rates.confidence, "Confidence of each interval")
       .check(FiniteNumber{0.5, 0.999999})

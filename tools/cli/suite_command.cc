@@ -309,7 +309,12 @@ base::Result<StoredResults> earlier_results(const SuiteOptions& options,
   }
   auto earlier = read_results(options.out, sink);
   if (!earlier || !options.resume) return earlier;
-  auto what = difference(earlier->identity, identity);
+  auto settled = earlier->identity;
+  if (identity.permits_more_than(settled)) {
+    settled.allow_commands = identity.allow_commands;
+    settled.allow_outside = identity.allow_outside;
+  }
+  auto what = difference(settled, identity);
   if (what.empty() && !(earlier->identity.shard == identity.shard)) {
     what = fmt::format("shard {} and {}", to_string(earlier->identity.shard),
                        to_string(identity.shard));
@@ -353,8 +358,10 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
   }
   const auto shard = chosen_shard(options.shard, environment, sink);
   if (!shard) return 0;
-  const SuiteIdentity identity{kVersion,      program_hash(), options.seed, *shard,
-                               options.paths, options.only,   options.fast};
+  const SuiteIdentity identity{
+      kVersion,     program_hash(),         options.seed,
+      *shard,       options.paths,          options.only,
+      options.fast, options.commands.allow, invocation.form().allow_outside};
   const auto earlier = earlier_results(options, identity, sink);
   if (!earlier) return 0;
   const auto quarantine = quarantine_of(options, invocation);
@@ -382,7 +389,9 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
   const auto remark = [&](const std::string& text) { invocation.remark(text); };
   const bool caches = !options.no_cache && !options.update_goldens;
   Reuse reuse(record, cache, remark);
-  if (options.resume) reuse.resume(earlier->cases);
+  if (options.resume) {
+    reuse.resume(earlier->cases, identity.permits_more_than(earlier->identity));
+  }
   if (caches) reuse.look_up(*verified);
   if (!record.save(sink)) return 0;
   run_open_cases(record, loop_options(options, caches, known, invocation), earlier->cases, reuse,

@@ -129,6 +129,10 @@ class ModelComparison {
     if (!a || !b) return context_.sink().already_reported();
     out_.old_side = *std::move(a);
     out_.new_side = *std::move(b);
+    if (options_.traces) {
+      out_.old_horizon = out_.old_side.compiled->horizon;
+      out_.new_horizon = out_.new_side.compiled->horizon;
+    }
     if (!align_horizons()) return context_.sink().already_reported();
     if (!align_facts()) return context_.sink().already_reported();
     if (options_.facts) {

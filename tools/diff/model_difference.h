@@ -63,6 +63,8 @@ struct ModelDiffOptions {
 /// All that is known of the difference of two models.
 struct ModelDifference {
   ModelRevision old_side, new_side;
+  /// As far as each goes by itself, where traces are compared: up to the smaller one.
+  compiler::Timepoint old_horizon = 0, new_horizon = 0;
   compiler::FactDifference facts;
   std::optional<runtime::TraceDifference> traces;
   /// What the witnesses depend on; none where it was not tried.
@@ -75,6 +77,11 @@ struct ModelDifference {
 base::Result<ModelDifference> compare_models(const std::string& old_path, RevisionKind old_kind,
                                              const std::string& new_path, RevisionKind new_kind,
                                              const ModelDiffOptions& options, Context& context);
+
+/// The first trace that one side alone has, as the part about traces shows it; there is one.
+std::string witness_text(const ModelDifference& difference, bool lost);
+/// "10", "at least 200"
+std::string count_text(const runtime::TraceNumber& number);
 
 /// The part about traces, for people and as JSON. `stat`: numbers without witnesses.
 std::string traces_text(const ModelDifference& difference, bool stat);

@@ -253,6 +253,12 @@ Json side_json(const SideView& side, bool lost) {
 
 }  // namespace
 
+std::string witness_text(const ModelDifference& difference, bool lost) {
+  return witness_text(view(difference, lost), lost);
+}
+
+std::string count_text(const runtime::TraceNumber& number) { return number_of(number); }
+
 std::string traces_text(const ModelDifference& difference, bool stat) {
   if (!difference.traces) return {};
   const auto& traces = *difference.traces;

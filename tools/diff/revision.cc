@@ -128,6 +128,7 @@ std::optional<RevisionKind> kind_of(const std::string& path) {
   if (extension == ".yaml" || extension == ".yml") return RevisionKind::kScenario;
   if (extension == ".lisp") return RevisionKind::kPlan;
   if (extension == ".bind") return RevisionKind::kBinding;
+  if (extension == ".json") return RevisionKind::kRates;
   if (extension == ".jsonl" || extension == ".ndjson") return RevisionKind::kTraces;
   return std::nullopt;
 }

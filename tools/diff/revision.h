@@ -20,6 +20,7 @@ enum class RevisionKind : std::uint8_t {
   kBinding,   // .bind
   kTraces,    // .jsonl, .ndjson
   kRun,       // a folder, or its report.json
+  kRates,     // .json: what `parallax rates --json` prints
 };
 
 /// What the name of a file or folder says that it is; none for other names.

@@ -158,24 +158,40 @@ Text plan_text(const std::string& path, RevisionKind kind, Context& context) {
 
 }  // namespace
 
-base::Result<std::vector<Fact>> load_run_facts(const std::string& path, Context& context) {
+namespace {
+
+fs::path report_file(const std::string& path) {
   std::error_code error;
-  const auto file = fs::is_directory(path, error) ? fs::path(path) / "report.json" : fs::path(path);
+  return fs::is_directory(path, error) ? fs::path(path) / "report.json" : fs::path(path);
+}
+
+}  // namespace
+
+Text load_run_report(const std::string& path, Context& context) {
+  std::error_code error;
+  const auto file = report_file(path);
   const auto refuse = [&](const char* why) {
     auto built = context.sink().error_about(base::DiagnosticCode::kNoJournal, file.string());
     built.note(why);
     return built;
   };
   if (!fs::exists(file, error)) return refuse("there is no such file");
-  const auto text = file == fs::path(path)
-                        ? base::read_file(file, context.sink())
-                        : base::read_file_of(path, "report.json", context.sink());
+  auto text = file == fs::path(path) ? base::read_file(file, context.sink())
+                                     : base::read_file_of(path, "report.json", context.sink());
   if (!text) return context.sink().already_reported();
   const auto report = SortedJson::parse(*text, nullptr, false);
   if (report.is_discarded() || !report.is_object()) return refuse("it is no JSON object");
   if (!field(report, "verdict").is_string() || !field(report, "traces").is_array()) {
     return refuse("it has no `verdict` and `traces`");
   }
+  return text;
+}
+
+base::Result<std::vector<Fact>> load_run_facts(const std::string& path, Context& context) {
+  const auto text = load_run_report(path, context);
+  if (!text) return context.sink().already_reported();
+  const auto file = report_file(path);
+  const auto report = SortedJson::parse(*text);
   auto facts = ReportReader(report, file.string()).run();
   if (auto read = texts_fact(file.parent_path())) facts.push_back(*std::move(read));
   return facts;
@@ -202,6 +218,7 @@ Text canonical_text_of(const std::string& path, Context& context) {
         if (!facts) return context.sink().already_reported();
         return canonical_text(*facts);
       }
+      case RevisionKind::kRates:
       case RevisionKind::kScenario:
         break;
     }

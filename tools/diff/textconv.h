@@ -8,6 +8,10 @@
 
 namespace parallax::tools {
 
+/// The report of a run as JSON: of a run folder, or a report.json (E7111). It is an object with
+/// `verdict` and `traces`.
+base::Result<std::string> load_run_report(const std::string& path, Context& context);
+
 /// What the report of a run says: its settings as declarations; its verdict, and for every trace
 /// its verdict and its discrepancies, as axioms. A trace is known by its events and its initial
 /// state. `path` is a run folder or a report.json (E7111).

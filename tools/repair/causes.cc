@@ -15,7 +15,7 @@ using PathsById = std::map<std::string, const ObservedPath*>;
 RepairCause cause_at(const RepairInput& input, const Evidence& failed, const PathsById& by_id,
                      std::set<std::string>& told) {
   const auto t = *failed.divergence;
-  std::vector<const ObservedPath*> paths;
+  std::vector<const harness::State*> starts;
   std::vector<bool> fails;
   for (const auto& other : input.evidence) {
     if (!goes_like(failed, other, t)) continue;
@@ -25,12 +25,12 @@ RepairCause cause_at(const RepairInput& input, const Evidence& failed, const Pat
     for (const auto& id : other.ids) {
       const auto found = by_id.find(id);
       if (found == by_id.end()) continue;
-      paths.push_back(found->second);
+      starts.push_back(&found->second->start);
       fails.push_back(same);
     }
     if (same) told.insert(other.ids.front());
   }
-  const auto cause = cause_of(paths, fails, input.loaded.world != nullptr);
+  const auto cause = cause_of(starts, fails, input.loaded.world != nullptr);
   if (cause.finding.kind == harness::CauseKind::kUnknown) return {};
   return {std::string(harness::to_string(cause.finding.kind)), cause.words()};
 }

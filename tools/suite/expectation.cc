@@ -2,14 +2,122 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <set>
 
-namespace parallax::tools {
+#include "harness/confidence/rate_evidence.h"
 
-std::vector<std::string> unmet(const harness::Expectation& expect, std::string_view run_document) {
-  const auto run = nlohmann::json::parse(run_document, nullptr, false);
+namespace parallax::tools {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kShownCauses = 3;  // of many
+constexpr std::size_t kShownAxioms = 5;  // of a set
+constexpr std::int64_t kMostRuns = 1'000'000;
+
+Json member(const Json& json, const char* name, Json otherwise) {
+  return json.is_object() ? json.value(name, std::move(otherwise)) : otherwise;
+}
+
+/// "the event Place(r1), the fluent BoxIn(r1)"
+std::string words_of(const harness::CauseExpectation& cause) {
+  std::string out;
+  const auto add = [&](const char* what, const std::string& value) {
+    if (!value.empty()) out += fmt::format("{}the {} {}", out.empty() ? "" : ", ", what, value);
+  };
+  add("event", cause.event);
+  add("fluent", cause.fluent);
+  add("reason", cause.reason);
+  add("kind", cause.kind);
+  return out;
+}
+
+/// Is what a document says of a discrepancy, or of all with one cause, as expected? The kind of
+/// cause apart.
+bool is_as_expected(const harness::CauseExpectation& expect, const Json& found) {
+  const auto fluents = member(found, "fluents", Json::array());
+  const auto reason = member(found, "reason", "").get<std::string>();
+  return (expect.event.empty() || member(found, "event", "") == expect.event) &&
+         (expect.fluent.empty() ||
+          std::find(fluents.begin(), fluents.end(), expect.fluent) != fluents.end()) &&
+         (expect.reason.empty() || reason.substr(0, reason.find(':')) == expect.reason);
+}
+
+void compare_cause(const harness::CauseExpectation& expect, const Json& run,
+                   std::string_view explanation, std::vector<std::string>& out) {
+  const auto discrepancies = member(run, "discrepancies", Json::array());
+  if (discrepancies.empty()) {
+    out.push_back(fmt::format("no discrepancy, expected one with {}", words_of(expect)));
+    return;
+  }
+  for (const auto& discrepancy : discrepancies) {
+    const auto cause = member(discrepancy, "cause", Json::object());
+    if (is_as_expected(expect, cause)) continue;
+    out.push_back(fmt::format("the cause is `{}`, expected {}",
+                              member(cause, "text", "").get<std::string>(), words_of(expect)));
+    return;
+  }
+  if (expect.kind.empty()) return;
+  const auto told = Json::parse(explanation, nullptr, false);
+  const auto kind = member(told, "cause", "unknown").get<std::string>();
+  if (kind == expect.kind) return;
+  const auto words = member(told, "cause_words", "").get<std::string>();
+  out.push_back(fmt::format("the kind of cause is {}, expected {}{}{}", kind, expect.kind,
+                            words.empty() ? "" : ": ", words));
+}
+
+std::vector<std::string> unlike_causes(const harness::CauseExpectation& expect,
+                                       const Json& causes) {
+  std::vector<std::string> out;
+  for (const auto& cause : causes) {
+    const auto kind = member(cause, "kind", "unknown").get<std::string>();
+    const bool same = is_as_expected(expect, cause);
+    if (same && (expect.kind.empty() || kind == expect.kind)) continue;
+    const auto text = member(cause, "cause", "").get<std::string>();
+    const auto count = member(cause, "count", 0).get<std::int64_t>();
+    out.push_back(fmt::format("in {} {} the cause is `{}`{}, expected {}", count,
+                              count == 1 ? "run" : "runs", text,
+                              same ? fmt::format(" and its kind {}", kind) : "", words_of(expect)));
+  }
+  return out;
+}
+
+std::string bounds_text(const harness::RateExpectation& expect) {
+  if (expect.lower <= 0.0) return fmt::format("below {:g} %", 100 * expect.upper);
+  if (expect.upper >= 1.0) return fmt::format("above {:g} %", 100 * expect.lower);
+  return fmt::format("from {:g} to {:g} %", 100 * expect.lower, 100 * expect.upper);
+}
+
+/// What the runs do not show, although they have to.
+std::string missing_evidence(const harness::RateExpectation& expect, const std::string& found,
+                             const harness::RateCounts& counts) {
+  const harness::RateClaim claim{expect.lower, expect.upper, *expect.confidence};
+  const auto bounds = bounds_text(expect);
+  const auto level = fmt::format("{:g} % confidence", 100 * *expect.confidence);
+  switch (weigh(claim, counts)) {
+    case harness::Evidence::kSupports:
+      return {};
+    case harness::Evidence::kRefutes:
+      return fmt::format("{}: with {} the rate is not {}", found, level, bounds);
+    case harness::Evidence::kTooLittle:
+      break;
+  }
+  const auto enough = runs_to_tell(claim, counts, kMostRuns);
+  return fmt::format(
+      "{}: not enough evidence that the rate is {} with {}, or that it is not; {}", found, bounds,
+      level,
+      enough ? fmt::format("{} runs would tell if it stays like this", *enough)
+             : fmt::format("if it stays like this {} runs would not tell either", kMostRuns));
+}
+
+}  // namespace
+
+std::vector<std::string> unmet(const harness::Expectation& expect, std::string_view run_document,
+                               std::string_view explanation) {
+  const auto run = Json::parse(run_document, nullptr, false);
   if (run.is_discarded() || !run.is_object() || run.value("status", "") != "ok") {
     return {"the run gave no result"};
   }
@@ -28,11 +136,11 @@ std::vector<std::string> unmet(const harness::Expectation& expect, std::string_v
         fmt::format("{} simulations, expected at most {}", simulations, *expect.max_simulations));
   }
   std::set<std::string> diverging, earlier;
-  for (const auto& discrepancy : run.value("discrepancies", nlohmann::json::array())) {
-    for (const auto& fluent : discrepancy.value("fluents", nlohmann::json::array())) {
+  for (const auto& discrepancy : run.value("discrepancies", Json::array())) {
+    for (const auto& fluent : discrepancy.value("fluents", Json::array())) {
       diverging.insert(fluent.value("fluent", ""));
     }
-    for (const auto& fluent : discrepancy.value("first", nlohmann::json::array())) {
+    for (const auto& fluent : discrepancy.value("first", Json::array())) {
       earlier.insert(fluent.value("fluent", ""));
     }
   }
@@ -44,31 +152,49 @@ std::vector<std::string> unmet(const harness::Expectation& expect, std::string_v
                                   ? "diverged on the way, but not in the end, which is what counts"
                                   : "did not diverge"));
   }
+  if (expect.cause) compare_cause(*expect.cause, run, explanation, out);
   return out;
 }
 
 std::vector<std::string> unmet(const harness::RateExpectation& expect,
                                std::string_view rates_document) {
-  const auto rates = nlohmann::json::parse(rates_document, nullptr, false);
+  const auto rates = Json::parse(rates_document, nullptr, false);
   if (rates.is_discarded() || !rates.is_object() || rates.value("status", "") != "ok" ||
-      rates.value("traces", nlohmann::json::array()).size() != 1) {
+      rates.value("traces", Json::array()).size() != 1) {
     return {"the runs gave no rate"};
   }
-  const auto& any = rates["traces"][0]["any"];
+  const auto& trace = rates["traces"][0];
+  const auto& any = trace["any"];
   const double rate = any.value("rate", -1.0);
   const double lower = any.value("lower", 2.0), upper = any.value("upper", -1.0);
-  if (lower <= expect.upper && upper >= expect.lower) return {};
-  return {fmt::format(
-      "discrepancies in {} of {} runs of trace {}, {:.1f} % [{:.1f}, {:.1f}], expected {:g} to "
-      "{:g} %",
-      any.value("count", std::int64_t{-1}), rates["traces"][0].value("runs", std::int64_t{-1}),
-      expect.trace, 100 * rate, 100 * lower, 100 * upper, 100 * expect.lower, 100 * expect.upper)};
+  const harness::RateCounts counts{
+      trace.value("runs", std::int64_t{0}) + trace.value("lost", std::int64_t{0}),
+      any.value("count", std::int64_t{0}), trace.value("lost", std::int64_t{0})};
+  const auto found =
+      fmt::format("discrepancies in {} of {} runs of trace {}, {:.1f} % [{:.1f}, {:.1f}]{}",
+                  counts.failures, counts.runs - counts.lost, expect.trace, 100 * rate, 100 * lower,
+                  100 * upper, counts.lost == 0 ? "" : fmt::format(", {} more lost", counts.lost));
+  std::vector<std::string> out;
+  if (expect.confidence) {
+    if (auto missing = missing_evidence(expect, found, counts); !missing.empty()) {
+      out.push_back(std::move(missing));
+    }
+  } else if (lower > expect.upper || upper < expect.lower) {
+    out.push_back(
+        fmt::format("{}, expected {:g} to {:g} %", found, 100 * expect.lower, 100 * expect.upper));
+  }
+  if (expect.cause) {
+    for (auto& unlike : unlike_causes(*expect.cause, member(trace, "causes", Json::array()))) {
+      out.push_back(std::move(unlike));
+    }
+  }
+  return out;
 }
 
 std::string first_error(const std::string& document) {
-  const auto json = nlohmann::json::parse(document, nullptr, false);
+  const auto json = Json::parse(document, nullptr, false);
   if (!json.is_object()) return {};
-  for (const auto& diagnostic : json.value("diagnostics", nlohmann::json::array())) {
+  for (const auto& diagnostic : json.value("diagnostics", Json::array())) {
     if (diagnostic.value("severity", "") != "error") continue;
     return fmt::format("{}: {}", diagnostic.value("code", ""), diagnostic.value("message", ""));
   }
@@ -76,16 +202,49 @@ std::string first_error(const std::string& document) {
 }
 
 std::string first_discrepancy(const std::string& run_document) {
-  const auto run = nlohmann::json::parse(run_document, nullptr, false);
-  for (const auto& found : run.value("discrepancies", nlohmann::json::array())) {
+  const auto run = Json::parse(run_document, nullptr, false);
+  for (const auto& found : run.value("discrepancies", Json::array())) {
     return fmt::format("{}.{}: {}", found.value("trace", std::int64_t{0}),
                        found.value("sample", std::int64_t{0}), found.value("words", ""));
   }
   return {};
 }
 
+std::string blame(std::string_view explanation) {
+  const auto told = Json::parse(explanation, nullptr, false);
+  const auto sets = member(told, "sets", Json::array());
+  if (sets.empty()) return {};
+  auto out = member(sets.front(), "words", "").get<std::string>();
+  const auto axioms = member(sets.front(), "axioms", Json::array());
+  for (std::size_t i = 0; i < std::min(axioms.size(), kShownAxioms); ++i) {
+    out += fmt::format("{}  {}:{}  {}: {}", out.empty() ? "" : "\n",
+                       member(axioms[i], "file", "").get<std::string>(),
+                       member(axioms[i], "line", 0).get<std::int64_t>(),
+                       member(axioms[i], "what", "").get<std::string>(),
+                       member(axioms[i], "text", "").get<std::string>());
+  }
+  if (axioms.size() > kShownAxioms) {
+    out += fmt::format("\n  and {} more", axioms.size() - kShownAxioms);
+  }
+  return out;
+}
+
+std::string frequent_causes(std::string_view rates_document) {
+  const auto rates = Json::parse(rates_document, nullptr, false);
+  const auto traces = member(rates, "traces", Json::array());
+  if (traces.empty()) return {};
+  const auto causes = member(traces.front(), "causes", Json::array());
+  std::string out;
+  for (std::size_t i = 0; i < std::min(causes.size(), kShownCauses); ++i) {
+    const auto count = member(causes[i], "count", 0).get<std::int64_t>();
+    out += fmt::format("{}{} {}: {}", out.empty() ? "" : "\n", count, count == 1 ? "time" : "times",
+                       member(causes[i], "cause", "").get<std::string>());
+  }
+  return out;
+}
+
 bool has_failed(const std::string& document) {
-  const auto json = nlohmann::json::parse(document, nullptr, false);
+  const auto json = Json::parse(document, nullptr, false);
   return !json.is_object() || json.value("status", "") != "ok";
 }
 

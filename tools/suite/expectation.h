@@ -9,8 +9,10 @@
 namespace parallax::tools {
 
 /// What the document of `parallax run --json` says against the expectation, one sentence each;
-/// empty if it is met. A document that is no result of a run is itself a sentence.
-std::vector<std::string> unmet(const harness::Expectation& expect, std::string_view run_document);
+/// empty if it is met. A document that is no result of a run is itself a sentence. `explanation`:
+/// the document of `parallax explain --json` where a kind of cause is expected.
+std::vector<std::string> unmet(const harness::Expectation& expect, std::string_view run_document,
+                               std::string_view explanation);
 
 /// The same for the document of `parallax rates --json` of one trace.
 std::vector<std::string> unmet(const harness::RateExpectation& expect,
@@ -21,6 +23,13 @@ std::string first_error(const std::string& document);
 
 /// What the first discrepancy of a run is, in words; empty without one.
 std::string first_discrepancy(const std::string& run_document);
+
+/// What the document of `parallax explain --json` lays it to: its words, and below them the axioms
+/// of the first set with their places. Empty if it names none.
+std::string blame(std::string_view explanation);
+
+/// The most frequent causes of a document of `parallax rates --json`, one a line; may be empty.
+std::string frequent_causes(std::string_view rates_document);
 
 /// Did an error end the command that wrote the document, whatever its exit code?
 bool has_failed(const std::string& document);

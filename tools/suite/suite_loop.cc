@@ -51,13 +51,14 @@ std::string line_of(const SuiteCase& one, const CaseResult& result) {
   return line;
 }
 
-void Reuse::resume(const StoredCases& earlier) {
+void Reuse::resume(const StoredCases& earlier, bool permits_more) {
   for (std::size_t i = 0; i < record_.cases().size(); ++i) {
     const auto at = earlier.find(record_.cases()[i].name());
     if (!is_open(i) || at == earlier.end()) continue;
     auto result = at->second.result;
     const bool finished =
         result.outcome != Outcome::kNotFinished && result.outcome != Outcome::kSkipped;
+    if (permits_more && result.outcome == Outcome::kError) continue;
     if (!finished || result.inputs.empty() || !hashes_.unchanged(result.inputs)) continue;
     if (result.ledger != ledger_digest_of(cache_.key().ledger, record_.cases()[i])) continue;
     result.reused = "resumed";

@@ -25,8 +25,10 @@ class Reuse {
   Reuse(SuiteRecord& record, const ResultCache& cache, Remark remark)
       : record_(record), cache_(cache), remark_(std::move(remark)) {}
 
-  /// Takes over the results of an interrupted suite whose files are as they were.
-  void resume(const StoredCases& earlier);
+  /// Takes over the results of an interrupted suite whose files are as they were. With
+  /// `permits_more` than that suite did, cases without an answer are run again: it may have been
+  /// refused.
+  void resume(const StoredCases& earlier, bool permits_more);
   /// Takes over cached passes; `verified_share` of them, from 0 to 1, is run all the same, those
   /// first that nobody has looked at for the longest time.
   void look_up(double verified_share);

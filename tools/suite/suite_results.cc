@@ -40,7 +40,9 @@ Json to_json(const SuiteIdentity& identity) {
           {"shard", to_string(identity.shard)},
           {"paths", identity.paths},
           {"only", identity.only},
-          {"fast", identity.fast}};
+          {"fast", identity.fast},
+          {"allow_commands", identity.allow_commands},
+          {"allow_outside", identity.allow_outside}};
 }
 
 SuiteIdentity identity_from_json(const Json& json) {
@@ -54,6 +56,8 @@ SuiteIdentity identity_from_json(const Json& json) {
   read_texts(json, "paths", out.paths);
   read(json, "only", out.only);
   read(json, "fast", out.fast);
+  read(json, "allow_commands", out.allow_commands);
+  read(json, "allow_outside", out.allow_outside);
   return out;
 }
 
@@ -162,8 +166,18 @@ std::string difference(const SuiteIdentity& a, const SuiteIdentity& b) {
   }
   if (a.paths != b.paths) return fmt::format("{} and {}", words(a.paths), words(b.paths));
   if (a.only != b.only) return fmt::format("--only `{}` and `{}`", a.only, b.only);
-  if (a.fast != b.fast) return "one with --fast and one without";
+  const auto one_with = [](const char* option) {
+    return fmt::format("one with {} and one without", option);
+  };
+  if (a.fast != b.fast) return one_with("--fast");
+  if (a.allow_commands != b.allow_commands) return one_with("--allow-commands");
+  if (a.allow_outside != b.allow_outside) return one_with("--allow-outside");
   return {};
+}
+
+bool SuiteIdentity::permits_more_than(const SuiteIdentity& other) const {
+  return allow_commands >= other.allow_commands && allow_outside >= other.allow_outside &&
+         (allow_commands != other.allow_commands || allow_outside != other.allow_outside);
 }
 
 std::string result_text(const CaseResult& result) { return base::json_text(to_json(result)); }

@@ -23,6 +23,10 @@ struct SuiteIdentity {
   std::vector<std::string> paths;
   std::string only;
   bool fast = false;
+  bool allow_commands = false, allow_outside = false;
+
+  /// The same but for permissions, of which it has more.
+  bool permits_more_than(const SuiteIdentity& other) const;
 };
 
 /// How two suites differ, "seed 1 and seed 2"; empty: in nothing but the index of their shards.

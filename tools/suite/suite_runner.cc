@@ -96,14 +96,45 @@ void run_rates(const SuiteCase& one, const harness::Expectation& expect,
                                     "--trace", std::to_string(rate.trace),
                                     "--runs",  std::to_string(rate.runs),
                                     "--quiet", "--color=never"};
+  if (rate.cause && !rate.cause->kind.empty()) words.emplace_back("--cause-kinds");
   add_permissions(options, true, words);
   add_limit(expect, words);
   const auto child = run_this_program({std::move(words), {one.file}}, footprint, stop);
   result.messages += child.err;
   if (child.code != 0) return report_no_answer(child, result);
   for (auto& problem : unmet(rate, child.out)) result.problems.push_back(std::move(problem));
+  if (!result.problems.empty()) {
+    if (auto causes = frequent_causes(child.out); !causes.empty()) {
+      result.problems.push_back(std::move(causes));
+    }
+  }
   note_rates(child.out, result);
   if (options.ledger != nullptr) options.ledger->judge(one, shown_rates(child.out), result);
+}
+
+constexpr double kBlameLimitS = 60.0;
+
+/// The document of `parallax explain --json` about models, or a run folder, for whose kind of cause
+/// it may make `runs` simulations more. Empty where it gives none: then it is not known what to
+/// blame, which changes no outcome.
+std::string explanation_of(CommandWords words, double limit_s, const RunnerOptions& options,
+                           Footprint& footprint, const std::atomic<bool>& stop) {
+  words.options.insert(words.options.begin(), {"explain", "--json"});
+  words.options.insert(words.options.end(),
+                       {"--time-limit", fmt::format("{}", limit_s), "--quiet", "--color=never"});
+  if (options.allow_outside) words.options.emplace_back("--allow-outside");
+  const auto child = run_this_program(words, footprint, stop);
+  return child.code == 0 || child.code == 1 ? child.out : "";
+}
+
+std::string explanation_of_run(const fs::path& folder, const harness::Expectation& expect,
+                               bool with_runs, const RunnerOptions& options, Footprint& footprint,
+                               const std::atomic<bool>& stop) {
+  CommandWords words{{}, {folder.string()}};
+  if (!with_runs) words.options = {"--runs", "0"};
+  if (options.allow_commands) words.options.emplace_back("--allow-commands");
+  return explanation_of(std::move(words), expect.time_limit_s.value_or(kBlameLimitS), options,
+                        footprint, stop);
 }
 
 /// Makes room for a new run. Removes nothing but what a run has left there.
@@ -144,10 +175,20 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
   const bool answered = child.code == 0 || child.code == 1 || child.code == 4;
   if (!answered || has_failed(child.out)) return report_no_answer(child, result);
   note_verdict(child.out, result);
-  const auto problems = unmet(expect, child.out);
+  const bool wants_kind = expect.cause && !expect.cause->kind.empty();
+  auto discrepancy = first_discrepancy(child.out);
+  std::string explanation;
+  if (wants_kind && !discrepancy.empty()) {
+    explanation = explanation_of_run(folder, expect, true, options, footprint, stop);
+  }
+  const auto problems = unmet(expect, child.out, explanation);
   result.problems.insert(result.problems.end(), problems.begin(), problems.end());
-  if (auto why = first_discrepancy(child.out); !problems.empty() && !why.empty()) {
-    result.problems.push_back(std::move(why));
+  if (!problems.empty() && !discrepancy.empty()) {
+    result.problems.push_back(std::move(discrepancy));
+    if (!wants_kind) {
+      explanation = explanation_of_run(folder, expect, false, options, footprint, stop);
+    }
+    if (auto why = blame(explanation); !why.empty()) result.problems.push_back(std::move(why));
   }
   if (options.ledger != nullptr) options.ledger->judge(one, shown_run(child.out), result);
   if (result.problems.empty()) return;
@@ -190,6 +231,19 @@ void compare_count(const harness::TraceExpectation& expect, const std::string& d
   };
   result.problems.push_back(fmt::format("{}, expected {}", phrase(traces, complete),
                                         phrase(*expect.traces, expect.complete)));
+}
+
+/// Of a model that has lost all its traces: the axioms that contradict each other.
+void add_blame(const harness::ManifestCase& one, const std::string& document,
+               const RunnerOptions& options, Footprint& footprint, const std::atomic<bool>& stop,
+               CaseResult& result) {
+  const auto found = nlohmann::json::parse(document, nullptr, false);
+  if (!found.is_object() || found.value("traces", std::int64_t{-1}) != 0) return;
+  CommandWords words;
+  if (one.horizon) words.options = {"--horizon", std::to_string(*one.horizon)};
+  for (const auto& model : one.models) words.files.push_back(model.text);
+  auto why = blame(explanation_of(std::move(words), one.time_limit_s, options, footprint, stop));
+  if (!why.empty()) result.problems.push_back("these contradict each other:\n" + why);
 }
 
 /// Is this what `parallax traces` has printed, so that a newer list may take its place? Its last
@@ -264,6 +318,7 @@ void run_traces(const harness::ManifestCase& one, const fs::path& manifest,
     result.messages = child.err;
     if (child.code != 0) return report_no_answer(child, result);
     compare_count(one.expect, child.out, result);
+    if (!result.problems.empty()) add_blame(one, child.out, options, footprint, stop, result);
   }
   if (one.expect.golden) {
     const auto child = run_this_program(command, footprint, stop);

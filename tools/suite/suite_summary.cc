@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "compiler/base/json.h"
+#include "compiler/base/markdown.h"
 
 namespace parallax::tools {
 namespace {
@@ -41,29 +42,6 @@ bool wants_attention(const SuiteRecord& record, std::size_t i) {
   const auto& result = record.results()[i];
   return result.flaky() ||
          (result.outcome != Outcome::kPassed && result.outcome != Outcome::kSkipped);
-}
-
-/// Text for a cell of a Markdown table: nothing in it is markup, a link or another cell.
-std::string markdown_cell(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7F) {
-      out += ' ';
-    } else if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else if (c == '&') {
-      out += "&amp;";
-    } else if (c == '@') {
-      out += "&#64;";  // names nobody
-    } else {
-      if (std::string_view(R"(\`*_{}[]()#+-.!|~$:)").find(c) != std::string_view::npos) out += '\\';
-      out += c;
-    }
-  }
-  return out;
 }
 
 /// As workflow commands want it: data, or the value of a property.
@@ -152,8 +130,8 @@ std::string summary_markdown(const SuiteRecord& record) {
       continue;
     }
     if (rows++ == 0) out += "| case | | what | s |\n|---|---|---|---:|\n";
-    out += fmt::format("| {} | {} | {} | {:.1f} |\n", markdown_cell(record.cases()[i].name()),
-                       standing(record, i), markdown_cell(reason(record, i)),
+    out += fmt::format("| {} | {} | {} | {:.1f} |\n", base::markdown_text(record.cases()[i].name()),
+                       standing(record, i), base::markdown_text(reason(record, i)),
                        record.results()[i].wall_s);
   }
   if (hidden > 0) out += fmt::format("\n{} more cases are not listed.\n", hidden);

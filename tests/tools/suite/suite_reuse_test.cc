@@ -2,10 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <random>
 
 #include "compiler/base/sha256.h"
 #include "tests/tools/cli_json.h"
@@ -16,55 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
-
-/// A manifest of forty cases on the lamp: most are as expected, every seventh is not, one is
-/// refused.
-std::string many_cases() {
-  std::string text = "cases:\n";
-  for (int i = 0; i < 40; ++i) {
-    const int horizon = i % 8;
-    const int traces = (1 << horizon) + (i % 7 == 3 ? 1 : 0);
-    text += "  - {id: c" + std::to_string(i) + ", model: " + (i == 20 ? "bad.e" : "lamp.e") +
-            ", horizon: " + std::to_string(horizon) +
-            ", expect: {traces: " + std::to_string(traces) + "}}\n";
-  }
-  return text;
-}
-
-TEST_CASE("a suite killed at random moments and resumed gives the report of one that was not") {
-  const SuiteFixture cli;
-  cli.write("s/suite.yaml", many_cases());
-  cli.write("s/bad.e", "fluent On(\n");
-  const auto whole = cli.suite({"--out", "whole", "--junit", "whole.xml", "--no-cache"});
-  CHECK(whole.code == 1);
-  const auto expected = without_times(cli.read("whole.xml"));
-  std::mt19937 random(11);
-  int kills = 0;
-  for (int round = 0; round < 4; ++round) {
-    const std::string out = "out" + std::to_string(round);
-    std::vector<std::string> arguments = {"suite",      "s",      "--out", out,         "--junit",
-                                          out + ".xml", "--jobs", "2",     "--no-cache"};
-    for (int attempt = 0; attempt < 5; ++attempt) {
-      if (fs::exists(cli.folder() / out / "results.json") && attempt > 0) {
-        if (arguments.back() != "--resume") arguments.emplace_back("--resume");
-      }
-      ProcessOptions options;
-      auto looks = random() % 60;
-      options.signal_when = [&looks] { return looks-- == 0 ? SIGKILL : 0; };
-      const auto result = cli.parallax(arguments, options);
-      kills += result.code == 128 + SIGKILL ? 1 : 0;
-    }
-    if (arguments.back() != "--resume") arguments.emplace_back("--resume");
-    const auto last = cli.parallax(arguments);
-    CAPTURE(last.err);
-    CHECK(last.code == 1);
-    CHECK(without_times(cli.read(out + ".xml")) == expected);
-    // A further one has nothing left to do.
-    const auto again = json_of(cli, arguments, 1);
-    CHECK(again["reused"] == 40);
-  }
-  CHECK(kills >= 10);  // else nothing was shown
-}
 
 TEST_CASE("a resumed suite runs again what has changed since") {
   const SuiteFixture cli;
@@ -92,6 +41,52 @@ TEST_CASE("results of another suite are not gone on with") {
   refused({"--resume", "--only", "lit"}, "--only `` and `lit`");
   refused({"--resume", "--rerun-failed"}, "exclude each other");
   CHECK(cli.suite({"--resume"}).code == 0);
+}
+
+TEST_CASE("what was refused for want of a permission is run again with it") {
+  const SuiteFixture cli;
+  cli.write("shared.e", kLamp);
+  cli.write("s/lamp.e", "load ../shared.e\n");
+  cli.write("s/other.e", kLamp);
+  cli.write("s/suite.yaml",
+            "cases:\n"
+            "  - {id: refused, model: lamp.e, expect: {traces: 2}}\n"
+            "  - {id: wrong, model: other.e, expect: {traces: 3}}\n");
+  // Started in `s`, so that the shared file lies outside.
+  const auto suite = [&](std::vector<std::string> more) {
+    more.insert(more.begin(),
+                {std::string(PARALLAX_BINARY_DIR) + "/parallax", "suite", "suite.yaml", "--json"});
+    ProcessOptions options;
+    options.folder = (cli.folder() / "s").string();
+    return run_process(more, options);
+  };
+  const auto first = Json::parse(suite({}).out);
+  CHECK(first["errors"] == 1);
+  CHECK(first["failed"] == 1);
+  CHECK(Json::parse(suite({"--resume"}).out)["reused"] == 2);
+  // The wrong answer is one with any permission; the refusal is not.
+  const auto permitted = Json::parse(suite({"--resume", "--allow-outside"}).out);
+  CHECK(permitted["errors"] == 0);
+  CHECK(permitted["passed"] == 1);
+  CHECK(permitted["reused"] == 1);
+  const auto withdrawn = suite({"--resume"});
+  CHECK(withdrawn.code == 2);
+  CHECK(holds(withdrawn.err, "one with --allow-outside and one without"));
+}
+
+TEST_CASE("a simulator that was not permitted is started when the suite goes on with permission") {
+  const SuiteFixture cli;
+  cli.write("s/case.yaml", "include: ../wrong_model.yaml\nsimulator: {command: [/bin/false]}\n");
+  const std::vector<std::string> run = {"suite", "s/case.yaml", "--allow-outside"};
+  const auto problem = [](const Json& document) {
+    return document["cases"][0]["problems"][1].get<std::string>();
+  };
+  CHECK(holds(problem(json_of(cli, run, 1)), "E7114"));
+  auto resumed = run;
+  resumed.emplace_back("--resume");
+  CHECK(json_of(cli, resumed, 1)["reused"] == 1);
+  resumed.emplace_back("--allow-commands");
+  CHECK(holds(problem(json_of(cli, resumed, 1)), "E7108: the simulator did not start"));
 }
 
 TEST_CASE("what passed is not run again until a file of it changes, and says so") {

@@ -1,0 +1,137 @@
+#include "harness/confidence/rate_evidence.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "compiler/base/contract.h"
+#include "harness/confidence/clean_runs.h"
+#include "harness/confidence/quantiles.h"
+
+namespace parallax::harness {
+namespace {
+
+/// P(X <= k) of n draws with probability p.
+double at_most(std::int64_t k, std::int64_t n, double p) {
+  if (k >= n) return 1.0;
+  if (k < 0) return 0.0;
+  return incomplete_beta(static_cast<double>(n - k), static_cast<double>(k) + 1.0, 1.0 - p);
+}
+
+double at_least(std::int64_t k, std::int64_t n, double p) {
+  if (k <= 0) return 1.0;
+  if (k > n) return 0.0;
+  return incomplete_beta(static_cast<double>(k), static_cast<double>(n - k) + 1.0, p);
+}
+
+bool shows_below(std::int64_t failures, std::int64_t runs, double bound, double tail) {
+  return bound >= 1.0 || at_most(failures, runs, bound) <= tail;
+}
+
+bool shows_above(std::int64_t failures, std::int64_t runs, double bound, double tail) {
+  return bound <= 0.0 || at_least(failures, runs, bound) <= tail;
+}
+
+/// The first number from 1 on for which `enough` holds, by doubling and halving: it holds there and
+/// not one below.
+template <typename Predicate>
+std::optional<std::int64_t> first_enough(std::int64_t from, std::int64_t most,
+                                         const Predicate& enough) {
+  std::int64_t low = from, high = from;
+  while (!enough(high)) {
+    if (high >= most) return std::nullopt;
+    low = high;
+    high = std::min(most, 2 * high);
+  }
+  if (high == from) return high;
+  while (high - low > 1) {
+    const std::int64_t middle = low + (high - low) / 2;
+    (enough(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+void require_rate_counts(const RateCounts& counts) {
+  PARALLAX_REQUIRE(
+      counts.failures >= 0 && counts.lost >= 0 && counts.failures + counts.lost <= counts.runs,
+      "failures and losses among the runs");
+}
+
+}  // namespace
+
+Evidence weigh(const RateClaim& claim, const RateCounts& counts) {
+  require_rate_counts(counts);
+  const double tail = 1.0 - claim.confidence_level;
+  const std::int64_t most = counts.failures + counts.lost, least = counts.failures;
+  if (shows_below(most, counts.runs, claim.upper, tail) &&
+      shows_above(least, counts.runs, claim.lower, tail)) {
+    return Evidence::kSupports;
+  }
+  const bool two_sided = claim.lower > 0.0 && claim.upper < 1.0;
+  const double share = two_sided ? 0.5 * tail : tail;
+  const bool above = claim.upper < 1.0 && shows_above(least, counts.runs, claim.upper, share);
+  const bool below = claim.lower > 0.0 && shows_below(most, counts.runs, claim.lower, share);
+  return above || below ? Evidence::kRefutes : Evidence::kTooLittle;
+}
+
+bool can_support(const RateClaim& claim, std::int64_t runs) {
+  const double tail = 1.0 - claim.confidence_level;
+  if (!shows_below(0, runs, claim.upper, tail)) return false;
+  // The most failures that still show the upper bound do most for the lower one.
+  std::int64_t low = 0, high = runs + 1;
+  while (high - low > 1) {
+    const std::int64_t middle = low + (high - low) / 2;
+    (shows_below(middle, runs, claim.upper, tail) ? low : high) = middle;
+  }
+  return shows_above(low, runs, claim.lower, tail);
+}
+
+std::optional<std::int64_t> runs_to_support(const RateClaim& claim, std::int64_t most) {
+  return first_enough(1, most, [&](std::int64_t runs) { return can_support(claim, runs); });
+}
+
+std::optional<std::int64_t> runs_to_tell(const RateClaim& claim, const RateCounts& counts,
+                                         std::int64_t most) {
+  require_rate_counts(counts);
+  if (counts.runs == 0) return std::nullopt;
+  const auto scaled = [&](std::int64_t count, std::int64_t runs) {
+    return std::llround(static_cast<double>(count) * static_cast<double>(runs) /
+                        static_cast<double>(counts.runs));
+  };
+  return first_enough(counts.runs, most, [&](std::int64_t runs) {
+    RateCounts more{runs, scaled(counts.failures, runs), 0};
+    more.lost = scaled(counts.failures + counts.lost, runs) - more.failures;
+    return weigh(claim, more) != Evidence::kTooLittle;
+  });
+}
+
+double clopper_pearson_lower(std::int64_t failures, std::int64_t runs, double confidence_level) {
+  return 1.0 - clopper_pearson_upper(runs - failures, runs, confidence_level);
+}
+
+double fisher_worse(const RateCounts& before, const RateCounts& after) {
+  require_rate_counts(before);
+  require_rate_counts(after);
+  const std::int64_t old_failures = before.failures + before.lost;
+  const std::int64_t failures = old_failures + after.failures;
+  const auto log_choose = [](std::int64_t n, std::int64_t k) {
+    return -std::log(static_cast<double>(n) + 1.0) -
+           log_beta(static_cast<double>(k) + 1.0, static_cast<double>(n - k) + 1.0);
+  };
+  const double all = log_choose(before.runs + after.runs, failures);
+  double tail = 0.0;
+  for (std::int64_t k = after.failures; k <= std::min(failures, after.runs); ++k) {
+    if (failures - k > before.runs) continue;
+    tail += std::exp(log_choose(after.runs, k) + log_choose(before.runs, failures - k) - all);
+  }
+  return std::min(1.0, tail);
+}
+
+double excess_bound(const RateCounts& before, const RateCounts& after, double confidence_level) {
+  require_rate_counts(before);
+  require_rate_counts(after);
+  const double level = 1.0 - 0.5 * (1.0 - confidence_level);
+  const double upper = clopper_pearson_upper(after.failures + after.lost, after.runs, level);
+  return upper - clopper_pearson_lower(before.failures, before.runs, level);
+}
+
+}  // namespace parallax::harness

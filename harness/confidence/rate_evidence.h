@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace parallax::harness {
+
+/// That a probability lies from `lower` to `upper`; 0 below and 1 above bound nothing.
+struct RateClaim {
+  double lower = 0.0, upper = 1.0;
+  double confidence_level = 0.95;  // in (0, 1)
+
+  bool bounds_nothing() const { return lower <= 0.0 && upper >= 1.0; }
+};
+
+/// What a number of independent runs that was fixed in advance came to.
+struct RateCounts {
+  std::int64_t runs = 0;      // lost ones as well
+  std::int64_t failures = 0;  // that were observed
+  std::int64_t lost = 0;      // may have failed or not: the worst is assumed, for either answer
+};
+
+enum class Evidence : std::uint8_t {
+  kSupports,   // the claim is true
+  kRefutes,    // it is false
+  kTooLittle,  // neither can be said with this confidence
+};
+
+/// What the counts say of the claim, by exact binomial tests: where it is false they are taken for
+/// support, and where it is true for refutation, with a probability of at most 1 - C each. Support
+/// takes both bounds of Clopper and Pearson at C, which is enough for both together (an
+/// intersection-union test); refutation takes one of them, at 1 - (1-C)/2 where there are two.
+Evidence weigh(const RateClaim& claim, const RateCounts& counts);
+
+/// Can so many runs support the claim, whatever they come to?
+bool can_support(const RateClaim& claim, std::int64_t runs);
+
+/// A number of runs that can, while one less cannot; none up to `most`.
+std::optional<std::int64_t> runs_to_support(const RateClaim& claim, std::int64_t most);
+
+/// A number of runs that would tell if failures and losses stay as frequent as they are; none up to
+/// `most`, as where the rate is the border itself.
+std::optional<std::int64_t> runs_to_tell(const RateClaim& claim, const RateCounts& counts,
+                                         std::int64_t most);
+
+/// Clopper and Pearson 1934: bounds of one side, for a number of runs fixed in advance.
+double clopper_pearson_lower(std::int64_t failures, std::int64_t runs, double confidence_level);
+
+/// Are failures more probable in `after` than in `before`? Fisher's exact test, of one side: the
+/// probability of as many or more of all failures on the new side if they are equally probable.
+/// Lost runs count as failures before and as none after, so that what is found is found in any
+/// case.
+double fisher_worse(const RateCounts& before, const RateCounts& after);
+
+/// With this confidence, the probability after exceeds that before by less than this: the upper
+/// bound after less the lower one before, each at 1 - (1-C)/2. Lost runs count as none before, as
+/// failures after.
+double excess_bound(const RateCounts& before, const RateCounts& after, double confidence_level);
+
+}  // namespace parallax::harness

@@ -1,0 +1,151 @@
+#include "harness/config/gate_rules.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <initializer_list>
+#include <utility>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/path_gate.h"
+#include "harness/config/sections.h"
+
+namespace parallax::harness {
+namespace {
+
+using base::DiagnosticCode;
+
+constexpr std::array<std::string_view, 2> kPermissions = {"allowed", "forbidden"};
+constexpr std::array<std::string_view, 2> kUndecided = {"fails", "passes"};
+
+/// One section of the rules: what it forbids.
+class RuleSection {
+ public:
+  RuleSection(const YamlNode& node, std::string_view key, base::DiagnosticSink& sink)
+      : key_(key), fields_(node, key_text(key), sink), sink_(sink), before_(sink.error_count()) {}
+
+  YamlFields& fields() { return fields_; }
+
+  void rule(std::string_view key, bool& forbidden) {
+    const auto choice = fields_.choice(key, fmt::format("value of `{}`", key), kPermissions);
+    forbidden = choice == std::size_t{1};
+    forbids_ = forbids_ || forbidden;
+  }
+  void forbids() { forbids_ = true; }
+
+  /// A section that forbids nothing is none.
+  void finish() const {
+    if (forbids_ || sink_.error_count() != before_) return;
+    sink_.error(DiagnosticCode::kCaseExpectsNothing, fields_.node().range, key_);
+  }
+
+ private:
+  std::string_view key_;
+  YamlFields fields_;
+  base::DiagnosticSink& sink_;
+  std::size_t before_;
+  bool forbids_ = false;
+};
+
+GateRules::Models read_models(const YamlNode& node, base::DiagnosticSink& sink) {
+  GateRules::Models out;
+  RuleSection section(node, Key::kModels, sink);
+  section.fields().only(
+      {Key::kLostTraces, Key::kGainedTraces, Key::kDeclarations, Key::kAxioms, Key::kProperties});
+  section.rule(Key::kLostTraces, out.lost_traces);
+  section.rule(Key::kGainedTraces, out.gained_traces);
+  section.rule(Key::kDeclarations, out.declarations);
+  section.rule(Key::kAxioms, out.axioms);
+  if (const auto* list = section.fields().find(Key::kProperties)) {
+    out.properties = located_texts(*list, Key::kProperties, sink);
+    if (!out.properties.empty()) section.forbids();
+  }
+  section.finish();
+  return out;
+}
+
+GateRules::Plans read_plans(const YamlNode& node, base::DiagnosticSink& sink) {
+  GateRules::Plans out;
+  RuleSection section(node, Key::kPlans, sink);
+  section.fields().only({Key::kForms, Key::kOrder});
+  section.rule(Key::kForms, out.forms);
+  section.rule(Key::kOrder, out.order);
+  section.finish();
+  return out;
+}
+
+GateRules::Traces read_traces(const YamlNode& node, base::DiagnosticSink& sink) {
+  GateRules::Traces out;
+  RuleSection section(node, Key::kTraces, sink);
+  section.fields().only({Key::kLost, Key::kGained});
+  section.rule(Key::kLost, out.lost);
+  section.rule(Key::kGained, out.gained);
+  section.finish();
+  return out;
+}
+
+GateRules::Runs read_runs(const YamlNode& node, base::DiagnosticSink& sink) {
+  GateRules::Runs out;
+  RuleSection section(node, Key::kRuns, sink);
+  section.fields().only(
+      {Key::kLostTraces, Key::kGainedDiscrepancies, Key::kWorseVerdict, Key::kSettings});
+  section.rule(Key::kLostTraces, out.lost_traces);
+  section.rule(Key::kGainedDiscrepancies, out.gained_discrepancies);
+  section.rule(Key::kWorseVerdict, out.worse_verdict);
+  section.rule(Key::kSettings, out.settings);
+  section.finish();
+  return out;
+}
+
+GateRules::Rates read_rates(const YamlNode& node, base::DiagnosticSink& sink) {
+  GateRules::Rates out;
+  RuleSection section(node, Key::kRates, sink);
+  section.fields().only({Key::kWorse, Key::kGainedCauses});
+  section.rule(Key::kGainedCauses, out.gained_causes);
+  const auto* worse = section.fields().find(Key::kWorse);
+  if (worse != nullptr && worse->is_map()) {
+    YamlFields numbers(*worse, key_text(Key::kWorse), sink);
+    numbers.only({Key::kConfidence, Key::kMargin});
+    GateRules::Worse rule;
+    numbers.number(Key::kConfidence, {0.5, 0.999999}, rule.confidence);
+    numbers.number(Key::kMargin, kOpenUnit, rule.margin);
+    out.worse = rule;
+    section.forbids();
+  } else {
+    bool forbidden = false;
+    section.rule(Key::kWorse, forbidden);
+    if (forbidden) out.worse = GateRules::Worse{};
+  }
+  section.finish();
+  return out;
+}
+
+}  // namespace
+
+base::Result<GateRules> load_gate_rules(const std::filesystem::path& path, base::SourceFiles& files,
+                                        base::DiagnosticSink& sink) {
+  const auto errors_before = sink.error_count();
+  base::PathGate gate(false);
+  gate.admit_beside(path);
+  const auto root = load_yaml(path, gate, files, sink);
+  if (!root) return sink.already_reported();
+  YamlFields fields(*root, "the rules", sink);
+  fields.only({Key::kModels, Key::kPlans, Key::kTraces, Key::kRuns, Key::kRates, Key::kUndecided});
+  GateRules out;
+  out.source = root->range;
+  if (const auto* node = fields.find(Key::kModels)) out.models = read_models(*node, sink);
+  if (const auto* node = fields.find(Key::kPlans)) out.plans = read_plans(*node, sink);
+  if (const auto* node = fields.find(Key::kTraces)) out.traces = read_traces(*node, sink);
+  if (const auto* node = fields.find(Key::kRuns)) out.runs = read_runs(*node, sink);
+  if (const auto* node = fields.find(Key::kRates)) out.rates = read_rates(*node, sink);
+  out.undecided_passes =
+      fields.choice(Key::kUndecided, "value of `undecided`", kUndecided) == std::size_t{1};
+  const bool is_empty = !out.models && !out.plans && !out.traces && !out.runs && !out.rates;
+  if (is_empty && sink.error_count() == errors_before) {
+    sink.error(DiagnosticCode::kCaseExpectsNothing, root->range, path.filename().string());
+  }
+  if (sink.error_count() != errors_before) return sink.already_reported();
+  return out;
+}
+
+}  // namespace parallax::harness

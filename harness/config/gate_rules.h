@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/config/scenario.h"
+
+namespace parallax::harness {
+
+/// What a newer revision must not do to an older one. Without a section nothing is said of such
+/// revisions; what a section does not forbid is allowed.
+struct GateRules {
+  struct Models {
+    bool lost_traces = false, gained_traces = false;  // forbidden
+    bool declarations = false, axioms = false;        // forbidden to change
+    std::vector<LocatedText> properties;              // that must not be lost
+  };
+  struct Plans {
+    bool forms = false, order = false;
+  };
+  struct Traces {
+    bool lost = false, gained = false;
+  };
+  struct Runs {
+    bool lost_traces = false, gained_discrepancies = false, worse_verdict = false;
+    bool settings = false;
+  };
+  /// Rates that are worse.
+  struct Worse {
+    double confidence = 0.95;
+    double margin = 0.05;  // by less than this is no worse
+  };
+  struct Rates {
+    std::optional<Worse> worse;
+    bool gained_causes = false;
+  };
+  std::optional<Models> models;
+  std::optional<Plans> plans;
+  std::optional<Traces> traces;
+  std::optional<Runs> runs;
+  std::optional<Rates> rates;
+  bool undecided_passes = false;  // what cannot be decided
+  base::SourceRange source;       // of the file's first key
+};
+
+/// Reads rules (docs/diff.md). Unknown keys are refused with the near name, and a section that
+/// forbids nothing, as a gate that cannot fail.
+base::Result<GateRules> load_gate_rules(const std::filesystem::path& path, base::SourceFiles& files,
+                                        base::DiagnosticSink& sink);
+
+}  // namespace parallax::harness

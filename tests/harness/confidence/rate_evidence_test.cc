@@ -1,0 +1,160 @@
+// What a fixed number of runs says of a rate, and of two: held against sums over all outcomes.
+
+#include "harness/confidence/rate_evidence.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "harness/confidence/clean_runs.h"
+
+namespace parallax::harness {
+namespace {
+
+/// P(X = k) of n draws, by Pascal's triangle in long double: no function of the library.
+std::vector<double> outcomes(std::int64_t n, double p) {
+  std::vector<long double> row = {1.0L};
+  for (std::int64_t i = 0; i < n; ++i) {
+    row.push_back(0.0L);
+    for (std::size_t k = row.size() - 1; k > 0; --k) {
+      row[k] = row[k] * (1.0L - p) + row[k - 1] * p;
+    }
+    row[0] *= 1.0L - p;
+  }
+  return {row.begin(), row.end()};
+}
+
+/// The probability that the counts of n runs are taken for `answer` if the rate is p.
+double chance(const RateClaim& claim, std::int64_t n, double p, Evidence answer) {
+  const auto distribution = outcomes(n, p);
+  double sum = 0.0;
+  for (std::int64_t k = 0; k <= n; ++k) {
+    if (weigh(claim, {n, k, 0}) == answer) sum += distribution[static_cast<std::size_t>(k)];
+  }
+  return sum;
+}
+
+TEST_CASE("a false claim is supported, and a true one refuted, no more often than is said") {
+  for (const double confidence : {0.9, 0.99}) {
+    const double error = 1.0 - confidence + 1e-12;
+    for (const auto& [lower, upper] : {std::pair{0.0, 0.05}, {0.2, 1.0}, {0.1, 0.3}, {0.4, 0.9}}) {
+      const RateClaim claim{lower, upper, confidence};
+      for (const std::int64_t n : {5, 37, 90, 200}) {
+        CAPTURE(n);
+        CAPTURE(lower);
+        CAPTURE(upper);
+        for (int i = 0; i <= 100; ++i) {
+          const double p = 0.01 * i;
+          const bool is_true = (lower <= 0.0 || lower < p) && (upper >= 1.0 || p < upper);
+          if (!is_true) CHECK(chance(claim, n, p, Evidence::kSupports) <= error);
+          if (is_true) CHECK(chance(claim, n, p, Evidence::kRefutes) <= error);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("enough runs do tell") {
+  CHECK(chance({0.0, 0.05, 0.99}, 400, 0.01, Evidence::kSupports) > 0.95);
+  CHECK(chance({0.0, 0.05, 0.99}, 400, 0.15, Evidence::kRefutes) > 0.99);
+  CHECK(chance({0.1, 0.3, 0.95}, 400, 0.2, Evidence::kSupports) > 0.99);
+  CHECK(chance({0.1, 0.3, 0.95}, 400, 0.45, Evidence::kRefutes) > 0.99);
+}
+
+TEST_CASE("lost runs count as what is worse for either answer") {
+  const RateClaim rare{0.0, 0.05, 0.99}, often{0.5, 1.0, 0.99};
+  CHECK(weigh(rare, {90, 0, 0}) == Evidence::kSupports);
+  CHECK(weigh(rare, {90, 0, 1}) == Evidence::kTooLittle);
+  CHECK(weigh(rare, {90, 15, 0}) == Evidence::kRefutes);
+  CHECK(weigh(rare, {90, 0, 15}) == Evidence::kTooLittle);
+  CHECK(weigh(often, {20, 20, 0}) == Evidence::kSupports);
+  CHECK(weigh(often, {20, 15, 5}) == Evidence::kTooLittle);
+  CHECK(weigh(often, {20, 0, 20}) == Evidence::kTooLittle);
+  CHECK(weigh(often, {0, 0, 0}) == Evidence::kTooLittle);
+}
+
+TEST_CASE("the number of runs that can support a claim can, and one less cannot") {
+  CHECK(runs_to_support({0.0, 0.05, 0.99}, 1000) == runs_needed(0.99, 0.05));
+  CHECK(runs_to_support({0.5, 1.0, 0.99}, 1000) == 7);  // 0.5^7 < 0.01
+  CHECK(!runs_to_support({0.5, 0.5001, 0.99}, 10000));
+  for (const auto& [lower, upper] : {std::pair{0.1, 0.3}, {0.45, 0.55}, {0.9, 0.95}}) {
+    const RateClaim claim{lower, upper, 0.95};
+    const auto supports = [&](std::int64_t n) {
+      for (std::int64_t k = 0; k <= n; ++k) {
+        if (weigh(claim, {n, k, 0}) == Evidence::kSupports) return true;
+      }
+      return false;
+    };
+    const auto enough = runs_to_support(claim, 100000);
+    REQUIRE(enough);
+    CHECK(supports(*enough));
+    CHECK_FALSE(supports(*enough - 1));
+  }
+}
+
+TEST_CASE("how many runs would tell is told, if any would") {
+  const RateClaim claim{0.0, 0.05, 0.99};
+  const RateCounts few{100, 2, 0};
+  REQUIRE(weigh(claim, few) == Evidence::kTooLittle);
+  const auto enough = runs_to_tell(claim, few, 100000);
+  REQUIRE(enough);
+  CHECK(*enough > 100);
+  CHECK(weigh(claim, {*enough, std::llround(0.02 * static_cast<double>(*enough)), 0}) ==
+        Evidence::kSupports);
+  CHECK(!runs_to_tell(claim, {100, 5, 0}, 100000));   // the border itself
+  CHECK(!runs_to_tell(claim, {100, 0, 50}, 100000));  // the lost ones hide it
+}
+
+/// C(n, k), exact up to n of about 60.
+long double choose(std::int64_t n, std::int64_t k) {
+  if (k < 0 || k > n) return 0.0L;
+  long double out = 1.0L;
+  for (std::int64_t i = 1; i <= k; ++i) out = out * (n - k + i) / i;
+  return out;
+}
+
+TEST_CASE("Fisher's exact test is the tail of the hypergeometric distribution") {
+  for (const auto& [n, m] : {std::pair{20, 20}, {30, 12}, {7, 25}}) {
+    for (std::int64_t before = 0; before <= n; before += 3) {
+      for (std::int64_t after = 0; after <= m; after += 2) {
+        long double tail = 0.0L;
+        for (std::int64_t k = after; k <= m; ++k)
+          tail += choose(m, k) * choose(n, before + after - k);
+        const double expected = static_cast<double>(tail / choose(n + m, before + after));
+        CHECK(fisher_worse({n, before, 0}, {m, after, 0}) ==
+              doctest::Approx(expected).epsilon(1e-9));
+      }
+    }
+  }
+  // The lady tasting tea: all four of four, none of four.
+  CHECK(fisher_worse({4, 0, 0}, {4, 4, 0}) == doctest::Approx(1.0 / 70.0));
+  CHECK(fisher_worse({4, 0, 1}, {4, 3, 1}) == doctest::Approx(fisher_worse({4, 1, 0}, {4, 3, 0})));
+}
+
+TEST_CASE("both statements about two rates are false no more often than is said") {
+  constexpr std::int64_t kRuns = 25;
+  for (int i = 0; i <= 10; ++i) {
+    for (int j = 0; j <= 10; ++j) {
+      const double p = 0.1 * i, q = 0.1 * j;
+      const auto before = outcomes(kRuns, p), after = outcomes(kRuns, q);
+      double worse = 0.0, exceeded = 0.0;
+      for (std::int64_t k = 0; k <= kRuns; ++k) {
+        for (std::int64_t l = 0; l <= kRuns; ++l) {
+          const double weight =
+              before[static_cast<std::size_t>(k)] * after[static_cast<std::size_t>(l)];
+          if (fisher_worse({kRuns, k, 0}, {kRuns, l, 0}) <= 0.05) worse += weight;
+          if (excess_bound({kRuns, k, 0}, {kRuns, l, 0}, 0.95) < q - p - 1e-12) exceeded += weight;
+        }
+      }
+      CAPTURE(p);
+      CAPTURE(q);
+      if (q <= p) CHECK(worse <= 0.05);
+      CHECK(exceeded <= 0.05);
+    }
+  }
+  CHECK(excess_bound({25, 5, 3}, {25, 5, 3}, 0.95) == excess_bound({25, 5, 0}, {25, 8, 0}, 0.95));
+}
+
+}  // namespace
+}  // namespace parallax::harness

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "tools/cli/command.h"
+#include "tools/diff/gate.h"
+
+namespace parallax::tools {
+
+/// `diff --gate RULES`: the rules, and the Markdown to write; empty: none.
+struct GateFiles {
+  std::string rules, markdown;
+};
+
+/// Holds the change against the rules, prints what came of them, and writes the Markdown with a
+/// picture beside it where a discrepancy of a run can be drawn. 1 unless the gate passes.
+int run_gate(const GateInput& input, const GateFiles& files, Invocation& invocation);
+
+}  // namespace parallax::tools

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/config/gate_rules.h"
+#include "tools/diff/model_difference.h"
+#include "tools/diff/revision.h"
+
+namespace parallax::tools {
+
+enum class RuleOutcome : std::uint8_t { kKept, kBroken, kUndecided };
+/// "kept", "broken", "not decidable"
+std::string_view to_string(RuleOutcome outcome);
+
+/// What came of one rule.
+struct RuleResult {
+  std::string rule;  // "models.lost_traces"
+  RuleOutcome outcome = RuleOutcome::kKept;
+  std::string words;         // one line
+  std::string witness = {};  // lines; may be empty
+};
+
+/// A discrepancy of a run folder that can be drawn.
+struct DrawnWitness {
+  std::string folder, sample;  // "out/new", "1.4"
+  std::int64_t timepoint = 0;  // behind the event at which it parts
+};
+
+struct GateReport {
+  std::string kind;  // "model", "plan", "traces", "run", "rates"
+  std::string old_name, new_name;
+  bool undecided_passes = false;
+  std::vector<RuleResult> rules;
+  std::vector<std::string> remarks;  // about all of them
+  std::optional<DrawnWitness> drawn;
+
+  std::size_t count(RuleOutcome outcome) const;
+  bool passes() const;
+};
+
+/// Two revisions, and how to compare them.
+struct GateInput {
+  std::string old_path, new_path;
+  RevisionKind old_kind = RevisionKind::kModel, new_kind = RevisionKind::kModel;
+  ModelDiffOptions models;
+};
+
+/// Holds the change from one revision to the other against the rules. Reports what loading them
+/// does, and kNoGateRules where the rules have no section for what is compared.
+base::Result<GateReport> hold_gate(const GateInput& input, const harness::GateRules& rules,
+                                   Context& context);
+
+// Its parts, a section of the rules each.
+base::Result<std::vector<RuleResult>> gate_models(const GateInput& input,
+                                                  const harness::GateRules::Models& rules,
+                                                  GateReport& report, Context& context);
+base::Result<std::vector<RuleResult>> gate_runs(const GateInput& input,
+                                                const harness::GateRules::Runs& rules,
+                                                GateReport& report, Context& context);
+base::Result<std::vector<RuleResult>> gate_rates(const GateInput& input,
+                                                 const harness::GateRules::Rates& rules,
+                                                 Context& context);
+
+std::string gate_text(const GateReport& report);
+/// {"passed": false, "rules": [{"rule", "outcome", "words", "witness"}], "remarks": [...]}
+std::string gate_json(const GateReport& report);
+
+/// What the Markdown of a gate begins with, so that a newer one may take its place.
+inline constexpr const char* kGateMark = "<!-- parallax gate -->";
+/// `picture`: a file to show, relative to the Markdown; may be empty.
+std::string gate_markdown(const GateReport& report, const std::string& picture);
+
+}  // namespace parallax::tools

@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "runtime/enumerate/plan_enumerator.h"
+#include "runtime/session/solver_session.h"
+#include "tools/app/scenario_model.h"
+#include "tools/app/trace_feed.h"
+#include "tools/diff/gate.h"
+
+namespace parallax::tools {
+namespace {
+
+using compiler::FactKind;
+using runtime::Answer;
+
+constexpr std::size_t kMaxShownNames = 5;
+
+std::string first_of(const std::vector<std::string>& names) {
+  std::string out;
+  for (std::size_t i = 0; i < std::min(names.size(), kMaxShownNames); ++i) {
+    out += (i == 0 ? "" : ", ") + names[i];
+  }
+  return names.size() <= kMaxShownNames
+             ? out
+             : out + fmt::format(" and {} more", names.size() - kMaxShownNames);
+}
+
+/// Traces that one side alone has.
+RuleResult trace_rule(const ModelDifference& found, bool lost) {
+  const char* name = lost ? "lost" : "gained";
+  RuleResult out{fmt::format("models.{}_traces", name), RuleOutcome::kUndecided, {}};
+  if (!found.traces) {
+    out.words = "the traces were not compared";
+    return out;
+  }
+  const auto& traces = *found.traces;
+  const auto& side = lost ? traces.lost : traces.gained;
+  const auto& kept = lost ? found.old_side : found.new_side;
+  const auto horizon = lost ? found.old_horizon : found.new_horizon;
+  const auto& unmatched = lost ? traces.vocabulary.only_first : traces.vocabulary.only_second;
+  if (side.answer == Answer::kFound) {
+    out.outcome = RuleOutcome::kBroken;
+    out.words =
+        fmt::format("{} {} up to timepoint {}", count_text(side.count), name, traces.horizon);
+    if (side.witness) out.witness = witness_text(found, lost);
+  } else if (side.answer == Answer::kUnknown) {
+    out.words = "a limit was reached before it was known";
+  } else if (!unmatched.empty()) {
+    out.words = fmt::format("none {} in what both have, but only {} has {}", name, kept.name,
+                            first_of(unmatched));
+  } else if (traces.horizon < horizon) {
+    out.words = fmt::format("none {} up to timepoint {}, but {} goes on to {}", name,
+                            traces.horizon, kept.name, horizon);
+  } else {
+    out.outcome = RuleOutcome::kKept;
+    out.words = fmt::format("none {} up to timepoint {}", name, traces.horizon);
+  }
+  return out;
+}
+
+RuleResult fact_rule(const FactReport& report, FactKind kind, const char* name) {
+  const auto text = to_text(report, kind, name, false);
+  const auto head = text.substr(0, text.find('\n'));
+  if (text.empty()) return {fmt::format("models.{}", name), RuleOutcome::kKept, "none changed"};
+  return {fmt::format("models.{}", name), RuleOutcome::kBroken, head.substr(head.find(": ") + 2),
+          text.substr(head.size() + 1)};
+}
+
+/// Does a revision have the property, and if not, how is it violated?
+struct PropertyAnswer {
+  base::Known holds = base::Known::kUndecided;
+  std::string why;      // where it is not known
+  std::string witness;  // a violation
+};
+
+base::Result<PropertyAnswer> ask_property(const std::string& path, RevisionKind kind,
+                                          const ModelOptions& with, const std::string& property,
+                                          Context& context) {
+  PropertyAnswer out;
+  if (kind == RevisionKind::kArtifact) {
+    out.why = fmt::format("{} is compiled, and properties are asked of texts", path);
+    return out;
+  }
+  auto options = with;
+  options.models.insert(options.models.begin(), path);
+  options.property = property;
+  const auto compilation = compile_models(options, context);
+  if (!compilation) return context.sink().already_reported();
+  runtime::SolverSession session(compilation->model, runtime::make_cadical_solver(&context.stop()));
+  runtime::PlanEnumerator violations(session);
+  if (const auto violation = violations.next()) {
+    out.holds = base::Known::kNo;
+    out.witness = to_text(*violation);
+    return out;
+  }
+  if (context.stopped() || violations.exploration() == runtime::Exploration::kStopped) {
+    out.why = fmt::format("a limit was reached before it was known of {}", path);
+    return out;
+  }
+  // Of a model without executions everything holds, which says nothing.
+  const auto sink = context.sink();
+  const auto empty = report_if_unsatisfiable(compilation->model, 0, context);
+  context.sink() = sink;
+  if (empty == base::Known::kNo) {
+    out.why = fmt::format("{} has no trace at all", path);
+  } else {
+    out.holds = base::Known::kYes;
+  }
+  return out;
+}
+
+base::Result<RuleResult> property_rule(const GateInput& input, const std::string& property,
+                                       Context& context) {
+  const auto& with = input.models.load.model;
+  const auto before = ask_property(input.old_path, input.old_kind, with, property, context);
+  if (!before) return context.sink().already_reported();
+  const auto after = ask_property(input.new_path, input.new_kind, with, property, context);
+  if (!after) return context.sink().already_reported();
+  RuleResult out{"models.properties", RuleOutcome::kKept, property + ": holds"};
+  if (after->holds == base::Known::kYes) return out;
+  if (before->holds == base::Known::kNo) {
+    out.words = property + ": did not hold before either";
+  } else if (after->holds == base::Known::kUndecided) {
+    out.outcome = RuleOutcome::kUndecided;
+    out.words = property + ": " + after->why;
+  } else if (before->holds == base::Known::kUndecided) {
+    out.outcome = RuleOutcome::kUndecided;
+    out.words = property + ": is violated now; " + before->why;
+    out.witness = after->witness;
+  } else {
+    out.outcome = RuleOutcome::kBroken;
+    out.words = property + ": is lost";
+    out.witness = after->witness;
+  }
+  return out;
+}
+
+}  // namespace
+
+base::Result<std::vector<RuleResult>> gate_models(const GateInput& input,
+                                                  const harness::GateRules::Models& rules,
+                                                  GateReport& report, Context& context) {
+  auto options = input.models;
+  options.facts = true;
+  options.traces = rules.lost_traces || rules.gained_traces;
+  const auto found = compare_models(input.old_path, input.old_kind, input.new_path, input.new_kind,
+                                    options, context);
+  if (!found) return context.sink().already_reported();
+  report.remarks = found->remarks;
+  const auto facts = found->report();
+  std::vector<RuleResult> out;
+  if (rules.lost_traces) out.push_back(trace_rule(*found, true));
+  if (rules.gained_traces) out.push_back(trace_rule(*found, false));
+  if (rules.declarations) out.push_back(fact_rule(facts, FactKind::kDeclaration, "declarations"));
+  if (rules.axioms) out.push_back(fact_rule(facts, FactKind::kAxiom, "axioms"));
+  for (const auto& property : rules.properties) {
+    auto rule = property_rule(input, property.text, context);
+    if (!rule) return context.sink().already_reported();
+    out.push_back(*std::move(rule));
+  }
+  return out;
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,171 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/confidence/rate_evidence.h"
+#include "tools/diff/gate.h"
+#include "tools/diff/rates_revision.h"
+
+namespace parallax::tools {
+namespace {
+
+using harness::RateCounts;
+
+const RevisionRates* rates_for(const RatesRevision& in, const std::string& events) {
+  for (const auto& trace : in.traces) {
+    if (trace.events == events) return &trace;
+  }
+  return nullptr;
+}
+
+std::string counts_text(const RateCounts& counts) {
+  return fmt::format("{} of {}{}", counts.failures, counts.runs - counts.lost,
+                     counts.lost == 0 ? "" : fmt::format(" ({} lost)", counts.lost));
+}
+
+std::string change_text(const RateCounts& before, const RateCounts& after) {
+  return fmt::format("{} before, {} now", counts_text(before), counts_text(after));
+}
+
+/// Why the two cannot be compared; empty: they can.
+std::string not_comparable(const RatesRevision& before, const RatesRevision& after) {
+  if (before.compare != after.compare) {
+    return fmt::format("{} compares `{}` and {} `{}`", before.name, before.compare, after.name,
+                       after.compare);
+  }
+  for (const auto* side : {&before, &after}) {
+    if (!side->complete) return fmt::format("{} was stopped before all runs were made", side->name);
+    if (!side->fixed) {
+      return fmt::format(
+          "{} ended when it had seen enough (--until-width), and exact tests need a number of runs "
+          "that was fixed in advance",
+          side->name);
+    }
+    if (side->traces.empty()) return fmt::format("{} has no trace", side->name);
+  }
+  for (const auto& trace : before.traces) {
+    if (rates_for(after, trace.events) == nullptr) {
+      return fmt::format("{} has no rate of the trace {}", after.name, trace.events);
+    }
+  }
+  for (const auto& trace : after.traces) {
+    if (rates_for(before, trace.events) == nullptr) {
+      return fmt::format("{} has no rate of the trace {}", before.name, trace.events);
+    }
+  }
+  return {};
+}
+
+std::string percent(double share) { return fmt::format("{:.2g} %", 100.0 * share); }
+
+/// What the two counts of one trace say. `level`: the confidence of finding a rate worse.
+RuleOutcome weigh_change(const RateCounts& before, const RateCounts& after,
+                         const harness::GateRules::Worse& worse, double level, std::string& words) {
+  const double bound = excess_bound(before, after, worse.confidence);
+  if (bound < worse.margin) {
+    words =
+        fmt::format("{}: worse by less than {}", change_text(before, after), percent(worse.margin));
+    return RuleOutcome::kKept;
+  }
+  const double chance = fisher_worse(before, after);
+  words = change_text(before, after);
+  if (chance <= 1.0 - level) {
+    words += fmt::format(": worse (Fisher's exact test, p = {:.2g})", chance);
+    return RuleOutcome::kBroken;
+  }
+  words += fmt::format(": may be worse by up to {} (p = {:.2g}); more runs would tell",
+                       percent(bound), chance);
+  return RuleOutcome::kUndecided;
+}
+
+RuleResult rate_rule(const RatesRevision& before, const RatesRevision& after,
+                     const harness::GateRules::Worse& worse) {
+  RuleResult out{"rates.worse", RuleOutcome::kKept, {}};
+  // Any of the traces may be found worse by chance.
+  const double level = 1.0 - (1.0 - worse.confidence) / static_cast<double>(before.traces.size());
+  std::size_t broken = 0, open = 0;
+  for (const auto& trace : before.traces) {
+    std::string words;
+    const auto outcome =
+        weigh_change(trace.any, rates_for(after, trace.events)->any, worse, level, words);
+    broken += outcome == RuleOutcome::kBroken ? 1 : 0;
+    open += outcome == RuleOutcome::kUndecided ? 1 : 0;
+    if (outcome != RuleOutcome::kKept) {
+      out.witness += fmt::format("{}: {}\n", trace.events, words);
+    } else if (before.traces.size() == 1) {
+      out.words = words;
+    }
+  }
+  if (broken > 0) {
+    out.outcome = RuleOutcome::kBroken;
+    out.words = fmt::format("{} of {} rates worse with {:g} % confidence", broken,
+                            before.traces.size(), 100 * worse.confidence);
+  } else if (open > 0) {
+    out.outcome = RuleOutcome::kUndecided;
+    out.words = fmt::format("{} of {} rates not known to be worse by less than {}", open,
+                            before.traces.size(), percent(worse.margin));
+  } else if (out.words.empty()) {
+    out.words = fmt::format("{} rates, none worse by {} or more", before.traces.size(),
+                            percent(worse.margin));
+  }
+  return out;
+}
+
+std::int64_t times(const RevisionRates& trace, const std::string& cause) {
+  for (const auto& one : trace.causes) {
+    if (one.text == cause) return one.count;
+  }
+  return 0;
+}
+
+/// Causes that only the newer rates have: broken where that is hardly chance.
+RuleResult cause_rule(const RatesRevision& before, const RatesRevision& after, double confidence) {
+  RuleResult out{"rates.gained_causes", RuleOutcome::kKept, "none gained"};
+  std::vector<std::pair<double, std::string>> gained;
+  for (const auto& trace : after.traces) {
+    const auto* old = rates_for(before, trace.events);
+    for (const auto& cause : trace.causes) {
+      if (times(*old, cause.text) > 0) continue;
+      const RateCounts none{old->any.runs, 0, old->any.lost};
+      const RateCounts some{trace.any.runs, cause.count, trace.any.lost};
+      const double chance = fisher_worse(none, some);
+      gained.emplace_back(chance, fmt::format("{}: {}, {} (p = {:.2g})\n", trace.events, cause.text,
+                                              change_text(none, some), chance));
+    }
+  }
+  if (gained.empty()) return out;
+  std::stable_sort(gained.begin(), gained.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [chance, text] : gained) out.witness += text;
+  const double tail = (1.0 - confidence) / static_cast<double>(gained.size());
+  const bool broken = gained.front().first <= tail;
+  out.outcome = broken ? RuleOutcome::kBroken : RuleOutcome::kUndecided;
+  out.words = broken ? fmt::format("{} gained, with {:g} % confidence not all by chance",
+                                   gained.size(), 100 * confidence)
+                     : fmt::format("{} seen that the older runs did not show, which may be chance",
+                                   gained.size());
+  return out;
+}
+
+}  // namespace
+
+base::Result<std::vector<RuleResult>> gate_rates(const GateInput& input,
+                                                 const harness::GateRules::Rates& rules,
+                                                 Context& context) {
+  const auto before = load_rates(input.old_path, context);
+  const auto after = load_rates(input.new_path, context);
+  if (!before || !after) return context.sink().already_reported();
+  const auto why_not = not_comparable(*before, *after);
+  std::vector<RuleResult> out;
+  const auto add = [&](const char* name, const auto& rule) {
+    out.push_back(why_not.empty() ? rule() : RuleResult{name, RuleOutcome::kUndecided, why_not});
+  };
+  const auto worse = rules.worse.value_or(harness::GateRules::Worse{});
+  if (rules.worse) add("rates.worse", [&] { return rate_rule(*before, *after, worse); });
+  if (rules.gained_causes) {
+    add("rates.gained_causes", [&] { return cause_rule(*before, *after, worse.confidence); });
+  }
+  return out;
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,204 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+
+#include "compiler/base/json.h"
+#include "tools/diff/gate.h"
+#include "tools/diff/textconv.h"
+
+namespace parallax::tools {
+namespace {
+
+using SortedJson = nlohmann::json;
+using compiler::FactKind;
+
+const SortedJson& part(const SortedJson& object, const char* name) {
+  static const SortedJson kNothing;
+  const auto* member = base::json_member(object, name);
+  return member == nullptr ? kNothing : *member;
+}
+
+std::string text_at(const SortedJson& object, const char* name) {
+  return base::json_as<std::string>(part(object, name)).value_or("");
+}
+
+/// A discrepancy as it is known again in another run: by the events of its trace and its cause.
+struct FoundDiscrepancy {
+  std::string events, cause;
+  std::string sample;  // "1.4"
+  std::int64_t timepoint = 0;
+  std::string words, replay;
+};
+
+struct RunSummary {
+  std::string name, verdict;
+  bool stopped = false;                       // not all traces were looked at
+  std::string judged_by;                      // what decides on discrepancies, as JSON
+  std::map<std::string, std::string> traces;  // verdicts by events
+  std::vector<FoundDiscrepancy> discrepancies;
+};
+
+RunSummary summary_of(const std::string& name, const std::string& report) {
+  const auto json = SortedJson::parse(report);
+  RunSummary out;
+  out.name = name;
+  out.verdict = text_at(json, "verdict");
+  out.stopped = text_at(json, "exploration") == "stopped" ||
+                base::json_as<bool>(part(json, "interrupted")).value_or(false);
+  out.judged_by =
+      base::json_text(SortedJson{part(json, "compare"), part(json, "execution"),
+                                 part(json, "criterion"), part(part(json, "simulator"), "name")});
+  std::map<std::int64_t, std::string> events;
+  for (const auto& trace : part(json, "traces")) {
+    std::string text;
+    for (const auto& event : part(trace, "events")) {
+      const auto word = base::json_as<std::string>(event);
+      text += (text.empty() ? "" : " ") + word.value_or("");
+    }
+    const auto number = base::json_as<std::int64_t>(part(trace, "trace")).value_or(0);
+    events[number] = text;
+    out.traces[text] = text_at(trace, "verdict");
+  }
+  for (const auto& found : part(json, "discrepancies")) {
+    const auto number = base::json_as<std::int64_t>(part(found, "trace")).value_or(0);
+    FoundDiscrepancy one;
+    one.events = events[number];
+    one.cause = text_at(part(found, "cause"), "text");
+    one.sample = fmt::format("{}.{}", number,
+                             base::json_as<std::int64_t>(part(found, "sample")).value_or(0));
+    one.timepoint = base::json_as<std::int64_t>(part(found, "first_divergence")).value_or(0);
+    one.words = text_at(found, "words");
+    one.replay = text_at(found, "replay");
+    out.discrepancies.push_back(std::move(one));
+  }
+  return out;
+}
+
+/// A run is named by its folder or the report in it.
+std::string folder_of(const std::string& path) {
+  const std::filesystem::path file(path);
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) return path;
+  return file.has_parent_path() ? file.parent_path().string() : ".";
+}
+
+bool has(const RunSummary& run, const FoundDiscrepancy& found) {
+  for (const auto& one : run.discrepancies) {
+    if (one.events == found.events && one.cause == found.cause) return true;
+  }
+  return false;
+}
+
+std::string trace_name(const std::string& events) {
+  return events.empty() ? "the trace without events" : fmt::format("the trace {}", events);
+}
+
+/// Why it is not known that the newer run has no further discrepancy; empty: it is known as far as
+/// the older run looked.
+std::string unseen(const RunSummary& before, const RunSummary& after) {
+  if (before.judged_by != after.judged_by) {
+    return "the runs were not judged alike: comparison, execution, criterion or simulator differ";
+  }
+  for (const auto& [events, verdict] : before.traces) {
+    const auto now = after.traces.find(events);
+    if (now == after.traces.end()) {
+      if (after.stopped) {
+        return fmt::format("{} was stopped before {}", after.name, trace_name(events));
+      }
+    } else if (now->second == "inconclusive" && verdict != "inconclusive") {
+      return fmt::format("{} is inconclusive on {}", after.name, trace_name(events));
+    }
+  }
+  for (const auto& [events, verdict] : after.traces) {
+    if (verdict == "inconclusive" && !before.traces.contains(events)) {
+      return fmt::format("{} is inconclusive on {}", after.name, trace_name(events));
+    }
+  }
+  return {};
+}
+
+RuleResult discrepancy_rule(const RunSummary& before, const RunSummary& after, GateReport& report) {
+  RuleResult out{"runs.gained_discrepancies", RuleOutcome::kKept, {}};
+  std::size_t gained = 0;
+  for (const auto& found : after.discrepancies) {
+    if (has(before, found)) continue;
+    if (gained++ == 0) report.drawn = {folder_of(after.name), found.sample, found.timepoint};
+    out.witness += fmt::format("{}: {}\n  {}\n", found.sample, found.words, found.replay);
+  }
+  if (gained > 0) {
+    out.outcome = RuleOutcome::kBroken;
+    out.words = fmt::format("{} gained", gained);
+    return out;
+  }
+  out.words = "none gained";
+  if (auto why = unseen(before, after); !why.empty()) {
+    out.outcome = RuleOutcome::kUndecided;
+    out.words = std::move(why);
+  }
+  return out;
+}
+
+RuleResult run_trace_rule(const RunSummary& before, const RunSummary& after) {
+  RuleResult out{"runs.lost_traces", RuleOutcome::kKept, {}};
+  std::size_t lost = 0;
+  for (const auto& [events, verdict] : before.traces) {
+    if (after.traces.contains(events)) continue;
+    ++lost;
+    out.witness += trace_name(events) + '\n';
+  }
+  if (lost == 0) {
+    out.words = before.stopped ? "none of those that were simulated" : "none lost";
+  } else if (after.stopped) {
+    out.outcome = RuleOutcome::kUndecided;
+    out.words =
+        fmt::format("{} missing, but {} was stopped before all were explored", lost, after.name);
+  } else {
+    out.outcome = RuleOutcome::kBroken;
+    out.words = fmt::format("{} lost", lost);
+  }
+  return out;
+}
+
+RuleResult verdict_rule(const RunSummary& before, const RunSummary& after) {
+  RuleResult out{"runs.worse_verdict", RuleOutcome::kKept,
+                 before.verdict == after.verdict
+                     ? fmt::format("{} as before", after.verdict)
+                     : fmt::format("{}, before {}", after.verdict, before.verdict)};
+  if (after.verdict == before.verdict || before.verdict == "discrepancy") return out;
+  if (after.verdict == "discrepancy") out.outcome = RuleOutcome::kBroken;
+  if (after.verdict == "inconclusive") out.outcome = RuleOutcome::kUndecided;
+  return out;
+}
+
+}  // namespace
+
+base::Result<std::vector<RuleResult>> gate_runs(const GateInput& input,
+                                                const harness::GateRules::Runs& rules,
+                                                GateReport& report, Context& context) {
+  const auto old_report = load_run_report(input.old_path, context);
+  const auto new_report = load_run_report(input.new_path, context);
+  if (!old_report || !new_report) return context.sink().already_reported();
+  const auto before = summary_of(input.old_path, *old_report);
+  const auto after = summary_of(input.new_path, *new_report);
+  std::vector<RuleResult> out;
+  if (rules.gained_discrepancies) out.push_back(discrepancy_rule(before, after, report));
+  if (rules.lost_traces) out.push_back(run_trace_rule(before, after));
+  if (rules.worse_verdict) out.push_back(verdict_rule(before, after));
+  if (!rules.settings) return out;
+  const auto old_facts = load_run_facts(input.old_path, context);
+  const auto new_facts = load_run_facts(input.new_path, context);
+  if (!old_facts || !new_facts) return context.sink().already_reported();
+  const auto facts = compare(*old_facts, *new_facts);
+  const auto text = to_text(facts, FactKind::kDeclaration, "settings", false);
+  const auto head = text.substr(0, text.find('\n'));
+  if (text.empty()) {
+    out.push_back({"runs.settings", RuleOutcome::kKept, "none changed"});
+  } else {
+    out.push_back({"runs.settings", RuleOutcome::kBroken, head.substr(head.find(": ") + 2),
+                   text.substr(head.size() + 1)});
+  }
+  return out;
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,109 @@
+#include "tools/diff/rates_revision.h"
+
+#include <fmt/format.h>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
+
+namespace parallax::tools {
+namespace {
+
+using compiler::Fact;
+using compiler::FactKind;
+using SortedJson = nlohmann::json;
+
+constexpr std::int64_t kMostCounted = 1'000'000'000;
+
+/// The member, of just this type.
+template <typename T>
+std::optional<T> at(const SortedJson& object, const char* name) {
+  const auto* member = base::json_member(object, name);
+  return member == nullptr ? std::nullopt : base::json_as<T>(*member);
+}
+
+/// Below zero: it is no count.
+std::int64_t count_at(const SortedJson& object, const char* name) {
+  const auto count = at<std::int64_t>(object, name).value_or(-1);
+  return count <= kMostCounted ? count : -1;
+}
+
+/// None: it is no such trace.
+std::optional<RevisionRates> rates_of(const SortedJson& json) {
+  const auto events = at<std::string>(json, "events");
+  const auto runs = count_at(json, "runs"), lost = count_at(json, "lost");
+  const auto* any = base::json_member(json, "any");
+  const auto* causes = base::json_member(json, "causes");
+  const auto failures = any == nullptr ? -1 : count_at(*any, "count");
+  if (!events || runs < 0 || lost < 0 || failures < 0 || failures > runs) return std::nullopt;
+  if (causes == nullptr || !causes->is_array()) return std::nullopt;
+  RevisionRates out{*events, {runs + lost, failures, lost}, {}};
+  std::int64_t sum = 0;
+  for (const auto& cause : *causes) {
+    const auto text = at<std::string>(cause, "cause");
+    const auto times = count_at(cause, "count");
+    if (!text || times < 0) return std::nullopt;
+    sum += times;
+    out.causes.push_back({*text, times});
+  }
+  return sum == failures ? std::optional(std::move(out)) : std::nullopt;
+}
+
+}  // namespace
+
+base::Result<RatesRevision> load_rates(const std::string& path, Context& context) {
+  const auto text = base::read_file(path, context.sink());
+  if (!text) return context.sink().already_reported();
+  const auto refuse = [&](const std::string& why) {
+    return context.sink().error_about(base::DiagnosticCode::kNoRatesResult, path, why);
+  };
+  const auto json = SortedJson::parse(*text, nullptr, false);
+  if (!json.is_object()) return refuse("it is no JSON object");
+  const auto* traces = base::json_member(json, "traces");
+  const auto complete = at<bool>(json, "complete");
+  const auto compared = at<std::string>(json, "compare");
+  if (at<std::string>(json, "status") != "ok" || !complete || !compared || traces == nullptr ||
+      !traces->is_array()) {
+    return refuse("it lacks `status: ok`, `complete`, `compare` or `traces`");
+  }
+  RatesRevision out;
+  out.name = path;
+  out.scenario = at<std::string>(json, "scenario").value_or("");
+  out.compare = *compared;
+  out.seed = at<std::uint64_t>(json, "seed").value_or(0);
+  out.complete = *complete;
+  out.fixed = at<std::string>(json, "intervals") != "anytime";
+  for (std::size_t i = 0; i < traces->size(); ++i) {
+    auto trace = rates_of((*traces)[i]);
+    if (!trace) return refuse(fmt::format("the counts of entry {} of `traces` are none", i + 1));
+    for (const auto& other : out.traces) {
+      if (other.events == trace->events) return refuse("a trace stands there twice");
+    }
+    out.traces.push_back(*std::move(trace));
+  }
+  return out;
+}
+
+std::vector<Fact> rates_facts(const RatesRevision& rates) {
+  std::vector<Fact> out;
+  const auto add = [&](FactKind kind, const std::string& key, const std::string& rest) {
+    const auto text = key + ": " + rest;
+    out.push_back({kind, key, text, text, {rates.name, 0}});
+  };
+  add(FactKind::kDeclaration, "scenario", rates.scenario);
+  add(FactKind::kDeclaration, "seed", std::to_string(rates.seed));
+  add(FactKind::kDeclaration, "compare", rates.compare);
+  if (!rates.complete) add(FactKind::kDeclaration, "complete", "no");
+  for (const auto& trace : rates.traces) {
+    const auto name = fmt::format("trace [{}]", trace.events);
+    add(FactKind::kDeclaration, name,
+        fmt::format("{} runs, {} lost", trace.any.runs - trace.any.lost, trace.any.lost));
+    add(FactKind::kAxiom, name, fmt::format("{} discrepancies", trace.any.failures));
+    for (const auto& cause : trace.causes) {
+      add(FactKind::kAxiom, fmt::format("{}, {}", name, cause.text), std::to_string(cause.count));
+    }
+  }
+  return out;
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "compiler/compare/fact.h"
+#include "harness/confidence/rate_evidence.h"
+#include "tools/app/context.h"
+
+namespace parallax::tools {
+
+/// What `parallax rates --json` found of one trace.
+struct RevisionRates {
+  std::string events;
+  harness::RateCounts any;
+  struct Cause {
+    std::string text;
+    std::int64_t count = 0;
+  };
+  std::vector<Cause> causes;
+};
+
+struct RatesRevision {
+  std::string name;  // the file
+  std::string scenario, compare;
+  std::uint64_t seed = 0;
+  bool complete = false;  // all runs were made
+  bool fixed = true;      // their number did not depend on what they came to
+  std::vector<RevisionRates> traces;
+};
+
+/// Reports kNoRatesResult for a file that is none, or whose counts contradict each other.
+base::Result<RatesRevision> load_rates(const std::string& path, Context& context);
+
+/// What they say: what was counted as declarations, the counts as axioms.
+std::vector<compiler::Fact> rates_facts(const RatesRevision& rates);
+
+}  // namespace parallax::tools
