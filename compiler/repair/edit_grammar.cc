@@ -177,7 +177,7 @@ class EditMaker {
       }
       for (const auto& [e, f] : exchanged(form, parts)) replace(i, effect, atom(kind, e, f), 2);
     }
-    for (const auto& name : fluents_) {
+    for (const auto& name : differs ? fluents_for(form.event_symbol, kind) : fluents_) {
       const auto symbol = typed_.find_symbol(name);
       if (!symbol || typed_.symbols[*symbol].kind != SymbolKind::kFluent) continue;
       if (tree[parts.fluent].kind == NodeKind::kApply && tree.name(tree[parts.fluent]) == name) {
@@ -188,6 +188,38 @@ class EditMaker {
         replace(i, effect, atom(kind, event, term), 2 + oddity);
       }
     }
+  }
+
+  /// What an effect that is wrong may be about instead: fluents that differed, and such that may
+  /// not have shown, of which the event has no axiom of that kind: those that some axiom releases,
+  /// so that the model follows them anyway, and those that it changed in some run all the same.
+  std::set<std::string> fluents_for(const std::string& event, const std::string& kind) const {
+    auto out = fluents_;
+    if (kind == "Releases") return out;
+    std::set<std::string> own, hidden;
+    for (const auto& form : forms_) {
+      if (form.kind != AxiomForm::Kind::kEffects) continue;
+      for (const auto effect : form.effects) {
+        const auto& tree = ast(form);
+        const auto& fluent = tree[effect_parts(tree, effect)->fluent];
+        if (fluent.kind != NodeKind::kApply) continue;
+        const std::string name(tree.name(fluent));
+        if (tree.name(tree[effect]) == "Releases") hidden.insert(name);
+        if (form.event_symbol == event && tree.name(tree[effect]) == kind) own.insert(name);
+      }
+    }
+    const auto changed = scope_.changed.find(event);
+    if (changed != scope_.changed.end()) {
+      for (const auto& [name, holds] : changed->second) {
+        const auto symbol = typed_.find_symbol(name);
+        const bool inertial = symbol && !typed_.symbols[*symbol].noninertial;
+        if (inertial && holds == (kind == "Initiates")) hidden.insert(name);
+      }
+    }
+    for (const auto& name : hidden) {
+      if (!own.contains(name)) out.insert(name);
+    }
+    return out;
   }
 
   /// Terms of a symbol with these variables and with constants.
@@ -426,6 +458,7 @@ class EditMaker {
         constants = true;
       }
     }
+    edit.names_constants = constants;
     if (!relevance_.covers(kind, event, fluent, of_event, choice, edit.variables)) return;
     const auto list = [](const std::vector<std::string>& of) {
       std::string text;

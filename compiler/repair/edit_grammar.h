@@ -47,6 +47,7 @@ struct Edit {
   std::vector<ConditionLiteral> given;  // kAddEffect: conditions that it has in any case
   std::string words;                    // kAddEffect of several effects: "ends `F` and begins `G`"
   std::vector<Sentence> sentences;      // kDelay
+  bool names_constants = false;         // kAddEffect: in the place of variables
   /// How far it is from what people write and forget: constants where a variable would do, a
   /// condition that no other axiom of the event has. Smaller is tried first among equals.
   int oddity = 0;
@@ -69,6 +70,8 @@ struct EditScope {
     std::vector<Late> late = {};
   };
   std::vector<Step> steps;
+  /// By event symbol: fluents, by symbol, that became so with it in some run, wherever it happened.
+  std::map<std::string, std::set<std::pair<std::string, bool>>> changed;
   /// Other events, and fluents, whose axioms may be to blame as well.
   std::set<std::string> more_events, more_fluents;
   /// An event may leave open what it does: `Releases`.

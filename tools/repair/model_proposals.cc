@@ -66,9 +66,11 @@ class ModelSearch {
   /// First what the steps themselves are about, then what led there; more edits last.
   void search_all(Mode mode) {
     if (search(mode, 1)) {
-      // A missing effect has its condition at once, if that tells more of the runs.
+      // A missing effect has its condition at once, if that tells more of the runs, or says with
+      // variables what else takes constants.
       const auto best = most_whole();
-      if (best < input_.runs && !context_.stopped()) search(mode, 2, best);
+      if (best == input_.runs || context_.stopped()) return;
+      only_constants_ ? search(mode, 2, std::nullopt, true) : search(mode, 2, best);
       return;
     }
     if (context_.stopped() || search(Mode::kWide, 1) || context_.stopped()) return;
@@ -97,6 +99,7 @@ class ModelSearch {
         out.more_events.insert(compiler::symbol_of(seen.steps[t].event));
       }
     }
+    for (const auto& seen : evidence_) add_changed(seen, out);
     out.open_outcomes = mode == Mode::kOpen;
     out.open_refused = mode == Mode::kExact;
     if (!wide) return out;
@@ -107,6 +110,18 @@ class ModelSearch {
       }
     }
     return out;
+  }
+
+  /// Also behind the parting: it tells what an event does, if not what the model says of it.
+  static void add_changed(const Evidence& seen, EditScope& scope) {
+    for (std::size_t t = 0; t + 1 < seen.states.size(); ++t) {
+      for (const auto& [fluent, holds] : seen.states[t + 1]) {
+        const auto before = seen.states[t].find(fluent);
+        if (before == seen.states[t].end() || before->second == holds) continue;
+        scope.changed[compiler::symbol_of(seen.steps[t].event)].emplace(compiler::symbol_of(fluent),
+                                                                        holds);
+      }
+    }
   }
 
   /// What was seen behind the step as the model says, only later.
@@ -128,8 +143,10 @@ class ModelSearch {
     return out;
   }
 
-  /// True if there are proposals that admit more than `whole` runs to their end.
-  bool search(Mode mode, std::size_t size, std::optional<std::size_t> whole = std::nullopt) {
+  /// True if there are proposals that admit more than `whole` runs to their end; `conditional`: of
+  /// effects with a condition alone.
+  bool search(Mode mode, std::size_t size, std::optional<std::size_t> whole = std::nullopt,
+              bool conditional = false) {
     const auto& evidence = mode == Mode::kCautious ? cautious_ : evidence_;
     auto& known = searches_[mode];
     if (!known) {
@@ -146,7 +163,16 @@ class ModelSearch {
       }
     }
     if (!known->search) return false;
-    return take(*known, known->search->find(size, kMostSets), evidence, mode, whole);
+    auto found = known->search->find(size, kMostSets);
+    const auto& edits = known->guarded->edits;
+    if (conditional) {
+      std::erase_if(found.sets, [&](const auto& set) {
+        return std::none_of(set.begin(), set.end(), [&](std::size_t edit) {
+          return edits[edit].kind == Edit::Kind::kAddCondition;
+        });
+      });
+    }
+    return take(*known, found, evidence, mode, whole);
   }
 
   /// A model with the edits in it, compiled.
@@ -264,6 +290,9 @@ class ModelSearch {
         --proposal.size;
         break;
       }
+      only_constants_ = (tried.empty() || only_constants_) &&
+                        std::all_of(set.begin(), set.end(),
+                                    [&](auto edit) { return edits[edit].names_constants; });
       proposal.oddity = oddity(set);
       proposal.words = texts.words(set);
       proposal.files = changed_files(domain_.files, changes);
@@ -276,6 +305,7 @@ class ModelSearch {
       tried.push_back(std::move(proposal));
     }
     const bool any = !tried.empty();
+    if (!any) only_constants_ = false;
     auto& all = result_.proposals;
     all.insert(all.end(), std::make_move_iterator(tried.begin()),
                std::make_move_iterator(tried.end()));
@@ -322,6 +352,7 @@ class ModelSearch {
   std::map<Mode, std::shared_ptr<const Guarded>> guarded_;
   std::map<Mode, std::unique_ptr<Prepared>> searches_;
   FoundProposals result_;
+  bool only_constants_ = false;  // of what was taken last: all are effects that name constants
 };
 
 }  // namespace
