@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <optional>
 #include <set>
@@ -18,8 +17,6 @@ using compiler::SymbolKind;
 
 namespace {
 
-/// Bits, of which one is tried after the other as OpeningProblem::most_outside.
-constexpr std::array<double, 4> kMostOutside = {1e9, 160.0, 80.0, 40.0};
 constexpr double kUnexplained = 60.0;  // bits: what no rule says
 
 /// What keeps an effect out of where an outcome is left open, in the words of the effect; none if

@@ -122,14 +122,18 @@ class OpeningFinder {
       examples.push_back(&example);
     }
     const auto score = [&](int cost, const ExampleSet& sure, const ExampleSet& perhaps) {
-      // Of another rule, which covers what is open and not covered, no more is known.
+      // What is open and not covered takes another rule, of which no more is known.
       Counts inside, outside, left = elsewhere;
       for (std::size_t i = 0; i < instances.size(); ++i) {
         const bool needed = wanted_here.contains(i) && !sure.contains(i);
-        (perhaps.contains(i) ? inside : needed ? left : outside).add(*examples[i]);
-        if (needed && perhaps.contains(i)) left.add(*examples[i]);
+        if (perhaps.contains(i)) inside.add(*examples[i]);
+        if (needed) left.add(*examples[i]);
+        if (!needed && !perhaps.contains(i)) outside.add(*examples[i]);
       }
-      return cost + inside.bits() + std::min(outside.bits(), problem_.most_outside) + left.bits() +
+      outside.held += left.held;
+      outside.failed += left.failed;
+      return cost + inside.bits() +
+             std::max(left.bits(), std::min(outside.bits(), problem_.most_outside)) +
              (left.all() > 0 ? kAnotherRule : 0);
     };
     const auto take = [&](const Candidate& candidate) {
@@ -209,6 +213,38 @@ std::vector<LearnedRule> find_openings(const OpeningProblem& problem,
                                        const std::vector<std::vector<Truth>>& states,
                                        const std::atomic<bool>& stop) {
   return OpeningFinder(problem, vocabulary, states, stop).find();
+}
+
+std::vector<LearnedRule> shortest_exceptions(OpeningProblem problem,
+                                             const LearnVocabulary& vocabulary,
+                                             const std::vector<std::vector<Truth>>& states,
+                                             const std::atomic<bool>& stop) {
+  std::vector<LearnedRule> best;
+  std::optional<double> length;
+  for (const auto most : kMostOutside) {
+    if (stop.load()) break;
+    problem.most_outside = most;
+    auto rules = find_openings(problem, vocabulary, states, stop);
+    std::vector<std::optional<std::size_t>> of_rule(problem.examples.size());
+    double here = 0.0;
+    for (std::size_t k = 0; k < rules.size(); ++k) {
+      here += rules[k].cost;
+      for (std::size_t i = 0; i < of_rule.size(); ++i) {
+        const auto& example = problem.examples[i];
+        std::vector<std::size_t> binding;
+        const bool covers =
+            !of_rule[i] &&
+            rules[k].bind(example.event_arguments, example.fluent_arguments, binding) &&
+            value_of(rules[k].units, vocabulary, states[example.state], binding) != Truth::kFalse;
+        if (covers) of_rule[i] = k;
+      }
+    }
+    here += bits_of(problem, of_rule);
+    if (length && here >= *length) continue;
+    length = here;
+    best = std::move(rules);
+  }
+  return best;
 }
 
 }  // namespace parallax::tools

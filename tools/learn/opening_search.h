@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <optional>
@@ -30,6 +31,9 @@ struct OpeningProblem {
   double most_outside = 0.0;
 };
 
+/// Bits, of which one is tried after the other as OpeningProblem::most_outside.
+constexpr std::array<double, 5> kMostOutside = {1e9, 160.0, 80.0, 40.0, 0.0};
+
 /// The bits that tell which way examples went of which nothing else is known but the rule that
 /// covers them; `rules` of each example, by its place, or none.
 double bits_of(const OpeningProblem& problem, const std::vector<std::optional<std::size_t>>& rules);
@@ -43,5 +47,11 @@ std::vector<LearnedRule> find_openings(const OpeningProblem& problem,
                                        const LearnVocabulary& vocabulary,
                                        const std::vector<std::vector<Truth>>& states,
                                        const std::atomic<bool>& stop);
+/// The same for kAdmits, with the value of most_outside that gives the shortest description:
+/// nothing else explains what is not covered, and nothing has to.
+std::vector<LearnedRule> shortest_exceptions(OpeningProblem problem,
+                                             const LearnVocabulary& vocabulary,
+                                             const std::vector<std::vector<Truth>>& states,
+                                             const std::atomic<bool>& stop);
 
 }  // namespace parallax::tools

@@ -248,7 +248,7 @@ void StateAxioms::learn_exceptions(Part& part, const std::vector<SeenState>& sta
       problem.examples.push_back(std::move(example));
     }
   }
-  part.exceptions = find_openings(problem, vocabulary_, truths, stop);
+  part.exceptions = shortest_exceptions(std::move(problem), vocabulary_, truths, stop);
 }
 
 std::string StateAxioms::weakened(const Part& part) const {
