@@ -129,7 +129,7 @@ base::Result<GateRules> load_gate_rules(const std::filesystem::path& path, base:
   gate.admit_beside(path);
   const auto root = load_yaml(path, gate, files, sink);
   if (!root) return sink.already_reported();
-  YamlFields fields(*root, "the rules", sink);
+  YamlFields fields(*root, "the file of rules", sink);
   fields.only({Key::kModels, Key::kPlans, Key::kTraces, Key::kRuns, Key::kRates, Key::kUndecided});
   GateRules out;
   out.source = root->range;
