@@ -198,8 +198,15 @@ void append_to_history(const SuiteRecord& record, const SuiteIdentity& suite,
 
 /// May the history be appended to? Asked before the first case.
 bool may_append(const SuiteOptions& options, Invocation& invocation) {
+  if (options.history.empty()) return true;
   std::error_code error;
-  if (options.history.empty() || !std::filesystem::exists(options.history, error)) return true;
+  const auto status = std::filesystem::symlink_status(options.history, error);
+  if (std::filesystem::is_symlink(status)) {
+    invocation.sink().error_about(base::DiagnosticCode::kFileNotWritable, options.history,
+                                  "it is a link; name the file itself");
+    return false;
+  }
+  if (!std::filesystem::exists(status)) return true;
   if (!base::check_output(options.history, invocation.files(), invocation.sink())) return false;
   return read_history(options.history, invocation.sink()).has_value();
 }

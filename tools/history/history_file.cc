@@ -201,7 +201,8 @@ base::Result<History> read_history(const std::filesystem::path& path, base::Diag
 
 base::Status append_history(const std::filesystem::path& path, const HistoryLine& line,
                             base::DiagnosticSink& sink) {
-  const base::Descriptor fd(::open(path.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0644));
+  const base::Descriptor fd(
+      ::open(path.c_str(), O_RDWR | O_APPEND | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644));
   if (fd.get() < 0 || ::flock(fd.get(), LOCK_EX) != 0) return cannot_write(path, sink);
   auto text = encode(line) + '\n';
   if (ends_inside(fd.get())) text.insert(0, "\n");

@@ -67,7 +67,8 @@ std::vector<MeasuredRate> decode_rates(std::string_view text);
 base::Result<History> read_history(const std::filesystem::path& path, base::DiagnosticSink& sink);
 
 /// Appends one line, as one write under a lock, so that suites may do so at the same time. Behind
-/// a line that was half written it begins a new one. Makes the file if there is none.
+/// a line that was half written it begins a new one. Makes the file if there is none; a link is not
+/// followed.
 base::Status append_history(const std::filesystem::path& path, const HistoryLine& line,
                             base::DiagnosticSink& sink);
 

@@ -25,7 +25,7 @@ class BisectFixture : public GitFixture {
     write(".parallax-root", "");
     write("s/s.yaml",
           "include: ../common.yaml\nmodel: [m.e, ../start.e]\nplan: p.lisp\nbind: ../robot.bind\n"
-          "horizon: 6\ncriterion: {epsilon: 0.5, confidence: 0.9}\nconstraints:\n"
+          "horizon: 6\ncriterion: {epsilon: 0.5, confidence: 0.7}\nconstraints:\n"
           "  - \"{region} (Happens(Place(region),time-1) & HoldsAt(BoxIn(region),time))\"\n");
     right();
   }

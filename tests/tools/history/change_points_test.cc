@@ -210,6 +210,44 @@ TEST_CASE("appended to by many at once, no line is lost or mixed") {
   CHECK(read->unreadable.empty());
 }
 
+TEST_CASE("the exact test against sums over all tables, and with as many runs as one likes") {
+  const auto choose = [](std::int64_t n, std::int64_t k) {
+    double out = 1.0;
+    for (std::int64_t i = 1; i <= k; ++i) {
+      out *= static_cast<double>(n - k + i) / static_cast<double>(i);
+    }
+    return out;
+  };
+  for (const std::int64_t a : {0, 1, 4, 9, 12}) {
+    for (const std::int64_t b : {0, 3, 8, 15}) {
+      const std::int64_t runs_a = 12, runs_b = 15, failures = a + b;
+      double more = 0.0, fewer = 0.0;
+      for (std::int64_t k = std::max<std::int64_t>(0, failures - runs_a);
+           k <= std::min(failures, runs_b); ++k) {
+        const double p =
+            choose(runs_b, k) * choose(runs_a, failures - k) / choose(runs_a + runs_b, failures);
+        if (k >= b) more += p;
+        if (k <= b) fewer += p;
+      }
+      const double expected = std::min(1.0, 2.0 * std::min(more, fewer));
+      CAPTURE(a);
+      CAPTURE(b);
+      const auto points = changes_in(history_of({line("1", "passed", {rate(a, runs_a)}),
+                                                 line("2", "passed", {rate(b, runs_b)})}))
+                              .points;
+      CHECK(points.empty() == (expected >= 0.05));
+      if (!points.empty()) CHECK(points[0].p_value == doctest::Approx(expected).epsilon(1e-9));
+    }
+  }
+  const auto many = std::int64_t{1'000'000'000};
+  CHECK(changes_in(history_of({line("1", "passed", {rate(many / 3, many)}),
+                               line("2", "passed", {rate(many / 3 + 1, many)})}))
+            .points.empty());
+  CHECK(changes_in(history_of({line("1", "passed", {rate(many / 3, many)}),
+                               line("2", "passed", {rate(many / 2, many)})}))
+            .points.size() == 1);
+}
+
 TEST_CASE("rates that are none are left out") {
   const auto read = decode_rates(
       R"([{"of":"x","count":3,"runs":2},{"of":"x","count":-1,"runs":2},{"of":"","count":1,"runs":2},

@@ -134,6 +134,9 @@ TEST_CASE("what is no history is refused before the suite begins") {
   cli.write("h", "");
   CHECK(cli.parallax({"report", "--history", "h", "-o", "h.html"}).code == 0);
   CHECK(cli.parallax({"report", "--history", "h", "out"}).code == 2);
+  fs::create_symlink("h", cli.folder() / "link");
+  CHECK(cli.suite({"--update-goldens", "--history", "link"}).code == 2);
+  CHECK(cli.read("h").empty());
   cli.write("h.html", "mine");
   CHECK(cli.parallax({"report", "--history", "h", "-o", "h.html"}).code == 2);
   CHECK(cli.read("h.html") == "mine");
