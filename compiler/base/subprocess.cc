@@ -171,6 +171,7 @@ Captured capture(const std::vector<std::string>& command, const CaptureOptions& 
   spawning.output = out.write.get();
   spawning.errors = err.write.get();
   spawning.ends_with_us = options.ends_with_us;
+  spawning.cpu_limit_s = options.cpu_limit_s;
   const auto child = spawn(command, spawning);
   out.write.close();
   err.write.close();

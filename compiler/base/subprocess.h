@@ -49,6 +49,7 @@ struct CaptureOptions {
   bool ends_with_us = false;                   // as in SpawnOptions
   bool without_input = false;                  // reads /dev/null instead of our standard input
   std::size_t max_errors = std::string::npos;  // bytes of standard error that are kept: the first
+  std::optional<std::uint64_t> cpu_limit_s = {};  // as in SpawnOptions
   /// Asked many times a second while the program runs; a signal that it names is sent.
   std::function<int()> signal_when = {};
 };

@@ -88,8 +88,10 @@ bool read_precondition(const Ast& ast, AxiomForm& form) {
   return !form.event_symbol.empty();
 }
 
-std::optional<AxiomForm> read_form(const Ast& ast, const Statement& statement) {
+/// Variables, condition and head of a formula.
+AxiomForm outline(const Ast& ast, const Statement& statement) {
   AxiomForm form;
+  form.kind = AxiomForm::Kind::kOther;
   auto node = statement.formula;
   while (ast[node].kind == NodeKind::kForall) {
     const auto count = ast[node].child_count;
@@ -104,10 +106,16 @@ std::optional<AxiomForm> read_form(const Ast& ast, const Statement& statement) {
     form.conjuncts = conjuncts_of(ast, *form.condition);
     form.head = ast.child(ast[node], 1);
   }
+  return form;
+}
+
+AxiomForm read_form(const Ast& ast, const Statement& statement) {
+  auto form = outline(ast, statement);
+  form.kind = AxiomForm::Kind::kEffects;
   if (read_effects(ast, form)) return form;
   form.event_symbol.clear();
   if (read_precondition(ast, form)) return form;
-  return std::nullopt;
+  return outline(ast, statement);
 }
 
 }  // namespace
@@ -131,18 +139,23 @@ std::uint32_t end_of_formula(std::string_view text, std::uint32_t end) {
   }
 }
 
-std::vector<AxiomForm> axiom_forms(const ModelAst& model, const base::SourceFiles& files) {
+std::vector<AxiomForm> all_forms(const ModelAst& model, const base::SourceFiles& files) {
   std::vector<AxiomForm> out;
   for (const auto& place : model.order) {
     const auto& statement = model.statement(place);
     if (model.files[place.file].built_in || statement.kind != StatementKind::kFormula) continue;
     auto form = read_form(model.ast(place), statement);
-    if (!form) continue;
-    form->place = place;
-    form->begin = statement.source.begin;
-    form->end = end_of(model, files, place);
-    out.push_back(*std::move(form));
+    form.place = place;
+    form.begin = statement.source.begin;
+    form.end = end_of(model, files, place);
+    out.push_back(std::move(form));
   }
+  return out;
+}
+
+std::vector<AxiomForm> axiom_forms(const ModelAst& model, const base::SourceFiles& files) {
+  auto out = all_forms(model, files);
+  std::erase_if(out, [](const auto& form) { return form.kind == AxiomForm::Kind::kOther; });
   return out;
 }
 

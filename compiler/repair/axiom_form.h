@@ -22,9 +22,10 @@ struct TextChange {
 
 /// A formula of a model whose parts an edit can name: effects of one event,
 /// `[variables] condition -> Initiates(E,F,time) & ...`, or what an event needs,
-/// `[variables] Happens(E,time) & ... -> ...`.
+/// `[variables] Happens(E,time) & ... -> ...`. Of other formulas no more than the condition is
+/// read.
 struct AxiomForm {
-  enum class Kind : std::uint8_t { kEffects, kPrecondition };
+  enum class Kind : std::uint8_t { kEffects, kPrecondition, kOther };
   Kind kind = Kind::kEffects;
   ModelAst::Place place;
   std::uint32_t begin = 0, end = 0;    // of its text, with label and period
@@ -38,8 +39,9 @@ struct AxiomForm {
   std::string time;  // the variable
 };
 
-/// The formulas of the model's own files (not of the foundations) that have such a form, in order.
-/// Formulas of other forms are left alone.
+/// The formulas of the model's own files (not of the foundations), in order.
+std::vector<AxiomForm> all_forms(const ModelAst& model, const base::SourceFiles& files);
+/// Without those of other forms.
 std::vector<AxiomForm> axiom_forms(const ModelAst& model, const base::SourceFiles& files);
 
 /// The event, fluent and time of `Initiates(E,F,time)` and its like.

@@ -154,8 +154,9 @@ std::string moved_text(const PlanText& plan, DatumId form, std::size_t column) {
 
 bool is_layout(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-/// Takes a statement away together with the blanks in front of it.
-TextChange taken_away(const PlanText& plan, DatumId form) {
+}  // namespace
+
+TextChange statement_dropped(const PlanText& plan, DatumId form) {
   const auto& source = plan.source(form);
   const auto text = plan.files()[source.file].text();
   auto begin = source.begin;
@@ -172,8 +173,6 @@ TextChange taken_away(const PlanText& plan, DatumId form) {
   if (comment && end < text.size() && text[end] == '\n') ++end;
   return {source.file, begin, end, ""};
 }
-
-}  // namespace
 
 std::vector<TextChange> plan_changes(const PlanText& plan, const std::vector<PlanEdit>& edits) {
   std::vector<TextChange> out;
@@ -195,7 +194,7 @@ std::vector<TextChange> plan_changes(const PlanText& plan, const std::vector<Pla
         break;
       case PlanEdit::Kind::kMove:
         in_front(moved_text(plan, *edit.moved, column));
-        out.push_back(taken_away(plan, *edit.moved));
+        out.push_back(statement_dropped(plan, *edit.moved));
         break;
       case PlanEdit::Kind::kGuard:
       case PlanEdit::Kind::kRetry:
@@ -207,9 +206,6 @@ std::vector<TextChange> plan_changes(const PlanText& plan, const std::vector<Pla
   return out;
 }
 
-namespace {
-
-/// The form as written, on one line and not too long, with its place.
 std::string form_words(const PlanText& plan, DatumId form) {
   std::string text;
   for (const char c : plan.written(form)) {
@@ -223,8 +219,6 @@ std::string form_words(const PlanText& plan, DatumId form) {
   if (text.size() > kMost) text = text.substr(0, kMost - 3) + "...";
   return fmt::format("`{}` ({})", text, plan.place(form));
 }
-
-}  // namespace
 
 std::string plan_edit_words(const PlanText& plan, const PlanEdit& edit) {
   switch (edit.kind) {

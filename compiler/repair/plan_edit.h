@@ -40,6 +40,11 @@ std::vector<TextChange> plan_changes(const PlanText& plan, const std::vector<Pla
 /// (plan2.lisp:59)".
 std::string plan_edit_words(const PlanText& plan, const PlanEdit& edit);
 
+/// Takes a statement or a clause away together with the blanks in front of it.
+TextChange statement_dropped(const PlanText& plan, DatumId form);
+/// The form as written, on one line and not too long, with its place.
+std::string form_words(const PlanText& plan, DatumId form);
+
 /// A plan that has all edits in it, each behind a question of its own: edit number i is made where
 /// the fluent plan_edit_fluent(i) holds. Conditions of insertions are left out.
 struct GuardedPlan {

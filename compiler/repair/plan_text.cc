@@ -75,6 +75,21 @@ PlanText::PlanText(const base::SourceFiles& files, LispText text)
 
 std::optional<DatumId> PlanText::parent(DatumId form) const { return parents_[form.index()]; }
 
+bool PlanText::is_written(DatumId form) const {
+  if (parent(form)) return true;
+  return std::find(text_.forms.begin(), text_.forms.end(), form) != text_.forms.end();
+}
+
+bool PlanText::is_quoted(DatumId form) const {
+  auto inner = form;
+  for (auto around = parent(form); around; inner = *around, around = parent(*around)) {
+    const auto head = text_.data.head(*around);
+    if (head == "quote" || head == "quasiquote") return true;
+    if (head && is_function_head(*head) && place_in_parent(inner) < 3) return true;
+  }
+  return false;
+}
+
 std::size_t PlanText::place_in_parent(DatumId form) const {
   const auto items = text_.data.children(*parent(form));
   return static_cast<std::size_t>(std::find(items.begin(), items.end(), form) - items.begin());

@@ -75,18 +75,28 @@ class PlanText {
   /// The types of the designators that are performed in a form, in functions that it calls as well.
   std::set<std::string> performed_types(DatumId form) const;
   bool is_perform(DatumId form) const { return text_.data.head(form) == "perform"; }
+  /// Of a function that the plan defines.
+  bool is_call(DatumId form) const {
+    const auto head = text_.data.head(form);
+    return head && functions_.contains(*head);
+  }
+  std::optional<DatumId> parent(DatumId form) const;
+  /// Does it belong to the forms of the text?
+  bool is_written(DatumId form) const;
+  /// Does it stand in a quoted list, or is it the name and parameters of a definition?
+  bool is_quoted(DatumId form) const;
+  bool is_global(const std::string& name) const { return globals_.contains(name); }
   /// How the plan writes `perform`, `an` and so on: with the prefix that it uses.
   std::string prefixed(std::string_view symbol) const;
 
  private:
   PlanText(const base::SourceFiles& files, LispText text);
-  std::optional<DatumId> parent(DatumId form) const;
+  bool is_constant(DatumId form) const;
   std::size_t place_in_parent(DatumId form) const;
   bool is_definition(DatumId form) const;
   void collect_symbols(DatumId form, std::set<std::string>& out) const;
   std::vector<std::string> bound_by(DatumId form) const;
   std::vector<std::string> values_of(const std::string& variable, DatumId where) const;
-  bool is_constant(DatumId form) const;
   void add_types(DatumId form, std::set<std::string>& out, std::set<std::string>& seen) const;
   void add_called(DatumId form, std::set<std::string>& seen) const;
   std::string one_line(DatumId form, const std::map<std::string, std::string>& values) const;

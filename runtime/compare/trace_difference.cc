@@ -226,7 +226,7 @@ class Direction {
         explain();
         out.witness = std::move(witness_);
       }
-      list(out.count);
+      if (!options_.any_difference) list(out.count);
     } else if (out.answer == Answer::kNone) {
       out.count.exact = true;
     }
@@ -415,9 +415,11 @@ TraceDifference compare_traces(ComparedModel& first, ComparedModel& second,
   const auto of_b =
       second.definitions(out.vocabulary, &SharedAtom::second, out.horizon, options.stop);
   out.lost = Direction(a, b, out.vocabulary, of_a, of_b, options.second_edited, options).run();
+  if (options.any_difference && out.lost.answer == Answer::kFound) return out;
   out.gained =
       Direction(b, a, exchanged(out.vocabulary), of_b, of_a, options.first_edited, options).run();
   const bool open = !out.lost.count.exact || !out.gained.count.exact;
+  if (options.any_difference) return out;
   if (open && out.vocabulary.is_same()) count_with_graphs(a, b, options, out);
   return out;
 }

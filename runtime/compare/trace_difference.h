@@ -60,6 +60,9 @@ struct DifferenceOptions {
   GraphLimits graph = {2'000, 4'000};  // for counting beyond `list_limit`
   /// Without witnesses, which take more time than to count.
   bool counts_only = false;
+  /// One difference is enough: nothing is counted, and where a trace was lost none that was gained
+  /// is looked for.
+  bool any_difference = false;
   /// By origin of each model: belongs to an edited axiom.
   std::vector<bool> first_edited, second_edited;
   const std::atomic<bool>* stop = nullptr;

@@ -65,7 +65,7 @@ struct RunOptions {
   bool until_covered = false;
   double confidence = 0.0;  // 0: as the scenario says
   double epsilon = 0.0;
-  std::int64_t max_runs = 0;
+  std::int64_t max_runs = 0, max_traces = 0;
   std::string record = "discrepancies";
   std::string hits = "first";
   bool split_initial = false;
@@ -93,6 +93,7 @@ void apply(const RunOptions& options, harness::Scenario& scenario) {
   if (options.until_covered) scenario.until_covered = true;
   if (options.epsilon > 0) criterion.epsilon = options.epsilon;
   if (options.max_runs > 0) scenario.limits.max_runs = options.max_runs;
+  if (options.max_traces > 0) scenario.limits.max_traces = options.max_traces;
 }
 
 harness::CampaignOptions campaign_options(const RunOptions& options, const ScenarioModel& loaded,
@@ -296,6 +297,8 @@ Command run_command() {
       .check(FiniteNumber{1e-6, 0.5});
   command.option("--max-runs", options->max_runs, "Simulations per trace before giving up")
       .check(WholeNumber{1, 1'000'000});
+  command.option("--max-traces", options->max_traces, "Traces that are simulated at most")
+      .check(WholeNumber{1, 1'000'000'000});
   command
       .option(
           "--record", options->record,

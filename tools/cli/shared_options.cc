@@ -8,6 +8,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/subprocess.h"
+#include "compiler/base/whole_number.h"
 #include "runtime/graph/model_traces.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
@@ -213,6 +214,14 @@ std::function<void(const harness::CampaignProgress&)> progress_on_terminal(
                             progress.trace, progress.done, progress.needed, progress.runs_per_s,
                             left));
   };
+}
+
+std::optional<double> share_of(std::string text) {
+  if (text.ends_with('%')) text.pop_back();
+  const auto percent = base::whole_number<std::uint32_t>(text);
+  constexpr std::uint32_t kAll = 100;
+  if (!percent || *percent > kAll) return std::nullopt;
+  return static_cast<double>(*percent) / kAll;
 }
 
 }  // namespace parallax::tools

@@ -66,4 +66,7 @@ base::Result<std::optional<harness::SampleId>> parse_sample_option(const std::st
 std::function<void(const harness::CampaignProgress&)> progress_on_terminal(
     const CommonOptions& options);
 
+/// "5%" or "5" as 0.05; nothing if it is no share from 0 to 100 %.
+std::optional<double> share_of(std::string text);
+
 }  // namespace parallax::tools

@@ -11,6 +11,7 @@
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
+#include "tools/cli/mutate_suite.h"
 #include "tools/cli/shared_options.h"
 #include "tools/history/change_points.h"
 #include "tools/history/git.h"
@@ -41,6 +42,7 @@ struct SuiteOptions {
   bool no_cache = false;
   bool fast = false;
   CommandPermission commands;
+  MutateOptions mutants;
 };
 
 std::string environment(const std::string& name) {
@@ -120,15 +122,6 @@ bool may_write(const SuiteOptions& options, Invocation& invocation) {
   }
   return may_replace(options.junit, "--junit", is_junit, invocation) &&
          may_replace(options.markdown, "--markdown", is_markdown, invocation);
-}
-
-/// "5%" or "5" as 0.05; nothing if it is no share.
-std::optional<double> share_of(std::string text) {
-  if (text.ends_with('%')) text.pop_back();
-  const auto percent = base::whole_number<std::uint32_t>(text);
-  constexpr std::uint32_t kAll = 100;
-  if (!percent || *percent > kAll) return std::nullopt;
-  return static_cast<double>(*percent) / kAll;
 }
 
 /// Prints and writes what came out; the exit code.
@@ -332,7 +325,51 @@ base::Result<StoredResults> earlier_results(const SuiteOptions& options,
                           fmt::format("--resume: that suite and this one are different: {}", what));
 }
 
+/// The first option that says something about a suite that is run, not about its mutants.
+std::string foreign_to_mutants(const SuiteOptions& options) {
+  if (!options.merge.empty()) return "--merge";
+  if (options.shard != "1/1") return "--shard";
+  if (options.rerun_failed) return "--rerun-failed";
+  if (options.update_goldens) return "--update-goldens";
+  if (!options.junit.empty()) return "--junit";
+  if (!options.markdown.empty()) return "--markdown";
+  if (!options.annotations.empty()) return "--annotations";
+  if (!options.quarantine.empty()) return "--quarantine";
+  if (!options.verify_cache.empty()) return "--verify-cache";
+  if (options.memory_mb > 0) return "--memory";
+  return options.retries > 0 ? "--retry" : "";
+}
+
+std::filesystem::path cache_folder(const SuiteOptions& options) {
+  return options.cache.empty() ? std::filesystem::path(options.out) / "cache"
+                               : std::filesystem::path(options.cache);
+}
+
+int score_mutants(const SuiteOptions& options, Invocation& invocation) {
+  const auto foreign = foreign_to_mutants(options);
+  if (!foreign.empty()) {
+    return usage_error(fmt::format("--mutate and {} exclude each other", foreign), invocation);
+  }
+  const auto cases = wanted_cases(options, {}, invocation);
+  if (!cases) return 0;
+  if (!is_folder(options.out)) {
+    invocation.sink().error_about(base::DiagnosticCode::kUsage, options.out,
+                                  "--out: this is no folder, and none can be made here");
+    return 0;
+  }
+  const ResultCache cache(cache_folder(options),
+                          {program_hash(), options.seed, invocation.form().allow_outside});
+  MutationOptions score;
+  score.out = options.out;
+  score.runner = loop_options(options, false, invocation).runner;
+  score.jobs = options.jobs;
+  score.resume = options.resume;
+  if (!options.no_cache) score.cache = &cache;
+  return mutate_suite(*cases, options.mutants, std::move(score), invocation);
+}
+
 int run_suite(const SuiteOptions& options, Invocation& invocation) {
+  if (options.mutants.mutate && !options.paths.empty()) return score_mutants(options, invocation);
   auto& sink = invocation.sink();
   if (const auto why = unfit_for_history(options); !why.empty()) {
     return usage_error(why, invocation);
@@ -384,8 +421,7 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
   StoredResults stored{identity, options.rerun_failed ? earlier->cases : StoredCases{}};
   SuiteRecord record(*std::move(cases), skipped, options.out, options.junit, std::move(stored),
                      *quarantine);
-  const auto folder = options.cache.empty() ? std::filesystem::path(options.out) / "cache"
-                                            : std::filesystem::path(options.cache);
+  const auto folder = cache_folder(options);
   if (!options.no_cache && !options.cache.empty() && !is_folder(folder)) {
     sink.error_about(base::DiagnosticCode::kUsage, options.cache,
                      "--cache: this is no folder, and none can be made here");
@@ -427,6 +463,7 @@ Command suite_command() {
       "  parallax suite scenarios/classics --only zoo\n"
       "  parallax suite scenarios --shard 2/5 --junit suite.xml\n"
       "  parallax suite scenarios --resume            goes on where a suite was ended\n"
+      "  parallax suite scenarios/classics --mutate   which mistakes would it not notice?\n"
       "  parallax suite --merge out/1 out/2 --out out/all --junit suite.xml");
   command.option("paths", options->paths, "Scenarios, manifests, or folders that hold some");
   command.option("--only", options->only, "Only cases whose name (file:id) contains this");
@@ -483,6 +520,7 @@ Command suite_command() {
       .option("--memory", options->memory_mb,
               "MB that the cases at the same time may need together, by what they took before")
       .check(WholeNumber{16, 10'000'000});
+  add_mutate_options(command, options->mutants);
   return {std::move(command),
           [options](Invocation& invocation) { return run_suite(*options, invocation); }};
 }

@@ -78,6 +78,8 @@ base::Result<ModelDifference> compare_models(const std::string& old_path, Revisi
                                              const std::string& new_path, RevisionKind new_kind,
                                              const ModelDiffOptions& options, Context& context);
 
+/// A witness up to the timepoint that rules it out, in indented lines.
+std::string beginning_text(const runtime::Witness& witness);
 /// The first trace that one side alone has, as the part about traces shows it; there is one.
 std::string witness_text(const ModelDifference& difference, bool lost);
 /// "10", "at least 200"

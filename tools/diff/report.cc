@@ -99,17 +99,6 @@ runtime::Trace beginning(const runtime::Witness& witness) {
   return trace;
 }
 
-std::string indented(const std::string& text) {
-  std::string out;
-  // The first line is the trace's number.
-  for (auto at = text.find('\n') + 1; at < text.size();) {
-    const auto end = text.find('\n', at);
-    out += "    " + text.substr(at, end - at + 1);
-    at = end + 1;
-  }
-  return out;
-}
-
 /// One direction: the names of both sides, and what is known of it.
 struct SideView {
   const char* name;  // "lost"
@@ -144,7 +133,7 @@ std::string witness_text(const SideView& side, bool lost) {
   auto out = fmt::format("  {} such trace of {}, ruled out in {} by timepoint {}:\n",
                          witness.is_shortest ? "a shortest" : "one", side.kept.name,
                          side.refused.name, witness.excluded_by);
-  out += indented(to_text(beginning(witness)));
+  out += beginning_text(witness);
   if (witness.impossible) {
     out += fmt::format("    {} is false in every trace of {}\n", *witness.impossible,
                        side.refused.name);
@@ -252,6 +241,18 @@ Json side_json(const SideView& side, bool lost) {
 }
 
 }  // namespace
+
+std::string beginning_text(const runtime::Witness& witness) {
+  const auto text = to_text(beginning(witness));
+  std::string out;
+  // The first line is the trace's number.
+  for (auto at = text.find('\n') + 1; at < text.size();) {
+    const auto end = text.find('\n', at);
+    out += "    " + text.substr(at, end - at + 1);
+    at = end + 1;
+  }
+  return out;
+}
 
 std::string witness_text(const ModelDifference& difference, bool lost) {
   return witness_text(view(difference, lost), lost);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -15,6 +16,7 @@
 #include "compiler/base/file_io.h"
 #include "compiler/base/path_gate.h"
 #include "compiler/base/subprocess.h"
+#include "compiler/base/whole_number.h"
 #include "harness/config/scenario.h"
 #include "tools/suite/expectation.h"
 #include "tools/suite/footprint.h"
@@ -31,6 +33,7 @@ std::string no_answer(int code) {
   if (code < 0) return "the program could not be started";
   if (code == 2 || code == 3) return "the input was refused";
   if (code == 4) return "inconclusive: a limit ended it first";
+  if (code == 128 + SIGXCPU) return "inconclusive: it took more processor time than it may";
   if (code > 128) return fmt::format("the program was ended by signal {}", code - 128);
   return fmt::format("the program ended with exit code {}", code);
 }
@@ -47,7 +50,8 @@ struct CommandWords {
 /// Runs this program again with other arguments. When `stop` is raised it is asked to end and
 /// waited for all the same.
 base::Captured run_this_program(const CommandWords& words, Footprint& footprint,
-                                const std::atomic<bool>& stop) {
+                                const std::atomic<bool>& stop,
+                                std::optional<std::uint64_t> cpu_limit_s = {}) {
   std::vector<std::string> command = {"parallax"};
   command.insert(command.end(), words.options.begin(), words.options.end());
   command.insert(command.end(), {"--footprint", footprint.file()});
@@ -57,6 +61,7 @@ base::Captured run_this_program(const CommandWords& words, Footprint& footprint,
   options.program = "/proc/self/exe";
   options.max_errors = kMaxMessageBytes;
   options.ends_with_us = true;
+  options.cpu_limit_s = cpu_limit_s;
   options.signal_when = [&stop, told = false]() mutable {
     if (told || !stop.load()) return 0;
     told = true;
@@ -82,9 +87,10 @@ void add_permissions(const RunnerOptions& options, bool simulates,
   if (options.allow_outside) words.emplace_back("--allow-outside");
 }
 
-void add_limit(const harness::Expectation& expect, std::vector<std::string>& words) {
-  if (!expect.time_limit_s) return;
-  words.insert(words.end(), {"--time-limit", fmt::format("{}", *expect.time_limit_s)});
+void add_limit(const harness::Expectation& expect, const RunnerOptions& options,
+               std::vector<std::string>& words) {
+  const auto limit = expect.time_limit_s ? expect.time_limit_s : options.time_limit_s;
+  if (limit) words.insert(words.end(), {"--time-limit", fmt::format("{}", *limit)});
 }
 
 void run_rates(const SuiteCase& one, const harness::Expectation& expect,
@@ -98,7 +104,7 @@ void run_rates(const SuiteCase& one, const harness::Expectation& expect,
                                     "--quiet", "--color=never"};
   if (rate.cause && !rate.cause->kind.empty()) words.emplace_back("--cause-kinds");
   add_permissions(options, true, words);
-  add_limit(expect, words);
+  add_limit(expect, options, words);
   const auto child = run_this_program({std::move(words), {one.file}}, footprint, stop);
   result.messages += child.err;
   if (child.code != 0) return report_no_answer(child, result);
@@ -154,6 +160,7 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
                   CaseResult& result) {
   if (expect.rate) run_rates(one, expect, options, footprint, stop, result);
   if (expect.rate && (!expect.of_run() || result.outcome == Outcome::kError)) return;
+  if (options.ends_early && !result.problems.empty()) return;
   auto name = one.file;
   std::replace(name.begin(), name.end(), '/', '_');
   const auto folder = options.out / name;
@@ -167,8 +174,11 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
   std::vector<std::string> words = {
       "run",   "--json",        "--seed",  std::to_string(options.seed),
       "--out", folder.string(), "--quiet", "--color=never"};
+  if (options.ends_early && expect.iterations) {
+    words.insert(words.end(), {"--max-traces", std::to_string(*expect.iterations + 1)});
+  }
   add_permissions(options, true, words);
-  add_limit(expect, words);
+  add_limit(expect, options, words);
   const auto child = run_this_program({std::move(words), {one.file}}, footprint, stop);
   result.messages += child.err;
   // Exit code 1 is a finding and 4 a verdict that may be the expected one; both give a document.
@@ -195,15 +205,40 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
   result.problems.push_back("report: " + (folder / "report.txt").string());
 }
 
+/// The number that the last line of a list of traces begins with, "4 traces, complete ...".
+std::optional<std::int64_t> listed_traces(std::string_view text) {
+  const auto end = text.find_last_not_of('\n');
+  if (end == std::string_view::npos) return std::nullopt;
+  text = text.substr(0, end + 1);
+  const auto newline = text.rfind('\n');
+  if (newline != std::string_view::npos) text.remove_prefix(newline + 1);
+  const auto digits = std::min(text.find_first_not_of("0123456789"), text.size());
+  const auto rest = text.substr(digits);
+  if (!rest.starts_with(" trace, ") && !rest.starts_with(" traces, ")) return std::nullopt;
+  return base::whole_number<std::int64_t>(text.substr(0, digits));
+}
+
+/// One trace more than all that are expected; 0, for all, where nobody knows how many these are.
+std::int64_t one_too_many(const harness::TraceExpectation& expect) {
+  if (expect.traces) return *expect.traces + 1;
+  base::DiagnosticSink unread;
+  const auto golden = base::read_file(expect.golden->text, unread);
+  const auto listed = golden ? listed_traces(*golden) : std::nullopt;
+  return listed ? *listed + 1 : 0;
+}
+
 CommandWords traces_command(const harness::ManifestCase& one, const RunnerOptions& options) {
   std::vector<std::string> words = {"traces"};
   for (const auto& constraint : one.constraints) {
     words.push_back("--until=" + constraint.text);  // also one that begins with `-`
   }
   if (one.horizon) words.insert(words.end(), {"--horizon", std::to_string(*one.horizon)});
-  const auto limit = one.expect.complete ? 0 : one.expect.traces.value_or(0);
+  auto limit = one.expect.complete ? 0 : one.expect.traces.value_or(0);
+  if (options.ends_early && one.expect.complete) limit = one_too_many(one.expect);
   words.insert(words.end(), {"--limit", std::to_string(limit)});
-  words.insert(words.end(), {"--time-limit", fmt::format("{}", one.time_limit_s)});
+  if (!options.ends_early) {
+    words.insert(words.end(), {"--time-limit", fmt::format("{}", one.time_limit_s)});
+  }
   if (one.memory_limit_mb) {
     words.insert(words.end(), {"--memory-limit", std::to_string(*one.memory_limit_mb)});
   }
@@ -246,17 +281,9 @@ void add_blame(const harness::ManifestCase& one, const std::string& document,
   if (!why.empty()) result.problems.push_back("these contradict each other:\n" + why);
 }
 
-/// Is this what `parallax traces` has printed, so that a newer list may take its place? Its last
-/// line is "4 traces, complete ...".
+/// Is this what `parallax traces` has printed, so that a newer list may take its place?
 bool is_list_of_traces(std::string_view text) {
-  const auto end = text.find_last_not_of('\n');
-  if (end == std::string_view::npos) return true;
-  text = text.substr(0, end + 1);
-  const auto newline = text.rfind('\n');
-  if (newline != std::string_view::npos) text.remove_prefix(newline + 1);
-  const auto digits = std::min(text.find_first_not_of("0123456789"), text.size());
-  text.remove_prefix(digits);
-  return digits > 0 && (text.starts_with(" trace, ") || text.starts_with(" traces, "));
+  return text.find_last_not_of('\n') == std::string_view::npos || listed_traces(text);
 }
 
 /// Why the golden file must not be written; empty: it may. Manifests come from others: theirs must
@@ -309,19 +336,25 @@ void run_traces(const harness::ManifestCase& one, const fs::path& manifest,
                 const RunnerOptions& options, Footprint& footprint, const std::atomic<bool>& stop,
                 CaseResult& result) {
   const auto command = traces_command(one, options);
-  if (one.expect.traces) {
+  std::optional<std::uint64_t> cpu_limit_s;
+  if (options.ends_early) cpu_limit_s = static_cast<std::uint64_t>(std::ceil(one.time_limit_s));
+  // A whole list that is the golden one has its number of traces.
+  const bool listed = options.ends_early && one.expect.golden && one.expect.complete;
+  if (one.expect.traces && !listed) {
     auto words = command;
     words.options.emplace_back("--json");
     // Counting goes on to the end, so it answers only whether these are all.
-    if (one.expect.complete) words.options.emplace_back("--count");
-    const auto child = run_this_program(words, footprint, stop);
+    if (one.expect.complete && !options.ends_early) words.options.emplace_back("--count");
+    const auto child = run_this_program(words, footprint, stop, cpu_limit_s);
     result.messages = child.err;
     if (child.code != 0) return report_no_answer(child, result);
     compare_count(one.expect, child.out, result);
-    if (!result.problems.empty()) add_blame(one, child.out, options, footprint, stop, result);
+    if (!result.problems.empty() && !options.ends_early) {
+      add_blame(one, child.out, options, footprint, stop, result);
+    }
   }
   if (one.expect.golden) {
-    const auto child = run_this_program(command, footprint, stop);
+    const auto child = run_this_program(command, footprint, stop, cpu_limit_s);
     result.messages = child.err;
     if (child.code != 0) return report_no_answer(child, result);
     footprint.add_input(one.expect.golden->text);

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,10 @@ struct RunnerOptions {
   bool allow_commands = false;          // start what scenarios name as their simulators
   bool allow_outside = false;           // files may name any other
   const SuiteLedger* ledger = nullptr;  // of known discrepancies; null: none is asked
+  /// Of a case that is expected to fail: no more is done than shows whether it does. Traces beyond
+  /// the expected number are not looked for, and the limit of a model's case is processor time.
+  bool ends_early = false;
+  std::optional<double> time_limit_s = {};  // of the processes of a scenario without one of its own
 };
 
 /// Runs one case in processes of its own, again where it did not pass and `retries` allow it, so

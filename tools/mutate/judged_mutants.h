@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "compiler/base/diagnostic.h"
+#include "tools/mutate/mutant_judge.h"
+
+namespace parallax::tools {
+
+/// The file in the suite's output folder that --resume reads.
+inline constexpr const char* kJudgedFile = "mutants.ndjson";
+
+/// What was judged, a line each, kept while a suite is mutated. Thread-safe.
+class JudgedMutants {
+ public:
+  /// `suite`: a hash of all that the judgements depend on. With `resume` what the file has of the
+  /// same suite is taken over, and another suite's is refused (kUsage); else it is begun anew. A
+  /// file that is none of ours is never replaced (kUsage).
+  static base::Result<JudgedMutants> open(const std::filesystem::path& file,
+                                          const std::string& suite, bool resume,
+                                          base::DiagnosticSink& sink);
+
+  std::optional<Judgement> find(const Mutant& mutant) const;
+  void add(const Mutant& mutant, const Judgement& judgement);
+
+ private:
+  std::map<std::string, Judgement> known_;  // by key
+  std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();
+  std::ofstream out_;
+};
+
+}  // namespace parallax::tools

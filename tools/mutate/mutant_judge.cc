@@ -1,0 +1,233 @@
+#include "tools/mutate/mutant_judge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/path_gate.h"
+#include "runtime/compare/trace_difference.h"
+#include "tools/diff/model_difference.h"
+#include "tools/mutate/case_model.h"
+
+namespace parallax::tools {
+
+namespace fs = std::filesystem;
+
+std::string_view to_string(MutantOutcome outcome) {
+  switch (outcome) {
+    case MutantOutcome::kOpen:
+      return "open";
+    case MutantOutcome::kNoticed:
+      return "noticed";
+    case MutantOutcome::kUnnoticed:
+      return "unnoticed";
+    case MutantOutcome::kEquivalent:
+      return "equivalent";
+    case MutantOutcome::kInvalid:
+      return "invalid";
+    case MutantOutcome::kUnknown:
+      return "unknown";
+  }
+  return "";
+}
+
+namespace {
+
+std::string first_error_of(const base::DiagnosticSink& sink) {
+  for (const auto& diagnostic : sink.sorted()) {
+    if (base::info(diagnostic.code).severity == base::Severity::kError) return diagnostic.message;
+  }
+  return {};
+}
+
+/// Of a scenario without a limit of its own, from what it takes with the original.
+double limit_of_run(double wall_s) {
+  constexpr double kLeast = 60.0, kTimes = 10.0;
+  return std::max(kLeast, kTimes * wall_s);
+}
+
+}  // namespace
+
+MutantJudge::MutantJudge(const JudgedSuite& suite, const ScratchCopy& copy,
+                         std::vector<SuiteCase> own_cases, CpuWatch& watch, std::size_t thread,
+                         const std::atomic<bool>& stop)
+    : suite_(suite),
+      copy_(copy),
+      own_cases_(std::move(own_cases)),
+      watch_(watch),
+      thread_(thread),
+      stop_(stop) {}
+
+std::vector<std::string> MutantJudge::outside(std::size_t index) {
+  Context context({.allow_outside = suite_.allow_outside}, watch_.flag(thread_));
+  (void)load_case_model(own_cases_[index], context);
+  std::vector<std::string> out;
+  const auto add = [&](const std::string& name) {
+    std::error_code error;
+    if (!fs::is_regular_file(name, error) || base::lies_below(name, copy_.folder())) return;
+    out.push_back(base::real_path(name).string());
+  };
+  for (std::uint32_t i = 0; i < context.files().size(); ++i) {
+    add(context.files()[base::FileId(i)].name());
+  }
+  for (const auto& name : context.files().inputs()) add(name);
+  return out;
+}
+
+MutantJudge::Told MutantJudge::compare(std::size_t index) {
+  const auto& original = suite_.originals[index];
+  Told out;
+  if (!original) return out;
+  auto& flag = watch_.flag(thread_);
+  watch_.begin(thread_, suite_.compare_s);
+  Context context({.allow_outside = suite_.allow_outside}, flag);
+  const auto mutated = load_case_model(own_cases_[index], context);
+  const auto name = suite_.cases[index].name();
+  const auto too_long = [&] {
+    return fmt::format("{}: comparing the traces took more than {:g} s of processor time", name,
+                       suite_.compare_s);
+  };
+  if (!mutated) {
+    out.answer = flag.load() ? Told::Answer::kUnknown : Told::Answer::kInvalid;
+    out.why = flag.load() ? too_long() : first_error_of(context.sink());
+    watch_.end(thread_);
+    return out;
+  }
+  runtime::DifferenceOptions options;
+  options.any_difference = true;
+  options.stop = &flag;
+  const auto found = runtime::compare_traces(original->compiled, mutated->compiled, options);
+  watch_.end(thread_);
+  for (const auto* side : {&found.lost, &found.gained}) {
+    if (side->answer != runtime::Answer::kFound) continue;
+    out.answer = Told::Answer::kDiffers;
+    out.judgement.told_in = name;
+    out.judgement.gained = side == &found.gained;
+    out.judgement.excluded_by = side->witness->excluded_by;
+    out.judgement.trace = beginning_text(*side->witness);
+    out.judgement.trace_json = to_jsonl(side->witness->trace);
+    return out;
+  }
+  const bool decided =
+      found.lost.answer == runtime::Answer::kNone && found.gained.answer == runtime::Answer::kNone;
+  if (decided && found.vocabulary.is_same() &&
+      original->compiled.horizon == mutated->compiled.horizon) {
+    const bool told_same = !simulates(suite_.cases[index]) || !original->plan || !mutated->plan ||
+                           same_arguments(*original->plan, *mutated->plan);
+    out.answer = told_same ? Told::Answer::kSame : Told::Answer::kUnknown;
+    if (!told_same) {
+      out.why = name + ": the traces are the same, but the plan tells controllers something else";
+    }
+  } else if (decided) {
+    out.why = name + ": the models have other names or horizons, and no trace tells them apart";
+  } else {
+    out.why = flag.load() ? too_long() : name + ": no call decided whether the traces are the same";
+  }
+  return out;
+}
+
+CaseResult MutantJudge::run(std::size_t index) {
+  auto options = suite_.runner;
+  options.out = copy_.folder().string() + "-runs";
+  std::error_code error;
+  fs::create_directories(options.out, error);
+  options.ends_early = true;
+  options.time_limit_s = limit_of_run(suite_.wall_s[index]);
+  return run_case(own_cases_[index], options, stop_);
+}
+
+Judgement MutantJudge::look_at(const Mutant& mutant) {
+  const auto noticed = [&](std::size_t i, const CaseResult& result) {
+    auto why = result.problems.empty() ? std::string() : result.problems.front();
+    why = why.substr(0, why.find('\n'));
+    // The copy's folder is of no interest.
+    for (auto at = why.find(copy_.folder().string()); at != std::string::npos;
+         at = why.find(copy_.folder().string())) {
+      why.erase(at, copy_.folder().string().size() + 1);
+    }
+    return Judgement{MutantOutcome::kNoticed, suite_.cases[i].name(), std::move(why)};
+  };
+  std::optional<Judgement> told;
+  std::vector<std::size_t> to_run;
+  std::string unknown, undecided;
+  for (const auto i : mutant.cases) {
+    if (simulates(suite_.cases[i])) continue;
+    const auto result = run(i);
+    if (stop_.load()) return {};
+    if (result.outcome == Outcome::kPassed) continue;
+    if (result.outcome == Outcome::kFailed) return noticed(i, result);
+    // No answer: is it no model any more?
+    auto found = compare(i);
+    if (found.answer == Told::Answer::kInvalid) {
+      return {MutantOutcome::kInvalid, "", std::move(found.why)};
+    }
+    return noticed(i, result);
+  }
+  for (const auto i : mutant.cases) {
+    auto found = compare(i);
+    if (stop_.load()) return {};
+    if (found.answer == Told::Answer::kInvalid) {
+      return {MutantOutcome::kInvalid, "", std::move(found.why)};
+    }
+    if (found.answer == Told::Answer::kSame) continue;
+    if (simulates(suite_.cases[i])) to_run.push_back(i);
+    if (found.answer == Told::Answer::kUnknown && unknown.empty()) unknown = std::move(found.why);
+    if (found.answer == Told::Answer::kDiffers && !told) told = std::move(found.judgement);
+  }
+  for (const auto i : to_run) {
+    const auto result = run(i);
+    if (stop_.load()) return {};
+    if (result.outcome == Outcome::kPassed) continue;
+    const auto& expect = std::get<harness::Expectation>(suite_.cases[i].check);
+    const auto limit = limit_of_run(suite_.wall_s[i]);
+    if (!expect.time_limit_s && result.wall_s >= limit) {
+      undecided =
+          fmt::format("{}: its simulations took more than {:.0f} s", suite_.cases[i].name(), limit);
+      continue;
+    }
+    return noticed(i, result);
+  }
+  if (!undecided.empty()) return {MutantOutcome::kUnknown, "", std::move(undecided)};
+  if (told) {
+    told->outcome = MutantOutcome::kUnnoticed;
+    return *std::move(told);
+  }
+  if (!unknown.empty()) return {MutantOutcome::kUnknown, "", std::move(unknown)};
+  return {MutantOutcome::kEquivalent};
+}
+
+base::Result<Judgement> MutantJudge::judge(const Mutant& mutant, base::DiagnosticSink& sink) {
+  if (!copy_.write(mutant.file, mutant.text, sink)) return sink.already_reported();
+  auto out = look_at(mutant);
+  if (!copy_.restore(mutant.file, sink)) return sink.already_reported();
+  return out;
+}
+
+base::Result<std::vector<SuiteCase>> cases_of_copy(const std::vector<SuiteCase>& cases,
+                                                   const ScratchCopy& copy, bool allow_outside,
+                                                   base::DiagnosticSink& sink) {
+  std::set<std::string> places;
+  for (const auto& one : cases) places.insert(copy.place_of(one.file).string());
+  base::SourceFiles files;
+  const auto found = find_cases({places.begin(), places.end()}, allow_outside, files, sink);
+  if (!found) return sink.already_reported();
+  std::vector<SuiteCase> out;
+  for (const auto& one : cases) {
+    const auto place = copy.place_of(one.file).lexically_normal().string();
+    const auto id = one.id == one.file ? place : one.id;
+    const auto at = std::find_if(found->begin(), found->end(), [&](const SuiteCase& other) {
+      return other.file == place && other.id == id;
+    });
+    if (at == found->end()) {
+      return sink.error_about(base::DiagnosticCode::kCaseUnreadable, one.file,
+                              "its copy is no case any more");
+    }
+    out.push_back(*at);
+  }
+  return out;
+}
+
+}  // namespace parallax::tools

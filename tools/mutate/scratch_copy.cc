@@ -1,0 +1,78 @@
+#include "tools/mutate/scratch_copy.h"
+
+#include <system_error>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/file_io.h"
+#include "compiler/base/path_gate.h"
+
+namespace parallax::tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The folder that all of them lie in.
+fs::path folder_of_all(const SuiteTexts& texts) {
+  fs::path out;
+  for (const auto& [name, text] : texts) {
+    const auto folder = fs::path(name).parent_path();
+    if (out.empty()) out = folder;
+    fs::path both;
+    for (auto a = out.begin(), b = folder.begin(); a != out.end() && b != folder.end() && *a == *b;
+         ++a, ++b) {
+      both /= *a;
+    }
+    out = both;
+  }
+  return out;
+}
+
+base::Status write_new(const fs::path& target, const std::string& text,
+                       base::DiagnosticSink& sink) {
+  std::error_code error;
+  fs::create_directories(target.parent_path(), error);
+  return base::write_file_atomically(target, text, sink);
+}
+
+}  // namespace
+
+std::string absolute_name(const std::string& name) {
+  std::error_code error;
+  return fs::absolute(name, error).lexically_normal().generic_string();
+}
+
+base::Result<ScratchCopy> ScratchCopy::make(const SuiteTexts& texts, const fs::path& folder,
+                                            base::DiagnosticSink& sink) {
+  ScratchCopy out;
+  out.folder_ = folder;
+  const auto root = folder_of_all(texts);
+  for (const auto& [name, text] : texts) {
+    const auto target = folder / fs::path(name).lexically_relative(root);
+    if (!write_new(target, text, sink)) return sink.already_reported();
+    out.copies_.emplace(name, Copy{target, base::real_path(name), text});
+  }
+  // What the originals may name lies in the copy as well, wherever their root is.
+  if (!write_new(folder / base::kRootMarker, "", sink)) return sink.already_reported();
+  return out;
+}
+
+fs::path ScratchCopy::place_of(const std::string& name) const {
+  return copies_.at(absolute_name(name)).target;
+}
+
+base::Status ScratchCopy::write(const std::string& name, const std::string& text,
+                                base::DiagnosticSink& sink) const {
+  const auto& original = copies_.at(absolute_name(name)).original;
+  for (const auto& [other, copy] : copies_) {
+    if (copy.original != original) continue;
+    if (!base::write_file_atomically(copy.target, text, sink)) return sink.already_reported();
+  }
+  return base::Unit{};
+}
+
+base::Status ScratchCopy::restore(const std::string& name, base::DiagnosticSink& sink) const {
+  return write(name, copies_.at(absolute_name(name)).text, sink);
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "compiler/base/diagnostic.h"
+
+namespace parallax::tools {
+
+/// The texts that a suite reads, by the absolute names that they are read under.
+using SuiteTexts = std::map<std::string, std::string>;
+
+/// The name without links followed, absolute and without dots.
+std::string absolute_name(const std::string& name);
+
+/// Copies of all files of a suite, in a folder of their own, which lie to each other as the
+/// originals do. Only the copies are ever written.
+class ScratchCopy {
+ public:
+  /// `folder` must be new. Reports what cannot be written.
+  static base::Result<ScratchCopy> make(const SuiteTexts& texts,
+                                        const std::filesystem::path& folder,
+                                        base::DiagnosticSink& sink);
+
+  const std::filesystem::path& folder() const { return folder_; }
+  /// Of a file of the suite.
+  std::filesystem::path place_of(const std::string& name) const;
+  /// Gives the copies of a file another text, those under its other names (links) as well.
+  base::Status write(const std::string& name, const std::string& text,
+                     base::DiagnosticSink& sink) const;
+  /// Gives them the text of the original.
+  base::Status restore(const std::string& name, base::DiagnosticSink& sink) const;
+
+ private:
+  struct Copy {
+    std::filesystem::path target, original;  // where the original really lies
+    std::string text;
+  };
+  std::filesystem::path folder_;
+  std::map<std::string, Copy> copies_;  // by absolute name
+};
+
+}  // namespace parallax::tools
