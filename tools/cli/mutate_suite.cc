@@ -22,7 +22,8 @@ int mutate_suite(const std::vector<SuiteCase>& cases, const MutateOptions& optio
   score.only_files = options.mutants_of;
   const auto found = score_suite(cases, score, invocation);
   if (!found) return 0;
-  if (found->red.empty() && found->made == 0 && !options.mutants_of.empty()) {
+  if (found->red.empty() && found->made == 0 && !options.mutants_of.empty() &&
+      !invocation.stopped()) {
     return refuse(
         fmt::format("--mutants-of: no model or plan that the cases read has `{}` in its "
                     "name",
@@ -34,7 +35,7 @@ int mutate_suite(const std::vector<SuiteCase>& cases, const MutateOptions& optio
     invocation.result(mutation_text(*found));
   }
   if (!found->red.empty()) return 1;
-  if (found->count(MutantOutcome::kOpen) > 0) return 4;
+  if (found->count(MutantOutcome::kOpen) > 0 || invocation.stopped()) return 4;
   const auto noticed = found->count(MutantOutcome::kNoticed);
   if (static_cast<double>(noticed) < *least * static_cast<double>(found->observable())) return 1;
   const bool undecided = found->count(MutantOutcome::kUnknown) > 0;

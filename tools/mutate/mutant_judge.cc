@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/path_gate.h"
@@ -206,28 +205,18 @@ base::Result<Judgement> MutantJudge::judge(const Mutant& mutant, base::Diagnosti
   return out;
 }
 
-base::Result<std::vector<SuiteCase>> cases_of_copy(const std::vector<SuiteCase>& cases,
-                                                   const ScratchCopy& copy, bool allow_outside,
-                                                   base::DiagnosticSink& sink) {
-  std::set<std::string> places;
-  for (const auto& one : cases) places.insert(copy.place_of(one.file).string());
-  base::SourceFiles files;
-  const auto found = find_cases({places.begin(), places.end()}, allow_outside, files, sink);
-  if (!found) return sink.already_reported();
-  std::vector<SuiteCase> out;
-  for (const auto& one : cases) {
-    const auto place = copy.place_of(one.file).lexically_normal().string();
-    const auto id = one.id == one.file ? place : one.id;
-    const auto at = std::find_if(found->begin(), found->end(), [&](const SuiteCase& other) {
-      return other.file == place && other.id == id;
-    });
-    if (at == found->end()) {
-      return sink.error_about(base::DiagnosticCode::kCaseUnreadable, one.file,
-                              "its copy is no case any more");
-    }
-    out.push_back(*at);
+std::vector<SuiteCase> cases_of_copy(std::vector<SuiteCase> cases, const ScratchCopy& copy) {
+  for (auto& one : cases) {
+    const auto in_copy = [&](std::string& name) { name = copy.place_of(name).string(); };
+    const bool is_file = one.id == one.file;
+    in_copy(one.file);
+    if (is_file) one.id = one.file;
+    auto* traces = std::get_if<harness::ManifestCase>(&one.check);
+    if (traces == nullptr) continue;
+    for (auto& model : traces->models) in_copy(model.text);
+    if (traces->expect.golden) in_copy(traces->expect.golden->text);
   }
-  return out;
+  return cases;
 }
 
 }  // namespace parallax::tools

@@ -80,9 +80,7 @@ class MutantJudge {
   const std::atomic<bool>& stop_;
 };
 
-/// The cases of a suite in a copy of its files, parallel to `cases`.
-base::Result<std::vector<SuiteCase>> cases_of_copy(const std::vector<SuiteCase>& cases,
-                                                   const ScratchCopy& copy, bool allow_outside,
-                                                   base::DiagnosticSink& sink);
+/// The cases of a suite in a copy of its files.
+std::vector<SuiteCase> cases_of_copy(std::vector<SuiteCase> cases, const ScratchCopy& copy);
 
 }  // namespace parallax::tools

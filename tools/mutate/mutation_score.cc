@@ -76,6 +76,7 @@ class SuiteMutation {
     score_.cases = cases_.size();
     if (!run_originals()) return std::move(score_);
     auto files = look_at_suite(cases_, context_);
+    if (context_.stopped()) return std::move(score_);
     if (!files) return context_.sink().already_reported();
     files_ = *std::move(files);
     choose();
@@ -155,10 +156,8 @@ class SuiteMutation {
       auto copy = ScratchCopy::make(files_.texts, scratch.path() / std::to_string(k + 1), sink);
       if (!copy) return sink.already_reported();
       copies.push_back(*std::move(copy));
-      auto own = cases_of_copy(cases_, copies.back(), suite.allow_outside, sink);
-      if (!own) return sink.already_reported();
-      judges.push_back(std::make_unique<MutantJudge>(suite, copies.back(), *std::move(own), watch,
-                                                     k, context_.stop()));
+      judges.push_back(std::make_unique<MutantJudge>(
+          suite, copies.back(), cases_of_copy(cases_, copies.back()), watch, k, context_.stop()));
     }
     pass_over(*judges.front());
     if (!run_copies(judges)) return base::Unit{};

@@ -58,7 +58,8 @@ base::Result<ScratchCopy> ScratchCopy::make(const SuiteTexts& texts, const fs::p
 }
 
 fs::path ScratchCopy::place_of(const std::string& name) const {
-  return copies_.at(absolute_name(name)).target;
+  const auto copy = copies_.find(absolute_name(name));
+  return copy == copies_.end() ? fs::path(name) : copy->second.target;
 }
 
 base::Status ScratchCopy::write(const std::string& name, const std::string& text,

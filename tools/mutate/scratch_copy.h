@@ -24,7 +24,7 @@ class ScratchCopy {
                                         base::DiagnosticSink& sink);
 
   const std::filesystem::path& folder() const { return folder_; }
-  /// Of a file of the suite.
+  /// Of a file of the suite; any other is where it is.
   std::filesystem::path place_of(const std::string& name) const;
   /// Gives the copies of a file another text, those under its other names (links) as well.
   base::Status write(const std::string& name, const std::string& text,

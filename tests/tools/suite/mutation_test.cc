@@ -135,6 +135,10 @@ TEST_CASE("only cases that read a file are asked about its mutants, through any 
   const auto shared = outcomes(score, "s/lamp.e");
   CHECK(shared.find("5 axiom dropped")->second == "noticed");
   CHECK(outcomes(score, "s/more/on.e").find("2 fact negated")->second == "unnoticed");
+  // A case alone, of a manifest whose other cases name other files.
+  const auto alone = json_of(cli, {"suite", "s", "--mutate", "--only", ":on"}, 1);
+  CHECK(alone["cases"] == 1);
+  CHECK(outcomes(alone, "s/more/off.e").empty());
   // A name picks files.
   const auto part = json_of(cli, {"suite", "s", "--mutate", "--mutants-of", "on.e"}, 1);
   CHECK(part["made"] == 2);
@@ -171,7 +175,7 @@ TEST_CASE("the answer does not depend on the number of jobs, and no file is writ
   CHECK(holds(text.out, "s/more/on.e:2: unnoticed, fact negated: "));
   CHECK(files_below(cli.folder() / "s") == before);
   // A part of them, spread evenly.
-  const auto part = json_of(cli, {"suite", "s", "--mutate", "--at-most", "3"}, 1);
+  const auto part = json_of(cli, {"suite", "s", "--mutate", "--at-most", "3"}, 0);
   CHECK(part["looked_at"] == 3);
   CHECK(part["made"].get<int>() > 3);
   CHECK(part["mutants"][0] == Json::parse(one.out)["mutants"][0]);
