@@ -79,7 +79,6 @@ class SuiteMutation {
     if (context_.stopped()) return std::move(score_);
     if (!files) return context_.sink().already_reported();
     files_ = *std::move(files);
-    choose();
     if (!judge_all()) return context_.sink().already_reported();
     if (!score_.red.empty()) return std::move(score_);
     score_.mutants = std::move(files_.mutants);
@@ -160,6 +159,7 @@ class SuiteMutation {
           suite, copies.back(), cases_of_copy(cases_, copies.back()), watch, k, context_.stop()));
     }
     pass_over(*judges.front());
+    choose();
     if (!run_copies(judges)) return base::Unit{};
     score_.judgements.resize(files_.mutants.size());
     begin_ = last_ = Clock::now();

@@ -144,6 +144,18 @@ TEST_CASE("only cases that read a file are asked about its mutants, through any 
   CHECK(part["made"] == 2);
 }
 
+TEST_CASE("what is read where it lies, not from the copy, is not mutated, and that is said") {
+  const SuiteFixture cli;
+  fs::create_directories(cli.folder() / "t");
+  cli.write("t/all.e",
+            "load " + (cli.folder() / "s/lamp.e").string() + "\n[time] !Happens(Press(),time).\n");
+  cli.write("t/suite.yaml", "cases: [{id: all, model: all.e, expect: {traces: 1}}]\n");
+  const auto score = json_of(cli, {"suite", "t", "--mutate", "--allow-outside"}, 1);
+  CHECK(score["made"] == 2);
+  REQUIRE(score["passed_over"].size() == 1);
+  CHECK(holds(score["passed_over"][0], "lamp.e"));
+}
+
 TEST_CASE("mutants of a plan: dropped, exchanged, given other arguments") {
   const SuiteFixture cli;  // with a copy of two_regions
   cli.write("plans.yaml",
