@@ -15,9 +15,11 @@
 namespace parallax::tools {
 
 /// What a case of a suite asks about: its model with its plan, compiled for its horizon, as the
-/// command that the case runs compiles them.
+/// command that the case runs compiles them, but for state constraints, which end no trace when
+/// models are compared.
 struct CaseModel {
   compiler::CompiledModel compiled;
+  std::string key;  // equal for equal compiled models
   std::optional<compiler::PlanGraph> plan;
   std::vector<std::filesystem::path> models;  // that it names
   compiler::LoadOptions load;                 // how they are read

@@ -76,34 +76,16 @@ std::vector<std::string> MutantJudge::outside(std::size_t index) {
   return out;
 }
 
-MutantJudge::Told MutantJudge::compare(std::size_t index) {
-  const auto& original = suite_.originals[index];
+MutantJudge::Told MutantJudge::compare_models(const CaseModel& original, const CaseModel& mutated,
+                                              const std::atomic<bool>& flag) {
   Told out;
-  if (!original) return out;
-  auto& flag = watch_.flag(thread_);
-  watch_.begin(thread_, suite_.compare_s);
-  Context context({.allow_outside = suite_.allow_outside}, flag);
-  const auto mutated = load_case_model(own_cases_[index], context);
-  const auto name = suite_.cases[index].name();
-  const auto too_long = [&] {
-    return fmt::format("{}: comparing the traces took more than {:g} s of processor time", name,
-                       suite_.compare_s);
-  };
-  if (!mutated) {
-    out.answer = flag.load() ? Told::Answer::kUnknown : Told::Answer::kInvalid;
-    out.why = flag.load() ? too_long() : first_error_of(context.sink());
-    watch_.end(thread_);
-    return out;
-  }
   runtime::DifferenceOptions options;
   options.any_difference = true;
   options.stop = &flag;
-  const auto found = runtime::compare_traces(original->compiled, mutated->compiled, options);
-  watch_.end(thread_);
+  const auto found = runtime::compare_traces(original.compiled, mutated.compiled, options);
   for (const auto* side : {&found.lost, &found.gained}) {
     if (side->answer != runtime::Answer::kFound) continue;
     out.answer = Told::Answer::kDiffers;
-    out.judgement.told_in = name;
     out.judgement.gained = side == &found.gained;
     out.judgement.excluded_by = side->witness->excluded_by;
     out.judgement.trace = beginning_text(*side->witness);
@@ -113,17 +95,50 @@ MutantJudge::Told MutantJudge::compare(std::size_t index) {
   const bool decided =
       found.lost.answer == runtime::Answer::kNone && found.gained.answer == runtime::Answer::kNone;
   if (decided && found.vocabulary.is_same() &&
-      original->compiled.horizon == mutated->compiled.horizon) {
-    const bool told_same = !simulates(suite_.cases[index]) || !original->plan || !mutated->plan ||
-                           same_arguments(*original->plan, *mutated->plan);
-    out.answer = told_same ? Told::Answer::kSame : Told::Answer::kUnknown;
-    if (!told_same) {
-      out.why = name + ": the traces are the same, but the plan tells controllers something else";
-    }
+      original.compiled.horizon == mutated.compiled.horizon) {
+    out.answer = Told::Answer::kSame;
   } else if (decided) {
-    out.why = name + ": the models have other names or horizons, and no trace tells them apart";
+    out.why = "the models have other names or horizons, and no trace tells them apart";
+  } else if (flag.load()) {
+    out.why = fmt::format("comparing the traces took more than {:g} s of processor time",
+                          suite_.compare_s);
   } else {
-    out.why = flag.load() ? too_long() : name + ": no call decided whether the traces are the same";
+    out.why = "no call decided whether the traces are the same";
+  }
+  return out;
+}
+
+MutantJudge::Told MutantJudge::compare(std::size_t index) {
+  const auto& original = suite_.originals[index];
+  if (!original) return {};
+  auto& flag = watch_.flag(thread_);
+  watch_.begin(thread_, suite_.compare_s);
+  Context context({.allow_outside = suite_.allow_outside}, flag);
+  const auto mutated = load_case_model(own_cases_[index], context);
+  Told out;
+  if (!mutated) {
+    out.answer = flag.load() ? Told::Answer::kUnknown : Told::Answer::kInvalid;
+    out.why = flag.load() ? "compiling it takes too long" : first_error_of(context.sink());
+  } else if (original->key == mutated->key) {
+    out.answer = Told::Answer::kSame;
+  } else {
+    const std::pair keys(original->key, mutated->key);
+    auto known = compared_.find(keys);
+    if (known == compared_.end()) {
+      known = compared_.emplace(keys, compare_models(*original, *mutated, flag)).first;
+    }
+    out = known->second;
+  }
+  watch_.end(thread_);
+  const auto name = suite_.cases[index].name();
+  if (out.answer == Told::Answer::kDiffers) out.judgement.told_in = name;
+  if (out.answer == Told::Answer::kUnknown) out.why = name + ": " + out.why;
+  const bool told_otherwise = out.answer == Told::Answer::kSame && simulates(suite_.cases[index]) &&
+                              original->plan && mutated->plan &&
+                              !same_arguments(*original->plan, *mutated->plan);
+  if (told_otherwise) {
+    out.answer = Told::Answer::kUnknown;
+    out.why = name + ": the traces are the same, but the plan tells controllers something else";
   }
   return out;
 }
@@ -200,6 +215,7 @@ Judgement MutantJudge::look_at(const Mutant& mutant) {
 
 base::Result<Judgement> MutantJudge::judge(const Mutant& mutant, base::DiagnosticSink& sink) {
   if (!copy_.write(mutant.file, mutant.text, sink)) return sink.already_reported();
+  compared_.clear();
   auto out = look_at(mutant);
   if (!copy_.restore(mutant.file, sink)) return sink.already_reported();
   return out;

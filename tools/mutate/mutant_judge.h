@@ -2,9 +2,11 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tools/mutate/cpu_watch.h"
@@ -70,6 +72,9 @@ class MutantJudge {
     Judgement judgement = {};  // kDiffers
   };
   Told compare(std::size_t index);
+  /// What `flag` ends early is unknown.
+  Told compare_models(const CaseModel& original, const CaseModel& mutated,
+                      const std::atomic<bool>& flag);
   Judgement look_at(const Mutant& mutant);
 
   const JudgedSuite& suite_;
@@ -78,6 +83,8 @@ class MutantJudge {
   CpuWatch& watch_;
   std::size_t thread_;
   const std::atomic<bool>& stop_;
+  /// Of the mutant at hand: by the keys of two models, as several cases may have the same.
+  std::map<std::pair<std::string, std::string>, Told> compared_;
 };
 
 /// The cases of a suite in a copy of its files.
