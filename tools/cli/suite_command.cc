@@ -335,6 +335,8 @@ std::string foreign_to_mutants(const SuiteOptions& options) {
   if (!options.markdown.empty()) return "--markdown";
   if (!options.annotations.empty()) return "--annotations";
   if (!options.quarantine.empty()) return "--quarantine";
+  if (!options.ledger.empty()) return "--ledger";
+  if (!options.history.empty()) return "--history";
   if (!options.verify_cache.empty()) return "--verify-cache";
   if (options.memory_mb > 0) return "--memory";
   return options.retries > 0 ? "--retry" : "";
@@ -361,7 +363,7 @@ int score_mutants(const SuiteOptions& options, Invocation& invocation) {
                           {program_hash(), options.seed, invocation.form().allow_outside});
   MutationOptions score;
   score.out = options.out;
-  score.runner = loop_options(options, false, invocation).runner;
+  score.runner = loop_options(options, false, nullptr, invocation).runner;
   score.jobs = options.jobs;
   score.resume = options.resume;
   if (!options.no_cache) score.cache = &cache;

@@ -263,6 +263,8 @@ TEST_CASE("options that make no sense together, and files of somebody else, are 
   refused({"--mutate", "--shard", "1/2"}, "--shard");
   refused({"--mutate", "--update-goldens"}, "--update-goldens");
   refused({"--mutate", "--retry", "2"}, "--retry");
+  refused({"--mutate", "--history", "h.ndjson"}, "--history");
+  refused({"--mutate", "--ledger", "l.yaml"}, "--ledger");
   refused({"--mutate", "--rerun-failed"}, "--rerun-failed");
   refused({"--mutate", "--verify-cache", "5%"}, "--verify-cache");
   refused({"--at-most", "3"}, "--mutate");
