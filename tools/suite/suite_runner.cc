@@ -195,7 +195,7 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
   result.problems.insert(result.problems.end(), problems.begin(), problems.end());
   if (!problems.empty() && !discrepancy.empty()) {
     result.problems.push_back(std::move(discrepancy));
-    if (!wants_kind) {
+    if (!wants_kind && !options.ends_early) {
       explanation = explanation_of_run(folder, expect, false, options, footprint, stop);
     }
     if (auto why = blame(explanation); !why.empty()) result.problems.push_back(std::move(why));
