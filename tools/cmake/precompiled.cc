@@ -1,0 +1,1 @@
+// A source that needs nothing: its target compiles the headers that others use.
