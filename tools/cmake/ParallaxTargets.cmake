@@ -5,6 +5,9 @@ target_compile_options(parallax_warnings INTERFACE
 # g++ 12 warns of impossible string copies at -O3 (its bugs 105329 and 105651).
 target_compile_options(parallax_warnings INTERFACE
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>)
+# g++ collects its garbage only beyond 500 MB: 5 to 10 % less processor time, four at a time 2 GB.
+target_compile_options(parallax_warnings INTERFACE
+  $<$<CXX_COMPILER_ID:GNU>:SHELL:--param ggc-min-heapsize=500000>)
 # Bitwise replay: no contraction into fused multiply-add, whatever the compiler's default.
 target_compile_options(parallax_warnings INTERFACE -ffp-contract=off)
 # Broken contracts name files as the repository does, wherever it lay when it was compiled.

@@ -67,7 +67,8 @@ CampaignResult sample_result() {
   found.first_divergence = 1;
   found.first = {{"RobotIn(r2)", 1, true, false}};
   found.fluents = {{"BoxIn(r1)", 2, true, false}, {"BoxIn(r2)", 2, false, true}};
-  found.cause = {"Place(r1): box-lost", "box-lost: nothing in the gripper"};
+  found.cause = {
+      "Place(r1): box-lost", "box-lost: nothing in the gripper", "Place(r1)", {"BoxIn(r1)"}};
   found.record.initial = {{"box.x", 1.25}};
   found.end = {{"box.held", false}, {"box.x", 1.0055}};
   found.record.outcomes = {{SimStatus::kOk, "", 2.0},
@@ -239,7 +240,10 @@ TEST_CASE("a discrepancy begins with its cause") {
         std::string::npos);
   const auto json = Json::parse(campaign_json(result, true));
   CHECK(json.at("discrepancies").at(0).at("cause") ==
-        Json({{"text", "Place(r1): box-lost"}, {"reason", "box-lost: nothing in the gripper"}}));
+        Json({{"text", "Place(r1): box-lost"},
+              {"reason", "box-lost: nothing in the gripper"},
+              {"event", "Place(r1)"},
+              {"fluents", {"BoxIn(r1)"}}}));
   result.discrepancies[0].cause = {"Place(r1): not BoxIn(r1)", {}};
   CHECK(campaign_text(result, {}).find("    cause      Place(r1): not BoxIn(r1)\n") !=
         std::string::npos);
