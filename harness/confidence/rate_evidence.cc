@@ -118,12 +118,27 @@ double fisher_worse(const RateCounts& before, const RateCounts& after) {
            log_beta(static_cast<double>(k) + 1.0, static_cast<double>(n - k) + 1.0);
   };
   const double all = log_choose(before.runs + after.runs, failures);
-  double tail = 0.0;
-  for (std::int64_t k = after.failures; k <= std::min(failures, after.runs); ++k) {
-    if (failures - k > before.runs) continue;
-    tail += std::exp(log_choose(after.runs, k) + log_choose(before.runs, failures - k) - all);
-  }
-  return std::min(1.0, tail);
+  const std::int64_t least = std::max<std::int64_t>(0, failures - before.runs);
+  const std::int64_t most = std::min(failures, after.runs);
+  // Away from the most probable number terms fall; the sum ends where further ones change nothing,
+  // so that it takes the width of the distribution at most, however many runs there are.
+  const auto tail = [&](std::int64_t k, std::int64_t step) {
+    constexpr double kNothing = 1e-18;
+    double sum = 0.0;
+    for (; k >= least && k <= most; k += step) {
+      const double term =
+          std::exp(log_choose(after.runs, k) + log_choose(before.runs, failures - k) - all);
+      sum += term;
+      if (term <= kNothing * sum) break;
+    }
+    return sum;
+  };
+  const double most_probable = static_cast<double>(failures + 1) *
+                               static_cast<double>(after.runs + 1) /
+                               static_cast<double>(before.runs + after.runs + 2);
+  const bool is_above = static_cast<double>(after.failures) > std::floor(most_probable);
+  const double chance = is_above ? tail(after.failures, 1) : 1.0 - tail(after.failures - 1, -1);
+  return std::clamp(chance, 0.0, 1.0);
 }
 
 double excess_bound(const RateCounts& before, const RateCounts& after, double confidence_level) {

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "harness/confidence/clean_runs.h"
-#include "harness/confidence/quantiles.h"
+#include "harness/confidence/rate_evidence.h"
 
 namespace parallax::tools {
 namespace {
@@ -37,36 +37,14 @@ std::string rate_words(const MeasuredRate& rate) {
                      100.0 * rate.upper);
 }
 
-/// Fisher's exact test of one side: the probability that so many or more of all failures are
-/// among the second runs if these are no worse. Lost runs failed before and not afterwards. 1 where
-/// fewer than the most probable number are: the other side is the smaller one then. The sum ends
-/// where further terms change nothing, so that it takes the width of the distribution at most.
-double fisher_worse(const MeasuredRate& before, const MeasuredRate& after) {
-  const auto runs_before = before.runs + before.lost, runs_after = after.runs + after.lost;
-  const auto failures = before.count + before.lost + after.count;
-  const auto most_probable = static_cast<double>(failures + 1) *
-                             static_cast<double>(runs_after + 1) /
-                             static_cast<double>(runs_before + runs_after + 2);
-  if (static_cast<double>(after.count) < std::floor(most_probable)) return 1.0;
-  const auto log_choose = [](std::int64_t n, std::int64_t k) {
-    return -std::log(static_cast<double>(n) + 1.0) -
-           harness::log_beta(static_cast<double>(k) + 1.0, static_cast<double>(n - k) + 1.0);
-  };
-  constexpr double kNothing = 1e-18;
-  const double all = log_choose(runs_before + runs_after, failures);
-  double tail = 0.0;
-  for (auto k = std::max(after.count, failures - runs_before); k <= std::min(failures, runs_after);
-       ++k) {
-    const double term =
-        std::exp(log_choose(runs_after, k) + log_choose(runs_before, failures - k) - all);
-    tail += term;
-    if (term <= kNothing * tail) break;
-  }
-  return std::min(1.0, tail);
+harness::RateCounts counts_of(const MeasuredRate& rate) {
+  return {rate.runs + rate.lost, rate.count, rate.lost};
 }
 
 double two_sided(const MeasuredRate& before, const MeasuredRate& after) {
-  return std::min(1.0, 2.0 * std::min(fisher_worse(before, after), fisher_worse(after, before)));
+  const auto old_counts = counts_of(before), new_counts = counts_of(after);
+  return std::min(1.0, 2.0 * std::min(harness::fisher_worse(old_counts, new_counts),
+                                      harness::fisher_worse(new_counts, old_counts)));
 }
 
 const MeasuredRate* find_rate(const HistoryCase& one, const std::string& of) {

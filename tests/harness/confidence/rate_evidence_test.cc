@@ -156,5 +156,14 @@ TEST_CASE("both statements about two rates are false no more often than is said"
   CHECK(excess_bound({25, 5, 3}, {25, 5, 3}, 0.95) == excess_bound({25, 5, 0}, {25, 8, 0}, 0.95));
 }
 
+TEST_CASE(
+    "Fisher's test of a thousand million runs takes no longer than its distribution is wide") {
+  constexpr std::int64_t kRuns = 1'000'000'000;
+  CHECK(fisher_worse({kRuns, kRuns / 2, 0}, {kRuns, kRuns / 2, 0}) ==
+        doctest::Approx(0.5).epsilon(0.01));
+  CHECK(fisher_worse({kRuns, 10, 0}, {kRuns, 900'000'000, 0}) < 1e-9);
+  CHECK(fisher_worse({kRuns, 900'000'000, 0}, {kRuns, 10, 0}) == 1.0);
+}
+
 }  // namespace
 }  // namespace parallax::harness
