@@ -50,9 +50,13 @@ function(parallax_optimize target)
 endfunction()
 
 # What nearly every source reads first is parsed once for each set of compile options, `hot` and `cold`, and not in each
-# batch. Headers are checked without it (preset `headers`). Not for tests: g++ 12 forgets in a precompiled header
+# batch. Only where code is optimized: fmt's headers switch optimization on for themselves, and g++ 12 goes on
+# after a precompiled one as if it were (Eigen then does not compile). Not for tests: g++ 12 forgets in a precompiled header
 # that code is the standard library's, and warns of impossible copies of their short constant strings.
 option(PARALLAX_PRECOMPILE "Parse the standard headers once" ON)
+if(CMAKE_BUILD_TYPE STREQUAL Debug)
+  set(PARALLAX_PRECOMPILE OFF)
+endif()
 function(parallax_precompile kind)
   if(NOT PARALLAX_PRECOMPILE)
     return()
