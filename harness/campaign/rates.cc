@@ -33,7 +33,8 @@ class Estimator {
     result.scenario = scenario_.name;
     result.seed = options_.seed;
     result.confidence = options_.confidence;
-    result.until_width = options_.until_width;
+    result.fixed_runs = runs_are_fixed();
+    result.until_known = options_.until_known;
     result.comparison = scenario_.comparison();
     const auto started = bench_.start();
     if (!started) return sink_.already_reported();
@@ -75,28 +76,29 @@ class Estimator {
     }
     std::map<std::string, CauseRate> causes;
     bool lost_too_often = false;
-    bool narrow = false;
-    while (complete && !narrow && trial->next_sample() <= options_.runs) {
+    bool enough = false;
+    while (complete && !enough && trial->next_sample() <= options_.runs) {
       trial->submit_to(last_wanted(trial->next_sample()));
       const auto sample = trial->next();
       if (!sample) return sink_.already_reported();
       lost_too_often = *sample && (*sample)->verdict == SampleVerdict::kLostTooOften;
       complete = *sample && !lost_too_often;
       if (*sample) count(trace, **sample, rates, causes);
-      narrow = is_narrow(rates);
+      enough = is_narrow(rates) || is_known(rates);
       report_progress(trace.number, trial->next_sample() - 1);
     }
     trial->end();
     // Bounds that hold at any time need nothing of what was not made.
-    const bool fixed = options_.until_width <= 0.0;
-    rates.unseen = fixed && lost_too_often ? options_.runs - rates.runs : rates.lost;
+    rates.unseen = runs_are_fixed() && lost_too_often ? options_.runs - rates.runs : rates.lost;
     finish(rates, causes);
     return rates;
   }
 
+  bool runs_are_fixed() const { return options_.until_width <= 0.0 && !options_.until_known; }
+
   /// Workers run ahead of what is counted; where the count may end it, not far.
   std::int64_t last_wanted(std::int64_t next) const {
-    if (options_.until_width <= 0.0) return options_.runs;
+    if (runs_are_fixed()) return options_.runs;
     return std::min(options_.runs, next + 2 * options_.jobs - 1);
   }
 
@@ -105,6 +107,12 @@ class Estimator {
     CauseRate any = rates.any;
     set_anytime_interval(any, rates.runs, rates.lost, options_.confidence);
     return any.upper - any.lower <= options_.until_width;
+  }
+
+  bool is_known(const TraceRates& rates) const {
+    if (!options_.until_known) return false;
+    const RateCounts counts{rates.runs + rates.lost, rates.any.count, rates.lost, false};
+    return weigh(*options_.until_known, counts) != Evidence::kTooLittle;
   }
 
   void report_progress(std::int64_t trace, std::int64_t done) const {
@@ -159,7 +167,7 @@ class Estimator {
     for (const auto& [text, rate] : causes) rates.causes.push_back(rate);
     std::stable_sort(rates.causes.begin(), rates.causes.end(),
                      [](const CauseRate& a, const CauseRate& b) { return a.count > b.count; });
-    const auto set = options_.until_width > 0.0 ? set_anytime_interval : set_interval;
+    const auto set = runs_are_fixed() ? set_interval : set_anytime_interval;
     for (CauseRate& rate : rates.causes) set(rate, rates.runs, rates.unseen, options_.confidence);
     rates.any.cause = "any";
     set(rates.any, rates.runs, rates.unseen, options_.confidence);

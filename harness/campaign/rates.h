@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "harness/campaign/campaign.h"
+#include "harness/confidence/rate_evidence.h"
 
 namespace parallax::harness {
 
@@ -29,6 +31,9 @@ struct RatesOptions {
   /// Above 0: `runs` are the most, and a trace ends as soon as the interval of any discrepancy is
   /// no wider. Intervals then hold whenever one looks: the mixture's bound from either side.
   double until_width = 0.0;
+  /// `runs` are the most, and a trace ends as soon as it is known whether the rate of any
+  /// discrepancy is as claimed, with the claim's confidence. Intervals hold whenever one looks.
+  std::optional<RateClaim> until_known;
   double confidence = 0.95;  // of each interval
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const CampaignProgress&)> progress;  // called in the caller's thread
@@ -39,7 +44,8 @@ struct RatesResult {
   std::string scenario;
   std::uint64_t seed = 0;
   double confidence = 0.0;
-  double until_width = 0.0;  // above 0: intervals hold at any time, else for a fixed number of runs
+  bool fixed_runs = true;  // false: intervals hold at any time, else for a fixed number of runs
+  std::optional<RateClaim> until_known;
   Comparison comparison = Comparison::kEveryStep;
   bool complete = true;  // false: stopped, or the simulator was lost too often
   std::vector<TraceRates> traces;

@@ -1,5 +1,7 @@
 #include "harness/confidence/rate_evidence.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -23,12 +25,28 @@ double at_least(std::int64_t k, std::int64_t n, double p) {
   return incomplete_beta(static_cast<double>(k), static_cast<double>(n - k) + 1.0, p);
 }
 
-bool shows_below(std::int64_t failures, std::int64_t runs, double bound, double tail) {
-  return bound >= 1.0 || at_most(failures, runs, bound) <= tail;
+/// Do so many failures show that the rate is below the bound?
+bool shows_below(std::int64_t failures, const RateCounts& of, double bound, double tail) {
+  if (bound >= 1.0) return true;
+  return of.fixed ? at_most(failures, of.runs, bound) <= tail
+                  : log_mixture_wealth(failures, of.runs, bound) >= -std::log(tail);
 }
 
-bool shows_above(std::int64_t failures, std::int64_t runs, double bound, double tail) {
-  return bound <= 0.0 || at_least(failures, runs, bound) <= tail;
+bool shows_above(std::int64_t failures, const RateCounts& of, double bound, double tail) {
+  if (bound <= 0.0) return true;
+  return of.fixed ? at_least(failures, of.runs, bound) <= tail
+                  : shows_below(of.runs - failures, of, 1.0 - bound, tail);
+}
+
+/// Bounds of one side; what was lost counts as what widens them.
+double upper_bound_of(const RateCounts& counts, double level) {
+  const auto bound = counts.fixed ? clopper_pearson_upper : mixture_upper;
+  return counts.runs == 0 ? 1.0 : bound(counts.failures + counts.lost, counts.runs, level);
+}
+
+double lower_bound_of(const RateCounts& counts, double level) {
+  const auto bound = counts.fixed ? clopper_pearson_upper : mixture_upper;
+  return counts.runs == 0 ? 0.0 : 1.0 - bound(counts.runs - counts.failures, counts.runs, level);
 }
 
 /// The first number from 1 on for which `enough` holds, by doubling and halving: it holds there and
@@ -58,35 +76,42 @@ void require_rate_counts(const RateCounts& counts) {
 
 }  // namespace
 
+std::string to_string(const RateClaim& claim) {
+  if (claim.lower <= 0.0) return fmt::format("below {:g} %", 100 * claim.upper);
+  if (claim.upper >= 1.0) return fmt::format("above {:g} %", 100 * claim.lower);
+  return fmt::format("from {:g} to {:g} %", 100 * claim.lower, 100 * claim.upper);
+}
+
 Evidence weigh(const RateClaim& claim, const RateCounts& counts) {
   require_rate_counts(counts);
   const double tail = 1.0 - claim.confidence_level;
   const std::int64_t most = counts.failures + counts.lost, least = counts.failures;
-  if (shows_below(most, counts.runs, claim.upper, tail) &&
-      shows_above(least, counts.runs, claim.lower, tail)) {
+  if (shows_below(most, counts, claim.upper, tail) &&
+      shows_above(least, counts, claim.lower, tail)) {
     return Evidence::kSupports;
   }
   const bool two_sided = claim.lower > 0.0 && claim.upper < 1.0;
   const double share = two_sided ? 0.5 * tail : tail;
-  const bool above = claim.upper < 1.0 && shows_above(least, counts.runs, claim.upper, share);
-  const bool below = claim.lower > 0.0 && shows_below(most, counts.runs, claim.lower, share);
+  const bool above = claim.upper < 1.0 && shows_above(least, counts, claim.upper, share);
+  const bool below = claim.lower > 0.0 && shows_below(most, counts, claim.lower, share);
   return above || below ? Evidence::kRefutes : Evidence::kTooLittle;
 }
 
-bool can_support(const RateClaim& claim, std::int64_t runs) {
+bool can_support(const RateClaim& claim, std::int64_t runs, bool fixed) {
   const double tail = 1.0 - claim.confidence_level;
-  if (!shows_below(0, runs, claim.upper, tail)) return false;
+  const RateCounts of{runs, 0, 0, fixed};
+  if (!shows_below(0, of, claim.upper, tail)) return false;
   // The most failures that still show the upper bound do most for the lower one.
   std::int64_t low = 0, high = runs + 1;
   while (high - low > 1) {
     const std::int64_t middle = low + (high - low) / 2;
-    (shows_below(middle, runs, claim.upper, tail) ? low : high) = middle;
+    (shows_below(middle, of, claim.upper, tail) ? low : high) = middle;
   }
-  return shows_above(low, runs, claim.lower, tail);
+  return shows_above(low, of, claim.lower, tail);
 }
 
-std::optional<std::int64_t> runs_to_support(const RateClaim& claim, std::int64_t most) {
-  return first_enough(1, most, [&](std::int64_t runs) { return can_support(claim, runs); });
+std::optional<std::int64_t> runs_to_support(const RateClaim& claim, std::int64_t most, bool fixed) {
+  return first_enough(1, most, [&](std::int64_t runs) { return can_support(claim, runs, fixed); });
 }
 
 std::optional<std::int64_t> runs_to_tell(const RateClaim& claim, const RateCounts& counts,
@@ -98,7 +123,7 @@ std::optional<std::int64_t> runs_to_tell(const RateClaim& claim, const RateCount
                         static_cast<double>(counts.runs));
   };
   return first_enough(counts.runs, most, [&](std::int64_t runs) {
-    RateCounts more{runs, scaled(counts.failures, runs), 0};
+    RateCounts more{runs, scaled(counts.failures, runs), 0, counts.fixed};
     more.lost = scaled(counts.failures + counts.lost, runs) - more.failures;
     return weigh(claim, more) != Evidence::kTooLittle;
   });
@@ -111,6 +136,7 @@ double clopper_pearson_lower(std::int64_t failures, std::int64_t runs, double co
 double fisher_worse(const RateCounts& before, const RateCounts& after) {
   require_rate_counts(before);
   require_rate_counts(after);
+  PARALLAX_REQUIRE(before.fixed && after.fixed, "numbers of runs that were fixed in advance");
   const std::int64_t old_failures = before.failures + before.lost;
   const std::int64_t failures = old_failures + after.failures;
   const auto log_choose = [](std::int64_t n, std::int64_t k) {
@@ -141,12 +167,18 @@ double fisher_worse(const RateCounts& before, const RateCounts& after) {
   return std::clamp(chance, 0.0, 1.0);
 }
 
+bool is_surely_worse(const RateCounts& before, const RateCounts& after, double confidence_level) {
+  require_rate_counts(before);
+  require_rate_counts(after);
+  const double level = 1.0 - 0.5 * (1.0 - confidence_level);
+  return lower_bound_of(after, level) > upper_bound_of(before, level);
+}
+
 double excess_bound(const RateCounts& before, const RateCounts& after, double confidence_level) {
   require_rate_counts(before);
   require_rate_counts(after);
   const double level = 1.0 - 0.5 * (1.0 - confidence_level);
-  const double upper = clopper_pearson_upper(after.failures + after.lost, after.runs, level);
-  return upper - clopper_pearson_lower(before.failures, before.runs, level);
+  return upper_bound_of(after, level) - lower_bound_of(before, level);
 }
 
 }  // namespace parallax::harness

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 namespace parallax::harness {
 
@@ -13,11 +14,15 @@ struct RateClaim {
   bool bounds_nothing() const { return lower <= 0.0 && upper >= 1.0; }
 };
 
-/// What a number of independent runs that was fixed in advance came to.
+/// "below 5 %", "above 30 %", "from 10 to 30 %"
+std::string to_string(const RateClaim& claim);
+
+/// What a number of independent runs came to.
 struct RateCounts {
   std::int64_t runs = 0;      // lost ones as well
   std::int64_t failures = 0;  // that were observed
   std::int64_t lost = 0;      // may have failed or not: the worst is assumed, for either answer
+  bool fixed = true;          // their number was in advance; else it may depend on what they showed
 };
 
 enum class Evidence : std::uint8_t {
@@ -26,17 +31,20 @@ enum class Evidence : std::uint8_t {
   kTooLittle,  // neither can be said with this confidence
 };
 
-/// What the counts say of the claim, by exact binomial tests: where it is false they are taken for
+/// What the counts say of the claim, by exact binomial tests, or by bounds that hold whenever one
+/// looks (mixture_upper) where their number was not fixed: where it is false they are taken for
 /// support, and where it is true for refutation, with a probability of at most 1 - C each. Support
-/// takes both bounds of Clopper and Pearson at C, which is enough for both together (an
+/// takes the bounds of both sides at C, which is enough for both together (an
 /// intersection-union test); refutation takes one of them, at 1 - (1-C)/2 where there are two.
 Evidence weigh(const RateClaim& claim, const RateCounts& counts);
 
-/// Can so many runs support the claim, whatever they come to?
-bool can_support(const RateClaim& claim, std::int64_t runs);
+/// Can so many runs support the claim, whatever they come to? With `fixed` false: can it be
+/// supported by so many, or earlier?
+bool can_support(const RateClaim& claim, std::int64_t runs, bool fixed = true);
 
 /// A number of runs that can, while one less cannot; none up to `most`.
-std::optional<std::int64_t> runs_to_support(const RateClaim& claim, std::int64_t most);
+std::optional<std::int64_t> runs_to_support(const RateClaim& claim, std::int64_t most,
+                                            bool fixed = true);
 
 /// A number of runs that would tell if failures and losses stay as frequent as they are; none up to
 /// `most`, as where the rate is the border itself.
@@ -49,8 +57,13 @@ double clopper_pearson_lower(std::int64_t failures, std::int64_t runs, double co
 /// Are failures more probable in `after` than in `before`? Fisher's exact test, of one side: the
 /// probability of as many or more of all failures on the new side if they are equally probable.
 /// Lost runs count as failures before and as none after, so that what is found is found in any
-/// case.
+/// case. Both numbers of runs were fixed.
 double fisher_worse(const RateCounts& before, const RateCounts& after);
+
+/// The same for numbers of which one at least was not fixed, with bounds that hold whenever one
+/// looks, each at 1 - (1-C)/2: does the lower one after lie above the upper one before? With at
+/// most 1-C it does although the probability has not grown.
+bool is_surely_worse(const RateCounts& before, const RateCounts& after, double confidence_level);
 
 /// With this confidence, the probability after exceeds that before by less than this: the upper
 /// bound after less the lower one before, each at 1 - (1-C)/2. Lost runs count as none before, as

@@ -77,15 +77,13 @@ void settle_runs(const YamlNode& node, const YamlFields& fields, RateExpectation
                "narrower: every rate lies there");
     return;
   }
-  const auto* runs = fields.find(Key::kRuns);
-  const auto least = runs_to_support(claim, kMaxRuns);
+  const auto* runs = fields.find(rate.fixed_runs ? Key::kRuns : Key::kMaxRuns);
+  const auto least = runs_to_support(claim, kMaxRuns, rate.fixed_runs);
   const auto refuse = [&](const std::string& why) {
     sink.error(DiagnosticCode::kExpectationCannotHold, runs == nullptr ? node.range : runs->range,
                why);
   };
-  const auto what = rate.lower <= 0.0   ? fmt::format("below {:g}", rate.upper)
-                    : rate.upper >= 1.0 ? fmt::format("above {:g}", rate.lower)
-                                        : fmt::format("from {:g} to {:g}", rate.lower, rate.upper);
+  const auto what = to_string(claim);
   const auto confidence = fmt::format("with {:g} % confidence", 100.0 * claim.confidence_level);
   if (!least) {
     return refuse(
@@ -94,7 +92,7 @@ void settle_runs(const YamlNode& node, const YamlFields& fields, RateExpectation
   if (runs == nullptr) {
     // Room for some failures.
     rate.runs = std::min(kMaxRuns, std::max(kDefaultRuns, 2 * *least));
-  } else if (!can_support(claim, rate.runs)) {
+  } else if (!can_support(claim, rate.runs, rate.fixed_runs)) {
     refuse(fmt::format("whatever {} runs come to, they do not show {} that the rate is {}; {} can",
                        rate.runs, confidence, what, *least));
   }
@@ -105,9 +103,18 @@ RateExpectation read_rate(const YamlNode& node, base::DiagnosticSink& sink) {
   RateExpectation rate;
   YamlFields fields(node, key_text(Key::kRate), sink);
   fields.only({Key::kBelow, Key::kAbove, Key::kBetween, Key::kConfidence, Key::kTrace, Key::kRuns,
-               Key::kCause});
+               Key::kMaxRuns, Key::kCause});
   fields.integer(Key::kTrace, 1, kMaxRuns, rate.trace);
   fields.integer(Key::kRuns, 1, kMaxRuns, rate.runs);
+  if (const auto* most = fields.find(Key::kMaxRuns)) {
+    fields.integer(Key::kMaxRuns, 1, kMaxRuns, rate.runs);
+    rate.fixed_runs = false;
+    rate.confidence = kDefaultEvidence;
+    if (fields.find(Key::kRuns) != nullptr) {
+      sink.error(DiagnosticCode::kYamlOutOfBounds, most->range, key_text(Key::kRate),
+                 "given two numbers of runs", "given one of `runs` and `max_runs`");
+    }
+  }
   if (fields.find(Key::kBelow) != nullptr || fields.find(Key::kAbove) != nullptr) {
     rate.confidence = kDefaultEvidence;
   }

@@ -4,7 +4,8 @@
 
 #include <array>
 #include <initializer_list>
-#include <utility>
+#include <span>
+#include <vector>
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/path_gate.h"
@@ -18,18 +19,32 @@ using base::DiagnosticCode;
 constexpr std::array<std::string_view, 2> kPermissions = {"allowed", "forbidden"};
 constexpr std::array<std::string_view, 2> kUndecided = {"fails", "passes"};
 
-/// One section of the rules: what it forbids.
+/// A rule that is `allowed` or `forbidden`.
+struct Rule {
+  std::string_view key;
+  bool* forbidden;
+};
+
+/// One section: what it forbids.
 class RuleSection {
  public:
-  RuleSection(const YamlNode& node, std::string_view key, base::DiagnosticSink& sink)
-      : key_(key), fields_(node, key_text(key), sink), sink_(sink), before_(sink.error_count()) {}
+  /// `more`: its keys that are no such rules.
+  RuleSection(const YamlNode& node, std::string_view key, std::initializer_list<Rule> rules,
+              std::initializer_list<std::string_view> more, base::DiagnosticSink& sink)
+      : key_(key), fields_(node, key_text(key), sink), sink_(sink), before_(sink.error_count()) {
+    std::vector<std::string_view> known(more);
+    for (const auto& rule : rules) known.push_back(rule.key);
+    fields_.only(std::span<const std::string_view>(known));
+    for (const auto& rule : rules) read(rule);
+  }
 
   YamlFields& fields() { return fields_; }
 
-  void rule(std::string_view key, bool& forbidden) {
-    const auto choice = fields_.choice(key, fmt::format("value of `{}`", key), kPermissions);
-    forbidden = choice == std::size_t{1};
-    forbids_ = forbids_ || forbidden;
+  void read(const Rule& rule) {
+    const auto choice =
+        fields_.choice(rule.key, fmt::format("value of `{}`", rule.key), kPermissions);
+    *rule.forbidden = choice == std::size_t{1};
+    forbids_ = forbids_ || *rule.forbidden;
   }
   void forbids() { forbids_ = true; }
 
@@ -49,13 +64,12 @@ class RuleSection {
 
 GateRules::Models read_models(const YamlNode& node, base::DiagnosticSink& sink) {
   GateRules::Models out;
-  RuleSection section(node, Key::kModels, sink);
-  section.fields().only(
-      {Key::kLostTraces, Key::kGainedTraces, Key::kDeclarations, Key::kAxioms, Key::kProperties});
-  section.rule(Key::kLostTraces, out.lost_traces);
-  section.rule(Key::kGainedTraces, out.gained_traces);
-  section.rule(Key::kDeclarations, out.declarations);
-  section.rule(Key::kAxioms, out.axioms);
+  RuleSection section(node, Key::kModels,
+                      {{Key::kLostTraces, &out.lost_traces},
+                       {Key::kGainedTraces, &out.gained_traces},
+                       {Key::kDeclarations, &out.declarations},
+                       {Key::kAxioms, &out.axioms}},
+                      {Key::kProperties}, sink);
   if (const auto* list = section.fields().find(Key::kProperties)) {
     out.properties = located_texts(*list, Key::kProperties, sink);
     if (!out.properties.empty()) section.forbids();
@@ -66,42 +80,34 @@ GateRules::Models read_models(const YamlNode& node, base::DiagnosticSink& sink) 
 
 GateRules::Plans read_plans(const YamlNode& node, base::DiagnosticSink& sink) {
   GateRules::Plans out;
-  RuleSection section(node, Key::kPlans, sink);
-  section.fields().only({Key::kForms, Key::kOrder});
-  section.rule(Key::kForms, out.forms);
-  section.rule(Key::kOrder, out.order);
-  section.finish();
+  RuleSection(node, Key::kPlans, {{Key::kForms, &out.forms}, {Key::kOrder, &out.order}}, {}, sink)
+      .finish();
   return out;
 }
 
 GateRules::Traces read_traces(const YamlNode& node, base::DiagnosticSink& sink) {
   GateRules::Traces out;
-  RuleSection section(node, Key::kTraces, sink);
-  section.fields().only({Key::kLost, Key::kGained});
-  section.rule(Key::kLost, out.lost);
-  section.rule(Key::kGained, out.gained);
-  section.finish();
+  RuleSection(node, Key::kTraces, {{Key::kLost, &out.lost}, {Key::kGained, &out.gained}}, {}, sink)
+      .finish();
   return out;
 }
 
 GateRules::Runs read_runs(const YamlNode& node, base::DiagnosticSink& sink) {
   GateRules::Runs out;
-  RuleSection section(node, Key::kRuns, sink);
-  section.fields().only(
-      {Key::kLostTraces, Key::kGainedDiscrepancies, Key::kWorseVerdict, Key::kSettings});
-  section.rule(Key::kLostTraces, out.lost_traces);
-  section.rule(Key::kGainedDiscrepancies, out.gained_discrepancies);
-  section.rule(Key::kWorseVerdict, out.worse_verdict);
-  section.rule(Key::kSettings, out.settings);
-  section.finish();
+  RuleSection(node, Key::kRuns,
+              {{Key::kLostTraces, &out.lost_traces},
+               {Key::kGainedDiscrepancies, &out.gained_discrepancies},
+               {Key::kWorseVerdict, &out.worse_verdict},
+               {Key::kSettings, &out.settings}},
+              {}, sink)
+      .finish();
   return out;
 }
 
 GateRules::Rates read_rates(const YamlNode& node, base::DiagnosticSink& sink) {
   GateRules::Rates out;
-  RuleSection section(node, Key::kRates, sink);
-  section.fields().only({Key::kWorse, Key::kGainedCauses});
-  section.rule(Key::kGainedCauses, out.gained_causes);
+  RuleSection section(node, Key::kRates, {{Key::kGainedCauses, &out.gained_causes}}, {Key::kWorse},
+                      sink);
   const auto* worse = section.fields().find(Key::kWorse);
   if (worse != nullptr && worse->is_map()) {
     YamlFields numbers(*worse, key_text(Key::kWorse), sink);
@@ -113,7 +119,7 @@ GateRules::Rates read_rates(const YamlNode& node, base::DiagnosticSink& sink) {
     section.forbids();
   } else {
     bool forbidden = false;
-    section.rule(Key::kWorse, forbidden);
+    section.read({Key::kWorse, &forbidden});
     if (forbidden) out.worse = GateRules::Worse{};
   }
   section.finish();

@@ -89,6 +89,7 @@ struct CauseExpectation {
 /// How often uniform runs of one trace give any discrepancy (`parallax rates`).
 struct RateExpectation {
   std::int64_t trace = 1, runs = 100;
+  bool fixed_runs = true;  // false: `runs` are the most, and end as soon as they tell
   double lower = 0.0, upper = 1.0;
   /// None: the interval measured with 95 % confidence has to meet this one, which few runs nearly
   /// always do. Else the runs have to show with this confidence that the rate lies in it.

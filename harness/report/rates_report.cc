@@ -33,6 +33,15 @@ std::string percent(const CauseRate& rate) {
                      100.0 * rate.upper);
 }
 
+/// Whether it came out, before all runs were made, that the rate is as asked.
+std::string known_text(const RateClaim& claim, const TraceRates& trace) {
+  const auto evidence = weigh(claim, {trace.runs + trace.lost, trace.any.count, trace.lost, false});
+  const auto* is = evidence == Evidence::kSupports ? "it is" : "it is not";
+  return fmt::format("  {} {} (with {:g} % confidence)\n",
+                     evidence == Evidence::kTooLittle ? "not known whether it is" : is,
+                     to_string(claim), 100.0 * claim.confidence_level);
+}
+
 }  // namespace
 
 std::string rates_text(const RatesResult& result) {
@@ -46,6 +55,7 @@ std::string rates_text(const RatesResult& result) {
     if (trace.unseen > 0) out += "  " + unseen_text(trace.unseen) + "\n";
     out += fmt::format("  {:>6} of {:<6} {:<26} any discrepancy\n", trace.any.count, trace.runs,
                        percent(trace.any));
+    if (result.until_known) out += known_text(*result.until_known, trace);
     for (const CauseRate& rate : trace.causes) {
       out += fmt::format("  {:>6} of {:<6} {:<26} {}\n", rate.count, trace.runs, percent(rate),
                          rate.cause);
@@ -60,7 +70,7 @@ std::string rates_text(const RatesResult& result) {
 }
 
 std::string_view interval_name(const RatesResult& result) {
-  return result.until_width > 0.0 ? "valid whenever one looks" : "Clopper-Pearson";
+  return result.fixed_runs ? "Clopper-Pearson" : "valid whenever one looks";
 }
 
 std::string rates_json(const RatesResult& result) {
@@ -68,7 +78,7 @@ std::string rates_json(const RatesResult& result) {
                    {"scenario", result.scenario},
                    {"seed", result.seed},
                    {"confidence", result.confidence},
-                   {"intervals", result.until_width > 0.0 ? "anytime" : "clopper-pearson"},
+                   {"intervals", result.fixed_runs ? "clopper-pearson" : "anytime"},
                    {"compare", to_string(result.comparison)},
                    {"complete", result.complete},
                    {"traces", Json::array()}};

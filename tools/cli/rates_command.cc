@@ -17,7 +17,8 @@
 namespace parallax::tools {
 namespace {
 
-constexpr std::int64_t kMostRunsUntilWidth = 100'000;
+constexpr FiniteNumber kShare{1e-6, 1.0 - 1e-6};
+constexpr std::int64_t kMostRunsUntil = 100'000;
 
 struct RateOptions {
   std::string scenario;
@@ -27,6 +28,7 @@ struct RateOptions {
   CommandPermission commands;
   std::string samples, plot;
   bool cause_kinds = false;
+  double below = 1.0, above = 0.0;  // of --until-below, --until-above
 };
 
 base::Status check_plot(const std::string& path, Invocation& invocation) {
@@ -76,10 +78,18 @@ int run_rates(const RateOptions& options, Invocation& invocation) {
   EnumeratedTraces traces(model, invocation);
   traces.explain_absence_by([&] { return reasons_for_absence(*loaded, invocation); });
   auto rates = options.rates;
+  if (options.below <= options.above) {
+    invocation.sink().error_about(base::DiagnosticCode::kUsage, "",
+                                  "--until-above must be less than --until-below");
+    return 0;
+  }
+  if (options.below < 1.0 || options.above > 0.0) {
+    rates.until_known = {options.above, options.below, rates.confidence};
+  }
   if (options.runs > 0) {
     rates.runs = options.runs;
-  } else if (rates.until_width > 0.0) {
-    rates.runs = kMostRunsUntilWidth;
+  } else if (rates.until_width > 0.0 || rates.until_known) {
+    rates.runs = kMostRunsUntil;
   }
   rates.stop = &stop_flag();
   rates.progress = progress_on_terminal(invocation.options());
@@ -117,6 +127,7 @@ Command rates_command() {
       "  parallax rates scenarios/kitchen/plan2.yaml --trace 2 --runs 400 --jobs 2\n"
       "  parallax rates scenarios/two_regions/edge.yaml --runs 100 --json\n"
       "  parallax rates scenarios/two_regions/edge.yaml --until-width 0.2\n"
+      "  parallax rates scenarios/two_regions/edge.yaml --until-below 0.1 --runs 400\n"
       "  parallax rates scenarios/kitchen/plan3.yaml --runs 200 --plot rates.html --samples "
       "rates.csv\n"
       "Sample N starts as simulation N of `parallax run` with the same seed does.\n"
@@ -126,13 +137,22 @@ Command rates_command() {
       .check(WholeNumber{1, 1'000'000});
   command
       .option("--runs", options->runs,
-              "Simulations of each trace (300); with --until-width, the most (100,000)")
+              "Simulations of each trace (300); with --until-..., the most (100,000)")
       .check(WholeNumber{1, 1'000'000});
   command
       .option("--until-width", options->rates.until_width,
               "Go on until the interval of any discrepancy is no wider than this (0.1: ten "
               "points); intervals then hold whenever one looks, and are wider for as many runs")
       .check(FiniteNumber{0.001, 1.0});
+  command
+      .option("--until-below", options->below,
+              "Go on until it is known, with the confidence, whether the rate of any discrepancy "
+              "is below this; with --until-above, whether it lies between")
+      .check(kShare);
+  command
+      .option("--until-above", options->above,
+              "Go on until it is known whether the rate is above this")
+      .check(kShare);
   command.flag("--cause-kinds", options->cause_kinds,
                "Also tell what kind of cause each is: always, region, random or simulator");
   add_judging_options(command, options->judging);

@@ -1,49 +1,25 @@
-#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
-#include <set>
 
 #include "compiler/base/diagnostic_codes.h"
-#include "compiler/base/diagnostic_printer.h"
-#include "compiler/base/file_io.h"
-#include "compiler/base/whole_number.h"
-#include "harness/config/quarantine.h"
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
-#include "tools/cli/mutate_suite.h"
+#include "tools/cli/merge_shards.h"
 #include "tools/cli/shared_options.h"
-#include "tools/history/change_points.h"
-#include "tools/history/git.h"
+#include "tools/cli/suite_history_option.h"
+#include "tools/cli/suite_options.h"
+#include "tools/cli/suite_output.h"
 #include "tools/suite/input_hashes.h"
 #include "tools/suite/result_cache.h"
 #include "tools/suite/suite_case.h"
-#include "tools/suite/suite_history.h"
 #include "tools/suite/suite_loop.h"
-#include "tools/suite/suite_merge.h"
 #include "tools/suite/suite_record.h"
 #include "tools/suite/suite_summary.h"
 
 namespace parallax::tools {
 namespace {
-
-struct SuiteOptions {
-  std::vector<std::string> paths, merge;
-  std::string only;
-  std::string out = "out/suite";
-  std::string junit, markdown, annotations, quarantine, cache, verify_cache, ledger;
-  std::string history, revision;
-  std::string shard = "1/1";
-  std::uint64_t seed = 1;
-  std::int64_t jobs = 1, memory_mb = 0, retries = 0;
-  bool update_goldens = false;
-  bool force = false;
-  bool rerun_failed = false, resume = false;
-  bool no_cache = false;
-  bool fast = false;
-  CommandPermission commands;
-  MutateOptions mutants;
-};
 
 std::string environment(const std::string& name) {
   const char* value = std::getenv(name.c_str());
@@ -80,130 +56,6 @@ base::Result<std::vector<SuiteCase>> wanted_cases(const SuiteOptions& options,
   return cases;
 }
 
-/// A JUnit report, as far as one can see.
-bool is_junit(std::string_view text) {
-  constexpr std::size_t kHead = 4096;
-  return text.starts_with("<") &&
-         text.substr(0, kHead).find("<testsuite") != std::string_view::npos;
-}
-
-/// May `file` be replaced: is it new, empty, or something that `is_ours`?
-bool may_replace(const std::string& file, const std::string& option,
-                 bool (*is_ours)(std::string_view), Invocation& invocation) {
-  if (file.empty()) return true;
-  auto& sink = invocation.sink();
-  if (!base::check_output(file, invocation.files(), sink)) return false;
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) return true;
-  const auto text = base::read_file(file, sink);
-  if (!text) return false;
-  if (text->empty() || is_ours(*text)) return true;
-  sink.error_about(
-      base::DiagnosticCode::kUsage, file,
-      fmt::format("this file is there already and is no report that {} could replace", option));
-  return false;
-}
-
-bool is_markdown(std::string_view text) { return text.starts_with(kMarkdownMark); }
-
-/// Results replace earlier results, a report replaces an earlier report, or an empty file, and no
-/// file that the suite reads.
-bool may_write(const SuiteOptions& options, Invocation& invocation) {
-  auto& sink = invocation.sink();
-  const auto results = std::filesystem::path(options.out) / kResultsFile;
-  if (!base::check_output(results, invocation.files(), sink)) return false;
-  std::error_code error;
-  base::DiagnosticSink unread;
-  if (std::filesystem::exists(results, error) && !std::filesystem::is_empty(results, error) &&
-      !read_results(options.out, unread)) {
-    sink.error_about(base::DiagnosticCode::kUsage, results.string(),
-                     "this file is there already and holds no results that --out could replace");
-    return false;
-  }
-  return may_replace(options.junit, "--junit", is_junit, invocation) &&
-         may_replace(options.markdown, "--markdown", is_markdown, invocation);
-}
-
-/// Prints and writes what came out; the exit code.
-int conclude(SuiteRecord& record, const SuiteOptions& options, Invocation& invocation) {
-  auto& sink = invocation.sink();
-  bool saved = record.save(sink).has_value();
-  if (!options.markdown.empty()) {
-    saved =
-        base::write_file_atomically(options.markdown, summary_markdown(record), sink).has_value() &&
-        saved;
-  }
-  if (options.annotations == "github") write_error(github_annotations(record));
-  if (invocation.options().json) {
-    invocation.document(summary_document(record));
-  } else {
-    invocation.result(summary_text(record));
-  }
-  if (record.count(Outcome::kFailed) + record.count(Outcome::kError) > 0) return 1;
-  return saved && record.count(Outcome::kNotFinished) > 0 ? 4 : 0;
-}
-
-base::Result<harness::Quarantine> quarantine_of(const SuiteOptions& options,
-                                                Invocation& invocation) {
-  if (options.quarantine.empty()) return harness::Quarantine{};
-  return harness::load_quarantine(options.quarantine, invocation.files(), invocation.sink());
-}
-
-/// Why the suite can have no line in a history; empty: it can.
-std::string unfit_for_history(const SuiteOptions& options) {
-  if (options.history.empty()) return {};
-  if (options.rerun_failed) return "--history is of whole suites, without --rerun-failed";
-  if (options.merge.empty() && options.shard != "1/1") {
-    return "--history is of whole suites: merge the shards, and append with --merge";
-  }
-  return {};
-}
-
-/// Appends the suite to its history, and says what changed since the line before it.
-void append_to_history(const SuiteRecord& record, const SuiteIdentity& suite,
-                       const SuiteOptions& options, Invocation& invocation) {
-  if (options.history.empty()) return;
-  if (record.count(Outcome::kNotFinished) > 0) {
-    return invocation.remark("the suite was ended, so nothing is appended to " + options.history);
-  }
-  auto& sink = invocation.sink();
-  std::error_code error;
-  auto revision = options.revision;
-  if (revision.empty() && !suite.paths.empty()) {
-    revision = revision_at(suite.paths.front()).value_or("");
-  }
-  if (!append_history(options.history, history_line(record, suite, revision), sink)) return;
-  const auto history = read_history(options.history, sink);
-  if (!history || history->lines.empty()) return;
-  for (const auto& remark : remarks_on(*history, options.history)) invocation.remark(remark);
-  for (const auto& lines : suites_of(*history)) {
-    if (!history->lines[lines.front()].is_same_suite(history->lines.back())) continue;
-    const auto changes = find_changes(*history, lines, kHistoryConfidence);
-    for (const auto& point : changes.points) {
-      if (point.line + 1 != lines.size()) continue;
-      invocation.remark(base::printable(change_text(point, *history, lines)));
-    }
-    for (const auto& slower : slower_cases(*history, lines)) {
-      invocation.remark(base::printable(slower));
-    }
-  }
-}
-
-/// May the history be appended to? Asked before the first case.
-bool may_append(const SuiteOptions& options, Invocation& invocation) {
-  if (options.history.empty()) return true;
-  std::error_code error;
-  const auto status = std::filesystem::symlink_status(options.history, error);
-  if (std::filesystem::is_symlink(status)) {
-    invocation.sink().error_about(base::DiagnosticCode::kFileNotWritable, options.history,
-                                  "it is a link; name the file itself");
-    return false;
-  }
-  if (!std::filesystem::exists(status)) return true;
-  if (!base::check_output(options.history, invocation.files(), invocation.sink())) return false;
-  return read_history(options.history, invocation.sink()).has_value();
-}
-
 /// The ledger, if one was named.
 base::Result<std::optional<SuiteLedger>> ledger_of(const SuiteOptions& options,
                                                    Invocation& invocation) {
@@ -211,62 +63,6 @@ base::Result<std::optional<SuiteLedger>> ledger_of(const SuiteOptions& options,
   auto ledger = harness::load_ledger(options.ledger, invocation.files(), invocation.sink());
   if (!ledger) return invocation.sink().already_reported();
   return std::optional(SuiteLedger{*std::move(ledger), options.ledger});
-}
-
-/// A list of known failures must not outlive them.
-void speak_of_quarantine(const SuiteRecord& record, bool whole, const Invocation& invocation) {
-  std::set<std::string> known;
-  for (std::size_t i = 0; i < record.cases().size(); ++i) {
-    const auto name = record.cases()[i].name();
-    known.insert(name);
-    if (!record.quarantine().contains(name)) continue;
-    const auto& result = record.results()[i];
-    if (result.outcome == Outcome::kPassed && !result.flaky()) {
-      invocation.remark(fmt::format("{} passes: take it from the quarantine list", name));
-    }
-  }
-  if (!whole) return;
-  for (const auto& [name, reason] : record.quarantine()) {
-    if (!known.contains(name)) {
-      invocation.remark(fmt::format("the quarantine list names {}, which is no case", name));
-    }
-  }
-}
-
-int merge_suite(const SuiteOptions& options, Invocation& invocation) {
-  auto& sink = invocation.sink();
-  const auto quarantine = quarantine_of(options, invocation);
-  auto merged = merge_suites(options.merge, sink);
-  if (!quarantine || !merged || !may_write(options, invocation) ||
-      !may_append(options, invocation)) {
-    return 0;
-  }
-  for (const auto& folder : options.merge) {
-    std::error_code error;
-    if (!std::filesystem::equivalent(folder, options.out, error)) continue;
-    sink.error_about(base::DiagnosticCode::kUsage, options.out,
-                     "--out: the merged results would replace those of a shard");
-    return 0;
-  }
-  const auto suite = merged->identity;
-  StoredResults stored{suite, {}};
-  const std::vector<bool> none(merged->cases.size(), false);
-  SuiteRecord record(std::move(merged->cases), none, options.out, options.junit, std::move(stored),
-                     *quarantine);
-  for (std::size_t i = 0; i < merged->results.size(); ++i) {
-    const auto& result = merged->results[i];
-    if (result.outcome != Outcome::kPassed) {
-      invocation.remark(line_of(record.cases()[i], result));
-    }
-    record.finish(i, std::move(merged->results[i]));
-  }
-  for (const auto& shard : merged->missing) {
-    invocation.remark(fmt::format("shard {0} is missing: run it with --shard {0} and merge again",
-                                  to_string(shard)));
-  }
-  speak_of_quarantine(record, true, invocation);
-  append_to_history(record, suite, options, invocation);
-  return conclude(record, options, invocation);
 }
 
 /// Is the folder there, or can it be made?
@@ -383,7 +179,7 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
     if (!options.ledger.empty()) {
       return usage_error("--ledger belongs to the suites whose results are merged", invocation);
     }
-    return merge_suite(options, invocation);
+    return merge_shards(options, invocation);
   }
   if (options.paths.empty()) {
     return usage_error("name a scenario, a manifest or a folder, or folders with --merge",
@@ -433,14 +229,16 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
                           {program_hash(), options.seed, invocation.form().allow_outside, known});
   const auto remark = [&](const std::string& text) { invocation.remark(text); };
   const bool caches = !options.no_cache && !options.update_goldens;
-  Reuse reuse(record, cache, remark);
+  const LastPasses passes(folder);
+  Reuse reuse(record, cache, passes, remark);
   if (options.resume) {
     reuse.resume(earlier->cases, identity.permits_more_than(earlier->identity));
   }
   if (caches) reuse.look_up(*verified);
   if (!record.save(sink)) return 0;
-  run_open_cases(record, loop_options(options, caches, known, invocation), earlier->cases, reuse,
-                 cache, remark, stop_flag());
+  auto loop = loop_options(options, caches, known, invocation);
+  if (caches) loop.runner.last_passes = &passes;
+  run_open_cases(record, loop, earlier->cases, reuse, cache, passes, remark, stop_flag());
   speak_of_quarantine(record, options.only.empty() && !options.fast && !options.rerun_failed,
                       invocation);
   if (known != nullptr) {

@@ -8,6 +8,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/json.h"
+#include "compiler/base/temporary_folder.h"
 #include "harness/config/ledger.h"
 #include "harness/report/text_layout.h"
 #include "runtime/enumerate/plan_enumerator.h"
@@ -32,27 +33,6 @@ struct VerifyOptions {
   std::string ledger;
 };
 
-/// A folder for a proof that nobody asked to keep.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::error_code error;
-    auto name = std::filesystem::temp_directory_path(error).string() + "/parallax_proof_XXXXXX";
-    if (!error && ::mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code error;
-    if (!path_.empty()) std::filesystem::remove_all(path_, error);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  /// Empty if there is none.
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
 /// The answer, before it is printed.
 struct Answer {
   std::optional<runtime::Trace> violation;
@@ -75,11 +55,11 @@ Answer ask(const compiler::CompiledModel& model, TraceCertifier& certifier) {
 }
 
 /// The proof is made and checked in any case, and kept if that was asked for.
-CertifyOption proof_option(const VerifyOptions& options, const TemporaryFolder& folder) {
+CertifyOption proof_option(const VerifyOptions& options, const base::TemporaryFolder& folder) {
   auto certify = options.certify;
   if (certify.file.empty()) {
     certify.keep = false;
-    certify.file = folder.path() + "/verify.drat";
+    certify.file = (folder.path() / "verify.drat").string();
   }
   return certify;
 }
@@ -235,7 +215,7 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   const auto compilation = compile_models(model_options, invocation);
   if (!compilation) return 0;
   const auto& model = compilation->model;
-  const TemporaryFolder folder;
+  const base::TemporaryFolder folder("proof");  // for one that nobody asked to keep
   const auto certify = proof_option(options, folder);
   TraceCertifier certifier(certify, options.model.models, model, invocation);
   if (!certifier.ready()) return 0;

@@ -34,12 +34,9 @@ std::string not_comparable(const RatesRevision& before, const RatesRevision& aft
                        after.compare);
   }
   for (const auto* side : {&before, &after}) {
-    if (!side->complete) return fmt::format("{} was stopped before all runs were made", side->name);
-    if (!side->fixed) {
-      return fmt::format(
-          "{} ended when it had seen enough (--until-width), and exact tests need a number of runs "
-          "that was fixed in advance",
-          side->name);
+    // Bounds that hold whenever one looks do so wherever the runs ended.
+    if (!side->complete && side->fixed) {
+      return fmt::format("{} was stopped before all runs were made", side->name);
     }
     if (side->traces.empty()) return fmt::format("{} has no trace", side->name);
   }
@@ -58,6 +55,26 @@ std::string not_comparable(const RatesRevision& before, const RatesRevision& aft
 
 std::string percent(double share) { return fmt::format("{:.2g} %", 100.0 * share); }
 
+/// Has a probability grown?
+struct GrowthEvidence {
+  bool grew = false;   // with the confidence that was asked for
+  double order = 0.0;  // the lower, the surer
+  std::string words;
+};
+
+/// By Fisher's exact test; where a number of runs depends on what they showed, by bounds that hold
+/// whenever one looks.
+GrowthEvidence weigh_growth(const RateCounts& before, const RateCounts& after, double level) {
+  if (before.fixed && after.fixed) {
+    const double chance = fisher_worse(before, after);
+    const bool grew = chance <= 1.0 - level;
+    return {grew, chance, fmt::format("{}p = {:.2g}", grew ? "Fisher's exact test, " : "", chance)};
+  }
+  const bool grew = is_surely_worse(before, after, level);
+  return {grew, grew ? 0.0 : 1.0,
+          fmt::format("bounds that hold whenever one looks {}", grew ? "part" : "overlap")};
+}
+
 /// What the two counts of one trace say. `level`: the confidence of finding a rate worse.
 RuleOutcome weigh_change(const RateCounts& before, const RateCounts& after,
                          const harness::GateRules::Worse& worse, double level, std::string& words) {
@@ -67,15 +84,12 @@ RuleOutcome weigh_change(const RateCounts& before, const RateCounts& after,
         fmt::format("{}: worse by less than {}", change_text(before, after), percent(worse.margin));
     return RuleOutcome::kKept;
   }
-  const double chance = fisher_worse(before, after);
+  const auto evidence = weigh_growth(before, after, level);
   words = change_text(before, after);
-  if (chance <= 1.0 - level) {
-    words += fmt::format(": worse (Fisher's exact test, p = {:.2g})", chance);
-    return RuleOutcome::kBroken;
-  }
-  words += fmt::format(": may be worse by up to {} (p = {:.2g}); more runs would tell",
-                       percent(bound), chance);
-  return RuleOutcome::kUndecided;
+  words += evidence.grew ? fmt::format(": worse ({})", evidence.words)
+                         : fmt::format(": may be worse by up to {} ({}); more runs would tell",
+                                       percent(bound), evidence.words);
+  return evidence.grew ? RuleOutcome::kBroken : RuleOutcome::kUndecided;
 }
 
 RuleResult rate_rule(const RatesRevision& before, const RatesRevision& after,
@@ -121,24 +135,33 @@ std::int64_t times(const RevisionRates& trace, const std::string& cause) {
 /// Causes that only the newer rates have: broken where that is hardly chance.
 RuleResult cause_rule(const RatesRevision& before, const RatesRevision& after, double confidence) {
   RuleResult out{"rates.gained_causes", RuleOutcome::kKept, "none gained"};
-  std::vector<std::pair<double, std::string>> gained;
+  std::vector<std::pair<RateCounts, RateCounts>> gained;
+  std::vector<std::string> names;
   for (const auto& trace : after.traces) {
     const auto* old = rates_for(before, trace.events);
     for (const auto& cause : trace.causes) {
       if (times(*old, cause.text) > 0) continue;
-      const RateCounts none{old->any.runs, 0, old->any.lost};
-      const RateCounts some{trace.any.runs, cause.count, trace.any.lost};
-      const double chance = fisher_worse(none, some);
-      gained.emplace_back(chance, fmt::format("{}: {}, {} (p = {:.2g})\n", trace.events, cause.text,
-                                              change_text(none, some), chance));
+      auto none = old->any, some = trace.any;
+      none.failures = 0;
+      some.failures = cause.count;
+      gained.emplace_back(none, some);
+      names.push_back(fmt::format("{}: {}", trace.events, cause.text));
     }
   }
   if (gained.empty()) return out;
-  std::stable_sort(gained.begin(), gained.end(),
+  const double level = 1.0 - (1.0 - confidence) / static_cast<double>(gained.size());
+  std::vector<std::pair<double, std::string>> shown;
+  bool broken = false;
+  for (std::size_t i = 0; i < gained.size(); ++i) {
+    const auto& [none, some] = gained[i];
+    const auto evidence = weigh_growth(none, some, level);
+    broken = broken || evidence.grew;
+    shown.emplace_back(evidence.order, fmt::format("{}, {} ({})\n", names[i],
+                                                   change_text(none, some), evidence.words));
+  }
+  std::stable_sort(shown.begin(), shown.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (const auto& [chance, text] : gained) out.witness += text;
-  const double tail = (1.0 - confidence) / static_cast<double>(gained.size());
-  const bool broken = gained.front().first <= tail;
+  for (const auto& [order, text] : shown) out.witness += text;
   out.outcome = broken ? RuleOutcome::kBroken : RuleOutcome::kUndecided;
   out.words = broken ? fmt::format("{} gained, with {:g} % confidence not all by chance",
                                    gained.size(), 100 * confidence)

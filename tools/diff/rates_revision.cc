@@ -29,7 +29,7 @@ std::int64_t count_at(const SortedJson& object, const char* name) {
 }
 
 /// None: it is no such trace.
-std::optional<RevisionRates> rates_of(const SortedJson& json) {
+std::optional<RevisionRates> rates_of(const SortedJson& json, bool fixed) {
   const auto events = at<std::string>(json, "events");
   const auto runs = count_at(json, "runs"), lost = count_at(json, "lost");
   const auto* any = base::json_member(json, "any");
@@ -37,7 +37,7 @@ std::optional<RevisionRates> rates_of(const SortedJson& json) {
   const auto failures = any == nullptr ? -1 : count_at(*any, "count");
   if (!events || runs < 0 || lost < 0 || failures < 0 || failures > runs) return std::nullopt;
   if (causes == nullptr || !causes->is_array()) return std::nullopt;
-  RevisionRates out{*events, {runs + lost, failures, lost}, {}};
+  RevisionRates out{*events, {runs + lost, failures, lost, fixed}, {}};
   std::int64_t sum = 0;
   for (const auto& cause : *causes) {
     const auto text = at<std::string>(cause, "cause");
@@ -74,7 +74,7 @@ base::Result<RatesRevision> load_rates(const std::string& path, Context& context
   out.complete = *complete;
   out.fixed = at<std::string>(json, "intervals") != "anytime";
   for (std::size_t i = 0; i < traces->size(); ++i) {
-    auto trace = rates_of((*traces)[i]);
+    auto trace = rates_of((*traces)[i], out.fixed);
     if (!trace) return refuse(fmt::format("the counts of entry {} of `traces` are none", i + 1));
     for (const auto& other : out.traces) {
       if (other.events == trace->events) return refuse("a trace stands there twice");

@@ -12,6 +12,7 @@
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "compiler/base/path_gate.h"
+#include "compiler/base/temporary_folder.h"
 #include "tools/history/git.h"
 
 namespace parallax::tools {
@@ -20,27 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 using nlohmann::json;
-
-/// A folder in the temporary one that goes with the object.
-class Scratch {
- public:
-  Scratch() {
-    std::error_code error;
-    auto name = fs::temp_directory_path(error).string() + "/parallax_bisect_XXXXXX";
-    if (!error && ::mkdtemp(name.data()) != nullptr) path_ = base::real_path(name);
-  }
-  ~Scratch() {
-    std::error_code error;
-    if (!path_.empty()) fs::remove_all(path_, error);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  /// Empty if there is none.
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// The user's repository, and the scenario's place in it.
 struct Place {
@@ -328,7 +308,7 @@ class Bisection {
   const std::function<void(const RevisionVerdict&)>& tell_;
   const std::atomic<bool>& stop_;
   base::DiagnosticSink& sink_;
-  Scratch scratch_;
+  base::TemporaryFolder scratch_{"bisect"};
   std::optional<Borrowed> repository_;
   std::string scenario_;  // from the top of the checkout
   BisectResult out_;

@@ -107,11 +107,12 @@ class CaseHistory {
     return out;
   }
 
-  /// Lines in which it was measured.
+  /// Lines in which it was measured, with a number of runs that an exact test may take.
   std::vector<std::size_t> measured(const std::string& of) const {
     std::vector<std::size_t> out;
     for (std::size_t i = 0; i < suite_.size(); ++i) {
-      if (at(i) != nullptr && rate_or_none(*at(i), of)) out.push_back(i);
+      const auto rate = at(i) == nullptr ? std::nullopt : rate_or_none(*at(i), of);
+      if (rate && rate->fixed) out.push_back(i);
     }
     return out;
   }

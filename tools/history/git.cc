@@ -1,12 +1,14 @@
 #include "tools/history/git.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "compiler/base/path_gate.h"
 
 namespace parallax::tools {
 
-base::Captured run_git(const std::string& folder, const std::vector<std::string>& arguments) {
+base::Captured run_git(const std::string& folder, const std::vector<std::string>& arguments,
+                       const std::vector<std::string>& emptied) {
   std::vector<std::string> command = {"env"};
   for (const auto* name :
        {"GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_COMMON_DIR", "GIT_OBJECT_DIRECTORY",
@@ -14,7 +16,15 @@ base::Captured run_git(const std::string& folder, const std::vector<std::string>
     command.insert(command.end(), {"-u", name});
   }
   command.insert(command.end(), {"LC_ALL=C", "GIT_TERMINAL_PROMPT=0", "GIT_NO_LAZY_FETCH=1",
-                                 "GIT_OPTIONAL_LOCKS=0", "git", "--no-pager"});
+                                 "GIT_OPTIONAL_LOCKS=0"});
+  // By the environment, because a setting's name may hold a `=`.
+  for (std::size_t i = 0; i < emptied.size(); ++i) {
+    const auto number = std::to_string(i);
+    command.insert(command.end(), {"GIT_CONFIG_KEY_" + number + "=" + emptied[i],
+                                   "GIT_CONFIG_VALUE_" + number + "="});
+  }
+  command.push_back("GIT_CONFIG_COUNT=" + std::to_string(emptied.size()));
+  command.insert(command.end(), {"git", "--no-pager"});
   for (const auto* setting :
        {"core.hooksPath=/dev/null", "core.fsmonitor=false", "protocol.allow=never",
         "log.showSignature=false", "submodule.recurse=false", "advice.detachedHead=false"}) {
@@ -41,6 +51,61 @@ std::optional<std::string> revision_at(const std::string& path) {
   auto folder = base::real_path(path);
   if (!std::filesystem::is_directory(folder, error)) folder = folder.parent_path();
   return ask_git(folder.string(), {"rev-parse", "--verify", "--quiet", "--short=12", "HEAD"});
+}
+
+namespace {
+
+/// The settings that name programs which git would run over files.
+std::optional<std::vector<std::string>> filters_of(const std::string& folder) {
+  const auto answer =
+      run_git(folder, {"config", "--null", "--name-only", "--get-regexp", "^filter\\."});
+  if (answer.code == 1 && answer.out.empty()) return std::vector<std::string>();  // there are none
+  if (answer.code != 0) return std::nullopt;
+  std::vector<std::string> out;
+  for (std::size_t at = 0; at < answer.out.size();) {
+    const auto end = std::min(answer.out.find('\0', at), answer.out.size());
+    out.push_back(answer.out.substr(at, end - at));
+    at = end + 1;
+  }
+  return out;
+}
+
+/// None: git does not say.
+std::optional<bool> has_changes(const std::string& top, const std::set<std::string>& files) {
+  const auto filters = filters_of(top);
+  if (!filters) return std::nullopt;
+  std::vector<std::string> names;
+  for (const auto& file : files) {
+    const auto real = base::real_path(file);
+    if (base::lies_below(real, top)) names.push_back(real.string());
+  }
+  constexpr std::size_t kAtOnce = 200;
+  for (std::size_t begin = 0; begin < names.size(); begin += kAtOnce) {
+    std::vector<std::string> command = {
+        "--literal-pathspecs", "status",    "--porcelain",           "--ignore-submodules",
+        "--no-renames",        "--ignored", "--untracked-files=all", "--"};
+    const auto end = std::min(names.size(), begin + kAtOnce);
+    for (auto i = begin; i < end; ++i) command.push_back(names[i]);
+    const auto answer = run_git(top, command, *filters);
+    if (answer.code != 0) return std::nullopt;
+    if (!answer.out.empty()) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::optional<std::string> revision_of(const std::string& path,
+                                       const std::set<std::string>& files) {
+  auto revision = revision_at(path);
+  if (!revision) return std::nullopt;
+  std::error_code error;
+  auto folder = base::real_path(path);
+  if (!std::filesystem::is_directory(folder, error)) folder = folder.parent_path();
+  const auto top = ask_git(folder.string(), {"rev-parse", "--show-toplevel"});
+  const auto changes = top ? has_changes(*top, files) : std::nullopt;
+  if (!changes) return *revision + "+unknown";
+  return *changes ? *revision + "+changes" : *revision;
 }
 
 }  // namespace parallax::tools

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -9,17 +10,22 @@
 namespace parallax::tools {
 
 /// Runs `git ARGUMENTS...` in a folder. Nothing that the repository there names is executed: no
-/// hook, no monitor of its files, no signature program, no pager, and nothing is fetched. What the
-/// environment says of another repository does not count.
-base::Captured run_git(const std::string& folder, const std::vector<std::string>& arguments);
+/// hook, no monitor of its files, no signature program, no pager, none of `emptied`, and nothing is
+/// fetched. What the environment says of another repository does not count.
+base::Captured run_git(const std::string& folder, const std::vector<std::string>& arguments,
+                       const std::vector<std::string>& emptied = {});
 
 /// Its output without the last newline; none if it failed or there is no git.
 std::optional<std::string> ask_git(const std::string& folder,
                                    const std::vector<std::string>& arguments);
 
 /// The commit that is checked out where a file or folder lies, as 12 digits; none if it lies in no
-/// repository, or there is no commit. Whether files have changed since is not asked: git would have
-/// to run the repository's own filters for that.
+/// repository, or there is no commit.
 std::optional<std::string> revision_at(const std::string& path);
+
+/// The same, with `+changes` behind it where one of these files, as far as they lie in that
+/// checkout, is not as the commit has it, and `+unknown` where git does not say. The repository's
+/// own filters do not run: a file that needs one counts as changed once it was touched.
+std::optional<std::string> revision_of(const std::string& path, const std::set<std::string>& files);
 
 }  // namespace parallax::tools

@@ -35,6 +35,7 @@ ordered_json rate_json(const MeasuredRate& rate) {
                       {"runs", rate.runs},   {"lower", rate.lower},
                       {"upper", rate.upper}, {"confidence", rate.confidence}};
   if (rate.lost > 0) out["lost"] = rate.lost;
+  if (!rate.fixed) out["fixed"] = false;
   return out;
 }
 
@@ -46,6 +47,7 @@ std::optional<MeasuredRate> rate_of(const json& object) {
   take(object, "count", out.count);
   take(object, "runs", out.runs);
   take(object, "lost", out.lost);
+  take(object, "fixed", out.fixed);
   take(object, "lower", out.lower);
   take(object, "upper", out.upper);
   take(object, "confidence", out.confidence);
@@ -64,13 +66,19 @@ std::vector<MeasuredRate> rates_of(const json& list) {
   return out;
 }
 
+double wall_of(const json& object) {
+  double wall_s = 0.0;
+  if (const auto* timing = base::json_member(object, "timing")) take(*timing, "wall_s", wall_s);
+  return wall_s;
+}
+
 HistoryCase case_of(const json& object) {
   HistoryCase out;
   take(object, "outcome", out.outcome);
   take(object, "verdict", out.verdict);
   take(object, "files", out.files);
   take(object, "flaky", out.flaky);
-  if (const auto* timing = base::json_member(object, "timing")) take(*timing, "wall_s", out.wall_s);
+  out.wall_s = wall_of(object);
   if (const auto* rates = base::json_member(object, "rates")) out.rates = rates_of(*rates);
   return out;
 }
@@ -88,7 +96,7 @@ std::optional<HistoryLine> decode(std::string_view text) {
   take(object, "seed", out.seed);
   take(object, "tool_version", out.version);
   take(object, "program", out.program);
-  if (const auto* timing = base::json_member(object, "timing")) take(*timing, "wall_s", out.wall_s);
+  out.wall_s = wall_of(object);
   const auto* paths = base::json_member(object, "paths");
   for (const auto& one : paths != nullptr && paths->is_array() ? *paths : json::array()) {
     if (one.is_string()) out.paths.push_back(one.get<std::string>());
@@ -187,12 +195,9 @@ base::Result<History> read_history(const std::filesystem::path& path, base::Diag
       out.unreadable.push_back(number);
     }
   }
-  if (out.lines.empty() && !out.unreadable.empty()) {
-    return sink.error_about(base::DiagnosticCode::kUsage, path.string(),
-                            "this file is there already and is no history of suites");
-  }
   constexpr std::string_view kHead = "{\"history\":";
-  if (out.lines.empty() && out.half_written && !text->starts_with(kHead)) {
+  const bool is_begun = out.half_written && text->starts_with(kHead);
+  if (out.lines.empty() && (!out.unreadable.empty() || (out.half_written && !is_begun))) {
     return sink.error_about(base::DiagnosticCode::kUsage, path.string(),
                             "this file is there already and is no history of suites");
   }

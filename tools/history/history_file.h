@@ -19,6 +19,7 @@ struct MeasuredRate {
   std::int64_t count = 0, runs = 0;
   std::int64_t lost = 0;                               // may have shown it or not
   double lower = 0.0, upper = 1.0, confidence = 0.95;  // Clopper and Pearson 1934
+  bool fixed = true;  // the number of runs; else it depends on them, and the bounds allow for it
 };
 
 struct HistoryCase {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "tools/mutate/cpu_watch.h"
-#include "tools/mutate/scratch_copy.h"
 #include "tools/mutate/suite_files.h"
+#include "tools/suite/scratch_copy.h"
 #include "tools/suite/suite_runner.h"
 
 namespace parallax::tools {

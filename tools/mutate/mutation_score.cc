@@ -16,6 +16,7 @@
 #include "compiler/base/file_io.h"
 #include "compiler/base/path_gate.h"
 #include "compiler/base/sha256.h"
+#include "compiler/base/temporary_folder.h"
 #include "tools/mutate/case_model.h"
 #include "tools/mutate/judged_mutants.h"
 
@@ -24,31 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-/// A new folder among the temporary ones, which goes with the object.
-class TemporaryFolder {
- public:
-  explicit TemporaryFolder(base::DiagnosticSink& sink) {
-    std::error_code error;
-    auto name = (fs::temp_directory_path(error) / "parallax-mutants-XXXXXX").string();
-    if (!error && mkdtemp(name.data()) != nullptr) {
-      path_ = name;
-    } else {
-      sink.error_about(base::DiagnosticCode::kFileNotWritable, name,
-                       "no temporary folder can be made");
-    }
-  }
-  ~TemporaryFolder() {
-    std::error_code error;
-    if (!path_.empty()) fs::remove_all(path_, error);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// Calls `work(thread, i)` for all i below `count`, from several threads.
 template <typename Work>
@@ -140,8 +116,12 @@ class SuiteMutation {
     auto& sink = context_.sink();
     auto judged =
         JudgedMutants::open(options_.out / kJudgedFile, identity(), options_.resume, sink);
-    const TemporaryFolder scratch(sink);
-    if (!judged || scratch.path().empty()) return sink.already_reported();
+    if (!judged) return sink.already_reported();
+    const base::TemporaryFolder scratch("mutants");
+    if (scratch.path().empty()) {
+      return sink.error_about(base::DiagnosticCode::kFileNotWritable, "",
+                              "no temporary folder can be made");
+    }
     std::vector<double> wall_s;
     for (const auto& result : results_) wall_s.push_back(result.wall_s);
     const JudgedSuite suite{cases_, files_.originals, wall_s, options_.runner,

@@ -8,7 +8,7 @@
 
 #include "tools/app/context.h"
 #include "tools/mutate/case_model.h"
-#include "tools/mutate/scratch_copy.h"
+#include "tools/suite/scratch_copy.h"
 #include "tools/suite/suite_case.h"
 
 namespace parallax::tools {

@@ -85,17 +85,11 @@ std::vector<std::string> unlike_causes(const harness::CauseExpectation& expect,
   return out;
 }
 
-std::string bounds_text(const harness::RateExpectation& expect) {
-  if (expect.lower <= 0.0) return fmt::format("below {:g} %", 100 * expect.upper);
-  if (expect.upper >= 1.0) return fmt::format("above {:g} %", 100 * expect.lower);
-  return fmt::format("from {:g} to {:g} %", 100 * expect.lower, 100 * expect.upper);
-}
-
 /// What the runs do not show, although they have to.
 std::string missing_evidence(const harness::RateExpectation& expect, const std::string& found,
                              const harness::RateCounts& counts) {
   const harness::RateClaim claim{expect.lower, expect.upper, *expect.confidence};
-  const auto bounds = bounds_text(expect);
+  const auto bounds = to_string(claim);
   const auto level = fmt::format("{:g} % confidence", 100 * *expect.confidence);
   switch (weigh(claim, counts)) {
     case harness::Evidence::kSupports:
@@ -169,7 +163,7 @@ std::vector<std::string> unmet(const harness::RateExpectation& expect,
   const double lower = any.value("lower", 2.0), upper = any.value("upper", -1.0);
   const harness::RateCounts counts{
       trace.value("runs", std::int64_t{0}) + trace.value("lost", std::int64_t{0}),
-      any.value("count", std::int64_t{0}), trace.value("lost", std::int64_t{0})};
+      any.value("count", std::int64_t{0}), trace.value("lost", std::int64_t{0}), expect.fixed_runs};
   const auto found =
       fmt::format("discrepancies in {} of {} runs of trace {}, {:.1f} % [{:.1f}, {:.1f}]{}",
                   counts.failures, counts.runs - counts.lost, expect.trace, 100 * rate, 100 * lower,

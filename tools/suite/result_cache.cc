@@ -9,6 +9,7 @@
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "compiler/base/sha256.h"
+#include "tools/suite/sealed_text.h"
 #include "tools/suite/suite_results.h"
 
 namespace parallax::tools {
@@ -53,13 +54,9 @@ std::vector<std::pair<std::int64_t, fs::path>> entries_in(const fs::path& folder
 std::optional<CaseResult> read_entry(const fs::path& path) {
   base::DiagnosticSink unread;
   const auto text = base::read_file(path, unread, kMaxEntryBytes);
-  const auto json = text ? Json::parse(*text, nullptr, false) : Json();
-  const auto* hash = base::json_member(json, "sha256");
-  const auto* entry = base::json_member(json, "entry");
-  if (hash == nullptr || entry == nullptr || !hash->is_string()) return std::nullopt;
-  const auto inner = base::json_text(*entry);
-  if (hash->get<std::string>() != base::sha256_hex(inner)) return std::nullopt;
-  auto result = result_from_text(inner);
+  const auto inner = text ? unsealed(*text) : std::nullopt;
+  if (!inner) return std::nullopt;
+  auto result = result_from_text(*inner);
   if (!result || result->outcome != Outcome::kPassed || !result->repeatable) return std::nullopt;
   return result;
 }
@@ -116,10 +113,9 @@ bool ResultCache::store(const SuiteCase& one, const CaseResult& result) const {
   const auto entry = result_text(result);
   std::string inputs;
   for (const auto& input : result.inputs) inputs += input.path + '\0' + input.sha256 + '\0';
-  const Json json = {{"sha256", base::sha256_hex(entry)}, {"entry", Json::parse(entry)}};
   base::DiagnosticSink unread;  // a cache that cannot be kept harms no suite
   const auto path = folder / (base::sha256_hex(inputs) + ".json");
-  if (!base::write_file_atomically(path, base::json_text(json) + '\n', unread)) return false;
+  if (!base::write_file_atomically(path, sealed(entry), unread)) return false;
   const auto kept = entries_in(folder);
   for (std::size_t i = kMaxEntries; i < kept.size(); ++i) fs::remove(kept[i].second, error);
   return true;

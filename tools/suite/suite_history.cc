@@ -24,7 +24,8 @@ const Json& list_of(const Json& object, const char* name) {
   return member != nullptr && member->is_array() ? *member : kNone;
 }
 
-MeasuredRate measured(const Json& rate, std::string of, const Json& trace, double confidence) {
+/// `all`: the document that the trace is of.
+MeasuredRate measured(const Json& rate, std::string of, const Json& trace, const Json& all) {
   MeasuredRate out;
   out.of = std::move(of);
   out.count = value_or<std::int64_t>(rate, "count", 0);
@@ -32,7 +33,8 @@ MeasuredRate measured(const Json& rate, std::string of, const Json& trace, doubl
   out.lost = value_or<std::int64_t>(trace, "unseen", 0);
   out.lower = value_or(rate, "lower", 0.0);
   out.upper = value_or(rate, "upper", 1.0);
-  out.confidence = confidence;
+  out.confidence = value_or(all, "confidence", 0.95);
+  out.fixed = value_or<std::string>(all, "intervals", {}) != "anytime";
   return out;
 }
 
@@ -56,17 +58,16 @@ void note_verdict(std::string_view run_document, CaseResult& result) {
 void note_rates(std::string_view rates_document, CaseResult& result) {
   constexpr std::size_t kMostCauses = 20;  // the most frequent ones come first
   const auto rates = Json::parse(rates_document, nullptr, false);
-  const auto confidence = value_or(rates, "confidence", 0.95);
   for (const auto& trace : list_of(rates, "traces")) {
     const auto head = fmt::format("trace {}: ", value_or<std::int64_t>(trace, "trace", 0));
     const auto* any = base::json_member(trace, "any");
     if (any == nullptr || value_or<std::int64_t>(trace, "runs", 0) <= 0) continue;
-    result.rates.push_back(measured(*any, head + "any discrepancy", trace, confidence));
+    result.rates.push_back(measured(*any, head + "any discrepancy", trace, rates));
     std::size_t causes = 0;
     for (const auto& cause : list_of(trace, "causes")) {
       if (++causes > kMostCauses) break;
       const auto name = value_or<std::string>(cause, "cause", {});
-      result.rates.push_back(measured(cause, head + name, trace, confidence));
+      result.rates.push_back(measured(cause, head + name, trace, rates));
     }
   }
 }

@@ -37,6 +37,11 @@ std::string line_of(const SuiteCase& one, const CaseResult& result) {
   const auto how = result.reused.empty() ? fmt::format("{:.1f} s", result.wall_s) : result.reused;
   auto line = fmt::format("{} {} ({})", mark, one.name(), how);
   if (result.flaky()) line += fmt::format(", flaky: passed in attempt {}", result.attempts);
+  for (const auto& rate : result.rates) {
+    if (rate.fixed || result.outcome != Outcome::kPassed) continue;
+    line += fmt::format(", shown by {} runs", rate.runs + rate.lost);
+    break;
+  }
   if (!result.golden_written.empty()) {
     line += "\n       golden file written: " + result.golden_written;
   }
@@ -89,7 +94,10 @@ void Reuse::look_up(double verified_share) {
     to_verify_.emplace(hit->first, std::move(hit->second));
   }
   std::sort(open, hits.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (auto hit = open; hit != hits.end(); ++hit) take(hit->first, std::move(hit->second.result));
+  for (auto hit = open; hit != hits.end(); ++hit) {
+    passes_.keep(record_.cases()[hit->first], hit->second.result);
+    take(hit->first, std::move(hit->second.result));
+  }
 }
 
 bool Reuse::is_open(std::size_t i) const {
@@ -113,8 +121,8 @@ void Reuse::take(std::size_t i, CaseResult result) {
 }
 
 void run_open_cases(SuiteRecord& record, const LoopOptions& options, const StoredCases& earlier,
-                    const Reuse& reuse, const ResultCache& cache, const Remark& remark,
-                    const std::atomic<bool>& stop) {
+                    const Reuse& reuse, const ResultCache& cache, const LastPasses& passes,
+                    const Remark& remark, const std::atomic<bool>& stop) {
   std::vector<Task> tasks;
   for (std::size_t i = 0; i < record.cases().size(); ++i) {
     if (reuse.is_open(i)) tasks.push_back(task_of(i, record.cases()[i], earlier));
@@ -136,7 +144,10 @@ void run_open_cases(SuiteRecord& record, const LoopOptions& options, const Store
       auto result = run_case(one, options.runner, stop);
       if (result.outcome != Outcome::kNotFinished) {
         reuse.verify(*index, result);
-        if (options.keep_passes) (void)cache.store(one, result);
+        if (options.keep_passes) {
+          (void)cache.store(one, result);
+          passes.keep(one, result);
+        }
         say(line_of(one, result));
       }
       record.finish(*index, std::move(result));

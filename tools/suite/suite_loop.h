@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tools/suite/input_hashes.h"
+#include "tools/suite/last_pass.h"
 #include "tools/suite/result_cache.h"
 #include "tools/suite/suite_record.h"
 #include "tools/suite/suite_runner.h"
@@ -22,15 +23,16 @@ std::string line_of(const SuiteCase& one, const CaseResult& result);
 /// Cases of a suite whose results are taken over, and what is left to do.
 class Reuse {
  public:
-  Reuse(SuiteRecord& record, const ResultCache& cache, Remark remark)
-      : record_(record), cache_(cache), remark_(std::move(remark)) {}
+  Reuse(SuiteRecord& record, const ResultCache& cache, const LastPasses& passes, Remark remark)
+      : record_(record), cache_(cache), passes_(passes), remark_(std::move(remark)) {}
 
   /// Takes over the results of an interrupted suite whose files are as they were. With
   /// `permits_more` than that suite did, cases without an answer are run again: it may have been
   /// refused.
   void resume(const StoredCases& earlier, bool permits_more);
-  /// Takes over cached passes; `verified_share` of them, from 0 to 1, is run all the same, those
-  /// first that nobody has looked at for the longest time.
+  /// Takes over cached passes, which are the last ones of their cases from now on; `verified_share`
+  /// of them, from 0 to 1, is run all the same, those first that nobody has looked at for the
+  /// longest time.
   void look_up(double verified_share);
 
   /// Has the case no result yet?
@@ -43,6 +45,7 @@ class Reuse {
 
   SuiteRecord& record_;
   const ResultCache& cache_;
+  const LastPasses& passes_;
   Remark remark_;
   InputHashes hashes_;
   std::map<std::size_t, ResultCache::Hit> to_verify_;
@@ -58,7 +61,7 @@ struct LoopOptions {
 /// Runs the cases that are open, in processes of their own, until `stop` is raised. `earlier` tells
 /// how long they took.
 void run_open_cases(SuiteRecord& record, const LoopOptions& options, const StoredCases& earlier,
-                    const Reuse& reuse, const ResultCache& cache, const Remark& remark,
-                    const std::atomic<bool>& stop);
+                    const Reuse& reuse, const ResultCache& cache, const LastPasses& passes,
+                    const Remark& remark, const std::atomic<bool>& stop);
 
 }  // namespace parallax::tools

@@ -12,14 +12,17 @@
 
 namespace parallax::tools {
 
+class LastPasses;
+
 struct RunnerOptions {
   std::filesystem::path out;  // run folders of scenarios are made below it
   std::uint64_t seed = 1;
   std::int64_t retries = 0;  // more attempts where one did not pass
   bool update_goldens = false;
-  bool allow_commands = false;          // start what scenarios name as their simulators
-  bool allow_outside = false;           // files may name any other
-  const SuiteLedger* ledger = nullptr;  // of known discrepancies; null: none is asked
+  bool allow_commands = false;              // start what scenarios name as their simulators
+  bool allow_outside = false;               // files may name any other
+  const SuiteLedger* ledger = nullptr;      // of known discrepancies; null: none is asked
+  const LastPasses* last_passes = nullptr;  // what failures are held against; null: nothing
   /// Of a case that is expected to fail: no more is done than shows whether it does. Traces beyond
   /// the expected number are not looked for, and the limit of a model's case is processor time.
   bool ends_early = false;

@@ -1,5 +1,6 @@
 // `suite --history` and `report --history` as real processes.
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -72,6 +73,46 @@ TEST_CASE("the revision is asked of git, and nothing of the repository is run fo
   CHECK(repository.parallax({"suite", "s", "--history", "h.jsonl"}).code == 0);
   CHECK(lines_of(repository.read("h.jsonl"))[0]["revision"] == commit.substr(0, 12));
   CHECK(!fs::exists(mark));
+}
+
+TEST_CASE("files that are not committed are told, and no filter of the repository runs for that") {
+  const GitFixture repository;
+  fs::create_directories(repository.folder() / "s");
+  repository.write("s/lamp.e", kLamp);
+  repository.write("s/suite.yaml", "cases:\n  - {id: a, model: lamp.e, expect: {traces: 2}}\n");
+  repository.write(".gitattributes", "*.e filter=a=b\n");
+  const auto commit = repository.commit("first").substr(0, 12);
+  const auto mark = repository.folder() / "executed";
+  repository.write("evil.sh", "#!/bin/sh\ntouch '" + mark.string() + "'\ncat\n");
+  fs::permissions(repository.folder() / "evil.sh", fs::perms::owner_all);
+  repository.git({"config", "filter.a=b.clean", (repository.folder() / "evil.sh").string()});
+  const auto revision = [&](int code) {
+    const auto result = repository.parallax({"suite", "s", "--history", "h.jsonl"});
+    CHECK_MESSAGE(result.code == code, result.err);
+    return lines_of(repository.read("h.jsonl")).back()["revision"].get<std::string>() + ' ' +
+           result.err;
+  };
+  // Touched, so that git has to look into it; other files do not count.
+  repository.write("s/lamp.e", kLamp);
+  fs::last_write_time(repository.folder() / "s/lamp.e",
+                      fs::file_time_type::clock::now() - std::chrono::hours(1));
+  CHECK(revision(0).starts_with(commit + ' '));
+  CHECK(!fs::exists(mark));
+  repository.write("s/lamp.e", std::string(kLamp) + "[time] !Happens(Press(),time).\n");
+  const auto changed = revision(1);
+  CHECK(changed.starts_with(commit + "+changes "));
+  CHECK_MESSAGE(holds(changed, commit + "+changes: s/suite.yaml:a: passed, then failed"), changed);
+  CHECK(!fs::exists(mark));
+  // A file that git was never told of is not in the commit either.
+  repository.write("s/lamp.e", kLamp);
+  repository.write("s/new.e", kLamp);
+  repository.git({"commit", "--quiet", "--allow-empty", "--message", "second"});
+  repository.write("s/suite.yaml", "cases:\n  - {id: a, model: new.e, expect: {traces: 2}}\n");
+  CHECK(holds(revision(0), "+changes "));
+  // Said by the user, it is what he says.
+  CHECK(repository.parallax({"suite", "s", "--history", "h.jsonl", "--revision", "mine"}).code ==
+        0);
+  CHECK(lines_of(repository.read("h.jsonl")).back()["revision"] == "mine");
 }
 
 TEST_CASE("verdicts and rates of scenarios stand in the line, also of passes that were kept") {

@@ -61,35 +61,39 @@ TEST_CASE("a mistake in a model turns exactly those cases red that depend on it,
        "[lamp,time] HoldsAt(On(lamp),time) -> Terminates(Flip(lamp),On(lamp),time).\n",
        "; forgotten\n",
        in("switches", {"dark2", "dark3", "dark4", "list_dark"}),
-       {""}},
+       {"since it passed last, repository/switches/switch.e changed",
+        "  lost: ", "a shortest such trace of before/repository/switches/switch.e",
+        "frame axiom: On(lamp)", "- before/repository/switches/switch.e:6"}},
       // Two axioms that contradict each other: no trace is left, but where none is expected.
       {"switches/switch.e",
        "[lamp] !HoldsAt(On(lamp),0).\n",
        "[lamp] !HoldsAt(On(lamp),0).\nHoldsAt(On(Desk),0).\n",
        in("switches", {"all0", "all1", "all2", "all3", "all4", "lit1", "lit2", "lit3", "lit4",
                        "dark2", "dark3", "dark4", "more_than_ten", "list1", "list_dark"}),
-       {""}},
+       {"repository/switches/switch.e:8  axiom: HoldsAt(On(Desk),0) (edited)",
+        "+ repository/switches/switch.e:8"}},
       // Nobody goes to the kitchen. The first way to the study is still the only one.
       {"errands/errand.e",
        "HoldsAt(At(Hall),0).\n",
        "HoldsAt(At(Hall),0).\n[time] !Happens(Go(Kitchen),time).\n",
        in("errands", {"all1", "all2", "all3", "all4", "kitchen1", "kitchen2", "kitchen3",
                       "kitchen4", "study2", "study3", "study4"}),
-       {"traces, expected"}},
+       {"traces, expected", "> Go(Kitchen)",
+        "repository/errands/errand.e:11  axiom: [time] !Happens(Go(Kitchen),time) (edited)"}},
       // An effect too many, which is made good before the end.
       {"drawers/opens.e",
        "load domain.e\n",
        "load domain.e\n[drawer,time] Terminates(CloseDrawer(drawer),Parked(),time).\n",
        scenarios("drawers",
                  {"agree", "agree_loosely", "agree_always", "sticks", "sticks_by_chance"}),
-       {"CloseDrawer(top)", "Parked()"}},
+       {"CloseDrawer(top)", "Parked()", "+ repository/drawers/opens.e:4"}},
       // The mistake of the model mended: what was expected to go wrong cannot be begun.
       {"boxes/wrong_domain.e",
        "[time] Initiates(PickUp(),Holding(),time).\n",
        "[region,time] HoldsAt(RobotIn(region),time) & HoldsAt(BoxIn(region),time) ->\n"
        "  Initiates(PickUp(),Holding(),time).\n",
        scenarios("boxes", {"hasty", "hasty_reach", "hasty_mostly"}),
-       {""}}};
+       {"- before/repository/boxes/wrong_domain.e:32"}}};
   for (const auto& mistake : mistakes) {
     CAPTURE(mistake.wrong);
     cli.replace("repository/" + mistake.file, mistake.right, mistake.wrong);

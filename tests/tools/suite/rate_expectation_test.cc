@@ -79,6 +79,48 @@ TEST_CASE("as many runs as would have been enough are enough") {
             .empty());
 }
 
+TEST_CASE("runs end as soon as they tell, and it is said how many they were") {
+  const Sticking cli;
+  const auto runs_behind = [](const std::string& text, const std::string& words) {
+    const auto at = text.find(words);
+    return at == std::string::npos ? 0 : std::stoi(text.substr(at + words.size()));
+  };
+  cli.expect("{rate: {above: 0.3, confidence: 0.99, max_runs: 1000}}");
+  const auto passed = cli.parallax({"suite", "two/case.yaml"});
+  CHECK(passed.code == 0);
+  const int shown = runs_behind(passed.err, ", shown by ");
+  CHECK(shown > 20);
+  CHECK(shown < 300);
+  CHECK(holds(cli.parallax({"suite", "two/case.yaml"}).err, "(cached), shown by"));
+  const auto refuted = cli.problems("{rate: {below: 0.3, max_runs: 1000}}");
+  CHECK(holds(refuted, "with 95 % confidence the rate is not below 30 %"));
+  CHECK(runs_behind(refuted, " of ") < 300);
+  CHECK(cli.problems("{rate: {between: [0.3, 0.7], max_runs: 2000}}").empty());
+  const auto open = cli.problems("{rate: {below: 0.52, max_runs: 60}}");
+  CHECK(holds(open, "of 60 runs"));
+  CHECK(holds(open, "not enough evidence that the rate is below 52 %"));
+  CHECK(holds(cli.refusal("{rate: {below: 0.01, max_runs: 50}}"),
+              "whatever 50 runs come to, they do not show with 95 % confidence that the rate is "
+              "below 1 %"));
+  cli.expect("{rate: {below: 0.1, runs: 50, max_runs: 60}}");
+  CHECK(holds(cli.parallax({"check", "two/case.yaml"}).err, "two numbers of runs"));
+}
+
+TEST_CASE("how many runs tell does not depend on how many are made at once") {
+  const Sticking cli;
+  const auto rates = [&](const std::string& jobs) {
+    return cli.parallax({"rates", "two/sticks.yaml", "--until-above", "0.3", "--until-below", "0.7",
+                         "--jobs", jobs});
+  };
+  const auto one = rates("1"), three = rates("3");
+  CHECK(one.code == 0);
+  CHECK(one.out == three.out);
+  CHECK_MESSAGE(holds(one.out, "it is from 30 to 70 % (with 95 % confidence)"), one.out);
+  CHECK(holds(one.out, "valid whenever one looks"));
+  CHECK(cli.parallax({"rates", "two/sticks.yaml", "--until-above", "0.7", "--until-below", "0.3"})
+            .code == 2);
+}
+
 TEST_CASE("a discrepancy with another cause is not the one that is expected") {
   const Sticking cli;
   const std::string rate = "rate: {above: 0.3, cause: ";
@@ -106,7 +148,7 @@ TEST_CASE("what no outcome can meet is refused where it stands") {
   CHECK(holds(few, "two/case.yaml:4:36"));
   CHECK(holds(few,
               "whatever 50 runs come to, they do not show with 95 % confidence that the rate "
-              "is below 0.01; 299 can"));
+              "is below 1 %; 299 can"));
   CHECK(holds(cli.refusal("{rate: {between: [0.5, 0.5], confidence: 0.9}}"), "1000000 runs"));
   CHECK(holds(cli.refusal("{rate: {between: [0.49, 0.51], confidence: 0.9, runs: 100}}"),
               "100 runs"));

@@ -1,4 +1,4 @@
-#include "tools/mutate/scratch_copy.h"
+#include "tools/suite/scratch_copy.h"
 
 #include <system_error>
 
@@ -46,14 +46,14 @@ base::Result<ScratchCopy> ScratchCopy::make(const SuiteTexts& texts, const fs::p
                                             base::DiagnosticSink& sink) {
   ScratchCopy out;
   out.folder_ = folder;
-  const auto root = folder_of_all(texts);
+  out.root_ = folder_of_all(texts);
+  // What the originals may name lies in the copy as well, wherever their root is.
+  if (!write_new(folder / base::kRootMarker, "", sink)) return sink.already_reported();
   for (const auto& [name, text] : texts) {
-    const auto target = folder / fs::path(name).lexically_relative(root);
+    const auto target = folder / fs::path(name).lexically_relative(out.root_);
     if (!write_new(target, text, sink)) return sink.already_reported();
     out.copies_.emplace(name, Copy{target, base::real_path(name), text});
   }
-  // What the originals may name lies in the copy as well, wherever their root is.
-  if (!write_new(folder / base::kRootMarker, "", sink)) return sink.already_reported();
   return out;
 }
 

@@ -24,6 +24,8 @@ class ScratchCopy {
                                         base::DiagnosticSink& sink);
 
   const std::filesystem::path& folder() const { return folder_; }
+  /// What of the originals it stands for: the folder that all of them lie in.
+  const std::filesystem::path& root() const { return root_; }
   /// Of a file of the suite; any other is where it is.
   std::filesystem::path place_of(const std::string& name) const;
   /// Gives the copies of a file another text, those under its other names (links) as well.
@@ -37,7 +39,7 @@ class ScratchCopy {
     std::filesystem::path target, original;  // where the original really lies
     std::string text;
   };
-  std::filesystem::path folder_;
+  std::filesystem::path folder_, root_;
   std::map<std::string, Copy> copies_;  // by absolute name
 };
 

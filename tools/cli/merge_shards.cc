@@ -1,0 +1,49 @@
+#include "tools/cli/merge_shards.h"
+
+#include <filesystem>
+
+#include "compiler/base/diagnostic_codes.h"
+#include "tools/cli/suite_history_option.h"
+#include "tools/cli/suite_output.h"
+#include "tools/suite/suite_loop.h"
+#include "tools/suite/suite_merge.h"
+
+namespace parallax::tools {
+
+int merge_shards(const SuiteOptions& options, Invocation& invocation) {
+  auto& sink = invocation.sink();
+  const auto quarantine = quarantine_of(options, invocation);
+  auto merged = merge_suites(options.merge, sink);
+  if (!quarantine || !merged || !may_write(options, invocation) ||
+      !may_append(options, invocation)) {
+    return 0;
+  }
+  for (const auto& folder : options.merge) {
+    std::error_code error;
+    if (!std::filesystem::equivalent(folder, options.out, error)) continue;
+    sink.error_about(base::DiagnosticCode::kUsage, options.out,
+                     "--out: the merged results would replace those of a shard");
+    return 0;
+  }
+  const auto suite = merged->identity;
+  StoredResults stored{suite, {}};
+  const std::vector<bool> none(merged->cases.size(), false);
+  SuiteRecord record(std::move(merged->cases), none, options.out, options.junit, std::move(stored),
+                     *quarantine);
+  for (std::size_t i = 0; i < merged->results.size(); ++i) {
+    const auto& result = merged->results[i];
+    if (result.outcome != Outcome::kPassed) {
+      invocation.remark(line_of(record.cases()[i], result));
+    }
+    record.finish(i, std::move(merged->results[i]));
+  }
+  for (const auto& shard : merged->missing) {
+    invocation.remark(fmt::format("shard {0} is missing: run it with --shard {0} and merge again",
+                                  to_string(shard)));
+  }
+  speak_of_quarantine(record, true, invocation);
+  append_to_history(record, suite, options, invocation);
+  return conclude(record, options, invocation);
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/cli/mutate_suite.h"
+#include "tools/cli/shared_options.h"
+
+namespace parallax::tools {
+
+/// The options of `parallax suite`.
+struct SuiteOptions {
+  std::vector<std::string> paths, merge;
+  std::string only;
+  std::string out = "out/suite";
+  std::string junit, markdown, annotations, quarantine, cache, verify_cache, ledger;
+  std::string history, revision;
+  std::string shard = "1/1";
+  std::uint64_t seed = 1;
+  std::int64_t jobs = 1, memory_mb = 0, retries = 0;
+  bool update_goldens = false;
+  bool force = false;
+  bool rerun_failed = false, resume = false;
+  bool no_cache = false;
+  bool fast = false;
+  CommandPermission commands;
+  MutateOptions mutants;
+};
+
+}  // namespace parallax::tools

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "harness/config/quarantine.h"
+#include "tools/cli/command.h"
+#include "tools/cli/suite_options.h"
+#include "tools/suite/suite_record.h"
+
+namespace parallax::tools {
+
+/// May the files be written that the options name? Results replace earlier results, a report
+/// replaces an earlier report, or an empty file, and no file that the suite reads.
+bool may_write(const SuiteOptions& options, Invocation& invocation);
+
+/// The cases that may fail for now, if a list was named.
+base::Result<harness::Quarantine> quarantine_of(const SuiteOptions& options,
+                                                Invocation& invocation);
+
+/// Names cases in quarantine that pass and, of a `whole` suite, those that are none: a list of
+/// known failures must not outlive them.
+void speak_of_quarantine(const SuiteRecord& record, bool whole, const Invocation& invocation);
+
+/// Prints and writes what came out; the exit code.
+int conclude(SuiteRecord& record, const SuiteOptions& options, Invocation& invocation);
+
+}  // namespace parallax::tools

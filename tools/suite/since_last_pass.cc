@@ -1,0 +1,169 @@
+#include "tools/suite/since_last_pass.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <system_error>
+#include <vector>
+
+#include "compiler/base/file_io.h"
+#include "compiler/base/path_gate.h"
+#include "compiler/base/temporary_folder.h"
+#include "tools/suite/case_process.h"
+#include "tools/suite/input_hashes.h"
+#include "tools/suite/last_pass.h"
+#include "tools/suite/scratch_copy.h"
+
+namespace parallax::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kShownChanges = 5;
+constexpr std::size_t kShownLines = 80;
+constexpr const char* kBefore = "before";  // a folder, in the copy and in what is printed
+
+/// A path as a user would write it here.
+std::string shown(const fs::path& absolute) {
+  std::error_code error;
+  const auto relative = absolute.lexically_relative(fs::current_path(error));
+  const bool inside = !relative.empty() && relative.begin()->string() != "..";
+  return (inside ? relative : absolute).generic_string();
+}
+
+void replace_all(std::string& text, const std::string& from, const std::string& to) {
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
+
+/// The first lines, and how many more there are.
+std::string cut(const std::string& text) {
+  std::size_t lines = 0, end = 0;
+  for (std::size_t at = 0; at < text.size(); ++lines) {
+    at = std::min(text.find('\n', at), text.size() - 1) + 1;
+    if (lines < kShownLines) end = at;
+  }
+  auto out = text.substr(0, end);
+  while (out.ends_with('\n')) out.pop_back();
+  return lines <= kShownLines ? out : out + fmt::format("\n... {} more lines", lines - kShownLines);
+}
+
+/// Files of now by absolute name, as far as they are texts.
+SuiteTexts read_now(const std::set<std::string>& paths) {
+  SuiteTexts out;
+  for (const auto& path : paths) {
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) continue;
+    base::DiagnosticSink unread;
+    if (auto text = base::read_file(path, unread)) out.emplace(absolute_name(path), *text);
+  }
+  return out;
+}
+
+/// "a.e, b.e and 3 more changed"
+std::string changes(const SuiteCase& one, const LastPass& before) {
+  std::vector<std::string> changed;
+  if (before.definition != LastPasses::definition_of(one)) {
+    changed.push_back(fmt::format("the case in {}", one.file));
+  }
+  for (const auto& [name, text] : before.texts) {
+    base::DiagnosticSink unread;
+    std::error_code error;
+    if (!fs::exists(name, error)) {
+      changed.push_back(shown(name) + " (gone)");
+    } else if (const auto now = base::read_file(name, unread); !now || *now != text) {
+      changed.push_back(shown(name));
+    }
+  }
+  if (changed.empty()) return {};
+  std::string out;
+  for (std::size_t i = 0; i < std::min(changed.size(), kShownChanges); ++i) {
+    out += (i > 0 ? ", " : "") + changed[i];
+  }
+  if (changed.size() <= kShownChanges) return out + " changed";
+  return fmt::format("{} and {} more changed", out, changed.size() - kShownChanges);
+}
+
+/// What `parallax diff` is given for one side: the scenario, the model, or a file that loads all of
+/// several models. Nothing where a file is not there.
+std::optional<fs::path> model_in(const ScratchCopy& copy, const SuiteCase& one) {
+  std::vector<fs::path> models;
+  if (const auto* traces = std::get_if<harness::ManifestCase>(&one.check)) {
+    for (const auto& model : traces->models) models.push_back(copy.place_of(model.text));
+  } else {
+    models.push_back(copy.place_of(one.file));
+  }
+  std::string loads;
+  for (const auto& model : models) {
+    std::error_code error;
+    if (!base::lies_below(model, copy.folder()) || !fs::exists(model, error)) return std::nullopt;
+    loads += fmt::format("load {}\n", model.lexically_relative(copy.folder()).generic_string());
+  }
+  if (models.size() == 1) return models.front();
+  auto file = copy.folder() / "models.e";
+  for (std::error_code error; fs::exists(file, error);)
+    file.replace_filename("_" + file.filename().string());
+  base::DiagnosticSink unread;
+  if (!base::write_file_atomically(file, loads, unread)) return std::nullopt;
+  return file;
+}
+
+/// What `parallax diff` says of the models; empty if it says nothing.
+std::string model_difference(const SuiteCase& one, const LastPass& before,
+                             const RunnerOptions& options, const Footprint& footprint,
+                             const std::atomic<bool>& stop) {
+  const base::TemporaryFolder scratch("since");
+  if (scratch.path().empty()) return {};
+  base::DiagnosticSink unread;
+  const auto then = ScratchCopy::make(before.texts, scratch.path() / kBefore, unread);
+  const auto now = ScratchCopy::make(read_now(footprint.inputs()), scratch.path() / "now", unread);
+  if (!then || !now) return {};
+  const auto old_model = model_in(*then, one), new_model = model_in(*now, one);
+  if (!old_model || !new_model) return {};
+  CommandWords words{{"diff", "--quiet", "--color=never"}, {*old_model, *new_model}};
+  auto limit = kBlameLimitS;
+  if (const auto* traces = std::get_if<harness::ManifestCase>(&one.check)) {
+    limit = traces->time_limit_s;
+    if (traces->horizon) {
+      words.options.insert(words.options.end(), {"--horizon", std::to_string(*traces->horizon)});
+    }
+  }
+  words.options.insert(words.options.end(), {"--time-limit", fmt::format("{}", limit)});
+  add_permissions(options, false, words.options);
+  Footprint own(one, options.out);  // copies are no inputs of the case
+  auto text = run_this_program(words, own, stop).out;
+  const auto show = [&](const ScratchCopy& copy, const std::string& mark) {
+    auto root = shown(copy.root());
+    if (!mark.empty() && root.starts_with('/')) root.erase(0, 1);
+    const auto folder = root == "." ? mark : mark + root + '/';
+    replace_all(text, copy.folder().generic_string() + '/', folder);
+  };
+  show(*then, fmt::format("{}/", kBefore));
+  show(*now, "");
+  return cut(text);
+}
+
+}  // namespace
+
+std::string since_last_pass(const SuiteCase& one, const RunnerOptions& options,
+                            const Footprint& footprint, const std::atomic<bool>& stop) {
+  const auto before =
+      options.last_passes == nullptr ? std::nullopt : options.last_passes->find(one);
+  if (!before) return {};
+  const bool same_program = before->program == program_hash();
+  auto out = changes(one, *before);
+  if (out.empty()) {
+    return fmt::format("since it passed last, none of its files changed{}",
+                       same_program ? ", nor did the program" : "; the program did");
+  }
+  out = "since it passed last, " + out;
+  if (!same_program) out += ", and so did the program";
+  const auto difference = model_difference(one, *before, options, footprint, stop);
+  if (difference.empty()) return out;
+  return fmt::format("{}; {} is what it was then\n{}", out, fmt::format("{}/...", kBefore),
+                     difference);
+}
+
+}  // namespace parallax::tools

@@ -1,0 +1,232 @@
+#include "tools/suite/trace_case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "compiler/base/file_io.h"
+#include "compiler/base/path_gate.h"
+#include "compiler/base/whole_number.h"
+#include "tools/suite/case_process.h"
+#include "tools/suite/expectation.h"
+#include "tools/suite/golden_witness.h"
+
+namespace parallax::tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The number that the last line of a list of traces begins with, "4 traces, complete ...".
+std::optional<std::int64_t> listed_traces(std::string_view text) {
+  const auto end = text.find_last_not_of('\n');
+  if (end == std::string_view::npos) return std::nullopt;
+  text = text.substr(0, end + 1);
+  const auto newline = text.rfind('\n');
+  if (newline != std::string_view::npos) text.remove_prefix(newline + 1);
+  const auto digits = std::min(text.find_first_not_of("0123456789"), text.size());
+  const auto rest = text.substr(digits);
+  if (!rest.starts_with(" trace, ") && !rest.starts_with(" traces, ")) return std::nullopt;
+  return base::whole_number<std::int64_t>(text.substr(0, digits));
+}
+
+/// One trace more than all that are expected; 0, for all, where nobody knows how many these are.
+std::int64_t one_too_many(const harness::TraceExpectation& expect) {
+  if (expect.traces) return *expect.traces + 1;
+  base::DiagnosticSink unread;
+  const auto golden = base::read_file(expect.golden->text, unread);
+  const auto listed = golden ? listed_traces(*golden) : std::nullopt;
+  return listed ? *listed + 1 : 0;
+}
+
+/// What every process of the case is told: horizon, constraints, limits, permissions, models.
+CommandWords model_words(const harness::ManifestCase& one, const RunnerOptions& options) {
+  CommandWords command;
+  auto& words = command.options;
+  for (const auto& constraint : one.constraints) {
+    words.push_back("--until=" + constraint.text);  // also one that begins with `-`
+  }
+  if (one.horizon) words.insert(words.end(), {"--horizon", std::to_string(*one.horizon)});
+  if (!options.ends_early) {
+    words.insert(words.end(), {"--time-limit", fmt::format("{}", one.time_limit_s)});
+  }
+  if (one.memory_limit_mb) {
+    words.insert(words.end(), {"--memory-limit", std::to_string(*one.memory_limit_mb)});
+  }
+  words.insert(words.end(), {"--quiet", "--color=never"});
+  add_permissions(options, false, words);
+  for (const auto& model : one.models) command.files.push_back(model.text);
+  return command;
+}
+
+CommandWords traces_command(const harness::ManifestCase& one, const RunnerOptions& options) {
+  auto command = model_words(one, options);
+  auto limit = one.expect.complete ? 0 : one.expect.traces.value_or(0);
+  if (options.ends_early && one.expect.complete) limit = one_too_many(one.expect);
+  command.options.insert(command.options.begin(), {"traces", "--limit", std::to_string(limit)});
+  return command;
+}
+
+/// What the document of `parallax traces --json` says against the expected number.
+void compare_count(const harness::TraceExpectation& expect, const std::string& document,
+                   CaseResult& result) {
+  const auto found = nlohmann::json::parse(document, nullptr, false);
+  if (found.is_discarded() || !found.is_object() || found.value("status", "") != "ok") {
+    result.problems.push_back("the program printed no result");
+    return;
+  }
+  const auto traces = found.value("traces", std::int64_t{-1});
+  // Complete up to the horizon is all that a case asks for.
+  const bool complete = found.value("exploration", "stopped") != "stopped";
+  if (traces == *expect.traces && complete == expect.complete) return;
+  const auto phrase = [](std::int64_t count, bool all) {
+    return fmt::format("{} trace{}{}", count, count == 1 ? "" : "s", all ? "" : " and more");
+  };
+  result.problems.push_back(fmt::format("{}, expected {}", phrase(traces, complete),
+                                        phrase(*expect.traces, expect.complete)));
+}
+
+/// Of a model that has lost all its traces: the axioms that contradict each other.
+void add_blame(const harness::ManifestCase& one, const std::string& document,
+               const RunnerOptions& options, Footprint& footprint, const std::atomic<bool>& stop,
+               CaseResult& result) {
+  const auto found = nlohmann::json::parse(document, nullptr, false);
+  if (!found.is_object() || found.value("traces", std::int64_t{-1}) != 0) return;
+  CommandWords words;
+  if (one.horizon) words.options = {"--horizon", std::to_string(*one.horizon)};
+  for (const auto& model : one.models) words.files.push_back(model.text);
+  auto why = blame(explanation_of(std::move(words), one.time_limit_s, options, footprint, stop));
+  if (!why.empty()) result.problems.push_back("these contradict each other:\n" + why);
+}
+
+/// Is this what `parallax traces` has printed, so that a newer list may take its place?
+bool is_list_of_traces(std::string_view text) {
+  return text.find_last_not_of('\n') == std::string_view::npos || listed_traces(text);
+}
+
+/// Why the golden file must not be written; empty: it may. Manifests come from others: theirs must
+/// replace no model, no manifest and no file that other programs read.
+std::string unfit_for_golden(const std::string& path, const fs::path& folder,
+                             const base::Result<std::string>& text) {
+  if (!base::lies_below(path, folder)) return "does not lie below the manifest's folder";
+  const auto inside = base::real_path(path).lexically_relative(base::real_path(folder));
+  for (const auto& part : inside) {
+    if (part.string().starts_with('.')) return "is hidden, or lies in a hidden folder";
+  }
+  if (!text) return "cannot be read";
+  if (!is_list_of_traces(*text)) return "is there already and holds no list of traces";
+  return {};
+}
+
+/// Says which axiom excludes a trace that was expected.
+std::string why_lost(const harness::ManifestCase& one, const ListedTrace& lost,
+                     const RunnerOptions& options, Footprint& footprint,
+                     const std::atomic<bool>& stop) {
+  const auto line = jsonl_of(lost);
+  const auto file = footprint.file() + ".jsonl";
+  base::DiagnosticSink unread;
+  if (line.empty() || !base::write_file_atomically(file, line, unread)) return {};
+  auto words = model_words(one, options);
+  words.options.insert(words.options.begin(),
+                       {"traces", "--json", "--other-model", "--replay", file});
+  const auto child = run_this_program(words, footprint, stop);
+  std::error_code error;
+  fs::remove(file, error);
+  return refusal_of(child.out);
+}
+
+/// Names a trace that was lost, and what excludes it, and one that was gained.
+void add_witnesses(const harness::ManifestCase& one, const std::string& golden,
+                   const std::string& found, const RunnerOptions& options, Footprint& footprint,
+                   const std::atomic<bool>& stop, CaseResult& result) {
+  const auto difference = list_difference(golden, found);
+  if (difference.lost) {
+    auto text = fmt::format("lost: trace {} of {}\n{}", difference.lost->number,
+                            one.expect.golden->text, difference.lost->text);
+    text += why_lost(one, *difference.lost, options, footprint, stop);
+    result.problems.push_back(std::move(text));
+  }
+  if (difference.gained) {
+    auto text =
+        fmt::format("gained: trace {}\n{}", difference.gained->number, difference.gained->text);
+    text.pop_back();  // its last line end
+    result.problems.push_back(std::move(text));
+  }
+}
+
+void compare_golden(const std::string& path, const std::string& text, const fs::path& manifest,
+                    bool update, CaseResult& result) {
+  base::DiagnosticSink sink;
+  std::error_code error;
+  const bool exists = fs::exists(path, error);
+  const auto expected = exists ? base::read_file(path, sink) : base::Result<std::string>("");
+  if (exists && expected && *expected == text) return;
+  if (update && result.problems.empty()) {
+    const auto unfit = unfit_for_golden(path, manifest.parent_path(), expected);
+    if (!unfit.empty()) {
+      result.problems.push_back(fmt::format("{} {}, so it is not written", path, unfit));
+      return;
+    }
+    fs::create_directories(fs::path(path).parent_path(), error);
+    if (base::write_file_atomically(path, text, sink)) {
+      result.golden_written = path;
+    } else {
+      result.problems.push_back(fmt::format("cannot write {}", path));
+    }
+    return;
+  }
+  if (!exists) {
+    result.problems.push_back(
+        fmt::format("there is no golden file {}; --update-goldens writes it", path));
+  } else if (!expected) {
+    result.problems.push_back(fmt::format("cannot read {}", path));
+  } else {
+    result.problems.push_back(
+        fmt::format("the traces are not those of {}\n{}", path, text_difference(*expected, text)));
+  }
+}
+
+}  // namespace
+
+void run_traces(const harness::ManifestCase& one, const fs::path& manifest,
+                const RunnerOptions& options, Footprint& footprint, const std::atomic<bool>& stop,
+                CaseResult& result) {
+  const auto command = traces_command(one, options);
+  std::optional<std::uint64_t> cpu_limit_s;
+  if (options.ends_early) cpu_limit_s = static_cast<std::uint64_t>(std::ceil(one.time_limit_s));
+  // A whole list that is the golden one has its number of traces.
+  const bool listed = options.ends_early && one.expect.golden && one.expect.complete;
+  if (one.expect.traces && !listed) {
+    auto words = command;
+    words.options.emplace_back("--json");
+    // Counting goes on to the end, so it answers only whether these are all.
+    if (one.expect.complete && !options.ends_early) words.options.emplace_back("--count");
+    const auto child = run_this_program(words, footprint, stop, cpu_limit_s);
+    result.messages = child.err;
+    if (child.code != 0) return report_no_answer(child, result);
+    compare_count(one.expect, child.out, result);
+    if (!result.problems.empty() && !options.ends_early) {
+      add_blame(one, child.out, options, footprint, stop, result);
+    }
+  }
+  if (one.expect.golden) {
+    const auto child = run_this_program(command, footprint, stop, cpu_limit_s);
+    result.messages = child.err;
+    if (child.code != 0) return report_no_answer(child, result);
+    footprint.add_input(one.expect.golden->text);
+    const auto problems = result.problems.size();
+    compare_golden(one.expect.golden->text, child.out, manifest, options.update_goldens, result);
+    base::DiagnosticSink unread;
+    const auto golden = base::read_file(one.expect.golden->text, unread);
+    if (result.problems.size() > problems && golden && one.expect.complete && !options.ends_early) {
+      add_witnesses(one, *golden, child.out, options, footprint, stop, result);
+    }
+  }
+}
+
+}  // namespace parallax::tools
