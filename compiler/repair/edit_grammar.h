@@ -39,6 +39,7 @@ struct Edit {
   NodeId node;
   std::vector<std::pair<std::size_t, NodeId>> nodes;  // kOpenEvent: axiom and effect
   std::optional<ConditionLiteral> literal;
+  std::optional<ConditionLiteral> or_else;  // kNarrowEvent: it is enough that this holds
   std::string text;
   std::string event;                    // symbol
   std::vector<std::string> variables;   // of a new axiom: the event's arguments, then others
@@ -78,6 +79,8 @@ struct EditScope {
   bool open_outcomes = false;
   /// ... one that the world refused, though it can happen.
   bool open_refused = false;
+  /// Only conditions of which one of two is enough: `!Outside(spot) | DoorOpen()`.
+  bool alternatives = false;
 };
 
 /// The event's symbol, and its arguments.

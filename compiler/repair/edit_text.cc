@@ -116,7 +116,11 @@ std::string literal_in(const ModelAst& model, const std::vector<AxiomForm>& form
   for (std::size_t i = 0; i < edit.variables.size() && i < event.child_count; ++i) {
     names[edit.variables[i]] = print_formula(ast, ast.child(event, static_cast<std::uint32_t>(i)));
   }
-  return print(renamed(*edit.literal, names), form.time, form.variables);
+  const auto printed = [&](const ConditionLiteral& literal) {
+    return print(renamed(literal, names), form.time, form.variables);
+  };
+  if (!edit.or_else) return printed(*edit.literal);
+  return "(" + printed(*edit.literal) + " | " + printed(*edit.or_else) + ")";
 }
 
 std::string EditText::place(std::size_t axiom) const {
@@ -302,11 +306,15 @@ std::string EditText::words(const std::vector<std::size_t>& chosen) const {
         out.push_back(fmt::format("{} only if `{}`", axiom(),
                                   literal_in(model_, forms_, edit, edit.axioms.front())));
         break;
-      case Edit::Kind::kNarrowEvent:
-        out.push_back(fmt::format("`{}` does what its {} axioms say only if `{}`", event,
-                                  edit.axioms.size(),
-                                  print(*edit.literal, "time", edit.variables)));
+      case Edit::Kind::kNarrowEvent: {
+        auto condition = print(*edit.literal, "time", edit.variables);
+        if (edit.or_else) condition += " | " + print(*edit.or_else, "time", edit.variables);
+        out.push_back(edit.axioms.size() == 1
+                          ? fmt::format("{} only if `{}`", axiom(), condition)
+                          : fmt::format("`{}` does what its {} axioms say only if `{}`", event,
+                                        edit.axioms.size(), condition));
         break;
+      }
       case Edit::Kind::kRequire:
         out.push_back(fmt::format("`{}` can happen only if `{}`", event,
                                   print(*edit.literal, "time", edit.variables)));

@@ -86,6 +86,10 @@ class EffectLearner {
         }
       }
     }
+    for (const auto& rule : out_.rules) {
+      const bool told = from_outcomes_.contains(symbols[rule.fluent].name);
+      if (rule.kind == RuleKind::kReleases && !told) out_.settled.insert(rule.fluent);
+    }
     return std::move(out_);
   }
 
@@ -209,7 +213,32 @@ class EffectLearner {
       if (!best || next.length < best->length) best = std::move(next);
       if (text.empty() || stop_.load()) break;  // nothing is open
     }
-    return *std::move(best);
+    return narrowed(problem, seen, *std::move(best));
+  }
+
+  /// Openings are found one after the other, and before the effects beside them: with both at hand
+  /// a longer condition may make the whole shorter.
+  Account narrowed(const OpeningProblem& problem, const std::vector<Outcome>& seen,
+                   Account best) const {
+    for (bool shorter = true; shorter && !stop_.load();) {
+      shorter = false;
+      for (std::size_t k = 0; k < best.openings.size() && !shorter; ++k) {
+        const auto narrower =
+            narrower_openings(problem, best.openings[k], vocabulary_, observations_.states());
+        for (const auto& rule : narrower) {
+          if (stop_.load()) break;
+          auto openings = best.openings;
+          openings[k] = rule;
+          auto next = account(problem, seen, std::move(openings));
+          const bool says_all = next.unexplained.size() <= best.unexplained.size();
+          if (!says_all || next.length >= best.length) continue;
+          best = std::move(next);
+          shorter = true;
+          break;
+        }
+      }
+    }
+    return best;
   }
 
   void learn_fluent(std::size_t event, std::size_t fluent) {

@@ -13,6 +13,9 @@ namespace parallax::tools {
 /// Rules that say of every step that was seen what it did.
 struct LearnedEffects {
   std::vector<LearnedRule> rules;  // by event, in the order of the model
+  /// Fluents that a rule leaves open and that stay as they are where no rule is about them: what
+  /// every step shows that was seen. Not those that only outcomes tell.
+  std::set<std::size_t> settled;
   /// Steps that went differently from what looks like one state, in words.
   std::vector<std::string> contradictions;
 };

@@ -7,16 +7,14 @@
 #include <set>
 #include <system_error>
 
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
-#include "compiler/base/json.h"
 #include "harness/campaign/journal.h"
 #include "harness/report/report.h"
-#include "tools/app/closed_loop.h"
 #include "tools/app/observed_path.h"
-#include "tools/app/trace_feed.h"
+#include "tools/learn/bounded_traces.h"
 #include "tools/learn/explorer.h"
 #include "tools/learn/outcome_facts.h"
+#include "tools/learn/round_folder.h"
 #include "tools/learn/taught_model.h"
 
 namespace parallax::tools {
@@ -32,39 +30,6 @@ constexpr std::int64_t kBatch = 10;  // sequences between two models
 constexpr std::int64_t kMostRounds = 400;
 /// What more clean rounds than these would sharpen is left as it is: they contradict nothing.
 constexpr std::int64_t kSharpened = 1;
-
-/// Gives traces until a number of simulations is used up.
-class BoundedTraces final : public harness::TraceFeed {
- public:
-  BoundedTraces(EnumeratedTraces& traces, const std::int64_t& made, std::int64_t most)
-      : traces_(traces), made_(made), most_(most) {}
-  base::Result<std::optional<harness::CampaignTrace>> next() override {
-    if (made_ < most_) return traces_.next();
-    ended_ = true;
-    return std::optional<harness::CampaignTrace>();
-  }
-  bool ended() const { return ended_; }
-  std::string exploration() const override { return ended_ ? "stopped" : traces_.exploration(); }
-  std::vector<std::string> bounds() const override { return traces_.bounds(); }
-  runtime::Symbols symbols() const override { return traces_.symbols(); }
-  base::Known admits(const harness::CampaignTrace& trace,
-                     const std::vector<std::map<compiler::FluentId, bool>>& observed) override {
-    return traces_.admits(trace, observed);
-  }
-
- private:
-  EnumeratedTraces& traces_;
-  const std::int64_t& made_;
-  std::int64_t most_;
-  bool ended_ = false;
-};
-
-std::string first_error(const base::DiagnosticSink& sink) {
-  for (const auto& diagnostic : sink.sorted()) {
-    if (base::info(diagnostic.code).severity == base::Severity::kError) return diagnostic.message;
-  }
-  return "it was stopped";
-}
 
 class ScenarioLearner {
  public:
@@ -102,26 +67,19 @@ class ScenarioLearner {
         !base::check_output(options_.model_file, context_.files(), sink)) {
       return sink.already_reported();
     }
+    harness::SimulatorFactory simulator;
     if (!loaded().world) {
       auto factory = ask_simulator_(loaded());
       if (!factory) return sink.already_reported();
-      simulator_ = *std::move(factory);
+      simulator = *std::move(factory);
     }
     auto made = TaughtModel::make(loaded(), options_.scenario, context_);
     if (!made) return sink.already_reported();
     taught_ = *std::move(made);
     result_.dropped = taught_->dropped();
-    std::error_code error;
-    if (fs::exists(options_.out / "rounds", error)) {
-      return sink.error_about(base::DiagnosticCode::kUsage, "--out",
-                              fmt::format("{} has rounds of an earlier call; name another folder",
-                                          options_.out.string()));
-    }
-    fs::create_directories(options_.out / "rounds", error);
-    if (error) {
-      return sink.error_about(base::DiagnosticCode::kFileNotWritable, options_.out.string(),
-                              error.message());
-    }
+    auto folder = RoundFolder::make(options_, loaded(), std::move(simulator), context_);
+    if (!folder) return sink.already_reported();
+    folder_ = *std::move(folder);
     return base::Unit{};
   }
 
@@ -157,70 +115,12 @@ class ScenarioLearner {
 
   // --- rounds
 
-  struct Round {
+  std::optional<OpenRound> begin(LearnRound::Kind kind, Execution execution) {
     LearnRound told;
-    fs::path folder;
-    std::unique_ptr<Context> context;
-    std::optional<ScenarioModel> loaded;
-    harness::SimulatorFactory simulator;
-    std::unique_ptr<ClosedLoop> loop;  // the plan was executed
-  };
-
-  /// Writes the model and its scenario, and loads it as `parallax run` does.
-  std::optional<Round> begin(LearnRound::Kind kind, Execution execution) {
-    Round round;
-    round.told.number = std::ssize(result_.rounds) + 1;
-    round.told.kind = kind;
-    round.told.axioms = known_axioms_.size();
-    round.folder = options_.out / "rounds" / std::to_string(round.told.number);
-    if (!write_scenario(round.folder, "model.e", "scenario.yaml")) {
-      result_.why = "a file cannot be written";
-      return std::nullopt;
-    }
-    // What the user's scenario may name was asked when it was loaded.
-    auto form = context_.form();
-    form.allow_outside = true;
-    round.context = std::make_unique<Context>(form, context_.stop());
-    auto loaded = load_scenario_run(round.folder / "scenario.yaml", execution, *round.context);
-    if (!loaded) {
-      result_.why = fmt::format("the model of round {} cannot be run: {}", round.told.number,
-                                first_error(round.context->sink()));
-      return std::nullopt;
-    }
-    round.loaded = *std::move(loaded);
-    round.simulator =
-        round.loaded->world ? simulator_factory(*round.loaded, {}, context_.stop()) : simulator_;
-    return round;
-  }
-
-  bool write_scenario(const fs::path& folder, const std::string& model, const std::string& name) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    const auto from = fs::relative(loaded().scenario.file, folder, error);
-    const auto include = error || from.empty() ? loaded().scenario.file : from;
-    const auto scenario = fmt::format(
-        "# A model that was learned from runs of this scenario.\n\n"
-        "include: {}\nmodel: [{}]\n{}expect:\n",
-        base::json_quoted(include.generic_string()), model,
-        result_.judged_in_closed_loop ? "execution: closed-loop\n" : "");
-    auto& sink = context_.sink();
-    return base::write_file_atomically(folder / model, taught_->text(), sink).has_value() &&
-           base::write_file_atomically(folder / name, scenario, sink).has_value();
-  }
-
-  harness::CampaignOptions campaign(const Round& round) const {
-    harness::CampaignOptions out;
-    // Other starts in every round: the same ones again would teach nothing.
-    out.seed = options_.seed + static_cast<std::uint64_t>(round.told.number) - 1;
-    out.jobs = options_.jobs;
-    out.run_dir = round.folder / "run";
-    std::error_code error;
-    out.start_folder = fs::current_path(error).string();
-    out.scenario_hash = round.loaded->sources_hash;
-    out.tool_version = options_.tool_version;
-    out.stop = &context_.stop();
-    out.progress = options_.progress;
-    return out;
+    told.number = std::ssize(result_.rounds) + 1;
+    told.kind = kind;
+    told.axioms = known_axioms_.size();
+    return folder_->begin(told, taught_->text(), execution, result_.why);
   }
 
   void limit_runs(harness::Scenario& scenario, std::optional<std::int64_t> most) const {
@@ -239,7 +139,7 @@ class ScenarioLearner {
     auto loop = ClosedLoop::make(*round->loaded, *round->context);
     if (!loop) return failed(*round);
     round->loop = *std::move(loop);
-    const auto options = campaign(*round);
+    const auto options = folder_->campaign(*round);
     auto ran = harness::run_loop_campaign(scenario, *round->loop, round->simulator, options,
                                           round->context->files(), round->context->sink());
     return judge(*round, ran, most.has_value());
@@ -254,7 +154,7 @@ class ScenarioLearner {
     EnumeratedTraces all(round->loaded->compilation.model, *round->context);
     std::int64_t made = 0, done = 0, trace = 0;
     BoundedTraces traces(all, made, options_.max_runs - result_.simulations);
-    auto options = campaign(*round);
+    auto options = folder_->campaign(*round);
     options.progress = [&](const harness::CampaignProgress& progress) {
       made += progress.trace == trace ? progress.done - done : progress.done;
       done = progress.done;
@@ -274,7 +174,8 @@ class ScenarioLearner {
     return judge(*round, ran, false);
   }
 
-  std::optional<bool> judge(Round& round, base::Result<harness::CampaignResult>& ran, bool first) {
+  std::optional<bool> judge(OpenRound& round, base::Result<harness::CampaignResult>& ran,
+                            bool first) {
     if (!ran) return failed(round);
     if (ran->journal_open) {
       (void)harness::write_report(*ran, round.folder / "run", round.context->sink());
@@ -319,7 +220,7 @@ class ScenarioLearner {
   }
 
   /// A run that ended with an error; what it has on record counts all the same.
-  std::optional<bool> failed(Round& round) {
+  std::optional<bool> failed(OpenRound& round) {
     const auto why = first_error(round.context->sink());
     std::error_code error;
     if (fs::exists(round.folder / "run" / harness::kJournalName, error)) {
@@ -363,7 +264,7 @@ class ScenarioLearner {
     return true;
   }
 
-  void close(Round& round, std::string outcome) {
+  void close(OpenRound& round, std::string outcome) {
     round.told.outcome = std::move(outcome);
     const auto axioms = taught_->axioms();
     std::set<std::string> now(axioms.begin(), axioms.end());
@@ -381,7 +282,7 @@ class ScenarioLearner {
   // --- what was seen
 
   /// Learns from the simulations of a round; false if they have changed nothing.
-  bool take(const Round& round, bool learns = true) {
+  bool take(const OpenRound& round, bool learns = true) {
     const auto before = taught_->all_axioms();
     const auto journal =
         harness::read_journal(round.folder / "run", round.context->files(), round.context->sink());
@@ -431,7 +332,8 @@ class ScenarioLearner {
 
   base::Status write() {
     auto& sink = context_.sink();
-    if (!write_scenario(options_.out, "learned.e", "learned.yaml") ||
+    if (!folder_->write_scenario(options_.out, taught_->text(), "learned.e", "learned.yaml",
+                                 result_.judged_in_closed_loop) ||
         !base::write_file_atomically(options_.out / "log.txt", learn_log(result_), sink)) {
       return sink.already_reported();
     }
@@ -445,7 +347,7 @@ class ScenarioLearner {
   std::optional<base::Result<ScenarioModel>> loaded_;
   Execution own_execution_ = Execution::kOpenLoop;
   std::int64_t clean_rounds_ = 0;
-  harness::SimulatorFactory simulator_;
+  std::optional<RoundFolder> folder_;
   std::unique_ptr<TaughtModel> taught_;
   std::set<std::string> known_axioms_;
   LearnResult result_;

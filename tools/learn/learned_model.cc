@@ -110,6 +110,10 @@ std::string learned_text(const std::string& heading, const std::string& states,
     if (!rule.held_by.empty()) text += "; held back by " + named_runs(rule.held_by);
     text += ".\n";
   }
+  if (!effects.settled.empty()) {
+    text += "\n; What was left open is so when the event happens; nothing else changes it.\n";
+  }
+  for (const auto fluent : effects.settled) text += print_settled(fluent, vocabulary);
   if (!start.empty()) text += "\n; The start.\n" + start;
   base::SourceFiles files;
   base::DiagnosticSink sink;

@@ -10,8 +10,9 @@
 
 namespace parallax::tools {
 
-/// What says nothing about events (`states`), each rule with the runs that taught it, and the
-/// start, in the standard layout. `heading`: comment lines.
+/// What says nothing about events (`states`), each rule with the runs that taught it, that nothing
+/// else changes what rules leave open, and the start, in the standard layout. `heading`: comment
+/// lines.
 std::string learned_text(const std::string& heading, const std::string& states,
                          const LearnedEffects& effects, const LearnVocabulary& vocabulary,
                          const std::string& start);

@@ -18,6 +18,7 @@ namespace {
 constexpr double kGoodCondition = 30.0;     // shorter than this, no further stage is asked
 constexpr std::size_t kBeam = 24;           // conditions that are made longer
 constexpr std::size_t kMostConditions = 3;  // of one rule
+constexpr std::size_t kMostNarrower = 8;    // rules that are proposed instead of one
 
 struct Counts {
   double held = 0, failed = 0;
@@ -36,6 +37,30 @@ struct Counts {
   }
 };
 
+Truth fires_at(const LearnedRule& rule, const OpeningExample& example,
+               const LearnVocabulary& vocabulary, const std::vector<std::vector<Truth>>& states) {
+  std::vector<std::size_t> binding;
+  if (!rule.bind(example.event_arguments, example.fluent_arguments, binding)) return Truth::kFalse;
+  return value_of(rule.units, vocabulary, states[example.state], binding);
+}
+
+/// Names the runs that teach the rule, and those that hold it back.
+void tell_runs(const OpeningProblem& problem, const LearnVocabulary& vocabulary,
+               const std::vector<std::vector<Truth>>& states, LearnedRule& rule) {
+  std::vector<std::size_t> binding;
+  rule.taught_by.clear();
+  rule.held_by.clear();
+  for (const auto& example : problem.examples) {
+    if (!rule.bind(example.event_arguments, example.fluent_arguments, binding)) continue;
+    const bool here = fires_at(rule, example, vocabulary, states) == Truth::kTrue;
+    if (!(here ? example.open : !example.open && !rule.units.empty())) continue;
+    auto& runs = here ? rule.taught_by : rule.held_by;
+    for (const auto& run : example.runs) {
+      if (std::find(runs.begin(), runs.end(), run) == runs.end()) runs.push_back(run);
+    }
+  }
+}
+
 class OpeningFinder {
  public:
   OpeningFinder(const OpeningProblem& problem, const LearnVocabulary& vocabulary,
@@ -51,19 +76,10 @@ class OpeningFinder {
       auto rule = best_rule(seed, covered);
       if (!rule) break;  // stopped
       for (std::size_t i = 0; i < covered.size(); ++i) {
-        const auto& example = problem_.examples[i];
-        std::vector<std::size_t> binding;
-        if (!rule->bind(example.event_arguments, example.fluent_arguments, binding)) continue;
-        const bool here =
-            value_of(rule->units, vocabulary_, states_[example.state], binding) == Truth::kTrue;
-        if (here) covered[i] = true;
-        if (here ? example.open : !example.open && !rule->units.empty()) {
-          auto& runs = here ? rule->taught_by : rule->held_by;
-          for (const auto& run : example.runs) {
-            if (std::find(runs.begin(), runs.end(), run) == runs.end()) runs.push_back(run);
-          }
-        }
+        const auto fires = fires_at(*rule, problem_.examples[i], vocabulary_, states_);
+        if (fires == Truth::kTrue) covered[i] = true;
       }
+      tell_runs(problem_, vocabulary_, states_, *rule);
       out.push_back(*std::move(rule));
     }
     return out;
@@ -213,6 +229,62 @@ std::vector<LearnedRule> find_openings(const OpeningProblem& problem,
                                        const std::vector<std::vector<Truth>>& states,
                                        const std::atomic<bool>& stop) {
   return OpeningFinder(problem, vocabulary, states, stop).find();
+}
+
+std::vector<LearnedRule> narrower_openings(const OpeningProblem& problem, const LearnedRule& rule,
+                                           const LearnVocabulary& vocabulary,
+                                           const std::vector<std::vector<Truth>>& states) {
+  const OpeningExample* pattern = nullptr;
+  std::vector<const OpeningExample*> open, other;  // that the rule covers
+  for (const auto& example : problem.examples) {
+    const auto fires = fires_at(rule, example, vocabulary, states);
+    if (example.open && fires == Truth::kTrue) open.push_back(&example);
+    if (!example.open && fires != Truth::kFalse) other.push_back(&example);
+  }
+  if (open.empty() || other.empty()) return {};
+  pattern = open.front();
+  std::vector<std::size_t> binding;
+  (void)rule.bind(pattern->event_arguments, pattern->fluent_arguments, binding);
+  std::vector<std::pair<std::size_t, LearnedRule>> found;  // runs that are left out
+  const auto consider = [&](LearnedRule next) {
+    for (const auto* each : open) {
+      if (fires_at(next, *each, vocabulary, states) != Truth::kTrue) return;
+    }
+    std::size_t left_out = 0;
+    for (const auto* each : other) {
+      if (fires_at(next, *each, vocabulary, states) == Truth::kFalse) {
+        left_out += each->held + each->failed;
+      }
+    }
+    if (left_out > 0) found.emplace_back(left_out, std::move(next));
+  };
+  const RuleHead about{rule.kind, rule.fluent, rule.variables, rule.terms};
+  for (const auto& unit :
+       units_that_hold(about, vocabulary, states[pattern->state], binding, UnitStage::kPlain)) {
+    auto next = rule;
+    if (next.units.size() < kMostConditions) {
+      next.units.push_back(unit);
+      next.cost += unit.cost;
+      consider(next);
+    }
+    if (rule.units.size() != 1) continue;
+    next = rule;
+    next.cost += unit.cost - next.units.front().cost;
+    next.units = {unit};
+    consider(std::move(next));
+  }
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first > b.first : a.second.cost < b.second.cost;
+  });
+  if (found.size() > kMostNarrower) {
+    found.erase(found.begin() + static_cast<std::ptrdiff_t>(kMostNarrower), found.end());
+  }
+  std::vector<LearnedRule> out;
+  for (auto& [left_out, next] : found) {
+    tell_runs(problem, vocabulary, states, next);
+    out.push_back(std::move(next));
+  }
+  return out;
 }
 
 std::vector<LearnedRule> shortest_exceptions(OpeningProblem problem,

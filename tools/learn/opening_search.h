@@ -47,6 +47,11 @@ std::vector<LearnedRule> find_openings(const OpeningProblem& problem,
                                        const LearnVocabulary& vocabulary,
                                        const std::vector<std::vector<Truth>>& states,
                                        const std::atomic<bool>& stop);
+/// Rules that leave less open than this one, and all that was seen to be open: with one more
+/// condition, or another one instead of its only one. Those that leave out most come first, a few.
+std::vector<LearnedRule> narrower_openings(const OpeningProblem& problem, const LearnedRule& rule,
+                                           const LearnVocabulary& vocabulary,
+                                           const std::vector<std::vector<Truth>>& states);
 /// The same for kAdmits, with the value of most_outside that gives the shortest description:
 /// nothing else explains what is not covered, and nothing has to.
 std::vector<LearnedRule> shortest_exceptions(OpeningProblem problem,

@@ -272,4 +272,26 @@ std::string print(const LearnedRule& rule, const LearnVocabulary& vocabulary) {
          ".";
 }
 
+std::string print_settled(std::size_t fluent, const LearnVocabulary& vocabulary) {
+  LearnedRule rule;
+  rule.variables = vocabulary.symbols()[fluent].sorts;
+  for (std::size_t i = 0; i < rule.variables.size(); ++i) {
+    rule.terms.push_back({RuleTerm::Kind::kHead, i});
+  }
+  const RuleNames names(rule, vocabulary);
+  const auto atom = names.call(fluent, rule.terms, 0);
+  auto variables = names.head();
+  variables.emplace_back("time");
+  std::string out;
+  for (const bool holds : {true, false}) {
+    const std::string sign = holds ? "" : "!";
+    const std::string ends = holds ? "Terminates" : "Initiates";
+    const auto effect = "(event," + atom + ",time)";
+    out += "[" + listed(variables) + "] " + sign + "HoldsAt(" + atom +
+           ",time) & !({event} Happens(event,time) & (" + ends + effect + " | Releases" + effect +
+           ")) -> " + sign + "HoldsAt(" + atom + ",time+1).\n";
+  }
+  return out;
+}
+
 }  // namespace parallax::tools

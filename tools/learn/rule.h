@@ -81,5 +81,8 @@ std::string print_condition(const LearnedRule& rule, const LearnVocabulary& voca
 
 /// As the language writes it, with its period.
 std::string print(const LearnedRule& rule, const LearnVocabulary& vocabulary);
+/// Two sentences: the fluent stays as it is where no event sets it or leaves it open. By itself a
+/// fluent that was released is free until an event sets it.
+std::string print_settled(std::size_t fluent, const LearnVocabulary& vocabulary);
 
 }  // namespace parallax::tools

@@ -13,6 +13,7 @@
 #include "tools/repair/experiment.h"
 #include "tools/repair/experiment_runs.h"
 #include "tools/repair/ranking.h"
+#include "tools/repair/repeats.h"
 #include "tools/repair/world_files.h"
 
 namespace parallax::tools {
@@ -33,12 +34,23 @@ class Experiments {
         chooser_(first_.loaded, context) {}
 
   base::Result<RepairResult> run() {
-    auto proposed = propose_repairs(first_, context_);
+    if (!repeat()) return context_.sink().already_reported();
+    auto proposed = propose_repairs(last_ ? *last_ : first_, context_);
     if (!proposed) return proposed;
     auto& result = *proposed;
-    if (!may_be_made(result)) return with_plan(finished(std::move(result)));
+    if (!tell_apart(result)) return context_.sink().already_reported();
+    if (runs_ != nullptr && !context_.stopped() && !runs_->close()) {
+      return context_.sink().already_reported();
+    }
+    return with_plan(finished(std::move(result)));
+  }
+
+ private:
+  /// Makes what tells the likeliest proposals apart, until nothing is left to be told apart.
+  base::Status tell_apart(RepairResult& result) {
+    if (!may_be_made(result)) return base::Unit{};
     const bool on_record = first_.experiments > 0;
-    if (on_record && !open()) return context_.sink().already_reported();
+    if (runs_ == nullptr && on_record && !open()) return context_.sink().already_reported();
     if (runs_ != nullptr && !complete(result)) return context_.sink().already_reported();
     while (!context_.stopped()) {
       const auto models = contenders(result);
@@ -59,13 +71,39 @@ class Experiments {
       if (!made) return context_.sink().already_reported();
       if (!*made) break;
     }
-    if (runs_ != nullptr && !context_.stopped() && !runs_->close()) {
-      return context_.sink().already_reported();
-    }
-    return with_plan(finished(std::move(result)));
+    return base::Unit{};
   }
 
- private:
+  /// Where chance decides in the world, what went wrong once may go well the next time: what is
+  /// proposed for what happens always is no answer then.
+  base::Status repeat() {
+    if (!chance_decides(first_.loaded) || !forbidden().empty()) return base::Unit{};
+    std::int64_t made = 0;
+    for (bool any = true; any && !context_.stopped();) {
+      any = false;
+      for (const auto& wanted : repeats_wanted(last_ ? *last_ : first_)) {
+        if (runs_ == nullptr && !open()) return context_.sink().already_reported();
+        if (runs_ == nullptr) return base::Unit{};  // stopped
+        const auto before = runs_->made();
+        for (auto i = wanted.times; i > 0 && budget() > 0 && runs_->usable(wanted.trace); --i) {
+          const auto done = runs_->make({wanted.trace, 0}, budget());
+          if (!done) return context_.sink().already_reported();
+          if (!*done) break;
+        }
+        any = any || runs_->made() > before;
+        made += runs_->made() - before;
+      }
+      if (!any) break;
+      auto input = load_repair_input(first_.options, context_);
+      if (!input) return context_.sink().already_reported();
+      last_.emplace(*std::move(input));
+    }
+    if (made > 0) {
+      remarks_.push_back(fmt::format("{} made to see whether what went wrong is chance", made));
+    }
+    return base::Unit{};
+  }
+
   std::int64_t most() const {
     const bool model = first_.loaded.world != nullptr;
     return experiments_.runs.value_or(model ? kRunsInModel : kRunsInPhysics);
@@ -91,19 +129,24 @@ class Experiments {
   /// Why none are made is told where it matters.
   bool may_be_made(RepairResult& result) {
     if (contenders(result).size() < 2 || context_.stopped()) return false;
+    result.why_tied = forbidden();
+    return result.why_tied.empty();
+  }
+
+  /// Why no simulation may be made; empty if it may.
+  std::string forbidden() const {
     std::error_code ignored;
     const auto& folder = options_.folder.folder;
     const auto place = fs::path(folder) / kExperiments;
-    if (experiments_.runs == 0) {
-      result.why_tied = "no runs may be made to tell them apart (--runs 0)";
-    } else if (options_.other_model) {
-      result.why_tied = "none are made of a scenario that may be another one";
-    } else if (!first_.loaded.scenario.simulator.command.empty() && !experiments_.allow_commands) {
-      result.why_tied = "the simulator is a command, which --allow-commands permits";
-    } else if (::access(folder.c_str(), W_OK) != 0 || fs::is_symlink(place, ignored)) {
-      result.why_tied = "nothing can be written into the folder";
+    if (experiments_.runs == 0) return "no runs may be made to tell them apart (--runs 0)";
+    if (options_.other_model) return "none are made of a scenario that may be another one";
+    if (!first_.loaded.scenario.simulator.command.empty() && !experiments_.allow_commands) {
+      return "the simulator is a command, which --allow-commands permits";
     }
-    return result.why_tied.empty();
+    if (::access(folder.c_str(), W_OK) != 0 || fs::is_symlink(place, ignored)) {
+      return "nothing can be written into the folder";
+    }
+    return "";
   }
 
   /// The models of those that the runs speak for as much as for the first.

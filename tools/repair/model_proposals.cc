@@ -55,6 +55,7 @@ class ModelSearch {
     kCautious,  // those that went well are set aside from there on
     kOpen,      // the model may leave open what happens
     kWide,      // kExact, about all that led to the step
+    kEither,    // kExact, with conditions of which one of two is enough
   };
 
   std::size_t most_whole() const {
@@ -66,6 +67,10 @@ class ModelSearch {
   /// First what the steps themselves are about, then what led there; more edits last.
   void search_all(Mode mode) {
     if (search(mode, 1)) {
+      const bool open = std::all_of(result_.proposals.begin(), result_.proposals.end(),
+                                    [](const Proposal& each) { return each.open; });
+      // That anything may happen is no answer where something says what does.
+      if (open && !context_.stopped() && search(Mode::kEither, 1)) return;
       // A missing effect has its condition at once, if that tells more of the runs, or says with
       // variables what else takes constants.
       const auto best = most_whole();
@@ -77,6 +82,7 @@ class ModelSearch {
     for (std::size_t size = 2; size <= EditSearch::kMostEdits && !context_.stopped(); ++size) {
       if (search(mode, size)) return;
     }
+    if (!context_.stopped()) search(Mode::kEither, 1);
   }
 
   EditScope scope(Mode mode) const {
@@ -102,6 +108,7 @@ class ModelSearch {
     for (const auto& seen : evidence_) add_changed(seen, out);
     out.open_outcomes = mode == Mode::kOpen;
     out.open_refused = mode == Mode::kExact;
+    out.alternatives = mode == Mode::kEither;
     if (!wide) return out;
     // What the axioms of the steps ask for may be what went wrong before.
     for (const auto& symbol : domain_.typed->symbols) {

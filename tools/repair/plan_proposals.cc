@@ -7,10 +7,10 @@
 #include <set>
 #include <tuple>
 
-#include "compiler/base/file_io.h"
 #include "compiler/repair/edit_grammar.h"
 #include "tools/repair/plan_candidates.h"
 #include "tools/repair/plan_search.h"
+#include "tools/repair/plan_step.h"
 
 namespace parallax::tools {
 
@@ -19,12 +19,10 @@ using compiler::PlanEdit;
 namespace {
 
 constexpr std::size_t kMostSteps = 3;      // that went wrong
-constexpr std::size_t kMostSites = 16;     // that actions are inserted at
 constexpr std::size_t kMostChoices = 100;  // that the solver is asked for, in each model
 constexpr std::size_t kMostTogether = 48;  // edits that are written into one plan
 constexpr std::size_t kMostTried = 5;      // of them are compiled from their text
 constexpr std::size_t kMostKept = 3;       // proposals for each model
-constexpr std::int64_t kMoreSteps = 3;     // than the scenario has, for what an edit adds
 
 /// How the world is taken to be.
 struct World {
@@ -39,7 +37,8 @@ class PlanRepair {
       : input_(input), models_(models), context_(context) {}
 
   FoundProposals run() {
-    if (!read()) return std::move(found_);
+    source_ = read_plan(input_, context_);
+    if (!source_) return std::move(found_);
     std::set<std::string> known;
     for (const auto& parting : input_.partings) {
       if (context_.stopped() || known.size() == kMostSteps) break;
@@ -56,152 +55,17 @@ class PlanRepair {
   }
 
  private:
-  /// The plan's text and the binding table; false: there is none that could be edited.
-  bool read() {
-    const auto& scenario = input_.loaded.scenario;
-    if (scenario.plan.empty() || !scenario.bind || !input_.loaded.compilation.plan) return false;
-    const auto before = context_.sink();
-    const auto files = load_scenario_plan(scenario, context_);
-    const auto bind = base::load_text(scenario.bind->text, context_.files(), context_.sink());
-    if (files) plan_ = compiler::PlanText::read(context_.files(), *files);
-    if (bind) {
-      auto binding = compiler::parse_plan_binding(context_.files(), *bind, context_.sink());
-      if (binding) binding_ = *std::move(binding);
-    }
-    context_.sink() = before;
-    return plan_ && binding_;
-  }
-
   void repair(const RunParting& parting) {
-    const auto seen =
-        std::find_if(input_.evidence.begin(), input_.evidence.end(),
-                     [&](const Evidence& each) { return each.ids.front() == parting.ids.front(); });
-    if (seen == input_.evidence.end()) return;
-    task_ = {};
+    auto step = find_plan_step(input_, *source_, parting, context_, found_.remarks);
+    if (!step) return;
+    step_ = *std::move(step);
     can_be_run_.clear();
-    task_.scenario = &input_.loaded.scenario;
-    task_.plan = &*plan_;
-    task_.evidence = &*seen;
-    task_.step = parting.after - 1;
-    task_.bad = {parting.step, parting.seen};
-    task_.horizon = input_.loaded.compilation.model.horizon + kMoreSteps;
-    find_difference();
-    if (!find_place()) return;
     for (const auto& world : worlds()) {
       if (!context_.stopped()) look(world);
     }
   }
 
-  /// What held in front of the step where it went wrong, and never where it went well.
-  void find_difference() {
-    differing_.clear();
-    went_well_ = false;
-    const auto& failing = task_.evidence->states[task_.step];
-    auto out = failing;
-    bool any = false;
-    for (const auto& seen : input_.evidence) {
-      for (std::size_t t = 0; t < seen.steps.size() && t < seen.seen_to(); ++t) {
-        const bool parted = seen.divergence == t + 1;
-        if (seen.steps[t].event != task_.bad.step.event || seen.steps[t].failed || parted) continue;
-        went_well_ = true;
-        if (seen.states[t] == failing) continue;
-        any = true;
-        std::erase_if(out, [&](const auto& entry) {
-          const auto other = seen.states[t].find(entry.first);
-          return other == seen.states[t].end() || other->second == entry.second;
-        });
-      }
-    }
-    if (any) differing_ = std::move(out);
-  }
-
-  std::unique_ptr<PlanModel> compile(const std::string& model,
-                                     const std::vector<compiler::TextChange>& changes,
-                                     bool constraints, PlanModel::Wrong& wrong) {
-    EditedTexts texts;
-    texts.model = model;
-    for (const auto& file : changed_files(plan_->files(), changes)) {
-      texts.plan.emplace(file.name, file.after);
-    }
-    texts.horizon = task_.horizon;
-    texts.constraints = constraints;
-    return PlanModel::compile(input_.loaded.scenario, texts, context_, wrong);
-  }
-
-  bool has_constraints() const {
-    return !input_.loaded.scenario.constraints.empty() &&
-           input_.loaded.scenario.execution != harness::Execution::kClosedLoop;
-  }
-
-  /// Where the plan was in the run, and what it comes to from there in the model as it is.
-  bool find_place() {
-    PlanModel::Wrong wrong;
-    const auto model = compile(input_.text, {}, has_constraints(), wrong);
-    if (!model) {
-      found_.remarks.push_back("the plan by itself cannot be compiled: " + wrong.why);
-      return false;
-    }
-    const auto start = model->start(*task_.evidence);
-    const auto path = model->locations(*task_.evidence, task_.step);
-    if (!start || path.empty()) return false;
-    PlanGoal constraints, done;
-    constraints.constraints = done.done = true;
-    if (has_constraints()) task_.goal.constraints = model->reaches(constraints, *start) == true;
-    task_.goal.done = model->reaches(done, *start) == true;
-    if (!task_.goal.any()) return false;
-    scope_ = {};
-    scope_.plan = &*plan_;
-    scope_.binding = &*binding_;
-    scope_.typed = &*input_.domain->typed;
-    const auto& graph = model->graph();
-    for (auto k = path.size(); k-- > 0;) {
-      const auto& location = graph.locations[path[k]];
-      auto forms = location.calls;
-      forms.push_back(location.source);
-      for (const auto& source : forms) {
-        const auto form = plan_->form_at(same_text(source));
-        if (!form) continue;
-        if (k + 1 == path.size()) add_once(scope_.failing, *form);
-        const auto statement = plan_->statement_around(*form);
-        if (statement && scope_.sites.size() < kMostSites) add_once(scope_.sites, *statement);
-      }
-    }
-    // The perform itself first, then the calls that lead to it.
-    std::reverse(scope_.failing.begin(), scope_.failing.end());
-    const auto& last = graph.locations[path.back()];
-    scope_.failure = last.failure_class;
-    for (const auto& way : last.failures) {
-      const bool fits = std::find(way.reasons.begin(), way.reasons.end(), task_.bad.step.reason) !=
-                        way.reasons.end();
-      if (fits) scope_.failure = way.failure_class;
-    }
-    for (const auto& [fluent, holds] : differing_) {
-      constexpr std::size_t kMostConditions = 6;
-      if (is_defined(fluent) || scope_.conditions.size() == kMostConditions) continue;
-      scope_.conditions.push_back(compiler::plan_condition(fluent, !holds));
-    }
-    return true;
-  }
-
-  /// Texts are read anew for every compilation; names and places stay.
-  base::SourceRange same_text(const base::SourceRange& source) const {
-    const auto& name = context_.files()[source.file].name();
-    for (std::uint32_t i = 0; i < plan_->data().end_id().index(); ++i) {
-      const auto& own = plan_->source(compiler::DatumId(i));
-      if (context_.files()[own.file].name() == name) return {own.file, source.begin, source.end};
-    }
-    return source;
-  }
-
-  static void add_once(std::vector<compiler::DatumId>& list, compiler::DatumId form) {
-    if (std::find(list.begin(), list.end(), form) == list.end()) list.push_back(form);
-  }
-
-  bool is_defined(const std::string& fluent) const {
-    const auto& typed = *input_.domain->typed;
-    const auto symbol = typed.find_symbol(compiler::symbol_of(fluent));
-    return symbol && typed.symbols[*symbol].noninertial;
-  }
+  bool constrained() const { return has_constraints(input_.loaded.scenario); }
 
   std::vector<World> worlds() const {
     std::vector<World> out;
@@ -210,7 +74,7 @@ class PlanRepair {
       out.push_back({*models_[i].text, i + 1, &models_[i]});
     }
     // The runs themselves: the step is bad where it went wrong.
-    if (out.empty() && !differing_.empty()) out.push_back({input_.text});
+    if (out.empty() && !step_.differing.empty()) out.push_back({input_.text});
     return out;
   }
 
@@ -229,12 +93,12 @@ class PlanRepair {
 
   /// Looks for what helps in that world, if the plan is any the worse for its being like that.
   void look(const World& world) {
-    task_.model = world.text;
-    task_.bad.where = world.rank == 0 ? differing_ : Evidence::State{};
+    step_.task.model = world.text;
+    step_.task.bad.where = world.rank == 0 ? step_.differing : Evidence::State{};
     PlanModel::Wrong wrong;
-    const auto before = compile(world.text, {}, false, wrong);
+    const auto before = compile_plan(step_.task, world.text, {}, false, context_, wrong);
     if (!before) return;
-    before->set_bad(task_.bad);
+    before->set_bad(step_.task.bad);
     if (before->can_be_bad() != true) return;
     std::set<std::string> defined, fluents;
     for (const auto& symbol : input_.domain->typed->symbols) {
@@ -242,28 +106,29 @@ class PlanRepair {
         defined.insert(symbol.name);
       }
     }
-    for (const auto& [fluent, holds] : task_.bad.where) fluents.insert(compiler::symbol_of(fluent));
+    for (const auto& [fluent, holds] : step_.task.bad.where)
+      fluents.insert(compiler::symbol_of(fluent));
     std::vector<Tried> tried;
-    const auto event = compiler::symbol_of(task_.bad.step.event);
+    const auto event = compiler::symbol_of(step_.task.bad.step.event);
     // Of an event that never went well nothing tells what it needs.
     for (const bool wide : {false, true}) {
-      if (!went_well_) break;
+      if (!step_.went_well) break;
       auto events = events_that_matter(world.text, input_.text, event, fluents, defined, wide);
-      auto edits = plan_moves(scope_, events);
+      auto edits = plan_moves(step_.scope, events);
       // What is inserted is to make the step possible, not to take its place.
       events.erase(event);
-      for (auto& edit : plan_insertions(scope_, events)) edits.push_back(std::move(edit));
+      for (auto& edit : plan_insertions(step_.scope, events)) edits.push_back(std::move(edit));
       // Two together are looked for where the step is alone.
       if (wide && edits.size() > kMostTogether) edits.resize(kMostTogether);
-      task_.goal.event = task_.bad.step.event;
+      step_.task.goal.event = step_.task.bad.step.event;
       try_edits(world, edits, false, wide ? 2 : 1, *before, tried);
-      task_.goal.event.clear();
+      step_.task.goal.event.clear();
       if (!wide && tried.empty()) {
-        try_edits(world, plan_guards(scope_), false, 1, *before, tried);
+        try_edits(world, plan_guards(step_.scope), false, 1, *before, tried);
       }
       if (!tried.empty() || context_.stopped()) break;
     }
-    try_edits(world, plan_handlers(scope_), true, 1, *before, tried);
+    try_edits(world, plan_handlers(step_.scope), true, 1, *before, tried);
     keep(world, *before, std::move(tried));
   }
 
@@ -286,7 +151,7 @@ class PlanRepair {
   void try_together(const World& world, const std::vector<PlanEdit>& edits, bool handles,
                     std::size_t most, PlanModel& before, std::vector<Tried>& out) {
     auto choices =
-        find_plan_edits(task_, edits, handles, most, kMostChoices, context_, found_.remarks);
+        find_plan_edits(step_.task, edits, handles, most, kMostChoices, context_, found_.remarks);
     const auto oddity = [&](const PlanChoice& choice) {
       int sum = 0;
       for (const auto edit : choice.edits) sum += edits[edit].oddity;
@@ -319,12 +184,12 @@ class PlanRepair {
   std::optional<std::vector<PlanEdit>> with_condition(std::vector<PlanEdit> edits,
                                                       const PlanChoice& choice) const {
     if (edits.size() != 1 || edits.front().kind != PlanEdit::Kind::kInsert) return std::nullopt;
-    const auto& failing = task_.evidence->states[task_.step];
+    const auto& failing = step_.task.evidence->states[step_.task.step];
     for (const bool known : {true, false}) {
       for (const auto& [fluent, value] : choice.undone) {
         const auto then = failing.find(fluent);
-        if (then == failing.end() || then->second != value || is_defined(fluent)) continue;
-        if (known && !differing_.contains(fluent)) continue;
+        if (then == failing.end() || then->second != value || is_defined(input_, fluent)) continue;
+        if (known && !step_.differing.contains(fluent)) continue;
         edits.front().condition = compiler::plan_condition(fluent, value);
         return edits;
       }
@@ -335,7 +200,7 @@ class PlanRepair {
   std::string words_of(const std::vector<PlanEdit>& edits) const {
     std::string words;
     for (const auto& edit : edits) {
-      words += (words.empty() ? "" : "; and ") + compiler::plan_edit_words(*plan_, edit);
+      words += (words.empty() ? "" : "; and ") + compiler::plan_edit_words(source_->text, edit);
     }
     return words;
   }
@@ -352,39 +217,42 @@ class PlanRepair {
   /// With the model as it is the plan must have that execution, too, or nobody can run it. That is
   /// the same for each way that the world may be.
   bool can_be_run(const std::vector<compiler::TextChange>& changes) {
-    std::string key = task_.goal.event;
-    for (const auto& file : changed_files(plan_->files(), changes)) {
+    std::string key = step_.task.goal.event;
+    for (const auto& file : changed_files(source_->text.files(), changes)) {
       key += "\n" + file.name + "\n" + file.after;
     }
     const auto known = can_be_run_.find(key);
     if (known != can_be_run_.end()) return known->second;
     PlanModel::Wrong wrong;
-    const auto as_is = compile(input_.text, changes, has_constraints(), wrong);
-    const auto start = as_is ? as_is->start(*task_.evidence) : std::nullopt;
-    const bool reaches = start && as_is->reaches(task_.goal, *start) == true;
+    const auto as_is =
+        compile_plan(step_.task, input_.text, changes, constrained(), context_, wrong);
+    const auto start = as_is ? as_is->start(*step_.task.evidence) : std::nullopt;
+    const bool reaches = start && as_is->reaches(step_.task.goal, *start) == true;
     if (!context_.stopped()) can_be_run_.emplace(std::move(key), reaches);
     return reaches;
   }
 
   void try_text(const World& world, const std::vector<PlanEdit>& edits, bool handles,
                 PlanModel& before, std::vector<Tried>& out) {
-    const auto changes = compiler::plan_changes(*plan_, edits);
+    const auto changes = compiler::plan_changes(source_->text, edits);
     auto words = words_of(edits);
     const auto refuse = [&](const std::string& why) {
       found_.remarks.push_back(fmt::format("not proposed: {} ({})", words, why));
     };
     PlanModel::Wrong wrong;
-    const auto edited = compile(world.text, changes, has_constraints(), wrong);
+    const auto edited =
+        compile_plan(step_.task, world.text, changes, constrained(), context_, wrong);
     if (!edited) return refuse(wrong.why);
-    const auto facts = handles ? edited->like(*task_.evidence, task_.step + 1, task_.step + 2)
-                               : edited->start(*task_.evidence);
-    const auto after = handles ? task_.step + 1 : 0;
-    if (!facts || edited->reaches(task_.goal, *facts, after) != true) {
+    const auto facts =
+        handles ? edited->like(*step_.task.evidence, step_.task.step + 1, step_.task.step + 2)
+                : edited->start(*step_.task.evidence);
+    const auto after = handles ? step_.task.step + 1 : 0;
+    if (!facts || edited->reaches(step_.task.goal, *facts, after) != true) {
       return refuse("the edited plan does not get there");
     }
     const auto length = edited->length();
     if (!handles) {
-      edited->set_bad(task_.bad);
+      edited->set_bad(step_.task.bad);
       if (edited->can_be_bad() != false) return refuse("another execution comes to such a step");
     }
     if (world.rank != 0 && !handles && !can_be_run(changes)) {
@@ -399,7 +267,7 @@ class PlanRepair {
     tried.kind = static_cast<int>(edits.front().kind);
     if (tried.kind == static_cast<int>(PlanEdit::Kind::kMove)) tried.kind = 0;
     proposal.words = std::move(words);
-    proposal.files = changed_files(plan_->files(), changes);
+    proposal.files = changed_files(source_->text.files(), changes);
     if (world.from != nullptr) proposal.verdict = world.from->verdict;
     proposal.evidence.push_back(evidence(world, handles, length));
     proposal.hides_failure = std::any_of(edits.begin(), edits.end(), [](const PlanEdit& edit) {
@@ -412,16 +280,17 @@ class PlanRepair {
     }
     tried.changes = changes;
     // Without constraints it is compiled already.
-    if (!tried.around()) add_effects(before, world, tried, has_constraints() ? nullptr : &*edited);
+    if (!tried.around()) add_effects(before, world, tried, constrained() ? nullptr : &*edited);
     out.push_back(std::move(tried));
   }
 
   std::string evidence(const World& world, bool handles, compiler::Timepoint length) const {
-    const auto& run = task_.evidence->ids.front();
-    const auto& event = task_.bad.step.event;
-    const auto target = task_.goal.constraints && task_.goal.done
-                            ? "reaches the constraints and its end"
-                            : (task_.goal.done ? "reaches its end" : "reaches the constraints");
+    const auto& run = step_.task.evidence->ids.front();
+    const auto& event = step_.task.bad.step.event;
+    const auto target =
+        step_.task.goal.constraints && step_.task.goal.done
+            ? "reaches the constraints and its end"
+            : (step_.task.goal.done ? "reaches its end" : "reaches the constraints");
     const auto world_words = world.rank == 0
                                  ? "By what the runs have shown"
                                  : fmt::format("If the world is as proposal {} says", world.rank);
@@ -438,10 +307,11 @@ class PlanRepair {
   void add_effects(PlanModel& before, const World& world, Tried& tried,
                    PlanModel* behind = nullptr) {
     auto& out = tried.proposal.effects.emplace();
-    if (task_.goal.constraints) out.reaches = true;
+    if (step_.task.goal.constraints) out.reaches = true;
     PlanModel::Wrong wrong;
-    const auto compiled =
-        behind == nullptr ? compile(world.text, tried.changes, false, wrong) : nullptr;
+    const auto compiled = behind == nullptr ? compile_plan(step_.task, world.text, tried.changes,
+                                                           false, context_, wrong)
+                                            : nullptr;
     if (behind == nullptr) behind = compiled.get();
     if (behind == nullptr) return;
     runtime::DifferenceOptions options;
@@ -495,13 +365,9 @@ class PlanRepair {
   Context& context_;
   FoundProposals found_;
   std::vector<Kept> kept_;
-  std::optional<compiler::PlanText> plan_;
-  std::optional<compiler::PlanBinding> binding_;
-  PlanTask task_;
+  std::optional<PlanSource> source_;
+  PlanStep step_;                           // at hand
   std::map<std::string, bool> can_be_run_;  // by the goal's event and the edited texts
-  PlanScope scope_;
-  Evidence::State differing_;
-  bool went_well_ = false;  // the event did, in some run
 };
 
 }  // namespace

@@ -161,8 +161,6 @@ class DriveWorld : public CliFixture {
     write("free.e", "load words.e\n" + arriving(""));
     write("world.e", "load words.e\nfluent Lucky()\nnoninertial Lucky\n" +
                          arriving("(!" + open + " | HoldsAt(Lucky(),time)) & "));
-    write("truth.e", "load words.e\n" + arriving("!" + open + " & ") + "[base1,base2,time] " +
-                         open + " -> Releases(Go(base1),RobotAt(base2),time).\n");
     write("start.e", "HoldsAt(RobotAt(work),0).\n");
     write("go.lisp",
           "(def-cram-function go-there ()\n"
@@ -171,7 +169,7 @@ class DriveWorld : public CliFixture {
           "action going (:object name ?b) -> Go(?b)\n"
           "    ok: RobotAt(?b) @t+1 else navigation-pose-unreachable\n");
     scenario("own.yaml", "free.e", "");
-    scenario("truth.yaml", "truth.e", "execution: closed-loop\n");
+    scenario("truth.yaml", "world.e", "execution: closed-loop\n");
   }
 
  private:
@@ -204,6 +202,41 @@ TEST_CASE("chance that depends on the state: its condition is found, and rounds 
   CHECK(cli.parallax({"run", "out/learned.yaml", "--allow-outside", "--out", "again"}).code == 0);
   // What was seen both ways is named once for each way.
   CHECK(!report.at("contradictions").empty());
+}
+
+TEST_CASE("what chance has decided stays so while other things happen") {
+  const DriveWorld cli;
+  cli.write("words.e", cli.read("words.e") +
+                           "fluent Bell()\nevent Ring()\nevent Hush()\n"
+                           "[time] Initiates(Ring(),Bell(),time).\n"
+                           "[time] Terminates(Hush(),Bell(),time).\n");
+  cli.write("start.e", cli.read("start.e") + "!HoldsAt(Bell(),0).\n");
+  cli.write("robot.bind", cli.read("robot.bind") +
+                              "action ringing () -> Ring()\n"
+                              "    ok: Bell() @t+1 else manipulation-goal-not-reached\n"
+                              "action hushing () -> Hush()\n"
+                              "    ok: !Bell() @t+1 else manipulation-goal-not-reached\n");
+  cli.write(
+      "go.lisp",
+      "(def-cram-function go-there ()\n"
+      "  (cpl:with-failure-handling ((common-fail:navigation-low-level-failure (e) (return)))\n"
+      "    (perform (an action (type going) (object (an object (name table))))))\n"
+      "  (perform (an action (type ringing)))\n"
+      "  (perform (an action (type hushing))))\n(go-there)\n");
+  for (const std::string name : {"own.yaml", "truth.yaml"}) {
+    cli.replace(name, "horizon: 2", "horizon: 4");
+  }
+  const auto report = json_of(cli, {"learn", "own.yaml", "--out", "out"});
+  CHECK(report.at("clean") == true);
+  CHECK(report.at("runs") == report.at("runs_admitted"));
+  CHECK(report.at("judged_in_closed_loop") == true);
+  const auto found = traces(cli, "truth.yaml", "out");
+  CAPTURE(cli.read("out/learned.e"));
+  CHECK(found.lost.at("answer") == "none");
+  CHECK(found.gained.at("answer") == "none");
+  // It is a model like any other.
+  CHECK(cli.parallax({"check", "out/learned.yaml", "--allow-outside"}).code == 0);
+  CHECK(cli.parallax({"run", "out/learned.yaml", "--allow-outside", "--out", "again"}).code == 0);
 }
 
 TEST_CASE("what is learned where chance decides does not depend on jobs") {

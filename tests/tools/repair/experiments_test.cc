@@ -192,6 +192,50 @@ bool proposes(const nlohmann::json& report, const std::string& text) {
   });
 }
 
+TEST_CASE("what went wrong once may be chance: it is done again where the world releases fluents") {
+  for (const std::string execution : {"open-loop", "closed-loop"}) {
+    CAPTURE(execution);
+    const Drawer cli("[time] Releases(Pull(),Open(),time).\n", execution);
+    cli.write("start.e",
+              "!HoldsAt(Open(),0).\nHoldsAt(Lit(),0).\nHoldsAt(Full(),0).\n"
+              "HoldsAt(Parked(),0).\n");
+    // Of one run nothing tells that it could have opened.
+    int seed = 1;
+    for (; seed <= 20; ++seed) {
+      fs::remove_all(cli.folder() / "out");
+      const auto ran =
+          json_of(cli, {"run", "drawer.yaml", "--out", "out", "--seed", std::to_string(seed)}, 1);
+      if (ran.at("simulations") == 1) break;
+    }
+    REQUIRE(seed <= 20);
+    const auto before = json_of(cli, {"repair", "out", "--runs", "0"}, 1);
+    const auto opens = [](const nlohmann::json& report) {
+      const std::string patch = report.at("proposals").at(0).at("patch");
+      return patch.find("Releases(Pull(),Open(),time)") != std::string::npos;
+    };
+    CHECK_FALSE(opens(before));
+    CHECK_FALSE(cli.has_experiments());
+
+    const auto after = json_of(cli, {"repair", "out"}, 1);
+    CHECK(opens(after));
+    const int made = after.at("experiments");
+    CHECK(made > 0);
+    CHECK(made <= 5);
+    CHECK(after.at("proposals").at(0).at("runs_consistent") == after.at("runs"));
+    const auto recorded = cli.read("out/experiments/journal.ndjson");
+    CHECK(json_of(cli, {"repair", "out"}, 1).at("proposals") == after.at("proposals"));
+    CHECK(cli.read("out/experiments/journal.ndjson") == recorded);
+  }
+  // In a world without chance nothing is done twice.
+  const Drawer cli("[time] HoldsAt(Lit(),time) -> Initiates(Pull(),Open(),time).\n");
+  cli.write("start.e",
+            "!HoldsAt(Open(),0).\n!HoldsAt(Lit(),0) <-> HoldsAt(Parked(),0).\n"
+            "HoldsAt(Full(),0).\n");
+  json_of(cli, {"run", "drawer.yaml", "--out", "out"}, 1);
+  const auto report = json_of(cli, {"repair", "out", "-v"}, 1);
+  CHECK(report.dump().find("is chance") == std::string::npos);
+}
+
 TEST_CASE("whatever the world is like: experiments never drop what is right") {
   struct World {
     std::string truth, right;

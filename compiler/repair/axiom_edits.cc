@@ -1,0 +1,319 @@
+#include <algorithm>
+#include <utility>
+
+#include "compiler/repair/edit_subject.h"
+#include "compiler/repair/idle_condition.h"
+#include "compiler/syntax/printer.h"
+
+namespace parallax::compiler {
+namespace {
+
+/// What may be wrong with an axiom that there is.
+class AxiomEdits {
+ public:
+  AxiomEdits(const EditSubject& subject, std::vector<Edit>& out)
+      : model_(subject.model),
+        typed_(subject.typed),
+        forms_(subject.forms),
+        scope_(subject.scope),
+        relevance_(subject.relevance),
+        fluents_(subject.fluents),
+        out_(out) {}
+
+  void edit(std::size_t i) {
+    if (forms_[i].kind == AxiomForm::Kind::kEffects) {
+      edit_effects(i);
+    } else {
+      drop(i);
+      edit_conditions(i);
+    }
+  }
+
+ private:
+  const Ast& ast(const AxiomForm& form) const { return model_.ast(form.place); }
+
+  std::vector<SortedVariable> sorted(const std::vector<std::string>& names,
+                                     const std::string& time) const {
+    std::vector<SortedVariable> out;
+    for (const auto& name : names) {
+      const auto sort = sort_of_variable(typed_, name);
+      if (sort && name != time) out.push_back({name, *sort});
+    }
+    return out;
+  }
+
+  std::vector<std::string> event_arguments(const AxiomForm& form) const {
+    std::vector<std::string> out;
+    const auto& node = ast(form)[form.event];
+    for (std::uint32_t i = 0; i < node.child_count; ++i) {
+      out.push_back(print_formula(ast(form), ast(form).child(node, i)));
+    }
+    return out;
+  }
+
+  void drop(std::size_t i) {
+    Edit edit;
+    edit.kind = Edit::Kind::kDropAxiom;
+    edit.axioms = {i};
+    edit.event = forms_[i].event_symbol;
+    edit.oddity = 3;
+    out_.push_back(std::move(edit));
+  }
+
+  void edit_effects(std::size_t i) {
+    const auto& form = forms_[i];
+    bool relevant = false;
+    for (const auto effect : form.effects) {
+      const auto parts = effect_parts(ast(form), effect);
+      const auto& fluent = ast(form)[parts->fluent];
+      const bool named = fluent.kind == NodeKind::kApply;
+      const bool differs = !named || fluents_.contains(std::string(ast(form).name(fluent)));
+      relevant = relevant || differs;
+      replace_effect(i, effect, differs);
+    }
+    if (!relevant) return;
+    drop(i);
+    edit_conditions(i);
+    const auto variables = sorted(form.variables, form.time);
+    const auto arguments = event_arguments(form);
+    for (const auto& literal : condition_literals(typed_, variables, kMostLiterals)) {
+      if (!relevance_.in_some_step(literal, false, arguments, form.event_symbol, form.variables) ||
+          is_idle_condition(model_, forms_, form, print(literal, form.time, form.variables))) {
+        continue;
+      }
+      Edit edit;
+      edit.kind = Edit::Kind::kNarrow;
+      edit.axioms = {i};
+      edit.literal = literal;
+      edit.event = form.event_symbol;
+      edit.oddity = 2 + relevance_.oddity(literal, form.event_symbol);
+      out_.push_back(std::move(edit));
+    }
+  }
+
+  void edit_conditions(std::size_t i) {
+    const auto& form = forms_[i];
+    for (const auto conjunct : form.conjuncts) {
+      const auto& node = ast(form)[conjunct];
+      const bool is_event =
+          node.kind == NodeKind::kApply && ast(form).name(node) == std::string_view("Happens");
+      if (is_event) continue;
+      Edit edit;
+      edit.kind = Edit::Kind::kDropCondition;
+      edit.axioms = {i};
+      edit.node = conjunct;
+      edit.event = form.event_symbol;
+      edit.oddity = 1;
+      out_.push_back(edit);
+      const auto text = print_formula(ast(form), conjunct);
+      const bool negated = node.kind == NodeKind::kUnary && node.op == Operator::kNot;
+      if (negated) {
+        replace(i, conjunct, print_formula(ast(form), ast(form).child(node, 0)), 2);
+      } else if (node.kind == NodeKind::kApply) {
+        replace(i, conjunct, "!" + text, 2);
+      }
+      auto inner = negated ? ast(form).child(node, 0) : conjunct;
+      if (ast(form)[inner].kind == NodeKind::kApply &&
+          ast(form).name(ast(form)[inner]) == "HoldsAt") {
+        for (const auto& [term, oddity] : other_terms(form, ast(form).child(ast(form)[inner], 0))) {
+          replace(i, conjunct, (negated ? "!HoldsAt(" : "HoldsAt(") + term + "," + form.time + ")",
+                  oddity);
+        }
+      }
+    }
+  }
+
+  void replace(std::size_t i, NodeId node, std::string text, int oddity) {
+    if (text == print_formula(ast(forms_[i]), node)) return;
+    Edit edit;
+    edit.kind = Edit::Kind::kReplace;
+    edit.axioms = {i};
+    edit.node = node;
+    edit.text = std::move(text);
+    edit.event = forms_[i].event_symbol;
+    edit.oddity = oddity;
+    out_.push_back(std::move(edit));
+  }
+
+  void replace_effect(std::size_t i, NodeId effect, bool differs) {
+    const auto& form = forms_[i];
+    const auto& tree = ast(form);
+    const auto parts = *effect_parts(tree, effect);
+    const std::string kind(tree.name(tree[effect]));
+    const auto event = print_formula(tree, parts.event), fluent = print_formula(tree, parts.fluent);
+    const auto atom = [&](const std::string& name, const std::string& e, const std::string& f) {
+      return name + "(" + e + "," + f + "," + form.time + ")";
+    };
+    if (differs && kind != "Releases") {
+      replace(i, effect, atom(kind == "Initiates" ? "Terminates" : "Initiates", event, fluent), 1);
+    }
+    if (differs && tree[parts.fluent].kind == NodeKind::kApply) {
+      for (const auto& [term, oddity] : other_terms(form, parts.fluent)) {
+        replace(i, effect, atom(kind, event, term), oddity);
+      }
+      for (const auto& [e, f] : exchanged(form, parts)) replace(i, effect, atom(kind, e, f), 2);
+    }
+    for (const auto& name : differs ? fluents_for(form.event_symbol, kind) : fluents_) {
+      const auto symbol = typed_.find_symbol(name);
+      if (!symbol || typed_.symbols[*symbol].kind != SymbolKind::kFluent) continue;
+      if (tree[parts.fluent].kind == NodeKind::kApply && tree.name(tree[parts.fluent]) == name) {
+        continue;
+      }
+      const auto variables = sorted(form.variables, form.time);
+      for (const auto& [term, oddity] : terms(name, typed_.symbols[*symbol].arguments, variables)) {
+        replace(i, effect, atom(kind, event, term), 2 + oddity);
+      }
+    }
+  }
+
+  /// What an effect that is wrong may be about instead: fluents that differed, and such that may
+  /// not have shown, of which the event has no axiom of that kind: those that some axiom releases,
+  /// so that the model follows them anyway, and those that it changed in some run all the same.
+  std::set<std::string> fluents_for(const std::string& event, const std::string& kind) const {
+    auto out = fluents_;
+    if (kind == "Releases") return out;
+    std::set<std::string> own, hidden;
+    for (const auto& form : forms_) {
+      if (form.kind != AxiomForm::Kind::kEffects) continue;
+      for (const auto effect : form.effects) {
+        const auto& tree = ast(form);
+        const auto& fluent = tree[effect_parts(tree, effect)->fluent];
+        if (fluent.kind != NodeKind::kApply) continue;
+        const std::string name(tree.name(fluent));
+        if (tree.name(tree[effect]) == "Releases") hidden.insert(name);
+        if (form.event_symbol == event && tree.name(tree[effect]) == kind) own.insert(name);
+      }
+    }
+    const auto changed = scope_.changed.find(event);
+    if (changed != scope_.changed.end()) {
+      for (const auto& [name, holds] : changed->second) {
+        const auto symbol = typed_.find_symbol(name);
+        const bool inertial = symbol && !typed_.symbols[*symbol].noninertial;
+        if (inertial && holds == (kind == "Initiates")) hidden.insert(name);
+      }
+    }
+    for (const auto& name : hidden) {
+      if (!own.contains(name)) out.insert(name);
+    }
+    return out;
+  }
+
+  /// Terms of a symbol with these variables and with constants.
+  std::vector<std::pair<std::string, int>> terms(
+      const std::string& symbol, const std::vector<SortId>& sorts,
+      const std::vector<SortedVariable>& variables) const {
+    std::vector<std::pair<std::string, int>> out = {{"", 0}};
+    for (const auto sort : sorts) {
+      std::vector<std::pair<std::string, int>> next;
+      for (const auto& [begun, oddity] : out) {
+        const auto comma = begun.empty() ? "" : begun + ",";
+        for (const auto& variable : variables) {
+          if (typed_.sorts_overlap(variable.sort, sort)) {
+            next.emplace_back(comma + variable.name, oddity);
+          }
+        }
+        for (const auto& name : constants_of(typed_, sort)) {
+          next.emplace_back(comma + name, oddity + 2);
+        }
+      }
+      out = std::move(next);
+      if (out.size() > kMostLiterals) return {};
+    }
+    for (auto& [text, oddity] : out) text = symbol + "(" + text + ")";
+    return out;
+  }
+
+  /// The term with one argument that is another one.
+  std::vector<std::pair<std::string, int>> other_terms(const AxiomForm& form, NodeId term) const {
+    const auto& tree = ast(form);
+    const auto& node = tree[term];
+    std::vector<std::pair<std::string, int>> out;
+    if (node.kind != NodeKind::kApply) return out;
+    const auto symbol = typed_.find_symbol(tree.name(node));
+    if (!symbol || typed_.symbols[*symbol].arguments.size() != node.child_count) return out;
+    std::vector<std::string> arguments;
+    for (std::uint32_t i = 0; i < node.child_count; ++i) {
+      arguments.push_back(print_formula(tree, tree.child(node, i)));
+    }
+    const auto print = [&](const std::vector<std::string>& with) {
+      std::string text(tree.name(node));
+      for (std::size_t i = 0; i < with.size(); ++i) text += (i == 0 ? "(" : ",") + with[i];
+      return text + ")";
+    };
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      const auto sort = typed_.symbols[*symbol].arguments[i];
+      auto with = arguments;
+      for (const auto& variable : sorted(form.variables, form.time)) {
+        if (variable.name == arguments[i] || !typed_.sorts_overlap(variable.sort, sort)) continue;
+        with[i] = variable.name;
+        out.emplace_back(print(with), 1);
+      }
+      const auto constants = constants_of(typed_, sort);
+      if (constants.size() > kMostLiterals) continue;
+      for (const auto& name : constants) {
+        if (name == arguments[i]) continue;
+        with[i] = name;
+        out.emplace_back(print(with), 3);
+      }
+      for (std::size_t j = i + 1; j < arguments.size(); ++j) {
+        auto swapped = arguments;
+        std::swap(swapped[i], swapped[j]);
+        if (swapped != arguments &&
+            typed_.sorts_overlap(sort, typed_.symbols[*symbol].arguments[j])) {
+          out.emplace_back(print(swapped), 1);
+        }
+      }
+    }
+    return out;
+  }
+
+  /// Event and fluent with one argument of each exchanged.
+  std::vector<std::pair<std::string, std::string>> exchanged(const AxiomForm& form,
+                                                             const EffectParts& parts) const {
+    const auto& tree = ast(form);
+    std::vector<std::pair<std::string, std::string>> out;
+    const auto arguments = [&](NodeId term) {
+      std::vector<std::string> names;
+      for (std::uint32_t i = 0; i < tree[term].child_count; ++i) {
+        names.push_back(print_formula(tree, tree.child(tree[term], i)));
+      }
+      return names;
+    };
+    const auto print = [&](NodeId term, const std::vector<std::string>& with) {
+      std::string text(tree.name(tree[term]));
+      text += "(";
+      for (std::size_t i = 0; i < with.size(); ++i) text += (i == 0 ? "" : ",") + with[i];
+      return text + ")";
+    };
+    const auto event = arguments(parts.event), fluent = arguments(parts.fluent);
+    for (std::size_t i = 0; i < event.size(); ++i) {
+      for (std::size_t j = 0; j < fluent.size(); ++j) {
+        const auto a = sort_of_variable(typed_, event[i]), b = sort_of_variable(typed_, fluent[j]);
+        if (event[i] == fluent[j] || !a || !b || !typed_.sorts_overlap(*a, *b)) continue;
+        auto e = event, f = fluent;
+        std::swap(e[i], f[j]);
+        out.emplace_back(print(parts.event, e), print(parts.fluent, f));
+      }
+    }
+    return out;
+  }
+
+  const ModelAst& model_;
+  const TypedModel& typed_;
+  const std::vector<AxiomForm>& forms_;
+  const EditScope& scope_;
+  const EditRelevance& relevance_;
+  const std::set<std::string>& fluents_;
+  std::vector<Edit>& out_;
+};
+
+}  // namespace
+
+void add_axiom_edits(const EditSubject& subject, std::vector<Edit>& edits) {
+  AxiomEdits maker(subject, edits);
+  for (std::size_t i = 0; i < subject.forms.size(); ++i) {
+    if (subject.events.contains(subject.forms[i].event_symbol)) maker.edit(i);
+  }
+}
+
+}  // namespace parallax::compiler

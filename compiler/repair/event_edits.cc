@@ -1,0 +1,285 @@
+#include <algorithm>
+#include <utility>
+
+#include "compiler/repair/edit_subject.h"
+
+namespace parallax::compiler {
+namespace {
+
+constexpr int kOpenWithoutNeed = 20;     // oddity, beyond that of any condition
+constexpr std::size_t kMostPaired = 24;  // literals of which every two are an alternative
+
+/// What may be missing about an event: a condition of all that it does, a precondition, effects.
+class EventEdits {
+ public:
+  EventEdits(const EditSubject& subject, std::vector<Edit>& out)
+      : model_(subject.model),
+        typed_(subject.typed),
+        forms_(subject.forms),
+        scope_(subject.scope),
+        relevance_(subject.relevance),
+        fluents_(subject.fluents),
+        out_(out) {}
+
+  void edit_event(const std::string& event, const std::vector<SortId>& sorts) {
+    const auto names = variables_for(typed_, sorts);
+    std::vector<SortedVariable> variables;
+    for (std::size_t i = 0; i < names.size(); ++i) variables.push_back({names[i], sorts[i]});
+    const auto axioms = effects_of(event);
+    bool refused = false, not_possible = false;
+    for (const auto& step : scope_.steps) {
+      if (symbol_of(step.event) != event) continue;
+      refused = refused || step.refused;
+      not_possible = not_possible || step.not_possible;
+    }
+    // What was tried and failed may fail. What cannot be is no outcome.
+    if (scope_.open_outcomes || (scope_.open_refused && refused && !not_possible))
+      open_event(event, names, axioms);
+    for (const auto& literal : condition_literals(typed_, variables, kMostLiterals)) {
+      if (!relevance_.in_some_step(literal, false, names, event, names)) continue;
+      Edit edit;
+      edit.literal = literal;
+      edit.event = event;
+      edit.variables = names;
+      edit.event_arity = names.size();
+      const int oddity = relevance_.oddity(literal, event);
+      if (axioms.size() > 1) {
+        edit.kind = Edit::Kind::kNarrowEvent;
+        edit.axioms = axioms;
+        edit.oddity = (refused ? 1 : 3) + oddity;
+        out_.push_back(edit);
+      }
+      if (refused) {
+        edit.kind = Edit::Kind::kRequire;
+        edit.axioms = {};
+        edit.oddity = (not_possible ? 0 : 3) + oddity;
+        out_.push_back(edit);
+      }
+    }
+  }
+
+  void add_alternatives(const std::string& event, const std::vector<SortId>& sorts) {
+    const auto names = variables_for(typed_, sorts);
+    std::vector<SortedVariable> variables;
+    for (std::size_t i = 0; i < names.size(); ++i) variables.push_back({names[i], sorts[i]});
+    std::vector<std::pair<int, ConditionLiteral>> literals;
+    for (auto& literal : condition_literals(typed_, variables, kMostLiterals)) {
+      // Where it went wrong neither of the two held.
+      if (!relevance_.in_some_step(literal, false, names, event, names)) continue;
+      if (!always_says_something(literal, variables)) continue;
+      const bool of_constants = literal.count(LiteralArgument::Kind::kConstant) > 0;
+      const int oddity = of_constants ? std::max(2, relevance_.oddity(literal, event) + 1)
+                                      : relevance_.oddity(literal, event);
+      literals.emplace_back(oddity, std::move(literal));
+    }
+    std::stable_sort(literals.begin(), literals.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    if (literals.size() > kMostPaired) literals.resize(kMostPaired);
+    const auto axioms = effects_of(event);
+    std::vector<std::vector<std::size_t>> groups;
+    if (!axioms.empty()) groups.push_back(axioms);
+    for (const auto i : axioms) {
+      if (axioms.size() > 1 && is_about_fluents(i)) groups.push_back({i});
+    }
+    for (std::size_t a = 0; a < literals.size(); ++a) {
+      for (std::size_t b = a + 1; b < literals.size(); ++b) {
+        for (const auto& group : groups) {
+          Edit edit;
+          edit.kind = Edit::Kind::kNarrowEvent;
+          edit.axioms = group;
+          edit.literal = literals[a].second;
+          edit.or_else = literals[b].second;
+          edit.event = event;
+          edit.variables = names;
+          edit.event_arity = names.size();
+          edit.oddity = 3 + literals[a].first + literals[b].first + (group == axioms ? 0 : 1);
+          out_.push_back(std::move(edit));
+        }
+      }
+    }
+  }
+
+  void add_effects(const std::string& event, const std::vector<SortId>& sorts) {
+    for (const auto& name : fluents_) {
+      const auto symbol = typed_.find_symbol(name);
+      if (!symbol || typed_.symbols[*symbol].kind != SymbolKind::kFluent) continue;
+      if (typed_.symbols[*symbol].noninertial) continue;
+      auto all = sorts;
+      const auto& places = typed_.symbols[*symbol].arguments;
+      all.insert(all.end(), places.begin(), places.end());
+      const auto names = variables_for(typed_, all);
+      std::vector<std::string> kinds = {"Initiates", "Terminates"};
+      if (scope_.open_outcomes) kinds.emplace_back("Releases");
+      for (const auto& kind : kinds) {
+        add_effects_of(kind, event, sorts.size(), name, all, names);
+      }
+    }
+  }
+
+ private:
+  const Ast& ast(const AxiomForm& form) const { return model_.ast(form.place); }
+
+  /// Has it a value for whatever the variables stand for? A sentence says nothing where they are
+  /// outside of a place's sort, not even the other half of the condition.
+  bool always_says_something(const ConditionLiteral& literal,
+                             const std::vector<SortedVariable>& variables) const {
+    if (literal.kind == ConditionLiteral::Kind::kEqual) return true;
+    const auto& places = typed_.symbols[*typed_.find_symbol(literal.symbol)].arguments;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const auto& argument = literal.arguments[i];
+      if (argument.kind != LiteralArgument::Kind::kVariable) continue;
+      const auto variable = std::find_if(variables.begin(), variables.end(), [&](const auto& each) {
+        return each.name == argument.name;
+      });
+      if (!typed_.is_subsort(variable->sort, places[i])) return false;
+    }
+    return true;
+  }
+
+  std::vector<std::size_t> effects_of(const std::string& event) const {
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < forms_.size(); ++i) {
+      if (forms_[i].event_symbol == event && forms_[i].kind == AxiomForm::Kind::kEffects) {
+        out.push_back(i);
+      }
+    }
+    return out;
+  }
+
+  /// Of those that differed.
+  bool is_about_fluents(std::size_t axiom) const {
+    const auto& tree = ast(forms_[axiom]);
+    return std::any_of(forms_[axiom].effects.begin(), forms_[axiom].effects.end(),
+                       [&](const auto effect) {
+                         const auto& fluent = tree[effect_parts(tree, effect)->fluent];
+                         return fluent.kind != NodeKind::kApply ||
+                                fluents_.contains(std::string(tree.name(fluent)));
+                       });
+  }
+
+  /// What the event does to the fluents that differed is left open.
+  void open_event(const std::string& event, const std::vector<std::string>& names,
+                  const std::vector<std::size_t>& axioms) {
+    Edit edit;
+    edit.kind = Edit::Kind::kOpenEvent;
+    edit.event = event;
+    edit.variables = names;
+    edit.event_arity = names.size();
+    // It explains anything: without need for it, it comes last.
+    edit.oddity = scope_.open_outcomes ? 1 : kOpenWithoutNeed;
+    for (const auto i : axioms) {
+      for (const auto effect : forms_[i].effects) {
+        const auto& tree = ast(forms_[i]);
+        const auto& fluent = tree[effect_parts(tree, effect)->fluent];
+        if (fluent.kind != NodeKind::kApply || tree.name(tree[effect]) == "Releases") continue;
+        if (!fluents_.contains(std::string(tree.name(fluent)))) continue;
+        edit.nodes.emplace_back(i, effect);
+        if (edit.axioms.empty() || edit.axioms.back() != i) edit.axioms.push_back(i);
+      }
+    }
+    if (!edit.nodes.empty()) out_.push_back(std::move(edit));
+  }
+
+  /// Each place of the fluent is a variable of the event, one of its own, or a constant.
+  void add_effects_of(const std::string& kind, const std::string& event, std::size_t arity,
+                      const std::string& fluent, const std::vector<SortId>& sorts,
+                      const std::vector<std::string>& names) {
+    std::vector<SortedVariable> own;
+    for (std::size_t i = 0; i < arity; ++i) own.push_back({names[i], sorts[i]});
+    std::vector<std::vector<std::string>> choices = {{}};
+    for (std::size_t i = arity; i < sorts.size(); ++i) {
+      std::vector<std::vector<std::string>> next;
+      for (const auto& begun : choices) {
+        const auto add = [&](const std::string& text) {
+          next.push_back(begun);
+          next.back().push_back(text);
+        };
+        for (const auto& variable : own) {
+          if (typed_.sorts_overlap(variable.sort, sorts[i])) add(variable.name);
+        }
+        add(names[i]);
+        for (const auto& name : constants_of(typed_, sorts[i])) add(name);
+      }
+      choices = std::move(next);
+      if (choices.size() > 4 * kMostLiterals) return;
+    }
+    for (const auto& choice : choices) add_effect(kind, event, arity, fluent, sorts, names, choice);
+  }
+
+  void add_effect(const std::string& kind, const std::string& event, std::size_t arity,
+                  const std::string& fluent, const std::vector<SortId>& sorts,
+                  const std::vector<std::string>& names, const std::vector<std::string>& choice) {
+    const std::vector<std::string> of_event(names.begin(),
+                                            names.begin() + static_cast<std::ptrdiff_t>(arity));
+    Edit edit;
+    edit.kind = Edit::Kind::kAddEffect;
+    edit.event = event;
+    edit.variables = of_event;
+    edit.event_arity = arity;
+    edit.oddity = kind == "Releases" ? 4 : 2;
+    std::vector<SortedVariable> variables;
+    for (std::size_t i = 0; i < arity; ++i) variables.push_back({names[i], sorts[i]});
+    bool constants = false;
+    int own = 0;
+    for (std::size_t i = 0; i < choice.size(); ++i) {
+      if (choice[i] == names[arity + i]) {  // one of its own
+        edit.variables.push_back(choice[i]);
+        variables.push_back({choice[i], sorts[arity + i]});
+        edit.oddity += 1;
+        ++own;
+      } else if (std::find(of_event.begin(), of_event.end(), choice[i]) == of_event.end()) {
+        edit.oddity += 3;
+        constants = true;
+      }
+    }
+    edit.names_constants = constants;
+    if (!relevance_.covers(kind, event, fluent, of_event, choice, edit.variables)) return;
+    const auto list = [](const std::vector<std::string>& of) {
+      std::string text;
+      for (const auto& each : of) text += (text.empty() ? "" : ",") + each;
+      return text;
+    };
+    edit.text =
+        kind + "(" + event + "(" + list(of_event) + ")," + fluent + "(" + list(choice) + "),time)";
+    const auto place = out_.size();
+    out_.push_back(edit);
+    // Conditions of what is special already, or about everything, would be most of all edits.
+    if (constants || own > 1 || !scope_.more_events.empty()) return;
+    relevance_.add_conditions(typed_, place, variables, arity, 1 + kMostLiterals / 8, {}, out_);
+  }
+
+  const ModelAst& model_;
+  const TypedModel& typed_;
+  const std::vector<AxiomForm>& forms_;
+  const EditScope& scope_;
+  const EditRelevance& relevance_;
+  const std::set<std::string>& fluents_;
+  std::vector<Edit>& out_;
+};
+
+template <typename Visit>
+void for_each_event(const EditSubject& subject, const Visit& visit) {
+  for (const auto& event : subject.events) {
+    const auto symbol = subject.typed.find_symbol(event);
+    if (!symbol || subject.typed.symbols[*symbol].kind != SymbolKind::kEvent) continue;
+    visit(event, subject.typed.symbols[*symbol].arguments);
+  }
+}
+
+}  // namespace
+
+void add_event_edits(const EditSubject& subject, std::vector<Edit>& edits) {
+  EventEdits maker(subject, edits);
+  for_each_event(subject, [&](const auto& event, const auto& sorts) {
+    maker.edit_event(event, sorts);
+    maker.add_effects(event, sorts);
+  });
+}
+
+void add_alternatives(const EditSubject& subject, std::vector<Edit>& edits) {
+  EventEdits maker(subject, edits);
+  for_each_event(
+      subject, [&](const auto& event, const auto& sorts) { maker.add_alternatives(event, sorts); });
+}
+
+}  // namespace parallax::compiler
