@@ -75,21 +75,32 @@ std::optional<bool> has_changes(const std::string& top, const std::set<std::stri
   const auto filters = filters_of(top);
   if (!filters) return std::nullopt;
   std::vector<std::string> names;
+  std::ptrdiff_t expected = 0, tracked = 0;
   for (const auto& file : files) {
     const auto real = base::real_path(file);
-    if (base::lies_below(real, top)) names.push_back(real.string());
+    std::error_code error;
+    if (!base::lies_below(real, top) || std::filesystem::is_directory(real, error)) continue;
+    expected += std::filesystem::exists(real, error) ? 1 : 0;
+    names.push_back(real.string());
   }
   constexpr std::size_t kAtOnce = 200;
   for (std::size_t begin = 0; begin < names.size(); begin += kAtOnce) {
-    std::vector<std::string> command = {
-        "--literal-pathspecs", "status",    "--porcelain",           "--ignore-submodules",
-        "--no-renames",        "--ignored", "--untracked-files=all", "--"};
     const auto end = std::min(names.size(), begin + kAtOnce);
-    for (auto i = begin; i < end; ++i) command.push_back(names[i]);
-    const auto answer = run_git(top, command, *filters);
-    if (answer.code != 0) return std::nullopt;
-    if (!answer.out.empty()) return true;
+    const auto ask = [&](std::vector<std::string> command) {
+      command.insert(command.begin(), "--literal-pathspecs");
+      command.emplace_back("--");
+      for (auto i = begin; i < end; ++i) command.push_back(names[i]);
+      return run_git(top, command, *filters);
+    };
+    const auto status = ask({"status", "--porcelain", "--ignore-submodules", "--no-renames",
+                             "--ignored", "--untracked-files=all"});
+    const auto list = ask({"ls-files", "-z"});
+    if (status.code != 0 || list.code != 0) return std::nullopt;
+    if (!status.out.empty()) return true;
+    tracked += std::count(list.out.begin(), list.out.end(), '\0');
   }
+  // Of files in a submodule it says nothing.
+  if (tracked < expected) return std::nullopt;
   return false;
 }
 

@@ -129,6 +129,10 @@ std::string model_difference(const SuiteCase& one, const LastPass& before,
     if (traces->horizon) {
       words.options.insert(words.options.end(), {"--horizon", std::to_string(*traces->horizon)});
     }
+    if (traces->memory_limit_mb) {
+      words.options.insert(words.options.end(),
+                           {"--memory-limit", std::to_string(*traces->memory_limit_mb)});
+    }
   }
   words.options.insert(words.options.end(), {"--time-limit", fmt::format("{}", limit)});
   add_permissions(options, false, words.options);

@@ -115,6 +115,20 @@ TEST_CASE("files that are not committed are told, and no filter of the repositor
   CHECK(lines_of(repository.read("h.jsonl")).back()["revision"] == "mine");
 }
 
+TEST_CASE("whether files in a submodule changed, the commit of the whole does not say") {
+  const GitFixture repository;
+  fs::create_directories(repository.folder() / "s");
+  repository.write("s/lamp.e", kLamp);
+  repository.commit("first");
+  repository.git({"-c", "protocol.file.allow=always", "submodule", "--quiet", "add",
+                  repository.folder().string(), "part"});
+  repository.write("s/suite.yaml",
+                   "cases:\n  - {id: a, model: ../part/s/lamp.e, expect: {traces: 2}}\n");
+  const auto commit = repository.commit("second").substr(0, 12);
+  CHECK(repository.parallax({"suite", "s", "--history", "h.jsonl", "--allow-outside"}).code == 0);
+  CHECK(lines_of(repository.read("h.jsonl")).back()["revision"] == commit + "+unknown");
+}
+
 TEST_CASE("verdicts and rates of scenarios stand in the line, also of passes that were kept") {
   const CliFixture cli;
   cli.write("edge.yaml",
