@@ -77,7 +77,7 @@ class Experiments {
   /// Where chance decides in the world, what went wrong once may go well the next time: what is
   /// proposed for what happens always is no answer then.
   base::Status repeat() {
-    if (!chance_decides(first_.loaded) || !forbidden().empty()) return base::Unit{};
+    if (!chance_decides(first_) || !forbidden().empty()) return base::Unit{};
     std::int64_t made = 0;
     for (bool any = true; any && !context_.stopped();) {
       any = false;

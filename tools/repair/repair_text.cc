@@ -181,6 +181,10 @@ std::string repair_text(const RepairResult& result, const RepairOptions& options
                        result.edits);
     if (!result.nearest_miss.empty()) out += "Nearest miss: " + result.nearest_miss + ".\n";
     for (const auto& hint : result.hints) out += hint + ".\n";
+    out += fmt::format(
+        "What the model says of states (constraints, definitions) is not edited; `parallax explain "
+        "{}` names the axioms that a run contradicts.\n",
+        folder);
     return out;
   }
   const auto is_plan = [](const Proposal& proposal) {

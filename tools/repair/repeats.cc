@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "compiler/repair/edit_grammar.h"
 #include "harness/discrete/stepped_model.h"
 #include "tools/repair/experiment.h"
 
@@ -34,10 +35,16 @@ harness::CampaignTrace trace_of(const Evidence& seen, std::size_t steps,
 
 }  // namespace
 
-bool chance_decides(const ScenarioModel& loaded) {
-  if (loaded.world == nullptr) return false;
-  const auto& slots = loaded.world->model.release_slots;
-  return std::any_of(slots.begin(), slots.end(), [](const auto& slot) { return slot.has_value(); });
+bool chance_decides(const RepairInput& input) {
+  if (input.loaded.world == nullptr) return false;
+  const auto& world = input.loaded.world->model;
+  const auto& typed = *input.domain->typed;
+  for (std::size_t i = 0; i < world.release_slots.size(); ++i) {
+    if (!world.release_slots[i]) continue;
+    const auto symbol = typed.find_symbol(compiler::symbol_of(world.fluents[i].name));
+    if (!symbol || !typed.symbols[*symbol].noninertial) return true;
+  }
+  return false;
 }
 
 std::vector<Repeat> repeats_wanted(const RepairInput& input) {

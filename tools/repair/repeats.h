@@ -9,8 +9,9 @@
 namespace parallax::tools {
 
 /// Does chance decide something in the scenario's world? Of a model it is known: it releases
-/// fluents. Of other worlds it is not said.
-bool chance_decides(const ScenarioModel& loaded);
+/// fluents, or has noninertial ones that the repaired model does not define. Of other worlds it is
+/// not said.
+bool chance_decides(const RepairInput& input);
 
 /// What is to be done once more, up to the step that went wrong, and how often.
 struct Repeat {

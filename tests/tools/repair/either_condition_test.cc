@@ -67,5 +67,21 @@ TEST_CASE("one of two is enough: proposed before anything is left open, and righ
   CHECK(traces.at("gained").at("answer") == "none");
 }
 
+TEST_CASE("a definition that is wrong: no edit is proposed, and the command that names it is") {
+  const Garden cli;
+  cli.write("words.e", cli.read("words.e") + "fluent Home()\nnoninertial Home\n");
+  const std::string is_home = "[time] HoldsAt(Home(),time) <-> ";
+  cli.write("truth.e", cli.read("truth.e") + is_home + "HoldsAt(At(dock),time).\n");
+  cli.write("model.e", cli.read("truth.e"));
+  cli.replace("model.e", is_home + "HoldsAt(At(dock),time)",
+              is_home + "HoldsAt(At(dock),time) | HoldsAt(At(roses),time)");
+  json_of(cli, {"run", "own.yaml", "--out", "out"}, 1);
+  const auto text = cli.parallax({"repair", "out"});
+  CHECK(text.code == 4);
+  CHECK(text.out.find("`parallax explain out` names the axioms that a run contradicts") !=
+        std::string::npos);
+  CHECK(cli.parallax({"explain", "out"}).out.find("HoldsAt(Home(),time) <->") != std::string::npos);
+}
+
 }  // namespace
 }  // namespace parallax::test
