@@ -13,15 +13,15 @@ target_compile_options(parallax_warnings INTERFACE -ffp-contract=off)
 # Broken contracts name files as the repository does, wherever it lay when it was compiled.
 target_compile_options(parallax_warnings INTERFACE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 
-# Sources that follow one another are compiled together, up to so many bytes of text: most of a
-# compiler's time goes to the standard headers, which are then read once a batch. The size is a
-# compromise: larger batches build everything faster, smaller ones a single changed file. With 130000 bytes instead of 90000
-# (and PARALLAX_COLD in more folders) a ninth of the compiler's time was saved; the largest batch takes 28 s.
-set(PARALLAX_BATCH 130000 CACHE STRING "Sources compiled together, in bytes; 0: each alone")
+# Sources that follow one another are compiled together, up to so many bytes of text: a batch pays 4 to 5 s for
+# headers and as much for templates that others make as well, before its own code. The size is a compromise:
+# larger batches build everything faster, smaller ones a single changed file.
+set(PARALLAX_BATCH 210000 CACHE STRING "Sources compiled together, in bytes; 0: each alone")
+set(PARALLAX_TEST_BATCH 80000 CACHE STRING "Sources of one test compiled together, in bytes; 0: each alone")
 
-# parallax_batches(TARGET a.cc ...): file-local names must differ within a folder.
-function(parallax_batches target)
-  if(PARALLAX_BATCH EQUAL 0)
+# parallax_batches(TARGET BYTES a.cc ...): file-local names must differ within a folder.
+function(parallax_batches target size_limit)
+  if(size_limit EQUAL 0)
     return()
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
@@ -30,7 +30,7 @@ function(parallax_batches target)
   foreach(source ${ARGN})
     file(SIZE ${CMAKE_CURRENT_SOURCE_DIR}/${source} size)
     math(EXPR bytes "${bytes} + ${size}")
-    if(bytes GREATER PARALLAX_BATCH)
+    if(bytes GREATER size_limit)
       math(EXPR batch "${batch} + 1")
       set(bytes ${size})
     endif()
@@ -93,7 +93,7 @@ function(parallax_library name)
   target_compile_features(parallax_${name} PUBLIC cxx_std_20)
   set_target_properties(parallax_${name} PROPERTIES EXPORT_NAME ${name})
   parallax_optimize(parallax_${name})
-  parallax_batches(parallax_${name} ${arg_SOURCES})
+  parallax_batches(parallax_${name} ${PARALLAX_BATCH} ${arg_SOURCES})
   parallax_headers(parallax_${name} ${arg_SOURCES})
   parallax_record_layer(parallax::${name} "${arg_SOURCES}" "${arg_DEPENDS};${arg_PRIVATE_DEPENDS}")
 endfunction()
@@ -154,7 +154,7 @@ function(parallax_program name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE ${arg_DEPENDS} parallax_warnings)
   parallax_optimize(${name})
-  parallax_batches(${name} ${arg_SOURCES})
+  parallax_batches(${name} ${PARALLAX_BATCH} ${arg_SOURCES})
   parallax_record_layer(${name} "${arg_SOURCES}" "${arg_DEPENDS}")
 endfunction()
 
@@ -188,6 +188,7 @@ function(parallax_test name)
   target_link_libraries(${name} PRIVATE
     ${arg_DEPENDS} parallax_test_support doctest::doctest parallax_warnings)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  parallax_batches(${name} ${PARALLAX_TEST_BATCH} ${arg_SOURCES})
   # Tests are compiled more often than they run.
   target_compile_options(${name} PRIVATE -O1)
   target_compile_definitions(${name} PRIVATE DOCTEST_CONFIG_SUPER_FAST_ASSERTS

@@ -15,12 +15,12 @@ namespace {
 
 using nlohmann::json;
 
-struct Text {
+struct SarifText {
   SourceFiles files;
   DiagnosticSink sink;
   FileId file;
 
-  explicit Text(const std::string& text, const std::string& name = "folder/model one.e")
+  explicit SarifText(const std::string& text, const std::string& name = "folder/model one.e")
       : file(files.add(name, text)) {}
   SourceRange find(const std::string& word, std::size_t from = 0) const {
     const auto at = files[file].text().find(word, from);
@@ -31,7 +31,7 @@ struct Text {
 };
 
 TEST_CASE("sarif: rules, results and regions fit together") {
-  Text text("sort a\n; \xC3\xA4\xC3\xB6 note\nP(b) & Q(c).\n");
+  SarifText text("sort a\n; \xC3\xA4\xC3\xB6 note\nP(b) & Q(c).\n");
   text.sink.error(DiagnosticCode::kUnknownName, text.find("P(b)"), "predicate", "P", "")
       .note(text.find("sort a"), "declared here")
       .note("elsewhere")
@@ -90,7 +90,7 @@ TEST_CASE("sarif: rules, results and regions fit together") {
 
 TEST_CASE("sarif: fingerprints stay when other lines come and go, and change with their own") {
   const auto print = [](const std::string& text) {
-    Text one(text);
+    SarifText one(text);
     one.sink.warning(DiagnosticCode::kUnusedSort, one.find("sort b"), "b");
     return one.log()["runs"][0]["results"][0]["partialFingerprints"].dump();
   };
@@ -100,7 +100,7 @@ TEST_CASE("sarif: fingerprints stay when other lines come and go, and change wit
 }
 
 TEST_CASE("sarif: equal lines get fingerprints that differ") {
-  Text text("sort b\nsort b\n");
+  SarifText text("sort b\nsort b\n");
   text.sink.warning(DiagnosticCode::kUnusedSort, text.find("sort b"), "b");
   text.sink.warning(DiagnosticCode::kUnusedSort, text.find("sort b", 3), "b");
   const auto results = text.log()["runs"][0]["results"];
@@ -110,20 +110,20 @@ TEST_CASE("sarif: equal lines get fingerprints that differ") {
 
 TEST_CASE("sarif: absolute paths become relative below the current folder") {
   const auto here = std::filesystem::current_path();
-  Text inside("x", (here / "sub" / "m.e").string());
+  SarifText inside("x", (here / "sub" / "m.e").string());
   inside.sink.warning(DiagnosticCode::kUnusedSort, inside.find("x"), "x");
   const auto place = [](const json& log) {
     return log["runs"][0]["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]
               ["uri"];
   };
   CHECK(place(inside.log()) == "sub/m.e");
-  Text outside("x", "/nowhere/m.e");
+  SarifText outside("x", "/nowhere/m.e");
   outside.sink.warning(DiagnosticCode::kUnusedSort, outside.find("x"), "x");
   CHECK(place(outside.log()) == "file:///nowhere/m.e");
 }
 
 TEST_CASE("sarif: without diagnostics there is a log all the same") {
-  const auto log = Text("").log();
+  const auto log = SarifText("").log();
   CHECK(log["runs"][0]["results"] == json::array());
   CHECK(log["runs"][0]["tool"]["driver"]["rules"] == json::array());
 }

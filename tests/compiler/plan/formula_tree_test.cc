@@ -28,7 +28,7 @@ struct Read {
   }
 };
 
-Read read(const std::string& text) {
+Read read_formula(const std::string& text) {
   Read out;
   const auto file = out.files.add("plan.bind", text);
   const base::SourceRange range{file, 0, static_cast<std::uint32_t>(text.size())};
@@ -67,23 +67,23 @@ FormulaTree filled(const FormulaTree& tree, const std::vector<FormulaTree>& valu
 }
 
 TEST_CASE("a formula of a binding knows its variables and parameters") {
-  const auto both = read("exists i, j. On(i,j) & forall k. Free(k,?left-arm) | Base(i)");
+  const auto both = read_formula("exists i, j. On(i,j) & forall k. Free(k,?left-arm) | Base(i)");
   CHECK(both.errors().empty());
   REQUIRE(both.tree);
   CHECK(leaves(*both.tree) == "i#0 j#1 i#0 j#1 k#2 k#2 ?left-arm@0 i#0");
   CHECK(printed(*both.tree) == "{i,j} On(i,j) & [k] Free(k,?left-arm) | Base(i)");
 
-  const auto scopes = read("F(i) & (exists i. G(i) & {i} H(i)) & F(i)");
+  const auto scopes = read_formula("F(i) & (exists i. G(i) & {i} H(i)) & F(i)");
   REQUIRE(scopes.tree);
   CHECK(leaves(*scopes.tree) == "i i#0 i#0 i#1 i#1 i");
 
-  const auto words = read("exists i j. On(i,j)");
+  const auto words = read_formula("exists i j. On(i,j)");
   REQUIRE(words.tree);
   CHECK(leaves(*words.tree) == "i#0 j#1 i#0 j#1");
 }
 
 TEST_CASE("a mapped parameter is one leaf, and a quantified variable of its name is none") {
-  const auto mapped = read("At(region( ?p ),place) & {gaze} Sees(gaze)");
+  const auto mapped = read_formula("At(region( ?p ),place) & {gaze} Sees(gaze)");
   REQUIRE(mapped.tree);
   CHECK(leaves(*mapped.tree) == "region( ?p )@0 place@1 gaze#0 gaze#0");
   CHECK(mapped.tree->parameters[0] == FormulaParameter{"?p", "region"});
@@ -91,22 +91,23 @@ TEST_CASE("a mapped parameter is one leaf, and a quantified variable of its name
 }
 
 TEST_CASE("what is no formula is reported where it stands") {
-  CHECK(read("F(?o").errors() == "E1005 2-4 `(` is not closed before the end of the text\n");
-  CHECK(read("F(?o)) & (G()").errors() == "E1006 5-6 `)` closes nothing\n");
-  CHECK(read("F(?)").errors() == "E1001 2-3 illegal character `?`\n");
-  CHECK(read("exists . F(i)").errors() ==
+  CHECK(read_formula("F(?o").errors() ==
+        "E1005 2-4 `(` is not closed before the end of the text\n");
+  CHECK(read_formula("F(?o)) & (G()").errors() == "E1006 5-6 `)` closes nothing\n");
+  CHECK(read_formula("F(?)").errors() == "E1001 2-3 illegal character `?`\n");
+  CHECK(read_formula("exists . F(i)").errors() ==
         "E1013 7-8 expected a variable in the quantifier, found `.`\n");
-  CHECK(read("F(). G()").errors().starts_with("E10"));
-  CHECK(read("At(region(r1))").errors() ==
+  CHECK(read_formula("F(). G()").errors().starts_with("E10"));
+  CHECK(read_formula("At(region(r1))").errors() ==
         "E4001 3-9 expected one variable as the argument of a mapping function, found something "
         "else\n");
-  CHECK(read("At(region(place(?p)))").errors().starts_with("E4001 3-9 "));
-  CHECK(read("exists ?o. At(?o)").errors() ==
+  CHECK(read_formula("At(region(place(?p)))").errors().starts_with("E4001 3-9 "));
+  CHECK(read_formula("exists ?o. At(?o)").errors() ==
         "E4001 7-9 expected the name of a quantified variable, found `?o`\n");
 }
 
 TEST_CASE("values keep the layout, and are not captured by a quantifier of their name") {
-  const auto base = read("exists x. Seen( x )  &  Base(?o, ?n)");
+  const auto base = read_formula("exists x. Seen( x )  &  Base(?o, ?n)");
   REQUIRE(base.tree);
   const auto tree = filled(*base.tree, {constant_term("x"), constant_term("-12")});
   CHECK(tree.text == "exists x. Seen( x )  &  Base(x, -12)");
@@ -121,7 +122,7 @@ TEST_CASE("values keep the layout, and are not captured by a quantifier of their
 }
 
 TEST_CASE("registers are told from constants of the same name") {
-  const auto held = read("Held(?a,?b) & !Held(?a,?a)");
+  const auto held = read_formula("Held(?a,?b) & !Held(?a,?a)");
   REQUIRE(held.tree);
   const auto tree = filled(*held.tree, {register_term("?i1", ModelValueId(3)), constant_term("?i1"),
                                         constant_term("c"), constant_term("c")});
@@ -138,7 +139,7 @@ TEST_CASE("formulas are put together with their texts") {
   CHECK(application("E", {}).text == "E()");
   const auto equal = equal_terms(arguments[1], arguments[0]);
   CHECK(equal.text == "?i2=r1");
-  const auto quantified = read("exists i. G(i) | F()");
+  const auto quantified = read_formula("exists i. G(i) | F()");
   REQUIRE(quantified.tree);
   const std::vector<FormulaTree> all = {*quantified.tree, atom, *quantified.tree};
   const auto any = disjunction(all);
@@ -154,7 +155,7 @@ TEST_CASE("formulas are put together with their texts") {
 }
 
 TEST_CASE("a text without blanks has the same tree") {
-  const auto pair = read(" Pair( ?a ,\n -1 + 2 ) ");
+  const auto pair = read_formula(" Pair( ?a ,\n -1 + 2 ) ");
   REQUIRE(pair.tree);
   const auto tight = without_blanks(*pair.tree);
   CHECK(tight.text == "Pair(?a,-1+2)");

@@ -13,7 +13,7 @@ namespace {
 
 using test::Random;
 
-struct Reading {
+struct LispReading {
   base::SourceFiles files;
   base::DiagnosticSink sink;
   std::optional<LispText> text;
@@ -32,8 +32,8 @@ struct Reading {
   }
 };
 
-Reading read(std::string text) {
-  Reading out;
+LispReading lisp_reading(std::string text) {
+  LispReading out;
   const auto file = out.files.add("plan.lisp", std::move(text));
   if (auto result = read_lisp(out.files, file, out.sink)) out.text = std::move(*result);
   return out;
@@ -70,7 +70,7 @@ TEST_CASE("reader: every kind of token") {
   };
   for (const auto& one : cases) {
     CAPTURE(one.input);
-    const auto reading = read(one.input);
+    const auto reading = lisp_reading(one.input);
     if (one.printed == nullptr) {
       CHECK_FALSE(reading.text.has_value());  // `...` is no symbol
       continue;
@@ -81,7 +81,7 @@ TEST_CASE("reader: every kind of token") {
 }
 
 TEST_CASE("reader: prefixes are kept apart from names") {
-  const auto reading = read("(exe:perform x)");
+  const auto reading = lisp_reading("(exe:perform x)");
   REQUIRE(reading.text.has_value());
   const auto& data = reading.text->data;
   const auto head = data.children(reading.text->forms[0])[0];
@@ -91,7 +91,7 @@ TEST_CASE("reader: prefixes are kept apart from names") {
 }
 
 TEST_CASE("reader: every datum knows its place") {
-  const auto reading = read("(a\n  (\xC3\xA4 'b\n\t\"s\"))");
+  const auto reading = lisp_reading("(a\n  (\xC3\xA4 'b\n\t\"s\"))");
   REQUIRE(reading.text.has_value());
   const auto& data = reading.text->data;
   const auto outer = reading.text->forms[0];
@@ -105,7 +105,7 @@ TEST_CASE("reader: every datum knows its place") {
   CHECK(reading.files.text(data.source(data.children(inner)[1])) == "'b");
 }
 
-std::string first_error(const Reading& reading) {
+std::string first_error(const LispReading& reading) {
   const auto all = reading.sink.sorted();
   REQUIRE_FALSE(all.empty());
   const auto at = reading.files[all[0].range->file].position(all[0].range->begin);
@@ -149,14 +149,14 @@ TEST_CASE("reader: what cannot be read is reported where it stands") {
   };
   for (const auto& one : cases) {
     CAPTURE(one.input);
-    const auto reading = read(one.input);
+    const auto reading = lisp_reading(one.input);
     CHECK_FALSE(reading.text.has_value());
     CHECK(first_error(reading) == one.error);
   }
 }
 
 TEST_CASE("reader: an open list names the form in column 1 that it swallowed") {
-  const auto reading = read("(defun f ()\n  (a)\n(defun g () 1)\n(defun h () 2)");
+  const auto reading = lisp_reading("(defun f ()\n  (a)\n(defun g () 1)\n(defun h () 2)");
   const auto all = reading.sink.sorted();
   REQUIRE(all.size() == 1);
   REQUIRE(all[0].notes.size() == 1);
@@ -164,7 +164,7 @@ TEST_CASE("reader: an open list names the form in column 1 that it swallowed") {
 }
 
 TEST_CASE("reader: several errors come out of one run") {
-  const auto reading = read("#.a (b . c d) #S(d) 1/0");
+  const auto reading = lisp_reading("#.a (b . c d) #S(d) 1/0");
   CHECK(reading.sink.error_count() == 4);
 }
 
@@ -224,7 +224,7 @@ TEST_CASE("reader: printing a datum and reading it again is the identity") {
     const auto datum = random_datum(data, random, 5);
     const auto text = print_datum(data, datum);
     CAPTURE(text);
-    const auto reading = read(text);
+    const auto reading = lisp_reading(text);
     REQUIRE(reading.text.has_value());
     REQUIRE(reading.text->forms.size() == 1);
     const auto again = reading.text->forms[0];

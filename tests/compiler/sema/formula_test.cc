@@ -9,12 +9,12 @@ namespace parallax::test {
 namespace {
 
 // Eleven lines; the formulas below start on line 12.
-constexpr const char* kWorld =
+constexpr const char* kFormulaWorld =
     "sort object\nsort cup: object\nsort room\nsort level: integer\n"
     "range level 0 3\nrange time 0 5\ncup Cup1, Cup2\nroom Hall\n"
     "fluent Filled(cup)\nevent Fill(cup,level)\npredicate P(object)\n";
 
-CheckedText check(const std::string& formulas) { return CheckedText(kWorld + formulas); }
+CheckedText check(const std::string& formulas) { return CheckedText(kFormulaWorld + formulas); }
 
 /// The first axiom as text.
 std::string typed(const std::string& formula) {

@@ -12,9 +12,9 @@ namespace {
 using compiler::LineKind;
 using compiler::StatementKind;
 
-struct Parsed : FrontEnd {
+struct ParsedStatements : FrontEnd {
   compiler::Ast ast;
-  explicit Parsed(std::string text)
+  explicit ParsedStatements(std::string text)
       : ast(compiler::parse_file(add(std::move(text)), files, sink)) {}
   /// The statements as the printer writes them.
   std::string printed() const { return compiler::print_file(ast); }
@@ -45,13 +45,13 @@ TEST_CASE("every statement of the language is read and printed") {
       "Delta: P(A).\n"
       "7: P(A).\n"
       "[x] P(x) -> Q(x).\n";
-  const Parsed parsed(text);
+  const ParsedStatements parsed(text);
   CHECK(parsed.text() == "");
   CHECK(parsed.printed() == text);
 }
 
 TEST_CASE("blanks, indentation, comments, CRLF and a missing final newline change nothing") {
-  const Parsed parsed(
+  const ParsedStatements parsed(
       "  sort   a:b ,c ; a comment: sort d\r\n\tagent\tJames,Jessie\r\n"
       "; whole line\r\n\r\n   [x]\r\n  P(x) ; Q(x)\r\n  & R(x). S().\r\nrange time 0 3");
   CHECK(parsed.text() == "");
@@ -60,7 +60,8 @@ TEST_CASE("blanks, indentation, comments, CRLF and a missing final newline chang
 }
 
 TEST_CASE("statements know exactly where they stand") {
-  const Parsed parsed("sort agent\n  agent James , Jessie ; friends\nDelta: P(James) &\n Q().\n");
+  const ParsedStatements parsed(
+      "sort agent\n  agent James , Jessie ; friends\nDelta: P(James) &\n Q().\n");
   const auto& statements = parsed.ast.statements();
   REQUIRE(statements.size() == 3);
   CHECK(parsed.files.text(parsed.ast.source(statements[1].source)) == "agent James , Jessie");
@@ -91,14 +92,14 @@ TEST_CASE("a lower-case word before a name is a declaration, before anything els
 }
 
 TEST_CASE("formula text that starts with a lower-case word stays formula text, with a warning") {
-  const Parsed parsed("[agent,time]\nagent = James ->\nHappens(Wake(agent), time).\n");
+  const ParsedStatements parsed("[agent,time]\nagent = James ->\nHappens(Wake(agent), time).\n");
   CHECK(parsed.places() == Strings{"W1101 2:1-5"});
   REQUIRE(parsed.ast.statements().size() == 1);
   CHECK(parsed.printed() == "[agent,time] agent=James -> Happens(Wake(agent),time).\n");
 }
 
 TEST_CASE("a declaration inside an unfinished formula ends it with an error and still counts") {
-  const Parsed parsed("HoldsAt(F(), 0) &\nagent James\nP().\n");
+  const ParsedStatements parsed("HoldsAt(F(), 0) &\nagent James\nP().\n");
   CHECK(parsed.places() == Strings{"E1003 1:17-17"});
   CHECK(parsed.printed() == "agent James\nP().\n");
 }
@@ -136,13 +137,13 @@ TEST_CASE("malformed statements are reported where they go wrong") {
   };
   for (const auto& c : cases) {
     CAPTURE(c.text);
-    const Parsed parsed(c.text);
+    const ParsedStatements parsed(c.text);
     CHECK(parsed.places() == Strings{c.place});
   }
 }
 
 TEST_CASE("a period after a statement is reported once and the statement still counts") {
-  const Parsed parsed("sort agent.\nagent James.\n");
+  const ParsedStatements parsed("sort agent.\nagent James.\n");
   CHECK(parsed.codes() == Strings{"E1011", "E1011"});
   CHECK(parsed.printed() == "sort agent\nagent James\n");
 }

@@ -10,8 +10,6 @@
 namespace parallax::harness::test {
 namespace {
 
-bool box_far(const State& start) { return number(start, "box.x") > 1.9; }
-
 /// The first sample whose start satisfies the predicate, by drawing alone.
 std::int64_t first_sample(const Bench& bench, std::int64_t trace, const Script::OfStart& is) {
   for (std::int64_t sample = 1; sample < 1000; ++sample) {

@@ -7,8 +7,6 @@
 namespace parallax::harness::test {
 namespace {
 
-bool box_far(const State& start) { return number(start, "box.x") > 1.9; }
-
 struct Outputs {
   std::string journal, text, json;
   friend bool operator==(const Outputs&, const Outputs&) = default;

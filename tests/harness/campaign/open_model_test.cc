@@ -9,7 +9,6 @@ namespace {
 
 using LastState = std::map<std::string, bool>;
 
-bool box_far(const State& start) { return number(start, "box.x") > 1.9; }
 bool box_left(const LastState& state) { return state.at("BoxIn(r2)"); }
 
 bool says(const TraceResult& trace, const std::string& part) {

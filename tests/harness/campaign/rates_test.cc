@@ -7,8 +7,6 @@
 namespace parallax::harness::test {
 namespace {
 
-bool box_far(const State& start) { return number(start, "box.x") > 1.9; }
-
 struct RatesBench : Bench {
   RatesOptions rates;
   base::Result<RatesResult> estimate() {

@@ -6,8 +6,6 @@
 namespace parallax::harness::test {
 namespace {
 
-bool box_far(const State& start) { return number(start, "box.x") > 1.9; }
-
 struct Recorded : Bench {
   Recorded() {
     script.drops = box_far;

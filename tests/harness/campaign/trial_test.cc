@@ -9,8 +9,6 @@
 namespace parallax::harness::test {
 namespace {
 
-bool box_far(const State& start) { return number(start, "box.x") > 1.9; }
-
 /// A bench that was started, and trials of its traces.
 struct Trials : Bench {
   explicit Trials(std::int64_t jobs = 1) : trial_options{1, jobs, &stop} {}

@@ -117,6 +117,9 @@ inline double number(const State& state, const std::string& name) {
   return std::get<double>(state.at(name));
 }
 
+/// Where the scripted worker drops the box if a test says so.
+inline bool box_far(const State& start) { return number(start, "box.x") > 1.9; }
+
 class ScriptedSimulator final : public Simulator {
  public:
   explicit ScriptedSimulator(const Script& script) : script_(script) {}

@@ -12,7 +12,7 @@ Region region(std::string name, std::initializer_list<std::pair<RegionAxis, Inte
   return out;
 }
 
-RegionSet set_of(std::vector<Region> regions) {
+RegionSet region_set(std::vector<Region> regions) {
   base::DiagnosticSink sink;
   auto set = RegionSet::make(std::move(regions), true, sink);
   REQUIRE(set.has_value());
@@ -20,7 +20,7 @@ RegionSet set_of(std::vector<Region> regions) {
 }
 
 /// A floor with two rooms, two drawers whose insides move with them, and a shelf.
-StateMapping mapping() {
+StateMapping kitchen_mapping() {
   const Interval inside{-0.2, 0.2};
   Region upper =
       region("upper",
@@ -35,13 +35,13 @@ StateMapping mapping() {
   std::vector<RegionFamily> families;
   families.push_back(
       {"rooms",
-       set_of({region("hall", {{RegionAxis::kX, {0, 1}}, {RegionAxis::kYaw, {-0.1, 0.1}}}),
-               region("den", {{RegionAxis::kX, {2, 3}}, {RegionAxis::kYaw, {-0.1, 0.1}}})}),
+       region_set({region("hall", {{RegionAxis::kX, {0, 1}}, {RegionAxis::kYaw, {-0.1, 0.1}}}),
+                   region("den", {{RegionAxis::kX, {2, 3}}, {RegionAxis::kYaw, {-0.1, 0.1}}})}),
        {"region"}});
-  families.push_back({"drawers", set_of({upper, lower}), {"place"}});
+  families.push_back({"drawers", region_set({upper, lower}), {"place"}});
   families.push_back(
       {"shelf",
-       set_of({region("shelf", {{RegionAxis::kX, {0, 1}}, {RegionAxis::kBottom, {0.9, 1.1}}})}),
+       region_set({region("shelf", {{RegionAxis::kX, {0, 1}}, {RegionAxis::kBottom, {0.9, 1.1}}})}),
        {"place"}});
   RangeBinding open{"{0}.q", {0.40, 0.46}, {-0.01, 0.03}, 0.0};
   return StateMapping(RegionMap(std::move(families)),
@@ -75,14 +75,14 @@ State state() {
 }
 
 bool holds(const State& at, const char* text) {
-  return mapping().holds(ground_fluent(text), at).value();
+  return kitchen_mapping().holds(ground_fluent(text), at).value();
 }
 
 TEST_CASE("a drawer between open and closed is neither") {
   State at = state();
   const auto read = [&](double q) {
     at["u.q"] = q;
-    return mapping().read(ground_fluent("Open(u)"), at).value();
+    return kitchen_mapping().read(ground_fluent("Open(u)"), at).value();
   };
   CHECK(read(0.0) == Reading::kFails);
   CHECK(read(0.03) == Reading::kFails);
@@ -118,18 +118,18 @@ TEST_CASE("a region of a robot asks for its heading, too") {
   CHECK(holds(at, "RobotAt(hall)"));
   at["robot.yaw"] = 0.5;
   CHECK_FALSE(holds(at, "RobotAt(hall)"));
-  CHECK(mapping().outside(fluents(), at) == std::vector<std::string>{"RobotAt(outside)"});
+  CHECK(kitchen_mapping().outside(fluents(), at) == std::vector<std::string>{"RobotAt(outside)"});
 }
 
 TEST_CASE("what is in no region is outside, unless it is held") {
   State at = state();
-  CHECK(mapping().outside(fluents(), at).empty());
+  CHECK(kitchen_mapping().outside(fluents(), at).empty());
   at["cup.bottom"] = 0.0;  // on the floor, which has no region here
-  CHECK(mapping().outside(fluents(), at) == std::vector<std::string>{"At(cup,outside)"});
+  CHECK(kitchen_mapping().outside(fluents(), at) == std::vector<std::string>{"At(cup,outside)"});
   at["cup.held"] = true;
-  CHECK(mapping().outside(fluents(), at).empty());
-  CHECK(mapping().outside_text(ground_fluent("At(cup,upper)")) == "At(cup,outside)");
-  CHECK(mapping().outside_text(ground_fluent("Open(u)")).empty());
+  CHECK(kitchen_mapping().outside(fluents(), at).empty());
+  CHECK(kitchen_mapping().outside_text(ground_fluent("At(cup,upper)")) == "At(cup,outside)");
+  CHECK(kitchen_mapping().outside_text(ground_fluent("Open(u)")).empty());
 }
 
 TEST_CASE("a text variable picks one constant") {
@@ -140,7 +140,7 @@ TEST_CASE("a text variable picks one constant") {
 TEST_CASE("a start in a drawer is drawn where the drawer is after a reset") {
   base::DiagnosticSink sink;
   const std::set<std::string> start = {"RobotAt(hall)", "At(cup,lower)", "Parked()"};
-  const auto cuboid = mapping().start_cuboid(fluents(), start, {}, {}, sink);
+  const auto cuboid = kitchen_mapping().start_cuboid(fluents(), start, {}, {}, sink);
   REQUIRE(cuboid.has_value());
   std::map<std::string, Interval> by_name;
   for (const auto& dimension : cuboid->dimensions) by_name[dimension.variable] = dimension.interval;
@@ -150,9 +150,9 @@ TEST_CASE("a start in a drawer is drawn where the drawer is after a reset") {
   CHECK(by_name.at("cup.bottom").upper == by_name.at("cup.bottom").lower);
   State drawn = {
       {"robot.x", 0.5}, {"robot.yaw", 0.0}, {"cup.x", 1.4}, {"cup.y", 1.0}, {"cup.bottom", 0.5}};
-  CHECK(mapping().wrong_at_start(fluents(), start, drawn).empty());
+  CHECK(kitchen_mapping().wrong_at_start(fluents(), start, drawn).empty());
   drawn["cup.x"] = 1.0;
-  CHECK(mapping().wrong_at_start(fluents(), start, drawn) ==
+  CHECK(kitchen_mapping().wrong_at_start(fluents(), start, drawn) ==
         std::vector<std::string>{"At(cup,lower)"});
 }
 
@@ -162,13 +162,13 @@ TEST_CASE("a start that a reset does not make is refused") {
         std::set<std::string>{"RobotAt(hall)", "At(cup,lower)", "Parked()", "Open(u)"},
         std::set<std::string>{"RobotAt(hall)", "At(cup,lower)", "Parked()", "LooksAt(den)"}}) {
     base::DiagnosticSink sink;
-    CHECK_FALSE(mapping().start_cuboid(fluents(), start, {}, {}, sink).has_value());
+    CHECK_FALSE(kitchen_mapping().start_cuboid(fluents(), start, {}, {}, sink).has_value());
     CHECK(sink.error_count() == 1);
   }
 }
 
 TEST_CASE("functions of a plan ask the sets that are meant for them") {
-  const StateMapping m = mapping();
+  const StateMapping m = kitchen_mapping();
   const Point low = {0.5, 0.0, 0.0, 0.0, 0.0};
   const Point high = {0.5, 0.0, 1.0, 0.0, 1.0};
   REQUIRE(m.regions().locate("region", low) != nullptr);

@@ -9,7 +9,7 @@ namespace {
 
 using base::DiagnosticCode;
 
-Region region_x(std::string name, double lower, double upper) {
+Region region_along_x(std::string name, double lower, double upper) {
   Region region;
   region.name = std::move(name);
   region.on(RegionAxis::kX) = Interval{lower, upper};
@@ -19,8 +19,9 @@ Region region_x(std::string name, double lower, double upper) {
 /// Robot and box on a line of three regions; a held box is in no region.
 StateMapping line() {
   base::DiagnosticSink sink;
-  auto regions = RegionSet::make({region_x("r1", 0, 1), region_x("r2", 1, 2), region_x("r3", 2, 3)},
-                                 false, sink);
+  auto regions = RegionSet::make(
+      {region_along_x("r1", 0, 1), region_along_x("r2", 1, 2), region_along_x("r3", 2, 3)}, false,
+      sink);
   return StateMapping(
       *regions, {{"RobotIn", 1, InsideBinding{"robot", 0, {}, {}}, {base::FileId(0), 1, 2}},
                  {"In", 2, InsideBinding{"{0}", 1, "{0}.held", {}}, {base::FileId(0), 2, 3}},

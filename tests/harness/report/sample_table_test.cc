@@ -37,7 +37,7 @@ std::vector<SampleRow> hostile_rows() {
 }
 
 TEST_CASE("a table of values after RFC 4180 reads back to the same texts and the same bits") {
-  const auto table = test::parse_csv(samples_csv(hostile_rows()));
+  const auto table = parallax::test::parse_csv(samples_csv(hostile_rows()));
   REQUIRE(table.size() == 3);
   const std::vector<std::string> header = {
       "trace",         "sample",         "seed",           "start",   "rejected",

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "tests/tools/suite/case_result.h"
 #include "tools/suite/suite_record.h"
 
 namespace parallax::tools {
@@ -9,17 +10,6 @@ namespace {
 
 SuiteCase manifest_case(const std::string& id) {
   return {"m/suite.yaml", id, "m/suite.yaml", harness::ManifestCase{}};
-}
-
-CaseResult result(Outcome outcome, const std::string& problem = {}) {
-  CaseResult out;
-  out.outcome = outcome;
-  if (!problem.empty()) out.problems = {problem};
-  return out;
-}
-
-bool holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 TEST_CASE("each outcome has its element, and the counts are of their kinds") {

@@ -6,12 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/tools/suite/case_result.h"
+
 namespace parallax::tools {
 namespace {
-
-bool holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 SuiteCase named(const std::string& id) {
   return {"m/suite.yaml", id, "m/suite.yaml", harness::ManifestCase{}};
@@ -21,13 +19,6 @@ SuiteCase named(const std::string& id) {
 SuiteRecord record_of(std::vector<SuiteCase> cases, harness::Quarantine quarantine = {}) {
   const std::vector<bool> none(cases.size(), false);
   return SuiteRecord(std::move(cases), none, "/nonexistent/suite", "", {}, std::move(quarantine));
-}
-
-CaseResult result(Outcome outcome, const std::string& problem = {}) {
-  CaseResult out;
-  out.outcome = outcome;
-  if (!problem.empty()) out.problems = {problem};
-  return out;
 }
 
 void fill(SuiteRecord& record, const std::vector<CaseResult>& results) {
