@@ -9,6 +9,7 @@
 
 #include "compiler/base/ascii.h"
 #include "compiler/base/hash.h"
+#include "compiler/base/json.h"
 #include "compiler/base/utf8.h"
 
 namespace parallax::base {
@@ -262,7 +263,7 @@ std::string to_json(const std::vector<Diagnostic>& diagnostics, const SourceFile
     if (const auto help = help_of(d); !help.empty()) entry["help"] = printable(help);
     out.push_back(std::move(entry));
   }
-  return out.dump();
+  return base::json_text(out);
 }
 
 std::string to_sarif(const std::vector<Diagnostic>& diagnostics, const SourceFiles& files,
@@ -290,7 +291,7 @@ std::string to_sarif(const std::vector<Diagnostic>& diagnostics, const SourceFil
   log["$schema"] = "https://json.schemastore.org/sarif-2.1.0.json";
   log["version"] = "2.1.0";
   log["runs"] = Json::array({std::move(run)});
-  return log.dump();
+  return base::json_text(log);
 }
 
 }  // namespace parallax::base

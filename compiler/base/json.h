@@ -7,17 +7,23 @@
 #include <string_view>
 #include <type_traits>
 
+// Made once, in json.cc: else each batch of sources compiles reader and writer anew.
+extern template class nlohmann::basic_json<>;
+extern template class nlohmann::basic_json<nlohmann::ordered_map>;
+
 namespace parallax::base {
 
 /// A document as text; on one line, or with so many blanks for each level. Texts may hold any bytes
 /// (names of files do): what is no UTF-8 becomes U+FFFD, where nlohmann would throw.
-template <typename Json>
-std::string json_text(const Json& json, int indent = -1) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
+std::string json_text(const nlohmann::json& json, int indent = -1);
+std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
+
+/// What `text` says; discarded (`is_discarded`) where it is no JSON.
+nlohmann::json parse_json(std::string_view text);
+nlohmann::ordered_json parse_ordered_json(std::string_view text);
 
 /// One string as JSON writes it, with its quotes.
-inline std::string json_quoted(std::string_view text) { return json_text(nlohmann::json(text)); }
+std::string json_quoted(std::string_view text);
 
 /// The value, if it is of just this type: nothing is converted but integers to `double`, nothing is
 /// taken for a number that does not fit.

@@ -178,7 +178,7 @@ SampleRecord record_of(const Json& object) {
 }
 
 Json parse(std::string_view line) {
-  auto object = Json::parse(line, nullptr, false);
+  auto object = base::parse_json(line);
   if (object.is_discarded()) throw Foreign{"it is not JSON"};
   if (!object.is_object()) throw Foreign{"it is no JSON object"};
   return object;
@@ -241,7 +241,7 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
 std::string encode(const JournalHeader& header) {
   auto out = json_of(header);
   if (header.max_runs > 0) out["max_runs"] = header.max_runs;
-  out["options"] = OrderedJson::parse(header.options);
+  out["options"] = base::parse_ordered_json(header.options);
   return base::json_text(out);
 }
 
@@ -276,7 +276,7 @@ std::string encode(const TraceLine& line) {
     events.push_back(std::move(event));
   }
   out["events"] = std::move(events);
-  return out.dump();
+  return base::json_text(out);
 }
 
 std::string encode(const SampleRecord& record) {
@@ -307,7 +307,7 @@ std::string encode(const SampleRecord& record) {
   }
   out["outcomes"] = std::move(outcomes);
   out["digest"] = record.digest;
-  if (!record.path) return out.dump();
+  if (!record.path) return base::json_text(out);
   out["start_state"] = record.path->start;
   if (!record.path->target.empty()) out["target"] = record.path->target;
   auto path = OrderedJson::array();
@@ -321,7 +321,7 @@ std::string encode(const SampleRecord& record) {
   out["path"] = std::move(path);
   out["end"] = to_string(record.path->end);
   out["detail"] = record.path->detail;
-  return out.dump();
+  return base::json_text(out);
 }
 
 std::variant<JournalHeader, ForeignLine> decode_header(std::string_view line) try {
@@ -343,7 +343,7 @@ std::variant<JournalHeader, ForeignLine> decode_header(std::string_view line) tr
   header.simulator.seeds = get<bool>(simulator, "seeds");
   header.simulator.timestep_s = get<double>(simulator, "timestep_s");
   if (object.contains("max_runs")) header.max_runs = count_of(object, "max_runs", 0);
-  header.options = field(object, "options").dump();
+  header.options = base::json_text(field(object, "options"));
   auto asked = recorded_options(header.options);
   if (auto* why = std::get_if<std::string>(&asked)) return ForeignLine{*std::move(why)};
   header.asked = std::get<RecordedOptions>(std::move(asked));
@@ -371,7 +371,7 @@ std::optional<HeaderDifference> header_difference(const JournalHeader& recorded,
     after.erase(name);
   }
   if (auto found = differing(before, after, {})) return found;
-  return differing(Json::parse(recorded.options), Json::parse(now.options), "options");
+  return differing(base::parse_json(recorded.options), base::parse_json(now.options), "options");
 }
 
 }  // namespace parallax::harness

@@ -112,7 +112,7 @@ void read_criterion(const Fields& fields, std::string& wrong, RecordedOptions& o
 
 std::string recorded_options_json(const Scenario& scenario, const CampaignOptions& options) {
   using OrderedJson = nlohmann::ordered_json;
-  OrderedJson json = {{"criterion", OrderedJson::parse(criterion_json(scenario.criterion))},
+  OrderedJson json = {{"criterion", base::parse_ordered_json(criterion_json(scenario.criterion))},
                       {"limits",
                        {{"max_traces", scenario.limits.max_traces},
                         {"max_rejected_starts", scenario.limits.max_rejected_starts},
@@ -130,12 +130,12 @@ std::string recorded_options_json(const Scenario& scenario, const CampaignOption
     json["limits"]["max_performs"] = scenario.limits.max_performs;
     json["limits"]["max_simulated_s"] = scenario.limits.max_simulated_s;
   }
-  return json.dump();
+  return base::json_text(json);
 }
 
 std::variant<RecordedOptions, std::string> recorded_options(std::string_view text) {
   using namespace std::string_view_literals;
-  const auto json = Json::parse(text, nullptr, false);
+  const auto json = base::parse_json(text);
   std::string wrong;
   RecordedOptions out;
   const Fields fields(json, "options", wrong);

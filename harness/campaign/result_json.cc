@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "compiler/base/json.h"
+
 namespace parallax::harness {
 namespace {
 
@@ -48,7 +50,7 @@ std::string criterion_json(const CriterionSpec& criterion) {
         {"tolerance_m", paper.tolerance_m},
         {"bonferroni", paper.bonferroni}}}};
   if (criterion.runs > 0) out["runs"] = criterion.runs;
-  return out.dump();
+  return base::json_text(out);
 }
 
 }  // namespace parallax::harness

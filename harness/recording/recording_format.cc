@@ -253,7 +253,7 @@ std::variant<Recording, BadRecording> decode_recording(std::string_view bytes) {
     return BadRecording{end, "its checksum is that of another file"};
   }
   const auto head = bytes.substr(kHeadAt, head_size);
-  const auto json = HeadJson::parse(head.begin(), head.end(), nullptr, false);
+  const auto json = base::parse_json(head);
   if (json.is_discarded()) return BadRecording{kHeadAt, "its head is not JSON"};
   HeadReader reader;
   auto recording = reader.read(json);

@@ -290,7 +290,7 @@ std::string scene_text(const RecordedScene& scene) {
 }
 
 std::optional<RecordedScene> scene_from_text(std::string_view text, std::string& why) {
-  const auto json = SceneJson::parse(text.begin(), text.end(), nullptr, false);
+  const auto json = base::parse_json(text);
   if (!json.is_discarded()) return SceneReader(why).read(json);
   why = "it is not JSON";
   return std::nullopt;

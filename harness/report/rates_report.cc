@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "compiler/base/json.h"
 #include "harness/campaign/run_setup.h"
 #include "harness/report/report.h"
 #include "harness/simulator/state_json.h"
@@ -94,7 +95,7 @@ std::string rates_json(const RatesResult& result) {
                                   {"any", rate_object(trace.any)},
                                   {"causes", std::move(causes)}});
   }
-  return document.dump() + "\n";
+  return base::json_text(document) + "\n";
 }
 
 }  // namespace parallax::harness

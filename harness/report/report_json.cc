@@ -239,7 +239,7 @@ Json json_of(const CampaignResult& result, bool with_timing) {
                       {"version", result.simulator.version},
                       {"determinism", result.simulator.determinism},
                       {"timestep_s", result.simulator.timestep_s}};
-  out["criterion"] = Json::parse(criterion_json(result.criterion));
+  out["criterion"] = base::parse_ordered_json(criterion_json(result.criterion));
   out["execution"] = to_string(result.execution);
   out["compare"] = to_string(result.comparison);
   out["compared"] = json_of(result.compared);

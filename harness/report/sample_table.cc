@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "compiler/base/json.h"
 #include "harness/simulator/state_json.h"
 #include "runtime/trace/csv_format.h"
 
@@ -92,7 +93,7 @@ std::string samples_jsonl(const std::vector<SampleRow>& rows) {
       margins.push_back({{"event", i}, {"margins", state_json<Json>(row.margins[i])}});
     }
     object["margins"] = std::move(margins);
-    out += object.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+    out += base::json_text(object) + '\n';
   }
   return out;
 }

@@ -39,7 +39,7 @@ OrderedJson info_to_json(std::int64_t protocol, const SimulatorInfo& info) {
   if (info.scene) {
     // A world so large that it does not go in a line is simulated without recordings.
     const auto scene = scene_text(*info.scene);
-    if (scene.size() < kMaxLineBytes / 2) out["pose"] = OrderedJson::parse(scene);
+    if (scene.size() < kMaxLineBytes / 2) out["pose"] = base::parse_ordered_json(scene);
   }
   return out;
 }
@@ -183,7 +183,7 @@ class FieldReader {
   Malformed error_;
 };
 
-Json parse(std::string_view line) { return Json::parse(line.begin(), line.end(), nullptr, false); }
+Json parse(std::string_view line) { return base::parse_json(line); }
 
 std::optional<std::int64_t> id_of(const Json& json) {
   const auto found = json.find("id");

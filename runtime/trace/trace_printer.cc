@@ -2,6 +2,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "compiler/base/json.h"
 #include "runtime/trace/trace.h"
 #include "runtime/trace/trace_format.h"
 
@@ -35,7 +36,7 @@ std::string json_list(const std::vector<Text>& names) {
     if (std::all_of(name.begin(), name.end(), is_plain)) {
       out.append(1, '"').append(name).append(1, '"');
     } else {
-      out += nlohmann::json(name).dump();
+      out += base::json_text(nlohmann::json(name));
     }
   }
   return out += ']';
@@ -74,7 +75,9 @@ class JsonlFormat final : public TraceFormat {
     return ",\"happens\":" + json_list(sorted_names(symbols, point.happens)) +
            ",\"holds\":" + json_list(sorted_names(symbols, point.holds)) +
            ",\"released\":" + json_list(sorted_names(symbols, point.released)) +
-           (point.returned ? ",\"returned\":" + nlohmann::json(*point.returned).dump() : "") + '}';
+           (point.returned ? ",\"returned\":" + base::json_text(nlohmann::json(*point.returned))
+                           : "") +
+           '}';
   }
   std::string tail(const std::vector<std::string>& predicates) const override {
     return "],\"predicates\":" + json_list(predicates) + "}\n";

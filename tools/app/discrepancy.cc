@@ -64,7 +64,7 @@ base::Result<std::optional<ReportedDiscrepancy>> find_discrepancy(const std::str
   const auto path = (std::filesystem::path(run_dir) / "report.json").string();
   const auto text = base::read_file_of(run_dir, "report.json", sink);
   if (!text) return sink.already_reported();
-  const auto report = json::parse(*text, nullptr, false);
+  const auto report = base::parse_json(*text);
   const auto refuse = [&] {
     return sink.error_about(base::DiagnosticCode::kUsage, path, "this is no report of a run");
   };

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "compiler/base/json.h"
+
 namespace parallax::tools {
 namespace {
 
@@ -86,7 +88,7 @@ std::vector<std::string> open_end_texts(const compiler::CompiledModel& model,
 
 std::string bounds_field(const std::vector<std::string>& bounds) {
   if (bounds.empty()) return {};
-  return fmt::format("\"bounds\":{},", nlohmann::json(bounds).dump());
+  return fmt::format("\"bounds\":{},", base::json_text(nlohmann::json(bounds)));
 }
 
 }  // namespace parallax::tools

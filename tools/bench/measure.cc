@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "compiler/base/json.h"
+
 namespace parallax::tools {
 namespace {
 
@@ -142,7 +144,7 @@ std::string to_json(const std::vector<Row>& rows) {
     json["agrees"] = row.agrees();
     list.push_back(std::move(json));
   }
-  return nlohmann::ordered_json{{"rows", std::move(list)}}.dump(2) + '\n';
+  return base::json_text(nlohmann::ordered_json{{"rows", std::move(list)}}, 2) + '\n';
 }
 
 double median(std::vector<double> values) {

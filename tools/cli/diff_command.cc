@@ -230,7 +230,7 @@ std::string side_text(const char* what, const TraceSet& set, const TraceSet& oth
 Json side_json(const TraceSetSide& side) {
   Json out = {{"count", side.count}, {"witness", nullptr}};
   if (!side.witness) return out;
-  out["witness"] = Json::parse(to_jsonl(*side.witness));
+  out["witness"] = base::parse_ordered_json(to_jsonl(*side.witness));
   out["witness"]["leaves_at"] = side.leaves_at;
   return out;
 }

@@ -43,7 +43,7 @@ std::string draw_witness(const DrawnWitness& witness, const fs::path& markdown,
   if (child.code == 0 && fs::is_regular_file(folder / name, error)) {
     return (folder.filename() / name).string();
   }
-  const auto document = nlohmann::json::parse(child.out, nullptr, false);
+  const auto document = base::parse_json(child.out);
   std::string why = "it cannot be drawn";
   if (const auto* reported = base::json_member(document, "diagnostics");
       reported != nullptr && !reported->empty()) {

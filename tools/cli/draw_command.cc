@@ -4,6 +4,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
 #include "compiler/base/path_gate.h"
 #include "harness/campaign/judge.h"
 #include "harness/campaign/replay.h"
@@ -76,7 +77,7 @@ class Writer {
     if (invocation_.options().json) {
       nlohmann::ordered_json document = {{"status", "ok"}, {"pictures", written_}};
       if (!index.empty()) document["index"] = index;
-      return invocation_.document(document.dump() + "\n");
+      return invocation_.document(base::json_text(document) + "\n");
     }
     for (const auto& path : written_) invocation_.result(path + "\n");
     if (!index.empty()) invocation_.result(index + "\n");

@@ -10,6 +10,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
 #include "compiler/syntax/formatter.h"
 #include "tools/app/file_kind.h"
 #include "tools/cli/command.h"
@@ -96,7 +97,7 @@ int format(const FmtOptions& options, Invocation& invocation) {
   }
   if (invocation.sink().has_errors()) return 0;
   if (invocation.options().json) {
-    invocation.document("{\"status\":\"ok\",\"changed\":" + changed.dump() + "}\n");
+    invocation.document("{\"status\":\"ok\",\"changed\":" + base::json_text(changed) + "}\n");
   }
   return options.check && !changed.empty() ? 1 : 0;
 }

@@ -198,8 +198,7 @@ int report(const ReportOptions& options, Invocation& invocation) {
     }
     const nlohmann::ordered_json document = {
         {"status", "ok"}, {"page", path}, {"bytes", text.size()}, {"missing", missing}};
-    invocation.document(document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
-                        '\n');
+    invocation.document(base::json_text(document) + '\n');
   } else {
     invocation.result(path + '\n');
   }

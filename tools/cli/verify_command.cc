@@ -167,7 +167,7 @@ std::string answer_json(const compiler::CompiledModel& model, const Answer& answ
       }
     }
     out["performed"] = std::move(performed);
-    out["trace"] = nlohmann::ordered_json::parse(runtime::to_jsonl(*answer.violation));
+    out["trace"] = base::parse_ordered_json(runtime::to_jsonl(*answer.violation));
   }
   if (answer.rests_on) {
     out["rests_on"] = nlohmann::ordered_json::array();

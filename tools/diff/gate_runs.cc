@@ -40,7 +40,7 @@ struct RunSummary {
 };
 
 RunSummary summary_of(const std::string& name, const std::string& report) {
-  const auto json = SortedJson::parse(report);
+  const auto json = base::parse_json(report);
   RunSummary out;
   out.name = name;
   out.verdict = text_at(json, "verdict");

@@ -57,7 +57,7 @@ base::Result<RatesRevision> load_rates(const std::string& path, Context& context
   const auto refuse = [&](const std::string& why) {
     return context.sink().error_about(base::DiagnosticCode::kNoRatesResult, path, why);
   };
-  const auto json = SortedJson::parse(*text, nullptr, false);
+  const auto json = base::parse_json(*text);
   if (!json.is_object()) return refuse("it is no JSON object");
   const auto* traces = base::json_member(json, "traces");
   const auto complete = at<bool>(json, "complete");

@@ -202,7 +202,7 @@ Json json_of(const std::optional<runtime::TraceNumber>& number) {
 
 Json witness_json(const SideView& side, bool lost) {
   const auto& witness = *side.traces.witness;
-  Json out = Json::parse(to_jsonl(witness.trace));
+  Json out = base::parse_ordered_json(to_jsonl(witness.trace));
   out.erase("trace");
   out["excluded_by"] = witness.excluded_by;
   out["events"] = witness.events;

@@ -14,6 +14,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
 #include "compiler/compare/model_facts.h"
 #include "compiler/syntax/parser.h"
 #include "harness/campaign/journal.h"
@@ -32,7 +33,7 @@ using SortedJson = nlohmann::json;
 
 /// A text as it is, anything else as JSON.
 std::string word(const SortedJson& value) {
-  return value.is_string() ? value.get<std::string>() : value.dump();
+  return value.is_string() ? value.get<std::string>() : base::json_text(value);
 }
 
 std::string joined(const SortedJson& list) {
@@ -179,7 +180,7 @@ Text load_run_report(const std::string& path, Context& context) {
   auto text = file == fs::path(path) ? base::read_file(file, context.sink())
                                      : base::read_file_of(path, "report.json", context.sink());
   if (!text) return context.sink().already_reported();
-  const auto report = SortedJson::parse(*text, nullptr, false);
+  const auto report = base::parse_json(*text);
   if (report.is_discarded() || !report.is_object()) return refuse("it is no JSON object");
   if (!field(report, "verdict").is_string() || !field(report, "traces").is_array()) {
     return refuse("it has no `verdict` and `traces`");
@@ -191,7 +192,7 @@ base::Result<std::vector<Fact>> load_run_facts(const std::string& path, Context&
   const auto text = load_run_report(path, context);
   if (!text) return context.sink().already_reported();
   const auto file = report_file(path);
-  const auto report = SortedJson::parse(*text);
+  const auto report = base::parse_json(*text);
   auto facts = ReportReader(report, file.string()).run();
   if (auto read = texts_fact(file.parent_path())) facts.push_back(*std::move(read));
   return facts;

@@ -199,7 +199,7 @@ class Bisection {
   }
 
   static void judge(const base::Captured& run, RevisionVerdict& out) {
-    const auto document = json::parse(run.out, nullptr, false);
+    const auto document = base::parse_json(run.out);
     const auto text = [](const json& object, const char* name) {
       const auto* value = base::json_member(object, name);
       return value == nullptr ? "" : base::json_as<std::string>(*value).value_or("");

@@ -84,7 +84,7 @@ HistoryCase case_of(const json& object) {
 }
 
 std::optional<HistoryLine> decode(std::string_view text) {
-  const auto object = json::parse(text, nullptr, false);
+  const auto object = base::parse_json(text);
   std::int64_t format = 0;
   take(object, "history", format);
   const auto* cases = base::json_member(object, "cases");
@@ -147,7 +147,7 @@ std::string encode_rates(const std::vector<MeasuredRate>& rates) {
 }
 
 std::vector<MeasuredRate> decode_rates(std::string_view text) {
-  return rates_of(json::parse(text, nullptr, false));
+  return rates_of(base::parse_json(text));
 }
 
 std::string encode(const HistoryLine& line) {

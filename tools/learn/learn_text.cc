@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "compiler/base/json.h"
 #include "tools/learn/learn.h"
 #include "tools/learn/learned_model.h"
 
@@ -77,7 +78,7 @@ std::string learn_json(const LearnResult& result, const LearnOptions& options) {
     told["changed"] = round.changed;
     out["rounds"].push_back(std::move(told));
   }
-  return out.dump(2) + "\n";
+  return base::json_text(out, 2) + "\n";
 }
 
 }  // namespace parallax::tools

@@ -119,7 +119,7 @@ std::vector<std::string> words_of(const std::string& line) {
 }  // namespace
 
 std::optional<ShownRun> shown_run(std::string_view document) {
-  const auto run = Json::parse(document, nullptr, false);
+  const auto run = base::parse_json(document);
   const auto &traces = member(run, "traces"), &discrepancies = member(run, "discrepancies");
   if (!traces.is_array() || !discrepancies.is_array()) return std::nullopt;
   ShownRun out;
@@ -143,7 +143,7 @@ std::optional<ShownRun> shown_run(std::string_view document) {
 }
 
 std::optional<ShownRun> shown_rates(std::string_view document) {
-  const auto rates = Json::parse(document, nullptr, false);
+  const auto rates = base::parse_json(document);
   const auto& traces = member(rates, "traces");
   if (!traces.is_array()) return std::nullopt;
   ShownRun out;

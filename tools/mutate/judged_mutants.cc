@@ -33,7 +33,7 @@ std::optional<MutantOutcome> outcome_of(const std::string& text) {
 
 /// Nothing for a line that is none, half written or not.
 std::optional<std::pair<std::string, Judgement>> read_line(const std::string& line) {
-  const auto json = Json::parse(line, nullptr, false);
+  const auto json = base::parse_ordered_json(line);
   if (!json.is_object()) return std::nullopt;
   const auto text = [&](const char* name) {
     const auto at = json.find(name);
@@ -80,7 +80,7 @@ base::Result<JudgedMutants> JudgedMutants::open(const fs::path& file, const std:
     std::istringstream lines(*text);
     std::string line;
     std::getline(lines, line);
-    const auto head = Json::parse(line, nullptr, false);
+    const auto head = base::parse_ordered_json(line);
     if (!head.is_object() || !head.contains(kSuite)) {
       return refuse("this file is there already and was not written by --mutate");
     }

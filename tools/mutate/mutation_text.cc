@@ -83,7 +83,7 @@ Json json_of(const Mutant& mutant, const Judgement& judgement) {
   if (!judgement.by.empty()) out["noticed_by"] = judgement.by;
   if (!judgement.why.empty()) out["why"] = judgement.why;
   if (judgement.outcome != MutantOutcome::kUnnoticed) return out;
-  out["witness"] = Json::parse(judgement.trace_json, nullptr, false);
+  out["witness"] = base::parse_ordered_json(judgement.trace_json);
   if (!out["witness"].is_object()) out["witness"] = Json::object();
   out["witness"].erase("trace");
   out["witness"]["case"] = judgement.told_in;

@@ -177,7 +177,7 @@ PageDiscrepancy discrepancy_of(const json& entry) {
       out.start.emplace_back(name, value.is_number()       ? number(value.get<double>())
                                    : value.is_string()     ? value.get<std::string>()
                                    : value.is_structured() ? "..."
-                                                           : value.dump());
+                                                           : base::json_text(value));
     }
   }
   return out;
@@ -207,7 +207,7 @@ void add_criterion(const json& criterion, PageData& page) {
 }  // namespace
 
 bool add_report(const std::string& source, PageData& page) {
-  const auto report = json::parse(source, nullptr, false);
+  const auto report = base::parse_json(source);
   if (!report.is_object() || base::json_member(report, "traces") == nullptr) return false;
   page.scenario = text(report, "scenario");
   page.verdict = text(report, "verdict");

@@ -31,7 +31,7 @@ bool is_finished(const fs::path& folder) {
   base::DiagnosticSink unread;
   const auto text = base::read_file_of(folder, "report.json", unread);
   if (!text) return false;
-  const auto report = nlohmann::json::parse(*text, nullptr, false);
+  const auto report = base::parse_json(*text);
   const auto* verdict = base::json_member(report, "verdict");
   return verdict != nullptr && *verdict != "inconclusive";
 }

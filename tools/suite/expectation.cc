@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "compiler/base/json.h"
 #include "harness/confidence/rate_evidence.h"
 
 namespace parallax::tools {
@@ -61,7 +62,7 @@ void compare_cause(const harness::CauseExpectation& expect, const Json& run,
     return;
   }
   if (expect.kind.empty()) return;
-  const auto told = Json::parse(explanation, nullptr, false);
+  const auto told = base::parse_json(explanation);
   const auto kind = member(told, "cause", "unknown").get<std::string>();
   if (kind == expect.kind) return;
   const auto words = member(told, "cause_words", "").get<std::string>();
@@ -111,7 +112,7 @@ std::string missing_evidence(const harness::RateExpectation& expect, const std::
 
 std::vector<std::string> unmet(const harness::Expectation& expect, std::string_view run_document,
                                std::string_view explanation) {
-  const auto run = Json::parse(run_document, nullptr, false);
+  const auto run = base::parse_json(run_document);
   if (run.is_discarded() || !run.is_object() || run.value("status", "") != "ok") {
     return {"the run gave no result"};
   }
@@ -152,7 +153,7 @@ std::vector<std::string> unmet(const harness::Expectation& expect, std::string_v
 
 std::vector<std::string> unmet(const harness::RateExpectation& expect,
                                std::string_view rates_document) {
-  const auto rates = Json::parse(rates_document, nullptr, false);
+  const auto rates = base::parse_json(rates_document);
   if (rates.is_discarded() || !rates.is_object() || rates.value("status", "") != "ok" ||
       rates.value("traces", Json::array()).size() != 1) {
     return {"the runs gave no rate"};
@@ -186,7 +187,7 @@ std::vector<std::string> unmet(const harness::RateExpectation& expect,
 }
 
 std::string first_error(const std::string& document) {
-  const auto json = Json::parse(document, nullptr, false);
+  const auto json = base::parse_json(document);
   if (!json.is_object()) return {};
   for (const auto& diagnostic : json.value("diagnostics", Json::array())) {
     if (diagnostic.value("severity", "") != "error") continue;
@@ -196,7 +197,7 @@ std::string first_error(const std::string& document) {
 }
 
 std::string first_discrepancy(const std::string& run_document) {
-  const auto run = Json::parse(run_document, nullptr, false);
+  const auto run = base::parse_json(run_document);
   for (const auto& found : run.value("discrepancies", Json::array())) {
     return fmt::format("{}.{}: {}", found.value("trace", std::int64_t{0}),
                        found.value("sample", std::int64_t{0}), found.value("words", ""));
@@ -205,7 +206,7 @@ std::string first_discrepancy(const std::string& run_document) {
 }
 
 std::string blame(std::string_view explanation) {
-  const auto told = Json::parse(explanation, nullptr, false);
+  const auto told = base::parse_json(explanation);
   const auto sets = member(told, "sets", Json::array());
   if (sets.empty()) return {};
   auto out = member(sets.front(), "words", "").get<std::string>();
@@ -224,7 +225,7 @@ std::string blame(std::string_view explanation) {
 }
 
 std::string frequent_causes(std::string_view rates_document) {
-  const auto rates = Json::parse(rates_document, nullptr, false);
+  const auto rates = base::parse_json(rates_document);
   const auto traces = member(rates, "traces", Json::array());
   if (traces.empty()) return {};
   const auto causes = member(traces.front(), "causes", Json::array());
@@ -238,7 +239,7 @@ std::string frequent_causes(std::string_view rates_document) {
 }
 
 bool has_failed(const std::string& document) {
-  const auto json = Json::parse(document, nullptr, false);
+  const auto json = base::parse_json(document);
   return !json.is_object() || json.value("status", "") != "ok";
 }
 

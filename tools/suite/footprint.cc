@@ -45,7 +45,7 @@ void Footprint::add(const base::Captured& child) {
   answers_ += base::sha256_hex(without_timings(child.out));
   base::DiagnosticSink unread;
   const auto text = base::read_file(file_, unread);
-  const auto json = text ? Json::parse(*text, nullptr, false) : Json();
+  const auto json = text ? base::parse_json(*text) : Json();
   std::error_code error;
   fs::remove(file_, error);
   const auto* inputs = base::json_member(json, "inputs");
@@ -84,7 +84,7 @@ void Footprint::into(CaseResult& result) const {
 }
 
 std::string without_timings(const std::string& answer) {
-  auto json = Json::parse(answer, nullptr, false);
+  auto json = base::parse_json(answer);
   if (!json.is_structured()) return answer;
   remove_timings(json);
   return base::json_text(json);

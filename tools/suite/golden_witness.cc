@@ -97,7 +97,7 @@ std::string jsonl_of(const ListedTrace& trace) {
 }
 
 std::string refusal_of(std::string_view replay_document) {
-  const auto json = nlohmann::json::parse(replay_document, nullptr, false);
+  const auto json = base::parse_json(replay_document);
   const auto* list = base::json_member(json, "list");
   if (list == nullptr || !list->is_array() || list->empty()) return {};
   const auto& first = list->front();

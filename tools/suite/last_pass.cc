@@ -81,7 +81,7 @@ std::optional<LastPass> LastPasses::find(const SuiteCase& one) const {
     if (at->path().extension() != ".json") continue;
     const auto text = base::read_file(at->path(), unread, kMaxStoredBytes);
     const auto inner = text ? unsealed(*text) : std::nullopt;
-    const auto json = inner ? Json::parse(*inner, nullptr, false) : Json();
+    const auto json = inner ? base::parse_json(*inner) : Json();
     const auto* program = base::json_member(json, "program");
     const auto* definition = base::json_member(json, "definition");
     const auto* texts = base::json_member(json, "texts");

@@ -7,12 +7,12 @@ namespace parallax::tools {
 
 std::string sealed(const std::string& document) {
   const nlohmann::json json = {{"sha256", base::sha256_hex(document)},
-                               {"entry", nlohmann::json::parse(document)}};
+                               {"entry", base::parse_json(document)}};
   return base::json_text(json) + '\n';
 }
 
 std::optional<std::string> unsealed(std::string_view text) {
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const auto json = base::parse_json(text);
   const auto* hash = base::json_member(json, "sha256");
   const auto* entry = base::json_member(json, "entry");
   if (hash == nullptr || entry == nullptr || !hash->is_string()) return std::nullopt;

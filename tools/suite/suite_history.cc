@@ -51,13 +51,13 @@ std::string hash_of(const std::vector<InputFile>& inputs) {
 }  // namespace
 
 void note_verdict(std::string_view run_document, CaseResult& result) {
-  const auto run = Json::parse(run_document, nullptr, false);
+  const auto run = base::parse_json(run_document);
   result.verdict = value_or<std::string>(run, "verdict", {});
 }
 
 void note_rates(std::string_view rates_document, CaseResult& result) {
   constexpr std::size_t kMostCauses = 20;  // the most frequent ones come first
-  const auto rates = Json::parse(rates_document, nullptr, false);
+  const auto rates = base::parse_json(rates_document);
   for (const auto& trace : list_of(rates, "traces")) {
     const auto head = fmt::format("trace {}: ", value_or<std::int64_t>(trace, "trace", 0));
     const auto* any = base::json_member(trace, "any");

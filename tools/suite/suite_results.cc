@@ -95,7 +95,7 @@ Json to_json(const CaseResult& result) {
           {"repeatable", result.repeatable},
           {"ledger", result.ledger},
           {"verdict", result.verdict},
-          {"rates", Json::parse(encode_rates(result.rates))},
+          {"rates", base::parse_json(encode_rates(result.rates))},
           {"shown", result.shown},
           {"gone", result.gone}};
 }
@@ -183,14 +183,14 @@ bool SuiteIdentity::permits_more_than(const SuiteIdentity& other) const {
 std::string result_text(const CaseResult& result) { return base::json_text(to_json(result)); }
 
 std::optional<CaseResult> result_from_text(std::string_view text) {
-  return result_from_json(Json::parse(text, nullptr, false));
+  return result_from_json(base::parse_json(text));
 }
 
 base::Result<StoredResults> read_results(const fs::path& folder, base::DiagnosticSink& sink) {
   const auto path = folder / kResultsFile;
   base::DiagnosticSink unread;
   const auto text = base::read_file(path, unread);
-  const auto json = text ? Json::parse(*text, nullptr, false) : Json();
+  const auto json = text ? base::parse_json(*text) : Json();
   const auto* cases = base::json_member(json, "cases");
   const auto refused = [&] {
     return sink.error_about(base::DiagnosticCode::kNoEarlierResults, path.string());

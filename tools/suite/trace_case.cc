@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
 #include "compiler/base/path_gate.h"
 #include "compiler/base/whole_number.h"
 #include "tools/suite/case_process.h"
@@ -75,7 +76,7 @@ CommandWords traces_command(const harness::ManifestCase& one, const RunnerOption
 /// What the document of `parallax traces --json` says against the expected number.
 void compare_count(const harness::TraceExpectation& expect, const std::string& document,
                    CaseResult& result) {
-  const auto found = nlohmann::json::parse(document, nullptr, false);
+  const auto found = base::parse_json(document);
   if (found.is_discarded() || !found.is_object() || found.value("status", "") != "ok") {
     result.problems.push_back("the program printed no result");
     return;
@@ -95,7 +96,7 @@ void compare_count(const harness::TraceExpectation& expect, const std::string& d
 void add_blame(const harness::ManifestCase& one, const std::string& document,
                const RunnerOptions& options, Footprint& footprint, const std::atomic<bool>& stop,
                CaseResult& result) {
-  const auto found = nlohmann::json::parse(document, nullptr, false);
+  const auto found = base::parse_json(document);
   if (!found.is_object() || found.value("traces", std::int64_t{-1}) != 0) return;
   CommandWords words;
   if (one.horizon) words.options = {"--horizon", std::to_string(*one.horizon)};

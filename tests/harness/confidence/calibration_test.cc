@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
+#include <utility>
 
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/criterion.h"
@@ -197,6 +199,8 @@ TEST_CASE("calibration: even the worst peeker is wrong at most as often as the b
 double stop_share_of_losses(const CriterionSpec& spec, double p, std::uint64_t loops,
                             std::int64_t cap) {
   const auto criterion = make_criterion(spec);
+  // Such runs differ in nothing but their number, so that one decision stands for all loops.
+  std::map<std::pair<std::int64_t, std::int64_t>, bool> stops;
   std::uint64_t stopped = 0;
   for (std::uint64_t loop = 0; loop < loops; ++loop) {
     const CounterRng rng({.campaign_seed = 4242, .sample = loop});
@@ -207,7 +211,9 @@ double stop_share_of_losses(const CriterionSpec& spec, double p, std::uint64_t l
       } else {
         tally.add_clean_elsewhere();
       }
-      if (!criterion->decide(tally).stop) continue;
+      const auto [known, is_new] = stops.try_emplace({tally.runs(), tally.lost()}, false);
+      if (is_new) known->second = criterion->decide(tally).stop;
+      if (!known->second) continue;
       // What it then says is what it was asked to exclude, at its own level.
       CHECK(stated_bound(tally, spec).epsilon <= spec.epsilon);
       ++stopped;
