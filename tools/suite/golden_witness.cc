@@ -106,7 +106,7 @@ std::string refusal_of(std::string_view replay_document) {
     return found == nullptr ? nlohmann::json() : *found;
   };
   if (!member("text").is_string() || !member("timepoint").is_number_integer()) return {};
-  auto out = fmt::format("ruled out by timepoint {}: {}", member("timepoint").get<std::int64_t>(),
+  auto out = fmt::format("ruled out at timepoint {}: {}", member("timepoint").get<std::int64_t>(),
                          member("text").get<std::string>());
   if (member("file").is_string() && member("line").is_number_integer()) {
     out += fmt::format("\n  {}:{}", member("file").get<std::string>(),

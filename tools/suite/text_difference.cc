@@ -64,7 +64,10 @@ void append(std::string& out, const Edit& edit) {
   auto line = edit.line;
   const bool ended = line.ends_with('\n');
   if (ended) line.remove_suffix(1);
-  out += fmt::format("{} {}{}\n", edit.mark, line, ended ? "" : " (no line end)");
+  const bool returns = edit.mark != ' ' && line.ends_with('\r');  // which nobody would see
+  if (returns) line.remove_suffix(1);
+  out += fmt::format("{} {}{}{}\n", edit.mark, line, returns ? " (carriage return)" : "",
+                     ended ? "" : " (no line end)");
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ TEST_CASE("a golden file alone names a trace that was lost, the axiom, and one t
   CHECK(holds(lost, "lost: trace "));
   CHECK(holds(lost,
               " of shop/expected/listed.txt\n  0\n      > Pay(Bob)\n  1\n      + Paid(Bob)\n"
-              "ruled out by timepoint 1: axiom: Happens(Pay(Bob),0) is true\n"
+              "ruled out at timepoint 1: axiom: Happens(Pay(Bob),0) is true\n"
               "  shop/calm.e:3"));
   CHECK_FALSE(holds(lost, "gained: "));
   cli.write("shop/calm.e", "\n");

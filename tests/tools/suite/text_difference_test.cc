@@ -42,6 +42,11 @@ TEST_CASE("a missing line end is a difference") {
   CHECK(text_difference("a\n", "a") == "- expected, + found\n@ line 1\n- a\n+ a (no line end)\n");
 }
 
+TEST_CASE("a carriage return that only one of them has is seen") {
+  CHECK(text_difference("a\r\n", "a\n") ==
+        "- expected, + found\n@ line 1\n- a (carriage return)\n+ a\n");
+}
+
 TEST_CASE("a long difference is cut and counted") {
   std::string long_text;
   for (int i = 0; i < 100; ++i) long_text += std::to_string(i) + '\n';
