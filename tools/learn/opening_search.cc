@@ -260,7 +260,7 @@ std::vector<LearnedRule> narrower_openings(const OpeningProblem& problem, const 
   };
   const RuleHead about{rule.kind, rule.fluent, rule.variables, rule.terms};
   for (const auto& unit :
-       units_that_hold(about, vocabulary, states[pattern->state], binding, UnitStage::kPlain)) {
+       units_that_hold(about, vocabulary, states[pattern->state], binding, UnitStage::kConstants)) {
     auto next = rule;
     if (next.units.size() < kMostConditions) {
       next.units.push_back(unit);
