@@ -12,7 +12,8 @@
 #include "harness/campaign/journal.h"
 #include "harness/campaign/run_setup.h"
 #include "harness/campaign/trace_campaign.h"
-#include "harness/confidence/clean_runs.h"
+#include "harness/campaign/trace_family.h"
+#include "harness/confidence/family.h"
 #include "harness/sampling/sampler.h"
 
 namespace parallax::harness {
@@ -30,10 +31,10 @@ class Campaign {
         folder_(std::move(folder)),
         recorded_(std::move(recorded)),
         traces_(traces),
+        family_(traces, scenario.criterion.family, scenario.limits.max_traces, sink),
         options_(options),
         files_(files),
         sink_(sink),
-        criterion_(make_criterion(scenario.criterion)),
         recorder_(options.record, options.run_dir),
         bench_(
             scenario, traces, make_simulator,
@@ -75,7 +76,7 @@ class Campaign {
     const auto max_traces = scenario_.limits.max_traces;
     for (;;) {
       if (bench_.stopped()) return false;
-      auto trace = traces_.next();
+      auto trace = family_.next();
       if (!trace) return sink_.already_reported();
       if (!*trace) {
         result_.exploration = traces_.exploration();
@@ -107,8 +108,8 @@ class Campaign {
     auto trial = Trial::prepare(bench_, std::move(trace));
     if (!trial || !announce(trial->plan())) return sink_.already_reported();
     trial->continue_from(*journal_);
-    const TraceContext context{scenario_, options_,  *criterion_, run_limit(scenario_).max_runs,
-                               bench_,    *journal_, recorder_,   sink_};
+    const TraceContext context{scenario_, options_, family_, bench_,          *journal_,
+                               recorder_, files_,   sink_,   warned_of_limit_};
     auto outcome = run_trace(context, *std::move(trial));
     if (!outcome) return sink_.already_reported();
     result_.simulations += outcome->result.simulations;
@@ -170,6 +171,7 @@ class Campaign {
     const auto is = [&](CampaignVerdict verdict) {
       return [verdict](const TraceResult& trace) { return trace.verdict == verdict; };
     };
+    claim_family();
     const auto& traces = result_.traces;
     result_.interrupted = !complete;
     if (std::any_of(traces.begin(), traces.end(), is(CampaignVerdict::kDiscrepancy))) {
@@ -182,20 +184,45 @@ class Campaign {
     return std::move(result_);
   }
 
+  /// What is claimed of all traces together.
+  void claim_family() {
+    result_.spending = family_.rule();
+    if (!result_.spending) return;
+    std::vector<FamilyMember> members;
+    for (const auto& trace : result_.traces) {
+      members.push_back({trace.clean, trace.lost, trace.simulations,
+                         trace.verdict == CampaignVerdict::kDiscrepancy, trace.rejected > 0,
+                         trace.trace->other_initial_states == base::Known::kYes, trace.stated});
+    }
+    FamilyScope scope;
+    scope.split_initial = options_.split_initial;
+    const auto traces = std::ssize(members), all = result_.spending->traces().value_or(traces);
+    scope.completeness =
+        traces < all ? fmt::format("{} of {} traces {} not simulated", all - traces, all,
+                                   all - traces == 1 ? "was" : "were")
+        : result_.exploration == "all traces explored" ? "the solver finds no other trace"
+        : result_.exploration == "complete up to bound"
+            ? fmt::format("the solver finds no other trace up to the horizon of {}",
+                          scenario_.horizon)
+            : "the model may have other traces";
+    result_.claim = family_claim(members, scenario_.criterion, scenario_.comparison(), scope);
+  }
+
   const Scenario& scenario_;
   RunFolder folder_;      // until the journal takes it over
   JournalText recorded_;  // likewise
   TraceFeed& traces_;
+  TraceFamily family_;
   const CampaignOptions& options_;
   base::SourceFiles& files_;
   base::DiagnosticSink& sink_;
   Clock::time_point started_ = Clock::now();
-  std::unique_ptr<ConfidenceCriterion> criterion_;
   std::unique_ptr<Journal> journal_;
   CampaignResult result_;
   std::vector<TraceLine> lines_;
   std::vector<SampleRecord> consumed_;
   bool limited_ = false;  // by max_traces
+  bool warned_of_limit_ = run_limit(scenario_).max_runs < run_limit(scenario_).needed;
   RunRecorder recorder_;
   TrialBench bench_;  // last, so that its threads end before what they use
 };

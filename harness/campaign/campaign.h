@@ -84,10 +84,10 @@ base::Result<CampaignResult> run_loop_campaign(const Scenario& scenario, LoopFee
                                                base::SourceFiles& files,
                                                base::DiagnosticSink& sink);
 
-/// Reports kRunLimitTooLow where the criterion can never be met, at the scenario's number unless
-/// another one took its place.
-void warn_of_low_limit(const Scenario& scenario, const base::SourceFiles& files,
-                       base::DiagnosticSink& sink);
+/// Reports kRunLimitTooLow, and says so, where the criterion can never be met, at the scenario's
+/// number unless another one took its place. `share`: of the error that a trace may spend.
+bool warn_of_low_limit(const Scenario& scenario, const base::SourceFiles& files,
+                       base::DiagnosticSink& sink, double share = 1.0);
 
 /// A stable hash over the texts of the files read so far, from the one of number `first` on, in
 /// order of loading; names do not count.

@@ -11,6 +11,7 @@
 #include "harness/campaign/trace_input.h"
 #include "harness/confidence/comparison.h"
 #include "harness/confidence/criterion_spec.h"
+#include "harness/confidence/spending.h"
 #include "harness/region/start_share.h"
 #include "harness/region/state_mapping.h"
 #include "harness/simulator/simulator.h"
@@ -125,6 +126,8 @@ struct TraceResult {
   std::int64_t strayed = 0;
   double certified_level = 0.0;    // C
   double certified_epsilon = 1.0;  // with confidence C, p is below this
+  double error_share = 1.0;        // of 1-C that the bound may spend
+  CertifiedBound stated;           // by the criterion itself
   std::optional<std::int64_t> paper_stopped_at;
   std::string paper_variant;             // "paper-literal, n = 2"
   std::vector<std::string> not_covered;  // fluents without regression evidence
@@ -154,6 +157,10 @@ struct CampaignResult {
   bool failed = false;              // an error ended it, after the traces that are here
   bool journal_open = false;  // if not, the run folder is not this run's, or holds nothing of it
   CriterionSpec criterion;
+  /// How the traces share the error. None: each is claimed by itself, or the run ended before that
+  /// was of interest.
+  std::optional<SpendingRule> spending;
+  std::string claim;  // of all traces together, one sentence; empty: there is none
   Comparison comparison = Comparison::kEveryStep;
   Execution execution = Execution::kOpenLoop;
   std::vector<ComparedFluents> compared;  // by symbol

@@ -99,6 +99,7 @@ void read_criterion(const Fields& fields, std::string& wrong, RecordedOptions& o
   if (const auto kind = fields.word("kind", kCriterionWords)) {
     out.criterion = static_cast<CriterionKind>(*kind);
   }
+  set_word(fields, "family", kFamilyWords, out.family);
   fields.count("runs");
   out.criterion_runs = fields.get<std::int64_t>("runs");
   out.confidence_level = fields.share("confidence");
@@ -176,6 +177,7 @@ void RecordedOptions::apply(Scenario& scenario, CampaignOptions& options) const 
   spec.confidence_level = confidence_level.value_or(spec.confidence_level);
   spec.epsilon = epsilon.value_or(spec.epsilon);
   spec.runs = criterion_runs.value_or(0);
+  spec.family = family;
   spec.paper = paper.value_or(spec.paper);
   scenario.match_model = match_model.value_or(scenario.match_model);
   scenario.compare = compare.value_or(scenario.comparison());

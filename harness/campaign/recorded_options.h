@@ -18,6 +18,7 @@ struct Scenario;
 /// journal that does not say it, as older ones.
 struct RecordedOptions {
   std::optional<CriterionKind> criterion;
+  Family family = Family::kPerTrace;  // older journals know no other
   std::optional<std::int64_t> criterion_runs;
   std::optional<double> confidence_level, epsilon;
   std::optional<PaperRuleSpec> paper;

@@ -39,6 +39,7 @@ std::string criterion_json(const CriterionSpec& criterion) {
       {"kind", to_string(criterion.kind)},
       {"confidence", criterion.confidence_level},
       {"epsilon", criterion.epsilon},
+      {"family", to_string(criterion.family)},
       {"paper",
        {{"preset", paper.preset},
         {"sigma", word(paper.sigma)},

@@ -21,8 +21,9 @@ constexpr std::int64_t kLeastRunLimit = 300;
 
 }  // namespace
 
-RunLimit run_limit(const Scenario& scenario) {
-  const auto& criterion = scenario.criterion;
+RunLimit run_limit(const Scenario& scenario, double share) {
+  auto criterion = scenario.criterion;
+  criterion.share = share;
   RunLimit limit{scenario.limits.max_runs, planned_runs(criterion)};
   if (limit.max_runs == 0) limit.max_runs = std::max(kLeastRunLimit, 2 * limit.needed);
   // It looks once: what came later would have no part in its answer.
@@ -131,15 +132,23 @@ void add_simulator_caveats(const SimulatorInfo& simulator, const Discrepancy* fo
   }
 }
 
-void warn_of_low_limit(const Scenario& scenario, const base::SourceFiles& files,
-                       base::DiagnosticSink& sink) {
-  const auto limit = run_limit(scenario);
-  if (limit.max_runs >= limit.needed) return;
+bool warn_of_low_limit(const Scenario& scenario, const base::SourceFiles& files,
+                       base::DiagnosticSink& sink, double share) {
+  const auto limit = run_limit(scenario, share);
+  if (limit.max_runs >= limit.needed) return false;
   const auto& source = scenario.limits.max_runs_source;
   const bool written = source && files.text(*source) == std::to_string(limit.max_runs);
-  sink.warning(DiagnosticCode::kRunLimitTooLow,
-               written ? *source : base::SourceRange{scenario.source, 0, 0}, limit.max_runs,
-               limit.needed);
+  auto warning = sink.warning(DiagnosticCode::kRunLimitTooLow,
+                              written ? *source : base::SourceRange{scenario.source, 0, 0},
+                              limit.max_runs, limit.needed);
+  const auto alone = run_limit(scenario).needed;
+  if (alone < limit.needed) {
+    warning.note(fmt::format(
+        "traces share the error, so that the claim is about all of them together; with `family: "
+        "per-trace` each needs {}",
+        alone));
+  }
+  return true;
 }
 
 }  // namespace parallax::harness

@@ -24,8 +24,8 @@ struct RunLimit {
 };
 
 /// `limits: max_runs`, or twice what the criterion needs and at least 300 where none is given: room
-/// for a lost run, after which more are needed.
-RunLimit run_limit(const Scenario& scenario);
+/// for a lost run, after which more are needed. `share`: of the error that the trace may spend.
+RunLimit run_limit(const Scenario& scenario, double share = 1.0);
 
 /// The folder of a run, and what it has on record.
 struct ClaimedRun {

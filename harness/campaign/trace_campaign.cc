@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <memory>
 #include <set>
 
 #include "harness/campaign/judge.h"
@@ -27,7 +28,10 @@ class TraceCampaign {
         trial_(std::move(trial)),
         tally_(regression_frame(*context.scenario.mapping, trial_.start(),
                                 context.bench.fluents().ground(),
-                                as_set(trace().holds(trace().event_count())))) {
+                                as_set(trace().holds(trace().event_count())))),
+        spec_(context.scenario.criterion) {
+    set_share(1.0);
+    if (context_.family.is_settled()) (void)share_error();
     auto& result = outcome_.result;
     result.trace = trial_.plan().trace;
     result.start_region = trial_.start().dimensions;
@@ -37,10 +41,15 @@ class TraceCampaign {
 
   base::Result<TraceOutcome> run() {
     for (;;) {
-      decision_ = context_.criterion.decide(tally_);
+      decision_ = criterion_->decide(tally_);
+      // Enough for a trace by itself. It may only ask for more to share the error with others.
+      if ((decision_.stop || tally_.runs() >= max_runs_) && !is_shared_) {
+        if (!share_error()) return finished(TraceEnd::kStopped);
+        decision_ = criterion_->decide(tally_);
+      }
       report_progress();
       if (decision_.stop) return finished(TraceEnd::kDecided);
-      if (tally_.runs() >= context_.max_runs) return finished(TraceEnd::kRunLimit);
+      if (tally_.runs() >= max_runs_) return finished(TraceEnd::kRunLimit);
       trial_.submit_to(last_wanted());
       auto sample = trial_.next();
       if (!sample || !check_written(context_.journal, context_.options, context_.sink)) {
@@ -54,13 +63,35 @@ class TraceCampaign {
  private:
   const CampaignTrace& trace() const { return *trial_.plan().trace; }
 
+  void set_share(double share) {
+    spec_.share = share;
+    criterion_ = make_criterion(spec_);
+    max_runs_ = run_limit(context_.scenario, share).max_runs;
+  }
+
+  /// Finds out what error the trace may spend. False when stopped on the way.
+  bool share_error() {
+    if (is_shared_) return true;
+    const auto share = context_.family.share();
+    // A feed that cannot tell leaves the trace by itself, and so it is claimed.
+    if (!share && context_.bench.stopped()) return false;
+    is_shared_ = true;
+    is_alone_ = !share;
+    set_share(share.value_or(1.0));
+    if (share && !context_.warned_of_limit) {
+      context_.warned_of_limit =
+          warn_of_low_limit(context_.scenario, context_.files, context_.sink, *share);
+    }
+    return true;
+  }
+
   /// Workers run ahead of what is consumed, but not beyond what the criterion still asks for.
   std::int64_t last_wanted() const {
     const std::int64_t jobs = context_.options.jobs;
     const std::int64_t window = jobs == 1 ? 1 : 2 * jobs;
     const auto next = trial_.next_sample();
-    const auto needed = std::max(decision_.runs_needed.value_or(context_.max_runs), next);
-    return std::min({next + window - 1, needed, context_.max_runs});
+    const auto needed = std::max(decision_.runs_needed.value_or(max_runs_), next);
+    return std::min({next + window - 1, needed, max_runs_});
   }
 
   /// What the sample ends, if anything.
@@ -153,29 +184,33 @@ class TraceCampaign {
     CampaignProgress progress;
     progress.trace = trace().number;
     progress.done = tally_.runs();
-    progress.needed =
-        std::min(decision_.runs_needed.value_or(context_.max_runs), context_.max_runs);
+    progress.needed = std::min(decision_.runs_needed.value_or(max_runs_), max_runs_);
     progress.runs_per_s = elapsed.count() > 0.0 ? static_cast<double>(made) / elapsed.count() : 0.0;
     context_.options.progress(progress);
   }
 
   TraceOutcome finished(TraceEnd end) {
     trial_.end();
-    const auto& criterion = context_.scenario.criterion;
+    // Of a discrepancy that ends the run nothing is claimed that others would have to share.
+    const bool is_last = end == TraceEnd::kDiscrepancy && !context_.options.keep_going;
+    if (!(is_last && trace().number == 1) && end != TraceEnd::kStopped) (void)share_error();
+    if (!is_shared_ && end == TraceEnd::kStopped) is_alone_ = true;
     auto& result = outcome_.result;
     outcome_.end = end;
     result.verdict = end == TraceEnd::kDecided       ? CampaignVerdict::kNoDiscrepancy
                      : end == TraceEnd::kDiscrepancy ? CampaignVerdict::kDiscrepancy
                                                      : CampaignVerdict::kInconclusive;
     result.simulations = tally_.runs();
-    const auto bound = certified_bound(tally_, criterion.confidence_level);
+    const auto bound = certified_bound(tally_, spec_.confidence_level, spec_.share);
     result.certified_level = bound.confidence_level;
     result.certified_epsilon = bound.epsilon;
-    result.paper_stopped_at = paper_stopped_at(tally_, criterion.paper, criterion.confidence_level);
-    result.paper_variant = paper_variant(tally_, criterion.paper);
+    result.error_share = spec_.share;
+    result.stated = stated_bound(tally_, spec_);
+    result.paper_stopped_at = paper_stopped_at(tally_, spec_.paper, spec_.confidence_level);
+    result.paper_variant = paper_variant(tally_, spec_.paper);
     result.not_covered = tally_.frame().not_covered;
-    result.claim = claim(tally_, criterion, context_.scenario.comparison());
-    result.caveats = caveats(tally_, criterion, result.paper_stopped_at);
+    result.claim = claim(tally_, spec_, context_.scenario.comparison());
+    result.caveats = caveats(tally_, spec_, result.paper_stopped_at);
     add_own_caveats(result);
     return std::move(outcome_);
   }
@@ -209,9 +244,14 @@ class TraceCampaign {
           "other initial states lead to the same events; only the first, in the model's order, was "
           "sampled (`run --split-initial` samples each)");
     }
-    const auto kind = context_.criterion.kind();
+    if (is_alone_) {
+      result.caveats.push_back(
+          "the claim is about this trace by itself: how many there are was not known when it "
+          "ended");
+    }
+    const auto kind = criterion_->kind();
     const bool looks_once = kind == CriterionKind::kClopperPearson;
-    if (!context_.criterion.is_anytime_valid() && !looks_once) {
+    if (!criterion_->is_anytime_valid() && !looks_once) {
       result.caveats.push_back(fmt::format(
           "the criterion `{}` looks again after every run and is not made for it: its level is not "
           "the probability of a false stop",
@@ -238,6 +278,11 @@ class TraceCampaign {
   Trial trial_;
   std::map<std::size_t, Failures> failures_;  // in clean runs, by event
   Tally tally_;
+  CriterionSpec spec_;  // with the share of the error that the trace may spend
+  std::unique_ptr<ConfidenceCriterion> criterion_;
+  std::int64_t max_runs_ = 0;
+  bool is_shared_ = false;  // the share is known
+  bool is_alone_ = false;   // it is not, and the trace is claimed by itself
   Decision decision_;
   TraceOutcome outcome_;
   Clock::time_point started_ = Clock::now();

@@ -5,6 +5,7 @@
 
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/journal.h"
+#include "harness/campaign/trace_family.h"
 #include "harness/campaign/trial.h"
 #include "harness/confidence/criterion.h"
 
@@ -29,12 +30,13 @@ struct TraceOutcome {
 struct TraceContext {
   const Scenario& scenario;
   const CampaignOptions& options;
-  const ConfidenceCriterion& criterion;
-  std::int64_t max_runs;
+  TraceFamily& family;
   TrialBench& bench;
   const Journal& journal;
   RunRecorder& recorder;
+  const base::SourceFiles& files;
   base::DiagnosticSink& sink;
+  bool& warned_of_limit;
 };
 
 /// Takes samples of one trace until the criterion, a discrepancy or a limit ends it.

@@ -58,8 +58,9 @@ class TraceFeed {
   /// Of all its traces: the ground fluents and events of the model.
   virtual runtime::Symbols symbols() const = 0;
   /// Does the model let the events of `trace`, from its initial state, lead through states in which
-  /// each of these fluents, by timepoint, has this value? Asked about the trace that was given
-  /// last, and only if it has `other_outcomes`. Undecided where the stop flag is raised meanwhile.
+  /// each of these fluents, by timepoint, has this value? Asked about a trace that was given,
+  /// though others may have been given since, and only if it has `other_outcomes`. Undecided where
+  /// the stop flag is raised meanwhile.
   virtual base::Known admits(const CampaignTrace& trace,
                              const std::vector<std::map<compiler::FluentId, bool>>& observed) {
     (void)trace, (void)observed;

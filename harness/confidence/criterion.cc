@@ -39,11 +39,34 @@ std::string rejected_text(const Tally& tally) {
 
 }  // namespace
 
-CertifiedBound certified_bound(const Tally& tally, double confidence_level) {
+std::string_view source_of(CriterionKind kind) {
+  switch (kind) {
+    case CriterionKind::kCleanRuns:
+      return "Hanley and Lippman-Hand 1983, If nothing goes wrong, is everything all right?";
+    case CriterionKind::kPaper:
+      return "Meywerk et al., Simulation-Based Debugging of Formal Environment Models, III-C";
+    case CriterionKind::kAnytime:
+      return "Ville 1939; Howard, Ramdas, McAuliffe, Sekhon 2021, Time-uniform confidence "
+             "sequences";
+    case CriterionKind::kClopperPearson:
+      return "Clopper and Pearson 1934, The use of confidence or fiducial limits";
+  }
+  return {};
+}
+
+bool may_be_watched(CriterionKind kind) {
+  return kind == CriterionKind::kCleanRuns || kind == CriterionKind::kAnytime;
+}
+
+CertifiedBound certified_bound(const Tally& tally, double confidence_level, double share) {
+  CriterionSpec spec;
+  spec.confidence_level = confidence_level;
+  spec.share = share;
+  const double own = spec.trace_level();
   const std::int64_t failures = tally.lost() + tally.mismatch();
-  if (failures == 0) return {confidence_level, bound_after(tally.clean(), confidence_level)};
+  if (failures == 0) return {confidence_level, bound_after(tally.clean(), own)};
   return {std::max(0.0, 1.0 - 2.0 * (1.0 - confidence_level)),
-          mixture_upper(failures, tally.runs(), confidence_level)};
+          mixture_upper(failures, tally.runs(), own)};
 }
 
 CleanRunsCriterion::CleanRunsCriterion(double confidence_level, double epsilon)
@@ -53,7 +76,6 @@ CleanRunsCriterion::CleanRunsCriterion(double confidence_level, double epsilon)
 
 Decision CleanRunsCriterion::decide(const Tally& tally) const {
   Decision decision;
-  decision.certified = certified_bound(tally, confidence_level_);
   if (tally.mismatch() > 0) {
     decision.why = "a run gave a discrepancy";
     return decision;
@@ -76,7 +98,6 @@ PaperCriterion::PaperCriterion(double confidence_level, PaperRuleSpec spec)
 
 Decision PaperCriterion::decide(const Tally& tally) const {
   Decision decision;
-  decision.certified = certified_bound(tally, confidence_level_);
   if (tally.mismatch() > 0) {
     decision.why = "a run gave a discrepancy";
     return decision;
@@ -97,7 +118,6 @@ AnytimeCriterion::AnytimeCriterion(double confidence_level, double epsilon)
 
 Decision AnytimeCriterion::decide(const Tally& tally) const {
   Decision decision;
-  decision.certified = certified_bound(tally, confidence_level_);
   if (tally.mismatch() > 0) {
     decision.why = "a run gave a discrepancy";
     return decision;
@@ -116,7 +136,6 @@ FixedRunsCriterion::FixedRunsCriterion(double confidence_level, double epsilon, 
 
 Decision FixedRunsCriterion::decide(const Tally& tally) const {
   Decision decision;
-  decision.certified = certified_bound(tally, confidence_level_);
   decision.runs_needed = runs_;
   if (tally.mismatch() > 0) {
     decision.why = "a run gave a discrepancy";
@@ -129,19 +148,19 @@ Decision FixedRunsCriterion::decide(const Tally& tally) const {
 }
 
 CertifiedBound stated_bound(const Tally& tally, const CriterionSpec& spec) {
-  const double level = spec.confidence_level;
+  const double level = spec.confidence_level, own = spec.trace_level();
   const std::int64_t failures = tally.lost() + tally.mismatch();
   if (spec.kind == CriterionKind::kAnytime && tally.runs() > 0) {
-    return {level, mixture_upper(failures, tally.runs(), level)};
+    return {level, mixture_upper(failures, tally.runs(), own)};
   }
   if (spec.kind == CriterionKind::kClopperPearson && tally.runs() == planned_runs(spec)) {
-    return {level, clopper_pearson_upper(failures, tally.runs(), level)};
+    return {level, clopper_pearson_upper(failures, tally.runs(), own)};
   }
-  return certified_bound(tally, level);
+  return certified_bound(tally, level, spec.share);
 }
 
 std::int64_t planned_runs(const CriterionSpec& spec) {
-  const double level = spec.confidence_level;
+  const double level = spec.trace_level();
   switch (spec.kind) {
     case CriterionKind::kCleanRuns:
       return runs_needed(level, spec.epsilon);
@@ -158,13 +177,13 @@ std::int64_t planned_runs(const CriterionSpec& spec) {
 std::unique_ptr<ConfidenceCriterion> make_criterion(const CriterionSpec& spec) {
   switch (spec.kind) {
     case CriterionKind::kCleanRuns:
-      return std::make_unique<CleanRunsCriterion>(spec.confidence_level, spec.epsilon);
+      return std::make_unique<CleanRunsCriterion>(spec.trace_level(), spec.epsilon);
     case CriterionKind::kPaper:
       return std::make_unique<PaperCriterion>(spec.confidence_level, spec.paper);
     case CriterionKind::kAnytime:
-      return std::make_unique<AnytimeCriterion>(spec.confidence_level, spec.epsilon);
+      return std::make_unique<AnytimeCriterion>(spec.trace_level(), spec.epsilon);
     case CriterionKind::kClopperPearson:
-      return std::make_unique<FixedRunsCriterion>(spec.confidence_level, spec.epsilon,
+      return std::make_unique<FixedRunsCriterion>(spec.trace_level(), spec.epsilon,
                                                   planned_runs(spec));
   }
   PARALLAX_REQUIRE(false, "a known kind of criterion");

@@ -10,21 +10,15 @@
 #include "harness/confidence/comparison.h"
 #include "harness/confidence/criterion_spec.h"
 #include "harness/confidence/paper_rule.h"
+#include "harness/confidence/spending.h"
 #include "harness/confidence/tally.h"
 
 namespace parallax::harness {
-
-/// With this confidence, the probability of a discrepancy is below epsilon.
-struct CertifiedBound {
-  double confidence_level = 0.0;
-  double epsilon = 1.0;  // 1: nothing is known
-};
 
 /// What a criterion makes of the runs so far.
 struct Decision {
   bool stop = false;                        // enough clean runs: no discrepancy found
   std::string why;                          // "90 clean runs of 90 needed", "paper's rule: ..."
-  CertifiedBound certified;                 // whatever the criterion
   std::optional<std::int64_t> runs_needed;  // total, as far as it can be told without new failures
   std::optional<PaperVerdict> paper;        // of the criterion `paper`
 };
@@ -36,11 +30,11 @@ class ConfidenceCriterion {
   virtual Decision decide(const Tally& tally) const = 0;
   /// May one look after every run without spoiling what is stated? If not, the stated level is
   /// not the probability of a false stop.
-  virtual bool is_anytime_valid() const = 0;
+  bool is_anytime_valid() const { return may_be_watched(kind()); }
   virtual CriterionKind kind() const = 0;
 };
 
-/// `confidence_level` and `epsilon` of the spec in (0, 1).
+/// `confidence_level` and `epsilon` of the spec in (0, 1). Of one trace: by the error it may spend.
 std::unique_ptr<ConfidenceCriterion> make_criterion(const CriterionSpec& spec);
 
 /// Stop after ceil(ln(1-C) / ln(1-eps)) runs if all were clean. After lost runs, which count as
@@ -49,7 +43,6 @@ class CleanRunsCriterion final : public ConfidenceCriterion {
  public:
   CleanRunsCriterion(double confidence_level, double epsilon);
   Decision decide(const Tally& tally) const override;
-  bool is_anytime_valid() const override { return true; }
   CriterionKind kind() const override { return CriterionKind::kCleanRuns; }
 
  private:
@@ -65,7 +58,6 @@ class AnytimeCriterion final : public ConfidenceCriterion {
  public:
   AnytimeCriterion(double confidence_level, double epsilon);
   Decision decide(const Tally& tally) const override;
-  bool is_anytime_valid() const override { return true; }
   CriterionKind kind() const override { return CriterionKind::kAnytime; }
 
  private:
@@ -79,7 +71,6 @@ class FixedRunsCriterion final : public ConfidenceCriterion {
  public:
   FixedRunsCriterion(double confidence_level, double epsilon, std::int64_t runs);
   Decision decide(const Tally& tally) const override;
-  bool is_anytime_valid() const override { return false; }
   CriterionKind kind() const override { return CriterionKind::kClopperPearson; }
 
  private:
@@ -93,7 +84,6 @@ class PaperCriterion final : public ConfidenceCriterion {
  public:
   PaperCriterion(double confidence_level, PaperRuleSpec spec);
   Decision decide(const Tally& tally) const override;
-  bool is_anytime_valid() const override { return false; }
   CriterionKind kind() const override { return CriterionKind::kPaper; }
 
  private:
@@ -103,15 +93,14 @@ class PaperCriterion final : public ConfidenceCriterion {
 
 /// The bound that holds beside any criterion. Without failures: bound_after(clean) at C. With
 /// failures (lost runs and mismatches): mixture_upper at C, stated with 1 - 2(1-C), as a procedure
-/// that may end with either bound errs with at most the sum of both chances.
-CertifiedBound certified_bound(const Tally& tally, double confidence_level);
+/// that may end with either bound errs with at most the sum of both chances. With a `share` of the
+/// error the bound is that of 1 - (1-C) share, and what is stated is the confidence in the bounds
+/// of all traces together.
+CertifiedBound certified_bound(const Tally& tally, double confidence_level, double share = 1.0);
 
 /// What the criterion itself states of these runs: of `anytime` the mixture's bound at C, of
 /// `clopper-pearson` its bound at C once all its runs were made. Else the certified bound.
 CertifiedBound stated_bound(const Tally& tally, const CriterionSpec& spec);
-
-/// Runs after which it stops if all are clean; 0: it cannot be told (`paper`).
-std::int64_t planned_runs(const CriterionSpec& spec);
 
 /// Exactly what the runs of one trace support, as one sentence without a full stop: "with 99 %
 /// confidence, fewer than 5 % of start states drawn uniformly from the start region give a

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -19,6 +20,11 @@ inline constexpr std::array<std::string_view, 4> kCriterionWords = {"clean-runs"
 inline std::string_view to_string(CriterionKind kind) {
   return kCriterionWords[static_cast<std::size_t>(kind)];
 }
+
+/// Where it comes from: "Hanley and Lippman-Hand 1983: ...".
+std::string_view source_of(CriterionKind kind);
+/// May one look after every run without spoiling what is stated?
+bool may_be_watched(CriterionKind kind);
 
 enum class SigmaKind : std::uint8_t { kSse, kRmse, kResidualSd };
 enum class RootKind : std::uint8_t { kInitial, kFinal };
@@ -44,12 +50,34 @@ PaperRuleSpec paper_literal();
 /// exempt, tolerance 1 cm}.
 PaperRuleSpec paper_repaired();
 
+/// Of what the claims of several traces hold with confidence C.
+enum class Family : std::uint8_t {
+  kPerTrace,   // each by itself
+  kAllTraces,  // all of them together: each trace may spend a share of the error 1-C
+};
+inline constexpr std::array<std::string_view, 2> kFamilyWords = {"per-trace", "all-traces"};
+inline std::string_view to_string(Family family) {
+  return kFamilyWords[static_cast<std::size_t>(family)];
+}
+
 struct CriterionSpec {
   CriterionKind kind = CriterionKind::kCleanRuns;
   double confidence_level = 0.99;  // C
   double epsilon = 0.05;           // all but paper: the discrepancy probability to exclude
   std::int64_t runs = 0;           // clopper-pearson: 0 for as many as suffice if all are clean
   PaperRuleSpec paper;             // also computed, for the report, with the other kinds
+  Family family = Family::kAllTraces;
+  double share = 1.0;  // of the error 1-C that one trace may spend; derived (SpendingRule)
+
+  /// 1 less the error that the trace may spend. The paper's rule keeps C itself.
+  double trace_level() const {
+    constexpr double kMost = 1.0 - 0x1.0p-53;  // the last number below 1
+    if (share >= 1.0) return confidence_level;
+    return std::min(1.0 - (1.0 - confidence_level) * share, kMost);
+  }
 };
+
+/// Runs after which it stops if all are clean; 0: it cannot be told (`paper`).
+std::int64_t planned_runs(const CriterionSpec& spec);
 
 }  // namespace parallax::harness

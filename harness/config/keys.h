@@ -96,6 +96,7 @@ struct Key {
   static constexpr std::string_view kExtraRuns = "extra_runs";
   static constexpr std::string_view kFails = "fails";
   static constexpr std::string_view kFarPadBody = "far_pad_body";
+  static constexpr std::string_view kFamily = "family";
   static constexpr std::string_view kFast = "fast";
   static constexpr std::string_view kFingerJoint = "finger_joint";
   static constexpr std::string_view kFirstSeen = "first_seen";

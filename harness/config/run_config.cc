@@ -100,7 +100,7 @@ CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink) {
   std::vector<std::string_view> keys = {
       Key::kKind,       Key::kConfidence, Key::kEpsilon,  Key::kPreset,    Key::kSigma,
       Key::kRoot,       Key::kIntercept,  Key::kInterval, Key::kExtraRuns, Key::kExemptInherited,
-      Key::kToleranceM, Key::kBonferroni};
+      Key::kToleranceM, Key::kBonferroni, Key::kFamily};
   if (criterion.kind == CriterionKind::kClopperPearson) {
     keys.push_back(Key::kRuns);
     fields.integer(Key::kRuns, 1, kMaxRuns, criterion.runs);
@@ -108,6 +108,7 @@ CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink) {
   fields.only(std::span<const std::string_view>(keys));
   fields.number(Key::kConfidence, kOpenUnit, criterion.confidence_level);
   fields.number(Key::kEpsilon, kOpenUnit, criterion.epsilon);
+  read_enum(fields, Key::kFamily, kFamilyWords, criterion.family);
   read_paper_rule(fields, criterion.paper);
   return criterion;
 }

@@ -126,6 +126,7 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
               {"strayed", result.strayed}};
   out["certified"] = {{"confidence", result.certified_level},
                       {"epsilon", result.certified_epsilon}};
+  out["error_share"] = result.error_share;
   out["paper"] = {{"stopped_at", nullptr}, {"variant", result.paper_variant}};
   if (result.paper_stopped_at) out["paper"]["stopped_at"] = *result.paper_stopped_at;
   out["not_covered"] = result.not_covered;
@@ -240,9 +241,16 @@ Json json_of(const CampaignResult& result, bool with_timing) {
                       {"determinism", result.simulator.determinism},
                       {"timestep_s", result.simulator.timestep_s}};
   out["criterion"] = base::parse_ordered_json(criterion_json(result.criterion));
+  out["criterion"]["source"] = source_of(result.criterion.kind);
+  out["criterion"]["may_be_watched"] = may_be_watched(result.criterion.kind);
   out["execution"] = to_string(result.execution);
   out["compare"] = to_string(result.comparison);
   out["compared"] = json_of(result.compared);
+  if (result.spending) {
+    out["family"] = {
+        {"traces", nullptr}, {"error", result.spending->text()}, {"claim", result.claim}};
+    if (const auto traces = result.spending->traces()) out["family"]["traces"] = *traces;
+  }
   out["traces"] = Json::array();
   for (const auto& trace : result.traces) out["traces"].push_back(json_of(trace, result.compared));
   out["discrepancies"] = Json::array();

@@ -7,6 +7,7 @@
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/utf8.h"
 #include "harness/confidence/criterion.h"
+#include "harness/confidence/family.h"
 #include "harness/report/discrepancy_summary.h"
 #include "harness/report/report.h"
 #include "harness/report/report_words.h"
@@ -78,7 +79,9 @@ class Summary {
     const auto plain = std::string(verdict_word(result_.verdict, false));
     auto lines = wrapped(plain + (text.empty() ? "" : ": "), text, 2);
     out_ += lines.replace(0, plain.size(), word);
-    if (result_.traces.size() == 1) line("claim", result_.traces.front().claim);
+    if (result_.traces.size() == 1) {
+      line("claim", result_.claim.empty() ? result_.traces.front().claim : result_.claim);
+    }
     out_ += '\n';
   }
 
@@ -160,7 +163,9 @@ class Summary {
     const auto left_out = all.size() - shown.size();
     out_ += table(rows, 2);
     if (left_out > 0) out_ += fmt::format("  and {} more traces\n", left_out);
-    if (result_.verdict == CampaignVerdict::kNoDiscrepancy) {
+    if (!result_.claim.empty()) {
+      line("claim", result_.claim);
+    } else if (result_.verdict == CampaignVerdict::kNoDiscrepancy) {
       line("claim",
            "each holds for its trace alone: that all of them hold together is less certain");
     }
@@ -268,7 +273,7 @@ class Summary {
                         result_.comparison == Comparison::kFinal ? "compared at the end"
                                                                  : "compared at every step");
     line("made", text);
-    line("criterion", criterion_text(result_.criterion));
+    line("criterion", criterion_text(result_.criterion, result_.spending));
     if (!result_.coverage.empty()) line("covered", coverage_shares_text(result_));
   }
 

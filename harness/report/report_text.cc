@@ -7,6 +7,7 @@
 #include "harness/campaign/sample_record.h"
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/criterion.h"
+#include "harness/confidence/family.h"
 #include "harness/report/report.h"
 #include "harness/report/report_words.h"
 #include "harness/report/text_layout.h"
@@ -48,7 +49,8 @@ class TextReport {
     }
     line("simulator", text);
     line("seed", fmt::format("{}", result_.seed));
-    line("criterion", criterion_text(result_.criterion));
+    line("criterion", criterion_text(result_.criterion, result_.spending));
+    line("source", source_of(result_.criterion.kind));
     if (result_.execution == Execution::kClosedLoop) {
       line("execution", "closed-loop: the plan goes on by what the simulator reports");
     }
@@ -397,7 +399,9 @@ class TextReport {
     if (result_.traces.empty() && !result_.interrupted) {
       line("note", "no trace, so nothing was compared");
     }
-    if (result_.traces.size() > 1 && result_.verdict == CampaignVerdict::kNoDiscrepancy) {
+    if (!result_.claim.empty()) line("claimed", result_.claim);
+    if (result_.traces.size() > 1 && result_.criterion.family == Family::kPerTrace &&
+        result_.verdict == CampaignVerdict::kNoDiscrepancy) {
       line("note",
            "each claim holds for its trace alone; that all of them hold together is less "
            "certain");

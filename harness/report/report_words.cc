@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "harness/confidence/clean_runs.h"
 #include "harness/confidence/criterion.h"
 
 namespace parallax::harness {
@@ -28,28 +27,6 @@ std::string counted(std::int64_t count, std::string_view one, std::string_view m
 }
 
 std::string level(double confidence) { return fmt::format("{:.6g} %", 100.0 * confidence); }
-
-std::string criterion_text(const CriterionSpec& criterion) {
-  if (criterion.kind == CriterionKind::kPaper) {
-    return fmt::format("paper ({}) at C = {}; not a probability of error", criterion.paper.preset,
-                       level(criterion.confidence_level));
-  }
-  const auto runs = planned_runs(criterion);
-  const auto epsilon = percent_up(criterion.epsilon);
-  const auto confidence = level(criterion.confidence_level);
-  if (criterion.kind == CriterionKind::kAnytime) {
-    return fmt::format(
-        "anytime: {} clean runs exclude p >= {} with {} confidence, more after lost ones", runs,
-        epsilon, confidence);
-  }
-  if (criterion.kind == CriterionKind::kClopperPearson) {
-    return fmt::format(
-        "clopper-pearson: {} runs, then one look; p >= {} is to be excluded with {} confidence",
-        runs, epsilon, confidence);
-  }
-  return fmt::format("clean-runs: {} clean runs exclude p >= {} with {} confidence", runs, epsilon,
-                     confidence);
-}
 
 std::string end_of(PathEnd end, const std::string& detail) {
   switch (end) {

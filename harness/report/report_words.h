@@ -18,8 +18,6 @@ std::string verdict_word(CampaignVerdict verdict, bool color);
 std::string counted(std::int64_t count, std::string_view one, std::string_view many);
 /// "99 %"
 std::string level(double confidence);
-/// "clean-runs: 90 clean runs exclude p >= 5 % with 99 % confidence"
-std::string criterion_text(const CriterionSpec& criterion);
 /// "the plan fails with grasp-failed"
 std::string end_of(PathEnd end, const std::string& detail);
 /// "repeated bit for bit"

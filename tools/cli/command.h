@@ -98,6 +98,7 @@ Command draw_command();
 Command explain_command();
 Command diff_command();
 Command monitor_command();
+Command calibrate_command();
 Command worker_command();
 Command supervise_command();
 

@@ -59,6 +59,7 @@ struct RunOptions {
   bool resume = false;
   bool keep_going = false;
   std::string criterion;
+  std::string family;  // empty: as the scenario says
   JudgingOptions judging;
   std::string execution;  // empty: as the scenario says
   std::string starts;     // likewise
@@ -84,6 +85,9 @@ void apply(const RunOptions& options, harness::Scenario& scenario) {
   for (const auto kind : {harness::CriterionKind::kCleanRuns, harness::CriterionKind::kAnytime,
                           harness::CriterionKind::kClopperPearson}) {
     if (options.criterion == to_string(kind)) criterion.kind = kind;
+  }
+  for (const auto family : {harness::Family::kPerTrace, harness::Family::kAllTraces}) {
+    if (options.family == to_string(family)) criterion.family = family;
   }
   apply(options.judging, scenario);
   if (options.confidence > 0) criterion.confidence_level = options.confidence;
@@ -280,6 +284,12 @@ Command run_command() {
   command.option("--criterion", options->criterion, "When a trace has been tried enough")
       .check(OneOf{{"clean-runs", "anytime", "clopper-pearson", "paper", "paper-literal",
                     "paper-repaired"}});
+  command
+      .option(
+          "--family", options->family,
+          "What is claimed with confidence C: all-traces (one sentence about all of them, which "
+          "share the error; the default) or per-trace (each by itself, in fewer runs)")
+      .check(OneOf{{"all-traces", "per-trace"}});
   add_judging_options(command, options->judging);
   command
       .option("--execution", options->execution,

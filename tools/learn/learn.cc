@@ -151,6 +151,8 @@ class ScenarioLearner {
     if (!round) return std::nullopt;
     if (!round->loaded->compilation.model.has_constraints) return true;
     limit_runs(round->loaded->scenario, std::nullopt);
+    // How many traces there will be depends on the runs that they take.
+    round->loaded->scenario.criterion.family = harness::Family::kPerTrace;
     EnumeratedTraces all(round->loaded->compilation.model, *round->context);
     std::int64_t made = 0, done = 0, trace = 0;
     BoundedTraces traces(all, made, options_.max_runs - result_.simulations);

@@ -20,6 +20,15 @@ struct Curve {
   std::int64_t aside = 0, unfinished = 0, open = 0;  // not counted; not known
 };
 
+/// The criterion by the error that the trace may spend.
+harness::CriterionSpec asked_of(const PageData& page, const PageTrace& trace) {
+  auto spec = page.asked;
+  spec.confidence_level = page.confidence;
+  spec.epsilon = page.epsilon;
+  spec.share = trace.error_share;
+  return spec;
+}
+
 /// The bound after each run with a drawn start that came to its end, in order, or after some of
 /// many: as the run itself counts.
 Curve curve_of(const PageData& page, const PageTrace& trace) {
@@ -42,20 +51,23 @@ Curve curve_of(const PageData& page, const PageTrace& trace) {
     failed.push_back(sample.verdict != SampleVerdict::kClean);
   }
   curve.runs = static_cast<std::int64_t>(failed.size());
+  const double confidence = asked_of(page, trace).trace_level();
   const std::int64_t stride = std::max<std::int64_t>(1, curve.runs / 120);
   for (std::int64_t i = 1; i <= curve.runs; ++i) {
     curve.failures += failed[static_cast<std::size_t>(i - 1)] ? 1 : 0;
     if (i % stride != 0 && i != curve.runs && !failed[static_cast<std::size_t>(i - 1)]) continue;
     curve.bounds.emplace_back(i, curve.failures == 0
-                                     ? harness::bound_after(i, page.confidence)
-                                     : harness::mixture_upper(curve.failures, i, page.confidence));
+                                     ? harness::bound_after(i, confidence)
+                                     : harness::mixture_upper(curve.failures, i, confidence));
   }
   return curve;
 }
 
 std::string plot(const PageData& page, const PageTrace& trace, const Curve& curve) {
-  const auto needed = page.planned_runs > 0 ? page.planned_runs
-                                            : harness::runs_needed(page.confidence, page.epsilon);
+  const auto asked = asked_of(page, trace);
+  const auto planned = harness::planned_runs(asked);
+  const auto needed =
+      planned > 0 ? planned : harness::runs_needed(asked.trace_level(), page.epsilon);
   const double most = static_cast<double>(std::max({curve.runs, needed, std::int64_t{2}})) * 1.08;
   double least = page.epsilon;
   for (const auto& [runs, bound] : curve.bounds) least = std::min(least, bound);
@@ -88,7 +100,7 @@ std::string plot(const PageData& page, const PageTrace& trace, const Curve& curv
   std::vector<std::pair<std::int64_t, double>> ideal;
   for (std::int64_t i = 0; i <= 60; ++i) {
     const auto runs = std::max<std::int64_t>(1, std::llround(static_cast<double>(i) * most / 60.0));
-    ideal.emplace_back(runs, harness::bound_after(runs, page.confidence));
+    ideal.emplace_back(runs, harness::bound_after(runs, asked.trace_level()));
   }
   out += path(ideal, "curve ideal");
   out += line(x.from, at(page.epsilon), x.to, at(page.epsilon), "goal") +

@@ -4,8 +4,7 @@
 #include <limits>
 
 #include "compiler/base/json.h"
-#include "harness/confidence/criterion.h"
-#include "harness/report/report_words.h"
+#include "harness/confidence/family.h"
 #include "tools/page/gather.h"
 #include "tools/page/markup.h"
 
@@ -126,6 +125,8 @@ PageTrace trace_of(const json& entry) {
     out.certified_confidence = field<double>(*certified, "confidence");
     out.certified_epsilon = field<double>(*certified, "epsilon", 1.0);
   }
+  const double share = field<double>(entry, "error_share", 1.0);
+  if (share > 0.0 && share <= 1.0) out.error_share = std::max(share, 1e-6);
   if (const auto* paper = base::json_member(entry, "paper")) {
     out.paper_variant = text(*paper, "variant");
     if (const auto* at = base::json_member(*paper, "stopped_at")) {
@@ -183,25 +184,33 @@ PageDiscrepancy discrepancy_of(const json& entry) {
   return out;
 }
 
-void add_criterion(const json& criterion, PageData& page) {
+std::optional<harness::SpendingRule> spending_of(const json& report) {
+  const auto* family = base::json_member(report, "family");
+  if (family == nullptr || !family->is_object()) return std::nullopt;
+  const auto traces = whole(*family, "traces");
+  constexpr std::int64_t kMost = 1'000'000;
+  return harness::SpendingRule(traces > 0 ? std::optional(std::min(traces, kMost)) : std::nullopt);
+}
+
+void add_criterion(const json& criterion, const std::optional<harness::SpendingRule>& spending,
+                   PageData& page) {
   const auto kind = text(criterion, "kind");
   page.confidence = std::clamp(field<double>(criterion, "confidence", 0.99), 0.01, 1.0 - 1e-9);
   page.epsilon = std::clamp(field<double>(criterion, "epsilon", 0.05), 1e-9, 1.0 - 1e-9);
   page.is_paper = kind == "paper";
-  harness::CriterionSpec spec;
+  auto& spec = page.asked;
   spec.confidence_level = page.confidence;
   spec.epsilon = page.epsilon;
   for (std::size_t i = 0; i < harness::kCriterionWords.size(); ++i) {
     if (kind == harness::kCriterionWords[i]) spec.kind = static_cast<harness::CriterionKind>(i);
   }
   spec.runs = std::max<std::int64_t>(0, whole(criterion, "runs"));
-  page.planned_runs = harness::planned_runs(spec);
   if (page.is_paper) {
     if (const auto* paper = base::json_member(criterion, "paper")) {
       spec.paper.preset = text(*paper, "preset");
     }
   }
-  page.criterion = harness::criterion_text(spec);
+  page.criterion = harness::criterion_text(spec, spending);
 }
 
 }  // namespace
@@ -221,8 +230,9 @@ bool add_report(const std::string& source, PageData& page) {
     page.simulator = text(*simulator, "name") + ' ' + text(*simulator, "version");
   }
   if (const auto* criterion = base::json_member(report, "criterion")) {
-    add_criterion(*criterion, page);
+    add_criterion(*criterion, spending_of(report), page);
   }
+  if (const auto* family = base::json_member(report, "family")) page.claim = text(*family, "claim");
   for (const auto& entry : list(report, "traces")) page.traces.push_back(trace_of(entry));
   for (const auto& entry : list(report, "discrepancies")) {
     page.discrepancies.push_back(discrepancy_of(entry));

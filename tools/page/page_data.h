@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "harness/confidence/criterion_spec.h"
+
 namespace parallax::harness {
 struct Recording;
 }  // namespace parallax::harness
@@ -93,6 +95,7 @@ struct PageTrace {
   std::vector<std::string> caveats;
   std::int64_t simulations = 0, clean = 0, lost = 0;
   double certified_confidence = 0.0, certified_epsilon = 1.0;
+  double error_share = 1.0;  // of 1-C that its bound may spend
   std::optional<std::int64_t> paper_stopped_at;
   std::string paper_variant;
   std::vector<std::string> not_covered;
@@ -197,7 +200,8 @@ struct PageData {
   bool interrupted = false, closed_loop = false;
   bool running = false;  // there is no report yet
   double confidence = 0.99, epsilon = 0.05;
-  std::int64_t planned_runs = 0;     // of the criterion, if all are clean; 0: it cannot tell
+  std::string claim;                 // of all traces together; empty: there is none
+  harness::CriterionSpec asked;      // the criterion, of a trace by itself
   bool is_paper = false;             // the criterion that ends a trace is the paper's
   std::vector<std::string> banners;  // what is missing or wrong, one sentence each
   std::vector<PageTrace> traces;

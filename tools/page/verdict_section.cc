@@ -180,6 +180,13 @@ std::vector<std::string> claims_of(const PageData& page) {
     return trace.verdict == page.verdict ? 1 : 2;
   };
   std::vector<std::string> out;
+  if (!page.claim.empty()) {
+    constexpr std::size_t kLongest = 1000;  // the names in it are none of a stranger's
+    const auto whose = page.traces.size() == 1 ? stream_name(page, page.traces.front())
+                                               : std::string("All traces");
+    out.push_back("<b>" + whose + ":</b> " + html(page.claim.substr(0, kLongest)) + '.');
+    if (page.traces.size() == 1) return out;
+  }
   for (const int wanted : {0, 1, 2}) {
     for (const auto& trace : page.traces) {
       if (trace.claim.empty() || rank(trace) != wanted) continue;

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/base/diagnostic.h"
+#include "harness/calibration/synthetic_simulator.h"
+#include "harness/confidence/criterion_spec.h"
+
+namespace parallax::harness {
+
+class ConfidenceCriterion;
+
+/// A criterion that is measured, and what it says of itself.
+struct CalibratedCriterion {
+  std::string name;  // "paper-literal"
+  CriterionSpec spec;
+  bool is_judged = true;  // it claims to err as rarely as its level says; the paper's rule does not
+  /// None: make_criterion.
+  std::function<std::unique_ptr<ConfidenceCriterion>(const CriterionSpec&)> make = {};
+};
+
+/// A simulator, and of two traces how they share the error.
+struct CalibratedWorld {
+  SyntheticKind kind = SyntheticKind::kByStart;
+  std::optional<Family> family;  // of two traces; none: there is one
+  bool is_counted = true;        // of two traces that share the error: their number is known
+  std::string name;
+};
+
+/// Loops of one criterion in one world.
+struct CalibrationCell {
+  std::string world, criterion;
+  std::int64_t loops = 0;
+  std::int64_t false_claims = 0;  // loops in which something false was claimed
+  double mean_runs = 0.0;
+  /// How often that may be in a share of the loops, by what is claimed; none: nothing says so.
+  std::optional<double> allowed;
+
+  double share() const {
+    return loops == 0 ? 0.0 : static_cast<double>(false_claims) / static_cast<double>(loops);
+  }
+  /// Not above what is allowed by more than four standard errors: a chance below 1e-4 a cell for a
+  /// criterion that errs exactly as often as it may.
+  bool is_within() const;
+};
+
+struct CalibrationOptions {
+  double confidence_level = 0.99, epsilon = 0.05;
+  std::uint64_t seed = 1;
+  std::int64_t loops = 4000, protocol_loops = 400;  // in process; through the protocol
+  std::vector<std::string> command;  // starts a SyntheticSimulator (synthetic_arguments follow)
+  const std::atomic<bool>* stop = nullptr;
+  std::function<void(const CalibrationCell&)> progress;
+};
+
+/// The criteria at a level, and the worlds, in the order of the table.
+std::vector<CalibratedCriterion> calibrated_criteria(double confidence_level, double epsilon);
+std::vector<CalibratedWorld> calibrated_worlds();
+
+/// In what share of the loops a false claim may be made, by what the claim says: 1-C, twice that
+/// where `clean-runs` may have to say so after a loss, and where each of two traces is claimed by
+/// itself.
+std::optional<double> allowed_share(const CalibratedCriterion& criterion,
+                                    const CalibratedWorld& world);
+
+/// One cell by loops in this process: the law of the campaign, without campaign and simulator. The
+/// discrepancy probability is epsilon itself, so every claim of the criterion is false.
+CalibrationCell in_process_cell(const CalibratedCriterion& criterion, const CalibratedWorld& world,
+                                const CalibrationOptions& options, std::int64_t loops);
+
+/// One cell by whole campaigns, each with a simulator in a child process that speaks the protocol.
+/// Reports what keeps a campaign from its result.
+base::Result<CalibrationCell> protocol_cell(const CalibratedCriterion& criterion,
+                                            const CalibratedWorld& world,
+                                            const CalibrationOptions& options, std::int64_t loops,
+                                            base::DiagnosticSink& sink);
+/// Can a campaign be in that state? A number of traces that is not known takes more than two.
+bool has_campaign(const CalibratedWorld& world);
+
+/// What follows `CalibrationOptions::command`.
+std::vector<std::string> synthetic_arguments(const SyntheticSimulator::Options& options);
+
+struct CalibrationResult {
+  CalibrationOptions options;
+  std::vector<CalibrationCell> in_process, protocol;  // by world, then by criterion
+  bool complete = true;                               // false: stopped
+  bool is_within() const;                             // every cell that is judged
+};
+base::Result<CalibrationResult> calibrate(const CalibrationOptions& options,
+                                          const std::vector<CalibratedCriterion>& criteria,
+                                          const std::vector<CalibratedWorld>& worlds,
+                                          base::DiagnosticSink& sink);
+
+/// Two tables in Markdown, one JSON document.
+std::string calibration_markdown(const CalibrationResult& result);
+std::string calibration_json(const CalibrationResult& result);
+
+}  // namespace parallax::harness

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "harness/simulator/simulator.h"
+
+namespace parallax::harness {
+
+/// What decides whether a run of a synthetic simulator goes wrong, and how that shows. In all of
+/// them it does with a probability that is known exactly.
+enum class SyntheticKind : std::uint8_t {
+  kByStart,     // in a part of the start region
+  kBySeed,      // by the seed that it is handed
+  kNoisy,       // by random numbers of its own; it takes no seed
+  kRefusing,    // as by start; half of all starts are refused
+  kLosing,      // as by start, and then it says that it is lost; the same again when repeated
+  kCrashFirst,  // as noisy, and then the process ends instead of showing it; it takes no seed
+  kSlow,        // as by start; runs that go wrong take longer than others
+  kTwoTraces,   // run i of the second trace goes wrong only where that of the first does not
+};
+inline constexpr std::array<std::string_view, 8> kSyntheticWords = {
+    "by-start", "by-seed", "noisy", "refusals", "losses", "crash-first", "slow", "two-traces"};
+inline std::string_view to_string(SyntheticKind kind) {
+  return kSyntheticWords[static_cast<std::size_t>(kind)];
+}
+std::optional<SyntheticKind> synthetic_kind(std::string_view word);
+
+/// Where a box lies at first [m], where `push-left` and `push-right` bring it to, and what else
+/// there is between them. A push that goes wrong leaves it where it is.
+inline constexpr double kSyntheticStart_m = 3.0, kSyntheticGoal_m = 0.0;
+/// Where the box comes to lie from a start, `x_m` of its cell's lower end.
+double synthetic_end_m(double x_m);
+
+/// One start region, one action, and a probability of going wrong.
+class SyntheticSimulator final : public Simulator {
+ public:
+  struct Options {
+    SyntheticKind kind = SyntheticKind::kByStart;
+    double probability = 0.0;  // that a run goes wrong
+    std::uint64_t key = 0;     // of its own random numbers
+    /// Counts draws of its own by its size, so that a process that follows a crashed one goes on
+    /// with fresh ones. Empty: counted in memory.
+    std::filesystem::path draws;
+    bool ends_process = false;  // a crash is one; else it is a loss
+  };
+  explicit SyntheticSimulator(Options options) : options_(std::move(options)) {}
+
+  SimulatorInfo info() override;
+  Outcome reset(const State& initial, std::uint64_t seed) override;
+  Outcome act(std::string_view action, const State& arguments, double sim_time_limit_s) override;
+  State observe() override;
+
+ private:
+  double own_draw(std::uint64_t stream, std::uint64_t index) const;
+  std::uint64_t next_draw();
+  bool goes_wrong(std::string_view action);
+
+  Options options_;
+  double start_m_ = 0.0, box_m_ = 0.0;
+  std::uint64_t seed_ = 0, draws_made_ = 0;
+  std::uint64_t pushes_[2] = {0, 0};
+};
+
+}  // namespace parallax::harness

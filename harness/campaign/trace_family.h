@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "compiler/base/diagnostic.h"
+#include "harness/campaign/trace_input.h"
+#include "harness/confidence/criterion_spec.h"
+#include "harness/confidence/spending.h"
+
+namespace parallax::harness {
+
+/// So many traces are looked at ahead, to know their number before the first of them is claimed to
+/// be in order: each costs a few solver calls, and saves the simulations by which the shares of the
+/// series exceed equal ones. No limit of time, on which verdicts would then depend.
+inline constexpr std::int64_t kMostTracesAhead = 100;
+
+/// The traces of a feed in their order, and what error each may spend. The number of traces is
+/// looked for when it is first asked for, which is after the first trace's runs: it follows from
+/// the model alone, so nothing that runs showed has an influence on it.
+class TraceFamily {
+ public:
+  /// `max_traces` of the scenario; 0: all. `feed` and `sink` outlive the object.
+  TraceFamily(TraceFeed& feed, Family family, std::int64_t max_traces, base::DiagnosticSink& sink)
+      : feed_(feed), family_(family), max_traces_(max_traces), sink_(sink) {}
+
+  /// As the feed gives it. What an error on the way ahead reported fails only when it comes to it.
+  base::Result<std::optional<CampaignTrace>> next();
+
+  /// Of the trace that was given last; 1 where each trace is claimed by itself. None: the search
+  /// was stopped before that could be told.
+  std::optional<double> share();
+  /// Is it known, or nobody can tell? Then it costs nothing to ask.
+  bool is_settled() const { return family_ == Family::kPerTrace || looked_; }
+  /// How the error is shared. None: not asked for, not known, or each trace is claimed by itself.
+  const std::optional<SpendingRule>& rule() const { return rule_; }
+
+ private:
+  std::int64_t seen() const { return given_ + static_cast<std::int64_t>(ahead_.size()); }
+  bool look_at_next();
+  void find_rule();
+
+  TraceFeed& feed_;
+  Family family_;
+  std::int64_t max_traces_;
+  base::DiagnosticSink& sink_;
+  std::deque<CampaignTrace> ahead_;
+  std::int64_t given_ = 0;
+  bool ended_ = false, failed_ = false;  // of the feed
+  bool looked_ = false;
+  std::optional<SpendingRule> rule_;
+};
+
+}  // namespace parallax::harness

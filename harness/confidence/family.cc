@@ -1,0 +1,122 @@
+#include "harness/confidence/family.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "compiler/base/contract.h"
+#include "harness/confidence/criterion.h"
+
+namespace parallax::harness {
+namespace {
+
+CriterionSpec with_share(CriterionSpec spec, double share) {
+  spec.share = share;
+  return spec;
+}
+
+/// "112 clean runs of each of 3 traces", "100 clean runs of the first trace, 127 ..."
+std::string runs_by_trace(const CriterionSpec& spec, const std::optional<SpendingRule>& rule,
+                          std::string_view runs) {
+  const auto of = [&](std::int64_t k) {
+    return planned_runs(with_share(spec, rule ? rule->share(k) : 1.0));
+  };
+  if (!rule || rule->traces() == 1) return fmt::format("{} {}", of(1), runs);
+  if (rule->traces())
+    return fmt::format("{} {} of each of {} traces", of(1), runs, *rule->traces());
+  return fmt::format(
+      "{} {} of the first trace, {} of the second, {} of the third and more of later "
+      "ones",
+      of(1), runs, of(2), of(3));
+}
+
+}  // namespace
+
+double SpendingRule::share(std::int64_t k) const {
+  PARALLAX_REQUIRE(k >= 1 && (!traces_ || k <= *traces_), "the number of a trace of the family");
+  if (traces_) return 1.0 / static_cast<double>(*traces_);
+  const auto place = static_cast<double>(k);
+  return 6.0 / (std::numbers::pi * std::numbers::pi * place * place);
+}
+
+std::string SpendingRule::text() const {
+  if (!traces_) return "6/(pi^2 k^2) of the error for trace k, as their number is not known";
+  if (*traces_ == 1) return "the whole error for the only trace";
+  return fmt::format("1/{} of the error for each of {} traces", *traces_, *traces_);
+}
+
+std::string family_claim(std::span<const FamilyMember> members, const CriterionSpec& spec,
+                         Comparison comparison, const FamilyScope& scope) {
+  std::int64_t clean = 0, lost = 0, runs = 0, claimed = 0, first_start = 0;
+  bool rejected = false;
+  CertifiedBound worst{spec.confidence_level, 0.0};
+  for (const auto& member : members) {
+    if (member.is_discrepancy) continue;
+    ++claimed;
+    clean += member.clean;
+    lost += member.lost;
+    runs += member.runs;
+    rejected = rejected || member.is_rejected;
+    first_start += member.is_first_start ? 1 : 0;
+    worst.confidence_level = std::min(worst.confidence_level, member.stated.confidence_level);
+    worst.epsilon = std::max(worst.epsilon, member.stated.epsilon);
+  }
+  if (claimed == 0 || worst.epsilon >= 1.0 || worst.confidence_level <= 0.0) return {};
+  const auto all = std::ssize(members);
+  const auto of_traces =
+      all == 1         ? std::string()
+      : claimed == all ? fmt::format("for each of the {} traces ", all)
+      : claimed == 1   ? fmt::format("for the one of {} traces that gave no discrepancy ", all)
+                       : fmt::format(
+                             "for each of the {} of {} traces that gave no "
+                               "discrepancy ",
+                             claimed, all);
+  const bool as_planned = spec.kind != CriterionKind::kPaper && worst.epsilon <= spec.epsilon;
+  const auto lost_text =
+      lost == 0 ? std::string()
+                : fmt::format(", {} lost {} counted as {}", lost, lost == 1 ? "run" : "runs",
+                              lost == 1 ? "a failure" : "failures");
+  auto text = fmt::format(
+      "with {:.6g} % confidence, {}fewer than {} of {}start states drawn uniformly from {} start "
+      "region give a discrepancy {} ({} clean {} of {}{})",
+      100.0 * worst.confidence_level, of_traces,
+      percent_up(as_planned ? spec.epsilon : worst.epsilon), rejected ? "valid " : "",
+      all == 1 ? "the" : "its",
+      comparison == Comparison::kFinal ? "in the last state" : "at any step", clean,
+      clean == 1 ? "run" : "runs", runs, lost_text);
+  if (!scope.completeness.empty()) text += "; " + scope.completeness;
+  if (scope.split_initial) {
+    text += "; each initial state that leads to the same events counts as a trace";
+  } else if (first_start > 0) {
+    const auto which = all == 1             ? std::string()
+                       : first_start == all ? std::string(" of each trace")
+                                            : fmt::format(" of {} of them", first_start);
+    text += fmt::format(
+        "; of the initial states that lead to the events{} only the first was sampled", which);
+  }
+  return text;
+}
+
+std::string criterion_text(const CriterionSpec& spec, const std::optional<SpendingRule>& rule) {
+  if (spec.kind == CriterionKind::kPaper) {
+    return fmt::format("paper ({}) at C = {:.6g} %; not a probability of error", spec.paper.preset,
+                       100.0 * spec.confidence_level);
+  }
+  const auto epsilon = percent_up(spec.epsilon);
+  const auto confidence =
+      fmt::format("{:.6g} % confidence{}", 100.0 * spec.confidence_level,
+                  rule && rule->traces() != 1 ? " in all of them together" : "");
+  if (spec.kind == CriterionKind::kAnytime) {
+    return fmt::format("anytime: {} exclude p >= {} with {}, more after lost ones",
+                       runs_by_trace(spec, rule, "clean runs"), epsilon, confidence);
+  }
+  if (spec.kind == CriterionKind::kClopperPearson) {
+    return fmt::format("clopper-pearson: {}, then one look; p >= {} is to be excluded with {}",
+                       runs_by_trace(spec, rule, "runs"), epsilon, confidence);
+  }
+  return fmt::format("clean-runs: {} exclude p >= {} with {}",
+                     runs_by_trace(spec, rule, "clean runs"), epsilon, confidence);
+}
+
+}  // namespace parallax::harness
