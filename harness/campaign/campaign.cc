@@ -113,6 +113,7 @@ class Campaign {
     auto outcome = run_trace(context, *std::move(trial));
     if (!outcome) return sink_.already_reported();
     result_.simulations += outcome->result.simulations;
+    if (outcome->result.search) result_.simulations += outcome->result.search->runs;
     result_.traces.push_back(std::move(outcome->result));
     if (outcome->discrepancy) result_.discrepancies.push_back(std::move(*outcome->discrepancy));
     std::move(outcome->consumed.begin(), outcome->consumed.end(), std::back_inserter(consumed_));
@@ -154,7 +155,10 @@ class Campaign {
     for (auto at = recorded.samples.lower_bound(first); at != recorded.samples.end(); ++at) {
       const auto& record = at->second;
       if (record.trace != plan.trace->number) break;
-      const auto why = wrong_draw(record, plan.sampler, plan.campaign_seed, plan.trace_key);
+      const bool of_search = record.sample <= scenario_.search.runs;
+      if (record.phase == DrawPhase::kConfirm && of_search) continue;  // of the one before it
+      auto why = wrong_draw(record, plan.sampler, plan.campaign_seed, plan.trace_key);
+      if (record.searched != of_search) why = "it has the number of a simulation of another phase";
       if (why.empty()) continue;
       return sink_.error(DiagnosticCode::kForeignJournalLine, recorded.places.at(at->first), why);
     }

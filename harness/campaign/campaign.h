@@ -45,6 +45,8 @@ struct CampaignOptions {
 ///
 ///     for each trace of the model and the plan, shortest first:
 ///       trial = its start region, a sampler over it, and the calls for its events
+///       with `search`: try starts that a strategy proposes, by how near earlier ones came to a
+///         discrepancy (search_phase.h); leave the trace with the first one
 ///       until the criterion is satisfied or `max_runs` simulations were made:
 ///         draw a start, simulate the events from it, observe at every timepoint
 ///         start not valid:      draw again; end with an error after `max_rejected_starts`

@@ -8,6 +8,7 @@
 
 #include "harness/campaign/cover_watch.h"
 #include "harness/campaign/sample_record.h"
+#include "harness/campaign/search_result.h"
 #include "harness/campaign/trace_input.h"
 #include "harness/confidence/comparison.h"
 #include "harness/confidence/criterion_spec.h"
@@ -131,6 +132,7 @@ struct TraceResult {
   std::optional<std::int64_t> paper_stopped_at;
   std::string paper_variant;             // "paper-literal, n = 2"
   std::vector<std::string> not_covered;  // fluents without regression evidence
+  std::optional<SearchResult> search;    // before the simulations above, which are all draws
   std::optional<LoopResult> loop;        // of executed plans, which have no trace
   std::string claim;                     // exactly what is claimed, one sentence
   std::vector<std::string> caveats;      // what weakens the claim, one sentence each

@@ -154,7 +154,11 @@ SampleRecord record_of(const Json& object) {
   record.sample = count_of(object, "sample", 1);
   record.attempt = count_of(object, "attempt", 0);
   const auto phase = get<std::string>(object, "phase");
-  if (phase != "certify" && phase != "confirm") throw Foreign{"`phase` is `" + phase + "`"};
+  if (phase != "certify" && phase != "confirm" && phase != "search") {
+    throw Foreign{"`phase` is `" + phase + "`"};
+  }
+  // A search has numbers of its own, so its simulations are found as others are.
+  record.searched = phase == "search";
   record.phase = phase == "confirm" ? DrawPhase::kConfirm : DrawPhase::kCertify;
   record.seed = get<std::uint64_t>(object, "seed");
   record.status = word_of(object, "status", {SampleStatus::kOk, SampleStatus::kLost});
@@ -283,7 +287,9 @@ std::string encode(const SampleRecord& record) {
   OrderedJson out = {{"trace", record.trace},
                      {"sample", record.sample},
                      {"attempt", record.attempt},
-                     {"phase", record.phase == DrawPhase::kConfirm ? "confirm" : "certify"},
+                     {"phase", record.phase == DrawPhase::kConfirm ? "confirm"
+                               : record.searched                   ? "search"
+                                                                   : "certify"},
                      {"seed", record.seed},
                      {"status", to_string(record.status)},
                      {"rejected", record.rejected},

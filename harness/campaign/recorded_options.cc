@@ -122,6 +122,10 @@ std::string recorded_options_json(const Scenario& scenario, const CampaignOption
                       {"compare", to_string(scenario.comparison())},
                       {"match", scenario.match_model ? "model" : "trace"}};
   if (scenario.until_covered) json["until_covered"] = true;
+  if (scenario.search.runs > 0) {
+    json["search"] = {{"runs", scenario.search.runs},
+                      {"strategy", to_string(scenario.search.strategy)}};
+  }
   if (options.all_hits) json["hits"] = "all";
   if (options.split_initial) json["split_initial"] = true;
   if (options.random_sequences) json["random_sequences"] = true;
@@ -156,6 +160,13 @@ std::variant<RecordedOptions, std::string> recorded_options(std::string_view tex
   }
   out.keep_going = fields.flag("keep_going");
   out.until_covered = fields.flag("until_covered");
+  if (const auto* search = fields.find("search")) {
+    const Fields parts(*search, "options.search", wrong);
+    parts.count("runs");
+    out.search.runs = parts.get<std::int64_t>("runs").value_or(0);
+    const auto strategy = parts.word("strategy", strategy_names());
+    if (strategy) out.search.strategy = *strategy_kind(strategy_names()[*strategy]);
+  }
   out.split_initial = fields.flag("split_initial");
   out.random_sequences = fields.flag("random_sequences");
   out.all_hits = fields.word("hits", std::array{"first"sv, "all"sv}) == std::size_t{1};
@@ -183,6 +194,7 @@ void RecordedOptions::apply(Scenario& scenario, CampaignOptions& options) const 
   scenario.compare = compare.value_or(scenario.comparison());
   scenario.starts = starts;
   scenario.until_covered = scenario.until_covered || until_covered;
+  scenario.search = search;
   options.keep_going = keep_going;
   options.all_hits = all_hits;
   options.split_initial = split_initial;

@@ -8,6 +8,7 @@
 
 #include "harness/confidence/comparison.h"
 #include "harness/confidence/criterion_spec.h"
+#include "harness/search/strategy.h"
 
 namespace parallax::harness {
 
@@ -28,6 +29,7 @@ struct RecordedOptions {
   Starts starts = Starts::kUniform;
   bool keep_going = false, until_covered = false;
   bool all_hits = false, split_initial = false;
+  SearchSpec search;
   bool random_sequences = false;  // what was simulated is no trace of the model
 
   /// Asks for the same of another run of the scenario.

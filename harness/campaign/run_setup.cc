@@ -9,6 +9,7 @@
 #include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/judge.h"
 #include "harness/confidence/clean_runs.h"
+#include "harness/confidence/criterion.h"
 #include "harness/confidence/quantiles.h"
 
 namespace parallax::harness {

@@ -82,6 +82,7 @@ struct SampleRecord {
   std::int64_t sample = 0;   // from 1, in order of consumption
   std::int64_t attempt = 0;  // draws of this sample that were rejected before the one used
   DrawPhase phase = DrawPhase::kCertify;  // kConfirm: the repetition of a discrepancy
+  bool searched = false;                  // its start was not drawn, but proposed by a search
   std::uint64_t seed = 0;
   SampleStatus status = SampleStatus::kOk;
   std::int64_t rejected = 0;

@@ -227,6 +227,14 @@ std::optional<SimStatus> simulate_start(ActionSource& actions, bool repeats_loss
   return status;
 }
 
+namespace {
+
+DrawKey search_key(std::uint64_t campaign_seed, std::uint64_t trace_key, std::int64_t sample) {
+  return {campaign_seed, trace_key, DrawPhase::kSearch, static_cast<std::uint64_t>(sample), 0};
+}
+
+}  // namespace
+
 SampleStatus sample_status(SimStatus status) {
   switch (status) {
     case SimStatus::kLost:
@@ -271,6 +279,12 @@ bool may_repeat_losses(const SimulatorInfo& simulator) {
 
 std::string wrong_draw(const SampleRecord& record, const Sampler& sampler,
                        std::uint64_t campaign_seed, std::uint64_t trace_key) {
+  if (record.searched) {
+    // Its start is compared when the search proposes it again.
+    const bool same =
+        record.seed == simulator_seed(search_key(campaign_seed, trace_key, record.sample));
+    return same ? "" : "its seed is not that of its number";
+  }
   const DrawKey key{campaign_seed, trace_key, DrawPhase::kCertify,
                     static_cast<std::uint64_t>(record.sample),
                     static_cast<std::uint64_t>(record.attempt)};
@@ -298,6 +312,22 @@ std::optional<SampleRecord> run_sample(const TracePlan& plan, std::int64_t sampl
     if (++record.rejected >= plan.max_rejected_starts) return record;
     if (abandoned()) return std::nullopt;
   }
+}
+
+std::optional<SampleRecord> run_chosen(const TracePlan& plan, std::int64_t sample, State start,
+                                       Simulator& simulator,
+                                       const std::function<bool()>& abandoned) {
+  SampleRecord record;
+  record.trace = plan.trace->number;
+  record.sample = sample;
+  record.searched = true;
+  record.initial = std::move(start);
+  record.seed = simulator_seed(search_key(plan.campaign_seed, plan.trace_key, sample));
+  CallList calls(plan.calls);
+  const auto status = simulate_start(calls, plan.repeats_losses, simulator, record, abandoned);
+  if (!status) return std::nullopt;
+  record.status = sample_status(*status);
+  return record;
 }
 
 std::optional<SampleRecord> TraceSamples::make(std::int64_t sample, Simulator& simulator,

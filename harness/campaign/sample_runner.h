@@ -58,6 +58,11 @@ std::optional<SampleRecord> run_sample(const TracePlan& plan, std::int64_t sampl
                                        Simulator& simulator,
                                        const std::function<bool()>& abandoned);
 
+/// Simulates a start that was chosen, as the sample of this number. An invalid one is not replaced.
+std::optional<SampleRecord> run_chosen(const TracePlan& plan, std::int64_t sample, State start,
+                                       Simulator& simulator,
+                                       const std::function<bool()>& abandoned);
+
 /// A record counts as a sample only if its number is what its start and seed were drawn from: what
 /// is wrong with them, or empty.
 std::string wrong_draw(const SampleRecord& record, const Sampler& sampler,

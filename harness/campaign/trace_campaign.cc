@@ -11,6 +11,7 @@
 #include "harness/campaign/judge.h"
 #include "harness/campaign/run_setup.h"
 #include "harness/campaign/sample_record.h"
+#include "harness/campaign/search_phase.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/regression.h"
 
@@ -40,6 +41,11 @@ class TraceCampaign {
   }
 
   base::Result<TraceOutcome> run() {
+    if (context_.scenario.search.runs > 0) {
+      const auto end = search();
+      if (!end) return context_.sink.already_reported();
+      if (*end) return finished(**end);
+    }
     for (;;) {
       decision_ = criterion_->decide(tally_);
       // Enough for a trace by itself. It may only ask for more to share the error with others.
@@ -92,6 +98,28 @@ class TraceCampaign {
     const auto next = trial_.next_sample();
     const auto needed = std::max(decision_.runs_needed.value_or(max_runs_), next);
     return std::min({next + window - 1, needed, max_runs_});
+  }
+
+  /// What the search ends, if anything. No simulation of it is counted.
+  base::Result<std::optional<TraceEnd>> search() {
+    auto searched = search_trace(trial_, context_.scenario.search, context_.scenario,
+                                 context_.bench.fluents(), context_.sink);
+    if (!searched || !check_written(context_.journal, context_.options, context_.sink)) {
+      return context_.sink.already_reported();
+    }
+    outcome_.result.search = searched->result;
+    for (auto& sample : searched->samples) {
+      if (sample.verdict == SampleVerdict::kDiscrepancy) {
+        context_.recorder.judge(sample.record, RunRecorder::Verdict::kFinding);
+        return std::optional(accept_discrepancy(std::move(sample)));
+      }
+      context_.recorder.judge(sample.record, RunRecorder::Verdict::kNothing);
+      tell(sample, nullptr);
+      outcome_.consumed.push_back(std::move(sample.record));
+    }
+    if (searched->end == SearchEnd::kStopped) return std::optional(TraceEnd::kStopped);
+    if (searched->end == SearchEnd::kLostTooOften) return std::optional(TraceEnd::kLostTooOften);
+    return std::optional<TraceEnd>();
   }
 
   /// What the sample ends, if anything.
@@ -154,7 +182,7 @@ class TraceCampaign {
   TraceEnd accept_discrepancy(TrialSample sample) {
     const auto again = trial_.repeat(sample.record);
     if (!again) return TraceEnd::kStopped;
-    tally_.add_mismatch();
+    if (!sample.record.searched) tally_.add_mismatch();
     const auto& judgement = sample.judgement;
     auto& record = sample.record;
     Discrepancy found;
@@ -209,8 +237,14 @@ class TraceCampaign {
     result.paper_stopped_at = paper_stopped_at(tally_, spec_.paper, spec_.confidence_level);
     result.paper_variant = paper_variant(tally_, spec_.paper);
     result.not_covered = tally_.frame().not_covered;
-    result.claim = claim(tally_, spec_, context_.scenario.comparison());
-    result.caveats = caveats(tally_, spec_, result.paper_stopped_at);
+    if (result.search && result.search->found) {
+      result.claim =
+          "a search found a discrepancy; nothing is claimed about how often there is one";
+    } else {
+      result.claim = claim(tally_, spec_, context_.scenario.comparison());
+      result.caveats = caveats(tally_, spec_, result.paper_stopped_at);
+    }
+    if (result.search) add_search_caveats(*result.search, result);
     add_own_caveats(result);
     return std::move(outcome_);
   }
@@ -226,6 +260,20 @@ class TraceCampaign {
     if (names.empty()) return;
     result.caveats.push_back(fmt::format("compared at the start and in the last state only: {}",
                                          fmt::join(names, ", ")));
+  }
+
+  static void add_search_caveats(const SearchResult& search, TraceResult& result) {
+    if (search.runs > 1 && !search.nearest) {
+      result.caveats.push_back(
+          "no margin of these simulations changed, so the search had no direction and spread its "
+          "starts evenly");
+    }
+    if (!search.contradicting.empty()) {
+      result.caveats.push_back(
+          fmt::format("margins below zero though all went as predicted, which the search left out: "
+                      "{}",
+                      fmt::join(search.contradicting, ", ")));
+    }
   }
 
   void add_own_caveats(TraceResult& result) const {

@@ -166,6 +166,73 @@ base::Result<std::optional<TrialSample>> Trial::next() {
   return observed(*std::move(record));
 }
 
+namespace {
+
+/// Simulates starts that are given.
+class ChosenSamples final : public SampleMaker {
+ public:
+  ChosenSamples(std::shared_ptr<const TracePlan> plan, std::int64_t first,
+                std::vector<State> starts)
+      : plan_(std::move(plan)), first_(first), starts_(std::move(starts)) {}
+
+  std::optional<SampleRecord> make(std::int64_t sample, Simulator& simulator,
+                                   const std::function<bool()>& abandoned) const override {
+    const auto& start = starts_[static_cast<std::size_t>(sample - first_)];
+    return run_chosen(*plan_, sample, start, simulator, abandoned);
+  }
+  std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
+                                     const std::function<bool()>& abandoned) const override {
+    return repeat_sample(plan_->calls, plan_->repeats_losses, record, simulator, abandoned);
+  }
+
+ private:
+  std::shared_ptr<const TracePlan> plan_;
+  std::int64_t first_;
+  std::vector<State> starts_;
+};
+
+}  // namespace
+
+base::Result<std::optional<std::vector<TrialSample>>> Trial::try_starts(std::int64_t first,
+                                                                        std::vector<State> starts) {
+  const auto chosen = std::make_shared<const ChosenSamples>(plan_, first, starts);
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const auto number = first + static_cast<std::int64_t>(i);
+    const auto* known = recorded(number, DrawPhase::kCertify);
+    if (known == nullptr) {
+      bench_->pool_.submit(chosen, number);
+    } else if (!known->searched || known->initial != starts[i]) {
+      return bench_->sink_.error(
+          DiagnosticCode::kForeignJournalLine,
+          journal_->recorded().places.at({known->trace, number, DrawPhase::kCertify}),
+          "its start is not the one that the search proposes");
+    }
+  }
+  std::vector<TrialSample> out;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    auto record = result_of(first + static_cast<std::int64_t>(i), DrawPhase::kCertify);
+    if (!record) return std::optional<std::vector<TrialSample>>();
+    if (record->status == SampleStatus::kRefused) return report_refused(*record);
+    if (record->status == SampleStatus::kRejected) {
+      out.push_back({*std::move(record), SampleVerdict::kLost, {}});
+    } else if (record->status == SampleStatus::kLost) {
+      out.push_back(lost(*std::move(record)));
+    } else {
+      auto sample = observed(*std::move(record));
+      if (!sample) return bench_->sink_.already_reported();
+      if (!*sample) return std::optional<std::vector<TrialSample>>();
+      out.push_back(**std::move(sample));
+    }
+  }
+  return std::optional(std::move(out));
+}
+
+void Trial::begin_after(std::int64_t sample) {
+  PARALLAX_REQUIRE(next_ == 1, "nothing was drawn yet");
+  next_ = sample + 1;
+  submitted_ = sample;
+}
+
 TrialSample Trial::lost(SampleRecord record) {
   TrialSample sample{std::move(record), SampleVerdict::kLost, {}};
   const bool on_record = recorded(sample.record.sample, sample.record.phase) != nullptr;

@@ -145,6 +145,14 @@ class Trial {
   /// initial state than it was put into (kStartNotTaken of an external one, else
   /// kMappingNotInverse), and for starts that are always invalid (kStartsRejected).
   base::Result<std::optional<TrialSample>> next();
+  /// Simulates starts that were chosen, as the samples from number `first` on. They are no draws,
+  /// and nothing is claimed from them. One whose start was invalid has the status kRejected and the
+  /// verdict kLost. None when stopped; reports what `next` reports, and kForeignJournalLine where
+  /// the journal has another start under the number.
+  base::Result<std::optional<std::vector<TrialSample>>> try_starts(std::int64_t first,
+                                                                   std::vector<State> starts);
+  /// The samples up to this number were chosen ones: draws come after them.
+  void begin_after(std::int64_t sample);
   /// Simulates the start and seed of `record` once more. None when stopped.
   std::optional<SampleRecord> repeat(const SampleRecord& record);
   /// Forgets what ran ahead.

@@ -65,7 +65,9 @@ struct Key {
   static constexpr std::string_view kQuarantine = "quarantine";
   static constexpr std::string_view kRates = "rates";
   static constexpr std::string_view kReason = "reason";
+  static constexpr std::string_view kSearch = "search";
   static constexpr std::string_view kSettings = "settings";
+  static constexpr std::string_view kStrategy = "strategy";
   static constexpr std::string_view kStarts = "starts";
   static constexpr std::string_view kStartWeights = "start_weights";
   static constexpr std::string_view kUndecided = "undecided";

@@ -82,6 +82,24 @@ std::vector<StartWeight> read_start_weights(const YamlNode& node, base::Diagnost
   return out;
 }
 
+SearchSpec read_search(const YamlNode& node, base::DiagnosticSink& sink) {
+  SearchSpec search;
+  // A number alone stands for so many runs of the default strategy.
+  YamlNode map = node;
+  if (node.is_scalar()) {
+    map = YamlNode{YamlNode::Kind::kMap, node.range, {}, false, {}, {}};
+    map.entries.push_back({std::string(Key::kRuns), node.range, node});
+  }
+  YamlFields fields(map, key_text(Key::kSearch), sink);
+  fields.only({Key::kRuns, Key::kStrategy});
+  if (fields.require(Key::kRuns) == nullptr) return search;
+  fields.integer(Key::kRuns, 0, kMaxSearchRuns, search.runs);
+  const auto choice =
+      fields.choice(Key::kStrategy, "value of " + key_text(Key::kStrategy), strategy_names());
+  if (choice) search.strategy = *strategy_kind(strategy_names()[*choice]);
+  return search;
+}
+
 CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink) {
   CriterionSpec criterion;
   criterion.paper = paper_literal();

@@ -119,7 +119,7 @@ class ScenarioReader {
                   Key::kWorld,     Key::kRegions,      Key::kMapping,      Key::kActions,
                   Key::kSampling,  Key::kCriterion,    Key::kCompare,      Key::kExecution,
                   Key::kStarts,    Key::kStartWeights, Key::kUntilCovered, Key::kMatch,
-                  Key::kSimulator, Key::kLimits,       Key::kExpect});
+                  Key::kSimulator, Key::kLimits,       Key::kSearch,       Key::kExpect});
     if (const auto* node = fields_.find(Key::kExecution)) {
       const auto choice =
           fields_.choice(Key::kExecution, "value of " + key_text(Key::kExecution), kExecutions);
@@ -140,6 +140,7 @@ class ScenarioReader {
       scenario.match_model = false;
     }
     scenario.compare = read_comparison(fields_);
+    if (const auto* node = fields_.find(Key::kSearch)) scenario.search = read_search(*node, sink_);
     fields_.text(Key::kName, scenario.title);
     read_problem(scenario);
     read_simulation(scenario);

@@ -11,6 +11,7 @@
 #include "harness/confidence/comparison.h"
 #include "harness/confidence/criterion_spec.h"
 #include "harness/region/state_mapping.h"
+#include "harness/search/strategy.h"
 #include "harness/world/world_spec.h"
 
 namespace parallax::harness {
@@ -156,6 +157,7 @@ struct Scenario {
   /// Goes on until every trace was simulated; in closed loop, until executions showed what the
   /// model has executions with, or what they did not show is rarer than epsilon.
   bool until_covered = false;
+  SearchSpec search;                  // before the runs that anything is claimed from
   std::optional<Comparison> compare;  // none: by the criterion
   /// The paper's rule is about last states; every other claim about every step.
   Comparison comparison() const {

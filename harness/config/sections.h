@@ -59,6 +59,7 @@ std::optional<Comparison> read_comparison(const YamlFields& fields);
 inline constexpr std::int64_t kMaxRuns = 1'000'000;
 inline constexpr NumberBounds kTimeout{0.0, 86400.0, true, false};  // [s]
 
+SearchSpec read_search(const YamlNode& node, base::DiagnosticSink& sink);
 CriterionSpec read_criterion(const YamlNode& node, base::DiagnosticSink& sink);
 SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink);
 Limits read_limits(const YamlNode& node, base::DiagnosticSink& sink);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "compiler/base/contract.h"
+#include "harness/region/fluent_margin.h"
 
 namespace parallax::harness {
 namespace {
@@ -86,6 +87,54 @@ bool is_upright(const InsideBinding& kind, const Region& region, const std::stri
 // What the kinds of conditions answer about a ground fluent of their symbol. FluentBinding, whose
 // declarations say what is asked, passes each question on to the kind that it has.
 
+/// Where the body is, in the region's frame; false: the state does not say all that is asked for.
+bool find_body(const Region& region, const std::string& name, const State& state,
+               std::set<std::string>* missing, Point& point) {
+  bool complete = true;
+  for (const RegionAxis axis : kRegionAxes) {
+    // A point in a turned frame takes both x and y.
+    const bool needed =
+        region.on(axis).has_value() ||
+        (!region.frame.empty() && (axis == RegionAxis::kX || axis == RegionAxis::kY));
+    if (!needed) continue;
+    const auto value = number(state, fmt::format("{}.{}", name, to_string(axis)), missing);
+    complete = complete && value.has_value();
+    point[static_cast<std::size_t>(axis)] = value.value_or(0.0);
+  }
+  if (!region.frame.empty()) into_frame(region.frame, state, missing, point);
+  return complete;
+}
+
+/// Signed distance from the ends, in widths.
+double margin_in(const Interval& interval, double value) {
+  return std::min(value - interval.lower, interval.upper - value) / interval.width();
+}
+
+/// Of a body that is expected in the region; none: a flag or a missing variable decides.
+std::optional<double> margin_of(const InsideBinding& kind, const GroundFluent& fluent,
+                                const State& state, const RegionMap& regions) {
+  const Region* region = kind.region_of(fluent, regions);
+  const std::string name = with_arguments(kind.body, fluent);
+  Point point{};
+  if (region == nullptr || !find_body(*region, name, state, nullptr, point)) return std::nullopt;
+  if (!kind.flags_allow(fluent, state, nullptr)) return std::nullopt;
+  double least = std::numeric_limits<double>::infinity();
+  for (const RegionAxis axis : kRegionAxes) {
+    const auto& bounds = region->on(axis);
+    if (bounds) least = std::min(least, margin_in(*bounds, point[static_cast<std::size_t>(axis)]));
+  }
+  const auto& free = kind.upright_except;
+  if (kind.upright && std::find(free.begin(), free.end(), region->name) == free.end()) {
+    const auto roll = number(state, name + ".roll", nullptr);
+    const auto pitch = number(state, name + ".pitch", nullptr);
+    if (!roll || !pitch) return std::nullopt;
+    const double upright = std::clamp(std::cos(*roll) * std::cos(*pitch), -1.0, 1.0);
+    least = std::min(least, (*kind.upright - std::acos(upright)) / *kind.upright);
+  }
+  if (!std::isfinite(least)) return std::nullopt;
+  return least;
+}
+
 std::optional<Reading> read(const InsideBinding& kind, const GroundFluent& fluent,
                             const State& state, const RegionMap& regions,
                             std::set<std::string>* missing) {
@@ -93,18 +142,7 @@ std::optional<Reading> read(const InsideBinding& kind, const GroundFluent& fluen
   PARALLAX_REQUIRE(region != nullptr, "the mapping was checked against the regions");
   const std::string name = with_arguments(kind.body, fluent);
   Point point{};
-  bool complete = true;
-  for (const RegionAxis axis : kRegionAxes) {
-    // A point in a turned frame takes both x and y.
-    const bool needed =
-        region->on(axis).has_value() ||
-        (!region->frame.empty() && (axis == RegionAxis::kX || axis == RegionAxis::kY));
-    if (!needed) continue;
-    const auto value = number(state, fmt::format("{}.{}", name, to_string(axis)), missing);
-    complete = complete && value.has_value();
-    point[static_cast<std::size_t>(axis)] = value.value_or(0.0);
-  }
-  if (!region->frame.empty()) into_frame(region->frame, state, missing, point);
+  bool complete = find_body(*region, name, state, missing, point);
   complete = is_upright(kind, *region, name, state, missing) && complete;
   return reading(kind.flags_allow(fluent, state, missing) && complete &&
                  regions.contains(*region, point));
@@ -378,6 +416,21 @@ void FluentBinding::add_reset_values(const GroundFluent& ground, const RegionMap
                                      State& state) const {
   std::visit([&](const auto& kind) { harness::add_reset_values(kind, ground, regions, state); },
              condition);
+}
+
+std::optional<double> fluent_margin(const StateMapping& mapping, const GroundFluent& fluent,
+                                    bool predicted, const State& state) {
+  const auto* binding = mapping.find(fluent.symbol);
+  if (binding == nullptr) return std::nullopt;
+  if (const auto* inside = binding->inside()) {
+    return predicted ? margin_of(*inside, fluent, state, mapping.regions()) : std::nullopt;
+  }
+  const auto* range = std::get_if<RangeBinding>(&binding->condition);
+  if (range == nullptr) return std::nullopt;
+  const auto value = number(state, with_arguments(range->variable, fluent), nullptr);
+  const auto& cell = predicted ? range->holds : range->fails;
+  if (!value || !(cell.width() > 0.0)) return std::nullopt;
+  return margin_in(cell, *value);
 }
 
 }  // namespace parallax::harness

@@ -99,6 +99,21 @@ Json json_of(const CoverResult& cover) {
   return out;
 }
 
+Json json_of(const SearchResult& search) {
+  Json out = {{"strategy", to_string(search.spec.strategy)},
+              {"asked", search.spec.runs},
+              {"simulations", search.runs},
+              {"invalid", search.invalid},
+              {"lost", search.lost},
+              {"found", search.found},
+              {"contradicting", search.contradicting}};
+  if (search.nearest) {
+    out["nearest"] = {
+        {"sample", *search.nearest}, {"margin", search.margin}, {"part", search.part}};
+  }
+  return out;
+}
+
 Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& compared) {
   const auto& trace = *result.trace;
   auto events = Json::array();
@@ -117,7 +132,7 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
               {"start_shares", json_of(result.start_shares)},
               {"not_compared", ignored_names(compared)},
               {"simulations", result.simulations},
-              {"guided", 0},
+              {"guided", result.search ? result.search->runs : 0},
               {"clean", result.clean},
               {"admitted", result.admitted},
               {"lost", result.lost},
@@ -160,6 +175,7 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
                                {"reason", rate.reason}});
     }
   }
+  if (result.search) out["search"] = json_of(*result.search);
   out["claim"] = result.claim;
   out["caveats"] = result.caveats;
   return out;

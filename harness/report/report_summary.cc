@@ -138,6 +138,7 @@ class Summary {
     const auto& all = result_.traces;
     if (all.size() == 1) {
       const auto& trace = all.front();
+      if (trace.search) line("searched", search_text(*trace.search, trace.trace->number));
       line("runs", runs_of(trace) +
                        (trace.rejected > 0 ? fmt::format("; {} drawn again", trace.rejected) : ""));
       if (result_.discrepancies.empty() && !trace.loop && trace.trace->event_count() > 0) {

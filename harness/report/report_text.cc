@@ -94,6 +94,7 @@ class TextReport {
       events(trace);
       start(trace);
     }
+    if (trace.search) line("searched", search_text(*trace.search, trace.trace->number));
     auto runs = fmt::format("{} ({} clean", trace.simulations, trace.clean);
     if (trace.admitted > 0) {
       runs += fmt::format(", {} of them otherwise, as the model admits", trace.admitted);

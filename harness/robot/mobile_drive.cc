@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "harness/robot/mobile_controller.h"
 #include "harness/world/angles.h"
@@ -28,6 +30,10 @@ class Drive final : public MobileController {
                : place != nullptr ? place->yaw_rad
                                   : robot().base().pose().yaw_rad;
     if (is_blocked()) return;
+    for (const Arm& arm : robot().arms()) {
+      if (const auto load = context.grasp.held_body(arm.gripper()))
+        loads_.emplace_back(&arm, *load);
+    }
     add_phases();
   }
 
@@ -59,6 +65,18 @@ class Drive final : public MobileController {
     return true;
   }
 
+  /// How much of what was carried still reaches above the middle of its gripper [m]: below zero it
+  /// has slipped out.
+  void add_grip(State& margins) {
+    for (const auto& [arm, load] : loads_) {
+      const double above_m = world().bounds(load).high.z() - arm->tool().z();
+      const auto known = margins.find("grip");
+      if (known == margins.end() || above_m < std::get<double>(known->second)) {
+        margins["grip"] = above_m;
+      }
+    }
+  }
+
   void add_phases() {
     const Motion straight{number("max_speed_m_s"), number("acceleration_m_s2"),
                           number("stop_within_m"), kApproachRate_hz};
@@ -88,7 +106,8 @@ class Drive final : public MobileController {
     const double error_m = (target_ - now.p).norm();
     const double error_rad = std::abs(wrapped(yaw_rad_ - now.yaw_rad));
     const double tolerance_m = number("goal_tolerance_m");
-    const State margins{{"goal", tolerance_m - error_m}};
+    State margins{{"goal", tolerance_m - error_m}};
+    add_grip(margins);
     if (error_m <= tolerance_m && error_rad <= number("yaw_tolerance_rad")) {
       return {SimStatus::kOk, {}, 0.0, margins};
     }
@@ -100,6 +119,7 @@ class Drive final : public MobileController {
 
   Eigen::Vector2d target_ = Eigen::Vector2d::Zero();
   double yaw_rad_ = 0.0;
+  std::vector<std::pair<const Arm*, BodyId>> loads_;  // when it set off
 };
 
 }  // namespace

@@ -38,6 +38,16 @@ std::string_view to_string(StrategyKind kind);
 std::span<const std::string_view> strategy_names();
 std::optional<StrategyKind> strategy_kind(std::string_view name);
 
+/// The most that a run can be asked for; with more, other methods answer.
+inline constexpr std::int64_t kMaxSearchRuns = 10'000;
+
+/// What a run is asked to search before it certifies.
+struct SearchSpec {
+  std::int64_t runs = 0;  // simulations of each trace at most; 0: no search
+  StrategyKind strategy = StrategyKind::kPortfolio;
+  friend bool operator==(const SearchSpec&, const SearchSpec&) = default;
+};
+
 /// How many points are asked for at a time, whatever the number of jobs.
 inline constexpr std::size_t kSearchBatch = 4;
 

@@ -67,6 +67,8 @@ struct RunOptions {
   double confidence = 0.0;  // 0: as the scenario says
   double epsilon = 0.0;
   std::int64_t max_runs = 0, max_traces = 0;
+  std::int64_t search = -1;  // below 0: as the scenario says
+  std::string strategy;
   std::string record = "discrepancies";
   std::string hits = "first";
   bool split_initial = false;
@@ -96,6 +98,8 @@ void apply(const RunOptions& options, harness::Scenario& scenario) {
   }
   if (options.until_covered) scenario.until_covered = true;
   if (options.epsilon > 0) criterion.epsilon = options.epsilon;
+  if (options.search >= 0) scenario.search.runs = options.search;
+  if (const auto kind = harness::strategy_kind(options.strategy)) scenario.search.strategy = *kind;
   if (options.max_runs > 0) scenario.limits.max_runs = options.max_runs;
   if (options.max_traces > 0) scenario.limits.max_traces = options.max_traces;
 }
@@ -174,6 +178,10 @@ base::Status check_closed(const RunOptions& options, const harness::Scenario& sc
     return refuse("until_covered",
                   "the criterion clopper-pearson has a number of runs that nothing seen decides");
   }
+  if (scenario.search.runs > 0) {
+    return refuse(options.search > 0 ? "--search" : "search",
+                  "in closed loop there is no trace whose starts could be searched");
+  }
   if (!scenario.match_model) {
     return refuse(options.judging.match == "trace" ? "--match=trace" : "match: trace",
                   "in closed loop there is no trace to hold observations against, only the model");
@@ -203,6 +211,11 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
   auto loaded = load_scenario_run(options.scenario, execution, invocation);
   if (!loaded) return 0;
   apply(options, loaded->scenario);
+  if (!options.strategy.empty() && loaded->scenario.search.runs == 0) {
+    sink.error_about(base::DiagnosticCode::kUsage, "--search-strategy",
+                     "it is about a search; add --search N");
+    return 0;
+  }
   if (!options.starts.empty() && loaded->scenario.execution == Execution::kOpenLoop) {
     sink.error_about(base::DiagnosticCode::kUsage, "--starts",
                      "it is about executions of the plan; add --execution closed-loop");
@@ -264,6 +277,7 @@ Command run_command() {
       "  parallax run edge.yaml --record all\n"
       "  parallax run edge.yaml --seed 7 --out out/edge7 --resume\n"
       "  parallax run edge.yaml --keep-going --samples edge.csv\n"
+      "  parallax run edge.yaml --search 40\n"
       "Exit codes: 0 no discrepancy, 1 discrepancy, 4 inconclusive, as without a trace.");
   command.option("scenario", options->scenario, "Scenario file (YAML)").required();
   command.option("--out", options->out, "Run folder; default out/NAME, numbered if taken");
@@ -307,6 +321,18 @@ Command run_command() {
       .check(FiniteNumber{1e-6, 0.5});
   command.option("--max-runs", options->max_runs, "Simulations per trace before giving up")
       .check(WholeNumber{1, 1'000'000});
+  command
+      .option(
+          "--search", options->search,
+          "Before the runs that are claimed from, so many simulations of each trace from starts "
+          "that are likely to go wrong, by how near earlier ones came to it")
+      .check(WholeNumber{0, harness::kMaxSearchRuns});
+  command
+      .option("--search-strategy", options->strategy,
+              "How the search proposes starts: portfolio (the default), uniform, sobol, boundary, "
+              "cross-entropy, expected-improvement or descent")
+      .check(OneOf{{"portfolio", "uniform", "sobol", "boundary", "cross-entropy",
+                    "expected-improvement", "descent"}});
   command.option("--max-traces", options->max_traces, "Traces that are simulated at most")
       .check(WholeNumber{1, 1'000'000'000});
   command

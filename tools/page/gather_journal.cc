@@ -97,7 +97,7 @@ PageSample page_sample(const SampleRecord& record, const PageData& page) {
     out.start.push_back(number_in(record.initial, variable));
   }
   for (const auto& body : page.bodies) out.ways.push_back(way_of(record, body));
-  if (record.phase == harness::DrawPhase::kSearch) out.origin = SampleOrigin::kSearch;
+  if (record.searched) out.origin = SampleOrigin::kSearch;
   if (record.path) {
     if (!record.path->target.empty()) out.origin = SampleOrigin::kChosen;
     using harness::PathEnd;

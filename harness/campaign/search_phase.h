@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "harness/campaign/search_result.h"
+#include "harness/campaign/trial.h"
+
+namespace parallax::harness {
+
+enum class SearchEnd : std::uint8_t { kNothing, kDiscrepancy, kLostTooOften, kStopped };
+
+struct SearchOutcome {
+  SearchEnd end = SearchEnd::kNothing;
+  SearchResult result;
+  /// What was simulated, in order, the discrepancy last.
+  std::vector<TrialSample> samples;
+};
+
+/// A trace's start cuboid as a unit cube over the dimensions that are drawn.
+class UnitCube {
+ public:
+  /// `sampler` must outlive it.
+  explicit UnitCube(const Sampler& sampler);
+  std::size_t dimensions() const { return free_; }
+  State start_at(const UnitPoint& point) const;
+
+ private:
+  const Sampler& sampler_;
+  std::size_t free_ = 0;
+};
+
+/// Of what is random in a search of the trace's starts.
+std::uint64_t search_seed(const TracePlan& plan);
+EvaluationKind evaluation_kind(const TrialSample& sample);
+
+/// Tries starts that the strategy proposes, at most `spec.runs`, until one gives a discrepancy. It
+/// takes the samples of the numbers 1 to `spec.runs`; draws come after them. Nothing that it shows
+/// counts for a claim. What it does follows from the campaign's seed, whatever the number of jobs.
+base::Result<SearchOutcome> search_trace(Trial& trial, const SearchSpec& spec,
+                                         const Scenario& scenario, const ModelFluents& fluents,
+                                         base::DiagnosticSink& sink);
+
+}  // namespace parallax::harness
