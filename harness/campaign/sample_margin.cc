@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kScaleRuns = 8;  // of which the greatest value of a part is its unit
 constexpr double kTouching = 1e-9;
+constexpr double kUnmoved = 0.01;  // widths of a cell
 
 /// What controllers tell of where something was, not of how much was left.
 constexpr std::array<std::string_view, 2> kNoMargins = {"grasp_offset", "free_way"};
@@ -41,7 +42,11 @@ MarginParts margin_parts(const StateMapping& mapping, const ModelFluents& fluent
       if (binding->at_rest_only && t != last) continue;
       const bool predicted = runtime::contains(trace.points[t].holds, fluents.id(i));
       const auto margin = fluent_margin(mapping, fluent, predicted, record.observations[t]);
-      if (margin) take_least(parts, fluent.text, *margin);
+      if (!margin) continue;
+      // Of a body that still lies where it lay at the start the margin is about the start alone.
+      const auto before = fluent_margin(mapping, fluent, predicted, record.observations[0]);
+      if (before && std::abs(*margin - *before) < kUnmoved) continue;
+      take_least(parts, fluent.text, *margin);
     }
   }
   for (std::size_t t = 0; t < record.outcomes.size(); ++t) {

@@ -47,7 +47,8 @@ Shares of_traces(const ScenarioModel& loaded, const harness::CampaignResult& res
   for (const auto& [key, text] : model.all()) all.insert(key);
   if (plan) all.insert(plan->all().begin(), plan->all().end());
   for (const auto& one : result.traces) {
-    if (one.simulations == one.lost) continue;
+    const bool searched = one.search && one.search->runs > one.search->lost;
+    if (one.simulations == one.lost && !searched) continue;
     covered.merge(model.covered_by(*one.trace));
     if (plan) covered.merge(plan->covered_by(plan->path_of(*one.trace)));
   }
