@@ -11,17 +11,10 @@ namespace {
 /// What may be wrong with an axiom that there is.
 class AxiomEdits {
  public:
-  AxiomEdits(const EditSubject& subject, std::vector<Edit>& out)
-      : model_(subject.model),
-        typed_(subject.typed),
-        forms_(subject.forms),
-        scope_(subject.scope),
-        relevance_(subject.relevance),
-        fluents_(subject.fluents),
-        out_(out) {}
+  AxiomEdits(const EditSubject& subject, std::vector<Edit>& out) : subject_(subject), out_(out) {}
 
   void edit(std::size_t i) {
-    if (forms_[i].kind == AxiomForm::Kind::kEffects) {
+    if (subject_.forms[i].kind == AxiomForm::Kind::kEffects) {
       edit_effects(i);
     } else {
       drop(i);
@@ -30,13 +23,13 @@ class AxiomEdits {
   }
 
  private:
-  const Ast& ast(const AxiomForm& form) const { return model_.ast(form.place); }
+  const Ast& ast(const AxiomForm& form) const { return subject_.model.ast(form.place); }
 
   std::vector<SortedVariable> sorted(const std::vector<std::string>& names,
                                      const std::string& time) const {
     std::vector<SortedVariable> out;
     for (const auto& name : names) {
-      const auto sort = sort_of_variable(typed_, name);
+      const auto sort = sort_of_variable(subject_.typed, name);
       if (sort && name != time) out.push_back({name, *sort});
     }
     return out;
@@ -55,19 +48,19 @@ class AxiomEdits {
     Edit edit;
     edit.kind = Edit::Kind::kDropAxiom;
     edit.axioms = {i};
-    edit.event = forms_[i].event_symbol;
+    edit.event = subject_.forms[i].event_symbol;
     edit.oddity = 3;
     out_.push_back(std::move(edit));
   }
 
   void edit_effects(std::size_t i) {
-    const auto& form = forms_[i];
+    const auto& form = subject_.forms[i];
     bool relevant = false;
     for (const auto effect : form.effects) {
       const auto parts = effect_parts(ast(form), effect);
       const auto& fluent = ast(form)[parts->fluent];
       const bool named = fluent.kind == NodeKind::kApply;
-      const bool differs = !named || fluents_.contains(std::string(ast(form).name(fluent)));
+      const bool differs = !named || subject_.fluents.contains(std::string(ast(form).name(fluent)));
       relevant = relevant || differs;
       replace_effect(i, effect, differs);
     }
@@ -76,9 +69,11 @@ class AxiomEdits {
     edit_conditions(i);
     const auto variables = sorted(form.variables, form.time);
     const auto arguments = event_arguments(form);
-    for (const auto& literal : condition_literals(typed_, variables, kMostLiterals)) {
-      if (!relevance_.in_some_step(literal, false, arguments, form.event_symbol, form.variables) ||
-          is_idle_condition(model_, forms_, form, print(literal, form.time, form.variables))) {
+    for (const auto& literal : condition_literals(subject_.typed, variables, kMostLiterals)) {
+      if (!subject_.relevance.in_some_step(literal, false, arguments, form.event_symbol,
+                                           form.variables) ||
+          is_idle_condition(subject_.model, subject_.forms, form,
+                            print(literal, form.time, form.variables))) {
         continue;
       }
       Edit edit;
@@ -86,13 +81,13 @@ class AxiomEdits {
       edit.axioms = {i};
       edit.literal = literal;
       edit.event = form.event_symbol;
-      edit.oddity = 2 + relevance_.oddity(literal, form.event_symbol);
+      edit.oddity = 2 + subject_.relevance.oddity(literal, form.event_symbol);
       out_.push_back(std::move(edit));
     }
   }
 
   void edit_conditions(std::size_t i) {
-    const auto& form = forms_[i];
+    const auto& form = subject_.forms[i];
     for (const auto conjunct : form.conjuncts) {
       const auto& node = ast(form)[conjunct];
       const bool is_event =
@@ -124,19 +119,19 @@ class AxiomEdits {
   }
 
   void replace(std::size_t i, NodeId node, std::string text, int oddity) {
-    if (text == print_formula(ast(forms_[i]), node)) return;
+    if (text == print_formula(ast(subject_.forms[i]), node)) return;
     Edit edit;
     edit.kind = Edit::Kind::kReplace;
     edit.axioms = {i};
     edit.node = node;
     edit.text = std::move(text);
-    edit.event = forms_[i].event_symbol;
+    edit.event = subject_.forms[i].event_symbol;
     edit.oddity = oddity;
     out_.push_back(std::move(edit));
   }
 
   void replace_effect(std::size_t i, NodeId effect, bool differs) {
-    const auto& form = forms_[i];
+    const auto& form = subject_.forms[i];
     const auto& tree = ast(form);
     const auto parts = *effect_parts(tree, effect);
     const std::string kind(tree.name(tree[effect]));
@@ -153,14 +148,15 @@ class AxiomEdits {
       }
       for (const auto& [e, f] : exchanged(form, parts)) replace(i, effect, atom(kind, e, f), 2);
     }
-    for (const auto& name : differs ? fluents_for(form.event_symbol, kind) : fluents_) {
-      const auto symbol = typed_.find_symbol(name);
-      if (!symbol || typed_.symbols[*symbol].kind != SymbolKind::kFluent) continue;
+    for (const auto& name : differs ? fluents_for(form.event_symbol, kind) : subject_.fluents) {
+      const auto symbol = subject_.typed.find_symbol(name);
+      if (!symbol || subject_.typed.symbols[*symbol].kind != SymbolKind::kFluent) continue;
       if (tree[parts.fluent].kind == NodeKind::kApply && tree.name(tree[parts.fluent]) == name) {
         continue;
       }
       const auto variables = sorted(form.variables, form.time);
-      for (const auto& [term, oddity] : terms(name, typed_.symbols[*symbol].arguments, variables)) {
+      for (const auto& [term, oddity] :
+           terms(name, subject_.typed.symbols[*symbol].arguments, variables)) {
         replace(i, effect, atom(kind, event, term), 2 + oddity);
       }
     }
@@ -170,10 +166,10 @@ class AxiomEdits {
   /// not have shown, of which the event has no axiom of that kind: those that some axiom releases,
   /// so that the model follows them anyway, and those that it changed in some run all the same.
   std::set<std::string> fluents_for(const std::string& event, const std::string& kind) const {
-    auto out = fluents_;
+    auto out = subject_.fluents;
     if (kind == "Releases") return out;
     std::set<std::string> own, hidden;
-    for (const auto& form : forms_) {
+    for (const auto& form : subject_.forms) {
       if (form.kind != AxiomForm::Kind::kEffects) continue;
       for (const auto effect : form.effects) {
         const auto& tree = ast(form);
@@ -184,11 +180,11 @@ class AxiomEdits {
         if (form.event_symbol == event && tree.name(tree[effect]) == kind) own.insert(name);
       }
     }
-    const auto changed = scope_.changed.find(event);
-    if (changed != scope_.changed.end()) {
+    const auto changed = subject_.scope.changed.find(event);
+    if (changed != subject_.scope.changed.end()) {
       for (const auto& [name, holds] : changed->second) {
-        const auto symbol = typed_.find_symbol(name);
-        const bool inertial = symbol && !typed_.symbols[*symbol].noninertial;
+        const auto symbol = subject_.typed.find_symbol(name);
+        const bool inertial = symbol && !subject_.typed.symbols[*symbol].noninertial;
         if (inertial && holds == (kind == "Initiates")) hidden.insert(name);
       }
     }
@@ -208,11 +204,11 @@ class AxiomEdits {
       for (const auto& [begun, oddity] : out) {
         const auto comma = begun.empty() ? "" : begun + ",";
         for (const auto& variable : variables) {
-          if (typed_.sorts_overlap(variable.sort, sort)) {
+          if (subject_.typed.sorts_overlap(variable.sort, sort)) {
             next.emplace_back(comma + variable.name, oddity);
           }
         }
-        for (const auto& name : constants_of(typed_, sort)) {
+        for (const auto& name : constants_of(subject_.typed, sort)) {
           next.emplace_back(comma + name, oddity + 2);
         }
       }
@@ -229,8 +225,8 @@ class AxiomEdits {
     const auto& node = tree[term];
     std::vector<std::pair<std::string, int>> out;
     if (node.kind != NodeKind::kApply) return out;
-    const auto symbol = typed_.find_symbol(tree.name(node));
-    if (!symbol || typed_.symbols[*symbol].arguments.size() != node.child_count) return out;
+    const auto symbol = subject_.typed.find_symbol(tree.name(node));
+    if (!symbol || subject_.typed.symbols[*symbol].arguments.size() != node.child_count) return out;
     std::vector<std::string> arguments;
     for (std::uint32_t i = 0; i < node.child_count; ++i) {
       arguments.push_back(print_formula(tree, tree.child(node, i)));
@@ -241,14 +237,15 @@ class AxiomEdits {
       return text + ")";
     };
     for (std::size_t i = 0; i < arguments.size(); ++i) {
-      const auto sort = typed_.symbols[*symbol].arguments[i];
+      const auto sort = subject_.typed.symbols[*symbol].arguments[i];
       auto with = arguments;
       for (const auto& variable : sorted(form.variables, form.time)) {
-        if (variable.name == arguments[i] || !typed_.sorts_overlap(variable.sort, sort)) continue;
+        if (variable.name == arguments[i] || !subject_.typed.sorts_overlap(variable.sort, sort))
+          continue;
         with[i] = variable.name;
         out.emplace_back(print(with), 1);
       }
-      const auto constants = constants_of(typed_, sort);
+      const auto constants = constants_of(subject_.typed, sort);
       if (constants.size() > kMostLiterals) continue;
       for (const auto& name : constants) {
         if (name == arguments[i]) continue;
@@ -259,7 +256,7 @@ class AxiomEdits {
         auto swapped = arguments;
         std::swap(swapped[i], swapped[j]);
         if (swapped != arguments &&
-            typed_.sorts_overlap(sort, typed_.symbols[*symbol].arguments[j])) {
+            subject_.typed.sorts_overlap(sort, subject_.typed.symbols[*symbol].arguments[j])) {
           out.emplace_back(print(swapped), 1);
         }
       }
@@ -288,8 +285,9 @@ class AxiomEdits {
     const auto event = arguments(parts.event), fluent = arguments(parts.fluent);
     for (std::size_t i = 0; i < event.size(); ++i) {
       for (std::size_t j = 0; j < fluent.size(); ++j) {
-        const auto a = sort_of_variable(typed_, event[i]), b = sort_of_variable(typed_, fluent[j]);
-        if (event[i] == fluent[j] || !a || !b || !typed_.sorts_overlap(*a, *b)) continue;
+        const auto a = sort_of_variable(subject_.typed, event[i]),
+                   b = sort_of_variable(subject_.typed, fluent[j]);
+        if (event[i] == fluent[j] || !a || !b || !subject_.typed.sorts_overlap(*a, *b)) continue;
         auto e = event, f = fluent;
         std::swap(e[i], f[j]);
         out.emplace_back(print(parts.event, e), print(parts.fluent, f));
@@ -298,12 +296,7 @@ class AxiomEdits {
     return out;
   }
 
-  const ModelAst& model_;
-  const TypedModel& typed_;
-  const std::vector<AxiomForm>& forms_;
-  const EditScope& scope_;
-  const EditRelevance& relevance_;
-  const std::set<std::string>& fluents_;
+  const EditSubject& subject_;
   std::vector<Edit>& out_;
 };
 

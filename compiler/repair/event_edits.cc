@@ -12,37 +12,30 @@ constexpr std::size_t kMostPaired = 24;  // literals of which every two are an a
 /// What may be missing about an event: a condition of all that it does, a precondition, effects.
 class EventEdits {
  public:
-  EventEdits(const EditSubject& subject, std::vector<Edit>& out)
-      : model_(subject.model),
-        typed_(subject.typed),
-        forms_(subject.forms),
-        scope_(subject.scope),
-        relevance_(subject.relevance),
-        fluents_(subject.fluents),
-        out_(out) {}
+  EventEdits(const EditSubject& subject, std::vector<Edit>& out) : subject_(subject), out_(out) {}
 
   void edit_event(const std::string& event, const std::vector<SortId>& sorts) {
-    const auto names = variables_for(typed_, sorts);
+    const auto names = variables_for(subject_.typed, sorts);
     std::vector<SortedVariable> variables;
     for (std::size_t i = 0; i < names.size(); ++i) variables.push_back({names[i], sorts[i]});
     const auto axioms = effects_of(event);
     bool refused = false, not_possible = false;
-    for (const auto& step : scope_.steps) {
+    for (const auto& step : subject_.scope.steps) {
       if (symbol_of(step.event) != event) continue;
       refused = refused || step.refused;
       not_possible = not_possible || step.not_possible;
     }
     // What was tried and failed may fail. What cannot be is no outcome.
-    if (scope_.open_outcomes || (scope_.open_refused && refused && !not_possible))
+    if (subject_.scope.open_outcomes || (subject_.scope.open_refused && refused && !not_possible))
       open_event(event, names, axioms);
-    for (const auto& literal : condition_literals(typed_, variables, kMostLiterals)) {
-      if (!relevance_.in_some_step(literal, false, names, event, names)) continue;
+    for (const auto& literal : condition_literals(subject_.typed, variables, kMostLiterals)) {
+      if (!subject_.relevance.in_some_step(literal, false, names, event, names)) continue;
       Edit edit;
       edit.literal = literal;
       edit.event = event;
       edit.variables = names;
       edit.event_arity = names.size();
-      const int oddity = relevance_.oddity(literal, event);
+      const int oddity = subject_.relevance.oddity(literal, event);
       if (axioms.size() > 1) {
         edit.kind = Edit::Kind::kNarrowEvent;
         edit.axioms = axioms;
@@ -59,17 +52,17 @@ class EventEdits {
   }
 
   void add_alternatives(const std::string& event, const std::vector<SortId>& sorts) {
-    const auto names = variables_for(typed_, sorts);
+    const auto names = variables_for(subject_.typed, sorts);
     std::vector<SortedVariable> variables;
     for (std::size_t i = 0; i < names.size(); ++i) variables.push_back({names[i], sorts[i]});
     std::vector<std::pair<int, ConditionLiteral>> literals;
-    for (auto& literal : condition_literals(typed_, variables, kMostLiterals)) {
+    for (auto& literal : condition_literals(subject_.typed, variables, kMostLiterals)) {
       // Where it went wrong neither of the two held.
-      if (!relevance_.in_some_step(literal, false, names, event, names)) continue;
+      if (!subject_.relevance.in_some_step(literal, false, names, event, names)) continue;
       if (!always_says_something(literal, variables)) continue;
       const bool of_constants = literal.count(LiteralArgument::Kind::kConstant) > 0;
-      const int oddity = of_constants ? std::max(2, relevance_.oddity(literal, event) + 1)
-                                      : relevance_.oddity(literal, event);
+      const int oddity = of_constants ? std::max(2, subject_.relevance.oddity(literal, event) + 1)
+                                      : subject_.relevance.oddity(literal, event);
       literals.emplace_back(oddity, std::move(literal));
     }
     std::stable_sort(literals.begin(), literals.end(),
@@ -100,16 +93,16 @@ class EventEdits {
   }
 
   void add_effects(const std::string& event, const std::vector<SortId>& sorts) {
-    for (const auto& name : fluents_) {
-      const auto symbol = typed_.find_symbol(name);
-      if (!symbol || typed_.symbols[*symbol].kind != SymbolKind::kFluent) continue;
-      if (typed_.symbols[*symbol].noninertial) continue;
+    for (const auto& name : subject_.fluents) {
+      const auto symbol = subject_.typed.find_symbol(name);
+      if (!symbol || subject_.typed.symbols[*symbol].kind != SymbolKind::kFluent) continue;
+      if (subject_.typed.symbols[*symbol].noninertial) continue;
       auto all = sorts;
-      const auto& places = typed_.symbols[*symbol].arguments;
+      const auto& places = subject_.typed.symbols[*symbol].arguments;
       all.insert(all.end(), places.begin(), places.end());
-      const auto names = variables_for(typed_, all);
+      const auto names = variables_for(subject_.typed, all);
       std::vector<std::string> kinds = {"Initiates", "Terminates"};
-      if (scope_.open_outcomes) kinds.emplace_back("Releases");
+      if (subject_.scope.open_outcomes) kinds.emplace_back("Releases");
       for (const auto& kind : kinds) {
         add_effects_of(kind, event, sorts.size(), name, all, names);
       }
@@ -117,29 +110,31 @@ class EventEdits {
   }
 
  private:
-  const Ast& ast(const AxiomForm& form) const { return model_.ast(form.place); }
+  const Ast& ast(const AxiomForm& form) const { return subject_.model.ast(form.place); }
 
   /// Has it a value for whatever the variables stand for? A sentence says nothing where they are
   /// outside of a place's sort, not even the other half of the condition.
   bool always_says_something(const ConditionLiteral& literal,
                              const std::vector<SortedVariable>& variables) const {
     if (literal.kind == ConditionLiteral::Kind::kEqual) return true;
-    const auto& places = typed_.symbols[*typed_.find_symbol(literal.symbol)].arguments;
+    const auto& places =
+        subject_.typed.symbols[*subject_.typed.find_symbol(literal.symbol)].arguments;
     for (std::size_t i = 0; i < places.size(); ++i) {
       const auto& argument = literal.arguments[i];
       if (argument.kind != LiteralArgument::Kind::kVariable) continue;
       const auto variable = std::find_if(variables.begin(), variables.end(), [&](const auto& each) {
         return each.name == argument.name;
       });
-      if (!typed_.is_subsort(variable->sort, places[i])) return false;
+      if (!subject_.typed.is_subsort(variable->sort, places[i])) return false;
     }
     return true;
   }
 
   std::vector<std::size_t> effects_of(const std::string& event) const {
     std::vector<std::size_t> out;
-    for (std::size_t i = 0; i < forms_.size(); ++i) {
-      if (forms_[i].event_symbol == event && forms_[i].kind == AxiomForm::Kind::kEffects) {
+    for (std::size_t i = 0; i < subject_.forms.size(); ++i) {
+      if (subject_.forms[i].event_symbol == event &&
+          subject_.forms[i].kind == AxiomForm::Kind::kEffects) {
         out.push_back(i);
       }
     }
@@ -148,12 +143,12 @@ class EventEdits {
 
   /// Of those that differed.
   bool is_about_fluents(std::size_t axiom) const {
-    const auto& tree = ast(forms_[axiom]);
-    return std::any_of(forms_[axiom].effects.begin(), forms_[axiom].effects.end(),
+    const auto& tree = ast(subject_.forms[axiom]);
+    return std::any_of(subject_.forms[axiom].effects.begin(), subject_.forms[axiom].effects.end(),
                        [&](const auto effect) {
                          const auto& fluent = tree[effect_parts(tree, effect)->fluent];
                          return fluent.kind != NodeKind::kApply ||
-                                fluents_.contains(std::string(tree.name(fluent)));
+                                subject_.fluents.contains(std::string(tree.name(fluent)));
                        });
   }
 
@@ -166,13 +161,13 @@ class EventEdits {
     edit.variables = names;
     edit.event_arity = names.size();
     // It explains anything: without need for it, it comes last.
-    edit.oddity = scope_.open_outcomes ? 1 : kOpenWithoutNeed;
+    edit.oddity = subject_.scope.open_outcomes ? 1 : kOpenWithoutNeed;
     for (const auto i : axioms) {
-      for (const auto effect : forms_[i].effects) {
-        const auto& tree = ast(forms_[i]);
+      for (const auto effect : subject_.forms[i].effects) {
+        const auto& tree = ast(subject_.forms[i]);
         const auto& fluent = tree[effect_parts(tree, effect)->fluent];
         if (fluent.kind != NodeKind::kApply || tree.name(tree[effect]) == "Releases") continue;
-        if (!fluents_.contains(std::string(tree.name(fluent)))) continue;
+        if (!subject_.fluents.contains(std::string(tree.name(fluent)))) continue;
         edit.nodes.emplace_back(i, effect);
         if (edit.axioms.empty() || edit.axioms.back() != i) edit.axioms.push_back(i);
       }
@@ -195,10 +190,10 @@ class EventEdits {
           next.back().push_back(text);
         };
         for (const auto& variable : own) {
-          if (typed_.sorts_overlap(variable.sort, sorts[i])) add(variable.name);
+          if (subject_.typed.sorts_overlap(variable.sort, sorts[i])) add(variable.name);
         }
         add(names[i]);
-        for (const auto& name : constants_of(typed_, sorts[i])) add(name);
+        for (const auto& name : constants_of(subject_.typed, sorts[i])) add(name);
       }
       choices = std::move(next);
       if (choices.size() > 4 * kMostLiterals) return;
@@ -233,7 +228,7 @@ class EventEdits {
       }
     }
     edit.names_constants = constants;
-    if (!relevance_.covers(kind, event, fluent, of_event, choice, edit.variables)) return;
+    if (!subject_.relevance.covers(kind, event, fluent, of_event, choice, edit.variables)) return;
     const auto list = [](const std::vector<std::string>& of) {
       std::string text;
       for (const auto& each : of) text += (text.empty() ? "" : ",") + each;
@@ -244,16 +239,12 @@ class EventEdits {
     const auto place = out_.size();
     out_.push_back(edit);
     // Conditions of what is special already, or about everything, would be most of all edits.
-    if (constants || own > 1 || !scope_.more_events.empty()) return;
-    relevance_.add_conditions(typed_, place, variables, arity, 1 + kMostLiterals / 8, {}, out_);
+    if (constants || own > 1 || !subject_.scope.more_events.empty()) return;
+    subject_.relevance.add_conditions(subject_.typed, place, variables, arity,
+                                      1 + kMostLiterals / 8, {}, out_);
   }
 
-  const ModelAst& model_;
-  const TypedModel& typed_;
-  const std::vector<AxiomForm>& forms_;
-  const EditScope& scope_;
-  const EditRelevance& relevance_;
-  const std::set<std::string>& fluents_;
+  const EditSubject& subject_;
   std::vector<Edit>& out_;
 };
 

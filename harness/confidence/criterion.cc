@@ -37,6 +37,13 @@ std::string rejected_text(const Tally& tally) {
       tally.rejected(), drawn, 100.0 * share);
 }
 
+/// What no criterion goes on after.
+bool is_refuted(const Tally& tally, Decision& decision) {
+  if (tally.mismatch() == 0) return false;
+  decision.why = "a run gave a discrepancy";
+  return true;
+}
+
 }  // namespace
 
 std::string_view source_of(CriterionKind kind) {
@@ -76,10 +83,7 @@ CleanRunsCriterion::CleanRunsCriterion(double confidence_level, double epsilon)
 
 Decision CleanRunsCriterion::decide(const Tally& tally) const {
   Decision decision;
-  if (tally.mismatch() > 0) {
-    decision.why = "a run gave a discrepancy";
-    return decision;
-  }
+  if (is_refuted(tally, decision)) return decision;
   // All-clean runs have their own bound, which is shorter but does not survive a failure.
   const bool all_clean = tally.lost() == 0;
   const std::int64_t needed =
@@ -98,10 +102,7 @@ PaperCriterion::PaperCriterion(double confidence_level, PaperRuleSpec spec)
 
 Decision PaperCriterion::decide(const Tally& tally) const {
   Decision decision;
-  if (tally.mismatch() > 0) {
-    decision.why = "a run gave a discrepancy";
-    return decision;
-  }
+  if (is_refuted(tally, decision)) return decision;
   if (tally.lost() > 0) {
     // The rule has no place for a run without a result; leaving it out would favour the model.
     decision.why = "a run was lost";
@@ -118,10 +119,7 @@ AnytimeCriterion::AnytimeCriterion(double confidence_level, double epsilon)
 
 Decision AnytimeCriterion::decide(const Tally& tally) const {
   Decision decision;
-  if (tally.mismatch() > 0) {
-    decision.why = "a run gave a discrepancy";
-    return decision;
-  }
+  if (is_refuted(tally, decision)) return decision;
   const auto needed = mixture_runs_needed(tally.lost(), confidence_level_, epsilon_);
   decision.runs_needed = needed;
   decision.stop = tally.runs() >= needed;
@@ -137,10 +135,7 @@ FixedRunsCriterion::FixedRunsCriterion(double confidence_level, double epsilon, 
 Decision FixedRunsCriterion::decide(const Tally& tally) const {
   Decision decision;
   decision.runs_needed = runs_;
-  if (tally.mismatch() > 0) {
-    decision.why = "a run gave a discrepancy";
-    return decision;
-  }
+  if (is_refuted(tally, decision)) return decision;
   decision.stop = tally.runs() == runs_ &&
                   clopper_pearson_upper(tally.lost(), runs_, confidence_level_) <= epsilon_;
   decision.why = fmt::format("{} of {} runs, {} lost", tally.runs(), runs_, tally.lost());

@@ -183,8 +183,6 @@ class FieldReader {
   Malformed error_;
 };
 
-Json parse(std::string_view line) { return base::parse_json(line); }
-
 std::optional<std::int64_t> id_of(const Json& json) {
   const auto found = json.find("id");
   return found == json.end() ? std::nullopt : base::json_as<std::int64_t>(*found);
@@ -421,7 +419,7 @@ std::string encode_state(const State& state) { return line_of(state_json<Ordered
 
 std::variant<Request, Malformed> decode_request(std::string_view line) {
   if (line.size() > kMaxLineBytes) return malformed("line_too_long", "line longer than 1 MiB");
-  const Json json = parse(line);
+  const Json json = base::parse_json(line);
   if (json.is_discarded()) return malformed("parse_error", "the line is not JSON");
   if (!json.is_object()) return malformed("invalid_request", "the line is not an object");
   const std::optional<std::int64_t> id = id_of(json);
@@ -435,7 +433,7 @@ std::variant<Request, Malformed> decode_request(std::string_view line) {
 
 std::variant<ReplyBody, Malformed> decode_reply(std::string_view line, const Request& asked) {
   if (line.size() > kMaxLineBytes) return malformed("line_too_long", "line longer than 1 MiB");
-  const Json json = parse(line);
+  const Json json = base::parse_json(line);
   if (json.is_discarded()) return malformed("parse_error", "the line is not JSON");
   if (!json.is_object()) return malformed("invalid_reply", "the line is not an object");
 
@@ -463,7 +461,7 @@ std::variant<ReplyBody, Malformed> decode_reply(std::string_view line, const Req
 }
 
 std::variant<State, Malformed> decode_state(std::string_view text) {
-  const Json json = parse(text);
+  const Json json = base::parse_json(text);
   if (json.is_discarded()) return malformed("parse_error", "the text is not JSON");
   if (!json.is_object()) return malformed("parse_error", "the text is not an object");
   FieldReader reader("parse_error");

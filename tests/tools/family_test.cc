@@ -165,6 +165,7 @@ TEST_CASE("calibrate: the smaller table, through the protocol, and what it refus
   CHECK(Json::parse(run(crash)) == json);  // although the simulator takes no seed
   CHECK(run({"--criterion", "p-value"}, 2).empty());
   CHECK(run({"--loops", "-1"}, 2).empty());
+  CHECK(run({"--loops", "0", "--protocol-loops", "0"}, 2).empty());
 }
 
 }  // namespace

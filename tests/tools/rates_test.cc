@@ -186,7 +186,7 @@ TEST_CASE("starts that interpenetrate are drawn again, and counted") {
 TEST_CASE("a limit or a signal leaves a partial result that says so") {
   const CliFixture cli;
   const auto limited =
-      json_of(cli, {"rates", "scenario.yaml", "--runs", "1000000", "--time-limit", "1"}, 4);
+      json_of(cli, {"rates", "scenario.yaml", "--runs", "1000000", "--time-limit", "5"}, 4);
   CHECK(limited["complete"] == false);
   CHECK(limited["traces"][0]["runs"].get<int>() < 1'000'000);
   CHECK(limited["traces"][0]["any"]["count"] == 0);

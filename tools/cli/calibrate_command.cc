@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "compiler/base/diagnostic_codes.h"
 #include "harness/calibration/calibration.h"
 #include "harness/simulator/worker.h"
 #include "tools/cli/command.h"
@@ -50,6 +51,12 @@ int run_calibrate(const CalibrateOptions& options, Invocation& invocation) {
              [](const auto& one) { return std::string(to_string(one.kind)); });
   const auto result = harness::calibrate(calibration, criteria, worlds, invocation.sink());
   if (!result) return 0;
+  if (result->complete && result->in_process.empty() && result->protocol.empty()) {
+    invocation.sink().error_about(base::DiagnosticCode::kUsage, "--loops",
+                                  "nothing is measured with it; name another number of loops, "
+                                  "--protocol-loops, or other simulators");
+    return 0;
+  }
   if (invocation.options().json) {
     invocation.document(harness::calibration_json(*result));
   } else {
@@ -72,7 +79,7 @@ Command calibrate_command() {
       "  parallax calibrate\n"
       "  parallax calibrate --criterion clean-runs --confidence 0.9 --epsilon 0.2\n"
       "  parallax calibrate --simulator crash-first --protocol-loops 100 --json\n"
-      "The table of docs/statistics.md is what the first one prints.\n"
+      "The tables of docs/statistics.md are from the first one, whose second part takes hours.\n"
       "Exit codes: 0 each criterion errs as rarely as it says, 1 one does not, 4 interrupted.");
   std::vector<std::string> criteria,
       simulators(harness::kSyntheticWords.begin(), harness::kSyntheticWords.end());

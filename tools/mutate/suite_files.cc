@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "compiler/base/file_io.h"
+#include "compiler/base/file_names.h"
 #include "compiler/base/path_gate.h"
 #include "compiler/repair/mutation.h"
 #include "compiler/sema/check.h"
@@ -70,7 +71,7 @@ class SuiteReader {
     std::error_code error;
     if (!fs::is_regular_file(name, error)) return base::Unit{};
     reads.insert(base::real_path(name).string());
-    const auto place = absolute_name(name);
+    const auto place = base::absolute_name(name);
     if (out_.texts.contains(place)) return base::Unit{};
     auto text = base::read_file(name, context_.sink());
     if (!text) return context_.sink().already_reported();

@@ -5,6 +5,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/file_names.h"
 #include "tools/app/scenario_model.h"
 #include "tools/repair/world_files.h"
 
@@ -14,30 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFrozenWorld = "world-of-the-run";
-
-std::string absolute_name(const std::string& name) {
-  std::error_code error;
-  return fs::absolute(name, error).lexically_normal().generic_string();
-}
-
-/// The folder that all of them lie in.
-fs::path common_folder(const std::map<std::string, std::string>& files) {
-  fs::path out;
-  for (const auto& [name, text] : files) {
-    const auto folder = fs::path(name).parent_path();
-    if (out.empty()) {
-      out = folder;
-      continue;
-    }
-    fs::path both;
-    for (auto a = out.begin(), b = folder.begin(); a != out.end() && b != folder.end() && *a == *b;
-         ++a, ++b) {
-      both /= *a;
-    }
-    out = both;
-  }
-  return out;
-}
 
 base::Status write_copy(const fs::path& target, const std::string& text, Context& context) {
   std::error_code error;
@@ -56,7 +33,7 @@ base::Result<ScenarioCopy> ScenarioCopy::make(const harness::Scenario& scenario,
   std::map<std::string, std::string> names;  // as they are told
   const auto add = [&](const std::string& name) -> base::Status {
     std::error_code error;
-    const auto place = absolute_name(name);
+    const auto place = base::absolute_name(name);
     if (texts.contains(place) || !fs::is_regular_file(name, error)) return base::Unit{};
     auto text = base::read_file(name, sink);
     if (!text) return sink.already_reported();
@@ -72,14 +49,15 @@ base::Result<ScenarioCopy> ScenarioCopy::make(const harness::Scenario& scenario,
   for (auto i = first_input; i < files.inputs().size(); ++i) {
     if (!add(files.inputs()[i])) return sink.already_reported();
   }
-  const auto root = common_folder(texts);
+  const auto root = base::common_folder(texts);
   ScenarioCopy out;
   for (const auto& [place, text] : texts) {
     const auto target = folder / fs::path(place).lexically_relative(root);
     if (!write_copy(target, text, context)) return sink.already_reported();
     out.copies_.emplace(place, Copy{names.at(place), target, text, text});
   }
-  out.scenario_ = folder / fs::path(absolute_name(scenario.file.string())).lexically_relative(root);
+  out.scenario_ =
+      folder / fs::path(base::absolute_name(scenario.file.string())).lexically_relative(root);
   if (!out.freeze_world(scenario, root, context) || !out.look_at_reads(context)) {
     return sink.already_reported();
   }
@@ -92,7 +70,7 @@ base::Status ScenarioCopy::freeze_world(const harness::Scenario& scenario, const
   std::set<std::string> model, world;
   const auto add = [&](const std::string& name, std::set<std::string>& places) {
     // Built-in foundations have no file.
-    const auto place = absolute_name(name);
+    const auto place = base::absolute_name(name);
     if (copies_.contains(place)) places.insert(place);
   };
   for (const auto& name : model_files(scenario, context)) add(name, model);
@@ -117,10 +95,10 @@ base::Status ScenarioCopy::freeze_world(const harness::Scenario& scenario, const
   });
   for (const auto& text : named) {
     const auto& file = context.files()[text.source.file].name();
-    const auto copy = copies_.find(absolute_name(file));
+    const auto copy = copies_.find(base::absolute_name(file));
     if (copy == copies_.end()) continue;
     auto& [name, target, original, now] = copy->second;
-    const auto to = frozen / fs::path(absolute_name(text.text)).lexically_relative(root);
+    const auto to = frozen / fs::path(base::absolute_name(text.text)).lexically_relative(root);
     now.replace(text.source.begin, text.source.end - text.source.begin,
                 to.lexically_relative(target.parent_path()).generic_string());
     if (!write_copy(target, now, context)) return context.sink().already_reported();
@@ -138,7 +116,7 @@ base::Status ScenarioCopy::look_at_reads(Context& context) {
   if (!copied->plan.empty() && !load_scenario_plan(*copied, context)) {
     return sink.already_reported();
   }
-  const auto add = [&](const std::string& name) { read_.insert(absolute_name(name)); };
+  const auto add = [&](const std::string& name) { read_.insert(base::absolute_name(name)); };
   for (auto i = first; i < context.files().size(); ++i) {
     add(context.files()[base::FileId(static_cast<std::uint32_t>(i))].name());
   }
@@ -146,7 +124,7 @@ base::Status ScenarioCopy::look_at_reads(Context& context) {
   if (copied->bind) add(copied->bind->text);
   // What the world reads must not be what is changed.
   for (const auto& name : world_files(*copied, context)) {
-    if (!read_.contains(absolute_name(name)) || !is_copy(name)) continue;
+    if (!read_.contains(base::absolute_name(name)) || !is_copy(name)) continue;
     return sink.error_about(base::DiagnosticCode::kFileNotWritable, name,
                             "the world reads it as the model does, and cannot be given a copy of "
                             "its own: give the world files of its own, named relative to the "
@@ -157,16 +135,16 @@ base::Status ScenarioCopy::look_at_reads(Context& context) {
 
 bool ScenarioCopy::is_copy(const std::string& name) const {
   return std::any_of(copies_.begin(), copies_.end(), [&](const auto& each) {
-    return absolute_name(each.second.target.string()) == absolute_name(name);
+    return base::absolute_name(each.second.target.string()) == base::absolute_name(name);
   });
 }
 
 base::Result<std::vector<ChangedFile>> ScenarioCopy::in_copies(std::vector<ChangedFile> files,
                                                                Context& context) const {
   for (auto& file : files) {
-    const auto copy = copies_.find(absolute_name(file.name));
+    const auto copy = copies_.find(base::absolute_name(file.name));
     const auto target = copy == copies_.end() ? file.name : copy->second.target.string();
-    if (!is_copy(target) || !read_.contains(absolute_name(target))) {
+    if (!is_copy(target) || !read_.contains(base::absolute_name(target))) {
       return context.sink().error_about(
           base::DiagnosticCode::kFileNotWritable, file.name,
           "--loop changes copies, and this file was not read from its copy: name it relative to "

@@ -3,6 +3,7 @@
 #include <system_error>
 
 #include "compiler/base/file_io.h"
+#include "compiler/base/file_names.h"
 #include "compiler/base/json.h"
 #include "compiler/base/sha256.h"
 #include "compiler/base/utf8.h"
@@ -94,7 +95,7 @@ std::optional<LastPass> LastPasses::find(const SuiteCase& one) const {
     LastPass out{program->get<std::string>(), definition->get<std::string>(), {}};
     for (const auto& [path, content] : texts->items()) {
       if (!content.is_string()) return std::nullopt;
-      out.texts.emplace(absolute_name(path), content.get<std::string>());
+      out.texts.emplace(base::absolute_name(path), content.get<std::string>());
     }
     return out;
   }

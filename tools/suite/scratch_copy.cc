@@ -4,6 +4,7 @@
 
 #include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
+#include "compiler/base/file_names.h"
 #include "compiler/base/path_gate.h"
 
 namespace parallax::tools {
@@ -11,22 +12,6 @@ namespace parallax::tools {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// The folder that all of them lie in.
-fs::path folder_of_all(const SuiteTexts& texts) {
-  fs::path out;
-  for (const auto& [name, text] : texts) {
-    const auto folder = fs::path(name).parent_path();
-    if (out.empty()) out = folder;
-    fs::path both;
-    for (auto a = out.begin(), b = folder.begin(); a != out.end() && b != folder.end() && *a == *b;
-         ++a, ++b) {
-      both /= *a;
-    }
-    out = both;
-  }
-  return out;
-}
 
 base::Status write_new(const fs::path& target, const std::string& text,
                        base::DiagnosticSink& sink) {
@@ -37,16 +22,11 @@ base::Status write_new(const fs::path& target, const std::string& text,
 
 }  // namespace
 
-std::string absolute_name(const std::string& name) {
-  std::error_code error;
-  return fs::absolute(name, error).lexically_normal().generic_string();
-}
-
 base::Result<ScratchCopy> ScratchCopy::make(const SuiteTexts& texts, const fs::path& folder,
                                             base::DiagnosticSink& sink) {
   ScratchCopy out;
   out.folder_ = folder;
-  out.root_ = folder_of_all(texts);
+  out.root_ = base::common_folder(texts);
   // What the originals may name lies in the copy as well, wherever their root is.
   if (!write_new(folder / base::kRootMarker, "", sink)) return sink.already_reported();
   for (const auto& [name, text] : texts) {
@@ -58,13 +38,13 @@ base::Result<ScratchCopy> ScratchCopy::make(const SuiteTexts& texts, const fs::p
 }
 
 fs::path ScratchCopy::place_of(const std::string& name) const {
-  const auto copy = copies_.find(absolute_name(name));
+  const auto copy = copies_.find(base::absolute_name(name));
   return copy == copies_.end() ? fs::path(name) : copy->second.target;
 }
 
 base::Status ScratchCopy::write(const std::string& name, const std::string& text,
                                 base::DiagnosticSink& sink) const {
-  const auto& original = copies_.at(absolute_name(name)).original;
+  const auto& original = copies_.at(base::absolute_name(name)).original;
   for (const auto& [other, copy] : copies_) {
     if (copy.original != original) continue;
     if (!base::write_file_atomically(copy.target, text, sink)) return sink.already_reported();
@@ -73,7 +53,7 @@ base::Status ScratchCopy::write(const std::string& name, const std::string& text
 }
 
 base::Status ScratchCopy::restore(const std::string& name, base::DiagnosticSink& sink) const {
-  return write(name, copies_.at(absolute_name(name)).text, sink);
+  return write(name, copies_.at(base::absolute_name(name)).text, sink);
 }
 
 }  // namespace parallax::tools

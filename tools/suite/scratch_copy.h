@@ -11,9 +11,6 @@ namespace parallax::tools {
 /// The texts that a suite reads, by the absolute names that they are read under.
 using SuiteTexts = std::map<std::string, std::string>;
 
-/// The name without links followed, absolute and without dots.
-std::string absolute_name(const std::string& name);
-
 /// Copies of all files of a suite, in a folder of their own, which lie to each other as the
 /// originals do. Only the copies are ever written.
 class ScratchCopy {

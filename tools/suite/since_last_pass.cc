@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/base/file_io.h"
+#include "compiler/base/file_names.h"
 #include "compiler/base/path_gate.h"
 #include "compiler/base/temporary_folder.h"
 #include "tools/suite/case_process.h"
@@ -57,7 +58,7 @@ SuiteTexts read_now(const std::set<std::string>& paths) {
     std::error_code error;
     if (!fs::is_regular_file(path, error)) continue;
     base::DiagnosticSink unread;
-    if (auto text = base::read_file(path, unread)) out.emplace(absolute_name(path), *text);
+    if (auto text = base::read_file(path, unread)) out.emplace(base::absolute_name(path), *text);
   }
   return out;
 }
