@@ -8,14 +8,12 @@
 
 #include "compiler/artifact/artifact_text.h"
 #include "compiler/artifact/section_readers.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/artifacts.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/whole_number.h"
 
 namespace parallax::compiler {
 namespace {
-
-using base::DiagnosticCode;
 
 constexpr std::int64_t kMaxHorizon = 1'000'000;  // as on the command line
 // A variable takes some bytes wherever it is used; models may have some that are used nowhere.
@@ -119,10 +117,10 @@ const std::vector<ArtifactReader::Entry>& ArtifactReader::entries() {
 
 /// `c dec format MAJOR.MINOR` is the first line.
 bool ArtifactReader::read_format() {
-  if (!cursor_.next_line()) return cursor_.fail(DiagnosticCode::kNotAnArtifact, "it is empty");
+  if (!cursor_.next_line()) return cursor_.fail(codes::kNotAnArtifact, "it is empty");
   if (!cursor_.line().starts_with("c dec format ")) {
     cursor_.raw_word();
-    return cursor_.fail(DiagnosticCode::kNotAnArtifact, "its first line is not `c dec format 1.0`");
+    return cursor_.fail(codes::kNotAnArtifact, "its first line is not `c dec format 1.0`");
   }
   cursor_.raw_word(), cursor_.raw_word(), cursor_.raw_word();
   const auto version = cursor_.raw_word();
@@ -135,8 +133,7 @@ bool ArtifactReader::read_format() {
     return false;
   }
   if (major != kFormatMajor) {
-    return cursor_.fail(DiagnosticCode::kArtifactVersion, fmt::format("{}.{}", major, minor_),
-                        kFormatMajor);
+    return cursor_.fail(codes::kArtifactVersion, fmt::format("{}.{}", major, minor_), kFormatMajor);
   }
   return cursor_.end_of_line();
 }
@@ -161,14 +158,14 @@ bool ArtifactReader::read_entry() {
   for (const auto& entry : entries()) {
     if (entry.key != key) continue;
     if (entry.once && !seen_.insert(entry.key).second) {
-      return cursor_.fail(DiagnosticCode::kArtifactTwice, fmt::format("`c dec {}`", key));
+      return cursor_.fail(codes::kArtifactTwice, fmt::format("`c dec {}`", key));
     }
     if (entry.needs_frame && !complete_frame()) return false;
     return (this->*entry.read)();
   }
   if (minor_ <= kFormatMinor) return cursor_.expected("an entry of the format");
   constexpr std::size_t kShown = 40;
-  cursor_.warn(DiagnosticCode::kArtifactUnknownKey, key.substr(0, kShown),
+  cursor_.warn(codes::kArtifactUnknownKey, key.substr(0, kShown),
                fmt::format("{}.{}", kFormatMajor, minor_));
   return true;
 }
@@ -181,7 +178,7 @@ bool ArtifactReader::read_option() {
   std::string name, value;
   if (!cursor_.word("the name of an option", name)) return false;
   if (model_.options.contains(name)) {
-    return cursor_.fail(DiagnosticCode::kArtifactTwice, fmt::format("the option `{}`", name));
+    return cursor_.fail(codes::kArtifactTwice, fmt::format("the option `{}`", name));
   }
   if (!cursor_.word("the value of an option", value)) return false;
   model_.options.emplace(std::move(name), std::move(value));
@@ -206,7 +203,7 @@ bool ArtifactReader::read_fnv(std::uint64_t& hash) {
 }
 
 bool ArtifactReader::read_hash() {
-  if (hash_) return cursor_.fail(DiagnosticCode::kArtifactTwice, "`c dec hash`");
+  if (hash_) return cursor_.fail(codes::kArtifactTwice, "`c dec hash`");
   std::uint64_t hash = 0;
   if (!read_fnv(hash)) return false;
   hash_ = hash;
@@ -217,7 +214,7 @@ bool ArtifactReader::read_hash() {
 /// Are the lines those that were written? Whoever edits a file by hand takes its hash out.
 bool ArtifactReader::check_hash() {
   if (!hash_ || *hash_ == cursor_.hash()) return true;
-  cursor_.sink().error(DiagnosticCode::kArtifactCounts, hash_place_, "the hash of the lines",
+  cursor_.sink().error(codes::kArtifactCounts, hash_place_, "the hash of the lines",
                        fmt::format("{:016x}", cursor_.hash()), "`c dec hash`",
                        fmt::format("{:016x}", *hash_));
   return false;
@@ -234,7 +231,7 @@ bool ArtifactReader::read_size(std::string_view what, std::int64_t& size) {
   const auto bytes = static_cast<std::int64_t>(cursor_.file_size());
   if (!cursor_.number(what, 0, std::numeric_limits<std::int32_t>::max(), size)) return false;
   if (size > kFreeTableEntries + bytes / kBytesPerTableEntry) {
-    return cursor_.fail(DiagnosticCode::kArtifactOversized, what, size, bytes);
+    return cursor_.fail(codes::kArtifactOversized, what, size, bytes);
   }
   return cursor_.end_of_line();
 }
@@ -251,18 +248,17 @@ bool ArtifactReader::complete_frame() {
   if (has_frame_) return true;
   for (const auto& entry : entries()) {
     if (!entry.once || entry.key == "producer" || seen_.contains(entry.key)) continue;
-    return cursor_.fail(DiagnosticCode::kArtifactMissing, fmt::format("c dec {}", entry.key));
+    return cursor_.fail(codes::kArtifactMissing, fmt::format("c dec {}", entry.key));
   }
   if (state_slots_ > stride_) {
-    return cursor_.fail(DiagnosticCode::kArtifactRange, "the number of state slots", state_slots_,
-                        0, stride_);
+    return cursor_.fail(codes::kArtifactRange, "the number of state slots", state_slots_, 0,
+                        stride_);
   }
   const auto bytes = static_cast<std::int64_t>(cursor_.file_size());
   const auto variables = base_ + std::int64_t{model_.horizon} * stride_ + state_slots_;
   if (variables > kFreeVariables + bytes ||
       variables > std::numeric_limits<std::int32_t>::max() / 2) {
-    return cursor_.fail(DiagnosticCode::kArtifactOversized, "the number of variables", variables,
-                        bytes);
+    return cursor_.fail(codes::kArtifactOversized, "the number of variables", variables, bytes);
   }
   model_.fixed.resize(static_cast<std::size_t>(base_));
   model_.slots.resize(static_cast<std::size_t>(stride_));

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <limits>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/artifacts.h"
 #include "compiler/base/whole_number.h"
 
 namespace parallax::compiler {
@@ -151,8 +151,7 @@ bool ArtifactCursor::parse_number(std::string_view text, std::string_view what, 
   const bool too_long = error == std::errc::result_out_of_range && stop == end;
   if (!too_long && (error != std::errc() || stop != end)) return expected(what);
   if (too_long || out < lower || out > upper) {
-    return fail(base::DiagnosticCode::kArtifactRange, what, text.substr(0, kQuoteInMessages), lower,
-                upper);
+    return fail(codes::kArtifactRange, what, text.substr(0, kQuoteInMessages), lower, upper);
   }
   return true;
 }
@@ -169,10 +168,10 @@ bool ArtifactCursor::expected(std::string_view what) {
   const auto text = line_.substr(begin, std::min(size, kQuoteInMessages));
   if (text.empty()) {
     const bool at_end = next_ >= text_.size();
-    return fail(base::DiagnosticCode::kArtifactSyntax, what,
+    return fail(codes::kArtifactSyntax, what,
                 at_end ? "the end of the file" : "the end of the line");
   }
-  return fail(base::DiagnosticCode::kArtifactSyntax, what,
+  return fail(codes::kArtifactSyntax, what,
               fmt::format("`{}{}`", text, size > kQuoteInMessages ? "..." : ""));
 }
 
@@ -203,7 +202,7 @@ bool PlaceReader::read_file(ArtifactCursor& cursor) {
 bool PlaceReader::read_place(ArtifactCursor& cursor, TextPlace& place) {
   const auto text = cursor.raw_word();
   if (!any_) {
-    return cursor.fail(base::DiagnosticCode::kArtifactMissing, "c dec in FILE");
+    return cursor.fail(codes::kArtifactMissing, "c dec in FILE");
   }
   const auto colon = text.find(':');
   const auto dash = text.find('-', colon == std::string_view::npos ? 0 : colon);

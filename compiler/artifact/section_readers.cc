@@ -7,11 +7,9 @@
 #include <limits>
 
 #include "compiler/artifact/clause_runs.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/artifacts.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -26,15 +24,14 @@ constexpr std::int64_t kMostClauses = std::int64_t{1} << 31U;
 bool SymbolReader::unique(AtomKind kind, Timepoint time, const std::string& name, bool declared) {
   const auto key = fmt::format("{} {} {} {}", declared, static_cast<int>(kind), time, name);
   if (names_.insert(key).second) return true;
-  return cursor_.fail(DiagnosticCode::kArtifactTwice,
-                      fmt::format("{} `{}`", to_string(kind), name));
+  return cursor_.fail(codes::kArtifactTwice, fmt::format("{} `{}`", to_string(kind), name));
 }
 
 bool SymbolReader::claim_slot(std::int64_t slot, AtomKind kind, const std::string& name) {
   const auto index = static_cast<std::size_t>(slot);
   slot_taken_.resize(model_.slots.size(), false);
   if (slot_taken_[index]) {
-    return cursor_.fail(DiagnosticCode::kArtifactTwice, fmt::format("slot {}", slot));
+    return cursor_.fail(codes::kArtifactTwice, fmt::format("slot {}", slot));
   }
   slot_taken_[index] = true;
   model_.slots[index] = {kind, name};
@@ -106,7 +103,7 @@ bool SymbolReader::read_atom() {
   const auto index = static_cast<std::size_t>(v) - 1;
   fixed_taken_.resize(model_.fixed.size(), false);
   if (fixed_taken_[index]) {
-    return cursor_.fail(DiagnosticCode::kArtifactTwice, fmt::format("variable {}", v));
+    return cursor_.fail(codes::kArtifactTwice, fmt::format("variable {}", v));
   }
   fixed_taken_[index] = true;
   std::string name;
@@ -147,8 +144,7 @@ bool SymbolReader::check_hits() {
   const AtomIndex index(model_);
   for (Timepoint t = 1; t <= model_.horizon; ++t) {
     if (index.hit(t)) continue;
-    return cursor_.fail(DiagnosticCode::kArtifactMissing,
-                        fmt::format("c dec atom VARIABLE Hit hit {}", t));
+    return cursor_.fail(codes::kArtifactMissing, fmt::format("c dec atom VARIABLE Hit hit {}", t));
   }
   return true;
 }
@@ -159,7 +155,7 @@ bool ProvenanceReader::read_axiom() {
   const auto index = static_cast<std::uint32_t>(model_.origins.size());
   if (origin.id.empty()) return cursor_.expected("the id of an axiom");
   if (!origins_.emplace(origin.id, index).second) {
-    return cursor_.fail(DiagnosticCode::kArtifactTwice, fmt::format("the axiom `{}`", origin.id));
+    return cursor_.fail(codes::kArtifactTwice, fmt::format("the axiom `{}`", origin.id));
   }
   std::string kind;
   if (!cursor_.word("the kind of an axiom", kind)) return false;
@@ -194,21 +190,21 @@ bool ProvenanceReader::read_section() {
 
 bool ProvenanceReader::read_clauses() {
   if (model_.sections.empty()) {
-    return cursor_.fail(DiagnosticCode::kArtifactMissing, "c dec section fixed");
+    return cursor_.fail(codes::kArtifactMissing, "c dec section fixed");
   }
   auto& section = model_.sections.back();
   ClauseRun run;
   std::string id;
   if (!cursor_.word("the id of an axiom", id)) return false;
   const auto origin = origins_.find(id);
-  if (origin == origins_.end()) return cursor_.fail(DiagnosticCode::kArtifactUnknownAxiom, id);
+  if (origin == origins_.end()) return cursor_.fail(codes::kArtifactUnknownAxiom, id);
   run.origin = origin->second;
   if (!read_counts(cursor_, run.groups)) return false;
   // Each clause takes a line of at least two bytes, so this bounds every later sum.
   for (const auto& group : run.groups) {
     const std::uint64_t most = cursor_.file_size() / static_cast<std::uint64_t>(section.copies);
     if (group.size() > most || section.clauses + group.size() > most) {
-      return cursor_.fail(DiagnosticCode::kArtifactOversized, "the number of clauses",
+      return cursor_.fail(codes::kArtifactOversized, "the number of clauses",
                           fmt::format("{} times {}", group.size(), section.copies),
                           cursor_.file_size());
     }
@@ -248,13 +244,13 @@ bool ProvenanceReader::read_cut() {
 
 bool ProvenanceReader::read_argument() {
   if (model_.plan.empty()) {
-    return cursor_.fail(DiagnosticCode::kArtifactMissing, "c dec step EVENT");
+    return cursor_.fail(codes::kArtifactMissing, "c dec step EVENT");
   }
   std::string name;
   if (!cursor_.word("the name of an argument", name)) return false;
   auto [argument, added] = model_.plan.back().arguments.try_emplace(name);
   if (!added) {
-    return cursor_.fail(DiagnosticCode::kArtifactTwice, fmt::format("the argument `{}`", name));
+    return cursor_.fail(codes::kArtifactTwice, fmt::format("the argument `{}`", name));
   }
   const auto type = cursor_.raw_word();
   return read_value(type, argument->second) && cursor_.end_of_line();
@@ -298,13 +294,13 @@ bool ClauseReader::read_header(std::uint64_t expected_clauses) {
   if (cursor_.raw_word() != "p" || cursor_.raw_word() != "cnf") return cursor_.expected("`p cnf`");
   if (!cursor_.number("the number of variables", 0, kMostClauses, variables)) return false;
   if (variables != model_.variable_count()) {
-    return cursor_.fail(DiagnosticCode::kArtifactCounts, "the number of variables here", variables,
+    return cursor_.fail(codes::kArtifactCounts, "the number of variables here", variables,
                         "base + horizon * stride + state-slots", model_.variable_count());
   }
   if (!cursor_.number("the number of clauses", 0, kMostClauses, clauses)) return false;
   clause_count_ = static_cast<std::uint64_t>(clauses);
   if (clause_count_ != expected_clauses) {
-    return cursor_.fail(DiagnosticCode::kArtifactCounts, "the number of clauses here", clauses,
+    return cursor_.fail(codes::kArtifactCounts, "the number of clauses here", clauses,
                         "the sum of the `c dec clauses` lines", expected_clauses);
   }
   return cursor_.end_of_line();
@@ -317,7 +313,7 @@ bool ClauseReader::read_projection() {
     std::int64_t v = 0;
     if (!cursor_.number("a variable", 0, model_.variable_count(), v)) return false;
     if (v != wanted) {
-      return cursor_.fail(DiagnosticCode::kArtifactProjection,
+      return cursor_.fail(codes::kArtifactProjection,
                           fmt::format("found {} where {} belongs", v, wanted));
     }
   }
@@ -355,7 +351,7 @@ bool ClauseReader::read_copy(const Section& section, std::int64_t copy) {
     if (!next_clause()) return false;
     const auto first = section.begin + i;
     if (!is_shifted(model_, model_.clauses[first], clause_, copy)) {
-      cursor_.sink().error(DiagnosticCode::kArtifactNotShifted, cursor_.line_range(), i + 1, copy);
+      cursor_.sink().error(codes::kArtifactNotShifted, cursor_.line_range(), i + 1, copy);
       return false;
     }
     model_.clauses.add(clause_);
@@ -384,7 +380,7 @@ bool ClauseReader::next_clause() {
 }
 
 bool ClauseReader::cut_off() {
-  return cursor_.fail(DiagnosticCode::kArtifactTruncated, model_.clauses.size(), clause_count_);
+  return cursor_.fail(codes::kArtifactTruncated, model_.clauses.size(), clause_count_);
 }
 
 bool ClauseReader::parse_clause() {

@@ -7,11 +7,9 @@
 #include <utility>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/grounding.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -229,7 +227,7 @@ bool TermWriter::is_empty(SortId sort) const {
 std::string TermWriter::number(std::int64_t value, base::SourceRange source) const {
   if (value < std::numeric_limits<std::int32_t>::min() ||
       value > std::numeric_limits<std::int32_t>::max()) {
-    sink_.error(DiagnosticCode::kAspNumber, source, value);
+    sink_.error(codes::kAspNumber, source, value);
   }
   return std::to_string(value);
 }

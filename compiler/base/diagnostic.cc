@@ -4,7 +4,14 @@
 #include <limits>
 #include <tuple>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/artifacts.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
+#include "compiler/base/codes/grounding.h"
+#include "compiler/base/codes/names.h"
+#include "compiler/base/codes/plans.h"
+#include "compiler/base/codes/scenarios.h"
+#include "compiler/base/codes/texts.h"
 
 namespace parallax::base {
 namespace {
@@ -20,8 +27,8 @@ std::string shortened(std::string message) {
 }
 
 bool is_unknown_name(DiagnosticCode code) {
-  return code == DiagnosticCode::kUnknownSort || code == DiagnosticCode::kUnknownName ||
-         code == DiagnosticCode::kVariableWithoutSort;
+  return code == codes::kUnknownSort || code == codes::kUnknownName ||
+         code == codes::kVariableWithoutSort;
 }
 
 auto sort_key(const Diagnostic& d) {
@@ -33,17 +40,30 @@ auto sort_key(const Diagnostic& d) {
 }  // namespace
 
 const std::vector<DiagnosticInfo>& all_diagnostics() {
-  static const std::vector<DiagnosticInfo> table = {
+  static const auto table = [] {
+    std::vector<DiagnosticInfo> all = {
 #define PARALLAX_DIAGNOSTIC(name, code, severity, klass, format, help) \
-  {DiagnosticCode::name, #name, code, Severity::severity, DiagnosticClass::klass, format, help},
-#include "compiler/base/diagnostic_codes.def"
+  {codes::name, #name, code, Severity::severity, DiagnosticClass::klass, format, help},
+#include "compiler/base/codes/artifacts.def"
+#include "compiler/base/codes/campaigns.def"
+#include "compiler/base/codes/files.def"
+#include "compiler/base/codes/grounding.def"
+#include "compiler/base/codes/names.def"
+#include "compiler/base/codes/plans.def"
+#include "compiler/base/codes/scenarios.def"
+#include "compiler/base/codes/texts.def"
 #undef PARALLAX_DIAGNOSTIC
-  };
+    };
+    std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.code < b.code; });
+    return all;
+  }();
   return table;
 }
 
 const DiagnosticInfo& info(DiagnosticCode code) {
-  return all_diagnostics()[static_cast<std::size_t>(code)];
+  const auto& all = all_diagnostics();
+  return *std::lower_bound(all.begin(), all.end(), code,
+                           [](const auto& entry, auto wanted) { return entry.code < wanted; });
 }
 
 Diagnostic* DiagnosticBuilder::entry() {
@@ -114,9 +134,9 @@ int DiagnosticSink::exit_code() const {
   for (const auto& entry : entries_) {
     if (info(entry.code).severity != Severity::kError) continue;
     // A path in a text is for the text to mend, not for the command line.
-    const bool in_text = entry.range && (entry.code == DiagnosticCode::kFileNotFound ||
-                                         entry.code == DiagnosticCode::kFileUnreadable ||
-                                         entry.code == DiagnosticCode::kNotARegularFile);
+    const bool in_text = entry.range && (entry.code == codes::kFileNotFound ||
+                                         entry.code == codes::kFileUnreadable ||
+                                         entry.code == codes::kNotARegularFile);
     const auto klass = in_text ? DiagnosticClass::kInput : info(entry.code).klass;
     const int mine = 2 + static_cast<int>(klass);
     // An internal error outranks everything: a check that disagreed must not hide behind a typo.

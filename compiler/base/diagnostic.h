@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/base/diagnostic_code.h"
 #include "compiler/base/result.h"
 #include "compiler/base/source_file.h"
 
@@ -25,10 +26,6 @@ enum class DiagnosticClass : std::uint8_t {
   kInternal,      // 5: an independent check disagreed
 };
 
-/// Its enumerators stand in diagnostic_codes.h, which only those include who name one: a new code
-/// must not recompile the rest.
-enum class DiagnosticCode : std::uint16_t;
-
 struct DiagnosticInfo {
   DiagnosticCode code;
   std::string_view name;  // "kUnknownKey"
@@ -39,7 +36,7 @@ struct DiagnosticInfo {
   std::string_view help;    // how to mend it, in a sentence
 };
 const DiagnosticInfo& info(DiagnosticCode code);
-/// All codes, in the order of the registry.
+/// All codes, in their order.
 const std::vector<DiagnosticInfo>& all_diagnostics();
 
 struct DiagnosticNote {

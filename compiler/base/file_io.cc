@@ -8,8 +8,9 @@
 #include <cerrno>
 #include <cstring>
 
+#include "compiler/base/codes/files.h"
+#include "compiler/base/codes/texts.h"
 #include "compiler/base/descriptor.h"
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/path_gate.h"
 #include "compiler/base/utf8.h"
 
@@ -48,17 +49,17 @@ Result<std::string> read_file(const std::filesystem::path& path, DiagnosticSink&
                               std::size_t limit) {
   struct ::stat status {};
   if (::stat(path.c_str(), &status) != 0) {
-    const auto code = errno == ENOENT || errno == ENOTDIR ? DiagnosticCode::kFileNotFound
-                                                          : DiagnosticCode::kFileUnreadable;
+    const auto code =
+        errno == ENOENT || errno == ENOTDIR ? codes::kFileNotFound : codes::kFileUnreadable;
     return sink.error_about(code, path.string(), std::strerror(errno));
   }
   // Asked before opening: opening a FIFO would wait for a writer.
   if (!S_ISREG(status.st_mode)) {
-    return sink.error_about(DiagnosticCode::kNotARegularFile, path.string());
+    return sink.error_about(codes::kNotARegularFile, path.string());
   }
   const Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!fd.valid()) {
-    return sink.error_about(DiagnosticCode::kFileUnreadable, path.string(), std::strerror(errno));
+    return sink.error_about(codes::kFileUnreadable, path.string(), std::strerror(errno));
   }
   std::string text;
   std::string chunk(std::size_t{1} << 16U, '\0');
@@ -66,12 +67,12 @@ Result<std::string> read_file(const std::filesystem::path& path, DiagnosticSink&
     const auto count = ::read(fd.get(), chunk.data(), chunk.size());
     if (count < 0) {
       if (errno == EINTR) continue;
-      return sink.error_about(DiagnosticCode::kFileUnreadable, path.string(), std::strerror(errno));
+      return sink.error_about(codes::kFileUnreadable, path.string(), std::strerror(errno));
     }
     if (count == 0) return text;
     text.append(chunk, 0, static_cast<std::size_t>(count));
     if (text.size() > limit) {
-      return sink.error_about(DiagnosticCode::kFileTooLarge, path.string(), limit);
+      return sink.error_about(codes::kFileTooLarge, path.string(), limit);
     }
   }
 }
@@ -81,14 +82,14 @@ Status check_file(const std::filesystem::path& path, const SourceRange& place, D
   struct ::stat status {};
   if (::stat(path.c_str(), &status) != 0) {
     if (errno == ENOENT || errno == ENOTDIR) {
-      return sink.error(DiagnosticCode::kFileNotFound, place, "no file `" + path.string() + "`");
+      return sink.error(codes::kFileNotFound, place, "no file `" + path.string() + "`");
     }
-    return sink.error(DiagnosticCode::kFileUnreadable, place, std::strerror(errno));
+    return sink.error(codes::kFileUnreadable, place, std::strerror(errno));
   }
   if (or_folder && S_ISDIR(status.st_mode)) return Unit{};
-  if (!S_ISREG(status.st_mode)) return sink.error(DiagnosticCode::kNotARegularFile, place);
+  if (!S_ISREG(status.st_mode)) return sink.error(codes::kNotARegularFile, place);
   if (::access(path.c_str(), R_OK) != 0) {
-    return sink.error(DiagnosticCode::kFileUnreadable, place, std::strerror(errno));
+    return sink.error(codes::kFileUnreadable, place, std::strerror(errno));
   }
   return Unit{};
 }
@@ -109,7 +110,7 @@ Result<FileId> register_text(std::string name, std::string text, SourceFiles& fi
   const auto id = files.add(std::move(name), std::move(text));
   if (invalid) {
     const auto at = static_cast<std::uint32_t>(bad);
-    return sink.error(DiagnosticCode::kInvalidText, SourceRange{id, at, at + 1});
+    return sink.error(codes::kInvalidText, SourceRange{id, at, at + 1});
   }
   return id;
 }
@@ -120,7 +121,7 @@ Status write_file_atomically(const std::filesystem::path& path, std::string_view
   // Renaming over a device or a pipe would replace it, and over /dev/stdout that link.
   if (::stat(path.c_str(), &status) == 0 &&
       (!S_ISREG(status.st_mode) || leads_to_open_file(path))) {
-    return sink.error_about(DiagnosticCode::kNotARegularFile, path.string());
+    return sink.error_about(codes::kNotARegularFile, path.string());
   }
   // A name that nothing has: what stands there may be another's file, or a link to one.
   std::filesystem::path temporary;
@@ -133,12 +134,12 @@ Status write_file_atomically(const std::filesystem::path& path, std::string_view
     if (opened < 0 && errno != EEXIST) break;
   }
   if (opened < 0) {
-    return sink.error_about(DiagnosticCode::kFileNotWritable, path.string(), std::strerror(errno));
+    return sink.error_about(codes::kFileNotWritable, path.string(), std::strerror(errno));
   }
   const auto fail = [&]() -> Status {
     const int reason = errno;
     ::unlink(temporary.c_str());
-    return sink.error_about(DiagnosticCode::kFileNotWritable, path.string(), std::strerror(reason));
+    return sink.error_about(codes::kFileNotWritable, path.string(), std::strerror(reason));
   };
   {
     const Descriptor fd(opened);
@@ -155,7 +156,7 @@ Status check_output(const std::filesystem::path& path, const SourceFiles& files,
     std::error_code error;  // of a path that does not exist
     return std::filesystem::equivalent(path, input, error);
   });
-  if (is_input) return sink.error_about(DiagnosticCode::kOutputIsInput, path.string());
+  if (is_input) return sink.error_about(codes::kOutputIsInput, path.string());
   return Unit{};
 }
 
@@ -169,7 +170,7 @@ Result<std::string> read_file_of(const std::filesystem::path& folder, std::strin
                                  DiagnosticSink& sink, std::size_t limit) {
   const auto path = folder / name;
   if (!lies_below(path, folder)) {
-    return sink.error_about(DiagnosticCode::kLoadOutside, path.string(), real_path(path).string());
+    return sink.error_about(codes::kLoadOutside, path.string(), real_path(path).string());
   }
   return read_file(path, sink, limit);
 }

@@ -10,7 +10,7 @@
 #include <optional>
 #include <system_error>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/texts.h"
 #include "compiler/base/diagnostic_printer.h"
 
 namespace parallax::base {
@@ -139,7 +139,7 @@ bool PathGate::admits(const fs::path& path) const {
 Status PathGate::check(const fs::path& path, const SourceRange& place, DiagnosticSink& sink) const {
   if (admits(path)) return Unit{};
   const auto shown = path.lexically_normal();
-  auto report = sink.error(DiagnosticCode::kLoadOutside, place, printable(shown.string()));
+  auto report = sink.error(codes::kLoadOutside, place, printable(shown.string()));
   const auto real = real_path(path);
   if (real != shown) report.note("its real path is `" + printable(real.string()) + "`");
   report.fix("make an empty file `" + std::string(kRootMarker) +

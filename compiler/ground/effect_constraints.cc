@@ -4,11 +4,9 @@
 #include <array>
 #include <string>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/grounding.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 EffectConstraints::EffectConstraints(GroundModel& model, FormulaGrounder& grounder,
                                      EffectGrounder& effects, EffectRows& rows,
@@ -54,7 +52,7 @@ void EffectConstraints::ground(const std::vector<const EffectAxiom*>& axioms) {
   } else if (const auto* cycle = std::get_if<FixpointCycle>(&result)) {
     report(*cycle);
   } else {
-    sink_.error(DiagnosticCode::kTooManyInstances, axioms.front()->source, limit);
+    sink_.error(codes::kTooManyInstances, axioms.front()->source, limit);
   }
 }
 
@@ -192,7 +190,7 @@ void EffectConstraints::report(const FixpointCycle& cycle) const {
     if (i >= kMostSteps && i + 1 < cycle.path.size()) continue;
     path += " <- " + std::string(step.negated ? "!" : "") + text(keys_[next]);
   }
-  auto error = sink_.error(DiagnosticCode::kEffectCycle, sources[0], path + "`");
+  auto error = sink_.error(codes::kEffectCycle, sources[0], path + "`");
   for (std::size_t i = 1; i < sources.size() && i < kMostSteps; ++i) {
     const bool noted = std::find(sources.begin(), sources.begin() + static_cast<std::ptrdiff_t>(i),
                                  sources[i]) != sources.begin() + static_cast<std::ptrdiff_t>(i);

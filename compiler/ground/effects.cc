@@ -5,7 +5,7 @@
 #include <tuple>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/grounding.h"
 #include "compiler/ground/time_profile.h"
 
 namespace parallax::compiler {
@@ -395,13 +395,12 @@ void assert_trajectories(GroundModel& model, const EffectRows& rows, FormulaGrou
   const bool old = grounder.terms().options().meaning == Meaning::kDecreasoner;
   for (const auto& axiom : model.typed().trajectories) {
     if (old && options.encoding == 3 && !options.trajectory) {
-      sink.warning(base::DiagnosticCode::kAxiomDropped, axiom.source,
+      sink.warning(codes::kAxiomDropped, axiom.source,
                    "encoding 3 knows trajectories with `option trajectory on`");
       continue;
     }
     if (old && options.encoding != 3 && axiom.kind == TrajectoryKind::kAntiTrajectory) {
-      sink.warning(base::DiagnosticCode::kAxiomDropped, axiom.source,
-                   "encoding 2 knows no antitrajectories");
+      sink.warning(codes::kAxiomDropped, axiom.source, "encoding 2 knows no antitrajectories");
       continue;
     }
     writer.write(axiom);

@@ -3,12 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
-
 namespace parallax::compiler {
 namespace {
-
-using base::DiagnosticCode;
 
 bool is_quantifier(FormulaKind kind) {
   return kind == FormulaKind::kForall || kind == FormulaKind::kExists;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/grounding.h"
 #include "compiler/formula/formula.h"
 #include "compiler/ground/completion.h"
 #include "compiler/ground/effect_constraints.h"
@@ -21,8 +21,6 @@
 #include "compiler/sema/axiom_shapes.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -210,7 +208,7 @@ class Grounder {
     if (grounder_.failed()) return;
     if (!formula) {
       if (!axiom.is_foundation) {
-        sink_.error(DiagnosticCode::kNothingToSay, axiom.source, model_.horizon());
+        sink_.error(codes::kNothingToSay, axiom.source, model_.horizon());
       }
       return;
     }
@@ -226,7 +224,7 @@ class Grounder {
     if (standard_ ? defines_by_effects(typed_, axiom) : axiom.mentions_effects) return;
     const auto width = always ? profile.width : Constraint::kOnce;
     if (!completion_.note(axiom.label, *formula, width, opaque ? &opaque_ : nullptr)) {
-      sink_.warning(DiagnosticCode::kNamedCompletion, axiom.source);
+      sink_.warning(codes::kNamedCompletion, axiom.source);
     }
   }
 
@@ -251,11 +249,11 @@ class Grounder {
   /// True: an axiom that is false is not asserted.
   bool report_false(const Axiom& axiom) {
     if (!standard_) {
-      sink_.warning(DiagnosticCode::kFalseFormulaDropped, axiom.source);
+      sink_.warning(codes::kFalseFormulaDropped, axiom.source);
       return true;
     }
     if (!is_false_whatever_happens(axiom)) return false;
-    auto error = sink_.error(DiagnosticCode::kFormulaIsFalse, axiom.source);
+    auto error = sink_.error(codes::kFormulaIsFalse, axiom.source);
     if (has_event_at(axiom.formula, model_.horizon())) {
       const auto last = model_.horizon();
       error.help(fmt::format(

@@ -3,11 +3,9 @@
 #include <limits>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/grounding.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 TermGrounder::TermGrounder(GroundModel& model, const GroundOptions& options,
                            base::DiagnosticSink& sink)
@@ -35,11 +33,11 @@ bool TermGrounder::spend(std::int64_t more) {
     spent_ = std::numeric_limits<std::int64_t>::max();
   }
   if (spent_ > options_.max_instances) {
-    sink_->error(DiagnosticCode::kTooManyInstances, blame_, options_.max_instances);
+    sink_->error(codes::kTooManyInstances, blame_, options_.max_instances);
     failed_ = true;
   }
   if (!failed_ && options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) {
-    sink_->error(DiagnosticCode::kGroundingStopped, blame_);
+    sink_->error(codes::kGroundingStopped, blame_);
     failed_ = true;
   }
   return !failed_;
@@ -148,7 +146,7 @@ std::optional<GroundTermId> TermGrounder::arithmetic(const Term& node, GroundTer
     case ArithmeticOp::kDivide:
     case ArithmeticOp::kModulo:
       if (b == 0) {
-        sink_->error(DiagnosticCode::kDivisionByZero, node.source);
+        sink_->error(codes::kDivisionByZero, node.source);
         failed_ = true;
         return std::nullopt;
       }
@@ -158,7 +156,7 @@ std::optional<GroundTermId> TermGrounder::arithmetic(const Term& node, GroundTer
       break;
   }
   if (overflow) {
-    sink_->error(DiagnosticCode::kIntegerOverflow, node.source);
+    sink_->error(codes::kIntegerOverflow, node.source);
     failed_ = true;
     return std::nullopt;
   }
@@ -176,7 +174,7 @@ std::optional<GroundTermId> TermGrounder::apply(const Term& node,
     const auto application = model_->terms().apply(node.symbol, arguments);
     const auto value = function_values_.find(application);
     if (value != function_values_.end()) return value->second;
-    sink_->error(DiagnosticCode::kFunctionWithoutValue, node.source, symbol.name);
+    sink_->error(codes::kFunctionWithoutValue, node.source, symbol.name);
     failed_ = true;
     return std::nullopt;
   }

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/grounding.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -144,17 +142,16 @@ base::Result<Universe> Universe::make(const TypedModel& model, const GroundOptio
   auto& timepoints = universe.domains_[model.core.time->index()];
   std::sort(timepoints.begin(), timepoints.end(),
             [&](GroundTermId a, GroundTermId b) { return terms[a].integer < terms[b].integer; });
-  if (timepoints.empty()) return sink.error(DiagnosticCode::kNoTimepoints, time.declared);
+  if (timepoints.empty()) return sink.error(codes::kNoTimepoints, time.declared);
   if (terms[timepoints.front()].integer != 0) {
     const auto where = time.ranges.empty() ? time.declared : time.ranges.front().declared;
-    return sink.error(DiagnosticCode::kTimeMustStartAtZero, where,
-                      terms[timepoints.front()].integer);
+    return sink.error(codes::kTimeMustStartAtZero, where, terms[timepoints.front()].integer);
   }
   for (std::size_t i = 1; i < timepoints.size(); ++i) {
     const auto before = terms[timepoints[i - 1]].integer, after = terms[timepoints[i]].integer;
     if (after == before + 1) continue;
     const auto where = time.ranges.empty() ? time.declared : time.ranges.back().declared;
-    return sink.error(DiagnosticCode::kTimeHasGap, where, before + 1, before, after);
+    return sink.error(codes::kTimeHasGap, where, before + 1, before, after);
   }
   universe.horizon_ = static_cast<std::int32_t>(timepoints.size()) - 1;
   return universe;
@@ -166,7 +163,7 @@ bool Universe::add_domain(SortId sort, const TypedModel& model, const GroundOpti
   if (state == kDone) return true;
   const auto& declared = model.sorts[sort];
   if (state == kInWork) {
-    sink.error(DiagnosticCode::kSortContainsItself, declared.declared, declared.name);
+    sink.error(codes::kSortContainsItself, declared.declared, declared.name);
     return false;
   }
   state = kInWork;
@@ -186,8 +183,7 @@ bool Universe::add_domain(SortId sort, const TypedModel& model, const GroundOpti
     std::int64_t width = 0;
     if (__builtin_sub_overflow(range.upper, range.lower, &width) ||
         __builtin_add_overflow(total, width, &total) || total >= options.max_domain) {
-      sink.error(DiagnosticCode::kDomainTooLarge, range.declared, declared.name,
-                 options.max_domain);
+      sink.error(codes::kDomainTooLarge, range.declared, declared.name, options.max_domain);
       return false;
     }
     ++total;
@@ -228,8 +224,7 @@ bool Universe::add_constructors(SortId sort, const TypedModel& model, const Grou
       if (!add_domain(argument, model, options, terms, sink)) return false;
       const auto size = static_cast<std::int64_t>(domains_[argument.index()].size());
       if (__builtin_mul_overflow(instances, size, &instances) || instances > options.max_domain) {
-        sink.error(DiagnosticCode::kDomainTooLarge, symbol.declared, symbol.name,
-                   options.max_domain);
+        sink.error(codes::kDomainTooLarge, symbol.declared, symbol.name, options.max_domain);
         return false;
       }
     }

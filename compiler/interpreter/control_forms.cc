@@ -4,14 +4,12 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/interpreter/form_compiler.h"
 #include "compiler/interpreter/function_calls.h"
 
 namespace parallax::compiler {
 namespace {
-
-using base::DiagnosticCode;
 
 void form_progn(FormCompiler& c, DatumId /*form*/, FormItems items) {
   c.compile_body(items.subspan(1));
@@ -59,7 +57,7 @@ void form_par(FormCompiler& c, DatumId form, FormItems items) {
     return branches_by_turns(c, form, items.subspan(1), false);
   }
   if (items.size() > 2) {
-    c.warning(DiagnosticCode::kParallelInOrder, form, c.form_name(form));
+    c.warning(codes::kParallelInOrder, form, c.form_name(form));
   }
   if (items.size() < 2) return c.refuse(form, "without branches it waits for nothing and fails");
   for (std::size_t i = 1; i < items.size(); ++i) {
@@ -77,7 +75,7 @@ void form_pursue(FormCompiler& c, DatumId form, FormItems items) {
   }
   task(c, items[1], items.subspan(1, 1));
   if (items.size() == 2) return;
-  c.warning(DiagnosticCode::kParallelInOrder, form, c.form_name(form));
+  c.warning(codes::kParallelInOrder, form, c.form_name(form));
   const auto over = c.code.jump(PlanOp::kJump, form);
   for (std::size_t i = 2; i < items.size(); ++i) {
     task(c, items[i], items.subspan(i, 1));
@@ -245,7 +243,7 @@ void return_from(FormCompiler& c, DatumId form, std::string_view block,
   }
   const auto* target = c.code.lookup(BindingKind::kBlock, block);
   if (target != nullptr && !c.code.in_other_task(*target)) return c.code.leave_to(*target, form);
-  auto error = c.error(DiagnosticCode::kReturnOutsideBlock, form, c.form_name(form));
+  auto error = c.error(codes::kReturnOutsideBlock, form, c.form_name(form));
   if (target == nullptr) return;
   error.note(fmt::format(
       "the body of a `def-cram-function` and a branch of `par` run in a task of their own, which "

@@ -4,12 +4,10 @@
 #include <cstddef>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/interpreter/explorer.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 /// The same perform with the object named.
 StopPerform Explorer::named(const StopPerform& stop, const PerformResolver::Reference& reference,
@@ -77,14 +75,13 @@ std::optional<PlanTarget> Explorer::refer(PlanState& state, const StopPerform& s
   const auto index = static_cast<std::size_t>(&binding - binding_.objects.data());
   const auto source = data_.source(stop.form);
   if (index >= options_.candidates.size() || options_.candidates[index].empty()) {
-    sink_.error(DiagnosticCode::kDesignatorValue, source, "performed", "object",
+    sink_.error(codes::kDesignatorValue, source, "performed", "object",
                 "a description that no constant of the model can meet");
     return std::nullopt;
   }
   const auto failure = code_.classes.canonical(binding.failure_class);
   if (!failure) {
-    sink_.error(DiagnosticCode::kUnknownFailureClass, binding.failure_source,
-                binding.failure_class);
+    sink_.error(codes::kUnknownFailureClass, binding.failure_source, binding.failure_class);
     return std::nullopt;
   }
   // Nothing but this ends a plan that tries again and again at one timepoint.

@@ -1,10 +1,8 @@
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/interpreter/form_compiler.h"
 
 namespace parallax::compiler {
 namespace {
-
-using base::DiagnosticCode;
 
 std::optional<DesignatorKind> designator_kind(std::string_view article, std::string_view noun) {
   if (article == "all") {
@@ -72,7 +70,7 @@ void form_designator(FormCompiler& c, DatumId form, FormItems items) {
     return c.refuse(form, "expected motion, action, object or location");
   }
   if (*kind == DesignatorKind::kAllObjects) {
-    c.warning(DiagnosticCode::kAllDesignator, form);
+    c.warning(codes::kAllDesignator, form);
   }
   c.code.emit(PlanOp::kDesignator, static_cast<std::uint32_t>(*kind), 0, form);
   c.code.adjust(1);

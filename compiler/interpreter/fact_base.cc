@@ -1,11 +1,9 @@
 #include "compiler/interpreter/fact_base.h"
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 
 namespace parallax::compiler {
 namespace {
-
-using base::DiagnosticCode;
 
 class ClauseReader {
  public:
@@ -15,14 +13,14 @@ class ClauseReader {
   void read(DatumId form, FactBase& out) {
     const auto items = data_.children(form);
     if (data_.head(form) != "<-" || items.size() < 2) {
-      sink_.error(DiagnosticCode::kPlanRule, data_.source(form), print_datum_head(form),
+      sink_.error(codes::kPlanRule, data_.source(form), print_datum_head(form),
                   "a fact group holds clauses: (<- (predicate argument...) goal...)");
       return;
     }
     const auto head = items[1];
     const auto name = data_.head(head);
     if (!name) {
-      sink_.error(DiagnosticCode::kPlanRule, data_.source(form), "<-",
+      sink_.error(codes::kPlanRule, data_.source(form), "<-",
                   "a clause proves (predicate argument...)");
       return;
     }
@@ -32,7 +30,7 @@ class ClauseReader {
     clause_.head = node(head);
     for (const auto goal : items.subspan(2)) {
       if (!data_.head(goal)) {
-        sink_.error(DiagnosticCode::kPlanRule, data_.source(goal), *name,
+        sink_.error(codes::kPlanRule, data_.source(goal), *name,
                     "a goal is (predicate argument...)");
         return;
       }
@@ -157,7 +155,7 @@ FactBase read_fact_groups(const LispText& text, ValueStore& values, base::Diagno
     const bool headed =
         items.size() >= 3 && (text.data.is_list(items[2]) || text.data.is_nil(items[2]));
     if (!headed) {
-      sink.error(DiagnosticCode::kPlanRule, text.data.source(form), "def-fact-group",
+      sink.error(codes::kPlanRule, text.data.source(form), "def-fact-group",
                  "expected a name, a list of predicates and clauses");
       continue;
     }

@@ -4,14 +4,12 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/interpreter/form_compiler.h"
 #include "compiler/interpreter/lisp_macros.h"
 #include "compiler/interpreter/variables.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -62,7 +60,7 @@ void handling(FormCompiler& c, DatumId form, const std::vector<HandlerSource>& h
       const auto known = c.failure_class(name);
       if (!known) continue;
       if (*known == "condition" || *known == "t") {
-        c.warning(DiagnosticCode::kBroadHandler, name, *known);
+        c.warning(codes::kBroadHandler, name, *known);
       }
       // CRAM names the function of a clause by its class: of two with one name the last is called.
       for (auto& clause : table) {
@@ -146,7 +144,7 @@ const LexicalBinding* counter(FormCompiler& c, DatumId form, FormItems items) {
   }
   const auto* binding = c.code.lookup(BindingKind::kCounter, c.data.name(items[1]));
   if (binding == nullptr) {
-    c.error(DiagnosticCode::kUnboundPlanVariable, items[1], c.data.name(items[1]))
+    c.error(codes::kUnboundPlanVariable, items[1], c.data.name(items[1]))
         .note("counters are bound by `with-retry-counters`");
     return nullptr;
   }
@@ -157,7 +155,7 @@ const LexicalBinding* counter(FormCompiler& c, DatumId form, FormItems items) {
   const auto own = c.defined.counters.at(binding->serial).form;
   const auto inner = c.defined.counters.at(innermost->serial).form;
   if (own == inner) return binding;
-  c.error(DiagnosticCode::kUnsupportedPlanForm, form, c.form_name(form),
+  c.error(codes::kUnsupportedPlanForm, form, c.form_name(form),
           fmt::format("`{}` is a counter of an outer `with-retry-counters`, which the inner one "
                       "does not know",
                       binding->name))
@@ -209,7 +207,7 @@ void form_reset_counter(FormCompiler& c, DatumId form, FormItems items) {
   if (c.resetting) return c.refuse(form, "the number of a counter cannot reset a counter");
   c.repeated += size_of(c.data, number, kMaxMacroData);
   if (c.repeated >= kMaxMacroData) {
-    c.error(DiagnosticCode::kMacroLimit, form, kMaxMacroData, "data");
+    c.error(codes::kMacroLimit, form, kMaxMacroData, "data");
     return c.nil(form);
   }
   c.resetting = true;
@@ -222,9 +220,9 @@ void form_retry(FormCompiler& c, DatumId form, FormItems /*items*/) {
   c.nil(form);
   const auto* target = c.code.lookup(BindingKind::kRetry, "");
   if (target == nullptr) {
-    c.error(DiagnosticCode::kRetryOutsideHandler, form);
+    c.error(codes::kRetryOutsideHandler, form);
   } else if (c.code.in_other_task(*target)) {
-    c.error(DiagnosticCode::kRetryOutsideHandler, form)
+    c.error(codes::kRetryOutsideHandler, form)
         .note(
             "a branch of `par` and a tagged form run in a task of their own, which a retry cannot "
             "leave; let it fail with a class that the handler retries on");

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/base/suggest.h"
 #include "compiler/builtins/plan_builtins.h"
 #include "compiler/builtins/unknown_values.h"
@@ -16,8 +16,6 @@
 #include "compiler/interpreter/world_forms.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -126,7 +124,7 @@ void FormCompiler::compile(DatumId form) {
   // The reader's limit for what was written holds for what macros make of it.
   if (depth_ >= kMaxLispDepth) {
     if (expander_->stop()) {
-      error(DiagnosticCode::kMacroLimit, form, kMaxLispDepth, "nested forms");
+      error(codes::kMacroLimit, form, kMaxLispDepth, "nested forms");
     }
     return nil(form);
   }
@@ -165,7 +163,7 @@ void FormCompiler::compile_symbol(DatumId symbol) {
     if (binding.kind == BindingKind::kVariable) names.push_back(binding.name);
   }
   for (const auto& [global, index] : defined.globals) names.push_back(global);
-  auto report = error(DiagnosticCode::kUnboundPlanVariable, symbol, name);
+  auto report = error(codes::kUnboundPlanVariable, symbol, name);
   note_other_package(report, symbol);
   if (const auto near = base::nearest_name(name, names)) {
     report.fix(fmt::format("replace `{}` with `{}`", name, *near));
@@ -209,7 +207,7 @@ void FormCompiler::compile_list(DatumId form) {
     return nil(form);
   }
   if (head->starts_with("check-") && head->ends_with("-collisions")) {
-    warning(DiagnosticCode::kProjectionIgnored, form, form_name(form));
+    warning(codes::kProjectionIgnored, form, form_name(form));
     check_no_perform(form);
     return nil(form);
   }
@@ -362,7 +360,7 @@ std::optional<std::string> FormCompiler::failure_class(DatumId datum) {
   }
   if (auto known = code.code().classes.canonical(data.name(datum))) return known;
   const auto names = code.code().classes.names();
-  auto report = error(DiagnosticCode::kUnknownFailureClass, datum, data.name(datum));
+  auto report = error(codes::kUnknownFailureClass, datum, data.name(datum));
   if (const auto near = base::nearest_name(data.name(datum), names, 4)) {
     report.fix(fmt::format("replace `{}` with `{}`", data.name(datum), *near));
   }
@@ -376,7 +374,7 @@ std::string FormCompiler::form_name(DatumId form) const {
 }
 
 void FormCompiler::malformed(DatumId form, std::string_view text) {
-  error(DiagnosticCode::kMalformedForm, form, form_name(form), text);
+  error(codes::kMalformedForm, form, form_name(form), text);
 }
 
 void FormCompiler::refuse(DatumId form, std::string_view text) {
@@ -385,7 +383,7 @@ void FormCompiler::refuse(DatumId form, std::string_view text) {
 }
 
 void FormCompiler::unsupported(DatumId form, std::string_view text) {
-  error(DiagnosticCode::kUnsupportedPlanForm, form, form_name(form), text);
+  error(codes::kUnsupportedPlanForm, form, form_name(form), text);
 }
 
 void FormCompiler::note_other_package(base::DiagnosticBuilder& report, DatumId symbol) const {
@@ -399,14 +397,14 @@ void FormCompiler::note_other_package(base::DiagnosticBuilder& report, DatumId s
 void FormCompiler::unknown_form(DatumId form, DatumId symbol) {
   const auto& name = data.name(symbol);
   if (const auto* hint = find_hint(kReactive, name)) {
-    error(DiagnosticCode::kReactiveForm, form, name).note(std::string(hint->text));
+    error(codes::kReactiveForm, form, name).note(std::string(hint->text));
     return;
   }
   if (const auto* hint = find_hint(kRejected, name)) {
-    error(DiagnosticCode::kUnsupportedPlanForm, form, name, hint->text);
+    error(codes::kUnsupportedPlanForm, form, name, hint->text);
     return;
   }
-  auto report = error(DiagnosticCode::kUnknownPlanForm, form, name);
+  auto report = error(codes::kUnknownPlanForm, form, name);
   note_other_package(report, symbol);
   // Looking for the nearest name is the expensive part; nobody reads the thousandth suggestion.
   if (sink_.error_count() > kMaxSuggestions) return;
@@ -431,7 +429,7 @@ void FormCompiler::check_no_perform(DatumId form) {
     open.pop_back();
     const auto items = data.children(datum);
     if (data.head(datum) == "perform") {
-      error(DiagnosticCode::kUnsupportedPlanForm, datum, "perform",
+      error(codes::kUnsupportedPlanForm, datum, "perform",
             fmt::format("the arguments of `{}` are not evaluated", form_name(form)));
       return;
     }

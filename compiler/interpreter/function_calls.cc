@@ -6,13 +6,11 @@
 #include <string>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/builtins/plan_builtins.h"
 #include "compiler/interpreter/form_compiler.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -57,7 +55,7 @@ bool binds_late(const FormCompiler& c, const PlanFunction& function, FormItems a
 bool push_arguments(FormCompiler& c, DatumId form, std::string_view name,
                     const PlanFunction& function, FormItems arguments) {
   const auto wrong = [&](std::string text) {
-    c.error(DiagnosticCode::kPlanArguments, form, name, text)
+    c.error(codes::kPlanArguments, form, name, text)
         .note(c.data.source(function.source), "defined here");
     return false;
   };
@@ -257,7 +255,7 @@ void emit_call(FormCompiler& c, const Callee& callee, std::uint32_t count, Datum
     const auto& builtin = plan_builtins()[*callee.builtin];
     if (count < builtin.min_arguments || count > builtin.max_arguments) {
       c.error(
-          DiagnosticCode::kPlanArguments, source, builtin.name,
+          codes::kPlanArguments, source, builtin.name,
           fmt::format("takes {} {} arguments, not {}",
                       count < builtin.min_arguments ? "at least" : "at most",
                       count < builtin.min_arguments ? builtin.min_arguments : builtin.max_arguments,
@@ -274,7 +272,7 @@ void emit_call(FormCompiler& c, const Callee& callee, std::uint32_t count, Datum
   const auto required = parameters.size() - static_cast<std::size_t>(std::count_if(
                                                 parameters.begin(), parameters.end(), optional));
   if (count < required || count > parameters.size()) {
-    c.error(DiagnosticCode::kPlanArguments, source, c.form_name(source),
+    c.error(codes::kPlanArguments, source, c.form_name(source),
             fmt::format("the function takes {} arguments, not {}", required, count));
   }
   for (auto i = static_cast<std::size_t>(count); i < parameters.size(); ++i) {
@@ -302,7 +300,7 @@ void compile_call(FormCompiler& c, DatumId form, std::string_view name, const Ca
   }
   if (callee.function != nullptr) {
     if (callee.function->top_level && c.in_function) {
-      c.error(DiagnosticCode::kUnsupportedPlanForm, form, name,
+      c.error(codes::kUnsupportedPlanForm, form, name,
               "a `def-top-level-cram-function` cannot be called from a plan; make it a "
               "`def-cram-function`")
           .note(c.data.source(callee.function->source), "defined here");

@@ -6,14 +6,12 @@
 #include <variant>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/interpreter/destructuring.h"
 #include "compiler/interpreter/variables.h"
 #include "compiler/lisp/lisp_reader.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -58,7 +56,7 @@ MacroExpander::MacroExpander(FormCompiler& c)
                c.sink_) {}
 
 std::nullopt_t MacroExpander::wrong(const PlanMacro& macro, DatumId call, std::string_view text) {
-  c_.error(DiagnosticCode::kMacroExpansion, call, macro.name, text)
+  c_.error(codes::kMacroExpansion, call, macro.name, text)
       .note(c_.data.source(macro.source), "the macro is defined here");
   return std::nullopt;
 }
@@ -70,7 +68,7 @@ std::optional<DatumId> MacroExpander::expand(const PlanMacro& macro, DatumId cal
   }
   const auto exceeded = [&](std::size_t limit, std::string_view what) -> std::optional<DatumId> {
     full_ = true;
-    c_.error(DiagnosticCode::kMacroLimit, call, limit, what)
+    c_.error(codes::kMacroLimit, call, limit, what)
         .note(c_.data.source(macro.source), fmt::format("`{}` is defined here", macro.name));
     return std::nullopt;
   };

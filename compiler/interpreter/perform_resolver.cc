@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/base/suggest.h"
 #include "compiler/builtins/designator_links.h"
 
 namespace parallax::compiler {
 
-using base::DiagnosticCode;
 using base::Result;
 using base::SourceRange;
 
@@ -46,7 +45,7 @@ base::DiagnosticBuilder PerformResolver::unbound(ValueId designator, SourceRange
   const auto kind = perform_kind(value);
   if (!kind) {
     return sink_.error(
-        DiagnosticCode::kUnboundDesignator, source,
+        codes::kUnboundDesignator, source,
         fmt::format("{}: only motions and actions are performed", values_.print(designator)));
   }
   const auto type = values_.key(designator, "type");
@@ -57,7 +56,7 @@ base::DiagnosticBuilder PerformResolver::unbound(ValueId designator, SourceRange
   for (const auto& [key, item] : value.keys) {
     if (key != "type") keys += fmt::format(" :{}", normalise_key(key));
   }
-  auto error = sink_.error(DiagnosticCode::kUnboundDesignator, source,
+  auto error = sink_.error(codes::kUnboundDesignator, source,
                            fmt::format("{} `{}` with the keys ({})", to_string(*kind), name,
                                        keys.empty() ? keys : keys.substr(1)));
   for (const auto& entry : binding_.entries) {
@@ -118,7 +117,7 @@ const BindingEntry* PerformResolver::find_plan(ValueId designator) const {
 Result<std::string> PerformResolver::model_name(const ModelNames& names, std::string_view name,
                                                 SourceRange source) {
   if (auto found = names.find(name)) return *std::move(found);
-  auto error = sink_.error(DiagnosticCode::kUnknownPlanConstant, source, name);
+  auto error = sink_.error(codes::kUnknownPlanConstant, source, name);
   if (const auto near = names.nearest(name)) error.fix(fmt::format("name `{}`", *near));
   return error;
 }
@@ -127,7 +126,7 @@ Result<FormulaTree> PerformResolver::constant(ValueId id, std::string_view what,
                                               SourceRange source) {
   const auto& value = values_[id];
   const auto wrong = [&](std::string_view text) -> Result<FormulaTree> {
-    return sink_.error(DiagnosticCode::kDesignatorValue, source, "performed", what, text);
+    return sink_.error(codes::kDesignatorValue, source, "performed", what, text);
   };
   switch (value.kind) {
     case ValueKind::kSymbol:
@@ -197,18 +196,18 @@ Result<FormulaTree> PerformResolver::mapped(std::string_view function, ValueId v
   const auto where = target(value);
   if (where.object && values_.kind(*where.object) == ValueKind::kUnknown) {
     return sink_.error(
-        DiagnosticCode::kDesignatorValue, source, "performed", key,
+        codes::kDesignatorValue, source, "performed", key,
         fmt::format("a pose {}; write the pose in numbers, or name the object that the target is "
                     "in or on",
                     values_.print(*where.object)));
   }
   if (where.object && values_.kind(*where.object) == ValueKind::kTransform) {
-    return sink_.error(DiagnosticCode::kDesignatorValue, source, "performed", key,
+    return sink_.error(codes::kDesignatorValue, source, "performed", key,
                        "a transform, not a pose; `strip-transform-stamped` makes a pose of it");
   }
   if (where.pose && where.pose->frame != "map" && where.pose->frame != "/map") {
     const auto& frame = where.pose->frame;
-    return sink_.error(DiagnosticCode::kDesignatorValue, source, "performed", key,
+    return sink_.error(codes::kDesignatorValue, source, "performed", key,
                        frame.empty() ? std::string("a pose whose frame the plan does not say; give "
                                                    "it one with `pose->pose-stamped`")
                                      : fmt::format("a pose in the frame `{}`; the regions are in "
@@ -220,8 +219,8 @@ Result<FormulaTree> PerformResolver::mapped(std::string_view function, ValueId v
       return constant_term(*region);
     }
     const auto& pose = *where.pose;
-    auto error = sink_.error(DiagnosticCode::kPoseOutsideRegions, source, pose.x_m, pose.y_m,
-                             pose.z_m, function);
+    auto error =
+        sink_.error(codes::kPoseOutsideRegions, source, pose.x_m, pose.y_m, pose.z_m, function);
     if (const auto near = locator_.nearest(function, pose)) {
       error.note(fmt::format("the nearest is `{}`, {:.4g} m away{}", near->region, near->distance_m,
                              near->outside.empty() ? "" : " (" + near->outside + ")"));
@@ -229,7 +228,7 @@ Result<FormulaTree> PerformResolver::mapped(std::string_view function, ValueId v
     return error;
   }
   if (!where.object) {
-    return sink_.error(DiagnosticCode::kDesignatorValue, source, "performed", key,
+    return sink_.error(codes::kDesignatorValue, source, "performed", key,
                        "no pose and no object to go by");
   }
   const auto object = constant(*where.object, key, source);
@@ -247,7 +246,7 @@ Result<ValueId> PerformResolver::variable(const BindingEntry& entry, ValueId des
     if (is_designator(values_[*value])) {
       if (const auto property = property_value(values_, *value, *key.property)) return *property;
     }
-    return sink_.error(DiagnosticCode::kDesignatorValue, source, to_string(entry.kind), key.key,
+    return sink_.error(codes::kDesignatorValue, source, to_string(entry.kind), key.key,
                        fmt::format("no `{}`", *key.property));
   }
   PARALLAX_REQUIRE(false, "the variables of a binding were checked when it was read");
@@ -284,15 +283,14 @@ Result<PlanLocation> PerformResolver::resolve(const BindingEntry& entry, ValueId
   location.success = {*std::move(formula), entry.time_offset, entry.formula_source};
   const auto failure = classes_.canonical(entry.failure_class);
   if (!failure) {
-    return sink_.error(DiagnosticCode::kUnknownFailureClass, entry.failure_source,
-                       entry.failure_class);
+    return sink_.error(codes::kUnknownFailureClass, entry.failure_source, entry.failure_class);
   }
   location.failure_class = *failure;
   location.binding = entry.source;
   for (const auto& bound : entry.reasons) {
     const auto known = classes_.canonical(bound.failure_class);
     if (!known) {
-      return sink_.error(DiagnosticCode::kUnknownFailureClass, bound.source, bound.failure_class);
+      return sink_.error(codes::kUnknownFailureClass, bound.source, bound.failure_class);
     }
     auto& ways = location.failures;
     const auto same = std::find_if(ways.begin(), ways.end(), [&](const FailureWay& way) {
@@ -328,7 +326,7 @@ Result<FormulaTree> PerformResolver::fill(const FormulaTree& formula, const Vari
 Result<FormulaTree> PerformResolver::question(ValueId list, SourceRange source) {
   const auto items = values_.elements(list);
   if (!items || items->empty() || values_.kind(items->front()) != ValueKind::kSymbol) {
-    return sink_.error(DiagnosticCode::kPlanValue, source, "holds",
+    return sink_.error(codes::kPlanValue, source, "holds",
                        "expected a quoted fluent such as '(holding left box)");
   }
   const auto& head = values_[items->front()].text;
@@ -348,7 +346,7 @@ Result<FormulaTree> PerformResolver::question(ValueId list, SourceRange source) 
 
 base::DiagnosticBuilder PerformResolver::unbound_query(std::string_view name, std::size_t arguments,
                                                        SourceRange source) {
-  auto error = sink_.error(DiagnosticCode::kUnboundDesignator, source,
+  auto error = sink_.error(codes::kUnboundDesignator, source,
                            fmt::format("query `{}` with {} arguments", name, arguments));
   std::vector<std::string> names;
   for (const auto& query : binding_.queries) names.push_back(query.name);

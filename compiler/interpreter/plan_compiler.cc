@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/base/suggest.h"
 #include "compiler/interpreter/function_calls.h"
 #include "compiler/interpreter/lisp_macros.h"
@@ -17,8 +17,6 @@
 
 namespace parallax::compiler {
 namespace {
-
-using base::DiagnosticCode;
 
 bool defines_function(std::string_view head) {
   return head == "defun" || head == "def-cram-function" || head == "def-top-level-cram-function";
@@ -41,7 +39,7 @@ class PlanCompiler {
 
   base::Result<PlanCode> compile(const std::optional<std::string>& entry) {
     if (text_.forms.empty()) {
-      return sink_.error(DiagnosticCode::kNoPlanEntry, base::SourceRange{text_.file, 0, 0},
+      return sink_.error(codes::kNoPlanEntry, base::SourceRange{text_.file, 0, 0},
                          "the file has no forms");
     }
     for (const auto form : text_.forms) flatten(form);
@@ -51,8 +49,7 @@ class PlanCompiler {
     add_library();
     expand_forms();
     if (!missing_ && bare_forms_.empty() && functions_.empty()) {
-      return c_.error(DiagnosticCode::kNoPlanEntry, text_.forms.front(),
-                      "only definitions of variables");
+      return c_.error(codes::kNoPlanEntry, text_.forms.front(), "only definitions of variables");
     }
     compile_functions();
     if (!missing_) compile_main(entry);
@@ -91,7 +88,7 @@ class PlanCompiler {
     }
     const auto [entry, added] = defined_.emplace(c_.data.key(name), name);
     if (added) return true;
-    c_.error(DiagnosticCode::kDuplicatePlanDefinition, name, c_.data.name(name))
+    c_.error(codes::kDuplicatePlanDefinition, name, c_.data.name(name))
         .note(c_.data.source(entry->second), "first defined here");
     return false;
   }
@@ -145,7 +142,7 @@ class PlanCompiler {
     }
     if (parents.empty()) parents.emplace_back("condition");
     if (c_.code.code().classes.add(c_.data.name(items[1]), std::move(parents))) return;
-    c_.error(DiagnosticCode::kDuplicatePlanDefinition, items[1], c_.data.name(items[1]));
+    c_.error(codes::kDuplicatePlanDefinition, items[1], c_.data.name(items[1]));
   }
 
   /// What stands in a `progn` or `eval-when` at top level stands at top level.
@@ -286,14 +283,14 @@ class PlanCompiler {
     } else if (const auto found = c_.defined.functions.find(*name);
                found == c_.defined.functions.end()) {
       std::vector<std::string> names = c_.defined.function_order;
-      auto error = c_.error(DiagnosticCode::kNoPlanEntry, text_.forms.front(),
+      auto error = c_.error(codes::kNoPlanEntry, text_.forms.front(),
                             fmt::format("no function `{}`", *name));
       if (const auto near = base::nearest_name(*name, names)) {
         error.fix(fmt::format("name `{}`", *near));
       }
     } else if (Callee callee;
                !found->second.parameters.empty() && !found->second.parameters.front().optional) {
-      c_.error(DiagnosticCode::kNoPlanEntry, found->second.source,
+      c_.error(codes::kNoPlanEntry, found->second.source,
                fmt::format("`{}` needs arguments", *name))
           .fix(fmt::format("call it at top level: ({} ...)", *name));
     } else {

@@ -5,12 +5,10 @@
 #include <string>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/interpreter/plan_machine.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 void drop_dead_links(PlanState& state, std::span<const ValueId> more, const ValueStore& values) {
   // What calls a computation may refer to more than its state shows.
@@ -58,13 +56,13 @@ void PlanMachine::report(const BuiltinFailure& failure, std::uint32_t builtin, D
   switch (failure.kind) {
     case BuiltinError::kRaise:
     case BuiltinError::kValue:
-      report(DiagnosticCode::kPlanValue, form, caller, failure.text);
+      report(codes::kPlanValue, form, caller, failure.text);
       break;
     case BuiltinError::kModelComparison:
-      report(DiagnosticCode::kModelComparison, form, caller);
+      report(codes::kModelComparison, form, caller);
       break;
     case BuiltinError::kModelList:
-      report(DiagnosticCode::kModelList, form, caller);
+      report(codes::kModelList, form, caller);
       break;
   }
 }

@@ -10,13 +10,11 @@
 #include <variant>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/interpreter/plan_machine.h"
 #include "compiler/interpreter/unit_arguments.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 PlanMachine::Step PlanMachine::make_function(PlanState& state, const PlanInstruction& instruction) {
   const auto& made = code_.functions_made[instruction.a];
@@ -75,7 +73,7 @@ PlanMachine::Step PlanMachine::check_life(const PlanState& state,
     frame = 0;
   }
   if (!outlives(value, frame, to)) return {};
-  return error(DiagnosticCode::kUnsupportedPlanForm, instruction,
+  return error(codes::kUnsupportedPlanForm, instruction,
                "a function outlives what it shares with the code around it: variables that change, "
                "local functions or blocks; keep it inside, or let it use variables that nothing "
                "changes");
@@ -90,11 +88,11 @@ PlanMachine::Step PlanMachine::call_value(PlanState& state, const PlanInstructio
     const auto last = arguments.back();
     const auto spread = values_.elements(last);
     if (!spread && values_.kind(last) == ValueKind::kModel) {
-      report(DiagnosticCode::kModelList, instruction.source, "apply");
+      report(codes::kModelList, instruction.source, "apply");
       return StopError{};
     }
     if (!spread) {
-      return error(DiagnosticCode::kPlanValue, instruction,
+      return error(codes::kPlanValue, instruction,
                    fmt::format("expected a list, not {}", values_.print(last)));
     }
     arguments.pop_back();
@@ -107,14 +105,14 @@ PlanMachine::Step PlanMachine::call_value(PlanState& state, const PlanInstructio
     const auto named = code_.functions.find(value.key.empty() ? value.text : value.key);
     const auto known = find_builtin(value.text);
     if (named == code_.functions.end() && !known) {
-      report(DiagnosticCode::kUnknownPlanForm, instruction.source, value.text);
+      report(codes::kUnknownPlanForm, instruction.source, value.text);
       return StopError{};
     }
     const bool builtin = named == code_.functions.end();
     function = {builtin ? *known : named->second, builtin, 0, 0};
     kept = values_.nil();
   } else if (value.kind != ValueKind::kFunction) {
-    return error(DiagnosticCode::kPlanValue, instruction,
+    return error(codes::kPlanValue, instruction,
                  fmt::format("{} is called, which is no function", values_.print(callee)));
   }
   if (!function.builtin && !code_.units[function.unit].ready) return StopUnit{function.unit};
@@ -134,7 +132,7 @@ PlanMachine::Step PlanMachine::enter_value(PlanState& state, std::vector<ValueId
                                            const PlanFunctionValue& function, ValueId kept,
                                            const PlanInstruction& instruction) {
   const auto wrong = [&](std::string_view name, const std::string& text) {
-    report(DiagnosticCode::kPlanArguments, instruction.source, name, text);
+    report(codes::kPlanArguments, instruction.source, name, text);
     return StopError{};
   };
   if (function.builtin) {

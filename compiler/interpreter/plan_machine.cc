@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 
 namespace parallax::compiler {
 
@@ -150,26 +150,26 @@ bool PlanMachine::run_definitions() {
   state.frames.back().unit = code_.definitions;
   const auto stop = run(state);
   if (const auto* perform = std::get_if<StopPerform>(&stop)) {
-    sink_.error(DiagnosticCode::kUnsupportedPlanForm, data_.source(perform->form), "perform",
+    sink_.error(codes::kUnsupportedPlanForm, data_.source(perform->form), "perform",
                 "the value of a global constant cannot perform");
   } else if (const auto* question = std::get_if<StopQuestion>(&stop)) {
-    sink_.error(DiagnosticCode::kUnsupportedPlanForm, data_.source(question->form),
-                name_at(question->form), "the value of a global constant cannot ask the model");
+    sink_.error(codes::kUnsupportedPlanForm, data_.source(question->form), name_at(question->form),
+                "the value of a global constant cannot ask the model");
   } else if (const auto* failed = std::get_if<StopFailed>(&stop)) {
     sink_.error(
-        DiagnosticCode::kUnsupportedPlanForm, data_.source(code_.globals[0].source), "fail",
+        codes::kUnsupportedPlanForm, data_.source(code_.globals[0].source), "fail",
         fmt::format("the value of a global constant fails with `{}`", failed->failure_class));
   } else if (const auto* bound = std::get_if<StopBound>(&stop)) {
-    sink_.error(DiagnosticCode::kUnsupportedPlanForm, data_.source(bound->at), bound->form,
+    sink_.error(codes::kUnsupportedPlanForm, data_.source(bound->at), bound->form,
                 "the loop does not end, in the value of a global constant");
   }
   return std::holds_alternative<StopDone>(stop);
 }
 
 void PlanMachine::report_full(DatumId at) {
-  const auto code = blame_ ? DiagnosticCode::kMacroLimit : DiagnosticCode::kUnrollLimit;
+  const auto code = blame_ ? codes::kMacroLimit : codes::kUnrollLimit;
   if (stopped()) {
-    sink_.error(DiagnosticCode::kUnrollStopped, data_.source(at));
+    sink_.error(codes::kUnrollStopped, data_.source(at));
   } else if (values_.too_much_text()) {
     report(code, at, static_cast<std::int64_t>(kMaxPlanText), "characters of text");
   } else if (values_.full()) {
@@ -329,7 +329,7 @@ PlanMachine::Step PlanMachine::check_exit(const PlanState& state,
   for (auto guard = std::size_t{left}; guard < state.guards.size(); ++guard) {
     if (state.guards[guard].kind != GuardKind::kTask) continue;
     sink_
-        .error(DiagnosticCode::kReturnOutsideBlock, data_.source(instruction.source),
+        .error(codes::kReturnOutsideBlock, data_.source(instruction.source),
                name_at(instruction.source))
         .note(
             "it is reached in a task of its own, a `def-cram-function` or a branch of `par`, which "
@@ -343,11 +343,11 @@ PlanMachine::Step PlanMachine::expect_list(const PlanState& state,
                                            const PlanInstruction& instruction) {
   const auto top = state.stack.back();
   if (values_.kind(top) == ValueKind::kModel) {
-    report(DiagnosticCode::kModelList, instruction.source, name_at(place_of(instruction.source)));
+    report(codes::kModelList, instruction.source, name_at(place_of(instruction.source)));
     return StopError{};
   }
   if (values_.elements(top)) return {};
-  return error(DiagnosticCode::kPlanValue, instruction,
+  return error(codes::kPlanValue, instruction,
                fmt::format("expected a list, not {}", values_.print(top)));
 }
 
@@ -428,7 +428,7 @@ PlanMachine::Step PlanMachine::enter_unit(PlanState& state, std::uint32_t index,
   // Our own Lisp calls itself for what the plan gives it, and ends.
   if (depth >= limits_.max_call_depth && !data_.in_library(unit.source)) {
     if (outermost->performs != state.performs) return StopBound{unit.name, place_of(form)};
-    report(DiagnosticCode::kPlanRecursion, form, unit.name, limits_.max_call_depth);
+    report(codes::kPlanRecursion, form, unit.name, limits_.max_call_depth);
     return StopError{};
   }
   PlanFrame frame;

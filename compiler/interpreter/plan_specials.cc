@@ -1,12 +1,10 @@
 // Globals while a plan runs: their own values, and those that a task has rebound.
 #include <algorithm>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/interpreter/plan_machine.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 PlanMachine::Step PlanMachine::load_global(PlanState& state, const PlanInstruction& instruction) {
   if (const auto rebound = special(state, instruction.a)) {
@@ -18,7 +16,7 @@ PlanMachine::Step PlanMachine::load_global(PlanState& state, const PlanInstructi
     return {};
   }
   const auto& global = code_.globals[instruction.a];
-  report(DiagnosticCode::kUnboundPlanVariable, instruction.source, global.name)
+  report(codes::kUnboundPlanVariable, instruction.source, global.name)
       .note(data_.source(global.source),
             blame_ ? "globals get their values behind the macros" : "it is defined only here");
   return StopError{};
@@ -31,7 +29,7 @@ PlanMachine::Step PlanMachine::store_special(PlanState& state, const PlanInstruc
     return {};
   }
   const auto& global = code_.globals[instruction.a];
-  report(DiagnosticCode::kHeapWrite, instruction.source, name_at(instruction.source), global.name)
+  report(codes::kHeapWrite, instruction.source, name_at(instruction.source), global.name)
       .note(data_.source(global.source),
             "it is a global constant, defined here; nothing in this task rebinds it any more");
   return StopError{};

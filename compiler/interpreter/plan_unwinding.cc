@@ -9,13 +9,11 @@
 #include <optional>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/interpreter/plan_machine.h"
 
 namespace parallax::compiler {
 namespace {
-
-using base::DiagnosticCode;
 
 PlanFrame frame_on_top(const PlanState& state, std::uint32_t unit, std::uint32_t link,
                        FrameKind kind) {
@@ -111,8 +109,7 @@ PlanMachine::Step PlanMachine::fail_value(PlanState& state, const PlanInstructio
   const auto known =
       value.kind == ValueKind::kSymbol ? code_.classes.canonical(value.text) : std::nullopt;
   if (known) return raise(state, values_.failure(*known));
-  sink_.error(DiagnosticCode::kUnknownFailureClass, data_.source(instruction.source),
-              values_.print(id));
+  sink_.error(codes::kUnknownFailureClass, data_.source(instruction.source), values_.print(id));
   return StopError{};
 }
 

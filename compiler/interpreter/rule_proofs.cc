@@ -5,12 +5,10 @@
 #include <utility>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/interpreter/unit_arguments.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -21,7 +19,7 @@ constexpr int kMaxProofDepth = 20;
 }  // namespace
 
 void RuleProofs::report(DatumId at, std::string_view what, std::string_view text) {
-  sink_.error(DiagnosticCode::kPlanRule, data_.source(at), what, text);
+  sink_.error(codes::kPlanRule, data_.source(at), what, text);
 }
 
 bool RuleProofs::spend(DatumId at, bool exhausted) {
@@ -30,7 +28,7 @@ bool RuleProofs::spend(DatumId at, bool exhausted) {
     return false;
   }
   if (++spent_ <= kMaxProofSteps && !exhausted) return true;
-  sink_.error(DiagnosticCode::kPlanRule, data_.source(at), data_.head(at).value_or("..."),
+  sink_.error(codes::kPlanRule, data_.source(at), data_.head(at).value_or("..."),
               fmt::format("the proof takes more than {} steps; does a rule ask for itself?",
                           kMaxProofSteps));
   return false;
@@ -116,7 +114,7 @@ ProofWorld::Computed RuleProofs::truth_of(const StopQuestion& question, ProofAns
 /// signals: what we cannot compute must not look like a rule that does not hold.
 ProofWorld::Computed RuleProofs::wrong_arguments(std::string_view function, std::string_view text,
                                                  DatumId at) {
-  sink_.error(DiagnosticCode::kPlanArguments, data_.source(at), function, text);
+  sink_.error(codes::kPlanArguments, data_.source(at), function, text);
   return ProofError{};
 }
 
@@ -137,7 +135,7 @@ ProofWorld::Computed RuleProofs::call_builtin_named(const std::string& function,
                                                     DatumId at, ProofAnswers& answers) {
   const auto builtin = function.starts_with('%') ? std::nullopt : find_builtin(function);
   if (!builtin) {
-    sink_.error(DiagnosticCode::kUnknownPlanForm, data_.source(at), function)
+    sink_.error(codes::kUnknownPlanForm, data_.source(at), function)
         .note("a rule calls functions of the plan's files and the static functions of the subset");
     return ProofError{};
   }
@@ -188,7 +186,7 @@ ProofWorld::Computed RuleProofs::run(std::uint32_t unit, const std::vector<Value
     }
     if (const auto* perform = std::get_if<StopPerform>(&stop)) {
       sink_
-          .error(DiagnosticCode::kUnsupportedPlanForm, data_.source(perform->form), "perform",
+          .error(codes::kUnsupportedPlanForm, data_.source(perform->form), "perform",
                  "a function that a rule calls cannot perform")
           .note(data_.source(at), "it is called here");
     } else if (const auto* bound = std::get_if<StopBound>(&stop)) {
@@ -241,7 +239,7 @@ RuleProofs::Grounding RuleProofs::plan_call(ValueId solution, DatumId at) {
   }
   auto bound = unit_arguments(unit, given, values_);
   if (const auto* text = std::get_if<std::string>(&bound)) {
-    sink_.error(DiagnosticCode::kPlanArguments, data_.source(at), unit.name, *text)
+    sink_.error(codes::kPlanArguments, data_.source(at), unit.name, *text)
         .note(data_.source(unit.source), "defined here");
     return ProofError{};
   }

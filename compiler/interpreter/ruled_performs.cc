@@ -2,12 +2,10 @@
 // what they mean, and the model answers what the rules ask.
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/interpreter/explorer.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 /// Does no entry of the table say what the action means, so that the rules do?
 bool Explorer::is_ruled(const StopPerform& perform) const {
@@ -82,7 +80,7 @@ Explorer::Ruled Explorer::ground(Job& job, const StopPerform& perform) {
 
 Explorer::Ruled Explorer::prove(Job& job, const StopProof& proof) {
   if (values_.kind(proof.goal) != ValueKind::kCons) {
-    sink_.error(DiagnosticCode::kPlanValue, data_.source(proof.form), "prolog",
+    sink_.error(codes::kPlanValue, data_.source(proof.form), "prolog",
                 "expected a quoted fluent such as '(holding left box)");
     return {};
   }

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/interpreter/form_compiler.h"
 
 namespace parallax::compiler {
@@ -133,7 +133,7 @@ void form_handler_bind(FormCompiler& c, DatumId form, FormItems items) {
       const auto known = c.failure_class(one);
       if (!known) continue;
       if (*known == "condition" || *known == "t") {
-        c.warning(base::DiagnosticCode::kBroadHandler, one, *known);
+        c.warning(codes::kBroadHandler, one, *known);
       }
       table.push_back({*known, unit});
     }

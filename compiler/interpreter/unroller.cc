@@ -10,15 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/interpreter/explorer.h"
 #include "compiler/interpreter/plan_compiler.h"
 #include "compiler/lisp/lisp_packages.h"
 #include "compiler/lisp/lisp_reader.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 void Explorer::set(const Job& job, PlanTarget target) {
   using Edge = Job::Edge;
@@ -77,7 +75,7 @@ bool Explorer::has_room(const StateKey& key, DatumId form) {
   const bool many = graph_.locations.size() >= limit;
   if (!many && key_words_ <= kMaxWords) return true;
   if (!full_) {
-    sink_.error(DiagnosticCode::kUnrollLimit, data_.source(form), many ? limit : kMaxWords,
+    sink_.error(codes::kUnrollLimit, data_.source(form), many ? limit : kMaxWords,
                 many ? "locations" : "words for the states of its calls");
   }
   full_ = true;
@@ -324,13 +322,13 @@ std::optional<PlanStop> Explorer::run_plan(PlanState& state, const StopPerform& 
   const auto function =
       code_.functions.find(full == code_.function_names.end() ? *entry.plan : full->second);
   if (function == code_.functions.end()) {
-    sink_.error(DiagnosticCode::kUnknownPlanForm, entry.source, *entry.plan);
+    sink_.error(codes::kUnknownPlanForm, entry.source, *entry.plan);
     return StopError{};
   }
   const auto wanted = code_.units[function->second].parameters;
   if (wanted != entry.plan_arguments.size()) {
     sink_
-        .error(DiagnosticCode::kPlanArguments, entry.source, *entry.plan,
+        .error(codes::kPlanArguments, entry.source, *entry.plan,
                fmt::format("the binding gives {} arguments, the function takes {}",
                            entry.plan_arguments.size(), wanted))
         .note(data_.source(code_.units[function->second].source), "defined here");

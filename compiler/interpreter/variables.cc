@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 LexicalBinding variable(const FormCompiler& c, DatumId symbol, std::uint32_t place) {
   // Names in our own Lisp are none of the plan's.
@@ -55,8 +53,7 @@ const LexicalBinding* assignable(FormCompiler& c, DatumId form, DatumId place) {
       return nullptr;
     }
   }
-  auto error =
-      c.error(DiagnosticCode::kHeapWrite, place, c.form_name(form), print_datum(c.data, place));
+  auto error = c.error(codes::kHeapWrite, place, c.form_name(form), print_datum(c.data, place));
   if (const auto global = c.defined.globals.find(c.data.is_symbol(place) ? c.data.key(place) : "");
       global != c.defined.globals.end()) {
     error.note(c.data.source(c.code.code().globals[global->second].source),

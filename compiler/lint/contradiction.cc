@@ -6,13 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
 #include "compiler/lint/rules.h"
 
 namespace parallax::compiler {
 namespace {
-
-using base::DiagnosticCode;
 
 /// One conjunct without its negation signs.
 struct Literal {
@@ -250,8 +248,8 @@ class Search {
 bool report_contradiction(const LintContext& context, TypedFormulaId condition) {
   const auto reason = contradiction(context, condition);
   if (!reason) return false;
-  context.sink().warning(DiagnosticCode::kConditionNeverHolds,
-                         context.model().formulas[condition].source, *reason);
+  context.sink().warning(codes::kConditionNeverHolds, context.model().formulas[condition].source,
+                         *reason);
   return true;
 }
 

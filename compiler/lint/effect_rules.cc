@@ -3,12 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
 #include "compiler/lint/rules.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -75,7 +73,7 @@ void find_effect_arguments(const LintContext& context) {
     auto reason = bad_arguments(context, effect.event, false);
     if (!reason) reason = bad_arguments(context, effect.fluent, true);
     if (!reason) continue;
-    context.sink().warning(DiagnosticCode::kEffectArguments, effect.source, *reason);
+    context.sink().warning(codes::kEffectArguments, effect.source, *reason);
   }
 }
 
@@ -87,7 +85,7 @@ void find_noninertial_effects(const LintContext& context) {
     const auto& symbol = model.symbols[fluent.symbol];
     if (!symbol.noninertial) continue;
     context.sink()
-        .warning(DiagnosticCode::kNoninertialEffect, effect.source, symbol.name)
+        .warning(codes::kNoninertialEffect, effect.source, symbol.name)
         .note(symbol.declared, "the fluent is declared here");
   }
 }
@@ -98,7 +96,7 @@ void find_nested_arithmetic(const LintContext& context) {
     const auto found = nested_arithmetic(model, effect);
     if (!found) continue;
     const auto& source = model.terms[*found].source;
-    context.sink().warning(DiagnosticCode::kNestedArithmetic, source, context.text(source));
+    context.sink().warning(codes::kNestedArithmetic, source, context.text(source));
   }
 }
 

@@ -5,13 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
 #include "compiler/lint/rules.h"
 #include "compiler/sema/typed_model.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -99,7 +97,7 @@ class FactSearch {
     }
     if (rule == nullptr) return;
     context_.sink()
-        .warning(DiagnosticCode::kFactBesideRule, fact.axiom->source,
+        .warning(codes::kFactBesideRule, fact.axiom->source,
                  context_.text(model_.formulas[fact.atom].source))
         .note(rule->axiom->source, "the rule stands here");
   }

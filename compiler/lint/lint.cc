@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
 #include "compiler/lint/rules.h"
 
 namespace parallax::compiler {
@@ -11,39 +11,37 @@ using base::DiagnosticCode;
 
 std::span<const LintRule> lint_rules() {
   static constexpr std::array<LintRule, 15> kRules = {{
-      {DiagnosticCode::kFluentWithoutEffects, "fluent-without-effects",
+      {codes::kFluentWithoutEffects, "fluent-without-effects",
        "an inertial fluent that no event changes", find_fluents_without_effects},
-      {DiagnosticCode::kFluentOneWay, "fluent-one-way",
+      {codes::kFluentOneWay, "fluent-one-way",
        "a fluent that events only initiate or only terminate", find_fluents_that_change_one_way},
-      {DiagnosticCode::kEventWithoutEffect, "event-without-effect",
-       "an event that no axiom mentions", find_events_without_effect},
-      {DiagnosticCode::kUnusedSort, "unused-sort", "a sort that nothing is made of",
-       find_unused_sorts},
-      {DiagnosticCode::kEmptySort, "empty-sort", "a sort in use without an element",
-       find_empty_sorts},
-      {DiagnosticCode::kUnusedLabel, "unused-label",
+      {codes::kEventWithoutEffect, "event-without-effect", "an event that no axiom mentions",
+       find_events_without_effect},
+      {codes::kUnusedSort, "unused-sort", "a sort that nothing is made of", find_unused_sorts},
+      {codes::kEmptySort, "empty-sort", "a sort in use without an element", find_empty_sorts},
+      {codes::kUnusedLabel, "unused-label",
        "a label that no completion names, although its predicate is completed over others",
        find_unused_labels},
-      {DiagnosticCode::kCompletionWithoutAxiom, "completion-without-axiom",
+      {codes::kCompletionWithoutAxiom, "completion-without-axiom",
        "completion over a label whose formulas give no reason for the predicate",
        find_completions_without_axiom},
-      {DiagnosticCode::kConditionNeverHolds, "condition-never-holds",
-       "a condition that contradicts itself", find_impossible_conditions},
-      {DiagnosticCode::kSingleValueRange, "single-value-range", "a range of one number",
+      {codes::kConditionNeverHolds, "condition-never-holds", "a condition that contradicts itself",
+       find_impossible_conditions},
+      {codes::kSingleValueRange, "single-value-range", "a range of one number",
        find_single_value_ranges},
-      {DiagnosticCode::kShortOffsetRange, "short-offset-range",
+      {codes::kShortOffsetRange, "short-offset-range",
        "offsets that do not reach the end of the horizon", find_short_offset_ranges},
-      {DiagnosticCode::kComparedOutsideRange, "compared-outside-range",
+      {codes::kComparedOutsideRange, "compared-outside-range",
        "a comparison with a number that the variable never reaches",
        find_comparisons_outside_ranges},
-      {DiagnosticCode::kNotCompleted, "not-completed",
+      {codes::kNotCompleted, "not-completed",
        "a predicate with reasons but without completion, beside completed ones",
        find_predicates_not_completed},
-      {DiagnosticCode::kUnusedVariable, "unused-variable", "a variable that is bound in vain",
+      {codes::kUnusedVariable, "unused-variable", "a variable that is bound in vain",
        find_unused_variables},
-      {DiagnosticCode::kEffectArguments, "effect-arguments",
-       "an effect axiom that stops the 2005 reasoner", find_effect_arguments},
-      {DiagnosticCode::kSharedExclusion, "shared-exclusion",
+      {codes::kEffectArguments, "effect-arguments", "an effect axiom that stops the 2005 reasoner",
+       find_effect_arguments},
+      {codes::kSharedExclusion, "shared-exclusion",
        "mutex and xor that exclude less than their names say", find_shared_exclusions},
   }};
   return kRules;
@@ -51,19 +49,19 @@ std::span<const LintRule> lint_rules() {
 
 std::span<const LintRule> difference_rules() {
   static constexpr std::array<LintRule, 3> kRules = {{
-      {DiagnosticCode::kFactBesideRule, "fact-beside-rule",
+      {codes::kFactBesideRule, "fact-beside-rule",
        "a completed fact for which there are rules as well", find_facts_beside_rules},
-      {DiagnosticCode::kNoninertialEffect, "noninertial-effect",
+      {codes::kNoninertialEffect, "noninertial-effect",
        "an effect on a fluent that is always released", find_noninertial_effects},
-      {DiagnosticCode::kNestedArithmetic, "nested-arithmetic",
+      {codes::kNestedArithmetic, "nested-arithmetic",
        "arithmetic inside arithmetic in an effect axiom", find_nested_arithmetic},
   }};
   return kRules;
 }
 
 std::span<const DiagnosticCode> reproduced_differences() {
-  static constexpr std::array<DiagnosticCode, 2> kCodes = {DiagnosticCode::kFactBesideRule,
-                                                           DiagnosticCode::kNoninertialEffect};
+  static constexpr std::array<DiagnosticCode, 2> kCodes = {codes::kFactBesideRule,
+                                                           codes::kNoninertialEffect};
   return kCodes;
 }
 

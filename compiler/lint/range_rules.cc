@@ -5,13 +5,11 @@
 #include <optional>
 #include <string>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
 #include "compiler/lint/rules.h"
 #include "compiler/sema/typed_model.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -84,7 +82,7 @@ bool check_comparison(const LintContext& context, SortDomains& domains,
                           number.integer, domains.contains(sort, number.integer));
   if (!what) return false;
   context.sink()
-      .warning(DiagnosticCode::kComparedOutsideRange, formula.source,
+      .warning(codes::kComparedOutsideRange, formula.source,
                model.variables[variable.variable].name, *what, model.sorts[sort].name,
                values(domains, sort))
       .note(domains.ranges(sort).front().declared, "the range is declared here");
@@ -105,7 +103,7 @@ void find_single_value_ranges(const LintContext& context) {
     const auto bounds = hull(domains, id);
     const auto& declared = sort.ranges.front().declared;
     if (bounds->lower != bounds->upper || context.built_in(declared)) continue;
-    context.sink().warning(DiagnosticCode::kSingleValueRange, declared, sort.name, bounds->lower);
+    context.sink().warning(codes::kSingleValueRange, declared, sort.name, bounds->lower);
   }
 }
 
@@ -125,7 +123,7 @@ void find_short_offset_ranges(const LintContext& context) {
     if (std::find(reported.begin(), reported.end(), sort) != reported.end()) continue;
     reported.push_back(sort);
     context.sink()
-        .warning(DiagnosticCode::kShortOffsetRange, domains.ranges(sort).front().declared,
+        .warning(codes::kShortOffsetRange, domains.ranges(sort).front().declared,
                  model.sorts[sort].name, bounds->upper, time->upper - time->lower)
         .note(path.source, "the trajectory stands here");
   }

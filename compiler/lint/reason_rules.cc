@@ -5,14 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
 #include "compiler/lint/rules.h"
 #include "compiler/sema/axiom_shapes.h"
 #include "compiler/syntax/lexer.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -57,7 +55,7 @@ void find_unused_labels(const LintContext& context) {
       const auto predicate = model.formulas[atom].predicate;
       const auto entry = completed.find(predicate.index());
       if (entry == completed.end() || entry->second.over_everything) continue;
-      context.sink().warning(DiagnosticCode::kUnusedLabel, axiom.source, shortened(axiom.label),
+      context.sink().warning(codes::kUnusedLabel, axiom.source, shortened(axiom.label),
                              model.symbols[predicate].name);
       break;
     }
@@ -80,7 +78,7 @@ void find_completions_without_axiom(const LintContext& context) {
     // A label that no formula has is told by the checker (W2005).
     if (!completion.label || !labels.contains(*completion.label)) continue;
     if (reasons.contains({*completion.label, completion.predicate.index()})) continue;
-    context.sink().warning(DiagnosticCode::kCompletionWithoutAxiom, completion.source,
+    context.sink().warning(codes::kCompletionWithoutAxiom, completion.source,
                            shortened(*completion.label), model.symbols[completion.predicate].name);
   }
 }
@@ -108,7 +106,7 @@ void find_predicates_not_completed(const LintContext& context) {
       const auto other =
           sibling != by_label.end() ? sibling->second : model.completions.front().predicate;
       context.sink().warning(
-          DiagnosticCode::kNotCompleted, axiom.source, model.symbols[predicate].name,
+          codes::kNotCompleted, axiom.source, model.symbols[predicate].name,
           model.symbols[other].name,
           event ? std::string("events happen freely beside those that formulas ask for")
                 : "this formula has the label `" + shortened(axiom.label) + "` as well");

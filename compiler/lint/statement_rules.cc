@@ -6,14 +6,12 @@
 #include <unordered_map>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
 #include "compiler/lint/rules.h"
 #include "compiler/syntax/lexer.h"
 
 namespace parallax::compiler {
 namespace {
-
-using base::DiagnosticCode;
 
 /// Looks through the trees of one file. On the syntax tree, as the typed model has lost where a
 /// variable was written.
@@ -60,7 +58,7 @@ class VariableUse {
       const Node& variable = ast_[ast_.child(node, i)];
       auto& used = scope_[ast_.name(variable)];
       if (!used.back()) {
-        sink_.warning(DiagnosticCode::kUnusedVariable, ast_.source(variable),
+        sink_.warning(codes::kUnusedVariable, ast_.source(variable),
                       shortened(ast_.name(variable)));
       }
       used.pop_back();
@@ -109,7 +107,7 @@ void check_exclusion(const LintContext& context, const Ast& ast, const Statement
   const auto source = ast.source(statement.source);
   if (const auto shared = shared_argument(model, symbols)) {
     context.sink().warning(
-        DiagnosticCode::kSharedExclusion, source, word, "`" + model.sorts[shared->sort].name + "`",
+        codes::kSharedExclusion, source, word, "`" + model.sorts[shared->sort].name + "`",
         "`" + model.symbols[shared->first].name + "` and `" + model.symbols[shared->second].name +
             "` may go together if these differ");
     return;
@@ -117,7 +115,7 @@ void check_exclusion(const LintContext& context, const Ast& ast, const Statement
   for (const auto symbol : symbols) {
     if (model.symbols[symbol].arguments.empty()) continue;
     context.sink().warning(
-        DiagnosticCode::kSharedExclusion, source, word, "arguments",
+        codes::kSharedExclusion, source, word, "arguments",
         "two `" + model.symbols[symbol].name + "` may go together if these differ");
     return;
   }

@@ -1,12 +1,10 @@
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
 #include "compiler/lint/rules.h"
 #include "compiler/sema/typed_model.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -85,7 +83,7 @@ void find_fluents_without_effects(const LintContext& context) {
   for_each_inertial_fluent(context, [&](SymbolId id, bool initiated, bool terminated) {
     if (initiated || terminated) return;
     const auto& symbol = context.model().symbols[id];
-    context.sink().warning(DiagnosticCode::kFluentWithoutEffects, symbol.declared, symbol.name);
+    context.sink().warning(codes::kFluentWithoutEffects, symbol.declared, symbol.name);
   });
 }
 
@@ -93,7 +91,7 @@ void find_fluents_that_change_one_way(const LintContext& context) {
   for_each_inertial_fluent(context, [&](SymbolId id, bool initiated, bool terminated) {
     if (initiated == terminated) return;
     const auto& symbol = context.model().symbols[id];
-    context.sink().warning(DiagnosticCode::kFluentOneWay, symbol.declared, symbol.name,
+    context.sink().warning(codes::kFluentOneWay, symbol.declared, symbol.name,
                            initiated ? "begin" : "end", initiated ? "terminates" : "initiates");
   });
 }
@@ -105,7 +103,7 @@ void find_events_without_effect(const LintContext& context) {
     const auto& symbol = symbols[id];
     if (symbol.kind != SymbolKind::kEvent || context.built_in(symbol.declared)) continue;
     if (context.mentioned(id) || context.has_effect(id)) continue;
-    context.sink().warning(DiagnosticCode::kEventWithoutEffect, symbol.declared, symbol.name);
+    context.sink().warning(codes::kEventWithoutEffect, symbol.declared, symbol.name);
   }
 }
 
@@ -115,7 +113,7 @@ void find_unused_sorts(const LintContext& context) {
   for (std::size_t i = 0; i < sorts.size(); ++i) {
     const auto& sort = sorts[sorts.id_at(i)];
     if (use.used(sorts.id_at(i)) || context.built_in(sort.declared)) continue;
-    context.sink().warning(DiagnosticCode::kUnusedSort, sort.declared, sort.name);
+    context.sink().warning(codes::kUnusedSort, sort.declared, sort.name);
   }
 }
 
@@ -128,7 +126,7 @@ void find_empty_sorts(const LintContext& context) {
     // An integer sort without a range is an error where it is used.
     if (sort.integer || context.built_in(sort.declared)) continue;
     if (!use.used(id) || use.has_elements(id)) continue;
-    context.sink().warning(DiagnosticCode::kEmptySort, sort.declared, sort.name);
+    context.sink().warning(codes::kEmptySort, sort.declared, sort.name);
   }
 }
 

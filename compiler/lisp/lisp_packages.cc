@@ -9,12 +9,11 @@
 #include <vector>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 
 namespace parallax::compiler {
 namespace {
 
-using base::DiagnosticCode;
 using NameSet = std::set<std::string, std::less<>>;
 
 constexpr std::string_view kUserPackage = "common-lisp-user";
@@ -46,7 +45,7 @@ class PackageResolver {
 
  private:
   base::DiagnosticBuilder wrong(DatumId at, std::string_view what, std::string_view text) {
-    return sink_.error(DiagnosticCode::kPlanPackage, data_.source(at), what, text);
+    return sink_.error(codes::kPlanPackage, data_.source(at), what, text);
   }
 
   /// What names a package or a symbol of one: a symbol, a keyword or a string, in any case.

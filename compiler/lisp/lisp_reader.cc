@@ -10,12 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/lisp/lisp_token.h"
 
 namespace parallax::compiler {
 
-using base::DiagnosticCode;
 using base::SourceRange;
 
 namespace {
@@ -51,7 +50,7 @@ class LispReader {
   base::SourceRange range(std::uint32_t begin) const { return {file_, begin, cursor_.position()}; }
   base::DiagnosticBuilder unreadable(base::SourceRange where, std::string_view text) {
     failed_ = true;
-    return sink_.error(base::DiagnosticCode::kUnreadableDatum, where, text);
+    return sink_.error(codes::kUnreadableDatum, where, text);
   }
   bool suppressed() const { return skips_ != 0; }
   bool push(OpenDatum open);
@@ -340,7 +339,7 @@ void LispReader::reject_macro(std::uint32_t begin) {
   if (!cursor_.at_end() && !list_follows) cursor_.skip(1);
   if (suppressed()) return;
   failed_ = true;
-  sink_.error(DiagnosticCode::kUnsupportedReaderMacro, range(begin),
+  sink_.error(codes::kUnsupportedReaderMacro, range(begin),
               list_follows ? std::string("#(") : std::string(cursor_.since(begin)));
 }
 

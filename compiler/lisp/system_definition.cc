@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/lisp/lisp_reader.h"
 
 namespace parallax::compiler {
@@ -71,8 +71,7 @@ class SystemReader {
       }
     }
     if (!system && sink_.error_count() == errors_before) {
-      sink_.error(base::DiagnosticCode::kPlanSystem, base::SourceRange{file, 0, 0},
-                  "it has no `defsystem`");
+      sink_.error(codes::kPlanSystem, base::SourceRange{file, 0, 0}, "it has no `defsystem`");
     }
     if (sink_.error_count() != errors_before) return sink_.already_reported();
     return out;
@@ -80,7 +79,7 @@ class SystemReader {
 
  private:
   base::DiagnosticBuilder wrong(DatumId at, std::string_view text) {
-    return sink_.error(base::DiagnosticCode::kPlanSystem, data_.source(at), text);
+    return sink_.error(codes::kPlanSystem, data_.source(at), text);
   }
 
   std::optional<std::string> name_of(DatumId datum) const {

@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "compiler/artifact/describe.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/grounding.h"
+#include "compiler/base/codes/names.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/cnf/encoder.h"
 #include "compiler/ground/formula_grounder.h"
 #include "compiler/ground/grounder.h"
@@ -57,7 +59,7 @@ base::Result<std::vector<std::string>> candidates(const ObjectBinding& binding,
                                                   base::DiagnosticSink& sink) {
   auto out = constants_of(binding.formula, binding.variable, model);
   if (out) return *std::move(out);
-  return sink.error(base::DiagnosticCode::kBindingSyntax, binding.formula_source,
+  return sink.error(codes::kBindingSyntax, binding.formula_source,
                     fmt::format("a formula that says something of {}", binding.variable),
                     "another one");
 }
@@ -88,8 +90,7 @@ base::Status check_performed(const PlanGraph& graph, const PlanBinding& binding,
     const bool fits = symbol && model.symbols[*symbol].kind == SymbolKind::kEvent &&
                       model.symbols[*symbol].arguments.size() == entry.event_arguments.size();
     if (performed == graph.locations.end() || fits) continue;
-    auto error =
-        sink.error(base::DiagnosticCode::kPlanEventUnknown, entry.source, entry.event_symbol);
+    auto error = sink.error(codes::kPlanEventUnknown, entry.source, entry.event_symbol);
     error.note(performed->source, "performed here");
     const auto near = symbol ? symbol : NameAdvice(model, sink).symbol(entry.event_symbol, kEvents);
     if (!near) continue;
@@ -111,8 +112,7 @@ base::Status check_regions(const PlanGraph& graph, const PoseLocator& locator,
       if (name.empty() || model.find_object(name) || model.find_symbol(name)) continue;
       const auto place = locator.place_of(name);
       if (!place) continue;
-      auto error =
-          sink.error(base::DiagnosticCode::kUnknownName, *place, "constant", std::string(name), "");
+      auto error = sink.error(codes::kUnknownName, *place, "constant", std::string(name), "");
       error.note(location.source, "a pose of this perform lies in it");
       if (const auto near = NameAdvice(model, sink).object(name)) {
         error.note(model.objects[*near].declared,
@@ -226,7 +226,7 @@ base::Status encode_constraints(const std::vector<StateConstraint>& constraints,
       if (grounder.failed()) return sink.already_reported();
       if (value) ever[i] = true;
       if (value && model.needed_horizon_of(*value) > t) {
-        return sink.error(base::DiagnosticCode::kConstraintLooksAhead, constraint.source);
+        return sink.error(codes::kConstraintLooksAhead, constraint.source);
       }
       parts.push_back(value.value_or(formulas.falsity()));
     }
@@ -235,7 +235,7 @@ base::Status encode_constraints(const std::vector<StateConstraint>& constraints,
   }
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     if (ever[i]) continue;
-    return sink.error(base::DiagnosticCode::kNothingToSay, constraints[i].source, model.horizon());
+    return sink.error(codes::kNothingToSay, constraints[i].source, model.horizon());
   }
   return base::Unit{};
 }

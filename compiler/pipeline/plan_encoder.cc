@@ -8,13 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/grounding.h"
 #include "compiler/pipeline/plan_registers.h"
 #include "compiler/plan/plan_graph.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -227,7 +225,7 @@ class PlanEncoder {
         const auto term = registers_.event(location.event, reading);
         const auto found = term ? event_numbers_.find(*term) : event_numbers_.end();
         if (found == event_numbers_.end()) {
-          sink_.error(DiagnosticCode::kPlanEventUnknown, location.source,
+          sink_.error(codes::kPlanEventUnknown, location.source,
                       registers_.event_text(location.event, reading));
           break;
         }

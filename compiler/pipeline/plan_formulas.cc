@@ -7,12 +7,10 @@
 #include <string_view>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 
 namespace parallax::compiler {
 namespace {
-
-using base::DiagnosticCode;
 
 std::optional<SortId> sort_of_variable(const TypedModel& model, std::string_view variable) {
   while (!variable.empty() && variable.back() >= '0' && variable.back() <= '9') {
@@ -129,7 +127,7 @@ class PlanFormulaChecker {
 
   bool refuse_result(const std::string& variable, base::SourceRange source) {
     sink_.error(
-        DiagnosticCode::kBindingSyntax, source,
+        codes::kBindingSyntax, source,
         fmt::format("a formula that begins with `{{{0}}}` or `exists {0}.`, as {0} is returned",
                     variable),
         "another one");

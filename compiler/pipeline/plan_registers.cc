@@ -4,7 +4,7 @@
 #include <charconv>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/grounding.h"
 
 namespace parallax::compiler {
 namespace {
@@ -134,7 +134,7 @@ std::optional<FormulaId> PlanRegisters::ground(const PlanFormula& formula, Timep
   } while (advance(choice, sizes));
   if (returned) grounder_.unbind(*formula.returned);
   if (says_something || returned) return formulas.disjunction(ways);
-  sink_.error(base::DiagnosticCode::kNothingToSay, blame, model_.horizon());
+  sink_.error(codes::kNothingToSay, blame, model_.horizon());
   return std::nullopt;
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 
 namespace parallax::compiler {
 namespace {
@@ -113,7 +113,7 @@ bool BindingCursor::expected(std::string_view what) {
   while (stop < end_ && !base::is_space(text()[stop]) && stop - i_ < 40) ++stop;
   const auto found = at_end() ? std::string("the end of the entry")
                               : fmt::format("`{}`", rest().substr(0, stop - i_));
-  sink_.error(base::DiagnosticCode::kBindingSyntax, range(i_, stop), what, found);
+  sink_.error(codes::kBindingSyntax, range(i_, stop), what, found);
   return false;
 }
 

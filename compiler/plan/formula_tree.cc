@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/plan/binding_text.h"
 
 namespace parallax::compiler {
@@ -92,7 +92,7 @@ class TreeReader {
  private:
   base::Reported refuse(const FormulaNode& node, const char* wanted, const std::string& found) {
     const auto begin = range_.begin + node.begin;
-    return sink_.error(base::DiagnosticCode::kBindingSyntax,
+    return sink_.error(codes::kBindingSyntax,
                        base::SourceRange{range_.file, begin, begin + node.name_length}, wanted,
                        found);
   }

@@ -11,12 +11,11 @@
 #include <vector>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/plan/binding_text.h"
 
 namespace parallax::compiler {
 
-using base::DiagnosticCode;
 using base::SourceRange;
 
 namespace {
@@ -112,7 +111,7 @@ void BindingParser::parse_query(std::size_t begin) {
     const bool same = other.name == query.name && other.variables.size() == query.variables.size();
     if (!same) continue;
     failed_ = true;
-    sink_.error(base::DiagnosticCode::kDuplicateBinding, query.source, "query", query.name)
+    sink_.error(codes::kDuplicateBinding, query.source, "query", query.name)
         .note(other.source, "first bound here");
     return;
   }
@@ -290,7 +289,7 @@ bool BindingParser::parse_reason(BindingEntry& entry) {
   for (const auto& other : entry.reasons) {
     if (other.reason != bound.reason) continue;
     failed_ = true;
-    sink_.error(DiagnosticCode::kBindingSyntax, at_.range(begin, end), "a reason once",
+    sink_.error(codes::kBindingSyntax, at_.range(begin, end), "a reason once",
                 fmt::format("`{}` a second time", bound.reason));
     return false;
   }
@@ -332,7 +331,7 @@ bool BindingParser::repeat_mapping(BindingEntry& entry) {
       mapped[parameter.function].insert(parameter.variable);
       if (!parameter.variable.empty()) continue;
       failed_ = true;
-      sink_.error(DiagnosticCode::kBindingSyntax, entry.source,
+      sink_.error(codes::kBindingSyntax, entry.source,
                   fmt::format("`{}(?variable)` in the event", parameter.function), "the bare name");
       return false;
     }
@@ -358,7 +357,7 @@ bool BindingParser::check_variables(const BindingEntry& entry) {
     if (std::any_of(entry.keys.begin(), entry.keys.end(), known)) return;
     good = false;
     failed_ = true;
-    sink_.error(DiagnosticCode::kBindingVariable, where, variable);
+    sink_.error(codes::kBindingVariable, where, variable);
   };
   for (const auto& argument : entry.event_arguments) {
     for (const auto& parameter : argument.parameters) check(parameter.variable, entry.source);
@@ -374,7 +373,7 @@ bool BindingParser::add(const BindingEntry& entry) {
   for (const auto& other : out_.entries) {
     if (other.kind != entry.kind || other.type != entry.type || !same_keys(other, entry)) continue;
     failed_ = true;
-    sink_.error(DiagnosticCode::kDuplicateBinding, entry.source, to_string(entry.kind), entry.type)
+    sink_.error(codes::kDuplicateBinding, entry.source, to_string(entry.kind), entry.type)
         .note(other.source, "first bound here");
     return false;
   }
@@ -400,7 +399,7 @@ void BindingParser::expand_aliases() {
     if (found.empty() && !alias.target_kind) collect(other);
     if (found.empty()) {
       failed_ = true;
-      sink_.error(DiagnosticCode::kBindingAlias, alias.source, alias.target);
+      sink_.error(codes::kBindingAlias, alias.source, alias.target);
     }
     for (auto& entry : found) {
       for (const auto& type : alias.types) {

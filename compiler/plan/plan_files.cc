@@ -9,7 +9,8 @@
 #include <utility>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
+#include "compiler/base/codes/texts.h"
 #include "compiler/base/file_io.h"
 #include "compiler/lisp/system_definition.h"
 
@@ -58,21 +59,20 @@ class PlanFileLoader {
       const auto wanted = folded_name(base::real_path(named.path).filename());
       std::erase_if(systems, [&](const fs::path& path) { return folded_name(path) != wanted; });
       if (systems.size() != 1) {
-        report(DiagnosticCode::kPlanFolder, named.path, named.place, named.path.string(),
+        report(codes::kPlanFolder, named.path, named.place, named.path.string(),
                "it holds several system definitions, and not one of them is called like it");
         return;
       }
     }
     if (!systems.empty()) return load_system(systems.front(), named);
     if (plans.empty()) {
-      report(DiagnosticCode::kPlanFolder, named.path, named.place, named.path.string(),
+      report(codes::kPlanFolder, named.path, named.place, named.path.string(),
              "it holds no system definition (.asd) and no Lisp file");
       return;
     }
     if (plans.size() > kMaxPlanFiles) return too_many(named.path, named.place);
     if (plans.size() > 1) {
-      report(DiagnosticCode::kPlanOrder, named.path, named.place, named.path.string(),
-             plans.size());
+      report(codes::kPlanOrder, named.path, named.place, named.path.string(), plans.size());
     }
     for (const auto& path : plans) {
       if (!load_file(path, named.place)) return;
@@ -86,7 +86,7 @@ class PlanFileLoader {
     const auto listed = read_system(files_, *file, sink_);
     if (!listed) return;
     if (listed->empty()) {
-      report(DiagnosticCode::kPlanFolder, named.path, named.place, definition.string(),
+      report(codes::kPlanFolder, named.path, named.place, definition.string(),
              "the system has no Lisp file");
     }
     for (const auto& item : *listed) {
@@ -98,14 +98,14 @@ class PlanFileLoader {
   }
 
   void too_many(const fs::path& path, const std::optional<base::SourceRange>& place) {
-    report(DiagnosticCode::kPlanFolder, path, place, path.string(),
+    report(codes::kPlanFolder, path, place, path.string(),
            fmt::format("the plan has more than {} files", kMaxPlanFiles));
   }
 
   bool admitted(const fs::path& path, const std::optional<base::SourceRange>& place) {
     if (gate_.admits(path)) return true;
     if (place) return static_cast<bool>(gate_.check(path, *place, sink_));
-    sink_.error_about(DiagnosticCode::kLoadOutside, path.string(), path.string());
+    sink_.error_about(codes::kLoadOutside, path.string(), path.string());
     return false;
   }
 
@@ -119,8 +119,7 @@ class PlanFileLoader {
     if (place && !base::check_file(path, *place, sink_)) return true;
     const auto [first, added] = seen_.emplace(base::real_path(path), path);
     if (!added) {
-      report(DiagnosticCode::kPlanFolder, path, place, path.string(),
-             "the plan names this file twice");
+      report(codes::kPlanFolder, path, place, path.string(), "the plan names this file twice");
       return true;
     }
     if (const auto file = base::load_text(path, files_, sink_)) loaded_.push_back(*file);

@@ -6,11 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -158,10 +156,10 @@ class ShapeReader {
       const auto& name = model_.symbols[atom.predicate].name;
       const bool is_trajectory = trajectory(atom).has_value();
       if (is_trajectory && found.in_condition) {
-        sink_.error(DiagnosticCode::kTrajectoryInCondition, atom.source, name);
+        sink_.error(codes::kTrajectoryInCondition, atom.source, name);
         fine = false;
       } else if (is_trajectory || (!found.in_condition && found.polarity == Polarity::kPositive)) {
-        auto report = sink_.error(DiagnosticCode::kEffectShape, atom.source, name, found.place);
+        auto report = sink_.error(codes::kEffectShape, atom.source, name, found.place);
         if (found.place.starts_with("below")) {
           report.fix(
               "a quantifier reaches to the end of the formula: put parentheses around the "
@@ -303,7 +301,7 @@ class ShapeReader {
     } else {
       return;
     }
-    sink_.warning(DiagnosticCode::kEffectShapeOldReasoner, at(root).source, reason);
+    sink_.warning(codes::kEffectShapeOldReasoner, at(root).source, reason);
   }
 
   const std::string label_;

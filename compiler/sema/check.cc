@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/base/codes/names.h"
 #include "compiler/base/diagnostic.h"
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/sema/axiom_shapes.h"
 #include "compiler/sema/calculus_axioms.h"
 #include "compiler/sema/declarations.h"
@@ -24,8 +24,6 @@
 
 namespace parallax::compiler {
 namespace {
-
-using base::DiagnosticCode;
 
 /// Recognises `F(C1,...,Cn)=V.` and keeps the model's table of function values.
 class FunctionTable {
@@ -112,7 +110,7 @@ bool FunctionTable::add(TypedFormulaId id, SortDomains& domains) {
   const Symbol& function = model_.symbols[left.symbol];
   if (!lies_in(value, *function.result, domains)) {
     sink_
-        .warning(DiagnosticCode::kFunctionValueOutsideSort, model_.terms[value].source,
+        .warning(codes::kFunctionValueOutsideSort, model_.terms[value].source,
                  printed(model_, value), model_.sorts[*function.result].name)
         .note(function.declared, "`" + signature(model_, function) + "` declared here");
   }
@@ -130,14 +128,14 @@ bool FunctionTable::add(TypedFormulaId id, SortDomains& domains) {
   if (old_value == new_value) return true;
   if (!last_counts_) {
     sink_
-        .error(DiagnosticCode::kFunctionValueTwice, formula.source,
-               printed(model_, formula.terms[0]), printed(model_, before.value))
+        .error(codes::kFunctionValueTwice, formula.source, printed(model_, formula.terms[0]),
+               printed(model_, before.value))
         .note(before.source, "that value is given here");
     return true;
   }
   sink_
-      .warning(DiagnosticCode::kFunctionValueReplaced, formula.source,
-               printed(model_, formula.terms[0]), printed(model_, before.value))
+      .warning(codes::kFunctionValueReplaced, formula.source, printed(model_, formula.terms[0]),
+               printed(model_, before.value))
       .note(before.source, "that value is given here");
   before.value = value;
   before.source = formula.source;
@@ -183,7 +181,7 @@ class ModelChecker {
     const auto& statement = ast_.statement(place);
     std::string label(ast.text(statement.label));
     if (!label.empty() && label[0] >= '0' && label[0] <= '9') {
-      sink_.warning(DiagnosticCode::kWeightedFormula, ast.source(statement.source));
+      sink_.warning(codes::kWeightedFormula, ast.source(statement.source));
       return;
     }
     if (ignored_.concern(ast, statement)) return;
@@ -300,8 +298,8 @@ class ModelChecker {
   void check_labels() {
     for (const auto& completion : model_.completions) {
       if (!completion.label || labels_.contains(*completion.label)) continue;
-      sink_.warning(DiagnosticCode::kCompletionWithoutLabel, completion.source,
-                    shortened(*completion.label), model_.symbols[completion.predicate].name);
+      sink_.warning(codes::kCompletionWithoutLabel, completion.source, shortened(*completion.label),
+                    model_.symbols[completion.predicate].name);
     }
   }
 

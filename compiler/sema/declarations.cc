@@ -5,15 +5,14 @@
 #include <optional>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
+#include "compiler/base/codes/texts.h"
 #include "compiler/sema/declarations.h"
 #include "compiler/sema/elaborator.h"
 #include "compiler/sema/name_advice.h"
 #include "compiler/syntax/lexer.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -108,22 +107,21 @@ class Declarer {
     const auto& sort = model_.sorts[sort_id];
     const auto like = model_.find_sort(sort_of_variable(name));
     if (!is_constant_name(name)) {
-      sink_.error(DiagnosticCode::kNameSpelling, ast.source(word), shortened(name), "a constant");
+      sink_.error(codes::kNameSpelling, ast.source(word), shortened(name), "a constant");
     } else if (like == sort_id && sort.reified && name != sort.name) {
       // Old models declare `fluent fluent2` before they use the variable.
-      sink_.warning(DiagnosticCode::kVariableDeclared, ast.source(word), shortened(name),
-                    sort.name);
+      sink_.warning(codes::kVariableDeclared, ast.source(word), shortened(name), sort.name);
     } else if (like) {
-      sink_.error(DiagnosticCode::kNameSpelling, ast.source(word), shortened(name), "a constant")
+      sink_.error(codes::kNameSpelling, ast.source(word), shortened(name), "a constant")
           .note(model_.sorts[*like].declared,
                 "it would read as a variable of the sort `" + model_.sorts[*like].name + "`")
           .fix(NameAdvice::replace(name, capitalized(name)));
     } else if (sort.reified) {
-      sink_.error(DiagnosticCode::kReifiedConstant, ast.source(word), shortened(name), sort.name)
+      sink_.error(codes::kReifiedConstant, ast.source(word), shortened(name), sort.name)
           .note(sort.declared, "sort `" + sort.name + "` declared here")
           .fix("write `" + sort.name + " " + shortened(name) + "()`");
     } else if (sort.integer) {
-      sink_.error(DiagnosticCode::kIntegerConstant, ast.source(word), sort.name, shortened(name))
+      sink_.error(codes::kIntegerConstant, ast.source(word), sort.name, shortened(name))
           .note(sort.declared, "sort `" + sort.name + "` declared here");
     } else if (const auto before = model_.find_object(name)) {
       second_declaration(ast, word, *before, sort_id, additional);
@@ -144,7 +142,7 @@ class Declarer {
       repetitions_.note(object.name, ast.source(word), object.declared);
     } else if (!additional) {
       const auto& first = model_.sorts[object.sorts.front()].name;
-      sink_.error(DiagnosticCode::kSecondSort, ast.source(word), shortened(object.name), first)
+      sink_.error(codes::kSecondSort, ast.source(word), shortened(object.name), first)
           .note(object.declared, "first declared here")
           .fix("write `" + model_.sorts[sort].name + "! " + shortened(object.name) +
                "` if it belongs to both");
@@ -156,7 +154,7 @@ class Declarer {
 
   void report_twice(const Ast& ast, Word word, std::string_view name,
                     const base::SourceRange& first) {
-    sink_.error(DiagnosticCode::kDeclaredTwice, ast.source(word), shortened(name))
+    sink_.error(codes::kDeclaredTwice, ast.source(word), shortened(name))
         .note(first, "first declared here");
   }
 
@@ -217,17 +215,15 @@ class Declarer {
     const auto& sort = model_.sorts[sort_id];
     if (!is_symbol_name(name)) {
       // Declared all the same, so that its uses are understood.
-      auto error = sink_.error(DiagnosticCode::kNameSpelling, ast.source(statement.name),
-                               shortened(name), with_article(sort.name));
+      auto error = sink_.error(codes::kNameSpelling, ast.source(statement.name), shortened(name),
+                               with_article(sort.name));
       if (base::is_lower(name[0])) {
         error.fix(NameAdvice::replace(name, capitalized(name)));
         model_.refuse(capitalized(name));  // its uses may be right already
       }
     }
     if (!sort.reified) {
-      sink_
-          .error(DiagnosticCode::kPlainConstructor, ast.source(statement.name), shortened(name),
-                 sort.name)
+      sink_.error(codes::kPlainConstructor, ast.source(statement.name), shortened(name), sort.name)
           .note(sort.declared, "sort `" + sort.name + "` declared here");
       return false;
     }
@@ -240,7 +236,7 @@ class Declarer {
     if (symbol.kind == SymbolKind::kFunction) {
       if (!given) {
         sink_
-            .error(DiagnosticCode::kResultSort, ast.source(statement.name),
+            .error(codes::kResultSort, ast.source(statement.name),
                    "the function `" + name + "` has no result sort")
             .fix("add `: sort` after the closing parenthesis");
         return false;
@@ -249,7 +245,7 @@ class Declarer {
       return symbol.result.has_value();
     }
     if (given) {
-      sink_.error(DiagnosticCode::kResultSort, ast.source(statement.value),
+      sink_.error(codes::kResultSort, ast.source(statement.value),
                   "the " + std::string(kind_word(symbol.kind)) + " `" + name +
                       "` cannot have a result sort");
       return false;
@@ -266,13 +262,13 @@ class Declarer {
     Sort& sort = model_.sorts[*id];
     const auto [lower, upper] = ast.bounds(statement);
     if (!sort.integer) {
-      sink_.error(DiagnosticCode::kRangeOfPlainSort, ast.source(statement.sort), sort.name)
+      sink_.error(codes::kRangeOfPlainSort, ast.source(statement.sort), sort.name)
           .note(sort.declared, "sort `" + sort.name + "` declared here");
     } else if (lower > upper) {
-      sink_.error(DiagnosticCode::kRangeReversed, ast.source(statement.source), lower, upper);
+      sink_.error(codes::kRangeReversed, ast.source(statement.source), lower, upper);
     } else {
       if (sort.name == "time" && !sort.ranges.empty()) {
-        sink_.warning(DiagnosticCode::kSecondTimeRange, ast.source(statement.source))
+        sink_.warning(codes::kSecondTimeRange, ast.source(statement.source))
             .note(sort.ranges.front().declared, "the other range");
       }
       sort.ranges.push_back({lower, upper, ast.source(statement.source)});
@@ -297,7 +293,7 @@ class Declarer {
     range.lower = lower.value_or(0);
     range.upper = *upper;
     if (range.lower > range.upper) {
-      sink_.error(DiagnosticCode::kRangeReversed, range.declared, range.lower, range.upper);
+      sink_.error(codes::kRangeReversed, range.declared, range.lower, range.upper);
       return;
     }
     sort.ranges = {range};
@@ -333,8 +329,7 @@ class Declarer {
     const auto found = model_.find_symbol(name);
     if (!found && model_.misdeclared.contains(name)) return std::nullopt;
     if (!found) {
-      auto report =
-          sink_.error(DiagnosticCode::kUnknownName, ast.source(word), wanted, shortened(name), "");
+      auto report = sink_.error(codes::kUnknownName, ast.source(word), wanted, shortened(name), "");
       if (const auto near = NameAdvice(model_, sink_).symbol(name, kinds)) {
         const auto& other = model_.symbols[*near];
         report.note(other.declared, "`" + signature(model_, other) + "` declared here");
@@ -345,7 +340,7 @@ class Declarer {
     const auto& symbol = model_.symbols[*found];
     if (std::find(kinds.begin(), kinds.end(), symbol.kind) != kinds.end()) return found;
     sink_
-        .error(DiagnosticCode::kWrongKind, ast.source(word), shortened(name),
+        .error(codes::kWrongKind, ast.source(word), shortened(name),
                with_article(kind_word(symbol.kind)), with_article(wanted))
         .note(symbol.declared, "`" + signature(model_, symbol) + "` declared here");
     return std::nullopt;
@@ -436,8 +431,7 @@ void Repetitions::note(std::string_view name, base::SourceRange again, base::Sou
   if (built_in(again)) std::swap(again, first);
   if (built_in(again) || is_copy(again) || is_copy(first)) return;
   if (!built_in(first)) {
-    sink_.warning(DiagnosticCode::kDeclaredAgain, again, shortened(name))
-        .note(first, "first declared here");
+    sink_.warning(codes::kDeclaredAgain, again, shortened(name)).note(first, "first declared here");
     return;
   }
   note_foundation(again, "`" + shortened(name) + "`");
@@ -447,7 +441,7 @@ void Repetitions::note_foundation(base::SourceRange again, std::string_view what
   const auto file = again.file.index();
   if (is_copy(again) || told_[file]) return;
   told_[file] = true;
-  sink_.warning(DiagnosticCode::kFoundationRepeated, again, what);
+  sink_.warning(codes::kFoundationRepeated, again, what);
 }
 
 void declare(const ModelAst& ast, const IgnoredNames& ignored, const CheckOptions& options,

@@ -6,14 +6,13 @@
 #include <charconv>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
+#include "compiler/base/codes/texts.h"
 #include "compiler/base/suggest.h"
 #include "compiler/sema/elaborator.h"
 #include "compiler/syntax/lexer.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -57,7 +56,7 @@ Elaborator::Value Elaborator::name(const Node& node, Position position,
   const auto text = ast_->name(node);
   if (position == Position::kFormula) {
     const bool variable = is_variable_name(text);
-    auto report = sink_.error(DiagnosticCode::kExpectedFormula, source(node),
+    auto report = sink_.error(codes::kExpectedFormula, source(node),
                               variable ? "variable" : "constant", quoted(node));
     const auto symbol = variable ? std::nullopt : model_.find_symbol(text);
     if (symbol && model_.symbols[*symbol].kind == SymbolKind::kPredicate) {
@@ -100,7 +99,7 @@ void Elaborator::report_free(const Node& node, std::optional<SortId> expected) {
   if (!near && !model_.find_sort(sort_of_variable(text)) && advice_.object(text)) {
     return report_constant(node, expected);
   }
-  auto report = sink_.error(DiagnosticCode::kFreeVariable, source(node), quoted(node));
+  auto report = sink_.error(codes::kFreeVariable, source(node), quoted(node));
   if (near) report.fix(NameAdvice::replace(text, *near));
 }
 
@@ -129,8 +128,7 @@ Elaborator::Value Elaborator::constant(const Node& node, std::optional<SortId> e
 void Elaborator::report_constant(const Node& node, std::optional<SortId> expected) {
   const auto text = ast_->name(node);
   if (model_.misdeclared.contains(text)) return;
-  auto report =
-      sink_.error(DiagnosticCode::kUnknownName, source(node), "constant", shortened(text), "");
+  auto report = sink_.error(codes::kUnknownName, source(node), "constant", shortened(text), "");
   if (const auto symbol = model_.find_symbol(text)) {
     const auto& found = model_.symbols[*symbol];
     report.note(found.declared, "`" + signature(model_, found) + "` declared here");
@@ -153,11 +151,11 @@ Elaborator::Value Elaborator::number(const Node& node) {
   term.source = source(node);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), term.integer);
   if (error == std::errc::result_out_of_range) {
-    sink_.error(DiagnosticCode::kNumberTooLarge, source(node), quoted(node));
+    sink_.error(codes::kNumberTooLarge, source(node), quoted(node));
     return failure();
   }
   if (end != text.data() + text.size()) {
-    sink_.error(DiagnosticCode::kDecimalNumber, source(node), quoted(node));
+    sink_.error(codes::kDecimalNumber, source(node), quoted(node));
     return failure();
   }
   return add(std::move(term));
@@ -175,10 +173,10 @@ void Elaborator::report_unknown_symbol(const Node& node, Position position,
   const bool term = position == Position::kTerm;
   std::string what = term ? "function" : "predicate";
   if (term && expected && model_.sorts[*expected].reified) what = model_.sorts[*expected].name;
-  auto report = sink_.error(
-      DiagnosticCode::kUnknownName, ast_->name_source(node), what, shortened(text),
-      node.child_count == 0 ? std::string()
-                            : " of " + std::to_string(node.child_count) + " argument(s)");
+  auto report = sink_.error(codes::kUnknownName, ast_->name_source(node), what, shortened(text),
+                            node.child_count == 0
+                                ? std::string()
+                                : " of " + std::to_string(node.child_count) + " argument(s)");
   if (const auto object = model_.find_object(text); object && term) {
     const auto& found = model_.objects[*object];
     report.note(found.declared, "the constant `" + shortened(found.name) + "` is declared here");
@@ -233,8 +231,8 @@ bool Elaborator::check_argument(const Symbol& symbol, std::size_t position, Term
   if (term.kind == TermKind::kInteger && integer) {
     // Where a range is missing, that is reported instead.
     if (domains_.ranges(expected).empty() || domains_.contains(expected, term.integer)) return true;
-    auto report = sink_.error(DiagnosticCode::kOutsideRange, term.source, term.integer,
-                              model_.sorts[expected].name);
+    auto report =
+        sink_.error(codes::kOutsideRange, term.source, term.integer, model_.sorts[expected].name);
     const auto& range = domains_.ranges(expected).front();
     if (model_.core.time == expected && range.declared == model_.sorts[expected].declared) {
       report.note(fmt::format("the timepoints are {} to {}, as the horizon says", range.lower,
@@ -255,9 +253,8 @@ bool Elaborator::check_argument(const Symbol& symbol, std::size_t position, Term
     for (const auto sort : sorts_of(id)) fits = fits || domains_.overlap(sort, expected);
   }
   if (fits) return true;
-  auto report =
-      sink_.error(DiagnosticCode::kWrongSort, term.source, position + 1, shortened(symbol.name),
-                  model_.sorts[expected].name, quoted(id), sort_name(model_, id));
+  auto report = sink_.error(codes::kWrongSort, term.source, position + 1, shortened(symbol.name),
+                            model_.sorts[expected].name, quoted(id), sort_name(model_, id));
   report.note(symbol.declared, "`" + signature(model_, symbol) + "` declared here");
   if (term.kind == TermKind::kObject) {
     report.note(model_.objects[term.object].declared, "`" + quoted(id) + "` declared here");
@@ -289,7 +286,7 @@ Elaborator::Value Elaborator::apply(const Frame& frame, const Node& node) {
     if (effect != frame.symbol) continue;
     mentions_effects_ = true;
     if (!options_.allow_effects) {
-      sink_.error(DiagnosticCode::kEffectNotAllowed, source(node), symbol.name);
+      sink_.error(codes::kEffectNotAllowed, source(node), symbol.name);
       return failure();
     }
   }
@@ -304,7 +301,7 @@ Elaborator::Value Elaborator::apply(const Frame& frame, const Node& node) {
 Elaborator::Value Elaborator::fluent_atom(const Frame& frame, const Node& node,
                                           std::vector<TermId> arguments) {
   if (!model_.core.holds_at || !model_.core.time) {
-    sink_.error(DiagnosticCode::kMissingFoundation, source(node), quoted(node));
+    sink_.error(codes::kMissingFoundation, source(node), quoted(node));
     return failure();
   }
   Term fluent;
@@ -327,7 +324,7 @@ Elaborator::Value Elaborator::fluent_atom(const Frame& frame, const Node& node,
 
 bool Elaborator::check_integer(Operator op, TermId term) {
   if (is_integer(term)) return true;
-  sink_.error(DiagnosticCode::kNotAnInteger, model_.terms[term].source, spelling(op), quoted(term),
+  sink_.error(codes::kNotAnInteger, model_.terms[term].source, spelling(op), quoted(term),
               sort_name(model_, term));
   return false;
 }
@@ -371,7 +368,7 @@ Elaborator::Value Elaborator::comparison(const Node& node, TermId left, TermId r
       for (const auto b : sorts_of(right)) may_be_equal = may_be_equal || domains_.overlap(a, b);
     }
     if (!may_be_equal) {
-      sink_.error(DiagnosticCode::kNeverEqual, source(node), quoted(left), sort_name(model_, left),
+      sink_.error(codes::kNeverEqual, source(node), quoted(left), sort_name(model_, left),
                   quoted(right), sort_name(model_, right));
       return failure();
     }

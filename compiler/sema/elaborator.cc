@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
 #include "compiler/syntax/lexer.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -86,7 +84,7 @@ void Elaborator::visit(NodeId id, Position position, std::optional<SortId> expec
   }
   if (node.kind == NodeKind::kNumber) {
     if (position == Position::kFormula) {
-      sink_.error(DiagnosticCode::kExpectedFormula, source(node), "number", quoted(node));
+      sink_.error(codes::kExpectedFormula, source(node), "number", quoted(node));
       values_.push_back(failure());
     } else {
       values_.push_back(number(node));
@@ -166,10 +164,10 @@ void Elaborator::enter_unary(Frame& frame, const Node& node) {
   frame.failed = true;
   frame.next_child = node.child_count;  // whatever is below would only repeat the complaint
   if (is_formula) {
-    auto report = sink_.error(DiagnosticCode::kExpectedTerm, source(node), "formula", quoted(node));
+    auto report = sink_.error(codes::kExpectedTerm, source(node), "formula", quoted(node));
     report.fix("`!` binds tighter than a comparison: write `!(x=y)` or `x!=y`");
   } else {
-    sink_.error(DiagnosticCode::kExpectedFormula, source(node), "term", quoted(node));
+    sink_.error(codes::kExpectedFormula, source(node), "term", quoted(node));
   }
 }
 
@@ -181,12 +179,12 @@ void Elaborator::enter_binary(Frame& frame, const Node& node) {
     frame.failed = true;
     frame.next_child = node.child_count;
     if (is_formula) {
-      sink_.error(DiagnosticCode::kExpectedTerm, source(node), "formula", quoted(node));
+      sink_.error(codes::kExpectedTerm, source(node), "formula", quoted(node));
     } else {
-      sink_.error(DiagnosticCode::kExpectedFormula, source(node), "term", quoted(node));
+      sink_.error(codes::kExpectedFormula, source(node), "term", quoted(node));
     }
   } else if (node.op == Operator::kPower) {
-    sink_.error(DiagnosticCode::kUnsupportedOperator, source(node), spelling(node.op));
+    sink_.error(codes::kUnsupportedOperator, source(node), spelling(node.op));
     frame.failed = true;
   }
 }
@@ -204,12 +202,12 @@ void Elaborator::enter_apply(Frame& frame, const Node& node) {
   const bool shorthand = options_.fluents_as_atoms && symbol.kind == SymbolKind::kFluent;
   if (frame.position == Position::kTerm && predicate) {
     frame.failed = true;
-    sink_.error(DiagnosticCode::kExpectedTerm, source(node), "predicate", quoted(node))
+    sink_.error(codes::kExpectedTerm, source(node), "predicate", quoted(node))
         .note(symbol.declared, "`" + signature(model_, symbol) + "` declared here");
   } else if (frame.position == Position::kFormula && !predicate && !shorthand) {
     frame.failed = true;
-    auto report = sink_.error(DiagnosticCode::kExpectedFormula, source(node),
-                              kind_word(symbol.kind), quoted(node));
+    auto report =
+        sink_.error(codes::kExpectedFormula, source(node), kind_word(symbol.kind), quoted(node));
     report.note(symbol.declared, "`" + signature(model_, symbol) + "` declared here");
     if (symbol.kind == SymbolKind::kFluent)
       report.fix("write `HoldsAt(" + quoted(node) + ",time)`");
@@ -220,7 +218,7 @@ void Elaborator::enter_apply(Frame& frame, const Node& node) {
     // What stands beyond the declared arguments has no sort to be checked against.
     frame.end_child =
         std::min(node.child_count, static_cast<std::uint32_t>(symbol.arguments.size()));
-    auto report = sink_.error(DiagnosticCode::kWrongArity, source(node), shortened(symbol.name),
+    auto report = sink_.error(codes::kWrongArity, source(node), shortened(symbol.name),
                               symbol.arguments.size(), node.child_count);
     report.note(symbol.declared, "`" + signature(model_, symbol) + "` declared here");
     const auto advice = calculus_advice(symbol.name, node.child_count);
@@ -233,7 +231,7 @@ void Elaborator::enter_quantifier(Frame& frame, const Node& node) {
   if (frame.position == Position::kTerm) {
     frame.failed = true;
     frame.next_child = node.child_count;
-    sink_.error(DiagnosticCode::kExpectedTerm, source(node), "formula", quoted(node));
+    sink_.error(codes::kExpectedTerm, source(node), "formula", quoted(node));
     return;
   }
   const auto variable_count = node.child_count - 1;
@@ -250,8 +248,8 @@ void Elaborator::enter_quantifier(Frame& frame, const Node& node) {
         continue;
       }
       const auto used_as = sort_of_use(node, name);
-      auto report = sink_.error(DiagnosticCode::kVariableWithoutSort, source(variable),
-                                shortened(sort_name), shortened(name));
+      auto report = sink_.error(codes::kVariableWithoutSort, source(variable), shortened(sort_name),
+                                shortened(name));
       if (const auto near = advice_.sort(sort_name)) {
         const auto& found = model_.sorts[*near];
         report.note(found.declared, "sort `" + found.name + "` declared here");
@@ -267,7 +265,7 @@ void Elaborator::enter_quantifier(Frame& frame, const Node& node) {
     if (model_.sorts[*sort].integer) {
       require_range(*sort, source(variable));
     } else if (node.kind == NodeKind::kExists && !domains_.has_elements(*sort)) {
-      sink_.warning(DiagnosticCode::kExistsInEmptySort, source(variable), model_.sorts[*sort].name,
+      sink_.warning(codes::kExistsInEmptySort, source(variable), model_.sorts[*sort].name,
                     "{" + shortened(name) + "}");
     }
     frame.variables.push_back(model_.variables.add({std::string(name), *sort}));
@@ -355,7 +353,7 @@ Elaborator::Value Elaborator::connective(const Frame& frame, const Node& node) {
 
 bool Elaborator::has_room(const base::SourceRange& at) {
   if (model_.formulas.size() + model_.terms.size() < kMaxTypedNodes) return true;
-  if (!full_) sink_.error(DiagnosticCode::kModelTooLarge, at, kMaxTypedNodes);
+  if (!full_) sink_.error(codes::kModelTooLarge, at, kMaxTypedNodes);
   full_ = true;
   return false;
 }
@@ -383,8 +381,7 @@ void Elaborator::require_range(SortId sort, const base::SourceRange& use) {
   if (!model_.sorts[sort].integer || !domains_.ranges(sort).empty()) return;
   if (!reported_ranges_.insert(sort.index()).second) return;
   const auto& found = model_.sorts[sort];
-  const auto code =
-      options_.complete_model ? DiagnosticCode::kMissingRange : DiagnosticCode::kMissingRangeInPart;
+  const auto code = options_.complete_model ? codes::kMissingRange : codes::kMissingRangeInPart;
   sink_.error(code, use, found.name)
       .note(found.declared, "sort `" + found.name + "` declared here")
       .fix("add a statement such as `range " + found.name + " 0 10`" +

@@ -6,13 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
 #include "compiler/sema/name_advice.h"
 #include "compiler/syntax/lexer.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -57,7 +55,7 @@ class Expansion {
     if (!found) {
       failed_ = true;
       if (model_.misdeclared.contains(name)) return;
-      auto report = sink_.error(DiagnosticCode::kUnknownName, ast_.source(word),
+      auto report = sink_.error(codes::kUnknownName, ast_.source(word),
                                 "event, fluent or predicate", shortened(name), "");
       if (const auto near = NameAdvice(model_, sink_).symbol(name, kKinds)) {
         report.fix(NameAdvice::replace(name, model_.symbols[*near].name));
@@ -67,14 +65,14 @@ class Expansion {
     const auto& symbol = model_.symbols[*found];
     if (std::find(kKinds.begin(), kKinds.end(), symbol.kind) == kKinds.end()) {
       sink_
-          .error(DiagnosticCode::kWrongKind, ast_.source(word), shortened(name),
+          .error(codes::kWrongKind, ast_.source(word), shortened(name),
                  with_article(kind_word(symbol.kind)), "an event, a fluent or a predicate")
           .note(symbol.declared, "`" + signature(model_, symbol) + "` declared here");
       failed_ = true;
       return;
     }
     if (symbol.kind != SymbolKind::kPredicate && !(model_.core.holds_at && model_.core.happens)) {
-      sink_.error(DiagnosticCode::kMissingFoundation, ast_.source(word), shortened(name));
+      sink_.error(codes::kMissingFoundation, ast_.source(word), shortened(name));
       failed_ = true;
       return;
     }

@@ -3,15 +3,13 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
 #include "compiler/base/suggest.h"
 #include "compiler/sema/declarations.h"
 #include "compiler/sema/name_advice.h"
 #include "compiler/syntax/lexer.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -80,7 +78,7 @@ void apply_option(const Ast& ast, const Statement& statement, ModelOptions& opti
   for (const auto& option : kOptions) {
     if (option.name != name) continue;
     if (!allowed(option.values, value)) {
-      sink.error(DiagnosticCode::kOptionValue, ast.source(statement.value), name, shortened(value),
+      sink.error(codes::kOptionValue, ast.source(statement.value), name, shortened(value),
                  expected(option.values));
       return;
     }
@@ -88,8 +86,7 @@ void apply_option(const Ast& ast, const Statement& statement, ModelOptions& opti
     if (option.values == Values::kEncoding) options.encoding = value == "3" ? 3 : 2;
     return;
   }
-  auto report =
-      sink.error(DiagnosticCode::kUnknownOption, ast.source(statement.name), shortened(name));
+  auto report = sink.error(codes::kUnknownOption, ast.source(statement.name), shortened(name));
   std::vector<std::string> names;
   for (const auto& option : kOptions) names.emplace_back(option.name);
   if (const auto near = base::nearest_name(name, names)) {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
 #include "compiler/base/suggest.h"
 #include "compiler/sema/declarations.h"
 #include "compiler/sema/name_advice.h"
@@ -15,8 +15,6 @@
 
 namespace parallax::compiler {
 namespace {
-
-using base::DiagnosticCode;
 
 /// Edges of a graph: for each vertex the vertices it leads to.
 using Graph = std::vector<std::vector<std::uint32_t>>;
@@ -161,7 +159,7 @@ class SortDeclarer {
 
   void report_again(const Ast& ast, const Item& item, SortId before) {
     const auto& sort = model_.sorts[before];
-    sink_.error(DiagnosticCode::kDeclaredTwice, ast.source(item.name), sort.name)
+    sink_.error(codes::kDeclaredTwice, ast.source(item.name), sort.name)
         .note(sort.declared, "first declared here");
   }
 
@@ -177,7 +175,7 @@ class SortDeclarer {
                                model_.sorts[*sort].declared);
     }
     if (!first_statement && !parents.empty()) {
-      sink_.warning(DiagnosticCode::kSecondParent, ast.source(item.name), model_.sorts[*sort].name)
+      sink_.warning(codes::kSecondParent, ast.source(item.name), model_.sorts[*sort].name)
           .note(model_.sorts[*sort].declared, "first declared here");
     }
     parents.push_back(*parent);
@@ -189,7 +187,7 @@ class SortDeclarer {
     for (const auto& [from, to] : found.closing) {
       Sort& sort = model_.sorts[SortId(from)];
       const Sort& above = model_.sorts[SortId(to)];
-      sink_.error(DiagnosticCode::kSortBelowItself, sort.declared, sort.name)
+      sink_.error(codes::kSortBelowItself, sort.declared, sort.name)
           .note(above.declared, "`" + above.name + "`, the sort above it, declared here");
       std::erase(sort.parents, SortId(to));
     }
@@ -254,7 +252,7 @@ void check_finite_sorts(const TypedModel& model, base::DiagnosticSink& sink) {
     for (std::size_t i = 0; !by && i < circle.edges.size(); ++i) {
       by = constructor[circle.path[i]][circle.edges[i]];
     }
-    sink.error(DiagnosticCode::kInfiniteSort, model.symbols[*by].declared,
+    sink.error(codes::kInfiniteSort, model.symbols[*by].declared,
                model.sorts[SortId(circle.path.front())].name);
   }
 }
@@ -264,7 +262,7 @@ std::optional<SortId> resolve_sort(const Ast& ast, Word word, TypedModel& model,
   const auto name = ast.text(word);
   if (const auto found = model.find_sort(name)) return found;
   model.refuse(name);
-  auto report = sink.error(DiagnosticCode::kUnknownSort, ast.source(word), shortened(name));
+  auto report = sink.error(codes::kUnknownSort, ast.source(word), shortened(name));
   if (const auto near = NameAdvice(model, sink).sort(name)) {
     const auto& sort = model.sorts[*near];
     report.note(sort.declared, "sort `" + sort.name + "` declared here");

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/texts.h"
 
 namespace parallax::compiler {
 namespace {
@@ -83,8 +83,8 @@ bool is_foreign_formula(std::string_view line) {
 
 void report_foreign(const ForeignSpelling& spelling, const base::SourceRange& range,
                     base::DiagnosticSink& sink) {
-  auto error = sink.error(base::DiagnosticCode::kForeignSpelling, range, spelling.text,
-                          spelling.meaning, spelling.own);
+  auto error =
+      sink.error(codes::kForeignSpelling, range, spelling.text, spelling.meaning, spelling.own);
   if (spelling.kind == Kind::kQuantifier) {
     error.fix("write `[room,time] ...` for all rooms and times, `{room} ...` for some room");
   } else {

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/syntax/formula_layout.h"
 #include "compiler/syntax/lexer.h"
 #include "compiler/syntax/parser.h"
@@ -225,7 +225,7 @@ base::Result<std::string> format_text(base::FileId file, const base::SourceFiles
   const auto copy = again.add(files[file].name(), formatted);
   const auto parsed = parse_file(copy, again, complaints);
   if (complaints.has_errors() || !same_statements(ast, parsed)) {
-    return sink.error_about(base::DiagnosticCode::kInternal, files[file].name(),
+    return sink.error_about(codes::kInternal, files[file].name(),
                             "formatting would change what the text says");
   }
   return formatted;

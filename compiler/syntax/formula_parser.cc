@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/texts.h"
 #include "compiler/syntax/parser.h"
 #include "compiler/syntax/precedence.h"
 
@@ -60,7 +60,7 @@ FormulaParser::Step FormulaParser::operand() {
         lexer_.skip_percent_comment();
         return Step::kMore;
       } else if (token.op != Operator::kNot) {
-        return fail_here(DiagnosticCode::kExpectedOperand, token);
+        return fail_here(codes::kExpectedOperand, token);
       }
       last_ = lexer_.next();
       return push(entry) ? Step::kMore : Step::kFailed;
@@ -75,7 +75,7 @@ FormulaParser::Step FormulaParser::operand() {
     case TokenKind::kEnd:
       break;
   }
-  return fail_here(DiagnosticCode::kExpectedOperand, token);
+  return fail_here(codes::kExpectedOperand, token);
 }
 
 void FormulaParser::leaf(NodeKind kind, const Token& token) {
@@ -106,7 +106,7 @@ FormulaParser::Step FormulaParser::quantifier(const Token& open) {
   for (;;) {
     const Token name = lexer_.peek();
     if (name.kind != TokenKind::kName) {
-      return fail_here(DiagnosticCode::kExpectedVariable, name);
+      return fail_here(codes::kExpectedVariable, name);
     }
     last_ = lexer_.next();
     leaf(NodeKind::kName, name);
@@ -114,7 +114,7 @@ FormulaParser::Step FormulaParser::quantifier(const Token& open) {
     const Token after = lexer_.peek();
     if (after.kind != closing && after.kind != TokenKind::kComma) {
       sink_
-          .error(DiagnosticCode::kUnclosedBracket, lexer_.range(after), lexer_.text(open),
+          .error(codes::kUnclosedBracket, lexer_.range(after), lexer_.text(open),
                  lexer_.describe(after))
           .note(lexer_.range(open), "opened here");
       return Step::kFailed;
@@ -161,7 +161,7 @@ FormulaParser::Step FormulaParser::word_quantifier(const Token& word) {
     const bool ends = token.kind == TokenKind::kPeriod && entry.count != 0;
     const bool separates = token.kind == TokenKind::kComma && entry.count != 0;
     if (!ends && !separates && token.kind != TokenKind::kName) {
-      return fail_here(DiagnosticCode::kExpectedVariable, token);
+      return fail_here(codes::kExpectedVariable, token);
     }
     last_ = lexer_.next();
     if (ends) break;
@@ -186,7 +186,7 @@ FormulaParser::Step FormulaParser::after_operand(Period period) {
       return close(token);
     case TokenKind::kCloseBracket:
     case TokenKind::kCloseBrace:
-      return fail_here(DiagnosticCode::kUnmatchedBracket, token);
+      return fail_here(codes::kUnmatchedBracket, token);
     case TokenKind::kPeriod:
     case TokenKind::kStatementLine:
     case TokenKind::kEnd:
@@ -220,7 +220,7 @@ FormulaParser::Step FormulaParser::binary(const Token& token) {
     if (above < strength) break;
     if (above == strength && top.kind == Pending::kBinary) {
       if (strength == kComparisonBinding) {
-        sink_.error(DiagnosticCode::kComparisonChain, lexer_.range(token), lexer_.text(token))
+        sink_.error(codes::kComparisonChain, lexer_.range(token), lexer_.text(token))
             .note(lexer_.range(top.token), "the other comparison");
         return Step::kFailed;
       }
@@ -260,7 +260,7 @@ FormulaParser::Step FormulaParser::comma(const Token& token) {
 FormulaParser::Step FormulaParser::close(const Token& token) {
   if (!reduce_to_bracket()) return Step::kFailed;
   if (entries_.empty()) {
-    sink_.error(DiagnosticCode::kUnmatchedBracket, lexer_.range(token), lexer_.text(token));
+    sink_.error(codes::kUnmatchedBracket, lexer_.range(token), lexer_.text(token));
     return Step::kFailed;
   }
   last_ = lexer_.next();
@@ -287,7 +287,7 @@ FormulaParser::Step FormulaParser::end_of_formula(const Token& token, Period per
     last_ = lexer_.next();
   } else if (period == Period::kRequired) {
     // The formula itself is whole, so it stays.
-    sink_.error(DiagnosticCode::kMissingPeriod, lexer_.range(last_), lexer_.describe(token))
+    sink_.error(codes::kMissingPeriod, lexer_.range(last_), lexer_.describe(token))
         .fix("add `.` after `" + shortened(lexer_.text(last_)) + "`");
   }
   return Step::kDone;
@@ -299,7 +299,7 @@ FormulaParser::Step FormulaParser::juxtaposed(const Token& token, Period period)
     skip_to_period_ = false;
     return end_of_formula(token, period);
   }
-  return fail_here(DiagnosticCode::kExpectedOperator, token);
+  return fail_here(codes::kExpectedOperator, token);
 }
 
 // --- building --------------------------------------------------------------------------------
@@ -317,8 +317,7 @@ bool FormulaParser::push(const Entry& entry) {
 }
 
 void FormulaParser::report_too_deep(std::uint32_t begin, std::uint32_t end) {
-  sink_.error(DiagnosticCode::kFormulaTooDeep, base::SourceRange{ast_.file(), begin, end},
-              kMaxFormulaDepth);
+  sink_.error(codes::kFormulaTooDeep, base::SourceRange{ast_.file(), begin, end}, kMaxFormulaDepth);
 }
 
 bool FormulaParser::add(Node node, std::size_t child_count, std::uint32_t begin,
@@ -386,7 +385,7 @@ FormulaParser::Step FormulaParser::fail_here(DiagnosticCode code, const Token& f
   if (found.kind == TokenKind::kStatementLine || found.kind == TokenKind::kEnd) {
     range = lexer_.range(last_);  // point at what is incomplete, not at what follows
   }
-  if (code == DiagnosticCode::kUnmatchedBracket) {
+  if (code == codes::kUnmatchedBracket) {
     sink_.error(code, range, lexer_.text(found));
   } else {
     sink_.error(code, range, lexer_.describe(found));
@@ -401,7 +400,7 @@ FormulaParser::Step FormulaParser::fail_unclosed(const Token& before) {
     place.end = place.begin + 1 + (open.token.end - open.token.begin);
   }
   const auto at = before.kind == TokenKind::kPeriod ? before : last_;
-  sink_.error(DiagnosticCode::kUnclosedBracket, lexer_.range(at), "(", lexer_.describe(before))
+  sink_.error(codes::kUnclosedBracket, lexer_.range(at), "(", lexer_.describe(before))
       .note(place, "opened here");
   return Step::kFailed;
 }

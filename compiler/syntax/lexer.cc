@@ -4,7 +4,7 @@
 #include <array>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/texts.h"
 #include "compiler/base/utf8.h"
 #include "compiler/syntax/foreign_spelling.h"
 
@@ -161,7 +161,7 @@ void Lexer::skip_illegal() {
   // Quote one whole code point, not its first byte.
   std::size_t length = 1;
   while (begin + length < position_ && base::continues_code_point(text_[begin + length])) ++length;
-  sink_.error(base::DiagnosticCode::kIllegalCharacter, base::SourceRange{file_, begin, position_},
+  sink_.error(codes::kIllegalCharacter, base::SourceRange{file_, begin, position_},
               text_.substr(begin, length));
 }
 
@@ -263,8 +263,7 @@ void Lexer::scan() {
       if (kind == LineKind::kFormulaTextOnlyHere) {
         auto end = position_;
         while (base::is_lower(text_[end])) ++end;
-        sink_.warning(base::DiagnosticCode::kLineTakenForDeclaration,
-                      base::SourceRange{file_, position_, end},
+        sink_.warning(codes::kLineTakenForDeclaration, base::SourceRange{file_, position_, end},
                       shortened(text_.substr(position_, end - position_)));
       }
     }

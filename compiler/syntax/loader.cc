@@ -6,7 +6,7 @@
 #include <system_error>
 #include <unordered_map>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/texts.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/path_gate.h"
 #include "compiler/base/suggest.h"
@@ -14,8 +14,6 @@
 #include "compiler/syntax/parser.h"
 
 namespace parallax::compiler {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -196,7 +194,7 @@ class ModelLoader {
       const auto status = fs::status(candidate, error);
       if (error || !fs::exists(status)) continue;
       if (!fs::is_regular_file(status)) {
-        sink_.error(DiagnosticCode::kLoadNotAFile, range, candidate.lexically_normal().string());
+        sink_.error(codes::kLoadNotAFile, range, candidate.lexically_normal().string());
         unreadable_ = true;
         return true;
       }
@@ -220,7 +218,7 @@ class ModelLoader {
         return open.file == loaded->second;
       });
       if (is_open) {
-        sink_.warning(DiagnosticCode::kLoadCycle, range, candidate.lexically_normal().string());
+        sink_.warning(codes::kLoadCycle, range, candidate.lexically_normal().string());
       }
       return;
     }
@@ -264,7 +262,7 @@ class ModelLoader {
   }
 
   void report_missing(const fs::path& path, const base::SourceRange& range) {
-    auto report = sink_.error(DiagnosticCode::kLoadNotFound, range, shortened(path.string()));
+    auto report = sink_.error(codes::kLoadNotFound, range, shortened(path.string()));
     report.note(
         "looked beside the loading file, in the -I folders, in the current folder and "
         "among the built-in foundations");

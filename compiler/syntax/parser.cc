@@ -6,8 +6,8 @@
 #include <unordered_set>
 
 #include "compiler/base/ascii.h"
+#include "compiler/base/codes/texts.h"
 #include "compiler/base/diagnostic.h"
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/syntax/ast.h"
 #include "compiler/syntax/foreign_spelling.h"
 #include "compiler/syntax/formula_parser.h"
@@ -15,8 +15,6 @@
 
 namespace parallax::compiler {
 namespace {
-
-using base::DiagnosticCode;
 
 /// Parses the statement on `line` (one line without its comment) into `ast`. `text` is the text of
 /// the file. What is malformed is reported (E1010, E1011) and left out.
@@ -104,7 +102,7 @@ class StatementParser {
     const auto what =
         found.empty() ? std::string("the end of the line") : "`" + shortened(ast_text(found)) + "`";
     const auto place = found.empty() ? keyword_ : found;
-    auto error = sink_.error(DiagnosticCode::kMalformedStatement, ast_.source(place),
+    auto error = sink_.error(codes::kMalformedStatement, ast_.source(place),
                              shortened(ast_text(keyword_)), expected, what);
     const auto* foreign = foreign_sign(ast_text(found));
     const bool comment = foreign != nullptr && foreign->kind == ForeignSpelling::Kind::kComment;
@@ -116,7 +114,7 @@ class StatementParser {
     skip_blanks();
     if (at_end()) return true;
     if (text_[position_] == '.' && position_ + 1 == end()) {
-      sink_.error(DiagnosticCode::kStatementPeriod, ast_.source(Word{position_, position_ + 1}))
+      sink_.error(codes::kStatementPeriod, ast_.source(Word{position_, position_ + 1}))
           .fix("remove the period");
       return true;
     }
@@ -158,7 +156,7 @@ class StatementParser {
     const auto text = ast_text(all);
     const auto [last, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error == std::errc::result_out_of_range) {
-      sink_.error(DiagnosticCode::kNumberTooLarge, ast_.source(all), shortened(text));
+      sink_.error(codes::kNumberTooLarge, ast_.source(all), shortened(text));
       return false;
     }
     if (error != std::errc() || last != text.data() + text.size() || digits.empty()) {
@@ -209,7 +207,7 @@ class StatementParser {
     const auto name = ast_text(sort);
     if (std::all_of(name.begin(), name.end(), base::is_lower)) return;
     misspelt_.insert(name);
-    auto error = sink_.error(DiagnosticCode::kSortSpelling, ast_.source(sort), shortened(name));
+    auto error = sink_.error(codes::kSortSpelling, ast_.source(sort), shortened(name));
     std::string right;
     for (const char c : name) {
       if (base::is_lower(base::to_lower(c))) right += base::to_lower(c);
@@ -319,7 +317,7 @@ base::Result<ParsedFormula> parse_one(const base::SourceRange& range, std::strin
   FormulaParser parser(parsed.ast, lexer, sink);
   const auto root = parser.parse(FormulaParser::Period::kOptional);
   if (root && lexer.peek().kind != TokenKind::kEnd) {
-    return sink.error(DiagnosticCode::kTextAfterFormula, lexer.range(lexer.peek()),
+    return sink.error(codes::kTextAfterFormula, lexer.range(lexer.peek()),
                       lexer.describe(lexer.peek()));
   }
   if (sink.error_count() != errors_before) return sink.already_reported();

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/temporary_folder.h"
 #include "harness/calibration/calibration.h"
@@ -93,8 +93,7 @@ base::Result<CalibrationCell> protocol_cell(const CalibratedCriterion& criterion
   const base::TemporaryFolder folder("calibrate");
   if (folder.path().empty()) {
     std::error_code unknown;
-    return sink.error_about(base::DiagnosticCode::kFileNotWritable,
-                            fs::temp_directory_path(unknown).string(),
+    return sink.error_about(codes::kFileNotWritable, fs::temp_directory_path(unknown).string(),
                             "no folder can be made there");
   }
   base::SourceFiles files;

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <string>
 
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/contract.h"
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/hash.h"
 #include "harness/campaign/journal.h"
 #include "harness/campaign/run_setup.h"
@@ -19,7 +19,6 @@
 namespace parallax::harness {
 namespace {
 
-using base::DiagnosticCode;
 using Clock = std::chrono::steady_clock;
 
 class Campaign {
@@ -128,12 +127,11 @@ class Campaign {
       if (!same_but_for_places(*recorded, line)) {
         const auto number = plan.trace->number;
         if (recorded->trace->key == plan.trace->key) {
-          return sink_.error(DiagnosticCode::kForeignJournalLine,
+          return sink_.error(codes::kForeignJournalLine,
                              journal_->recorded().trace_places.at(number),
                              "it has the events of the trace, but not its states and calls");
         }
-        return sink_.error(DiagnosticCode::kJournalMismatch,
-                           journal_->recorded().trace_places.at(number),
+        return sink_.error(codes::kJournalMismatch, journal_->recorded().trace_places.at(number),
                            fmt::format("trace {}", number), recorded->trace->key, plan.trace->key);
       }
       if (!check_recorded(plan)) return sink_.already_reported();
@@ -160,7 +158,7 @@ class Campaign {
       auto why = wrong_draw(record, plan.sampler, plan.campaign_seed, plan.trace_key);
       if (record.searched != of_search) why = "it has the number of a simulation of another phase";
       if (why.empty()) continue;
-      return sink_.error(DiagnosticCode::kForeignJournalLine, recorded.places.at(at->first), why);
+      return sink_.error(codes::kForeignJournalLine, recorded.places.at(at->first), why);
     }
     return base::Unit{};
   }

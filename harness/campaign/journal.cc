@@ -10,13 +10,13 @@
 #include <system_error>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "harness/campaign/sample_runner.h"
 
 namespace parallax::harness {
 
-using base::DiagnosticCode;
 using base::SourceRange;
 
 namespace {
@@ -35,12 +35,12 @@ class JournalReader {
     for (std::size_t begin = 0; begin < text_.size();) {
       const auto end = text_.find('\n', begin);
       if (end == std::string_view::npos) {
-        sink_.warning(DiagnosticCode::kJournalTruncated, range(begin, text_.size()));
+        sink_.warning(codes::kJournalTruncated, range(begin, text_.size()));
         break;
       }
       line_ = range(begin, end);
       if (auto why = take(text_.substr(begin, end - begin))) {
-        return sink_.error(DiagnosticCode::kForeignJournalLine, line_, *why);
+        return sink_.error(codes::kForeignJournalLine, line_, *why);
       }
       begin = end + 1;
       journal_.complete_bytes = begin;
@@ -125,7 +125,7 @@ base::Status check_header(const JournalText& recorded, const JournalHeader& head
   if (!recorded.header) return base::Unit{};
   const auto differs = header_difference(*recorded.header, header);
   if (!differs) return base::Unit{};
-  return sink.error(DiagnosticCode::kJournalMismatch, header_line(recorded, files), differs->field,
+  return sink.error(codes::kJournalMismatch, header_line(recorded, files), differs->field,
                     differs->recorded, differs->now);
 }
 
@@ -179,26 +179,26 @@ base::Result<RunFolder> RunFolder::claim(const std::filesystem::path& path, bool
   std::error_code error;
   folder.made_ = std::filesystem::create_directories(path, error);
   if (error) {
-    return sink.error_about(DiagnosticCode::kFileNotWritable, path.string(), error.message());
+    return sink.error_about(codes::kFileNotWritable, path.string(), error.message());
   }
   folder.fd_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder.fd_ < 0 || ::flock(folder.fd_, LOCK_EX | LOCK_NB) != 0) {
     const int why = errno;
     folder.made_ = false;  // whoever holds it may be about to use it
-    if (why == EWOULDBLOCK) return sink.error_about(DiagnosticCode::kRunFolderInUse, path.string());
-    return sink.error_about(DiagnosticCode::kFileNotWritable, path.string(), std::strerror(why));
+    if (why == EWOULDBLOCK) return sink.error_about(codes::kRunFolderInUse, path.string());
+    return sink.error_about(codes::kFileNotWritable, path.string(), std::strerror(why));
   }
   const auto taken = [&](const char* name) {
     return std::filesystem::exists(std::filesystem::symlink_status(path / name, error));
   };
   const bool has_run = taken(kJournalName.data());
   if (!resume && has_run) {
-    return sink.error_about(DiagnosticCode::kRunFolderInUse, path.string());
+    return sink.error_about(codes::kRunFolderInUse, path.string());
   }
   // The journal comes first: without it these belong to somebody else.
   for (const auto* name : {"report.txt", "report.json", "recordings"}) {
     if (has_run || !taken(name)) continue;
-    return sink.error_about(DiagnosticCode::kFileNotWritable, (path / name).string(),
+    return sink.error_about(codes::kFileNotWritable, (path / name).string(),
                             "it is there already, and no run to which it belongs");
   }
   return folder;
@@ -219,7 +219,7 @@ base::Result<JournalText> read_journal(const std::filesystem::path& run_dir,
   const auto path = run_dir / kJournalName;
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
-    return sink.error_about(DiagnosticCode::kNoJournal, run_dir.string());
+    return sink.error_about(codes::kNoJournal, run_dir.string());
   }
   auto text = base::read_file_of(run_dir, kJournalName, sink, kMaxJournalBytes);
   if (!text) return sink.already_reported();
@@ -277,7 +277,7 @@ base::Result<std::unique_ptr<Journal>> Journal::open(RunFolder folder, const Jou
   const auto keep_bytes = recorded.complete_bytes;
   std::unique_ptr<Journal> journal(new Journal(std::move(folder), header, std::move(recorded)));
   if (!journal->open_file(keep_bytes)) {
-    return sink.error_about(DiagnosticCode::kFileNotWritable, path.string(), std::strerror(errno));
+    return sink.error_about(codes::kFileNotWritable, path.string(), std::strerror(errno));
   }
   if (fresh) journal->write_line(encode(header));
   return journal;

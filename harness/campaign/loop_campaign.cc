@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/contract.h"
-#include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/loop_counts.h"
 #include "harness/campaign/loop_judge.h"
@@ -20,7 +20,6 @@
 namespace parallax::harness {
 namespace {
 
-using base::DiagnosticCode;
 using LoopClock = std::chrono::steady_clock;
 
 constexpr double kRateLevel = 0.95;  // of the intervals of rates, as of `parallax rates`
@@ -171,7 +170,7 @@ class LoopCampaign {
     const auto judgement =
         judge_path(mapping, bench_.fluents(), feed_, record, scenario_.comparison());
     if (!judgement.missing.empty()) {
-      return sink_.error(DiagnosticCode::kSimulatorRefused, scenario_.mapping_source,
+      return sink_.error(codes::kSimulatorRefused, scenario_.mapping_source,
                          fmt::format("does not show what is compared in simulation {}.{}",
                                      record.trace, record.sample),
                          fmt::format("its observations lack `{}`", judgement.missing));
@@ -207,7 +206,7 @@ class LoopCampaign {
       return feed_.report_end(path, record.reason);
     }
     const auto in = fmt::format("in simulation {}.{}", record.trace, record.sample);
-    const auto code = DiagnosticCode::kSimulatorRefused;
+    const auto code = codes::kSimulatorRefused;
     if (record.observations.empty() || path.steps.empty()) {
       return sink_.error(code, scenario_.sampling_source, fmt::format("refused the start {}", in),
                          record.reason);

@@ -5,11 +5,9 @@
 #include <string>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 
 namespace parallax::harness {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -91,7 +89,7 @@ base::Status LoopStream::continue_from(const Journal& journal) {
   for (const auto& [key, record] : journal.recorded().samples) {
     const auto why = samples_->wrong_draw(record);
     if (why.empty()) continue;
-    return sink_.error(DiagnosticCode::kForeignJournalLine, journal.recorded().places.at(key), why);
+    return sink_.error(codes::kForeignJournalLine, journal.recorded().places.at(key), why);
   }
   return base::Unit{};
 }
@@ -127,7 +125,7 @@ base::Result<std::optional<SampleRecord>> LoopStream::next() {
   if (record->path->target != (is_chosen ? chosen->second.target : std::string()) ||
       (is_chosen && record->path->start != chosen->second.start)) {
     const SampleKey key(1, next_, DrawPhase::kCertify);
-    return sink_.error(DiagnosticCode::kForeignJournalLine, journal_->recorded().places.at(key),
+    return sink_.error(codes::kForeignJournalLine, journal_->recorded().places.at(key),
                        "its initial state is not the one that was chosen for its number");
   }
   ++next_;

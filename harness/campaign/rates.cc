@@ -6,15 +6,13 @@
 #include <chrono>
 #include <map>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "harness/campaign/judge.h"
 #include "harness/campaign/run_setup.h"
 #include "harness/campaign/trial.h"
 
 namespace parallax::harness {
 namespace {
-
-using base::DiagnosticCode;
 
 class Estimator {
  public:
@@ -56,7 +54,7 @@ class Estimator {
     bench_.close();
     if (seen_all) result.complete = traces_.exploration() != "stopped";
     if (seen_all && result.complete && last < options_.trace) {
-      return sink_.error_about(DiagnosticCode::kNoSuchTrace, scenario_.name, options_.trace,
+      return sink_.error_about(codes::kNoSuchTrace, scenario_.name, options_.trace,
                                last == 0   ? "the scenario has none"
                                : last == 1 ? "the scenario has only one"
                                            : fmt::format("the scenario has {}", last));

@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/contract.h"
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/whole_number.h"
 #include "harness/campaign/journal.h"
 #include "harness/campaign/sample_record.h"
@@ -15,8 +15,6 @@
 
 namespace parallax::harness {
 namespace {
-
-using base::DiagnosticCode;
 
 std::optional<std::int64_t> positive(std::string_view text) {
   const auto value = base::whole_number<std::int64_t>(text);
@@ -152,13 +150,13 @@ base::Result<RecordedRun> read_recorded_run(const std::filesystem::path& run_dir
                                             base::DiagnosticSink& sink) {
   const auto journal = read_journal(run_dir, files, sink);
   if (!journal) return sink.already_reported();
-  if (!journal->header) return sink.error_about(DiagnosticCode::kNoJournal, run_dir.string());
+  if (!journal->header) return sink.error_about(codes::kNoJournal, run_dir.string());
   if (!id) id = default_sample(*journal);
   const auto found = id ? journal->samples.find({id->trace, id->sample, DrawPhase::kCertify})
                         : journal->samples.end();
   if (found == journal->samples.end()) {
     const auto name = id ? fmt::format("{}.{}", id->trace, id->sample) : std::string("at all");
-    auto report = sink.error_about(DiagnosticCode::kNoSuchSample, run_dir.string(), name);
+    auto report = sink.error_about(codes::kNoSuchSample, run_dir.string(), name);
     note_samples(*journal, report);
     return report;
   }

@@ -4,7 +4,7 @@
 
 #include <system_error>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "harness/recording/recording_file.h"
 
 namespace parallax::harness {
@@ -143,8 +143,8 @@ void RunRecorder::finish(const std::vector<SampleRecord>& consumed) {
 void RunRecorder::report(base::DiagnosticSink& sink) const {
   const std::lock_guard lock(mutex_);
   if (losses_ == 0) return;
-  sink.error_about(base::DiagnosticCode::kRecordingLost, (run_dir_ / kRecordingsFolder).string(),
-                   losses_, first_loss_);
+  sink.error_about(codes::kRecordingLost, (run_dir_ / kRecordingsFolder).string(), losses_,
+                   first_loss_);
 }
 
 }  // namespace parallax::harness

@@ -6,15 +6,14 @@
 #include <string>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "harness/campaign/judge.h"
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/criterion.h"
 #include "harness/confidence/quantiles.h"
 
 namespace parallax::harness {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -63,7 +62,7 @@ base::Status check_written(const Journal& journal, const CampaignOptions& option
   const auto error = journal.write_error();
   if (error.empty()) return base::Unit{};
   const auto path = options.run_dir / kJournalName;
-  return sink.error_about(DiagnosticCode::kFileNotWritable, path.string(), error);
+  return sink.error_about(codes::kFileNotWritable, path.string(), error);
 }
 
 Confirmation confirmation_of(const SampleRecord& record, const SampleRecord& again) {
@@ -139,7 +138,7 @@ bool warn_of_low_limit(const Scenario& scenario, const base::SourceFiles& files,
   if (limit.max_runs >= limit.needed) return false;
   const auto& source = scenario.limits.max_runs_source;
   const bool written = source && files.text(*source) == std::to_string(limit.max_runs);
-  auto warning = sink.warning(DiagnosticCode::kRunLimitTooLow,
+  auto warning = sink.warning(codes::kRunLimitTooLow,
                               written ? *source : base::SourceRange{scenario.source, 0, 0},
                               limit.max_runs, limit.needed);
   const auto alone = run_limit(scenario).needed;

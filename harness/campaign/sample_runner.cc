@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "compiler/base/suggest.h"
 #include "compiler/base/utf8.h"
 #include "harness/region/state_mapping.h"
@@ -127,8 +127,8 @@ bool check_required(const ActionBinding& binding, const Occurrence& at, const Ac
   const auto errors_before = sink.error_count();
   for (const auto& argument : controller.arguments) {
     if (!argument.required || call.arguments.contains(std::string(argument.name))) continue;
-    sink.error(base::DiagnosticCode::kMissingArgument, binding.source, at.event.text,
-               call.controller, argument.name);
+    sink.error(codes::kMissingArgument, binding.source, at.event.text, call.controller,
+               argument.name);
   }
   return sink.error_count() == errors_before;
 }
@@ -145,7 +145,7 @@ class ValueChecker {
         return report_plan_value(binding, at, call, controller, name, fault, sink);
       const auto own = binding.argument_sources.find(name);
       const auto place = own == binding.argument_sources.end() ? binding.source : own->second;
-      auto error = sink.error(base::DiagnosticCode::kBadWorld, place,
+      auto error = sink.error(codes::kBadWorld, place,
                               fmt::format("actions/{}/{}", binding.event, name), fault);
       const auto& source = at.planned.source;
       error.note(source.empty() ? fmt::format("for the event `{}`", at.event.text)
@@ -178,7 +178,7 @@ class ValueChecker {
   void report_plan_value(const ActionBinding& binding, const Occurrence& at, const ActionCall& call,
                          const ControllerSpec& controller, const std::string& name,
                          const std::string& fault, base::DiagnosticSink& sink) const {
-    auto error = sink.error_about(base::DiagnosticCode::kBadWorld, at.planned.source,
+    auto error = sink.error_about(codes::kBadWorld, at.planned.source,
                                   fmt::format("`{}` of `{}`", name, at.event.text), fault);
     error.note(binding.source, fmt::format("the plan's value goes to `{}` here", call.controller));
     error.help(
@@ -364,8 +364,7 @@ base::Result<std::vector<ActionCall>> action_calls(const Scenario& scenario,
     const Occurrence at{ground_fluent(trace.event(t)), trace.plan[t]};
     const auto* binding = action_of(scenario, at.event);
     if (binding == nullptr) {
-      sink.error(base::DiagnosticCode::kEventWithoutAction, scenario.actions_source,
-                 at.event.symbol);
+      sink.error(codes::kEventWithoutAction, scenario.actions_source, at.event.symbol);
       continue;
     }
     calls.push_back(call_for(*binding, at));

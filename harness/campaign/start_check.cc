@@ -8,14 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/hash.h"
 #include "harness/region/state_mapping.h"
 #include "harness/world/world_layout.h"
 
 namespace parallax::harness {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -84,7 +82,7 @@ base::DiagnosticBuilder report_rejected(const Scenario& scenario, const Campaign
   }
   std::stable_sort(places.begin(), places.end(),
                    [](const Place& a, const Place& b) { return a.is_region && !b.is_region; });
-  auto error = sink.error(DiagnosticCode::kStartsRejected,
+  auto error = sink.error(codes::kStartsRejected,
                           places.empty() ? scenario.sampling_source : places.front().source,
                           rejected, sample, trace.number, reason);
   for (const auto& place : places) error.note(place.source, place.note);
@@ -102,12 +100,11 @@ base::DiagnosticBuilder report_other_start(const Scenario& scenario, const Sampl
                                            base::DiagnosticSink& sink) {
   if (!scenario.simulator.is_built_in()) {
     return sink.error(
-        DiagnosticCode::kStartNotTaken, scenario.simulator.source, record.sample, record.trace,
+        codes::kStartNotTaken, scenario.simulator.source, record.sample, record.trace,
         fmt::format("`{}` {}", fluent.fluent, fluent.observed ? "holds" : "does not hold"));
   }
-  return sink.error(DiagnosticCode::kMappingNotInverse, scenario.mapping_source, record.sample,
-                    record.trace, fluent.observed ? "a state with" : "a state without",
-                    fluent.fluent);
+  return sink.error(codes::kMappingNotInverse, scenario.mapping_source, record.sample, record.trace,
+                    fluent.observed ? "a state with" : "a state without", fluent.fluent);
 }
 
 void check_first_start(const Scenario& scenario, const CampaignTrace& trace,
@@ -130,7 +127,7 @@ void check_first_start(const Scenario& scenario, const CampaignTrace& trace,
     report_rejected(scenario, trace, record->rejected, record->sample, record->reason, sink);
   }
   if (record->status == SampleStatus::kRefused && record->observations.empty()) {
-    sink.error(DiagnosticCode::kSimulatorRefused, scenario.sampling_source,
+    sink.error(codes::kSimulatorRefused, scenario.sampling_source,
                fmt::format("refused the start in simulation {}.{}", trace.number, record->sample),
                record->reason);
   }

@@ -7,8 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/scenarios.h"
 #include "compiler/base/contract.h"
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/hash.h"
 #include "harness/campaign/journal.h"
 #include "harness/campaign/start_check.h"
@@ -17,8 +18,6 @@
 
 namespace parallax::harness {
 namespace {
-
-using base::DiagnosticCode;
 
 /// Every drawn variable must be one that the simulator can start with.
 base::Status check_settable(const Scenario& scenario, const StartCuboid& start,
@@ -30,7 +29,7 @@ base::Status check_settable(const Scenario& scenario, const StartCuboid& start,
       return parameter.name == dimension.variable;
     });
     if (known.empty() || (found != known.end() && found->settable)) continue;
-    sink.error(DiagnosticCode::kVariableNotSettable, scenario.sampled_at(dimension.variable),
+    sink.error(codes::kVariableNotSettable, scenario.sampled_at(dimension.variable),
                dimension.variable);
     fine = false;
   }
@@ -80,8 +79,7 @@ bool SimulatorBench::lost_too_often(const SampleRecord& record, bool on_record) 
     lost_in_a_row_ = 0;  // such a row on record has ended a run, which somebody continues
     return false;
   }
-  sink_.error(DiagnosticCode::kSimulatorLost, scenario_.simulator.source, lost_in_a_row_,
-              record.reason);
+  sink_.error(codes::kSimulatorLost, scenario_.simulator.source, lost_in_a_row_, record.reason);
   return true;
 }
 
@@ -89,8 +87,7 @@ base::Result<bool> SimulatorBench::start() {
   auto info = pool_.info();
   if (!info) return false;
   if (info->name.empty()) {
-    return sink_.error(DiagnosticCode::kSimulatorNotStarted, scenario_.simulator.source,
-                       info->version);
+    return sink_.error(codes::kSimulatorNotStarted, scenario_.simulator.source, info->version);
   }
   simulator_ = *std::move(info);
   if (!check_against_simulator(scenario_, fluents_.ground(), simulator_, sink_))
@@ -203,7 +200,7 @@ base::Result<std::optional<std::vector<TrialSample>>> Trial::try_starts(std::int
       bench_->pool_.submit(chosen, number);
     } else if (!known->searched || known->initial != starts[i]) {
       return bench_->sink_.error(
-          DiagnosticCode::kForeignJournalLine,
+          codes::kForeignJournalLine,
           journal_->recorded().places.at({known->trace, number, DrawPhase::kCertify}),
           "its start is not the one that the search proposes");
     }
@@ -292,7 +289,7 @@ base::Result<std::optional<TrialSample>> Trial::observed(SampleRecord record) {
 base::DiagnosticBuilder Trial::report_refused(const SampleRecord& record) const {
   const auto& scenario = bench_->scenario_;
   const auto in = fmt::format("in simulation {} of trace {}", record.sample, record.trace);
-  const auto code = DiagnosticCode::kSimulatorRefused;
+  const auto code = codes::kSimulatorRefused;
   if (record.observations.empty()) {
     return bench_->sink_.error(code, scenario.sampling_source,
                                fmt::format("refused the start {}", in), record.reason);
@@ -312,7 +309,7 @@ base::DiagnosticBuilder Trial::report_missing(const SampleRecord& record,
   const auto& scenario = bench_->scenario_;
   if (journal_ != nullptr && recorded(record.sample, record.phase) != nullptr) {
     const auto& places = journal_->recorded().places;
-    return bench_->sink_.error(DiagnosticCode::kForeignJournalLine,
+    return bench_->sink_.error(codes::kForeignJournalLine,
                                places.at({record.trace, record.sample, record.phase}),
                                fmt::format("its observations lack `{}`", variable));
   }
@@ -327,7 +324,7 @@ base::DiagnosticBuilder Trial::report_missing(const SampleRecord& record,
     break;
   }
   return bench_->sink_.error(
-      DiagnosticCode::kSimulatorRefused, place,
+      codes::kSimulatorRefused, place,
       fmt::format("does not show what is compared in simulation {} of trace {}", record.sample,
                   record.trace),
       fmt::format("its observations lack `{}`", variable));

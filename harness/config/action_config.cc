@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <map>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "harness/config/sections.h"
 #include "harness/world/arguments.h"
 
 namespace parallax::harness {
 namespace {
-
-using base::DiagnosticCode;
 
 constexpr double kMaxTimeLimitS = 86400.0;
 
@@ -19,7 +17,7 @@ void unknown_argument(const ControllerSpec& controller, const std::string& name,
   std::vector<std::string> known;
   for (const auto& argument : controller.arguments) known.emplace_back(argument.name);
   known.emplace_back(Key::kTimeLimitS);  // of the action, not of the controller
-  auto error = sink.error(DiagnosticCode::kUnknownArgument, range, controller.name, name);
+  auto error = sink.error(codes::kUnknownArgument, range, controller.name, name);
   add_suggestion(error, name, known, "arguments");
 }
 
@@ -62,7 +60,7 @@ class ArgumentReader {
     const bool right = wants_name ? std::holds_alternative<std::string>(value)
                                   : std::holds_alternative<double>(value);
     if (!right) {
-      sink_.error(DiagnosticCode::kWrongYamlKind, entry.value.range, fmt::format("`{}`", name),
+      sink_.error(codes::kWrongYamlKind, entry.value.range, fmt::format("`{}`", name),
                   describe(entry.value),
                   wants_name ? fmt::format("the name of a `{}`", argument->unit)
                              : fmt::format("a number [{}]", argument->unit));
@@ -71,7 +69,7 @@ class ArgumentReader {
     if (wants_name) return true;  // which names there are is known once the world is
     const auto fault = wrong_number(*argument, std::get<double>(value));
     if (fault.empty()) return true;
-    sink_.error(DiagnosticCode::kBadWorld, entry.value.range,
+    sink_.error(codes::kBadWorld, entry.value.range,
                 fmt::format("actions/{}/{}", pattern_.symbol, name), fault);
     return false;
   }
@@ -88,7 +86,7 @@ const ControllerSpec* known_controller(const std::string& name, base::SourceRang
   if (const auto* found = find_controller(name)) return found;
   std::vector<std::string> known;
   for (const auto& controller : controllers()) known.emplace_back(controller.name);
-  auto error = sink.error(DiagnosticCode::kUnknownController, range, name);
+  auto error = sink.error(codes::kUnknownController, range, name);
   add_suggestion(error, name, known, "controllers");
   return nullptr;
 }
@@ -116,7 +114,7 @@ std::optional<ActionBinding> read_action(const YamlEntry& entry, bool built_in,
                                          base::DiagnosticSink& sink) {
   const auto pattern = parse_pattern(entry.key);
   if (!pattern) {
-    sink.error(DiagnosticCode::kBadPattern, entry.key_range, entry.key);
+    sink.error(codes::kBadPattern, entry.key_range, entry.key);
     return std::nullopt;
   }
   ActionBinding action;
@@ -127,7 +125,7 @@ std::optional<ActionBinding> read_action(const YamlEntry& entry, bool built_in,
   if (!entry.value.is_map()) return std::nullopt;
   const auto* controller = fields.find(Key::kController);
   if (controller == nullptr) {
-    sink.error(DiagnosticCode::kActionWithoutController, entry.key_range, entry.key);
+    sink.error(codes::kActionWithoutController, entry.key_range, entry.key);
     return std::nullopt;
   }
   fields.text(Key::kController, action.controller);
@@ -154,7 +152,7 @@ std::optional<ActionBinding> read_action(const YamlEntry& entry, bool built_in,
   action.argument_sources = reader.take_sources();
   const auto fault = table == nullptr ? std::nullopt : wrong_together(*table, action.arguments);
   if (fault) {
-    sink.error(DiagnosticCode::kBadWorld, action.argument_sources.at(fault->name),
+    sink.error(codes::kBadWorld, action.argument_sources.at(fault->name),
                fmt::format("actions/{}/{}", action.event, fault->name), fault->text);
   }
   return action;
@@ -172,7 +170,7 @@ std::vector<ActionBinding> read_actions(const YamlNode& node, bool built_in,
     if (!action) continue;
     const auto [earlier, fresh] = seen.emplace(action->event, action->source);
     if (!fresh) {
-      sink.error(DiagnosticCode::kDuplicateKey, action->source, action->event)
+      sink.error(codes::kDuplicateKey, action->source, action->event)
           .note(earlier->second, "first given here");
     }
     actions.push_back(std::move(*action));

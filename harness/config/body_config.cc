@@ -5,12 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "harness/config/sections.h"
 
 namespace parallax::harness {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -41,7 +39,7 @@ void read_ring(const YamlNode& node, BodySpec& body, base::DiagnosticSink& sink)
   fields.number(Key::kWallM, kPositive, wall_m);
   fields.integer(Key::kSides, 4, 64, sides);
   if (!(diameter_m > 2.0 * wall_m && height_m > wall_m)) {
-    sink.error(DiagnosticCode::kYamlOutOfBounds, node.range, fields.what(), "all wall",
+    sink.error(codes::kYamlOutOfBounds, node.range, fields.what(), "all wall",
                "wider and higher than its walls");
     return;
   }
@@ -74,7 +72,7 @@ void read_shapes(const YamlFields& fields, BodySpec& body) {
     const auto* extra = fields.find(other);
     if (extra == nullptr) continue;
     fields.sink().error(
-        DiagnosticCode::kUnknownKey, extra->range, other,
+        codes::kUnknownKey, extra->range, other,
         fmt::format("{}, which has `{}` or `{}`", fields.what(), Key::kShapes, Key::kRing));
     return;
   }
@@ -83,8 +81,8 @@ void read_shapes(const YamlFields& fields, BodySpec& body) {
     return;
   }
   if (!list->is_list()) {
-    fields.sink().error(DiagnosticCode::kWrongYamlKind, list->range, key_text(Key::kShapes),
-                        describe(*list), "a list of boxes");
+    fields.sink().error(codes::kWrongYamlKind, list->range, key_text(Key::kShapes), describe(*list),
+                        "a list of boxes");
     return;
   }
   for (const auto& item : list->items) {
@@ -254,8 +252,8 @@ HandleSpec read_handle(const YamlNode& node, base::DiagnosticSink& sink) {
   fields.number(Key::kWristRad, kAnyNumber, handle.wrist_rad);
   fields.number(Key::kWidthM, kPositive, handle.width_m);
   if (handle.approach.norm() < 1e-9) {
-    sink.error(DiagnosticCode::kYamlOutOfBounds, node.range, key_text(Key::kApproach),
-               "without a direction", "a vector with a length");
+    sink.error(codes::kYamlOutOfBounds, node.range, key_text(Key::kApproach), "without a direction",
+               "a vector with a length");
   }
   return handle;
 }

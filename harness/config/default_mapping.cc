@@ -6,13 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "harness/config/sections.h"
 
 namespace parallax::harness {
 namespace {
-
-using base::DiagnosticCode;
 
 /// `Name({0},{1})`: what has this name and the same arguments in the world.
 std::string same_name(const std::string& symbol, std::size_t arity) {
@@ -32,8 +30,7 @@ void check_condition(const FluentBinding& binding, base::DiagnosticSink& sink) {
   const bool range = std::holds_alternative<RangeBinding>(binding.condition);
   if (!range && !std::holds_alternative<EqualsBinding>(binding.condition)) return;
   sink.error(
-      DiagnosticCode::kWrongYamlKind, binding.source,
-      fmt::format("the mapping of `{}`", binding.fluent),
+      codes::kWrongYamlKind, binding.source, fmt::format("the mapping of `{}`", binding.fluent),
       fmt::format("`{}`", range ? Key::kRange : Key::kEquals),
       fmt::format("`{}` or `{}`: what a model shows is true or false", Key::kFlag, Key::kIgnored));
 }
@@ -74,7 +71,7 @@ void bind_events(Scenario& scenario, const std::vector<std::string>& events,
   for (const auto& action : scenario.actions) {
     own.insert(action.event);
     for (const auto& [name, source] : action.argument_sources) {
-      sink.error(DiagnosticCode::kUnknownArgument, source, action.controller, name)
+      sink.error(codes::kUnknownArgument, source, action.controller, name)
           .note("an event of a model takes the arguments that stand in its brackets");
     }
   }
@@ -95,11 +92,11 @@ void bind_events(Scenario& scenario, const std::vector<std::string>& events,
     // One instance says what is wrong with all of them.
     if (index.contains(name) || !reported.insert(event.symbol).second) continue;
     if (own.contains(event.symbol)) {
-      auto error = sink.error(DiagnosticCode::kUnknownController, action->source, name);
+      auto error = sink.error(codes::kUnknownController, action->source, name);
       error.note(fmt::format("for the event `{}`", text));
       add_suggestion(error, name, known, "events of the simulator's model");
     } else {
-      auto error = sink.error(DiagnosticCode::kSimulatorLacksEvent, action->source, name);
+      auto error = sink.error(codes::kSimulatorLacksEvent, action->source, name);
       add_suggestion(error, name, known, "events");
     }
   }

@@ -6,15 +6,13 @@
 #include <array>
 #include <limits>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "harness/confidence/clean_runs.h"
 #include "harness/confidence/rate_evidence.h"
 #include "harness/config/sections.h"
 
 namespace parallax::harness {
 namespace {
-
-using base::DiagnosticCode;
 
 constexpr std::int64_t kDefaultRuns = 100;
 constexpr double kDefaultEvidence = 0.95;
@@ -36,7 +34,7 @@ CauseExpectation read_cause(const YamlNode& node, base::DiagnosticSink& sink) {
     cause.kind = kCauseKinds[*kind];
   }
   if (node.is_map() && node.entries.empty() && sink.error_count() == errors_before) {
-    sink.error(DiagnosticCode::kCaseExpectsNothing, node.range, Key::kCause);
+    sink.error(codes::kCaseExpectsNothing, node.range, Key::kCause);
   }
   return cause;
 }
@@ -49,8 +47,8 @@ void read_rate_bounds(const YamlFields& fields, RateExpectation& rate) {
   const auto* above = fields.find(Key::kAbove);
   if ((between != nullptr) + (below != nullptr) + (above != nullptr) > 1) {
     const auto* second = above != nullptr ? above : below;
-    sink.error(DiagnosticCode::kYamlOutOfBounds, second->range, key_text(Key::kRate),
-               "bounded twice", "given by one of `below`, `above` and `between`");
+    sink.error(codes::kYamlOutOfBounds, second->range, key_text(Key::kRate), "bounded twice",
+               "given by one of `below`, `above` and `between`");
     return;
   }
   fields.number(Key::kBelow, kOpenUnit, rate.upper);
@@ -62,7 +60,7 @@ void read_rate_bounds(const YamlFields& fields, RateExpectation& rate) {
   rate.lower = (*bounds)[0];
   rate.upper = (*bounds)[1];
   if (!(rate.lower >= 0.0 && rate.lower <= rate.upper && rate.upper <= 1.0)) {
-    sink.error(DiagnosticCode::kYamlOutOfBounds, between->range, key_text(Key::kBetween),
+    sink.error(codes::kYamlOutOfBounds, between->range, key_text(Key::kBetween),
                fmt::format("{:g} and {:g}", rate.lower, rate.upper),
                "two numbers from 0 to 1, the lower first");
   }
@@ -73,15 +71,14 @@ void settle_runs(const YamlNode& node, const YamlFields& fields, RateExpectation
                  base::DiagnosticSink& sink) {
   const RateClaim claim{rate.lower, rate.upper, *rate.confidence};
   if (claim.bounds_nothing()) {
-    sink.error(DiagnosticCode::kYamlOutOfBounds, node.range, key_text(Key::kBetween), "0 and 1",
+    sink.error(codes::kYamlOutOfBounds, node.range, key_text(Key::kBetween), "0 and 1",
                "narrower: every rate lies there");
     return;
   }
   const auto* runs = fields.find(rate.fixed_runs ? Key::kRuns : Key::kMaxRuns);
   const auto least = runs_to_support(claim, kMaxRuns, rate.fixed_runs);
   const auto refuse = [&](const std::string& why) {
-    sink.error(DiagnosticCode::kExpectationCannotHold, runs == nullptr ? node.range : runs->range,
-               why);
+    sink.error(codes::kExpectationCannotHold, runs == nullptr ? node.range : runs->range, why);
   };
   const auto what = to_string(claim);
   const auto confidence = fmt::format("with {:g} % confidence", 100.0 * claim.confidence_level);
@@ -111,7 +108,7 @@ RateExpectation read_rate(const YamlNode& node, base::DiagnosticSink& sink) {
     rate.fixed_runs = false;
     rate.confidence = kDefaultEvidence;
     if (fields.find(Key::kRuns) != nullptr) {
-      sink.error(DiagnosticCode::kYamlOutOfBounds, most->range, key_text(Key::kRate),
+      sink.error(codes::kYamlOutOfBounds, most->range, key_text(Key::kRate),
                  "given two numbers of runs", "given one of `runs` and `max_runs`");
     }
   }
@@ -151,7 +148,7 @@ Expectation read_expectation(const YamlNode& node, base::DiagnosticSink& sink) {
   fields.number(Key::kTimeLimitS, kTimeout, expect.time_limit_s);
   fields.boolean(Key::kFast, expect.fast);
   if (!expect.of_run() && !expect.rate && sink.error_count() == errors_before) {
-    sink.error(DiagnosticCode::kCaseExpectsNothing, node.range, Key::kExpect);
+    sink.error(codes::kCaseExpectsNothing, node.range, Key::kExpect);
   }
   return expect;
 }
@@ -161,7 +158,7 @@ void check_expectation(const Scenario& scenario, base::DiagnosticSink& sink) {
   const auto& expect = *scenario.expect;
   const auto& limits = scenario.limits;
   const auto refuse = [&](const base::SourceRange& where, const std::string& why) {
-    sink.error(DiagnosticCode::kExpectationCannotHold, where, why);
+    sink.error(codes::kExpectationCannotHold, where, why);
   };
   const bool of_discrepancy = !expect.fluents.empty() || expect.cause;
   if (of_discrepancy && expect.verdict.value_or("discrepancy") != "discrepancy") {

@@ -7,14 +7,12 @@
 #include <span>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "compiler/base/path_gate.h"
 #include "harness/config/sections.h"
 
 namespace parallax::harness {
 namespace {
-
-using base::DiagnosticCode;
 
 constexpr std::array<std::string_view, 2> kPermissions = {"allowed", "forbidden"};
 constexpr std::array<std::string_view, 2> kUndecided = {"fails", "passes"};
@@ -51,7 +49,7 @@ class RuleSection {
   /// A section that forbids nothing is none.
   void finish() const {
     if (forbids_ || sink_.error_count() != before_) return;
-    sink_.error(DiagnosticCode::kCaseExpectsNothing, fields_.node().range, key_);
+    sink_.error(codes::kCaseExpectsNothing, fields_.node().range, key_);
   }
 
  private:
@@ -148,7 +146,7 @@ base::Result<GateRules> load_gate_rules(const std::filesystem::path& path, base:
       fields.choice(Key::kUndecided, "value of `undecided`", kUndecided) == std::size_t{1};
   const bool is_empty = !out.models && !out.plans && !out.traces && !out.runs && !out.rates;
   if (is_empty && sink.error_count() == errors_before) {
-    sink.error(DiagnosticCode::kCaseExpectsNothing, root->range, path.filename().string());
+    sink.error(codes::kCaseExpectsNothing, root->range, path.filename().string());
   }
   if (sink.error_count() != errors_before) return sink.already_reported();
   return out;

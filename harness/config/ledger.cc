@@ -6,15 +6,14 @@
 #include <map>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
+#include "compiler/base/codes/scenarios.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/path_gate.h"
 #include "harness/config/sections.h"
 
 namespace parallax::harness {
 namespace {
-
-using base::DiagnosticCode;
 
 constexpr std::string_view kRepairedIn = "repaired in ", kAcceptedBecause = "accepted because ";
 
@@ -31,7 +30,7 @@ bool read_status(const YamlNode& node, LedgerEntry& entry, base::DiagnosticSink&
   };
   if (take(kRepairedIn, LedgerStatus::kRepaired) || take(kAcceptedBecause, LedgerStatus::kAccepted))
     return true;
-  sink.error(DiagnosticCode::kWrongYamlKind, node.range, key_text(Key::kStatus), describe(node),
+  sink.error(codes::kWrongYamlKind, node.range, key_text(Key::kStatus), describe(node),
              "`open`, `repaired in REVISION` or `accepted because TEXT`");
   return false;
 }
@@ -75,7 +74,7 @@ std::optional<LedgerEntry> read_entry(const YamlNode& node, base::DiagnosticSink
   }
   read_fields(fields, entry);
   if (const auto problem = id_problem(entry.id); !entry.id.empty() && !problem.empty()) {
-    sink.error(DiagnosticCode::kWrongYamlKind, entry.id_source, key_text(Key::kId),
+    sink.error(codes::kWrongYamlKind, entry.id_source, key_text(Key::kId),
                fmt::format("`{}`", entry.id), "an id: " + problem);
   }
   if (sink.error_count() != errors_before) return std::nullopt;
@@ -90,7 +89,7 @@ base::Result<Ledger> ledger_of(const YamlNode& root, base::DiagnosticSink& sink)
   const auto* entries = fields.require(Key::kDiscrepancies);
   const bool none = entries == nullptr || entries->kind == YamlNode::Kind::kNull;
   if (!none && !entries->is_list()) {
-    sink.error(DiagnosticCode::kWrongYamlKind, entries->range, key_text(Key::kDiscrepancies),
+    sink.error(codes::kWrongYamlKind, entries->range, key_text(Key::kDiscrepancies),
                describe(*entries), "a list of discrepancies");
     return sink.already_reported();
   }
@@ -100,7 +99,7 @@ base::Result<Ledger> ledger_of(const YamlNode& root, base::DiagnosticSink& sink)
     if (!entry) continue;
     const auto [first, is_new] = known.emplace(entry->id, entry->id_source);
     if (!is_new) {
-      sink.error(DiagnosticCode::kWrongYamlKind, entry->id_source, key_text(Key::kId),
+      sink.error(codes::kWrongYamlKind, entry->id_source, key_text(Key::kId),
                  fmt::format("`{}` a second time", entry->id), "distinct")
           .note(first->second, "the first is here");
       continue;
@@ -157,7 +156,7 @@ base::Result<Ledger> load_ledger(const std::filesystem::path& path, base::Source
   const auto file = base::load_text(path, files, sink);
   if (!file) return sink.already_reported();
   if (files[*file].text().size() > kMaxYamlBytes) {
-    return sink.error_about(DiagnosticCode::kFileTooLarge, path.string(), kMaxYamlBytes);
+    return sink.error_about(codes::kFileTooLarge, path.string(), kMaxYamlBytes);
   }
   return parse_ledger(*file, files, sink);
 }

@@ -5,14 +5,12 @@
 #include <map>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "harness/config/sections.h"
 #include "harness/world/density.h"
 #include "harness/world/structure_check.h"
 
 namespace parallax::harness {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -39,7 +37,7 @@ void read_bounds(const YamlFields& fields, Region& region) {
     if (bounds == nullptr) continue;
     const auto name = fmt::format("`{}` of the region `{}`", to_string(axis), region.name);
     if (!bounds->is_list()) {
-      fields.sink().error(DiagnosticCode::kWrongYamlKind, bounds->range, name, describe(*bounds),
+      fields.sink().error(codes::kWrongYamlKind, bounds->range, name, describe(*bounds),
                           "a list of a lower and an upper bound");
     } else if (const auto interval = read_interval(*bounds, name, fields.sink())) {
       region.on(axis) = *interval;
@@ -58,14 +56,13 @@ void read_start(const YamlNode& node, Region& region, base::DiagnosticSink& sink
     const auto interval = read_interval(*range, name, sink);
     if (!interval) continue;
     if (interval->lower > interval->upper) {
-      sink.error(DiagnosticCode::kReversedSampling, range->range, name, interval->lower,
-                 interval->upper);
+      sink.error(codes::kReversedSampling, range->range, name, interval->lower, interval->upper);
       continue;
     }
     const auto& bound = region.on(axis);
     if (bound && bound->lower > bound->upper) continue;  // reported with the regions
     if (bound && (interval->lower < bound->lower || interval->upper > bound->upper)) {
-      sink.error(DiagnosticCode::kYamlOutOfBounds, range->range, name,
+      sink.error(codes::kYamlOutOfBounds, range->range, name,
                  fmt::format("from {} to {}", interval->lower, interval->upper),
                  fmt::format("within the region, {} to {}", bound->lower, bound->upper));
     }
@@ -81,13 +78,13 @@ void read_frame(const YamlFields& fields, const WorldSpec& world, Region& region
   if (body == world.bodies.end()) {
     std::vector<std::string> known;
     for (const auto& each : world.bodies) known.push_back(each.name);
-    auto error = fields.sink().error(DiagnosticCode::kYamlUnknownChoice,
-                                     fields.find(Key::kFrame)->range, region.frame, Key::kBody);
+    auto error = fields.sink().error(codes::kYamlUnknownChoice, fields.find(Key::kFrame)->range,
+                                     region.frame, Key::kBody);
     add_suggestion(error, region.frame, known, "bodies");
     return;
   }
   if (body->yaw_rad != 0.0) {
-    fields.sink().error(DiagnosticCode::kYamlOutOfBounds, fields.find(Key::kFrame)->range,
+    fields.sink().error(codes::kYamlOutOfBounds, fields.find(Key::kFrame)->range,
                         key_text(Key::kFrame), "a body that is turned at the start",
                         "one with yaw_rad 0");
   }
@@ -141,8 +138,8 @@ InsideBinding read_inside(const YamlFields& fields, const SymbolPattern& pattern
   if (found != names.end()) {
     binding.region_argument = static_cast<std::size_t>(found - names.begin());
   } else if (!parameter.empty()) {
-    auto error = sink.error(DiagnosticCode::kUnknownPatternParameter,
-                            fields.find(Key::kInside)->range, parameter, pattern.symbol);
+    auto error = sink.error(codes::kUnknownPatternParameter, fields.find(Key::kInside)->range,
+                            parameter, pattern.symbol);
     add_suggestion(error, parameter, names, "parameters");
   }
   if (const auto* body = fields.require(Key::kBody)) {
@@ -187,13 +184,13 @@ RangeBinding read_range(YamlFields& fields, const SymbolPattern& pattern) {
       *interval = *read;
     }
     if (interval->lower > interval->upper) {
-      fields.sink().error(DiagnosticCode::kReversedSampling, node->range, fmt::format("`{}`", key),
+      fields.sink().error(codes::kReversedSampling, node->range, fmt::format("`{}`", key),
                           interval->lower, interval->upper);
     }
   }
   if (binding.holds.lower <= binding.fails.upper && binding.fails.lower <= binding.holds.upper &&
       fields.find(Key::kFails) != nullptr) {
-    fields.sink().error(DiagnosticCode::kYamlOutOfBounds, fields.find(Key::kFails)->range,
+    fields.sink().error(codes::kYamlOutOfBounds, fields.find(Key::kFails)->range,
                         key_text(Key::kFails), "an interval that meets " + key_text(Key::kHolds),
                         "apart from it");
   }
@@ -217,7 +214,7 @@ BorderBinding read_border(YamlFields& fields, const SymbolPattern& pattern) {
   const auto* above = fields.find(Key::kAbove);
   const auto* up_to = fields.find(Key::kUpTo);
   if (above != nullptr && up_to != nullptr) {
-    fields.sink().error(DiagnosticCode::kYamlOutOfBounds, up_to->range, key_text(Key::kUpTo),
+    fields.sink().error(codes::kYamlOutOfBounds, up_to->range, key_text(Key::kUpTo),
                         "given besides " + key_text(Key::kAbove), "alone");
   }
   if (above == nullptr && up_to == nullptr) fields.require(Key::kAbove);
@@ -230,7 +227,7 @@ BorderBinding read_border(YamlFields& fields, const SymbolPattern& pattern) {
 std::optional<FluentBinding> read_binding(const YamlEntry& entry, base::DiagnosticSink& sink) {
   const auto pattern = parse_pattern(entry.key);
   if (!pattern) {
-    sink.error(DiagnosticCode::kBadPattern, entry.key_range, entry.key);
+    sink.error(codes::kBadPattern, entry.key_range, entry.key);
     return std::nullopt;
   }
   FluentBinding binding;
@@ -290,7 +287,7 @@ void warn_of_density(const WorldSpec& world, const YamlEntry& entry, const Inter
     for (const double mass_kg : {masses.lower, masses.upper}) {
       const auto odd = odd_density(body, mass_kg);
       if (!odd) continue;
-      sink.warning(DiagnosticCode::kOddDensity, entry.value.range, fmt::format("{:g} kg", mass_kg),
+      sink.warning(codes::kOddDensity, entry.value.range, fmt::format("{:g} kg", mass_kg),
                    fmt::format("`{}` a thing", name), density_kg_m3(body, mass_kg), *odd);
       return;
     }
@@ -304,7 +301,7 @@ void refuse_repeated(Bindings& bindings, Name name, base::DiagnosticSink& sink) 
   for (const auto& binding : bindings) {
     const auto [at, fresh] = seen.emplace(name(binding), binding.source);
     if (fresh) continue;
-    sink.error(DiagnosticCode::kDuplicateKey, binding.source, at->first)
+    sink.error(codes::kDuplicateKey, binding.source, at->first)
         .note(at->second, "first given here");
   }
 }
@@ -345,15 +342,14 @@ std::string with_positions(const std::string& text, const SymbolPattern& pattern
     if (open == std::string::npos && close == std::string::npos) return out + text.substr(at);
     const auto inner = open == std::string::npos ? open : text.find('{', open + 1);
     if (open == std::string::npos || close < open || close == std::string::npos || inner < close) {
-      sink.error(base::DiagnosticCode::kUnbalancedBrace, range, open < close ? '{' : '}', text);
+      sink.error(codes::kUnbalancedBrace, range, open < close ? '{' : '}', text);
       return out + text.substr(at);
     }
     const auto name = text.substr(open + 1, close - open - 1);
     const auto& names = pattern.parameters;
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
-      auto error =
-          sink.error(base::DiagnosticCode::kUnknownPatternParameter, range, name, pattern.symbol);
+      auto error = sink.error(codes::kUnknownPatternParameter, range, name, pattern.symbol);
       add_suggestion(error, name, names, "parameters");
     }
     out += text.substr(at, open - at) + '{' + std::to_string(found - names.begin()) + '}';
@@ -404,13 +400,12 @@ void read_sampling(const YamlNode& node, Scenario& scenario, base::DiagnosticSin
     const auto interval = read_interval(entry.value, name, sink);
     if (!interval) continue;
     if (interval->lower > interval->upper) {
-      sink.error(DiagnosticCode::kReversedSampling, entry.key_range, name, interval->lower,
-                 interval->upper);
+      sink.error(codes::kReversedSampling, entry.key_range, name, interval->lower, interval->upper);
     }
     const bool built_in = scenario.simulator.is_built_in();
     if (built_in && entry.key.ends_with(".mass") &&
         !(interval->lower > 0.0 && interval->upper <= kMaxMass_kg)) {
-      sink.error(DiagnosticCode::kYamlOutOfBounds, entry.value.range, name,
+      sink.error(codes::kYamlOutOfBounds, entry.value.range, name,
                  fmt::format("from {} to {} kg", interval->lower, interval->upper),
                  fmt::format("above 0 and at most {:g} kg", kMaxMass_kg));
     }

@@ -1,12 +1,10 @@
 #include "harness/config/quarantine.h"
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "compiler/base/path_gate.h"
 #include "harness/config/sections.h"
 
 namespace parallax::harness {
-
-using base::DiagnosticCode;
 
 base::Result<Quarantine> load_quarantine(const std::filesystem::path& path,
                                          base::SourceFiles& files, base::DiagnosticSink& sink) {
@@ -20,7 +18,7 @@ base::Result<Quarantine> load_quarantine(const std::filesystem::path& path,
   Quarantine out;
   const auto* entries = fields.require(Key::kQuarantine);
   if (entries != nullptr && !entries->is_list()) {
-    sink.error(DiagnosticCode::kWrongYamlKind, entries->range, key_text(Key::kQuarantine),
+    sink.error(codes::kWrongYamlKind, entries->range, key_text(Key::kQuarantine),
                describe(*entries), "a list of cases");
     return sink.already_reported();
   }
@@ -33,10 +31,10 @@ base::Result<Quarantine> load_quarantine(const std::filesystem::path& path,
     auto why = read_text(*reason, key_text(Key::kBecause), sink);
     if (!case_name || !why) continue;
     if (why->find_first_not_of(" \t\n") == std::string::npos) {
-      sink.error(DiagnosticCode::kWrongYamlKind, reason->range, key_text(Key::kBecause), "empty",
+      sink.error(codes::kWrongYamlKind, reason->range, key_text(Key::kBecause), "empty",
                  "a reason in words");
     } else if (!out.emplace(*case_name, *std::move(why)).second) {
-      sink.error(DiagnosticCode::kDuplicateCase, name->range, *case_name);
+      sink.error(codes::kDuplicateCase, name->range, *case_name);
     }
   }
   if (sink.error_count() != errors_before) return sink.already_reported();

@@ -3,13 +3,11 @@
 #include <array>
 #include <limits>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "harness/config/sections.h"
 
 namespace parallax::harness {
 namespace {
-
-using base::DiagnosticCode;
 
 constexpr std::int64_t kMaxPerforms = 10'000;
 
@@ -136,8 +134,7 @@ SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink) {
   simulator.source = node.range;
   if (node.is_scalar()) {
     if (node.text == "ode") return simulator;
-    auto error =
-        sink.error(DiagnosticCode::kYamlUnknownChoice, node.range, node.text, Key::kSimulator);
+    auto error = sink.error(codes::kYamlUnknownChoice, node.range, node.text, Key::kSimulator);
     const std::vector<std::string> known = {"ode"};
     add_suggestion(error, node.text, known, "known, besides `command: [...]` and `model: FILE`");
     return simulator;
@@ -154,7 +151,7 @@ SimulatorSpec read_simulator(const YamlNode& node, base::DiagnosticSink& sink) {
   fields.texts(Key::kCommand, simulator.command);
   const auto* command = fields.find(Key::kCommand);
   if (command != nullptr && command->is_list() && command->items.empty()) {
-    sink.error(DiagnosticCode::kWrongYamlKind, command->range, key_text(Key::kCommand), "empty",
+    sink.error(codes::kWrongYamlKind, command->range, key_text(Key::kCommand), "empty",
                "a list of a program and its arguments");
   }
   fields.number(Key::kHelloTimeoutS, kTimeout, simulator.hello_timeout_s);

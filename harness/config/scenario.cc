@@ -8,7 +8,7 @@
 #include <set>
 #include <system_error>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "compiler/base/file_io.h"
 #include "harness/config/sections.h"
 #include "harness/engine/world_check.h"
@@ -16,8 +16,6 @@
 
 namespace parallax::harness {
 namespace {
-
-using base::DiagnosticCode;
 
 /// Regions where things are laid down at the start must have something below them.
 void check_supported_starts(const Scenario& scenario, base::DiagnosticSink& sink) {
@@ -37,7 +35,7 @@ void check_supported_starts(const Scenario& scenario, base::DiagnosticSink& sink
   if (points.empty()) return;
   for (const auto& name : unsupported_points(scenario.world, points)) {
     const Region* region = scenario.mapping->regions().find(name);
-    sink.error(DiagnosticCode::kBadWorld, region->source, "regions/" + name,
+    sink.error(codes::kBadWorld, region->source, "regions/" + name,
                "nothing in the world is below the middle of its start");
   }
 }
@@ -54,7 +52,7 @@ void check_supported_regions(const Scenario& scenario, base::DiagnosticSink& sin
   if (boxes.empty()) return;
   for (const auto& name : boxes_without_support(scenario.world, boxes)) {
     const Region* region = scenario.mapping->regions().find(name);
-    sink.error(DiagnosticCode::kBadWorld, region->source, "regions/" + name,
+    sink.error(codes::kBadWorld, region->source, "regions/" + name,
                "nothing in the world reaches into it, so no body can come to lie there");
   }
 }
@@ -77,7 +75,7 @@ void check_free_regions(const Scenario& scenario, base::DiagnosticSink& sink) {
   for (const Region& region : regions.regions()) {
     const auto& bottom = region.on(RegionAxis::kBottom);
     if (bottom && region.frame.empty() && bottom->upper < 0.0) {
-      sink.error(DiagnosticCode::kBadWorld, region.source, "regions/" + region.name,
+      sink.error(codes::kBadWorld, region.source, "regions/" + region.name,
                  fmt::format("lies below the floor: `{}` ends at {:g}",
                              to_string(RegionAxis::kBottom), bottom->upper));
       continue;
@@ -90,8 +88,8 @@ void check_free_regions(const Scenario& scenario, base::DiagnosticSink& sink) {
        {std::pair{&wholes, "lies"}, std::pair{&starts, "its start lies"}}) {
     for (const auto& buried : buried_boxes(scenario.world, *boxes)) {
       if (!reported.insert(buried.name).second) continue;
-      sink.error(DiagnosticCode::kBadWorld, regions.find(buried.name)->source,
-                 "regions/" + buried.name, fmt::format("{} inside `{}`", what, buried.body));
+      sink.error(codes::kBadWorld, regions.find(buried.name)->source, "regions/" + buried.name,
+                 fmt::format("{} inside `{}`", what, buried.body));
     }
   }
 }
@@ -175,8 +173,8 @@ class ScenarioReader {
     const auto* plan = fields_.find(Key::kPlan);
     const auto* bind = fields_.find(Key::kBind);
     if ((plan == nullptr) != (bind == nullptr)) {
-      sink_.error(DiagnosticCode::kMissingKey, (plan != nullptr ? plan : bind)->range,
-                  "the scenario", plan != nullptr ? Key::kBind : Key::kPlan);
+      sink_.error(codes::kMissingKey, (plan != nullptr ? plan : bind)->range, "the scenario",
+                  plan != nullptr ? Key::kBind : Key::kPlan);
     }
     if (const auto* node = fields_.find(Key::kConstraints)) {
       scenario.constraints = located_texts(*node, Key::kConstraints, sink_);
@@ -208,8 +206,8 @@ class ScenarioReader {
     const bool built_in = !unknown && scenario.simulator.is_built_in();
     const auto* world = fields_.find(Key::kWorld);
     if (world == nullptr && built_in && fields_.node().is_map()) {
-      auto error = sink_.error(DiagnosticCode::kMissingKey, fields_.node().range, "the scenario",
-                               Key::kWorld);
+      auto error =
+          sink_.error(codes::kMissingKey, fields_.node().range, "the scenario", Key::kWorld);
       if (fields_.find(Key::kSimulator) == nullptr) {
         error.note(
             "if the world is a model, `simulator: {model: FILE}` names it; then `world`, "
@@ -262,7 +260,7 @@ class ScenarioReader {
       for (const auto& region : section.regions) {
         const auto [twin, fresh] = seen.emplace(region.name, region.source);
         if (fresh || section.name.empty()) continue;
-        sink_.error(DiagnosticCode::kRegionDuplicate, region.source, region.name)
+        sink_.error(codes::kRegionDuplicate, region.source, region.name)
             .note(twin->second, "the first definition is here");
       }
       auto set = RegionSet::make(section.regions, section.gaps_allowed, sink_);
@@ -322,8 +320,7 @@ std::vector<LocatedText> located_texts(const YamlNode& node, std::string_view ke
     if (text) out.push_back({std::move(*text), item.range});
   }
   if (items.empty()) {
-    sink.error(DiagnosticCode::kWrongYamlKind, node.range, key_text(key), "empty",
-               "a list of texts");
+    sink.error(codes::kWrongYamlKind, node.range, key_text(key), "empty", "a list of texts");
   }
   return out;
 }

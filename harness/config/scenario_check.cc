@@ -4,14 +4,12 @@
 #include <set>
 #include <tuple>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "harness/config/sections.h"
 #include "harness/world/arguments.h"
 #include "harness/world/world_layout.h"
 
 namespace parallax::harness {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -41,11 +39,10 @@ void check_event(const Scenario& scenario, const GroundFluent& event, base::Diag
   if (action == scenario.actions.end()) {
     std::vector<std::string> known;
     for (const auto& binding : scenario.actions) known.push_back(binding.event);
-    auto error =
-        sink.error(DiagnosticCode::kEventWithoutAction, scenario.actions_source, event.symbol);
+    auto error = sink.error(codes::kEventWithoutAction, scenario.actions_source, event.symbol);
     add_suggestion(error, event.symbol, known, "actions");
   } else if (action->arity != event.arguments.size()) {
-    sink.error(DiagnosticCode::kActionArity, action->source, event.text, event.arguments.size(),
+    sink.error(codes::kActionArity, action->source, event.text, event.arguments.size(),
                event.symbol, action->arity);
   }
 }
@@ -66,7 +63,7 @@ void check_expected_names(const Scenario& scenario, const std::vector<GroundFlue
   };
   const auto check_fluent = [&](const std::string& text, const base::SourceRange& source) {
     if (is_known(text, known)) return;
-    auto error = sink.error(DiagnosticCode::kExpectedFluentUnknown, source, text);
+    auto error = sink.error(codes::kExpectedFluentUnknown, source, text);
     add_suggestion(error, text, known, "fluents");
   };
   for (const auto& text : expect.fluents) check_fluent(text, expect.fluents_source);
@@ -75,8 +72,7 @@ void check_expected_names(const Scenario& scenario, const std::vector<GroundFlue
     if (cause == nullptr) continue;
     check_fluent(cause->fluent, cause->fluent_source);
     if (is_known(cause->event, events)) continue;
-    auto error =
-        sink.error(DiagnosticCode::kExpectedEventUnknown, cause->event_source, cause->event);
+    auto error = sink.error(codes::kExpectedEventUnknown, cause->event_source, cause->event);
     add_suggestion(error, cause->event, events, "events");
   }
 }
@@ -88,12 +84,12 @@ void warn_of_unused(const Scenario& scenario, const std::set<std::string>& fluen
   const std::vector<std::string> event_names(events.begin(), events.end());
   for (const auto& binding : scenario.mapping->bindings()) {
     if (fluents.contains(binding.fluent)) continue;
-    auto warning = sink.warning(DiagnosticCode::kUnusedMapping, binding.source, binding.fluent);
+    auto warning = sink.warning(codes::kUnusedMapping, binding.source, binding.fluent);
     add_suggestion(warning, binding.fluent, fluent_names, "fluents");
   }
   for (const auto& action : scenario.actions) {
     if (events.contains(action.event)) continue;
-    auto warning = sink.warning(DiagnosticCode::kUnusedAction, action.source, action.event);
+    auto warning = sink.warning(codes::kUnusedAction, action.source, action.event);
     add_suggestion(warning, action.event, event_names, "events");
   }
 }
@@ -132,7 +128,7 @@ class NameChecker {
     for (const auto& one : controllers()) {
       if (can(one)) known.emplace_back(one.name);
     }
-    auto error = sink_.error(DiagnosticCode::kUnknownController, action.source, action.controller);
+    auto error = sink_.error(codes::kUnknownController, action.source, action.controller);
     error.note(known.empty() ? "the world has no robot" : "the robot is of another kind");
     add_suggestion(error, action.controller, known, "controllers");
     return false;
@@ -144,9 +140,9 @@ class NameChecker {
     const auto fault = wrong_name(argument, name, scenario_.world, layout_);
     // One instance says what is wrong with all of them.
     if (fault.empty() || !reported_.emplace(action.event, argument.name).second) return;
-    auto error = sink_.error(DiagnosticCode::kBadWorld,
-                             action.argument_sources.at(std::string(argument.name)),
-                             fmt::format("actions/{}/{}", action.event, argument.name), fault);
+    auto error =
+        sink_.error(codes::kBadWorld, action.argument_sources.at(std::string(argument.name)),
+                    fmt::format("actions/{}/{}", action.event, argument.name), fault);
     if (event != nullptr) error.note(fmt::format("for the event `{}`", event->text));
     add_suggestion(error, name, names_for(argument, scenario_.world, layout_), "names");
   }
@@ -171,7 +167,7 @@ void check_fluent_variables(const Scenario& scenario, const std::vector<GroundFl
     for (const auto& variable : binding->variables(fluent, scenario.mapping->regions())) {
       if (index.contains(variable)) continue;
       reported.insert(fluent.symbol);
-      auto error = sink.error(DiagnosticCode::kUnknownSimVariable, binding->source, variable);
+      auto error = sink.error(codes::kUnknownSimVariable, binding->source, variable);
       error.note(fmt::format("`{}` is read from it", fluent.text));
       add_variable_suggestion(error, variable, known);
       break;
@@ -188,7 +184,7 @@ base::Status check_variables(const Scenario& scenario, const std::vector<Paramet
   for (const auto& binding : scenario.mapping->bindings()) {
     for (const auto& variable : binding.constant_variables(scenario.mapping->regions())) {
       if (std::find(known.begin(), known.end(), variable) != known.end()) continue;
-      auto error = sink.error(DiagnosticCode::kUnknownSimVariable, binding.source, variable);
+      auto error = sink.error(codes::kUnknownSimVariable, binding.source, variable);
       add_suggestion(error, variable, known, "variables");
     }
   }
@@ -197,11 +193,11 @@ base::Status check_variables(const Scenario& scenario, const std::vector<Paramet
       return p.name == dimension.variable;
     });
     if (found == parameters.end()) {
-      auto error = sink.error(DiagnosticCode::kUnknownSimVariable,
-                              scenario.sampled_at(dimension.variable), dimension.variable);
+      auto error = sink.error(codes::kUnknownSimVariable, scenario.sampled_at(dimension.variable),
+                              dimension.variable);
       add_suggestion(error, dimension.variable, known, "variables");
     } else if (!found->settable) {
-      sink.error(DiagnosticCode::kVariableNotSettable, scenario.sampled_at(dimension.variable),
+      sink.error(codes::kVariableNotSettable, scenario.sampled_at(dimension.variable),
                  dimension.variable);
     }
   }
@@ -216,7 +212,7 @@ void check_comparisons(const Scenario& scenario, base::DiagnosticSink& sink) {
   if (scenario.comparison() != Comparison::kFinal) return;
   for (const auto& binding : scenario.mapping->bindings()) {
     if (!binding.asks_for_every_step) continue;
-    sink.error(DiagnosticCode::kComparisonWithoutEffect, binding.source, binding.fluent);
+    sink.error(codes::kComparisonWithoutEffect, binding.source, binding.fluent);
   }
 }
 
@@ -237,7 +233,7 @@ base::Status check_against_model(const Scenario& scenario, const std::vector<std
     const auto* binding = scenario.mapping->find(fluent.symbol);
     return binding != nullptr && !binding->is_ignored();
   });
-  if (mapped && !compares) sink.error(DiagnosticCode::kNothingCompared, scenario.mapping_source);
+  if (mapped && !compares) sink.error(codes::kNothingCompared, scenario.mapping_source);
   check_comparisons(scenario, sink);
   std::vector<GroundFluent> ground_events;
   for (const auto& text : events) {
@@ -270,7 +266,7 @@ base::Status check_against_simulator(const Scenario& scenario,
     // One that depends on the event was looked at with the events.
     if (depends_on_event(action.controller)) continue;
     if (std::find(known.begin(), known.end(), action.controller) != known.end()) continue;
-    auto error = sink.error(DiagnosticCode::kUnknownController, action.source, action.controller);
+    auto error = sink.error(codes::kUnknownController, action.source, action.controller);
     add_suggestion(error, action.controller, known, "controllers");
   }
   if (sink.error_count() != errors_before) return sink.already_reported();
@@ -312,8 +308,7 @@ void check_ranges(const Scenario& scenario, const std::vector<GroundFluent>& flu
                        (!joint.low_m || interval->upper >= *joint.low_m - kPlay_m);
       if (met || !reported.insert(fluent.symbol + std::string(key)).second) continue;
       sink.error(
-          DiagnosticCode::kBadWorld, binding->source,
-          fmt::format("mapping/{}/{}", fluent.symbol, key),
+          codes::kBadWorld, binding->source, fmt::format("mapping/{}/{}", fluent.symbol, key),
           fmt::format("is from {:g} to {:g}, which `{}` never reaches: it moves from {} to {}",
                       interval->lower, interval->upper, joint.name,
                       joint.low_m ? fmt::format("{:g}", *joint.low_m) : "anywhere below",

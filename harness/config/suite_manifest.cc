@@ -7,14 +7,12 @@
 #include <system_error>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "compiler/base/file_io.h"
 #include "harness/config/sections.h"
 
 namespace parallax::harness {
 namespace {
-
-using base::DiagnosticCode;
 
 constexpr std::int64_t kMaxTraces = 1'000'000'000;
 constexpr NumberBounds kTimeLimit{0.0, 86400.0, true, false};
@@ -36,7 +34,7 @@ class ManifestReader {
     const auto* cases = fields.require(Key::kCases);
     if (cases == nullptr) return;
     if (!cases->is_list() || cases->items.empty()) {
-      sink_.error(DiagnosticCode::kWrongYamlKind, cases->range, key_text(Key::kCases),
+      sink_.error(codes::kWrongYamlKind, cases->range, key_text(Key::kCases),
                   cases->is_list() ? "empty" : describe(*cases), "a list of cases");
       return;
     }
@@ -76,7 +74,7 @@ class ManifestReader {
     if (const auto* expect = fields.find(Key::kExpect)) read_expectation(*expect, out.expect);
     const bool nothing = !out.expect.traces && !out.expect.golden;
     if (nothing && sink_.error_count() == errors_before) {
-      sink_.error(DiagnosticCode::kCaseExpectsNothing, out.source, out.id);
+      sink_.error(codes::kCaseExpectsNothing, out.source, out.id);
     }
     return out;
   }
@@ -87,12 +85,12 @@ class ManifestReader {
     out.id = *id;
     out.source = node.range;
     if (const auto problem = id_problem(*id); !problem.empty()) {
-      sink_.error(DiagnosticCode::kBadCaseId, node.range, *id, problem);
+      sink_.error(codes::kBadCaseId, node.range, *id, problem);
       return;
     }
     const auto [first, is_new] = ids_.emplace(*id, node.range);
     if (is_new) return;
-    sink_.error(DiagnosticCode::kDuplicateCase, node.range, *id)
+    sink_.error(codes::kDuplicateCase, node.range, *id)
         .note(first->second, "the first one is here");
   }
 
@@ -118,7 +116,7 @@ class ManifestReader {
     }
     if (!out.complete && out.traces.value_or(0) < 1 && sink_.error_count() == errors_before) {
       const auto* place = fields.find(out.traces ? Key::kTraces : Key::kComplete);
-      sink_.error(DiagnosticCode::kYamlOutOfBounds, place->range, key_text(Key::kTraces),
+      sink_.error(codes::kYamlOutOfBounds, place->range, key_text(Key::kTraces),
                   out.traces ? "0" : "not given",
                   fmt::format("at least 1 where `{}` is false", Key::kComplete));
     }

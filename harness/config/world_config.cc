@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "harness/config/sections.h"
 #include "harness/engine/world_check.h"
 #include "harness/world/density.h"
@@ -11,8 +11,6 @@
 
 namespace parallax::harness {
 namespace {
-
-using base::DiagnosticCode;
 
 SolverSpec read_solver(const YamlNode& node, base::DiagnosticSink& sink) {
   SolverSpec solver;
@@ -91,7 +89,7 @@ FrictionSpec read_friction(const YamlNode& node, const std::vector<std::string>&
     for (const auto& material : pair) {
       if (std::find(materials.begin(), materials.end(), material) != materials.end()) continue;
       known = false;
-      auto error = sink.error(DiagnosticCode::kYamlUnknownChoice, entry.key_range, material,
+      auto error = sink.error(codes::kYamlUnknownChoice, entry.key_range, material,
                               "material (a key is `default` or two of them, as `pad-box`)");
       add_suggestion(error, material, materials, "materials");
     }
@@ -135,7 +133,7 @@ void warn_of_densities(const YamlNode& node, const WorldSpec& world, base::Diagn
     if (!layout.is_free[i]) continue;
     if (const auto odd = odd_density(body, body.mass_kg)) {
       const auto path = "bodies/" + body.name + "/mass_kg";
-      sink.warning(DiagnosticCode::kOddDensity, range_of(node, path), path,
+      sink.warning(codes::kOddDensity, range_of(node, path), path,
                    fmt::format("`{}` a thing", body.name), density_kg_m3(body, body.mass_kg), *odd);
     }
   }
@@ -174,8 +172,8 @@ WorldSpec read_world(const YamlNode& node, base::DiagnosticSink& sink) {
   std::sort(world.places.begin(), world.places.end(), by_name);
   if (sink.error_count() != errors_before) return world;
   for (const auto& problem : check_world(world)) {
-    auto error = sink.error(DiagnosticCode::kBadWorld, range_of(node, problem.path), problem.path,
-                            problem.message);
+    auto error =
+        sink.error(codes::kBadWorld, range_of(node, problem.path), problem.path, problem.message);
     if (!problem.suggestion.empty()) error.fix(fmt::format("write `{}`", problem.suggestion));
   }
   if (sink.error_count() == errors_before) warn_of_densities(node, world, sink);

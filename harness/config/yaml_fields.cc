@@ -8,13 +8,11 @@
 #include <cmath>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "compiler/base/suggest.h"
 
 namespace parallax::harness {
 namespace {
-
-using base::DiagnosticCode;
 
 std::string strip_plus(const std::string& text) {
   return text.starts_with('+') ? text.substr(1) : text;
@@ -53,11 +51,11 @@ std::optional<std::int64_t> read_integer(const YamlNode& node, std::string_view 
   const auto value =
       node.is_scalar() && !node.quoted ? parsed<std::int64_t>(node.text) : std::nullopt;
   if (!value) {
-    sink.error(DiagnosticCode::kWrongYamlKind, node.range, name, describe(node), "an integer");
+    sink.error(codes::kWrongYamlKind, node.range, name, describe(node), "an integer");
     return std::nullopt;
   }
   if (*value < lower || *value > upper) {
-    sink.error(DiagnosticCode::kYamlOutOfBounds, node.range, name, *value,
+    sink.error(codes::kYamlOutOfBounds, node.range, name, *value,
                upper == std::numeric_limits<std::int64_t>::max()
                    ? fmt::format("at least {}", lower)
                    : fmt::format("from {} to {}", lower, upper));
@@ -99,14 +97,14 @@ std::optional<double> read_number(const YamlNode& node, std::string_view name,
   if (!value) {
     // Also what from_chars cannot hold, such as 1e999.
     if (plain && (is_infinite_or_nan(node.text) || looks_numeric(node.text))) {
-      sink.error(DiagnosticCode::kYamlNotFinite, node.range, node.text);
+      sink.error(codes::kYamlNotFinite, node.range, node.text);
     } else {
-      sink.error(DiagnosticCode::kWrongYamlKind, node.range, name, describe(node), "a number");
+      sink.error(codes::kWrongYamlKind, node.range, name, describe(node), "a number");
     }
     return std::nullopt;
   }
   if (!bounds.admits(*value)) {
-    sink.error(DiagnosticCode::kYamlOutOfBounds, node.range, name, node.text, bounds.text());
+    sink.error(codes::kYamlOutOfBounds, node.range, name, node.text, bounds.text());
     return std::nullopt;
   }
   return value;
@@ -115,7 +113,7 @@ std::optional<double> read_number(const YamlNode& node, std::string_view name,
 std::optional<std::string> read_text(const YamlNode& node, std::string_view name,
                                      base::DiagnosticSink& sink) {
   if (node.is_scalar() && !node.text.empty()) return node.text;
-  sink.error(DiagnosticCode::kWrongYamlKind, node.range, name, describe(node), "a text");
+  sink.error(codes::kWrongYamlKind, node.range, name, describe(node), "a text");
   return std::nullopt;
 }
 
@@ -127,7 +125,7 @@ std::optional<Interval> read_interval(const YamlNode& node, std::string_view nam
     return Interval{*value, *value, true};
   }
   if (!node.is_list() || node.items.size() != 2) {
-    sink.error(DiagnosticCode::kWrongYamlKind, node.range, name, describe(node),
+    sink.error(codes::kWrongYamlKind, node.range, name, describe(node),
                "a list of a lower and an upper bound");
     return std::nullopt;
   }
@@ -140,7 +138,7 @@ std::optional<Interval> read_interval(const YamlNode& node, std::string_view nam
 std::optional<Value> read_value(const YamlNode& node, std::string_view name,
                                 base::DiagnosticSink& sink) {
   if (!node.is_scalar()) {
-    sink.error(DiagnosticCode::kWrongYamlKind, node.range, name, describe(node), "a single value");
+    sink.error(codes::kWrongYamlKind, node.range, name, describe(node), "a single value");
     return std::nullopt;
   }
   if (node.quoted) return Value(node.text);
@@ -149,7 +147,7 @@ std::optional<Value> read_value(const YamlNode& node, std::string_view name,
   if (const auto whole = parsed<std::int64_t>(node.text)) return Value(*whole);
   if (const auto number = parsed<double>(node.text)) return Value(*number);
   if (node.text.starts_with('.') && is_infinite_or_nan(node.text)) {
-    sink.error(DiagnosticCode::kYamlNotFinite, node.range, node.text);
+    sink.error(codes::kYamlNotFinite, node.range, node.text);
     return std::nullopt;
   }
   return Value(node.text);
@@ -158,7 +156,7 @@ std::optional<Value> read_value(const YamlNode& node, std::string_view name,
 YamlFields::YamlFields(const YamlNode& node, std::string what, base::DiagnosticSink& sink)
     : node_(node), what_(std::move(what)), sink_(sink) {
   if (!node.is_map()) {
-    sink.error(DiagnosticCode::kWrongYamlKind, node.range, what_, describe(node), "a map");
+    sink.error(codes::kWrongYamlKind, node.range, what_, describe(node), "a map");
   }
 }
 
@@ -166,7 +164,7 @@ YamlFields& YamlFields::only(std::span<const std::string_view> known) {
   const std::vector<std::string> names(known.begin(), known.end());
   for (const auto& entry : node_.entries) {
     if (std::find(names.begin(), names.end(), entry.key) != names.end()) continue;
-    auto error = sink_.error(DiagnosticCode::kUnknownKey, entry.key_range, entry.key, what_);
+    auto error = sink_.error(codes::kUnknownKey, entry.key_range, entry.key, what_);
     add_suggestion(error, entry.key, names, "known keys");
   }
   return *this;
@@ -182,7 +180,7 @@ const YamlNode* YamlFields::find(std::string_view key) const {
 const YamlNode* YamlFields::require(std::string_view key) const {
   const auto* value = find(key);
   if (value == nullptr && node_.is_map()) {
-    sink_.error(DiagnosticCode::kMissingKey, node_.range, what_, key);
+    sink_.error(codes::kMissingKey, node_.range, what_, key);
   }
   return value;
 }
@@ -221,7 +219,7 @@ void YamlFields::boolean(std::string_view key, bool& out) const {
     out = value->text == "true";
     return;
   }
-  sink_.error(DiagnosticCode::kWrongYamlKind, value->range, name_of(key), describe(*value),
+  sink_.error(codes::kWrongYamlKind, value->range, name_of(key), describe(*value),
               "`true` or `false`");
 }
 
@@ -241,8 +239,7 @@ void YamlFields::texts(std::string_view key, std::vector<std::string>& out) cons
   const auto* value = find(key);
   if (value == nullptr) return;
   if (!value->is_list()) {
-    sink_.error(DiagnosticCode::kWrongYamlKind, value->range, name_of(key), describe(*value),
-                "a list");
+    sink_.error(codes::kWrongYamlKind, value->range, name_of(key), describe(*value), "a list");
     return;
   }
   out.clear();
@@ -262,7 +259,7 @@ std::optional<std::size_t> YamlFields::choice(std::string_view key, std::string_
   const auto found = std::find(choices.begin(), choices.end(), *word);
   if (found != choices.end()) return static_cast<std::size_t>(found - choices.begin());
   const std::vector<std::string> names(choices.begin(), choices.end());
-  auto error = sink_.error(DiagnosticCode::kYamlUnknownChoice, value->range, *word, kind);
+  auto error = sink_.error(codes::kYamlUnknownChoice, value->range, *word, kind);
   add_suggestion(error, *word, names, "known");
   return std::nullopt;
 }
@@ -272,7 +269,7 @@ std::optional<std::vector<double>> YamlFields::numbers(std::string_view key,
   const auto* value = find(key);
   if (value == nullptr) return std::nullopt;
   if (!value->is_list() || value->items.size() != count) {
-    sink_.error(DiagnosticCode::kWrongYamlKind, value->range, name_of(key), describe(*value),
+    sink_.error(codes::kWrongYamlKind, value->range, name_of(key), describe(*value),
                 fmt::format("a list of {} numbers", count));
     return std::nullopt;
   }

@@ -10,13 +10,12 @@
 #include <sstream>
 #include <system_error>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "compiler/base/file_io.h"
 #include "harness/config/keys.h"
 
 namespace parallax::harness {
 
-using base::DiagnosticCode;
 using base::SourceRange;
 
 namespace {
@@ -42,7 +41,7 @@ class TreeBuilder final : public YAML::EventHandler {
     place(YamlNode{YamlNode::Kind::kNull, token(mark), {}, false, {}, {}});
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    sink_.error(DiagnosticCode::kYamlFeature, token(mark), "aliases");
+    sink_.error(codes::kYamlFeature, token(mark), "aliases");
     place(YamlNode{YamlNode::Kind::kNull, token(mark), {}, false, {}, {}});
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -102,12 +101,12 @@ class TreeBuilder final : public YAML::EventHandler {
   }
 
   void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) {
-    if (anchor != 0) sink_.error(DiagnosticCode::kYamlFeature, token(mark), "anchors");
+    if (anchor != 0) sink_.error(codes::kYamlFeature, token(mark), "anchors");
   }
   /// "?" and "!" are what yaml-cpp calls plain and quoted values without a tag.
   void refuse_tag(const YAML::Mark& mark, const std::string& tag) {
     if (tag.empty() || tag == "?" || tag == "!") return;
-    sink_.error(DiagnosticCode::kYamlFeature, token(mark), "tags");
+    sink_.error(codes::kYamlFeature, token(mark), "tags");
   }
 
   void open(YamlNode::Kind kind, const YAML::Mark& mark, const std::string& tag,
@@ -145,11 +144,11 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void start_entry(Level& level, YamlNode key) {
     if (!key.is_scalar()) {
-      sink_.error(DiagnosticCode::kYamlSyntax, key.range, "a key must be a word");
+      sink_.error(codes::kYamlSyntax, key.range, "a key must be a word");
     } else if (key.text == "<<" && !key.quoted) {
-      sink_.error(DiagnosticCode::kYamlFeature, key.range, "merge keys");
+      sink_.error(codes::kYamlFeature, key.range, "merge keys");
     } else if (const auto earlier = level.keys.find(key.text); earlier != level.keys.end()) {
-      sink_.error(DiagnosticCode::kDuplicateKey, key.range, key.text)
+      sink_.error(codes::kDuplicateKey, key.range, key.text)
           .note(earlier->second, "first given here");
     }
     level.entry = YamlEntry{std::move(key.text), key.range, {}};
@@ -245,8 +244,8 @@ class Includer {
     YamlNode result{YamlNode::Kind::kMap, include.key_range, {}, false, {}, {}};
     bool failed = names.empty();
     if (failed) {
-      sink_.error(DiagnosticCode::kWrongYamlKind, include.key_range, key_text(Key::kInclude),
-                  "empty", "a file name");
+      sink_.error(codes::kWrongYamlKind, include.key_range, key_text(Key::kInclude), "empty",
+                  "a file name");
     }
     for (const auto& name : names) {
       auto root = one(name);
@@ -262,22 +261,22 @@ class Includer {
 
   base::Result<YamlNode> one(const YamlNode& name) {
     if (!name.is_scalar()) {
-      return sink_.error(DiagnosticCode::kWrongYamlKind, name.range, key_text(Key::kInclude),
-                         describe(name), "a file name");
+      return sink_.error(codes::kWrongYamlKind, name.range, key_text(Key::kInclude), describe(name),
+                         "a file name");
     }
     const auto path = path_beside(name.range, name.text, files_);
     if (!gate_.check(path, name.range, sink_)) return sink_.already_reported();
     if (++includes_ > kMaxIncludes) {
-      return sink_.error(DiagnosticCode::kTooManyIncludes, name.range, kMaxIncludes);
+      return sink_.error(codes::kTooManyIncludes, name.range, kMaxIncludes);
     }
     if (std::find(open_.begin(), open_.end(), real(path)) != open_.end()) {
-      return sink_.error(DiagnosticCode::kIncludeCycle, name.range, name.text);
+      return sink_.error(codes::kIncludeCycle, name.range, name.text);
     }
     if (!base::check_file(path, name.range, sink_)) return sink_.already_reported();
     auto root = load(path);
     if (root && !root->is_map()) {
-      return sink_.error(DiagnosticCode::kWrongYamlKind, name.range, "the included file",
-                         describe(*root), "a map");
+      return sink_.error(codes::kWrongYamlKind, name.range, "the included file", describe(*root),
+                         "a map");
     }
     return root;
   }
@@ -324,19 +323,19 @@ base::Result<YamlNode> parse_yaml(base::FileId file, const base::SourceFiles& fi
     auto root = builder.take();
     TreeBuilder rest(file, files, sink);
     if (parser.HandleNextDocument(rest)) {
-      sink.error(DiagnosticCode::kYamlFeature, rest.take().range, "further documents");
+      sink.error(codes::kYamlFeature, rest.take().range, "further documents");
     }
     if (sink.error_count() != errors_before) return sink.already_reported();
     return root;
   } catch (const YAML::Exception& error) {
     const auto place = at_mark(file, error.mark, files);
     if (const auto tab = tab_before(place, files[file].text())) {
-      return sink.error(DiagnosticCode::kYamlSyntax, *tab, "a line is indented with a tab")
+      return sink.error(codes::kYamlSyntax, *tab, "a line is indented with a tab")
           .help("Indent with blanks.");
     }
-    return sink.error(DiagnosticCode::kYamlSyntax, place, error.msg);
+    return sink.error(codes::kYamlSyntax, place, error.msg);
   } catch (const TooDeep& stop) {
-    return sink.error(DiagnosticCode::kYamlTooDeep, SourceRange{file, stop.offset, stop.offset + 1},
+    return sink.error(codes::kYamlTooDeep, SourceRange{file, stop.offset, stop.offset + 1},
                       kMaxYamlDepth);
   }
 }

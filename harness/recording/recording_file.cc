@@ -9,8 +9,8 @@
 #include <cstring>
 #include <variant>
 
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/descriptor.h"
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/whole_number.h"
 #include "harness/recording/recording_format.h"
@@ -99,13 +99,12 @@ base::Result<Recording> read_recording(const fs::path& run_dir, std::int64_t tra
   const auto name = recording_name(trace, sample);
   if (!is_there(run_dir / name)) {
     return sink
-        .error_about(base::DiagnosticCode::kNoRecording, run_dir.string(),
-                     fmt::format("{}.{}", trace, sample))
+        .error_about(codes::kNoRecording, run_dir.string(), fmt::format("{}.{}", trace, sample))
         .help(fmt::format("Make it: `{}`", make));
   }
   std::string why;
   if (auto found = find_recording(run_dir, trace, sample, why)) return *std::move(found);
-  return sink.error_about(base::DiagnosticCode::kBadRecording, (run_dir / name).string(), why)
+  return sink.error_about(codes::kBadRecording, (run_dir / name).string(), why)
       .help(fmt::format("Make it again: `{}`", make));
 }
 

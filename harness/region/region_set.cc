@@ -4,13 +4,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "harness/region/region.h"
 
 namespace parallax::harness {
 namespace {
 
-using base::DiagnosticCode;
 using base::DiagnosticSink;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -38,19 +37,19 @@ bool check_bounds(const Region& region, DiagnosticSink& sink) {
     bounded = true;
     const auto name = to_string(axis);
     if (!std::isfinite(bound->lower) || !std::isfinite(bound->upper)) {
-      sink.error(DiagnosticCode::kRegionNotFinite, region.source, region.name, name);
+      sink.error(codes::kRegionNotFinite, region.source, region.name, name);
     } else if (bound->lower > bound->upper) {
-      sink.error(DiagnosticCode::kRegionReversed, region.source, region.name, name, bound->lower,
+      sink.error(codes::kRegionReversed, region.source, region.name, name, bound->lower,
                  bound->upper)
           .fix(fmt::format("write {}: [{}, {}]", name, bound->upper, bound->lower));
     } else if (bound->lower == bound->upper) {
-      sink.error(DiagnosticCode::kRegionEmpty, region.source, region.name, name, bound->lower);
+      sink.error(codes::kRegionEmpty, region.source, region.name, name, bound->lower);
     } else {
       continue;
     }
     good = false;
   }
-  if (!bounded) sink.error(DiagnosticCode::kRegionUnbounded, region.source, region.name);
+  if (!bounded) sink.error(codes::kRegionUnbounded, region.source, region.name);
   return good && bounded;
 }
 
@@ -171,7 +170,7 @@ void report_gap(const std::vector<Region>& regions, DiagnosticSink& sink) {
     return region.on(search.first_axis())->upper == search.begin();
   });
   const Region& blamed = below == regions.end() ? regions.front() : *below;
-  auto report = sink.error(DiagnosticCode::kRegionGap, blamed.source, *gap);
+  auto report = sink.error(codes::kRegionGap, blamed.source, *gap);
   const Region* next = nullptr;
   for (const auto& region : regions) {
     const double lower = region.on(search.first_axis())->lower;
@@ -194,13 +193,13 @@ std::vector<Region> check_each(const std::vector<Region>& regions, DiagnosticSin
     const auto twin = std::find_if(regions.data(), &region,
                                    [&](const Region& other) { return other.name == region.name; });
     if (twin != &region) {
-      sink.error(DiagnosticCode::kRegionDuplicate, region.source, region.name)
+      sink.error(codes::kRegionDuplicate, region.source, region.name)
           .note(twin->source, "the first definition is here");
       continue;
     }
     if (!check_bounds(region, sink)) continue;
     if (!good.empty() && !same_axes(region, good.front())) {
-      sink.error(DiagnosticCode::kRegionMixedAxes, region.source, region.name, axes_of(region),
+      sink.error(codes::kRegionMixedAxes, region.source, region.name, axes_of(region),
                  good.front().name, axes_of(good.front()))
           .note(good.front().source, fmt::format("`{}` is here", good.front().name));
       continue;
@@ -220,7 +219,7 @@ base::Result<RegionSet> RegionSet::make(std::vector<Region> regions, bool gaps_a
     for (std::size_t i = 0; i < j; ++i) {
       const auto text = overlap(good[i], good[j]);
       if (text.empty()) continue;
-      sink.error(DiagnosticCode::kRegionOverlap, good[j].source, good[i].name, good[j].name, text)
+      sink.error(codes::kRegionOverlap, good[j].source, good[i].name, good[j].name, text)
           .note(good[i].source, fmt::format("`{}` is here", good[i].name));
     }
   }

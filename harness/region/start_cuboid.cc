@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "harness/region/state_mapping.h"
 
 namespace parallax::harness {
@@ -243,7 +243,7 @@ base::Result<StartCuboid> StateMapping::start_cuboid(const std::vector<GroundFlu
   const auto errors_before = sink.error_count();
   const auto collected = collect(*this, fluents, true_fluents, true);
   for (const auto& problem : collected.problems()) {
-    sink.error(base::DiagnosticCode::kStartNotSampleable, blame, problem.text)
+    sink.error(codes::kStartNotSampleable, blame, problem.text)
         .note(problem.binding, fmt::format("`{}` is mapped here", problem.fluent));
   }
   StartBuilder builder(extra);
@@ -253,7 +253,7 @@ base::Result<StartCuboid> StateMapping::start_cuboid(const std::vector<GroundFlu
     builder.keep_to(side.variable, side.value, side.fluent);
   }
   for (const auto& problem : builder.problems()) {
-    sink.error(base::DiagnosticCode::kStartNotSampleable, blame, problem);
+    sink.error(codes::kStartNotSampleable, blame, problem);
   }
   if (sink.error_count() != errors_before) return sink.already_reported();
   return builder.cuboid();

@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <set>
 
+#include "compiler/base/codes/scenarios.h"
 #include "compiler/base/contract.h"
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 
 namespace parallax::harness {
 namespace {
-
-using base::DiagnosticCode;
 
 std::vector<std::string> region_names(const RegionMap& regions) {
   std::vector<std::string> names;
@@ -22,7 +20,7 @@ std::vector<std::string> region_names(const RegionMap& regions) {
 
 void report_unmapped(const std::string& symbol, const std::vector<std::string>& known,
                      base::SourceRange blame, base::DiagnosticSink& sink) {
-  auto report = sink.error(DiagnosticCode::kFluentNotMapped, blame, symbol);
+  auto report = sink.error(codes::kFluentNotMapped, blame, symbol);
   if (const auto near = base::nearest_name(symbol, known)) {
     report.note(fmt::format("`{}` is mapped; is that the one?", *near));
   }
@@ -31,7 +29,7 @@ void report_unmapped(const std::string& symbol, const std::vector<std::string>& 
 void report_no_region(const FluentBinding& binding, const std::string& asks,
                       const std::string& name, const RegionMap& regions,
                       base::DiagnosticSink& sink) {
-  auto report = sink.error(DiagnosticCode::kMappingNoRegion, binding.source, asks, name);
+  auto report = sink.error(codes::kMappingNoRegion, binding.source, asks, name);
   if (const auto near = base::nearest_name(name, region_names(regions))) {
     report.note(fmt::format("there is a region `{}`", *near));
   }
@@ -46,8 +44,8 @@ void check_region(const FluentBinding& binding, const GroundFluent& fluent,
       report_no_region(binding, fluent.symbol, name, regions, sink);
   }
   if (inside->region_argument >= fluent.arguments.size()) {
-    sink.error(DiagnosticCode::kMappingArity, binding.source, binding.fluent,
-               inside->region_argument + 1, fluent.text, fluent.arguments.size());
+    sink.error(codes::kMappingArity, binding.source, binding.fluent, inside->region_argument + 1,
+               fluent.text, fluent.arguments.size());
     return;
   }
   const auto& name = fluent.arguments[inside->region_argument];
@@ -128,7 +126,7 @@ base::Status StateMapping::check(const std::vector<GroundFluent>& fluents, base:
       report_unmapped(fluent.symbol, known, blame, sink);
       faulty.insert(fluent.symbol);
     } else if (binding->arity != fluent.arguments.size()) {
-      sink.error(DiagnosticCode::kMappingArity, binding->source, binding->fluent, binding->arity,
+      sink.error(codes::kMappingArity, binding->source, binding->fluent, binding->arity,
                  fluent.text, fluent.arguments.size());
       faulty.insert(fluent.symbol);
     } else {

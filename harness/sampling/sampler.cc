@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 
 namespace parallax::harness {
 namespace {
@@ -59,8 +59,7 @@ base::Result<Sampler> Sampler::make(StartCuboid cuboid, double inset, base::Sour
   for (const auto& [variable, interval] : cuboid.dimensions) {
     const bool fixed = interval.lower == interval.upper;
     if (fixed || interval.lower + inset < interval.upper - inset) continue;
-    sink.error(base::DiagnosticCode::kSamplingTooNarrow, blame, variable, interval.lower,
-               interval.upper, inset);
+    sink.error(codes::kSamplingTooNarrow, blame, variable, interval.lower, interval.upper, inset);
   }
   if (sink.error_count() != errors_before) return sink.already_reported();
   return Sampler(std::move(cuboid), inset);

@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "runtime/solver/sat_solver.h"
 
 namespace parallax::runtime {
 
-using base::DiagnosticCode;
 using compiler::AtomKind;
 using compiler::Literal;
 
@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 base::Reported not_writable(const fs::path& path, int error, base::DiagnosticSink& sink) {
-  return sink.error_about(base::DiagnosticCode::kFileNotWritable, path.string(),
+  return sink.error_about(codes::kFileNotWritable, path.string(),
                           std::strerror(error != 0 ? error : EIO));
 }
 
@@ -101,7 +101,7 @@ base::Status write_formula(const CompletenessClaim& claim, const ProofFiles& fil
   claim.write_dimacs(out);
   out.close();
   if (out) return base::Unit{};
-  return sink.error_about(DiagnosticCode::kFileNotWritable, files.formula_path().string(),
+  return sink.error_about(codes::kFileNotWritable, files.formula_path().string(),
                           std::strerror(errno != 0 ? errno : ENOSPC));
 }
 
@@ -301,7 +301,7 @@ base::Result<ProofFiles> ProofFiles::create(const fs::path& proof, base::Diagnos
     std::error_code error;
     const auto status = fs::status(path, error);
     if (fs::exists(status) && !fs::is_regular_file(status)) {
-      return sink.error_about(base::DiagnosticCode::kNotARegularFile, path.string());
+      return sink.error_about(codes::kNotARegularFile, path.string());
     }
   }
   files.present_ = true;
@@ -370,10 +370,10 @@ Certificate prove(const CompletenessClaim& claim, ProofFiles& files, const Proof
   Certificate certificate{report.verdict, report.statistics, 0,
                           log_fine ? ProofOrigin::kSearch : ProofOrigin::kFreshSolve};
   if (report.verdict == ProofVerdict::kRejected) {
-    sink.error_about(DiagnosticCode::kProofRejected, subject, report.reason);
+    sink.error_about(codes::kProofRejected, subject, report.reason);
   } else if (report.verdict == ProofVerdict::kNotFinished) {
     if (!report.reason.empty()) {
-      sink.error_about(DiagnosticCode::kProofNotChecked, subject, report.reason);
+      sink.error_about(codes::kProofNotChecked, subject, report.reason);
     }
   } else {
     std::error_code error;

@@ -6,13 +6,12 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/artifacts.h"
 #include "compiler/base/suggest.h"
 #include "compiler/base/whole_number.h"
 
 namespace parallax::runtime {
 
-using base::DiagnosticCode;
 using compiler::AtomKind;
 
 namespace {
@@ -125,8 +124,7 @@ class JsonBuilder {
   };
 
   bool fail(std::uint32_t begin, std::uint32_t end, const char* what) {
-    if (!failed_)
-      sink_.error(DiagnosticCode::kTraceFileSyntax, {document_.file_, begin, end}, what);
+    if (!failed_) sink_.error(codes::kTraceFileSyntax, {document_.file_, begin, end}, what);
     failed_ = true;
     return false;
   }
@@ -218,7 +216,7 @@ base::Result<JsonDocument> JsonDocument::parse(base::SourceRange text,
   const CountingIterator begin(part.data(), &read), end(part.data() + part.size(), &read);
   if (nlohmann::json::sax_parse(begin, end, &builder)) return document;
   if (builder.failed()) return sink.already_reported();
-  return sink.error(DiagnosticCode::kTraceFileSyntax, text, "this is no JSON");
+  return sink.error(codes::kTraceFileSyntax, text, "this is no JSON");
 }
 
 bool JsonDocument::has_duplicate(std::uint32_t object, std::uint32_t& place) const {
@@ -285,7 +283,7 @@ ClaimReader::ClaimReader(const Vocabulary& vocabulary, base::DiagnosticSink& sin
 }
 
 base::Reported ClaimReader::unexpected(std::string_view what, const JsonValue& found) {
-  return sink_.error(DiagnosticCode::kTraceFileShape, found.source(), what, quoted(found));
+  return sink_.error(codes::kTraceFileShape, found.source(), what, quoted(found));
 }
 
 const std::vector<SymbolInstances>& ClaimReader::symbols_of(AtomKind kind) const {
@@ -315,7 +313,7 @@ bool ClaimReader::has(AtomKind kind, const std::string& name) const {
 bool ClaimReader::claim(AtomKind kind, std::string name, const AtomClaim& claim,
                         AtomClaims& claims) {
   if (!has(kind, name)) {
-    auto built = sink_.error(DiagnosticCode::kTraceUnknownAtom, claim.source, word_of(kind), name);
+    auto built = sink_.error(codes::kTraceUnknownAtom, claim.source, word_of(kind), name);
     std::vector<std::string> names;
     for (const auto& symbol : symbols_of(kind)) {
       names.insert(names.end(), symbol.atoms.begin(), symbol.atoms.end());
@@ -329,8 +327,8 @@ bool ClaimReader::claim(AtomKind kind, std::string name, const AtomClaim& claim,
   const auto [entry, added] = claims.listed.try_emplace(std::move(name), claim);
   if (added || entry->second.value == claim.value) return true;
   sink_
-      .error(DiagnosticCode::kTraceFileShape, claim.source,
-             fmt::format("one value of `{}`", entry->first), "another one")
+      .error(codes::kTraceFileShape, claim.source, fmt::format("one value of `{}`", entry->first),
+             "another one")
       .note(entry->second.source, "the first one stands here");
   return false;
 }

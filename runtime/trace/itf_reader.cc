@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <set>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/artifacts.h"
 #include "runtime/trace/claim_reader.h"
 #include "runtime/trace/itf_format.h"
 
@@ -77,7 +77,7 @@ class ItfReader {
       }
       if (!reader_.has_symbol(*variable.kind, variable.symbol)) {
         reader_.sink().error(
-            base::DiagnosticCode::kTraceUnknownAtom, var.source(),
+            codes::kTraceUnknownAtom, var.source(),
             variable.kind == AtomKind::kPredicate ? "formula with the predicate" : "fluent",
             variable.symbol);
         return false;

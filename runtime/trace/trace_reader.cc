@@ -5,12 +5,10 @@
 #include <algorithm>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/artifacts.h"
 #include "runtime/trace/claim_reader.h"
 
 namespace parallax::runtime {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -67,8 +65,8 @@ base::Result<ClaimedTrace> read_jsonl_trace(const JsonValue& root, ClaimReader& 
   if (trace.points.empty()) return reader.unexpected("at least one timepoint", *points);
   for (const auto& [event, claim] : trace.points.back().happens.listed) {
     if (reader.may_happen_last(event, trace.length())) continue;
-    return sink.error(base::DiagnosticCode::kTraceFileShape, claim.source,
-                      "no event at the last timepoint", fmt::format("`{}`", event));
+    return sink.error(codes::kTraceFileShape, claim.source, "no event at the last timepoint",
+                      fmt::format("`{}`", event));
   }
   if (!read_list(root, "predicates", AtomKind::kPredicate, reader, trace.predicates)) {
     return sink.already_reported();
@@ -130,7 +128,7 @@ bool take_summary(TraceFileHead& head, const base::SourceFiles& files, base::Dia
   head.complete = complete && complete->is(JsonKind::kBoolean) && complete->boolean();
   const auto count = last->root().find("traces");
   if (count && count->integer() != std::ssize(head.traces)) {
-    sink.error(DiagnosticCode::kTraceFileShape, count->source(),
+    sink.error(codes::kTraceFileShape, count->source(),
                fmt::format("{} traces, as stand before this line", head.traces.size()),
                count->text());
     return false;
@@ -146,7 +144,7 @@ base::Result<TraceFileHead> open_trace_file(base::FileId file, const base::Sourc
   const auto size = static_cast<std::uint32_t>(text.size());
   const auto lines = lines_of(file, text);
   if (lines.empty()) {
-    return sink.error(DiagnosticCode::kTraceFileSyntax, {file, 0, 0}, "it is empty");
+    return sink.error(codes::kTraceFileSyntax, {file, 0, 0}, "it is empty");
   }
   TraceFileHead head;
   if (lines.size() > 1 && !first_line_is_whole(files.text(lines.front()))) {

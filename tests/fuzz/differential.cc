@@ -4,7 +4,7 @@
 #include <optional>
 #include <tuple>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/grounding.h"
 #include "tests/fuzz/old_encoder.h"
 #include "tests/fuzz/oracles.h"
 
@@ -270,7 +270,7 @@ Comparison compare_with_old_encoder(const std::string& text, const DifferentialO
   const auto old = old_encoder_traces(*made.typed, options.max_traces + 1);
   result.code = old.beyond;
   for (const auto& diagnostic : made.sink.sorted()) {
-    if (diagnostic.code == base::DiagnosticCode::kNamedCompletion) {
+    if (diagnostic.code == codes::kNamedCompletion) {
       result.code = "completion over named parts";
     }
   }

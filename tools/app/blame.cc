@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "runtime/session/solver_session.h"
 
 namespace parallax::tools {
@@ -296,7 +296,7 @@ base::Result<std::optional<Parting>> find_parting(const CompiledModel& model,
       return std::optional(*std::move(parting));
     }
   }
-  return context.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
+  return context.sink().error_about(codes::kExplanationCutShort, "",
                                     "where model and simulation part is not known");
 }
 

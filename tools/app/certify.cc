@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "runtime/certify/certificate.h"
@@ -41,8 +41,7 @@ TraceCertifier::TraceCertifier(const CertifyOption& option, const std::vector<st
 
 void TraceCertifier::decline(const std::string& reason) {
   if (!files_) return;
-  context_.sink().error_about(base::DiagnosticCode::kNothingProved, files_->proof_path().string(),
-                              reason);
+  context_.sink().error_about(codes::kNothingProved, files_->proof_path().string(), reason);
 }
 
 std::unique_ptr<runtime::SatSolver> TraceCertifier::solver() {

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/contract.h"
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/suggest.h"
 #include "tools/app/cover_items.h"
 #include "tools/app/start_guide.h"
@@ -15,8 +15,6 @@
 #include "tools/app/trace_feed.h"
 
 namespace parallax::tools {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -52,7 +50,7 @@ base::Result<std::optional<harness::LoopStates>> ClosedLoop::initial_states(
                                        fluents, kMaxInitialStates);
   if (found.stopped) return std::optional<harness::LoopStates>();
   if (found.more) {
-    return sink.error(DiagnosticCode::kTooManyInitialStates,
+    return sink.error(codes::kTooManyInitialStates,
                       base::SourceRange{loaded_.scenario.source, 0, 0}, kMaxInitialStates);
   }
   if (found.states.empty()) {
@@ -129,11 +127,11 @@ base::DiagnosticBuilder ClosedLoop::report_end(const harness::ExecutedPath& path
   if (path.end == harness::PathEnd::kUnnamedObject) {
     auto why = plan_->unseen(id);
     if (why.empty()) why = "it holds of nothing";
-    auto error = sink.error(DiagnosticCode::kUnnamedObject, location.binding, step.event, why);
+    auto error = sink.error(codes::kUnnamedObject, location.binding, step.event, why);
     error.note(location.source, "performed here");
     return error;
   }
-  auto error = sink.error(DiagnosticCode::kUnboundReason, location.binding, step.event, reason);
+  auto error = sink.error(codes::kUnboundReason, location.binding, step.event, reason);
   error.note(location.source, "performed here");
   std::vector<std::string> known;
   for (const auto& [failure_class, reasons] : location.failures) {

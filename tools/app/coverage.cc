@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/json.h"
 #include "harness/campaign/journal.h"
@@ -22,8 +22,6 @@
 
 namespace parallax::tools {
 namespace {
-
-using base::DiagnosticCode;
 
 bool same_trace(const harness::CampaignTrace& a, const harness::CampaignTrace& b) {
   if (a.key != b.key || a.points.size() != b.points.size()) return false;
@@ -101,7 +99,7 @@ class Collector {
     }
     auto journal = harness::read_journal(folder, context_.files(), sink);
     if (!journal) return sink.already_reported();
-    if (!journal->header) return sink.error_about(DiagnosticCode::kNoJournal, folder);
+    if (!journal->header) return sink.error_about(codes::kNoJournal, folder);
     if (!expect_traces({folder, {}}, *journal->header, sink)) return sink.already_reported();
     RunRecord run{folder, *std::move(journal), false, {}};
     const auto& header = *run.journal.header;
@@ -110,7 +108,7 @@ class Collector {
     run.terms.confidence = header.asked.confidence_level.value_or(0.0);
     for (const auto& [key, record] : run.journal.samples) {
       if (record.path.has_value() == run.executed) continue;
-      return sink.error(DiagnosticCode::kForeignJournalLine, run.journal.places.at(key),
+      return sink.error(codes::kForeignJournalLine, run.journal.places.at(key),
                         run.executed ? "`path` is missing" : "no plan was executed");
     }
     runs_.push_back(std::move(run));
@@ -187,7 +185,7 @@ class Collector {
       if (context_.stopped()) break;
       const auto& place = run.journal.places.at(key);
       const auto why = *check ? (*check)->wrong(run.journal.samples.at(key)) : std::string();
-      if (!why.empty()) return sink.error(DiagnosticCode::kForeignJournalLine, place, why);
+      if (!why.empty()) return sink.error(codes::kForeignJournalLine, place, why);
       if (!scenario.loop->add(run.journal.samples.at(key), header.seed, run.terms, place)) {
         return sink.already_reported();
       }
@@ -234,14 +232,14 @@ class Collector {
     const auto listed = list_traces(compilation.model, journal, options_.limit, context_);
     if (!listed) {
       if (sink.has_errors()) return sink.already_reported();
-      return sink.error(DiagnosticCode::kForeignJournalLine, journal.trace_places.begin()->second,
+      return sink.error(codes::kForeignJournalLine, journal.trace_places.begin()->second,
                         "the model has no such trace");
     }
     compiler::ReferenceLimits limits;
     limits.stop = &context_.stop();
     const compiler::ReferenceEvaluator evaluator(*compilation.typed, limits);
     if (const auto reason = evaluator.refusal()) {
-      return sink.error_about(DiagnosticCode::kCheckGivenUp, "", 1, *reason);
+      return sink.error_about(codes::kCheckGivenUp, "", 1, *reason);
     }
     const ModelCoverage model(*compilation.typed, evaluator, context_.files());
     std::optional<PlanCoverage> plan;

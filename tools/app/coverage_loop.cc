@@ -6,14 +6,13 @@
 #include <cmath>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "harness/campaign/loop_judge.h"
 #include "harness/campaign/loop_samples.h"
 #include "tools/app/cover_items.h"
 
 namespace parallax::tools {
 
-using base::DiagnosticCode;
 using base::Known;
 using harness::PathStep;
 using harness::SampleRecord;
@@ -55,7 +54,7 @@ base::Result<std::unique_ptr<LoopCoverage>> LoopCoverage::make(const ScenarioMod
   if (!loop) return context.sink().already_reported();
   std::unique_ptr<LoopCoverage> out(new LoopCoverage(loaded, *std::move(loop), longest, context));
   if (const auto reason = out->evaluator_.refusal()) {
-    return context.sink().error_about(DiagnosticCode::kCheckGivenUp, "", 1, *reason);
+    return context.sink().error_about(codes::kCheckGivenUp, "", 1, *reason);
   }
   out->model_ = std::make_unique<ModelCoverage>(out->typed_, out->evaluator_, context.files());
   return out;
@@ -74,7 +73,7 @@ LoopCoverage::LoopCoverage(const ScenarioModel& loaded, std::unique_ptr<ClosedLo
 base::Status LoopCoverage::add(const SampleRecord& record, std::uint64_t seed,
                                const RunTerms& terms, const base::SourceRange& place) {
   const auto foreign = [&](const std::string& why) {
-    return context_.sink().error(DiagnosticCode::kForeignJournalLine, place, why);
+    return context_.sink().error(codes::kForeignJournalLine, place, why);
   };
   const auto key = harness::LoopSamples::choices_key(seed, record.sample);
   const auto path = loop_->scenario_plan().retrace(key, record);

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/plans.h"
 #include "compiler/plan/plan_graph.h"
 #include "runtime/enumerate/dead_steps.h"
 
@@ -31,7 +31,7 @@ void report_dead_retries(const compiler::Compilation& compilation, Context& cont
     ++entry.second;
   }
   for (const auto& [key, entry] : found) {
-    context.sink().warning(base::DiagnosticCode::kDeadRetry, entry.first, key.second, entry.second);
+    context.sink().warning(codes::kDeadRetry, entry.first, key.second, entry.second);
   }
 }
 
@@ -43,7 +43,7 @@ void report_dead_handlers(const compiler::Compilation& compilation, Context& con
     std::vector<std::size_t> steps;
     for (const auto location : handler.failures) steps.push_back(location.index());
     if (!steps.empty() && runtime::can_fail(session, steps)) continue;
-    context.sink().warning(base::DiagnosticCode::kDeadHandler, handler.source,
+    context.sink().warning(codes::kDeadHandler, handler.source,
                            fmt::format("{}", fmt::join(handler.failure_classes, "`, `")),
                            steps.empty() ? "" : " in the model");
   }

@@ -7,7 +7,8 @@
 #include <map>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "harness/campaign/judge.h"
@@ -66,7 +67,7 @@ base::Result<std::optional<ReportedDiscrepancy>> find_discrepancy(const std::str
   if (!text) return sink.already_reported();
   const auto report = base::parse_json(*text);
   const auto refuse = [&] {
-    return sink.error_about(base::DiagnosticCode::kUsage, path, "this is no report of a run");
+    return sink.error_about(codes::kUsage, path, "this is no report of a run");
   };
   const auto* list = base::json_member(report, "discrepancies");
   if (list == nullptr || !list->is_array()) return refuse();
@@ -78,8 +79,7 @@ base::Result<std::optional<ReportedDiscrepancy>> find_discrepancy(const std::str
     others += (others.empty() ? "" : ", ") + found->id();
   }
   if (sample.empty()) return std::optional<ReportedDiscrepancy>();
-  return sink
-      .error_about(base::DiagnosticCode::kNoSuchSample, run_dir, sample + " with a discrepancy")
+  return sink.error_about(codes::kNoSuchSample, run_dir, sample + " with a discrepancy")
       .note(others.empty() ? "the run found no discrepancy"
                            : "it found discrepancies in " + others);
 }
@@ -127,8 +127,7 @@ base::Result<std::optional<RecordedDiscrepancy>> load_discrepancy(const RunFolde
   if (!*discrepancy || !journal->header) return std::optional<RecordedDiscrepancy>();
   const harness::SampleId id{(*discrepancy)->trace, (*discrepancy)->sample};
   if (!journal->samples.contains({id.trace, id.sample, harness::DrawPhase::kCertify})) {
-    return sink
-        .error_about(base::DiagnosticCode::kNoSuchSample, folder.folder, (*discrepancy)->id())
+    return sink.error_about(codes::kNoSuchSample, folder.folder, (*discrepancy)->id())
         .note("report.json tells of it, the journal does not");
   }
   const auto recorded = harness::recorded_run(*journal, id);
@@ -139,7 +138,7 @@ base::Result<std::optional<RecordedDiscrepancy>> load_discrepancy(const RunFolde
   auto path = observed_path(*loaded, recorded, context);
   if (!path) return sink.already_reported();
   if (!is_what_was_seen(**discrepancy, *loaded, *trace, recorded, *path)) {
-    return sink.error(base::DiagnosticCode::kForeignJournalLine, recorded.source,
+    return sink.error(codes::kForeignJournalLine, recorded.source,
                       "what it observed is not the discrepancy that report.json tells of");
   }
   auto parting = find_parting(loaded->compilation.model, *path, context);

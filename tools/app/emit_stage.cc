@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compiler/asp/asp_export.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/cnf/encoder.h"
 #include "compiler/ground/grounder.h"
@@ -123,8 +123,7 @@ std::string logic_program(const compiler::ModelAst& ast, const compiler::CheckOp
                           const ModelOptions& options, Context& context) {
   auto& sink = context.sink();
   if (!options.compat.empty()) {
-    sink.error_about(base::DiagnosticCode::kUsage, "",
-                     "--emit=lp has the standard meaning only; drop --compat");
+    sink.error_about(codes::kUsage, "", "--emit=lp has the standard meaning only; drop --compat");
     return {};
   }
   const auto model = compiler::check_model(ast, context.files(), sink, check);

@@ -6,12 +6,11 @@
 #include <set>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/plan/plan_walk.h"
 
 namespace parallax::tools {
 
-using base::DiagnosticCode;
 using compiler::LocationId;
 using compiler::RegisterObjects;
 
@@ -146,7 +145,7 @@ base::Status ScenarioPlan::settle(const std::function<base::Known(const std::str
                                   base::DiagnosticSink& sink) {
   const auto errors_before = sink.error_count();
   if (questions_.too_large()) {
-    return sink.error(DiagnosticCode::kQuestionNotObserved, loaded_.scenario.execution_source,
+    return sink.error(codes::kQuestionNotObserved, loaded_.scenario.execution_source,
                       "the plan's formulas have too many instances");
   }
   for (std::size_t i = 0; i < questions_.predicates().size(); ++i) {
@@ -158,7 +157,7 @@ base::Status ScenarioPlan::settle(const std::function<base::Known(const std::str
     if (branch.free) continue;
     const auto why = unseen(questions_.of_guard(id));
     if (why.empty()) continue;
-    sink.error(DiagnosticCode::kQuestionNotObserved, branch.source,
+    sink.error(codes::kQuestionNotObserved, branch.source,
                fmt::format("{}; asked is `{}`", why, branch.text()));
   }
   for (std::size_t i = 0; i < graph_.locations.size() && formula_decides_; ++i) {
@@ -166,7 +165,7 @@ base::Status ScenarioPlan::settle(const std::function<base::Known(const std::str
     const auto why = unseen(id);
     if (why.empty()) continue;
     const auto& success = graph_.locations[id].success;
-    sink.error(DiagnosticCode::kQuestionNotObserved, success.source,
+    sink.error(codes::kQuestionNotObserved, success.source,
                fmt::format("{}; asked is `{}`", why, success.formula.text));
   }
   if (sink.error_count() != errors_before) return sink.already_reported();

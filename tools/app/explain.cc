@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/graph/model_traces.h"
 
@@ -104,11 +104,11 @@ base::Result<ValuedTrace> load_trace(const compiler::CompiledModel& model, std::
   const auto valued = found.trace ? value(model, *found.trace, context) : std::nullopt;
   if (valued) return *valued;
   if (context.stopped()) {
-    return context.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
+    return context.sink().error_about(codes::kExplanationCutShort, "",
                                       fmt::format("trace {} was not reached", number));
   }
   return context.sink().error_about(
-      base::DiagnosticCode::kNoSuchTrace, "--trace", number,
+      codes::kNoSuchTrace, "--trace", number,
       found.count == "0" ? "the model has none" : fmt::format("the model has {}", found.count));
 }
 
@@ -134,7 +134,7 @@ base::Result<runtime::MinimalSets> ContradictionSearch::sets(const SetOptions& o
                                  solver, static_cast<std::size_t>(options.limit), &context_.stop())
                            : runtime::smallest_set(solver, &context_.stop());
   if (found.unknown) {
-    return context_.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
+    return context_.sink().error_about(codes::kExplanationCutShort, "",
                                        "whether there is a contradiction is not known");
   }
   return found;
@@ -159,7 +159,7 @@ Contradiction ContradictionSearch::look_at(const runtime::IndexSet& set) {
   limits.stop = &context_.stop();
   const auto ground = runtime::ground_contradiction(formula_, axioms_, set, limits, effort_);
   if (ground.proof.verdict == runtime::ProofVerdict::kRejected) {
-    context_.sink().error_about(base::DiagnosticCode::kProofRejected, "", ground.proof.reason);
+    context_.sink().error_about(codes::kProofRejected, "", ground.proof.reason);
   }
   Contradiction out{{}, ground.minimal, ground.proof.verdict, ground.clauses};
   for (const auto group : set) {
@@ -191,7 +191,7 @@ base::Result<FactExplanation> explain_why(const compiler::CompiledModel& model,
   if (!trace) return sink.already_reported();
   if (!is_within(*fact, trace->length)) {
     return sink.error_about(
-        base::DiagnosticCode::kNoSuchFact, "--why", query.fact,
+        codes::kNoSuchFact, "--why", query.fact,
         fmt::format("trace {} ends at {}{}", query.trace, trace->length,
                     fact->kind == AtomKind::kHappens ? ", where nothing happens any more" : ""));
   }
@@ -207,8 +207,7 @@ base::Result<FactExplanation> explain_why(const compiler::CompiledModel& model,
     return step.kind == runtime::WhyKind::kUndecided;
   });
   if (undecided) {
-    sink.error_about(base::DiagnosticCode::kExplanationCutShort, "",
-                     "whether every choice is one is not known");
+    sink.error_about(codes::kExplanationCutShort, "", "whether every choice is one is not known");
   }
   return out;
 }

@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "harness/campaign/judge.h"
 #include "harness/campaign/start_check.h"
 
 namespace parallax::tools {
 
-using base::DiagnosticCode;
 using harness::DrawPhase;
 using harness::SampleRecord;
 using harness::SampleStatus;
@@ -119,11 +119,11 @@ base::Result<bool> ExtraRuns::keep(SampleRecord record, const harness::CampaignT
     return report_rejected(scenario(), start, record.rejected, record.sample, record.reason, sink);
   }
   if (record.status == SampleStatus::kRefused) {
-    return sink.error(DiagnosticCode::kSimulatorRefused, scenario().actions_source,
+    return sink.error(codes::kSimulatorRefused, scenario().actions_source,
                       fmt::format("refused the start or an action {}", in), record.reason);
   }
   const auto error = journal_->write_error();
-  if (!error.empty()) return sink.error_about(DiagnosticCode::kFileNotWritable, "", error);
+  if (!error.empty()) return sink.error_about(codes::kFileNotWritable, "", error);
   if (record.status == SampleStatus::kLost) {
     const bool too_often = bench_->lost_too_often(record, false);
     samples_.emplace(harness::SampleKey(record.trace, record.sample, record.phase),

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "harness/campaign/journal.h"
 
 namespace parallax::tools {
@@ -134,7 +134,7 @@ base::Status expect_kind(const std::string& path, std::initializer_list<FileKind
       kind == FileKind::kUnknown || std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
   if (fits) return base::Unit{};
   return context.sink()
-      .error_about(base::DiagnosticCode::kWrongKindOfFile, path, what_it_is(kind), wanted)
+      .error_about(codes::kWrongKindOfFile, path, what_it_is(kind), wanted)
       .help(what_takes(kind, path));
 }
 

@@ -2,7 +2,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "harness/campaign/trial.h"
 #include "tools/app/evidence.h"
 #include "tools/app/trace_feed.h"
@@ -55,7 +56,7 @@ class FurtherRuns {
     bench.close();
     const auto error = (*journal)->write_error();
     if (!error.empty()) {
-      return sink.error_about(base::DiagnosticCode::kFileNotWritable, run_dir, error);
+      return sink.error_about(codes::kFileNotWritable, run_dir, error);
     }
     return std::move(made_);
   }
@@ -101,7 +102,7 @@ class FurtherRuns {
       const auto why =
           harness::wrong_draw(record, plan.sampler, plan.campaign_seed, plan.trace_key);
       if (why.empty()) continue;
-      return context_.sink().error(base::DiagnosticCode::kForeignJournalLine, place->second, why);
+      return context_.sink().error(codes::kForeignJournalLine, place->second, why);
     }
     return base::Unit{};
   }

@@ -5,7 +5,8 @@
 #include <algorithm>
 
 #include "compiler/artifact/artifact_writer.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/artifacts.h"
+#include "compiler/base/codes/files.h"
 #include "tools/app/version.h"
 
 namespace parallax::tools {
@@ -32,7 +33,7 @@ bool names_artifact(const ModelOptions& options) {
 base::Result<compiler::CompiledModel> load_artifact(const ModelOptions& options, Context& context) {
   auto& sink = context.sink();
   const auto refuse = [&](const char* what) {
-    return sink.error_about(base::DiagnosticCode::kUsage, options.models.front(), what);
+    return sink.error_about(codes::kUsage, options.models.front(), what);
   };
   if (options.models.size() > 1) {
     return refuse("a compiled model stands alone; compile the texts together instead");
@@ -42,8 +43,7 @@ base::Result<compiler::CompiledModel> load_artifact(const ModelOptions& options,
   }
   auto model = compiler::load_artifact(options.models.front(), context.files(), sink);
   if (model && options.horizon >= 0 && options.horizon != model->horizon) {
-    return sink.error_about(base::DiagnosticCode::kHorizonNotExtensible, options.models.front(),
-                            options.horizon,
+    return sink.error_about(codes::kHorizonNotExtensible, options.models.front(), options.horizon,
                             fmt::format("it was compiled for the horizon {}", model->horizon));
   }
   return model;

@@ -7,7 +7,7 @@
 #include <map>
 #include <unordered_map>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/suggest.h"
 #include "compiler/base/utf8.h"
 #include "harness/monitor/line_source.h"
@@ -22,7 +22,6 @@ void take_size(Watch& watch, MonitorResult& result) {
   result.most_states = watch.belief().largest();
 }
 
-using base::DiagnosticCode;
 using compiler::EventId;
 using harness::LineSource;
 using harness::LogEntry;
@@ -140,7 +139,7 @@ class LogWatcher {
 
   bool refuse(const LogError& error) {
     auto report = context_.sink().error_about(
-        DiagnosticCode::kBadLogLine,
+        codes::kBadLogLine,
         fmt::format("{}:{}:{}", result_.log, source_.number(), error.column + skipped_),
         error.text);
     for (const auto& note : notes_) report.note(note);

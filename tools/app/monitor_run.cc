@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "harness/campaign/journal.h"
 #include "tools/app/execution_check.h"
 #include "tools/app/monitor.h"
@@ -124,7 +124,7 @@ base::Result<std::vector<MonitorResult>> monitor_run(const RunFolderOptions& run
   const auto journal = harness::read_journal(run.folder, context.files(), sink);
   if (!journal) return sink.already_reported();
   if (!journal->header) {
-    return sink.error_about(base::DiagnosticCode::kNoJournal, run.folder);
+    return sink.error_about(codes::kNoJournal, run.folder);
   }
   if (!expect_traces(run, *journal->header, sink)) return sink.already_reported();
   const auto loaded = load_recorded_scenario(run, *journal->header, ScenarioUse::kRun, context);
@@ -151,15 +151,14 @@ base::Result<std::vector<MonitorResult>> monitor_run(const RunFolderOptions& run
     const auto steps = steps_of(record, *journal);
     if ((!record.path && !journal->traces.contains(record.trace)) ||
         record.observations.size() != steps.size() + 1 || record.outcomes.size() != steps.size()) {
-      return sink.error(base::DiagnosticCode::kForeignJournalLine, journal->places.at(key),
+      return sink.error(codes::kForeignJournalLine, journal->places.at(key),
                         "its observations are not those of its trace");
     }
     for (const auto& step : steps) {
       if ((*watch)->symbols().event(step.event)) continue;
       const auto& place =
           record.path ? journal->places.at(key) : journal->trace_places.at(record.trace);
-      return sink.error(base::DiagnosticCode::kForeignJournalLine, place,
-                        "it names what the model has not");
+      return sink.error(codes::kForeignJournalLine, place, "it names what the model has not");
     }
     auto why = misfit((*watch)->reader(), record);
     if (why.empty() && record.path.has_value() != executed) {
@@ -167,7 +166,7 @@ base::Result<std::vector<MonitorResult>> monitor_run(const RunFolderOptions& run
     }
     if (why.empty() && check) why = check->wrong(record);
     if (!why.empty()) {
-      return sink.error(base::DiagnosticCode::kForeignJournalLine, journal->places.at(key), why);
+      return sink.error(codes::kForeignJournalLine, journal->places.at(key), why);
     }
     out.push_back(RunWatcher(**watch, steps, record).run());
   }

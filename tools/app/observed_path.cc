@@ -4,7 +4,7 @@
 #include <set>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "harness/campaign/journal.h"
 #include "tools/app/execution_check.h"
 #include "tools/app/recorded_run.h"
@@ -12,7 +12,6 @@
 namespace parallax::tools {
 namespace {
 
-using base::DiagnosticCode;
 using harness::Comparison;
 using harness::RecordedRun;
 
@@ -40,7 +39,7 @@ class PathReader {
     const auto& record = run.record;
     const auto& trace = *run.line.trace;
     const auto foreign = [&](const base::SourceRange& line, const char* why) {
-      return context_.sink().error(DiagnosticCode::kForeignJournalLine, line, why);
+      return context_.sink().error(codes::kForeignJournalLine, line, why);
     };
     ObservedPath path;
     path.id = run.id;
@@ -147,12 +146,12 @@ base::Result<std::vector<ObservedPath>> observed_paths(const ScenarioModel& load
     if (record.phase != harness::DrawPhase::kCertify) continue;
     if (record.status != harness::SampleStatus::kOk) continue;
     if (!record.path && !journal.traces.contains(record.trace)) {
-      return context.sink().error(DiagnosticCode::kForeignJournalLine, journal.places.at(key),
+      return context.sink().error(codes::kForeignJournalLine, journal.places.at(key),
                                   "its trace is not in the journal");
     }
     const auto why = check && record.path ? check->wrong(record) : std::string();
     if (!why.empty()) {
-      return context.sink().error(DiagnosticCode::kForeignJournalLine, journal.places.at(key), why);
+      return context.sink().error(codes::kForeignJournalLine, journal.places.at(key), why);
     }
     auto path = reader.read(harness::recorded_run(journal, {record.trace, record.sample}));
     if (!path) return context.sink().already_reported();

@@ -8,7 +8,8 @@
 #include <set>
 #include <system_error>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/texts.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/hash.h"
 #include "harness/sampling/sampler.h"
@@ -16,8 +17,6 @@
 #include "tools/app/execution_check.h"
 
 namespace parallax::tools {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -164,7 +163,7 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
   const bool is_recorded = options.scenario.empty();
   const auto path = is_recorded ? scenario_path(header) : fs::path(options.scenario);
   const auto refuse = [&](const std::string& why) {
-    return sink.error_about(DiagnosticCode::kReplayImpossible, options.folder, why);
+    return sink.error_about(codes::kReplayImpossible, options.folder, why);
   };
   if (is_recorded && !is_file(path)) {
     return refuse(fmt::format("there is no scenario `{}`", base::printable(path.string())));
@@ -185,7 +184,7 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
   }
   const auto said = sink.sorted();
   const bool outside = std::any_of(said.begin(), said.end(), [](const auto& diagnostic) {
-    return diagnostic.code == DiagnosticCode::kLoadOutside;
+    return diagnostic.code == codes::kLoadOutside;
   });
   if (is_recorded) sink = before;
   if (!loaded && !is_recorded) return sink.already_reported();
@@ -208,7 +207,7 @@ base::Result<ScenarioModel> load_recorded_scenario(const RunFolderOptions& optio
 base::Status expect_traces(const RunFolderOptions& options, const harness::JournalHeader& header,
                            base::DiagnosticSink& sink) {
   if (!header.asked.random_sequences) return base::Unit{};
-  return sink.error_about(DiagnosticCode::kReplayImpossible, options.folder,
+  return sink.error_about(codes::kReplayImpossible, options.folder,
                           "it has random sequences of events, which no trace of the model and no "
                           "plan has; `parallax replay` repeats them");
 }
@@ -218,7 +217,7 @@ base::Result<harness::CampaignTrace> check_recorded_run(const ScenarioModel& loa
                                                         Context& context) {
   auto& sink = context.sink();
   const auto foreign = [&](const base::SourceRange& line, const std::string& why) {
-    return sink.error(DiagnosticCode::kForeignJournalLine, line, why);
+    return sink.error(codes::kForeignJournalLine, line, why);
   };
   const auto& model = loaded.compilation.model;
   auto trace = in_ids_of(model, *run.line.trace);
@@ -251,14 +250,14 @@ base::Status check_recorded_starts(const ScenarioModel& loaded, const harness::J
     if (!samplers.contains(record.trace)) {
       const auto trace = in_ids_of(loaded.compilation.model, recorded);
       if (!trace) {
-        return sink.error(DiagnosticCode::kForeignJournalLine,
-                          journal.trace_places.at(record.trace), "it names what the model has not");
+        return sink.error(codes::kForeignJournalLine, journal.trace_places.at(record.trace),
+                          "it names what the model has not");
       }
       samplers.emplace(record.trace, sampler_of(loaded.scenario, *trace));
     }
     const auto why = wrong_start(samplers.at(record.trace), record, journal.header->seed, recorded);
     if (why.empty()) continue;
-    return sink.error(DiagnosticCode::kForeignJournalLine, journal.places.at(key), why);
+    return sink.error(codes::kForeignJournalLine, journal.places.at(key), why);
   }
   return base::Unit{};
 }

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/loop_stream.h"
 #include "harness/campaign/start_check.h"
@@ -152,7 +152,7 @@ void check_before_executions(const ScenarioModel& loaded, Context& context) {
   auto& sink = context.sink();
   const auto& scenario = loaded.scenario;
   if (scenario.criterion.kind == harness::CriterionKind::kPaper) {
-    sink.error(base::DiagnosticCode::kCriterionNotOfLoop, base::SourceRange{scenario.source, 0, 0});
+    sink.error(codes::kCriterionNotOfLoop, base::SourceRange{scenario.source, 0, 0});
     return;
   }
   harness::warn_of_low_limit(scenario, context.files(), sink);
@@ -186,7 +186,7 @@ void check_before_run(const ScenarioModel& loaded, Context& context) {
     return check_before_executions(loaded, context);
   }
   if (!model.has_constraints) {
-    sink.error(base::DiagnosticCode::kNothingToSimulate, base::SourceRange{scenario.source, 0, 0});
+    sink.error(codes::kNothingToSimulate, base::SourceRange{scenario.source, 0, 0});
     return;
   }
   harness::warn_of_low_limit(scenario, context.files(), sink);

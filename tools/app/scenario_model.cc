@@ -7,7 +7,8 @@
 #include <memory>
 #include <system_error>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "compiler/plan/plan_files.h"
@@ -23,8 +24,6 @@
 #include "tools/app/world_model.h"
 
 namespace parallax::tools {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -215,7 +214,7 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
     if (!input->plan) {
       const auto& key = scenario->execution_source;
       const bool written = !switches.execution;
-      return sink.error(DiagnosticCode::kNoPlanToExecute,
+      return sink.error(codes::kNoPlanToExecute,
                         written ? key : base::SourceRange{scenario->source, 0, 0});
     }
     execute(*scenario, *input);
@@ -453,7 +452,7 @@ base::Result<base::SourceRange> formula_argument(const std::string& option, cons
   base::DiagnosticSink unread;  // whoever parses the formula reports what is wrong with it
   const Lexer lexer(range, files[file].text(), Lexer::Mode::kFormulaOnly, unread);
   if (lexer.peek().kind == compiler::TokenKind::kEnd && unread.error_count() == 0) {
-    return context.sink().error_about(base::DiagnosticCode::kUsage, option, "the formula is empty");
+    return context.sink().error_about(codes::kUsage, option, "the formula is empty");
   }
   return range;
 }

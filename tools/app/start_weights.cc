@@ -6,13 +6,12 @@
 #include <map>
 #include <optional>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/scenarios.h"
 #include "compiler/pipeline/plan_questions.h"
 #include "compiler/pipeline/state_constraint.h"
 
 namespace parallax::tools {
-
-using base::DiagnosticCode;
 
 namespace {
 
@@ -69,7 +68,7 @@ base::Result<std::vector<double>> start_weights(
   auto& questions = *asked->questions;
   const auto& entries = loaded.scenario.start_weights;
   if (questions.too_large()) {
-    return sink.error(DiagnosticCode::kQuestionNotObserved, loaded.scenario.start_weights_source,
+    return sink.error(codes::kQuestionNotObserved, loaded.scenario.start_weights_source,
                       "the formulas of `start_weights` have too many instances");
   }
   for (std::size_t i = 0; i < questions.predicates().size(); ++i) {
@@ -99,7 +98,7 @@ base::Result<std::vector<double>> start_weights(
       }
     }
     if (why.empty()) continue;
-    sink.error(DiagnosticCode::kQuestionNotObserved, entries[i].when.source,
+    sink.error(codes::kQuestionNotObserved, entries[i].when.source,
                fmt::format("{}; asked is `{}`", why, entries[i].when.text));
   }
   if (sink.error_count() != errors_before) return sink.already_reported();
@@ -119,7 +118,7 @@ base::Result<std::vector<double>> start_weights(
     sum += weight;
   }
   if (sum > 0.0) return weights;
-  return sink.error(DiagnosticCode::kYamlOutOfBounds, loaded.scenario.start_weights_source,
+  return sink.error(codes::kYamlOutOfBounds, loaded.scenario.start_weights_source,
                     "the weight of initial states",
                     fmt::format("0 for each of the {} that the model has", states.size()),
                     "above 0 for one of them");

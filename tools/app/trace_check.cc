@@ -1,6 +1,6 @@
 #include "tools/app/trace_check.h"
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "tools/app/trace_check.h"
 
 namespace parallax::tools {
@@ -31,14 +31,14 @@ void TraceCheck::check(const runtime::Trace& trace) {
 
 void TraceCheck::give_up(const runtime::Trace& trace, const std::string& reason) {
   given_up_ = true;
-  sink_.error_about(base::DiagnosticCode::kCheckGivenUp, "", trace.number, reason);
+  sink_.error_about(codes::kCheckGivenUp, "", trace.number, reason);
 }
 
 void TraceCheck::report(const runtime::Trace& trace,
                         const std::vector<compiler::Violation>& violations) {
   disagreed_ = true;
   const auto& first = violations.front();
-  const auto code = base::DiagnosticCode::kTraceDisagrees;
+  const auto code = codes::kTraceDisagrees;
   auto built = has_place(first.source) ? sink_.error(code, first.source, trace.number, first.text)
                                        : sink_.error_about(code, "", trace.number, first.text);
   for (std::size_t i = 1; i < violations.size(); ++i) {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/suggest.h"
 #include "compiler/base/whole_number.h"
 #include "compiler/syntax/lexer.h"
@@ -68,8 +68,7 @@ base::Result<TraceFact> parse_fact(const std::string& text, const compiler::Comp
   const auto range = formula_argument("--why", text, context);
   if (!range) return context.sink().already_reported();
   const auto fail = [&](base::SourceRange at, const std::string& problem) {
-    return context.sink().error(base::DiagnosticCode::kNoSuchFact, at, compiler::shortened(text),
-                                problem);
+    return context.sink().error(codes::kNoSuchFact, at, compiler::shortened(text), problem);
   };
   base::DiagnosticSink own;
   const auto parsed = compiler::parse_formula(*range, context.files(), own);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "harness/region/state_mapping.h"
 #include "runtime/explain/contradiction.h"
 #include "runtime/session/solver_session.h"
@@ -44,7 +44,7 @@ base::Known report_if_unsatisfiable(const compiler::CompiledModel& model, compil
   std::vector<const compiler::Origin*> blamed;
   for (const auto index : core.origins) blamed.push_back(&model.origins[index]);
   const auto first = blamed.empty() ? base::SourceRange{} : blamed.front()->source;
-  auto diagnostic = context.sink().error(base::DiagnosticCode::kModelUnsatisfiable, first, steps);
+  auto diagnostic = context.sink().error(codes::kModelUnsatisfiable, first, steps);
   for (const auto* origin : blamed) {
     diagnostic.note(origin->source, fmt::format("this {} takes part", to_string(origin->kind)));
   }
@@ -108,8 +108,7 @@ base::Status EnumeratedTraces::explain_absence() const {
   const auto reasons = reasons_ ? reasons_() : std::vector<std::string>();
   for (const auto& origin : model_->origins) {
     if (origin.kind != compiler::OriginKind::kStateConstraint) continue;
-    auto warning = sink.warning(base::DiagnosticCode::kNoTraceReachesConstraint, origin.source,
-                                model_->horizon);
+    auto warning = sink.warning(codes::kNoTraceReachesConstraint, origin.source, model_->horizon);
     for (const auto& reason : reasons) warning.note(reason);
   }
   return base::Unit{};
@@ -123,8 +122,7 @@ base::Result<harness::CampaignTrace> campaign_trace(const compiler::CompiledMode
     const auto& point = out.points[t];
     if (point.happens.size() != 1) {
       const auto where = model.origins.front().source;
-      return context.sink().error(base::DiagnosticCode::kSeveralEventsAtOnce, where,
-                                  point.happens.size(), t);
+      return context.sink().error(codes::kSeveralEventsAtOnce, where, point.happens.size(), t);
     }
     auto& planned = out.plan.emplace_back();
     if (!point.plan_step) continue;

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "runtime/trace/csv_format.h"
 #include "runtime/trace/itf_format.h"
@@ -14,7 +14,6 @@ namespace parallax::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using base::DiagnosticCode;
 using runtime::ListEnd;
 using runtime::Trace;
 
@@ -50,9 +49,9 @@ class ItfFolder final : public runtime::ListFormat {
     fs::create_directories(folder_, error);
     const bool empty = !error && fs::is_empty(folder_, error);
     if (error) {
-      fail(sink_.error_about(DiagnosticCode::kFileNotWritable, folder_.string(), error.message()));
+      fail(sink_.error_about(codes::kFileNotWritable, folder_.string(), error.message()));
     } else if (!empty) {
-      fail(sink_.error_about(DiagnosticCode::kUsage, folder_.string(),
+      fail(sink_.error_about(codes::kUsage, folder_.string(),
                              "the folder is not empty; name a new one for --output"));
     } else {
       write("index.json", format_.end({0, false, "stopped", {}, {}}));
@@ -115,13 +114,13 @@ runtime::ItfFormat itf_format(const ModelOptions& model, const compiler::Compila
 bool check_listing(const ModelOptions& model, const ListingOptions& options,
                    base::DiagnosticSink& sink) {
   if (!options.output.empty() && options.format != "itf") {
-    sink.error_about(DiagnosticCode::kUsage, "",
+    sink.error_about(codes::kUsage, "",
                      "--output names a folder of ITF files and needs --format itf; the other "
                      "formats go to standard output");
     return false;
   }
   if (options.format == "decreasoner" && names_artifact(model)) {
-    sink.error_about(DiagnosticCode::kUsage, model.models.front(),
+    sink.error_about(codes::kUsage, model.models.front(),
                      "--format decreasoner depends on the options of the texts; name them instead");
     return false;
   }

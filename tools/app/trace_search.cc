@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "runtime/enumerate/model_enumerator.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/graph/model_traces.h"
@@ -37,7 +37,7 @@ void show_stats(const SearchOptions& options, const runtime::SourceStats& stats,
 }
 
 void report_refusal(const SearchOptions& options, const std::string& reason, Context& context) {
-  context.sink().error_about(base::DiagnosticCode::kStrategyRefused, "", options.strategy, reason);
+  context.sink().error_about(codes::kStrategyRefused, "", options.strategy, reason);
 }
 
 /// May the log of a search by blocking become the proof? Other strategies do not leave one.

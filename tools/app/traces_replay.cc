@@ -10,8 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "compiler/base/codes/artifacts.h"
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/diagnostic.h"
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "compiler/pipeline/compile.h"
 #include "compiler/reference/reference_evaluator.h"
@@ -109,7 +110,6 @@ std::optional<Blame> core_blame(const compiler::Compilation& compilation,
   return blame;
 }
 
-using base::DiagnosticCode;
 using runtime::ClaimedTrace;
 using runtime::ReplayVerdict;
 
@@ -148,7 +148,7 @@ class TraceFileReplay {
     if (length >= least && length <= most) return true;
     const auto wanted = least == most ? fmt::format("the model at {}", most)
                                       : fmt::format("a trace of it at {} to {}", least, most);
-    sink_.error(DiagnosticCode::kTraceWrongLength, trace.source, length, wanted);
+    sink_.error(codes::kTraceWrongLength, trace.source, length, wanted);
     return false;
   }
 
@@ -178,8 +178,7 @@ class TraceFileReplay {
       const auto result = evaluator->violations(valuation_of(verdict.completion), 1);
       if (!result.violations.empty()) {
         result_.sound = false;
-        sink_.error_about(DiagnosticCode::kTraceDisagrees, "", trace.number,
-                          result.violations.front().text);
+        sink_.error_about(codes::kTraceDisagrees, "", trace.number, result.violations.front().text);
         return true;
       }
       if (result.finished) ++result_.checked;
@@ -220,13 +219,13 @@ class TraceFileReplay {
   /// The solver finds no values, but nothing is open and the evaluator sees nothing wrong.
   std::optional<Blame> disagreement(const ClaimedTrace& trace) {
     result_.sound = false;
-    sink_.error_about(DiagnosticCode::kTraceDisagrees, "", trace.number,
+    sink_.error_about(codes::kTraceDisagrees, "", trace.number,
                       "by the solver; the evaluation of its axioms finds nothing wrong");
     return std::nullopt;
   }
 
   void report(const ClaimedTrace& trace, const Blame& blame) {
-    const auto code = DiagnosticCode::kTraceFails;
+    const auto code = codes::kTraceFails;
     auto built =
         blame.first.range
             ? sink_.error(code, *blame.first.range, trace.number, blame.timepoint, blame.first.text)
@@ -250,7 +249,7 @@ class TraceFileReplay {
         note.range = origin.source;
     }
     const auto range = note.range.value_or(trace.source);
-    sink_.error(DiagnosticCode::kTraceNoFirstHit, range, trace.number, text);
+    sink_.error(codes::kTraceNoFirstHit, range, trace.number, text);
     note_failure(trace, timepoint, note);
   }
 
@@ -290,7 +289,7 @@ base::Result<TracesReplay> replay_traces(const ModelOptions& model,
   if (!head) return sink.already_reported();
   const auto hash = runtime::model_hash(compilation->model);
   if (!options.other_model && head->model && *head->model != hash) {
-    return sink.error(DiagnosticCode::kTraceOtherModel, head->model_source, *head->model, hash);
+    return sink.error(codes::kTraceOtherModel, head->model_source, *head->model, hash);
   }
   TraceFileReplay replay(*compilation, report, context);
   if (!replay.run(*head)) return sink.already_reported();

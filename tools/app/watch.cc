@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/suggest.h"
 #include "compiler/plan/plan_binding.h"
@@ -15,7 +15,6 @@
 namespace parallax::tools {
 namespace {
 
-using base::DiagnosticCode;
 using compiler::CompiledModel;
 using compiler::EventId;
 using runtime::Admission;
@@ -43,7 +42,7 @@ base::Result<std::vector<EventId>> events_of(const std::vector<std::string>& sym
       out.emplace_back(e);
     }
     if (found) continue;
-    auto error = context.sink().error_about(DiagnosticCode::kNoSuchEvent, "unobserved", symbol);
+    auto error = context.sink().error_about(codes::kNoSuchEvent, "unobserved", symbol);
     if (const auto near = base::nearest_name(symbol, known)) {
       error.note(fmt::format("there is an event `{}`", *near));
     }
@@ -117,7 +116,7 @@ base::Result<std::unique_ptr<Watch>> Watch::make(const ScenarioModel& loaded,
       compiled = compile_variant(loaded.scenario, horizon, options.with_plan && has_plan, context);
       if (!compiled && out->windows_ != nullptr) break;
       if (!compiled) {
-        return sink.error_about(DiagnosticCode::kNoSteps, loaded.scenario.name,
+        return sink.error_about(codes::kNoSteps, loaded.scenario.name,
                                 "it cannot be compiled without its plan");
       }
       model = &*compiled;
@@ -125,7 +124,7 @@ base::Result<std::unique_ptr<Watch>> Watch::make(const ScenarioModel& loaded,
     auto made = runtime::step_windows(*model);
     if (const auto* why = std::get_if<std::string>(&made)) {
       if (out->windows_ != nullptr) break;
-      return sink.error_about(DiagnosticCode::kNoSteps, loaded.scenario.name, *why);
+      return sink.error_about(codes::kNoSteps, loaded.scenario.name, *why);
     }
     out->windows_ = std::get<std::unique_ptr<StepWindows>>(std::move(made));
   }

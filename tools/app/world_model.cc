@@ -8,15 +8,13 @@
 #include <string>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "compiler/pipeline/compile.h"
 #include "runtime/session/solver_session.h"
 #include "tools/app/version.h"
 
 namespace parallax::tools {
 namespace {
-
-using base::DiagnosticCode;
 
 // A world needs a step that is like the one before, so that it is known how it goes on.
 constexpr std::int64_t kLeastSteps = 2;
@@ -28,7 +26,7 @@ base::Status check_execution(const compiler::CompiledModel& model, compiler::Tim
       runtime::find_unsat_core(model, steps, runtime::make_cadical_solver(&context.stop()));
   if (core.status != runtime::SolveStatus::kUnsatisfiable) return base::Unit{};
   auto error =
-      context.sink().error(DiagnosticCode::kWorldNotPlayable, place,
+      context.sink().error(codes::kWorldNotPlayable, place,
                            steps == 0 ? "it has no initial state"
                                       : fmt::format("it has no execution of {} steps", steps));
   for (const auto index : core.origins) {
@@ -56,7 +54,7 @@ base::Result<std::shared_ptr<const harness::SteppedModel>> load_world_model(
   if (!compiled) return sink.already_reported();
   for (const auto& completion : compiled->typed->completions) {
     if (completion.predicate != compiled->typed->core.happens) continue;
-    return sink.error(DiagnosticCode::kWorldNotPlayable, completion.source,
+    return sink.error(codes::kWorldNotPlayable, completion.source,
                       "`Happens` is completed, so that nothing happens which the plan does");
   }
   const auto& model = compiled->model;
@@ -66,7 +64,7 @@ base::Result<std::shared_ptr<const harness::SteppedModel>> load_world_model(
   auto stepped = harness::step_model(std::filesystem::path(texts.front().text).filename().string(),
                                      std::move(compiled->model));
   if (auto* reason = std::get_if<std::string>(&stepped)) {
-    return sink.error(DiagnosticCode::kWorldNotPlayable, place, *reason);
+    return sink.error(codes::kWorldNotPlayable, place, *reason);
   }
   return std::get<std::shared_ptr<const harness::SteppedModel>>(std::move(stepped));
 }

@@ -2,7 +2,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/json.h"
 #include "harness/report/text_layout.h"
@@ -119,7 +119,7 @@ int bisect(const BisectCommandOptions& options, Invocation& invocation) {
                       {options.run.begin() + 1, options.run.end()}};
   for (const auto& word : asked.run_options) {
     if (!is_reserved(word)) continue;
-    sink.error_about(base::DiagnosticCode::kUsage, word,
+    sink.error_about(codes::kUsage, word,
                      "bisect says this itself; permissions stand in front of `--`");
     return 0;
   }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "harness/calibration/calibration.h"
 #include "harness/simulator/worker.h"
 #include "tools/cli/command.h"
@@ -52,7 +52,7 @@ int run_calibrate(const CalibrateOptions& options, Invocation& invocation) {
   const auto result = harness::calibrate(calibration, criteria, worlds, invocation.sink());
   if (!result) return 0;
   if (result->complete && result->in_process.empty() && result->protocol.empty()) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, "--loops",
+    invocation.sink().error_about(codes::kUsage, "--loops",
                                   "nothing is measured with it; name another number of loops, "
                                   "--protocol-loops, or other simulators");
     return 0;

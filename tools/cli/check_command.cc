@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "compiler/artifact/artifact_writer.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "tools/app/dead_retries.h"
 #include "tools/app/model_options.h"
 #include "tools/app/scenario_check.h"
@@ -30,7 +30,7 @@ bool mute_allowed(const std::vector<std::string>& allow, Invocation& invocation)
     const auto found =
         std::find_if(codes.begin(), codes.end(), [&](const auto& info) { return info.id == id; });
     if (found == codes.end() || found->severity != base::Severity::kWarning) {
-      invocation.sink().error_about(base::DiagnosticCode::kUsage, "",
+      invocation.sink().error_about(codes::kUsage, "",
                                     fmt::format("`{}` is the code of no warning", id));
       return false;
     }

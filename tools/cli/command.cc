@@ -10,7 +10,7 @@
 #include <set>
 #include <string_view>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
@@ -61,8 +61,7 @@ void Invocation::document(std::string json) { document_ = std::move(json); }
 /// A reader that has seen enough (head) closes the pipe: that is no error of ours to speak of.
 void Invocation::report_output_error() {
   if (output_error_ == 0 || output_error_ == EPIPE) return;
-  sink().error_about(base::DiagnosticCode::kFileNotWritable, "standard output",
-                     std::strerror(output_error_));
+  sink().error_about(codes::kFileNotWritable, "standard output", std::strerror(output_error_));
 }
 
 void Invocation::print_diagnostics(const std::vector<base::Diagnostic>& diagnostics) const {

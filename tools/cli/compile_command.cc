@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "compiler/artifact/artifact_writer.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/pipeline/compile_report.h"
 #include "tools/app/emit_stage.h"
@@ -33,8 +33,7 @@ int write_front_end_stage(const CompileOptions& options, Invocation& invocation)
   const auto text = front_end_text(options.emit, options.model, invocation);
   if (!text) return 0;
   if (options.out.empty() && invocation.options().json) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, "",
-                                  "--json needs --output: the text is no JSON");
+    invocation.sink().error_about(codes::kUsage, "", "--json needs --output: the text is no JSON");
   } else if (options.out.empty()) {
     invocation.result(*text);
   } else if (base::write_output(options.out, *text, invocation.files(), invocation.sink()) &&
@@ -56,12 +55,12 @@ int compile_and_write(CompileOptions& options, Invocation& invocation) {
     return 0;
   }
   if (options.model.models.empty()) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, "", "models is required");
+    invocation.sink().error_about(codes::kUsage, "", "models is required");
     return 0;
   }
   if (options.emit != "cnf" && names_artifact(options.model)) {
     invocation.sink().error_about(
-        base::DiagnosticCode::kUsage, options.model.models.front(),
+        codes::kUsage, options.model.models.front(),
         fmt::format("--emit={} needs the texts of the model", options.emit));
     return 0;
   }
@@ -78,7 +77,7 @@ int compile_and_write(CompileOptions& options, Invocation& invocation) {
     text = *compilation->passes.text;
   } else if (!compilation->plan) {
     sink.error_about(
-        base::DiagnosticCode::kUsage, "",
+        codes::kUsage, "",
         fmt::format("--emit={} needs a plan (--plan, or a scenario with one)", options.emit));
     return 0;
   } else if (options.emit == "cfg") {
@@ -87,8 +86,7 @@ int compile_and_write(CompileOptions& options, Invocation& invocation) {
     text = compiler::dump_dot(*compilation->plan, invocation.files());
   }
   if (options.out.empty() && invocation.options().json) {
-    sink.error_about(base::DiagnosticCode::kUsage, "",
-                     "--json needs --output: the text is no JSON");
+    sink.error_about(codes::kUsage, "", "--json needs --output: the text is no JSON");
   } else if (options.out.empty()) {
     invocation.result(text);
   } else if (base::write_output(options.out, text, invocation.files(), sink)) {

@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "tools/app/coverage_report.h"
 #include "tools/cli/command.h"
@@ -17,7 +17,7 @@ struct CoverageCommandOptions {
 int cover(const CoverageCommandOptions& options, Invocation& invocation) {
   const bool to_stdout = options.lcov == "-";
   if (to_stdout && invocation.options().json) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, "--lcov",
+    invocation.sink().error_about(codes::kUsage, "--lcov",
                                   "the tracefile and the document of --json cannot both go to the "
                                   "standard output; name a file for one of them");
     return 0;

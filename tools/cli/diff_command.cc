@@ -3,7 +3,7 @@
 #include <memory>
 #include <tuple>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
@@ -18,7 +18,6 @@
 namespace parallax::tools {
 namespace {
 
-using base::DiagnosticCode;
 using compiler::FactKind;
 using Json = nlohmann::ordered_json;
 
@@ -71,7 +70,7 @@ std::string facts_fields(const FactReport& report, const char* declarations, con
 void report_unknown(const ModelDifference& found, Invocation& invocation) {
   const auto report = [&](const ModelRevision& kept, const ModelRevision& other) {
     invocation.sink().error_about(
-        DiagnosticCode::kLimitReached, "",
+        codes::kLimitReached, "",
         fmt::format("for deciding whether {} has a trace that {} has not",
                     base::printable(kept.name), base::printable(other.name)));
   };
@@ -262,7 +261,7 @@ int diff_trace_files(const DiffOptions& options, Invocation& invocation) {
 int convert(const DiffOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   if (invocation.options().json) {
-    sink.error_about(DiagnosticCode::kUsage, "",
+    sink.error_about(codes::kUsage, "",
                      "--json and the canonical text cannot both go to the output");
     return 0;
   }
@@ -283,7 +282,7 @@ int convert(const DiffOptions& options, Invocation& invocation) {
 
 bool is_usable(const DiffOptions& options, Invocation& invocation) {
   const auto refuse = [&](const char* why) {
-    invocation.sink().error_about(DiagnosticCode::kUsage, "", why);
+    invocation.sink().error_about(codes::kUsage, "", why);
     return false;
   };
   if (!options.textconv.empty() && !options.old_path.empty()) {
@@ -316,7 +315,7 @@ int run(const DiffOptions& given, Invocation& invocation) {
   if (models) return diff_models(options, *old_kind, *new_kind, invocation);
   if (!old_kind || old_kind != new_kind) {
     invocation.sink().error_about(
-        DiagnosticCode::kUsage, options.new_path,
+        codes::kUsage, options.new_path,
         fmt::format("cannot be compared with {}: name two models (.e, .dec.cnf, .yaml), two plans "
                     "(.lisp), two tables (.bind), two trace files (.jsonl), two run folders or two "
                     "results of `rates --json` (.json)",

@@ -2,7 +2,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
+#include "compiler/base/codes/texts.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "compiler/base/path_gate.h"
@@ -28,7 +30,6 @@ namespace parallax::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using base::DiagnosticCode;
 
 struct DrawOptions {
   std::string what;  // scenario file or run folder
@@ -92,7 +93,7 @@ class Writer {
 int draw_start(const DrawOptions& options, Invocation& invocation) {
   auto& sink = invocation.sink();
   if (!options.sample.empty() || !options.scenario.empty()) {
-    sink.error_about(DiagnosticCode::kUsage, "", "--sample and --scenario are for folders of runs");
+    sink.error_about(codes::kUsage, "", "--sample and --scenario are for folders of runs");
     return 0;
   }
   if (!expect_kind(options.what, {FileKind::kScenario}, "a scenario", invocation)) return 0;
@@ -100,7 +101,7 @@ int draw_start(const DrawOptions& options, Invocation& invocation) {
                                                invocation.form().allow_outside);
   if (!scenario) return 0;
   if (scenario->world.bodies.empty()) {
-    sink.error_about(DiagnosticCode::kUsage, options.what, "the scenario has no `world` to draw");
+    sink.error_about(codes::kUsage, options.what, "the scenario has no `world` to draw");
     return 0;
   }
   const harness::OdeWorld world(scenario->world);
@@ -220,7 +221,7 @@ base::Result<Album> album_of(const harness::RecordedRun& run, const harness::Sce
     if (i < recorded.size() && (recorded[i].status != outcome.status ||
                                 !harness::bit_equal(recorded[i].sim_time_s, outcome.sim_time_s))) {
       return sink.error_about(
-          DiagnosticCode::kReplayImpossible, folder,
+          codes::kReplayImpossible, folder,
           fmt::format("event {}, {}, ended otherwise than recorded", i, run.line.trace->event(i)));
     }
     album.captions.push_back(
@@ -242,11 +243,11 @@ base::Result<Album> simulate(const harness::RecordedRun& run, const harness::Sce
   harness::OdeSimulator simulator(scenario.world);
   const auto obstacle = harness::simulator_change(run.header, simulator.info());
   if (!obstacle.empty()) {
-    return sink.error_about(DiagnosticCode::kReplayImpossible, folder, obstacle);
+    return sink.error_about(codes::kReplayImpossible, folder, obstacle);
   }
   const auto reset = simulator.reset(run.record.initial, run.record.seed);
   if (reset.status != harness::SimStatus::kOk) {
-    return sink.error_about(DiagnosticCode::kReplayImpossible, folder, reset.reason);
+    return sink.error_about(codes::kReplayImpossible, folder, reset.reason);
   }
   harness::ActionRecorder recorder(simulator, scenario.world);
   return album_of(run, scenario, parting, folder, sink, recorder,
@@ -339,15 +340,14 @@ int draw_run(const DrawOptions& options, Invocation& invocation) {
   if (!trace) return 0;
   const auto& scenario = loaded->scenario;
   if (!scenario.simulator.is_built_in()) {
-    sink.error_about(DiagnosticCode::kUsage, options.what,
+    sink.error_about(codes::kUsage, options.what,
                      "only worlds of the built-in simulator can be drawn");
     return 0;
   }
   const fs::path folder =
       options.out.empty() ? fs::path(options.what) / "pictures" : fs::path(options.out);
   if (options.out.empty() && !base::lies_below(folder, options.what)) {  // by a link
-    sink.error_about(DiagnosticCode::kLoadOutside, folder.string(),
-                     base::real_path(folder).string());
+    sink.error_about(codes::kLoadOutside, folder.string(), base::real_path(folder).string());
     return 0;
   }
   for (std::size_t i = 0; i <= run->line.calls.size(); ++i) {

@@ -5,7 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "tools/app/discrepancy.h"
 #include "tools/app/evidence.h"
 #include "tools/app/explain.h"
@@ -44,7 +45,7 @@ std::optional<compiler::CompiledModel> compile(const ExplainOptions& options,
 }
 
 void report_cut_short(const runtime::MinimalSets& found, Invocation& invocation) {
-  invocation.sink().error_about(base::DiagnosticCode::kExplanationCutShort, "",
+  invocation.sink().error_about(codes::kExplanationCutShort, "",
                                 found.proven ? "not every instance shown is needed"
                                              : "the sets may not be what was asked for");
 }
@@ -220,7 +221,7 @@ int explain_discrepancy(const RecordedDiscrepancy& found, const ExplainOptions& 
 int explain_run(const ExplainOptions& options, Invocation& invocation) {
   if (options.asks_why || !options.model.until.empty()) {
     invocation.sink().error_about(
-        base::DiagnosticCode::kUsage, options.model.models.front(),
+        codes::kUsage, options.model.models.front(),
         "--why and --until ask about models and scenarios, not about folders of runs");
     return 0;
   }
@@ -244,7 +245,7 @@ int explain(const ExplainOptions& options, Invocation& invocation) {
   const auto& first = options.model.models.front();
   if (std::filesystem::is_directory(first, ignored)) return explain_run(options, invocation);
   if (!options.sample.empty() || !options.scenario.empty()) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, first,
+    invocation.sink().error_about(codes::kUsage, first,
                                   "--sample and --scenario are for folders of runs");
     return 0;
   }

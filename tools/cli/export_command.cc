@@ -5,7 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "harness/campaign/replay.h"
@@ -54,7 +55,7 @@ bool is_of_the_run(const harness::Recording& recording, const std::string& folde
   const auto run = harness::read_recorded_run(folder, id, own, unread);
   if (!run || recording.seed == run->record.seed) return true;
   const auto file = std::filesystem::path(folder) / harness::recording_name(id.trace, id.sample);
-  sink.error_about(base::DiagnosticCode::kBadRecording, file.string(),
+  sink.error_about(codes::kBadRecording, file.string(),
                    fmt::format("it is that of another run, of seed {}", recording.seed));
   return false;
 }
@@ -77,7 +78,7 @@ int export_motion(const ExportOptions& options, Invocation& invocation) {
   const auto recording = harness::read_recording(options.folder, id->trace, id->sample, make, sink);
   if (!recording || !is_of_the_run(*recording, options.folder, *id, sink)) return 0;
   if (!recording->missing.empty()) {
-    sink.error_about(base::DiagnosticCode::kRecordingLost, options.folder, 1, recording->missing);
+    sink.error_about(codes::kRecordingLost, options.folder, 1, recording->missing);
   }
   const bool is_csv = options.format == "csv";
   const auto text = is_csv ? harness::csv_of(*recording) : harness::mcap_of(*recording);
@@ -90,7 +91,7 @@ int export_motion(const ExportOptions& options, Invocation& invocation) {
   }
   if (output.empty() || output == "-") {
     if (json) {
-      sink.error_about(base::DiagnosticCode::kUsage, "-o",
+      sink.error_about(codes::kUsage, "-o",
                        "the export and the document of --json cannot both go to the standard "
                        "output; name a file");
       return 0;

@@ -7,7 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
@@ -34,14 +34,13 @@ base::Result<base::FileId> read_standard_input(Invocation& invocation) {
     if (count == 0) break;
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) {
-      return invocation.sink().error_about(base::DiagnosticCode::kFileUnreadable, "standard input",
+      return invocation.sink().error_about(codes::kFileUnreadable, "standard input",
                                            std::strerror(errno));
     }
     text.append(chunk, 0, static_cast<std::size_t>(count));
     constexpr std::size_t kLimit = std::size_t{64} << 20U;
     if (text.size() > kLimit) {
-      return invocation.sink().error_about(base::DiagnosticCode::kFileTooLarge, "standard input",
-                                           kLimit);
+      return invocation.sink().error_about(codes::kFileTooLarge, "standard input", kLimit);
     }
   }
   return base::register_text("<stdin>", std::move(text), invocation.files(), invocation.sink());
@@ -85,7 +84,7 @@ int format(const FmtOptions& options, Invocation& invocation) {
   const bool prints = options.to_stdout || std::find(options.files.begin(), options.files.end(),
                                                      "-") != options.files.end();
   if (prints && !options.check && invocation.options().json) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, "",
+    invocation.sink().error_about(codes::kUsage, "",
                                   "--json and the formatted text cannot both go to the output");
     return 0;
   }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
@@ -41,7 +42,7 @@ int run_learn(const LearnCommandOptions& options, Invocation& invocation) {
   learn_options.progress = progress_on_terminal(invocation.options());
   if (std::error_code error; !options.folder.empty() && fs::exists(options.folder, error) &&
                              !fs::is_empty(options.folder, error)) {
-    invocation.sink().error_about(base::DiagnosticCode::kFileNotWritable, options.folder,
+    invocation.sink().error_about(codes::kFileNotWritable, options.folder,
                                   "--out needs a folder that is new or empty; name another folder");
     return 0;
   }

@@ -7,7 +7,8 @@
 #include <set>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
@@ -39,7 +40,7 @@ struct LedgerOptions {
 };
 
 base::Reported usage(const std::string& message, Invocation& invocation) {
-  return invocation.sink().error_about(base::DiagnosticCode::kUsage, "", message);
+  return invocation.sink().error_about(codes::kUsage, "", message);
 }
 
 /// A run folder, as it is held against the ledger.
@@ -68,8 +69,7 @@ base::Result<NamedRun> load_run(const std::string& folder, const LedgerOptions& 
   auto& sink = invocation.sink();
   std::error_code error;
   if (!fs::is_directory(folder, error) || !fs::exists(fs::path(folder) / "report.json", error)) {
-    return sink
-        .error_about(base::DiagnosticCode::kUsage, folder, "the folder holds no report of a run")
+    return sink.error_about(codes::kUsage, folder, "the folder holds no report of a run")
         .note("name the --out folder of a run that has ended");
   }
   const auto text = base::read_file_of(folder, "report.json", sink);
@@ -77,8 +77,7 @@ base::Result<NamedRun> load_run(const std::string& folder, const LedgerOptions& 
   auto run = shown_run(*text);
   const auto path = (fs::path(folder) / "report.json").string();
   if (!run) {
-    return sink.error_about(base::DiagnosticCode::kReplayImpossible, path,
-                            "this is no report of a run");
+    return sink.error_about(codes::kReplayImpossible, path, "this is no report of a run");
   }
   invocation.files().note_input(path);
   const auto scenario =
@@ -285,7 +284,7 @@ bool save(const LedgerOptions& options, const std::string& before, const std::st
   base::DiagnosticSink unread;
   const auto now = base::read_file(options.ledger, unread);
   if (now && *now != before) {
-    sink.error_about(base::DiagnosticCode::kFileNotWritable, options.ledger,
+    sink.error_about(codes::kFileNotWritable, options.ledger,
                      "it was changed meanwhile; try again");
     return false;
   }
@@ -325,7 +324,7 @@ bool add_run(const NamedRun& run, const LedgerOptions& options, const std::strin
     auto edited = with_entry(all.ledger.text, all.ledger.ledger, entry);
     if (!edited) {
       invocation.sink()
-          .error_about(base::DiagnosticCode::kUsage, options.ledger,
+          .error_about(codes::kUsage, options.ledger,
                        "its layout does not let an entry be added line by line")
           .note("write it by hand:\n" + entry_text(entry, 2));
       return false;
@@ -370,7 +369,7 @@ int set_status(const LedgerOptions& options, Invocation& invocation) {
   if (!ledger) return 0;
   const auto* known = ledger->ledger.find(options.words[0]);
   if (known == nullptr) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, options.ledger,
+    invocation.sink().error_about(codes::kUsage, options.ledger,
                                   fmt::format("it has no entry `{}`", options.words[0]));
     return 0;
   }
@@ -389,7 +388,7 @@ int set_status(const LedgerOptions& options, Invocation& invocation) {
   const auto edited = with_status(ledger->text, ledger->ledger, entry);
   if (!edited) {
     invocation.sink().error_about(
-        base::DiagnosticCode::kUsage, options.ledger,
+        codes::kUsage, options.ledger,
         fmt::format("its layout does not let the status of `{}` be replaced; edit it by hand",
                     entry.id));
     return 0;

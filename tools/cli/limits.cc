@@ -7,7 +7,7 @@
 #include <csignal>
 #include <new>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 
 namespace parallax::tools {
@@ -48,7 +48,7 @@ void on_signal(int signal) {
 void end_for_limit(const CommonOptions& options, const std::string& limit) {
   base::DiagnosticSink sink;
   const base::SourceFiles files;
-  sink.error_about(base::DiagnosticCode::kLimitReached, "", limit);
+  sink.error_about(codes::kLimitReached, "", limit);
   const auto diagnostics = sink.sorted();
   write_stopped_text();
   if (options.json) {

@@ -3,7 +3,7 @@
 #include <new>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/suggest.h"
 #include "tools/app/version.h"
@@ -39,7 +39,7 @@ int usage_error(const ParsedLine& line, std::string_view command, int argc, char
   const base::SourceFiles files;
   const bool no_such_command = command.empty() && argc > 1 && argv[1][0] != '-';
   auto built = sink.error_about(
-      base::DiagnosticCode::kUsage, "",
+      codes::kUsage, "",
       no_such_command ? fmt::format("there is no command `{}`", base::printable(argv[1]))
                       : line.error);
   for (int i = 1; i < argc; ++i) {
@@ -113,12 +113,12 @@ int main(int argc, char** argv) {
     const bool starved = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
                          dynamic_cast<const std::system_error*>(&error) != nullptr;
     if (starved) {
-      sink.error_about(base::DiagnosticCode::kLimitReached, "",
+      sink.error_about(parallax::codes::kLimitReached, "",
                        parallax::tools::memory_limit_mb > 0
                            ? fmt::format("--memory-limit {}", parallax::tools::memory_limit_mb)
                            : fmt::format("of memory and threads ({})", error.what()));
     } else {
-      sink.error_about(base::DiagnosticCode::kInternal, "", error.what());
+      sink.error_about(parallax::codes::kInternal, "", error.what());
     }
     const base::SourceFiles files;
     parallax::tools::write_error(base::to_text(sink.sorted().front(), files, {}));

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "tools/cli/suite_history_option.h"
 #include "tools/cli/suite_output.h"
 #include "tools/suite/suite_loop.h"
@@ -21,7 +21,7 @@ int merge_shards(const SuiteOptions& options, Invocation& invocation) {
   for (const auto& folder : options.merge) {
     std::error_code error;
     if (!std::filesystem::equivalent(folder, options.out, error)) continue;
-    sink.error_about(base::DiagnosticCode::kUsage, options.out,
+    sink.error_about(codes::kUsage, options.out,
                      "--out: the merged results would replace those of a shard");
     return 0;
   }

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "compiler/base/codes/files.h"
 #include "compiler/base/descriptor.h"
-#include "compiler/base/diagnostic_codes.h"
 #include "tools/app/file_kind.h"
 #include "tools/app/monitor.h"
 #include "tools/cli/command.h"
@@ -74,9 +74,8 @@ base::Result<base::Descriptor> open_log(const std::string& name, base::Diagnosti
   base::Descriptor file(name == "-" ? ::dup(STDIN_FILENO)
                                     : ::open(name.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() >= 0) return file;
-  return sink.error_about(
-      errno == ENOENT ? base::DiagnosticCode::kFileNotFound : base::DiagnosticCode::kFileUnreadable,
-      name, std::strerror(errno));
+  return sink.error_about(errno == ENOENT ? codes::kFileNotFound : codes::kFileUnreadable, name,
+                          std::strerror(errno));
 }
 
 int monitor(const MonitorOptions& options, Invocation& invocation) {

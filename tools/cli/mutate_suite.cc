@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "tools/cli/shared_options.h"
 
 namespace parallax::tools {
@@ -11,7 +11,7 @@ int mutate_suite(const std::vector<SuiteCase>& cases, const MutateOptions& optio
                  MutationOptions score, Invocation& invocation) {
   auto& sink = invocation.sink();
   const auto refuse = [&](const std::string& why) {
-    sink.error_about(base::DiagnosticCode::kUsage, "", why);
+    sink.error_about(codes::kUsage, "", why);
     return 0;
   };
   const auto least = share_of(options.at_least.empty() ? "100%" : options.at_least);

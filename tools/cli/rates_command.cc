@@ -1,6 +1,7 @@
 #include <memory>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "harness/campaign/rates.h"
 #include "harness/report/report.h"
@@ -35,8 +36,7 @@ base::Status check_plot(const std::string& path, Invocation& invocation) {
   if (path.empty()) return base::Unit{};
   auto& sink = invocation.sink();
   if (!path.ends_with(".html")) {
-    return sink.error_about(base::DiagnosticCode::kUsage, path,
-                            "--plot writes a page; end the name in .html");
+    return sink.error_about(codes::kUsage, path, "--plot writes a page; end the name in .html");
   }
   return check_replaceable(path, is_earlier_page, invocation.files(), sink);
 }
@@ -68,7 +68,7 @@ int run_rates(const RateOptions& options, Invocation& invocation) {
   apply(options.judging, loaded->scenario);
   const auto& model = loaded->compilation.model;
   if (!model.has_constraints) {
-    invocation.sink().error(base::DiagnosticCode::kNothingToSimulate,
+    invocation.sink().error(codes::kNothingToSimulate,
                             base::SourceRange{loaded->scenario.source, 0, 0});
     return 0;
   }
@@ -79,7 +79,7 @@ int run_rates(const RateOptions& options, Invocation& invocation) {
   traces.explain_absence_by([&] { return reasons_for_absence(*loaded, invocation); });
   auto rates = options.rates;
   if (options.below <= options.above) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, "",
+    invocation.sink().error_about(codes::kUsage, "",
                                   "--until-above must be less than --until-below");
     return 0;
   }

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "tools/cli/command.h"
 #include "tools/cli/shared_options.h"
 #include "tools/repair/apply.h"
@@ -45,7 +45,7 @@ int apply(const RepairResult& result, std::int64_t number, Invocation& invocatio
   const auto count = static_cast<std::int64_t>(result.proposals.size());
   if (number > count) {
     invocation.sink().error_about(
-        base::DiagnosticCode::kUsage, "--apply",
+        codes::kUsage, "--apply",
         fmt::format("there is no proposal {}; there are {}", number, count));
     return 0;
   }
@@ -78,7 +78,7 @@ int repair_loop(const RepairCommandOptions& options, const ExperimentOptions& ex
                 Invocation& invocation) {
   const auto& given = options.repair;
   const auto refuse = [&](const char* option, const std::string& why) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, option, why);
+    invocation.sink().error_about(codes::kUsage, option, why);
     return 0;
   };
   if (options.out.empty()) {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "tools/page/write_page.h"
 
 namespace parallax::tools {
@@ -16,14 +16,14 @@ base::Status check_replaceable(const std::string& path, bool (*is_ours)(std::str
   const auto status = fs::status(path, error);
   if (!fs::exists(status)) return base::Unit{};
   if (!fs::is_regular_file(status)) {
-    return sink.error_about(base::DiagnosticCode::kNotARegularFile, path);
+    return sink.error_about(codes::kNotARegularFile, path);
   }
   if (fs::file_size(path, error) == 0) return base::Unit{};
   std::ifstream file(path, std::ios::binary);
   std::string head(512, '\0');
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   if (is_ours(head)) return base::Unit{};
-  return sink.error_about(base::DiagnosticCode::kFileNotWritable, path,
+  return sink.error_about(codes::kFileNotWritable, path,
                           "it is there already, and no file of this command; name another file");
 }
 

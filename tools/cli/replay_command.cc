@@ -5,7 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "harness/campaign/replay.h"
 #include "harness/recording/recording_file.h"
 #include "harness/report/report.h"
@@ -30,16 +31,16 @@ base::Status keep(const std::string& folder, const std::optional<harness::Record
                   Invocation& invocation) {
   auto& sink = invocation.sink();
   if (!moved) {
-    return sink.error_about(base::DiagnosticCode::kReplayImpossible, folder,
+    return sink.error_about(codes::kReplayImpossible, folder,
                             "its simulator tells nothing of motion, so there is nothing to record");
   }
   const auto name = harness::recording_name(moved->trace, moved->sample);
   if (auto why = harness::write_recording(folder, *moved); !why.empty()) {
-    return sink.error_about(base::DiagnosticCode::kFileNotWritable,
+    return sink.error_about(codes::kFileNotWritable,
                             (std::filesystem::path(folder) / name).string(), why);
   }
   if (!moved->missing.empty()) {
-    sink.error_about(base::DiagnosticCode::kRecordingLost, folder, 1, moved->missing);
+    sink.error_about(codes::kRecordingLost, folder, 1, moved->missing);
   }
   invocation.remark("recording: " + (std::filesystem::path(folder) / name).string());
   return base::Unit{};
@@ -63,7 +64,7 @@ int replay(const ReplayOptions& options, Invocation& invocation) {
   const auto result = harness::replay_sample(*run, loaded->sources_hash, *simulator,
                                              options.record ? &moved : nullptr);
   if (result.outcome == harness::ReplayOutcome::kCannot) {
-    sink.error_about(base::DiagnosticCode::kReplayImpossible, options.run.folder, result.reason);
+    sink.error_about(codes::kReplayImpossible, options.run.folder, result.reason);
     return 0;
   }
   if (options.record && !keep(options.run.folder, moved, invocation)) return 0;

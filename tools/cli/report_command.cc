@@ -10,7 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
@@ -70,7 +71,7 @@ bool may_write(const std::string& path, base::DiagnosticSink& sink) {
   std::string head(512, '\0');
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   if (head.find(kPageMark) != std::string::npos) return true;
-  sink.error_about(base::DiagnosticCode::kFileNotWritable, path,
+  sink.error_about(codes::kFileNotWritable, path,
                    "it is there already, and no page of this command; name another file");
   return false;
 }
@@ -79,13 +80,13 @@ bool may_write(const std::string& path, base::DiagnosticSink& sink) {
 int watch(const ReportOptions& options, Invocation& invocation) {
   constexpr auto kPause = std::chrono::milliseconds(200);
   if (options.folders.size() > 1) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, "--watch",
+    invocation.sink().error_about(codes::kUsage, "--watch",
                                   "one run is watched at a time; name one folder");
     return 0;
   }
   const auto& folder = options.folders.front();
   if (!is_run(folder)) {
-    invocation.sink().error_about(base::DiagnosticCode::kNoJournal, folder);
+    invocation.sink().error_about(codes::kNoJournal, folder);
     return 0;
   }
   const auto journal = fs::path(folder) / harness::kJournalName;
@@ -94,7 +95,7 @@ int watch(const ReportOptions& options, Invocation& invocation) {
     std::error_code error;
     // Removed while it was watched: it will never be over.
     if (!fs::is_directory(folder, error)) {
-      invocation.sink().error_about(base::DiagnosticCode::kNoJournal, folder);
+      invocation.sink().error_about(codes::kNoJournal, folder);
       return 0;
     }
     const auto size = fs::file_size(journal, error);
@@ -122,7 +123,7 @@ int report_history(const ReportOptions& options, Invocation& invocation) {
   const auto path = options.out.empty() ? std::string("history.html") : options.out;
   if (!options.folders.empty() || options.explain || options.repair || options.watch ||
       !options.ledger.empty()) {
-    sink.error_about(base::DiagnosticCode::kUsage, "--history",
+    sink.error_about(codes::kUsage, "--history",
                      "a page is about a history or about runs; leave the others out");
     return 0;
   }
@@ -164,12 +165,12 @@ int report_history(const ReportOptions& options, Invocation& invocation) {
 int report(const ReportOptions& options, Invocation& invocation) {
   if (!options.history.empty()) return report_history(options, invocation);
   if (options.folders.empty()) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, "",
+    invocation.sink().error_about(codes::kUsage, "",
                                   "name the folders of runs, or a file with --history");
     return 0;
   }
   if (!options.ledger.empty() && options.folders.size() > 1) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, "--ledger",
+    invocation.sink().error_about(codes::kUsage, "--ledger",
                                   "one run is held against a ledger at a time; name one folder");
     return 0;
   }

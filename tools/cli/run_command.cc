@@ -4,7 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "harness/campaign/campaign.h"
 #include "harness/report/report.h"
@@ -144,8 +145,7 @@ Ran run_open(const ScenarioModel& loaded, const harness::SimulatorFactory& simul
   auto& sink = invocation.sink();
   const auto& model = loaded.compilation.model;
   if (!model.has_constraints) {
-    return {sink.error(base::DiagnosticCode::kNothingToSimulate,
-                       base::SourceRange{loaded.scenario.source, 0, 0})};
+    return {sink.error(codes::kNothingToSimulate, base::SourceRange{loaded.scenario.source, 0, 0})};
   }
   EnumeratedTraces traces(model, invocation,
                           {.all_hits = campaign.all_hits, .split_initial = campaign.split_initial});
@@ -159,12 +159,11 @@ Ran run_open(const ScenarioModel& loaded, const harness::SimulatorFactory& simul
 base::Status check_closed(const RunOptions& options, const harness::Scenario& scenario,
                           base::DiagnosticSink& sink) {
   if (scenario.criterion.kind == harness::CriterionKind::kPaper) {
-    return sink.error(base::DiagnosticCode::kCriterionNotOfLoop,
-                      base::SourceRange{scenario.source, 0, 0});
+    return sink.error(codes::kCriterionNotOfLoop, base::SourceRange{scenario.source, 0, 0});
   }
   const auto refuse = [&](const char* option, const char* why) {
     return sink.error_about(
-        base::DiagnosticCode::kUsage, option,
+        codes::kUsage, option,
         fmt::format("{}; leave it out, or simulate traces with --execution open-loop", why));
   };
   if (options.hits != "first") {
@@ -212,12 +211,11 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
   if (!loaded) return 0;
   apply(options, loaded->scenario);
   if (!options.strategy.empty() && loaded->scenario.search.runs == 0) {
-    sink.error_about(base::DiagnosticCode::kUsage, "--search-strategy",
-                     "it is about a search; add --search N");
+    sink.error_about(codes::kUsage, "--search-strategy", "it is about a search; add --search N");
     return 0;
   }
   if (!options.starts.empty() && loaded->scenario.execution == Execution::kOpenLoop) {
-    sink.error_about(base::DiagnosticCode::kUsage, "--starts",
+    sink.error_about(codes::kUsage, "--starts",
                      "it is about executions of the plan; add --execution closed-loop");
     return 0;
   }

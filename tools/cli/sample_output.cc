@@ -1,6 +1,6 @@
 #include "tools/cli/sample_output.h"
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "harness/report/sample_table.h"
 #include "tools/cli/command.h"
@@ -22,7 +22,7 @@ base::Status SampleOutput::check(Invocation& invocation) const {
   if (path_.empty()) return base::Unit{};
   auto& sink = invocation.sink();
   if (!is_csv(path_) && !path_.ends_with(".jsonl")) {
-    return sink.error_about(base::DiagnosticCode::kUsage, path_,
+    return sink.error_about(codes::kUsage, path_,
                             "--samples writes .csv or .jsonl; end the name in one of them");
   }
   return check_replaceable(path_, harness::is_sample_table, invocation.files(), sink);

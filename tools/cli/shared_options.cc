@@ -6,7 +6,8 @@
 #include <memory>
 #include <mutex>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/subprocess.h"
 #include "compiler/base/whole_number.h"
 #include "runtime/graph/model_traces.h"
@@ -176,7 +177,7 @@ base::Result<harness::SimulatorFactory> permitted_simulator(const ScenarioModel&
   if (spec.command.empty()) return make;
   const auto text = base::command_text(spec.command);
   if (!permitted) {
-    return invocation.sink().error(base::DiagnosticCode::kCommandNotPermitted, spec.source, text);
+    return invocation.sink().error(codes::kCommandNotPermitted, spec.source, text);
   }
   const auto words =
       fmt::format("starting `{}`, as {} says", text, invocation.files().place(spec.source));
@@ -198,7 +199,7 @@ base::Result<std::optional<harness::SampleId>> parse_sample_option(const std::st
   if (text.empty()) return std::optional<harness::SampleId>();
   const auto id = harness::parse_sample_id(text);
   if (id) return id;
-  return sink.error_about(base::DiagnosticCode::kUsage, "",
+  return sink.error_about(codes::kUsage, "",
                           fmt::format("--sample takes TRACE.SAMPLE such as 2.4, not `{}`", text));
 }
 

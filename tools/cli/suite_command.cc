@@ -2,7 +2,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
@@ -43,7 +44,7 @@ base::Result<std::vector<SuiteCase>> wanted_cases(const SuiteOptions& options,
     return one.name().find(options.only) == std::string::npos || (options.fast && !is_fast(one));
   });
   if (cases->empty()) {
-    return invocation.sink().error_about(base::DiagnosticCode::kNoCases, options.paths.front());
+    return invocation.sink().error_about(codes::kNoCases, options.paths.front());
   }
   if (options.rerun_failed) {
     std::erase_if(*cases, [&](const SuiteCase& one) {
@@ -73,7 +74,7 @@ bool is_folder(const std::filesystem::path& path) {
 }
 
 int usage_error(const std::string& message, Invocation& invocation) {
-  invocation.sink().error_about(base::DiagnosticCode::kUsage, "", message);
+  invocation.sink().error_about(codes::kUsage, "", message);
   return 0;
 }
 
@@ -116,7 +117,7 @@ base::Result<StoredResults> earlier_results(const SuiteOptions& options,
                        to_string(identity.shard));
   }
   if (what.empty()) return earlier;
-  return sink.error_about(base::DiagnosticCode::kUsage,
+  return sink.error_about(codes::kUsage,
                           (std::filesystem::path(options.out) / kResultsFile).string(),
                           fmt::format("--resume: that suite and this one are different: {}", what));
 }
@@ -151,7 +152,7 @@ int score_mutants(const SuiteOptions& options, Invocation& invocation) {
   const auto cases = wanted_cases(options, {}, invocation);
   if (!cases) return 0;
   if (!is_folder(options.out)) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, options.out,
+    invocation.sink().error_about(codes::kUsage, options.out,
                                   "--out: this is no folder, and none can be made here");
     return 0;
   }
@@ -195,7 +196,7 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
         invocation);
   }
   if (options.update_goldens && !options.force && !environment("CI").empty()) {
-    sink.error_about(base::DiagnosticCode::kGoldenUpdateRefused, "--update-goldens");
+    sink.error_about(codes::kGoldenUpdateRefused, "--update-goldens");
     return 0;
   }
   const auto shard = chosen_shard(options.shard, environment, sink);
@@ -221,7 +222,7 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
                      *quarantine);
   const auto folder = cache_folder(options);
   if (!options.no_cache && !options.cache.empty() && !is_folder(folder)) {
-    sink.error_about(base::DiagnosticCode::kUsage, options.cache,
+    sink.error_about(codes::kUsage, options.cache,
                      "--cache: this is no folder, and none can be made here");
     return 0;
   }

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <set>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "tools/history/change_points.h"
@@ -68,7 +68,7 @@ bool may_append(const SuiteOptions& options, Invocation& invocation) {
   std::error_code error;
   const auto status = std::filesystem::symlink_status(options.history, error);
   if (std::filesystem::is_symlink(status)) {
-    invocation.sink().error_about(base::DiagnosticCode::kFileNotWritable, options.history,
+    invocation.sink().error_about(codes::kFileNotWritable, options.history,
                                   "it is a link; name the file itself");
     return false;
   }

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <set>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "tools/suite/suite_summary.h"
 
@@ -29,7 +29,7 @@ bool may_replace(const std::string& file, const std::string& option,
   if (!text) return false;
   if (text->empty() || is_ours(*text)) return true;
   sink.error_about(
-      base::DiagnosticCode::kUsage, file,
+      codes::kUsage, file,
       fmt::format("this file is there already and is no report that {} could replace", option));
   return false;
 }
@@ -46,7 +46,7 @@ bool may_write(const SuiteOptions& options, Invocation& invocation) {
   base::DiagnosticSink unread;
   if (std::filesystem::exists(results, error) && !std::filesystem::is_empty(results, error) &&
       !read_results(options.out, unread)) {
-    sink.error_about(base::DiagnosticCode::kUsage, results.string(),
+    sink.error_about(codes::kUsage, results.string(),
                      "this file is there already and holds no results that --out could replace");
     return false;
   }

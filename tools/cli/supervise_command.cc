@@ -16,7 +16,6 @@
 #include <thread>
 
 #include "compiler/base/descriptor.h"
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/subprocess.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"

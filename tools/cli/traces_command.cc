@@ -2,7 +2,7 @@
 #include <memory>
 #include <optional>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/json.h"
 #include "runtime/trace/trace.h"
 #include "tools/app/certify.h"
@@ -111,7 +111,7 @@ int count_only(const TracesOptions& options, const compiler::CompiledModel& mode
 /// Options that do not go together.
 bool is_usable(const TracesOptions& options, Invocation& invocation) {
   const auto refuse = [&](const std::string& about, const std::string& why) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, about, why);
+    invocation.sink().error_about(codes::kUsage, about, why);
     return false;
   };
   if (options.check && !options.model.compat.empty()) {
@@ -233,7 +233,7 @@ int list_traces(const TracesOptions& options, Invocation& invocation) {
   }
   const auto& model = compilation->model;
   if (model.has_constraints && asks_for_models(options)) {
-    invocation.sink().error_about(base::DiagnosticCode::kUsage, options.model.models.front(),
+    invocation.sink().error_about(codes::kUsage, options.model.models.front(),
                                   "--sample, --from, --distinct and --strategy do not go with a "
                                   "plan or state constraints");
     return 0;

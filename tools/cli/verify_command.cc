@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/json.h"
 #include "compiler/base/temporary_folder.h"
 #include "harness/config/ledger.h"
@@ -192,7 +192,7 @@ base::Result<std::optional<harness::Ledger>> ledger_of(const VerifyOptions& opti
   const auto& models = options.model.models;
   if (models.size() != 1 ||
       (!models.front().ends_with(".yaml") && !models.front().ends_with(".yml"))) {
-    return invocation.sink().error_about(base::DiagnosticCode::kUsage, models.front(),
+    return invocation.sink().error_about(codes::kUsage, models.front(),
                                          "--ledger: discrepancies are of scenarios; name one");
   }
   auto ledger = harness::load_ledger(options.ledger, invocation.files(), invocation.sink());
@@ -204,7 +204,7 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   const auto start = std::chrono::steady_clock::now();
   if (!options.model.until.empty() || names_artifact(options.model)) {
     invocation.sink().error_about(
-        base::DiagnosticCode::kUsage, options.model.models.front(),
+        codes::kUsage, options.model.models.front(),
         "verify needs the texts of the model and --property instead of --until");
     return 0;
   }

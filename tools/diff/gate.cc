@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/json.h"
 #include "compiler/base/markdown.h"
@@ -118,7 +118,7 @@ base::Result<GateReport> hold_gate(const GateInput& input, const harness::GateRu
   report.new_name = input.new_path;
   report.undecided_passes = rules.undecided_passes;
   const auto none = [&](const char* what) {
-    return sink.error(base::DiagnosticCode::kNoGateRules, rules.source, what);
+    return sink.error(codes::kNoGateRules, rules.source, what);
   };
   const auto done = [&](Rules found) -> base::Result<GateReport> {
     if (!found) return sink.already_reported();

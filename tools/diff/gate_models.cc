@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "compiler/base/diagnostic_codes.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/session/solver_session.h"
 #include "tools/app/scenario_model.h"

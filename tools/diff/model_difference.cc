@@ -7,7 +7,7 @@
 #include <functional>
 #include <set>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/cnf/encoder.h"
 #include "compiler/compare/model_facts.h"
 #include "compiler/ground/grounder.h"
@@ -171,7 +171,7 @@ class ModelComparison {
     if (!mixed) return true;
     if (!options_.traces) {
       context_.sink().error_about(
-          base::DiagnosticCode::kUsage, out_.old_side.name,
+          codes::kUsage, out_.old_side.name,
           "a text and a compiled model have only compiled facts in common; leave --no-traces out");
       return false;
     }

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 
@@ -55,7 +55,7 @@ base::Result<RatesRevision> load_rates(const std::string& path, Context& context
   const auto text = base::read_file(path, context.sink());
   if (!text) return context.sink().already_reported();
   const auto refuse = [&](const std::string& why) {
-    return context.sink().error_about(base::DiagnosticCode::kNoRatesResult, path, why);
+    return context.sink().error_about(codes::kNoRatesResult, path, why);
   };
   const auto json = base::parse_json(*text);
   if (!json.is_object()) return refuse("it is no JSON object");

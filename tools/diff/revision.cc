@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "compiler/artifact/artifact_writer.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/artifacts.h"
 #include "compiler/base/file_io.h"
 #include "compiler/compare/model_facts.h"
 #include "tools/app/scenario_model.h"
@@ -55,7 +55,7 @@ base::Result<ModelRevision> load_compiled(const std::string& path, const LoadRev
   const auto horizon = options.model.horizon;
   if (horizon > model->horizon) {
     return context.sink().error_about(
-        base::DiagnosticCode::kHorizonNotExtensible, path, horizon,
+        codes::kHorizonNotExtensible, path, horizon,
         fmt::format("it was compiled for the horizon {}", model->horizon));
   }
   out.compiled = *std::move(model);

@@ -11,7 +11,8 @@
 #include <variant>
 
 #include "compiler/artifact/artifact_reader.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
@@ -172,7 +173,7 @@ Text load_run_report(const std::string& path, Context& context) {
   std::error_code error;
   const auto file = report_file(path);
   const auto refuse = [&](const char* why) {
-    auto built = context.sink().error_about(base::DiagnosticCode::kNoJournal, file.string());
+    auto built = context.sink().error_about(codes::kNoJournal, file.string());
     built.note(why);
     return built;
   };
@@ -225,7 +226,7 @@ Text canonical_text_of(const std::string& path, Context& context) {
     }
   }
   return context.sink().error_about(
-      base::DiagnosticCode::kUsage, path,
+      codes::kUsage, path,
       "there is a canonical text of models (.e, .dec.cnf), plans (.lisp, .bind), trace files "
       "(.jsonl) and runs only");
 }

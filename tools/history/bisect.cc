@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "compiler/base/ascii.h"
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "compiler/base/path_gate.h"
@@ -30,7 +30,7 @@ struct Place {
 
 base::Reported refuse(const std::string& subject, const std::string& why,
                       base::DiagnosticSink& sink) {
-  return sink.error_about(base::DiagnosticCode::kUsage, subject, why);
+  return sink.error_about(codes::kUsage, subject, why);
 }
 
 base::Result<Place> place_of(const std::string& scenario, base::DiagnosticSink& sink) {

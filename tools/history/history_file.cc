@@ -9,8 +9,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "compiler/base/codes/files.h"
 #include "compiler/base/descriptor.h"
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 
@@ -106,8 +106,7 @@ std::optional<HistoryLine> decode(std::string_view text) {
 }
 
 base::Reported cannot_write(const std::filesystem::path& path, base::DiagnosticSink& sink) {
-  return sink.error_about(base::DiagnosticCode::kFileNotWritable, path.string(),
-                          std::strerror(errno));
+  return sink.error_about(codes::kFileNotWritable, path.string(), std::strerror(errno));
 }
 
 /// Does the file end in the middle of a line?
@@ -198,7 +197,7 @@ base::Result<History> read_history(const std::filesystem::path& path, base::Diag
   constexpr std::string_view kHead = "{\"history\":";
   const bool is_begun = out.half_written && text->starts_with(kHead);
   if (out.lines.empty() && (!out.unreadable.empty() || (out.half_written && !is_begun))) {
-    return sink.error_about(base::DiagnosticCode::kUsage, path.string(),
+    return sink.error_about(codes::kUsage, path.string(),
                             "this file is there already and is no history of suites");
   }
   return out;

@@ -5,7 +5,7 @@
 #include <system_error>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 
@@ -21,13 +21,12 @@ base::Result<RoundFolder> RoundFolder::make(const LearnOptions& options,
   std::error_code error;
   if (fs::exists(rounds, error)) {
     return sink.error_about(
-        base::DiagnosticCode::kUsage, "--out",
+        codes::kUsage, "--out",
         fmt::format("{} has rounds of an earlier call; name another folder", options.out.string()));
   }
   fs::create_directories(rounds, error);
   if (error) {
-    return sink.error_about(base::DiagnosticCode::kFileNotWritable, options.out.string(),
-                            error.message());
+    return sink.error_about(codes::kFileNotWritable, options.out.string(), error.message());
   }
   return RoundFolder(options, loaded, std::move(simulator), context);
 }

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <map>
 
+#include "compiler/base/codes/files.h"
 #include "compiler/base/contract.h"
-#include "compiler/base/diagnostic_codes.h"
 
 namespace parallax::tools {
 
@@ -22,12 +22,12 @@ base::Result<std::unique_ptr<TaughtModel>> TaughtModel::make(const ScenarioModel
   std::string why;
   out->axioms_ = StateAxioms::make(out->declarations_, *out->vocabulary_, context, why);
   if (!out->axioms_) {
-    return context.sink().error_about(base::DiagnosticCode::kUsage, scenario,
+    return context.sink().error_about(codes::kUsage, scenario,
                                       "without its axioms about events the model is none: " + why);
   }
   out->relearn();
   if (out->text_.empty()) {
-    return context.sink().error_about(base::DiagnosticCode::kUsage, scenario, "stopped");
+    return context.sink().error_about(codes::kUsage, scenario, "stopped");
   }
   return out;
 }

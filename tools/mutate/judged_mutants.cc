@@ -4,7 +4,7 @@
 #include <sstream>
 #include <system_error>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "compiler/base/sha256.h"
@@ -71,7 +71,7 @@ base::Result<JudgedMutants> JudgedMutants::open(const fs::path& file, const std:
   JudgedMutants out;
   std::error_code error;
   const auto refuse = [&](const char* why) {
-    return sink.error_about(base::DiagnosticCode::kUsage, file.string(), why);
+    return sink.error_about(codes::kUsage, file.string(), why);
   };
   std::string kept = base::json_text(Json{{kSuite, suite}}) + '\n';
   if (fs::exists(fs::symlink_status(file, error))) {

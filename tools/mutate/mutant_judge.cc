@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/path_gate.h"
 #include "runtime/compare/trace_difference.h"
 #include "tools/diff/model_difference.h"

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <thread>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/path_gate.h"
 #include "compiler/base/sha256.h"
@@ -119,8 +119,7 @@ class SuiteMutation {
     if (!judged) return sink.already_reported();
     const base::TemporaryFolder scratch("mutants");
     if (scratch.path().empty()) {
-      return sink.error_about(base::DiagnosticCode::kFileNotWritable, "",
-                              "no temporary folder can be made");
+      return sink.error_about(codes::kFileNotWritable, "", "no temporary folder can be made");
     }
     std::vector<double> wall_s;
     for (const auto& result : results_) wall_s.push_back(result.wall_s);

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/file_io.h"
 #include "harness/campaign/journal.h"
@@ -113,7 +113,7 @@ base::Result<PageData> gather_page(const PageOptions& options, Context& context)
   std::error_code error;
   if (!fs::is_directory(folder, error) ||
       (!has(fs::path(folder) / harness::kJournalName) && !has(fs::path(folder) / "report.json"))) {
-    return context.sink().error_about(base::DiagnosticCode::kNoJournal, folder);
+    return context.sink().error_about(codes::kNoJournal, folder);
   }
   PageData page;
   page.folder = folder;
@@ -132,7 +132,7 @@ base::Result<PageData> gather_page(const PageOptions& options, Context& context)
   if (!options.ledger.empty()) {
     const auto named = options.scenario.empty() ? scenario_path(header).string() : options.scenario;
     if (!loaded && !options.properties.empty()) {
-      return context.sink().error_about(base::DiagnosticCode::kReplayImpossible, folder,
+      return context.sink().error_about(codes::kReplayImpossible, folder,
                                         "its scenario is not the one that was run, so nothing can "
                                         "be said of its properties");
     }

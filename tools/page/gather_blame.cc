@@ -6,7 +6,6 @@
 #include <map>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
 #include "harness/campaign/judge.h"
 #include "harness/campaign/loop_judge.h"
 #include "tools/app/closed_loop.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 
 namespace parallax::tools {
@@ -35,11 +35,11 @@ base::Result<Replacement> look_at(const ChangedFile& file, base::DiagnosticSink&
   if (!now) return sink.already_reported();
   out.permissions = fs::status(out.target, error).permissions();
   if (is_read_only(out.target, out.permissions)) {
-    return sink.error_about(base::DiagnosticCode::kFileNotWritable, file.name,
+    return sink.error_about(codes::kFileNotWritable, file.name,
                             "it is read-only, and nothing was written; `--json` has the patch");
   }
   if (*now != file.before) {
-    return sink.error_about(base::DiagnosticCode::kFileNotWritable, file.name,
+    return sink.error_about(codes::kFileNotWritable, file.name,
                             "it changed while the repair was looked for");
   }
   out.fresh = out.target.parent_path() /
@@ -55,7 +55,7 @@ base::Status replace_all(const std::vector<Replacement>& all, const std::vector<
     std::error_code error;
     fs::rename(all[i].fresh, all[i].target, error);
     if (!error) continue;
-    auto reported = sink.error_about(base::DiagnosticCode::kFileNotWritable, files[i].name,
+    auto reported = sink.error_about(codes::kFileNotWritable, files[i].name,
                                      error.message() + "; nothing was changed");
     for (std::size_t done = 0; done < i; ++done) {
       if (!base::write_file_atomically(all[done].target, files[done].before, sink)) continue;

@@ -4,7 +4,6 @@
 #include <set>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/hash.h"
 #include "harness/campaign/loop_samples.h"
 #include "harness/campaign/sample_runner.h"

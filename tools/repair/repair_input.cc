@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "tools/app/evidence.h"
@@ -160,7 +160,7 @@ base::Result<RepairInput> load_repair_input(const RepairOptions& options, Contex
   const auto journal = harness::read_journal(options.folder.folder, context.files(), sink);
   if (!journal) return sink.already_reported();
   if (!journal->header) {
-    return sink.error_about(base::DiagnosticCode::kNoJournal, options.folder.folder);
+    return sink.error_about(codes::kNoJournal, options.folder.folder);
   }
   if (!expect_traces(options.folder, *journal->header, sink)) return sink.already_reported();
   auto loaded = load(options, *journal->header, context);
@@ -174,7 +174,7 @@ base::Result<RepairInput> load_repair_input(const RepairOptions& options, Contex
   }
   auto domain = load_domain(loaded->scenario, context);
   if (domain == nullptr) {
-    return sink.error_about(base::DiagnosticCode::kReplayImpossible, options.folder.folder,
+    return sink.error_about(codes::kReplayImpossible, options.folder.folder,
                             "the texts of the model changed meanwhile");
   }
   auto text = compiler::flat_text(domain->ast, domain->files, {});

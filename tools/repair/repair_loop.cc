@@ -7,7 +7,8 @@
 #include <system_error>
 #include <utility>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 #include "harness/campaign/campaign.h"
@@ -74,14 +75,14 @@ class Rounds {
     std::error_code error;
     const fs::path out = options_.out;
     if (fs::exists(out, error) && !fs::is_empty(out, error)) {
-      return sink.error_about(base::DiagnosticCode::kFileNotWritable, options_.out,
+      return sink.error_about(codes::kFileNotWritable, options_.out,
                               "--loop needs a folder that is new or empty");
     }
     const auto& folder = options_.repair.folder;
     const auto journal = harness::read_journal(folder.folder, context_.files(), sink);
     if (!journal) return sink.already_reported();
     if (!journal->header) {
-      return sink.error_about(base::DiagnosticCode::kNoJournal, folder.folder);
+      return sink.error_about(codes::kNoJournal, folder.folder);
     }
     header_ = *journal->header;
     const auto first_file = context_.files().size();

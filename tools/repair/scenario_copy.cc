@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/file_names.h"
 #include "tools/app/scenario_model.h"
@@ -125,7 +125,7 @@ base::Status ScenarioCopy::look_at_reads(Context& context) {
   // What the world reads must not be what is changed.
   for (const auto& name : world_files(*copied, context)) {
     if (!read_.contains(base::absolute_name(name)) || !is_copy(name)) continue;
-    return sink.error_about(base::DiagnosticCode::kFileNotWritable, name,
+    return sink.error_about(codes::kFileNotWritable, name,
                             "the world reads it as the model does, and cannot be given a copy of "
                             "its own: give the world files of its own, named relative to the "
                             "scenario");
@@ -146,7 +146,7 @@ base::Result<std::vector<ChangedFile>> ScenarioCopy::in_copies(std::vector<Chang
     const auto target = copy == copies_.end() ? file.name : copy->second.target.string();
     if (!is_copy(target) || !read_.contains(base::absolute_name(target))) {
       return context.sink().error_about(
-          base::DiagnosticCode::kFileNotWritable, file.name,
+          codes::kFileNotWritable, file.name,
           "--loop changes copies, and this file was not read from its copy: name it relative to "
           "the scenario");
     }

@@ -2,7 +2,6 @@
 
 #include <system_error>
 
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/file_names.h"
 #include "compiler/base/path_gate.h"

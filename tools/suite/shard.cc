@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 #include "compiler/base/hash.h"
 #include "compiler/base/whole_number.h"
 
@@ -10,7 +10,7 @@ namespace parallax::tools {
 namespace {
 
 base::Reported refused(const std::string& why, base::DiagnosticSink& sink) {
-  return sink.error_about(base::DiagnosticCode::kUsage, "", "--shard: " + why);
+  return sink.error_about(codes::kUsage, "", "--shard: " + why);
 }
 
 std::optional<std::uint32_t> number_in(const Environment& environment, const std::string& name) {

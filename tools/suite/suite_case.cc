@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <tuple>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
+#include "compiler/base/codes/texts.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/path_gate.h"
 
@@ -47,7 +49,7 @@ class YamlFinder {
     } else if (fs::is_regular_file(status)) {
       add(path);
     } else {
-      sink_.error_about(base::DiagnosticCode::kFileNotFound, path,
+      sink_.error_about(codes::kFileNotFound, path,
                         error ? error.message() : "it is neither a file nor a folder");
     }
   }
@@ -78,8 +80,7 @@ class YamlFinder {
     if (!fs::exists(status)) return unreadable(path, error ? error.message() : "it leads nowhere");
     if (!fs::is_regular_file(status)) return unreadable(path, "it is no regular file");
     if (!gate_.admits(path)) {
-      sink_.error_about(base::DiagnosticCode::kLoadOutside, path.string(),
-                        base::real_path(path).string());
+      sink_.error_about(codes::kLoadOutside, path.string(), base::real_path(path).string());
       return;
     }
     add(path);
@@ -87,7 +88,7 @@ class YamlFinder {
 
   void add(const fs::path& path) { files_.push_back(path.lexically_normal().string()); }
   void unreadable(const fs::path& path, const std::string& why) {
-    sink_.error_about(base::DiagnosticCode::kCaseUnreadable, path.lexically_normal().string(), why);
+    sink_.error_about(codes::kCaseUnreadable, path.lexically_normal().string(), why);
   }
 
   bool allow_outside_;
@@ -163,7 +164,7 @@ base::Result<std::vector<SuiteCase>> find_cases(const std::vector<std::string>& 
                                                 base::DiagnosticSink& sink) {
   const auto errors_before = sink.error_count();
   const auto unreadable = [&](const std::string& file, const std::string& why) {
-    sink.error_about(base::DiagnosticCode::kCaseUnreadable, file, why);
+    sink.error_about(codes::kCaseUnreadable, file, why);
   };
   std::vector<SuiteCase> cases;
   for (const auto& file : YamlFinder(allow_outside, sink).find(paths)) {

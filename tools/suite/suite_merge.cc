@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
 
 namespace parallax::tools {
 namespace {
@@ -20,7 +20,7 @@ using Parts = std::map<std::uint32_t, Part>;  // by the shard's index
 
 base::Reported refused(const std::string& folder, const std::string& why,
                        base::DiagnosticSink& sink) {
-  return sink.error_about(base::DiagnosticCode::kUsage, folder, "--merge: " + why);
+  return sink.error_about(codes::kUsage, folder, "--merge: " + why);
 }
 
 /// The first name that one list of cases has and the other has not.

@@ -6,7 +6,7 @@
 #include <array>
 #include <system_error>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
 
@@ -192,9 +192,7 @@ base::Result<StoredResults> read_results(const fs::path& folder, base::Diagnosti
   const auto text = base::read_file(path, unread);
   const auto json = text ? base::parse_json(*text) : Json();
   const auto* cases = base::json_member(json, "cases");
-  const auto refused = [&] {
-    return sink.error_about(base::DiagnosticCode::kNoEarlierResults, path.string());
-  };
+  const auto refused = [&] { return sink.error_about(codes::kNoEarlierResults, path.string()); };
   if (cases == nullptr || !cases->is_object()) return refused();
   StoredResults out;
   if (const auto* suite = base::json_member(json, "suite")) {

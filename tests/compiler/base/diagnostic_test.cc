@@ -3,7 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
+#include "compiler/base/codes/names.h"
 #include "compiler/base/diagnostic_printer.h"
 
 namespace parallax::base {
@@ -18,8 +19,7 @@ struct Text {
 TEST_CASE("a message that quotes a megabyte is shortened in the middle") {
   base::SourceFiles files;
   base::DiagnosticSink sink;
-  sink.error_about(base::DiagnosticCode::kUsage, "",
-                   "no `" + std::string(1'000'000, 'x') + "` here")
+  sink.error_about(codes::kUsage, "", "no `" + std::string(1'000'000, 'x') + "` here")
       .note("see " + std::string(1'000'000, 'y'));
   const auto text = base::to_text(sink.sorted().front(), files, {});
   CHECK(text.size() < 10'000);
@@ -47,11 +47,11 @@ TEST_CASE("sink: sorted by file, place and code, without duplicates, unlocated o
   Text text;
   const auto other = text.files.add("b.e", "x\n");
   DiagnosticSink sink;
-  sink.error(DiagnosticCode::kInvalidText, SourceRange{other, 0, 1});
-  sink.error(DiagnosticCode::kInvalidText, text.at(5, 6));
-  sink.error(DiagnosticCode::kInvalidText, text.at(2, 3));
-  sink.error(DiagnosticCode::kInvalidText, text.at(5, 6));
-  sink.error_about(DiagnosticCode::kFileNotFound, "c.e", "gone");
+  sink.error(codes::kInvalidText, SourceRange{other, 0, 1});
+  sink.error(codes::kInvalidText, text.at(5, 6));
+  sink.error(codes::kInvalidText, text.at(2, 3));
+  sink.error(codes::kInvalidText, text.at(5, 6));
+  sink.error_about(codes::kFileNotFound, "c.e", "gone");
   const auto sorted = sink.sorted();
   REQUIRE(sorted.size() == 4);
   CHECK_FALSE(sorted[0].range);
@@ -65,7 +65,7 @@ TEST_CASE("sink: errors beyond the limit are counted, not kept, and can still be
   Text text;
   DiagnosticSink sink(2);
   for (std::uint32_t i = 0; i < 5; ++i) {
-    sink.error(DiagnosticCode::kInvalidText, text.at(i, i + 1)).note("why").fix("how");
+    sink.error(codes::kInvalidText, text.at(i, i + 1)).note("why").fix("how");
   }
   CHECK(sink.error_count() == 5);
   CHECK(sink.sorted().size() == 2);
@@ -74,17 +74,17 @@ TEST_CASE("sink: errors beyond the limit are counted, not kept, and can still be
 TEST_CASE("sink: warnings beyond the limit are counted, muted ones are not") {
   Text text;
   DiagnosticSink sink(20, 3);
-  sink.mute(DiagnosticCode::kWeightedFormula);
+  sink.mute(codes::kWeightedFormula);
   for (std::uint32_t i = 0; i < 5; ++i) {
-    sink.warning(DiagnosticCode::kUnusedSort, text.at(i, i + 1), "a").note("kept or not");
-    sink.warning(DiagnosticCode::kWeightedFormula, text.at(i, i + 1));
+    sink.warning(codes::kUnusedSort, text.at(i, i + 1), "a").note("kept or not");
+    sink.warning(codes::kWeightedFormula, text.at(i, i + 1));
   }
   CHECK(sink.warning_count() == 5);
   CHECK(sink.sorted().size() == 3);
   CHECK_FALSE(sink.has_errors());
   // Errors cannot be muted.
-  sink.mute(DiagnosticCode::kInvalidText);
-  sink.error(DiagnosticCode::kInvalidText, text.at(0, 1));
+  sink.mute(codes::kInvalidText);
+  sink.error(codes::kInvalidText, text.at(0, 1));
   CHECK(sink.error_count() == 1);
 }
 
@@ -92,19 +92,19 @@ TEST_CASE("sink: the exit code follows the class of the errors; warnings have no
   Text text;
   DiagnosticSink sink;
   CHECK(sink.exit_code() == 0);
-  sink.warning(DiagnosticCode::kWeightedFormula, text.at(0, 1));
+  sink.warning(codes::kWeightedFormula, text.at(0, 1));
   CHECK(sink.exit_code() == 0);
   CHECK_FALSE(sink.has_errors());
-  sink.error(DiagnosticCode::kInvalidText, text.at(0, 1));
+  sink.error(codes::kInvalidText, text.at(0, 1));
   CHECK(sink.exit_code() == 3);
-  sink.error_about(DiagnosticCode::kFileNotFound, "c.e", "gone");
+  sink.error_about(codes::kFileNotFound, "c.e", "gone");
   CHECK(sink.exit_code() == 2);
 }
 
 TEST_CASE("result: a failure exists only after a report, and its value may not be taken") {
   DiagnosticSink sink;
   const auto failing = [&]() -> Result<int> {
-    return sink.error_about(DiagnosticCode::kUsage, "", "wrong flag");
+    return sink.error_about(codes::kUsage, "", "wrong flag");
   };
   auto result = failing();
   CHECK_FALSE(result);
@@ -118,7 +118,7 @@ TEST_CASE("result: a failure exists only after a report, and its value may not b
 TEST_CASE("printer: place, code, excerpt with caret, notes and fix") {
   Text text;
   DiagnosticSink sink;
-  sink.error(DiagnosticCode::kUnknownSort, text.at(5, 10), "agent")
+  sink.error(codes::kUnknownSort, text.at(5, 10), "agent")
       .note(text.at(0, 4), "the keyword")
       .note("no place")
       .fix("replace it");
@@ -134,7 +134,7 @@ TEST_CASE("printer: place, code, excerpt with caret, notes and fix") {
 TEST_CASE("printer: columns count code points and a tab is one column") {
   Text text;
   DiagnosticSink sink;
-  sink.error(DiagnosticCode::kUnknownSort, text.at(17, 18), "X");
+  sink.error(codes::kUnknownSort, text.at(17, 18), "X");
   CHECK(to_text(sink.sorted()[0], text.files, {}) ==
         "dir/a.e:2:6: error[E2001]: no sort `X`\n"
         "    2 |  f\xC3\xA4r X\n"
@@ -146,7 +146,7 @@ TEST_CASE(
     "printer: the advice of the registry, unless there is better, and only if it is asked for") {
   Text text;
   DiagnosticSink sink;
-  sink.error(DiagnosticCode::kUnknownSort, text.at(17, 18), "X").help("Ask somebody.");
+  sink.error(codes::kUnknownSort, text.at(17, 18), "X").help("Ask somebody.");
   const auto diagnostic = sink.sorted()[0];
   const auto ending = [&](const DiagnosticStyle& style) {
     const auto out = to_text(diagnostic, text.files, style);
@@ -169,8 +169,8 @@ TEST_CASE("printer: control bytes, invalid bytes and direction marks are made vi
 TEST_CASE("printer: JSON has the same fields and is JSON whatever the text") {
   Text text;
   DiagnosticSink sink;
-  sink.error(DiagnosticCode::kUnknownSort, text.at(5, 10), "a\"\xFF\n").note(text.at(0, 4), "n");
-  sink.warning(DiagnosticCode::kWeightedFormula, text.at(12, 13));
+  sink.error(codes::kUnknownSort, text.at(5, 10), "a\"\xFF\n").note(text.at(0, 4), "n");
+  sink.warning(codes::kWeightedFormula, text.at(12, 13));
   const auto parsed = nlohmann::json::parse(to_json(sink.sorted(), text.files));
   REQUIRE(parsed.size() == 2);
   CHECK(parsed[0]["path"] == "dir/a.e");
@@ -186,7 +186,7 @@ TEST_CASE("printer: JSON has the same fields and is JSON whatever the text") {
 TEST_CASE("colour is used only when asked for") {
   Text text;
   DiagnosticSink sink;
-  sink.error(DiagnosticCode::kUnknownSort, text.at(5, 10), "agent");
+  sink.error(codes::kUnknownSort, text.at(5, 10), "agent");
   CHECK(to_text(sink.sorted()[0], text.files, {}).find('\x1b') == std::string::npos);
   CHECK(to_text(sink.sorted()[0], text.files, {.color = true}).find('\x1b') != std::string::npos);
 }

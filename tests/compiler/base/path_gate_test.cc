@@ -11,7 +11,8 @@
 #include <optional>
 #include <string>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
+#include "compiler/base/codes/texts.h"
 #include "compiler/base/file_io.h"
 
 namespace parallax::base {
@@ -157,7 +158,7 @@ TEST_CASE("no output replaces a file that was read, by whatever name") {
                                fs::path("link.e"), fs::path("hard.e")}) {
     DiagnosticSink refused;
     CHECK_FALSE(write_output(name, "y", files, refused).has_value());
-    CHECK(refused.sorted().front().code == DiagnosticCode::kOutputIsInput);
+    CHECK(refused.sorted().front().code == codes::kOutputIsInput);
     CHECK(refused.exit_code() == 2);
   }
   CHECK(write_output("other.e", "y", files, sink).has_value());
@@ -187,7 +188,7 @@ TEST_CASE("a file of a folder must really lie there") {
   DiagnosticSink sink;
   CHECK(read_file_of("r", "journal", sink).has_value());
   CHECK_FALSE(read_file_of("r", "report", sink).has_value());
-  CHECK(sink.sorted().front().code == DiagnosticCode::kLoadOutside);
+  CHECK(sink.sorted().front().code == codes::kLoadOutside);
 }
 
 }  // namespace

@@ -7,7 +7,8 @@
 #include <set>
 #include <string>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/files.h"
+#include "compiler/base/codes/names.h"
 #include "compiler/base/diagnostic_printer.h"
 
 namespace parallax::base {
@@ -32,13 +33,13 @@ struct SarifText {
 
 TEST_CASE("sarif: rules, results and regions fit together") {
   SarifText text("sort a\n; \xC3\xA4\xC3\xB6 note\nP(b) & Q(c).\n");
-  text.sink.error(DiagnosticCode::kUnknownName, text.find("P(b)"), "predicate", "P", "")
+  text.sink.error(codes::kUnknownName, text.find("P(b)"), "predicate", "P", "")
       .note(text.find("sort a"), "declared here")
       .note("elsewhere")
       .fix("replace `P` with `R`");
-  text.sink.warning(DiagnosticCode::kUnusedSort, text.find("a\n"), "a");
-  text.sink.warning(DiagnosticCode::kUnusedSort, text.find("note"), "b");
-  text.sink.error_about(DiagnosticCode::kFileNotFound, "some where.e", "gone");
+  text.sink.warning(codes::kUnusedSort, text.find("a\n"), "a");
+  text.sink.warning(codes::kUnusedSort, text.find("note"), "b");
+  text.sink.error_about(codes::kFileNotFound, "some where.e", "gone");
   const auto log = text.log();
   CHECK(log["version"] == "2.1.0");
   CHECK(log["$schema"].is_string());
@@ -91,7 +92,7 @@ TEST_CASE("sarif: rules, results and regions fit together") {
 TEST_CASE("sarif: fingerprints stay when other lines come and go, and change with their own") {
   const auto print = [](const std::string& text) {
     SarifText one(text);
-    one.sink.warning(DiagnosticCode::kUnusedSort, one.find("sort b"), "b");
+    one.sink.warning(codes::kUnusedSort, one.find("sort b"), "b");
     return one.log()["runs"][0]["results"][0]["partialFingerprints"].dump();
   };
   const auto first = print("sort a\nsort b\n");
@@ -101,8 +102,8 @@ TEST_CASE("sarif: fingerprints stay when other lines come and go, and change wit
 
 TEST_CASE("sarif: equal lines get fingerprints that differ") {
   SarifText text("sort b\nsort b\n");
-  text.sink.warning(DiagnosticCode::kUnusedSort, text.find("sort b"), "b");
-  text.sink.warning(DiagnosticCode::kUnusedSort, text.find("sort b", 3), "b");
+  text.sink.warning(codes::kUnusedSort, text.find("sort b"), "b");
+  text.sink.warning(codes::kUnusedSort, text.find("sort b", 3), "b");
   const auto results = text.log()["runs"][0]["results"];
   REQUIRE(results.size() == 2);
   CHECK(results[0]["partialFingerprints"] != results[1]["partialFingerprints"]);
@@ -111,14 +112,14 @@ TEST_CASE("sarif: equal lines get fingerprints that differ") {
 TEST_CASE("sarif: absolute paths become relative below the current folder") {
   const auto here = std::filesystem::current_path();
   SarifText inside("x", (here / "sub" / "m.e").string());
-  inside.sink.warning(DiagnosticCode::kUnusedSort, inside.find("x"), "x");
+  inside.sink.warning(codes::kUnusedSort, inside.find("x"), "x");
   const auto place = [](const json& log) {
     return log["runs"][0]["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]
               ["uri"];
   };
   CHECK(place(inside.log()) == "sub/m.e");
   SarifText outside("x", "/nowhere/m.e");
-  outside.sink.warning(DiagnosticCode::kUnusedSort, outside.find("x"), "x");
+  outside.sink.warning(codes::kUnusedSort, outside.find("x"), "x");
   CHECK(place(outside.log()) == "file:///nowhere/m.e");
 }
 

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/syntax/printer.h"
 
 namespace parallax::compiler {

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "compiler/base/diagnostic_codes.h"
 #include "compiler/lisp/system_definition.h"
 #include "compiler/plan/plan_files.h"
 

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "harness/region/state_mapping.h"
 
 namespace parallax::harness {
@@ -76,7 +76,7 @@ TEST_CASE("a half that no start has is refused") {
     const bool made = mapping().start_cuboid(all(), holds, extra, {}, sink).has_value();
     CHECK(made == sink.sorted().empty());
     for (const auto& diagnostic : sink.sorted()) {
-      CHECK(diagnostic.code == base::DiagnosticCode::kStartNotSampleable);
+      CHECK(diagnostic.code == codes::kStartNotSampleable);
     }
     return !made;
   };

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 #include "harness/sampling/sampler.h"
 
 namespace parallax::harness {
@@ -173,7 +173,7 @@ TEST_CASE("regions: an angle is found a turn away, and the seam belongs to one s
   CHECK(located(set, {0, 0, 0, kPi}) == "south");
   const auto found = complaints({region_yaw("a", -1, 1), region_yaw("b", 5, 6)}, true);
   REQUIRE(found.size() == 1);
-  CHECK(found[0].code == DiagnosticCode::kRegionOverlap);
+  CHECK(found[0].code == codes::kRegionOverlap);
 }
 
 TEST_CASE("regions: half a turn with four digits still closes the circle") {
@@ -185,27 +185,27 @@ TEST_CASE("regions: half a turn with four digits still closes the circle") {
 TEST_CASE("regions: reversed bounds are refused with the bounds the right way round") {
   const auto found = complaints({region_x("r1", 1, 0)});
   REQUIRE(found.size() == 1);
-  CHECK(found[0].code == DiagnosticCode::kRegionReversed);
+  CHECK(found[0].code == codes::kRegionReversed);
   CHECK(found[0].message == "region `r1`: the x bounds are reversed, 1 is above 0");
   CHECK(found[0].fix == "write x: [0, 1]");
 }
 
 TEST_CASE("regions: bounds without extent, without end, or missing altogether are refused") {
-  check_one({region_x("r1", 1, 1)}, DiagnosticCode::kRegionEmpty,
+  check_one({region_x("r1", 1, 1)}, codes::kRegionEmpty,
             "region `r1` has no extent on x: both bounds are 1");
-  check_one({region_x("r1", 0, std::numeric_limits<double>::infinity())},
-            DiagnosticCode::kRegionNotFinite, "region `r1`: a bound on x is not a finite number");
-  check_one({region_x("r1", std::nan(""), 1)}, DiagnosticCode::kRegionNotFinite,
+  check_one({region_x("r1", 0, std::numeric_limits<double>::infinity())}, codes::kRegionNotFinite,
+            "region `r1`: a bound on x is not a finite number");
+  check_one({region_x("r1", std::nan(""), 1)}, codes::kRegionNotFinite,
             "region `r1`: a bound on x is not a finite number");
   Region unbounded;
   unbounded.name = "r1";
-  check_one({unbounded}, DiagnosticCode::kRegionUnbounded, "region `r1` bounds no axis");
+  check_one({unbounded}, codes::kRegionUnbounded, "region `r1` bounds no axis");
 }
 
 TEST_CASE("regions: an overlap names both regions and points at the other one") {
   const auto found = complaints({region_x("r1", 0, 1, 10), region_x("r2", 0.9, 2, 20)});
   REQUIRE(found.size() == 1);
-  CHECK(found[0].code == DiagnosticCode::kRegionOverlap);
+  CHECK(found[0].code == codes::kRegionOverlap);
   CHECK(found[0].message == "regions `r1` and `r2` overlap: x from 0.9 to 1");
   CHECK(found[0].range->begin == 20);
   REQUIRE(found[0].notes.size() == 1);
@@ -215,7 +215,7 @@ TEST_CASE("regions: an overlap names both regions and points at the other one") 
 TEST_CASE("regions: a gap names the uncovered stretch and the regions on both sides") {
   const auto found = complaints({region_x("r2", 1, 2, 10), region_x("r1", 0, 0.9, 20)});
   REQUIRE(found.size() == 1);
-  CHECK(found[0].code == DiagnosticCode::kRegionGap);
+  CHECK(found[0].code == codes::kRegionGap);
   CHECK(found[0].message == "no region covers x from 0.9 to 1");
   CHECK(found[0].range->begin == 20);
   REQUIRE(found[0].notes.size() == 1);
@@ -223,14 +223,14 @@ TEST_CASE("regions: a gap names the uncovered stretch and the regions on both si
 }
 
 TEST_CASE("regions: a gap in two dimensions is a stretch on both axes") {
-  check_one({region_xy("a", {0, 1}, {0, 1}), region_xy("b", {1, 2}, {0, 0.5})},
-            DiagnosticCode::kRegionGap, "no region covers x from 1 to 2, y from 0.5 to 1");
+  check_one({region_xy("a", {0, 1}, {0, 1}), region_xy("b", {1, 2}, {0, 0.5})}, codes::kRegionGap,
+            "no region covers x from 1 to 2, y from 0.5 to 1");
 }
 
 TEST_CASE("regions: mixed axes and double names are refused") {
-  check_one({region_x("a", 0, 1), region_xy("b", {1, 2}, {0, 1})}, DiagnosticCode::kRegionMixedAxes,
+  check_one({region_x("a", 0, 1), region_xy("b", {1, 2}, {0, 1})}, codes::kRegionMixedAxes,
             "region `b` bounds x, y, but `a` bounds x");
-  check_one({region_x("a", 0, 1), region_x("a", 1, 2)}, DiagnosticCode::kRegionDuplicate,
+  check_one({region_x("a", 0, 1), region_x("a", 1, 2)}, codes::kRegionDuplicate,
             "region `a` is defined twice");
 }
 
@@ -238,9 +238,9 @@ TEST_CASE("regions: several faults are reported in one go, and no gap that follo
   const auto found = complaints({region_x("a", 1, 0, 1), region_x("b", 2, 2, 2),
                                  region_x("c", 0, 1, 3), region_x("d", 0.5, 4, 4)});
   REQUIRE(found.size() == 3);
-  CHECK(found[0].code == DiagnosticCode::kRegionReversed);
-  CHECK(found[1].code == DiagnosticCode::kRegionEmpty);
-  CHECK(found[2].code == DiagnosticCode::kRegionOverlap);
+  CHECK(found[0].code == codes::kRegionReversed);
+  CHECK(found[1].code == codes::kRegionEmpty);
+  CHECK(found[2].code == codes::kRegionOverlap);
 }
 
 TEST_CASE("regions: a random tiling passes, and without one of its inner regions it has a gap") {
@@ -256,7 +256,7 @@ TEST_CASE("regions: a random tiling passes, and without one of its inner regions
       without.erase(without.begin() + static_cast<std::ptrdiff_t>(i));
       const auto found = complaints(without);
       REQUIRE(found.size() == 1);
-      CHECK(found[0].code == DiagnosticCode::kRegionGap);
+      CHECK(found[0].code == codes::kRegionGap);
       break;
     }
   }

@@ -2,12 +2,10 @@
 
 #include <doctest/doctest.h>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/scenarios.h"
 
 namespace parallax::harness {
 namespace {
-
-using base::DiagnosticCode;
 
 Region region_along_x(std::string name, double lower, double upper) {
   Region region;
@@ -47,7 +45,7 @@ std::vector<base::Diagnostic> start_errors(
   base::DiagnosticSink sink;
   CHECK_FALSE(line().start_cuboid(fluents, true_fluents, extra, {}, sink).has_value());
   for (const auto& diagnostic : sink.sorted()) {
-    CHECK(diagnostic.code == DiagnosticCode::kStartNotSampleable);
+    CHECK(diagnostic.code == codes::kStartNotSampleable);
   }
   return sink.sorted();
 }
@@ -211,7 +209,7 @@ TEST_CASE("check: unmapped symbols once, wrong arity, and regions that do not ex
   REQUIRE(found[0].notes.size() == 1);
   CHECK(found[0].notes[0].text == "`RobotIn` is mapped; is that the one?");
   CHECK(found[1].message == "fluent `RobotIn(r4)` speaks of region `r4`, which does not exist");
-  CHECK(found[2].code == DiagnosticCode::kMappingArity);
+  CHECK(found[2].code == codes::kMappingArity);
   base::DiagnosticSink good;
   CHECK(line().check(all_fluents(), {}, good).has_value());
 }

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/names.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/syntax/lexer.h"
 #include "compiler/syntax/loader.h"
@@ -240,7 +240,7 @@ TEST_CASE("the problem matcher takes messages apart as they are printed") {
   const auto check = [&](std::uint32_t begin, std::uint32_t end, const std::string& line,
                          const std::string& end_line, const std::string& end_column) {
     base::DiagnosticSink own;
-    own.warning(base::DiagnosticCode::kUnusedSort, base::SourceRange{file, begin, end}, "abc");
+    own.warning(codes::kUnusedSort, base::SourceRange{file, begin, end}, "abc");
     const auto text = base::to_text(own.sorted().front(), files, {});
     std::smatch match;
     const auto first = text.substr(0, text.find('\n'));

@@ -9,7 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "compiler/base/diagnostic_codes.h"
+#include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/texts.h"
 
 namespace parallax::tools {
 namespace {
@@ -91,7 +92,7 @@ TEST_CASE("a YAML file that cannot be read is an error at its place") {
   SUBCASE("a manifest that is too large") {
     folder.write("s/bad.yaml", "cases: []\n#" + std::string(1 << 20, 'x'));
   }
-  check_one_error(find_in(folder.path() / "s"), base::DiagnosticCode::kCaseUnreadable, bad);
+  check_one_error(find_in(folder.path() / "s"), codes::kCaseUnreadable, bad);
 }
 
 TEST_CASE("a large file that is no case is none") {
@@ -116,11 +117,11 @@ TEST_CASE("without permission a file and a folder are errors at their place") {
     fs::remove_all(top / "s/sub");
     folder.write("s/bad.yaml", "cases: []\n");
     fs::permissions(top / "s/bad.yaml", fs::perms::none);
-    check_one_error(look(), base::DiagnosticCode::kCaseUnreadable, top / "s/bad.yaml");
+    check_one_error(look(), codes::kCaseUnreadable, top / "s/bad.yaml");
   }
   SUBCASE("folder") {
     fs::permissions(top / "s/sub", fs::perms::none);
-    check_one_error(look(), base::DiagnosticCode::kCaseUnreadable, top / "s/sub");
+    check_one_error(look(), codes::kCaseUnreadable, top / "s/sub");
     fs::permissions(top / "s/sub", fs::perms::owner_all);
   }
 }
@@ -130,7 +131,7 @@ TEST_CASE("a link that leads out of the suite is refused, unless that is permitt
   folder.write("outside.yaml", "name: not ours\n");
   const auto link = folder.path() / "s" / "link.yaml";
   fs::create_symlink("../outside.yaml", link);
-  check_one_error(find_in(folder.path() / "s"), base::DiagnosticCode::kLoadOutside, link);
+  check_one_error(find_in(folder.path() / "s"), codes::kLoadOutside, link);
   CHECK(find_in(folder.path() / "s", true).code == 0);
   CHECK(find_in(link).code == 0);  // named on the command line
 }
