@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "tools/learn/opening_search.h"
+#include "tools/learn/outcome_ties.h"
 #include "tools/learn/rule_search.h"
 
 namespace parallax::tools {
@@ -80,11 +81,13 @@ class EffectLearner {
       }
       if (steps_.empty()) continue;
       learn_refusals(event);
+      std::vector<FluentAccount> fluents;
       for (std::size_t fluent = 0; fluent < symbols.size() && !stop_.load(); ++fluent) {
         if (symbols[fluent].kind == SymbolKind::kFluent && symbols[fluent].inertial) {
-          learn_fluent(event, fluent);
+          fluents.push_back(learn_fluent(event, fluent));
         }
       }
+      learn_ties(fluents);
     }
     for (const auto& rule : out_.rules) {
       const bool told = from_outcomes_.contains(symbols[rule.fluent].name);
@@ -158,6 +161,12 @@ class EffectLearner {
     std::vector<RuleExample> unexplained;
     /// As long as it takes to tell the rules, and what they leave open.
     double length = 0.0;
+  };
+
+  struct FluentAccount {
+    OpeningProblem problem;
+    std::vector<Outcome> seen;
+    Account account;
   };
 
   Account account(const OpeningProblem& problem, const std::vector<Outcome>& seen,
@@ -241,7 +250,7 @@ class EffectLearner {
     return best;
   }
 
-  void learn_fluent(std::size_t event, std::size_t fluent) {
+  FluentAccount learn_fluent(std::size_t event, std::size_t fluent) {
     OpeningProblem problem{RuleKind::kReleases, event, fluent, {}, 0.0};
     const auto seen = outcomes(fluent, problem);
     tell_open(fluent, seen, problem);
@@ -262,9 +271,41 @@ class EffectLearner {
             step(example.transition).runs.front()));
       }
       if (!all) continue;
-      std::move(found.openings.begin(), found.openings.end(), std::back_inserter(out_.rules));
-      std::move(found.effects.begin(), found.effects.end(), std::back_inserter(out_.rules));
-      return;
+      return {std::move(problem), seen, std::move(found)};
+    }
+    return {};
+  }
+
+  /// Outcomes that one chance decides. Where the chance of one is another's, and nothing shows
+  /// more of it to be open, it is open where the other one is.
+  void learn_ties(std::vector<FluentAccount>& fluents) {
+    for (bool narrowed = true; narrowed && !stop_.load();) {
+      narrowed = false;
+      std::vector<LearnedRule> openings;
+      std::vector<std::pair<std::size_t, std::size_t>> places;
+      for (std::size_t i = 0; i < fluents.size(); ++i) {
+        const auto& of_fluent = fluents[i].account.openings;
+        for (std::size_t k = 0; k < of_fluent.size(); ++k) places.emplace_back(i, k);
+        openings.insert(openings.end(), of_fluent.begin(), of_fluent.end());
+      }
+      auto ties = find_ties(openings, steps_, observations_, stop_);
+      for (auto& tie : ties) {
+        if (!tie.narrower || narrowed) continue;
+        const auto& [fluent, rule] = places[tie.second];
+        auto& [problem, seen, account] = fluents[fluent];
+        auto less = account.openings;
+        less[rule] = *std::move(tie.narrower);
+        auto next = this->account(problem, seen, std::move(less));
+        narrowed = next.unexplained.size() <= account.unexplained.size();
+        if (narrowed) account = std::move(next);
+      }
+      if (narrowed) continue;
+      for (auto& each : fluents) {
+        auto& [openings_of, effects, unexplained, length] = each.account;
+        std::move(openings_of.begin(), openings_of.end(), std::back_inserter(out_.rules));
+        std::move(effects.begin(), effects.end(), std::back_inserter(out_.rules));
+      }
+      for (auto& tie : ties) out_.rules.push_back(std::move(tie.rule));
     }
   }
 

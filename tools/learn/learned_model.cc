@@ -106,7 +106,10 @@ std::string learned_text(const std::string& heading, const std::string& states,
   for (const auto& rule : effects.rules) {
     if (event != rule.event) text += "\n";
     event = rule.event;
-    text += print(rule, vocabulary) + "\n; Taught by " + named_runs(rule.taught_by);
+    text +=
+        print(rule, vocabulary) +
+        (rule.kind == RuleKind::kTies ? "\n; One chance decides both, as in " : "\n; Taught by ") +
+        named_runs(rule.taught_by);
     if (!rule.held_by.empty()) text += "; held back by " + named_runs(rule.held_by);
     text += ".\n";
   }

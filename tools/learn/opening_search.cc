@@ -1,7 +1,6 @@
 #include "tools/learn/opening_search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -29,12 +28,7 @@ struct Counts {
     failed += static_cast<double>(example.failed);
   }
   /// To tell of each which way it went, where nothing else is known.
-  double bits() const {
-    const auto part = [&](double count) {
-      return count > 0 ? count * std::log2(all() / count) : 0.0;
-    };
-    return part(held) + part(failed);
-  }
+  double bits() const { return bits_to_tell(held, failed); }
 };
 
 Truth fires_at(const LearnedRule& rule, const OpeningExample& example,
@@ -315,6 +309,12 @@ std::vector<LearnedRule> shortest_exceptions(OpeningProblem problem,
     if (length && here >= *length) continue;
     length = here;
     best = std::move(rules);
+  }
+  for (auto& rule : best) {
+    rule.certain =
+        std::all_of(problem.examples.begin(), problem.examples.end(), [&](const auto& example) {
+          return example.open || fires_at(rule, example, vocabulary, states) == Truth::kFalse;
+        });
   }
   return best;
 }

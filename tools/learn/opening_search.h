@@ -53,7 +53,8 @@ std::vector<LearnedRule> narrower_openings(const OpeningProblem& problem, const 
                                            const LearnVocabulary& vocabulary,
                                            const std::vector<std::vector<Truth>>& states);
 /// The same for kAdmits, with the value of most_outside that gives the shortest description:
-/// nothing else explains what is not covered, and nothing has to.
+/// nothing else explains what is not covered, and nothing has to. A rule is certain where it covers
+/// nothing that is not open.
 std::vector<LearnedRule> shortest_exceptions(OpeningProblem problem,
                                              const LearnVocabulary& vocabulary,
                                              const std::vector<std::vector<Truth>>& states,

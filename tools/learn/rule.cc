@@ -1,6 +1,7 @@
 #include "tools/learn/rule.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <unordered_map>
@@ -154,6 +155,13 @@ std::string print_unit(const RuleUnit& unit, std::size_t number, const RuleNames
 
 }  // namespace
 
+double bits_to_tell(double held, double failed) {
+  const auto part = [&](double count) {
+    return count > 0 ? count * std::log2((held + failed) / count) : 0.0;
+  };
+  return part(held) + part(failed);
+}
+
 bool LearnedRule::bind(const std::vector<std::size_t>& event_arguments,
                        const std::vector<std::size_t>& fluent_arguments,
                        std::vector<std::size_t>& binding) const {
@@ -260,7 +268,14 @@ std::string print(const LearnedRule& rule, const LearnVocabulary& vocabulary) {
   const auto effect = event + "," + names.call(rule.fluent, rule.terms, 0) + ",time)";
   if (rule.unless_open) condition += (condition.empty() ? "!Releases(" : " & !Releases(") + effect;
   std::string head;
-  if (rule.kind == RuleKind::kForbids) {
+  if (rule.kind == RuleKind::kTies) {
+    const auto afterwards = [&](std::size_t fluent, const std::vector<RuleTerm>& terms) {
+      return "HoldsAt(" + names.call(fluent, terms, 0) + ",time+1)";
+    };
+    condition = "Happens(" + event + ",time)" + (condition.empty() ? "" : " & ") + condition;
+    head = "(" + afterwards(rule.fluent, rule.terms) + " <-> " + (rule.tied->same ? "" : "!") +
+           afterwards(rule.tied->fluent, rule.tied->terms) + ")";
+  } else if (rule.kind == RuleKind::kForbids) {
     head = "!Happens(" + event + ",time)";
   } else {
     const auto* kind = rule.kind == RuleKind::kInitiates    ? "Initiates("

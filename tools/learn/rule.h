@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,12 +36,20 @@ struct RuleUnit {
   int cost = 0;
 };
 
-enum class RuleKind : std::uint8_t { kInitiates, kTerminates, kReleases, kForbids, kAdmits };
+enum class RuleKind : std::uint8_t { kInitiates, kTerminates, kReleases, kForbids, kAdmits, kTies };
+
+/// An outcome that goes as another one goes, or against it.
+struct TiedFluent {
+  std::size_t fluent = 0;
+  std::vector<RuleTerm> terms;
+  bool same = true;
+};
 
 /// `[variables] units -> Initiates(event(x1,..,xn),fluent(terms),time)`, or, of kForbids,
 /// `units -> !Happens(event(x1,..,xn),time)`. The head's variables are the event's arguments, then
 /// further ones of the fluent. Of kAdmits there is no event: where the units hold, the fluent may
-/// be otherwise than a formula about states says.
+/// be otherwise than a formula about states says. Of kTies: where the event happens and the units
+/// hold, the fluent holds afterwards if and only if the tied one does, or does not.
 struct LearnedRule {
   RuleKind kind = RuleKind::kInitiates;
   std::size_t event = 0, fluent = 0;
@@ -49,6 +58,8 @@ struct LearnedRule {
   std::vector<RuleUnit> units;
   int cost = 0;
   bool unless_open = false;            // an effect only where no rule leaves the outcome open
+  bool certain = false;                // of kAdmits: it went so each time that anyone saw it
+  std::optional<TiedFluent> tied;      // of kTies
   std::vector<std::string> taught_by;  // runs that show the effect
   std::vector<std::string> held_by;    // runs that show that it needs its condition
 
@@ -78,6 +89,9 @@ Truth value_of(const std::vector<RuleUnit>& units, const LearnVocabulary& vocabu
 /// `head` names the head's variables, `time` the timepoint. Empty if there are none.
 std::string print_condition(const LearnedRule& rule, const LearnVocabulary& vocabulary,
                             const std::vector<std::string>& head, const std::string& time);
+
+/// Bits that tell of each which way it went, where nothing else is known.
+double bits_to_tell(double held, double failed);
 
 /// As the language writes it, with its period.
 std::string print(const LearnedRule& rule, const LearnVocabulary& vocabulary);

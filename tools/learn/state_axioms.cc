@@ -217,6 +217,26 @@ void StateAxioms::learn_exceptions(const std::vector<SeenState>& states,
     truths.push_back(truth ? *std::move(truth) : std::vector<Truth>());
   }
   for (auto* part : wrong) learn_exceptions(*part, states, truths, stop);
+  doubt_exceptions(states, truths, stop);
+}
+
+/// What is certain by itself may exclude, with other formulas, a state that runs came to.
+void StateAxioms::doubt_exceptions(const std::vector<SeenState>& states,
+                                   const std::vector<std::vector<Truth>>& truths,
+                                   const std::atomic<bool>& stop) {
+  std::string why;
+  const auto model = compile_text(text(true), 1, context_, why);
+  bool all = model.has_value();
+  if (all) {
+    StateCompletion completion(*model, vocabulary_, stop);
+    for (std::size_t i = 0; i < states.size() && all; ++i) {
+      all = truths[i].empty() || completion.complete(states[i].seen).has_value();
+    }
+  }
+  if (all) return;
+  for (auto& part : parts_) {
+    for (auto& rule : part.exceptions) rule.certain = false;
+  }
 }
 
 void StateAxioms::learn_exceptions(Part& part, const std::vector<SeenState>& states,
@@ -251,23 +271,45 @@ void StateAxioms::learn_exceptions(Part& part, const std::vector<SeenState>& sta
   part.exceptions = shortest_exceptions(std::move(problem), vocabulary_, truths, stop);
 }
 
-std::string StateAxioms::weakened(const Part& part) const {
+std::string StateAxioms::condition(const LearnedRule& exception,
+                                   const StateFormula& formula) const {
+  return print_condition(exception, vocabulary_, formula.definition->arguments, formula.time);
+}
+
+std::string StateAxioms::weakened(const Part& part, bool everywhere) const {
   const auto& formula = declarations_.formulas[part.formula];
   if (part.half == Part::Half::kWhole) return "";
-  std::string exceptions;
+  const auto& left = formula.definition->left;
+  const auto& right = formula.definition->right;
+  const bool needs = part.half == Part::Half::kNeeds;
+  std::string exceptions, certain;
+  bool anything = false;
   for (const auto& rule : part.exceptions) {
-    const auto condition =
-        print_condition(rule, vocabulary_, formula.definition->arguments, formula.time);
-    if (condition.empty()) return "";  // anything goes
-    exceptions += fmt::format("{}({})", exceptions.empty() ? "" : " | ", condition);
+    const auto text = condition(rule, formula);
+    anything = anything || text.empty();
+    exceptions += fmt::format("{}({})", exceptions.empty() ? "" : " | ", text);
+    if (!rule.certain) continue;
+    // The other half says what else there is to say, unless it is wrong, too.
+    std::vector<std::string> where;
+    if (!everywhere && part.at_start && !formula.time.empty())
+      where.push_back(formula.time + "!=0");
+    if (!text.empty()) where.push_back("(" + text + ")");
+    if (other_half_is_wrong(part)) where.push_back((needs ? "!(" : "(") + right + ")");
+    certain += formula.quantifier();
+    for (std::size_t i = 0; i < where.size(); ++i) certain += (i == 0 ? "" : " & ") + where[i];
+    certain += fmt::format("{}{}{}.\n", where.empty() ? "" : " -> ", needs ? "" : "!", left);
   }
-  if (exceptions.empty()) return "";
-  const auto& definition = *formula.definition;
-  return part.half == Part::Half::kNeeds
-             ? fmt::format("{}{} -> ({}) | {}.\n", formula.quantifier(), definition.left,
-                           definition.right, exceptions)
-             : fmt::format("{}({}) -> {} | {}.\n", formula.quantifier(), definition.right,
-                           definition.left, exceptions);
+  if (exceptions.empty() || anything) return certain;
+  return (needs ? fmt::format("{}{} -> ({}) | {}.\n", formula.quantifier(), left, right, exceptions)
+                : fmt::format("{}({}) -> {} | {}.\n", formula.quantifier(), right, left,
+                              exceptions)) +
+         certain;
+}
+
+bool StateAxioms::other_half_is_wrong(const Part& part) const {
+  return std::any_of(parts_.begin(), parts_.end(), [&](const auto& other) {
+    return other.formula == part.formula && other.half != part.half && other.refuted;
+  });
 }
 
 std::string StateAxioms::at_start(const Part& part) const {
@@ -297,7 +339,7 @@ std::string StateAxioms::text(bool everywhere) const {
       if (!part.refuted) {
         out += fmt::format("{}{}.\n", formula.quantifier(), body(part));
       } else {
-        out += weakened(part);
+        out += weakened(part, everywhere);
         if (!everywhere) out += at_start(part);
       }
     }
@@ -309,7 +351,9 @@ std::string StateAxioms::text(bool everywhere) const {
 
 bool StateAxioms::opens() const {
   return std::any_of(parts_.begin(), parts_.end(), [](const auto& part) {
-    return part.refuted && part.half != Part::Half::kWhole;
+    if (!part.refuted || part.half == Part::Half::kWhole) return false;
+    return part.exceptions.empty() || !std::all_of(part.exceptions.begin(), part.exceptions.end(),
+                                                   [](const auto& rule) { return rule.certain; });
   });
 }
 
@@ -319,7 +363,7 @@ std::vector<RefutedFormula> StateAxioms::refuted() const {
     if (!part.refuted) continue;
     const auto& formula = declarations_.formulas[part.formula];
     RefutedFormula told{formula.quantifier() + body(part) + ".", formula.place, part.runs,
-                        weakened(part) + at_start(part)};
+                        weakened(part, false) + at_start(part)};
     if (!told.instead.empty()) told.instead.pop_back();
     std::replace(told.instead.begin(), told.instead.end(), '\n', ' ');
     out.push_back(std::move(told));

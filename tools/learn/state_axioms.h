@@ -31,7 +31,8 @@ struct RefutedFormula {
 /// as they are until a run comes to a state that they exclude. Then the fewest formulas go that
 /// explain all such states. Of a definition, `F <-> G`, each half is a formula by itself: what
 /// contradicts one leaves the other. In the half that is wrong exceptions are learned
-/// (find_openings); any other formula goes. At the start, where states are drawn from them, all
+/// (find_openings): certain ones, where it was otherwise whenever anyone saw it, and others; any
+/// other formula goes. At the start, where states are drawn from them, all
 /// hold as they were, but for those that a start contradicts.
 class StateAxioms {
  public:
@@ -70,7 +71,9 @@ class StateAxioms {
 
   std::string guarded() const;
   std::string body(const Part& part) const;
-  std::string weakened(const Part& part) const;
+  std::string condition(const LearnedRule& exception, const StateFormula& formula) const;
+  std::string weakened(const Part& part, bool everywhere) const;
+  bool other_half_is_wrong(const Part& part) const;
   std::string at_start(const Part& part) const;
   std::optional<std::size_t> symbol_of(const Part& part) const;
   bool possible(const Evidence::State& seen, const std::vector<bool>& kept,
@@ -80,6 +83,9 @@ class StateAxioms {
   bool refute_one(const std::vector<SeenState>& states);
   void learn_exceptions(const std::vector<SeenState>& states, const std::atomic<bool>& stop);
   void learn_exceptions(Part& part, const std::vector<SeenState>& states,
+                        const std::vector<std::vector<Truth>>& truths,
+                        const std::atomic<bool>& stop);
+  void doubt_exceptions(const std::vector<SeenState>& states,
                         const std::vector<std::vector<Truth>>& truths,
                         const std::atomic<bool>& stop);
 

@@ -107,7 +107,10 @@ TEST_CASE("half of a definition that runs contradict gets exceptions, and is nam
   CHECK(cli.parallax({"check", "out/learned.e", "--horizon", "3"}).code == 0);
   CHECK(cli.parallax({"run", "out/learned.yaml", "--allow-outside", "--out", "again"}).code == 0);
   cli.scenario("truth.yaml", "wide.e", "wide.e", "execution: closed-loop\n");
-  CHECK(traces(cli, "truth.yaml", "out").lost.at("answer") == "none");
+  const auto found = traces(cli, "truth.yaml", "out");
+  CHECK(found.lost.at("answer") == "none");
+  // What goes beside it is as certain as what it says.
+  CHECK(found.gained.at("answer") == "none");
 }
 
 TEST_CASE(
@@ -202,6 +205,39 @@ TEST_CASE("chance that depends on the state: its condition is found, and rounds 
   CHECK(cli.parallax({"run", "out/learned.yaml", "--allow-outside", "--out", "again"}).code == 0);
   // What was seen both ways is named once for each way.
   CHECK(!report.at("contradictions").empty());
+}
+
+/// The same, with a gaze that is lost where the robot arrives, or by a chance of its own.
+class GazeWorld : public DriveWorld {
+ public:
+  explicit GazeWorld(const std::string& lost_where) {
+    write("words.e", read("words.e") + "fluent Gaze(cell)\n" +
+                         "[cell1,cell2,time] HoldsAt(Gaze(cell1),time) & " +
+                         "HoldsAt(Gaze(cell2),time) -> cell1=cell2.\n");
+    write("start.e", read("start.e") + "[item] item!=milk -> HoldsAt(At(item,cl),0).\n" +
+                         "HoldsAt(At(milk,cr),0).\n!HoldsAt(Open(upper),0).\n");
+    write("world.e", read("world.e") + "fluent Tired()\nnoninertial Tired\n" +
+                         "[base,cell,time] (!HoldsAt(Open(lower),time) | " + lost_where +
+                         ") -> Terminates(Go(base),Gaze(cell),time).\n");
+  }
+};
+
+TEST_CASE("outcomes that one chance decides are opened together, and others by themselves") {
+  const std::string one_chance = "HoldsAt(Lucky(),time)";
+  for (const auto& lost : {one_chance, std::string("HoldsAt(Tired(),time)")}) {
+    const GazeWorld cli(lost);
+    const auto report = json_of(cli, {"learn", "own.yaml", "--out", "out"});
+    CAPTURE(cli.read("out/learned.e"));
+    CHECK(report.at("clean") == true);
+    CHECK(report.at("runs") == report.at("runs_admitted"));
+    const auto found = traces(cli, "truth.yaml", "out");
+    CHECK(found.lost.at("answer") == "none");
+    // By itself a gaze that may be lost is also lost where the robot arrives for certain.
+    if (lost == one_chance) CHECK(found.gained.at("answer") == "none");
+    const auto model = report.at("model").get<std::string>();
+    CHECK((model.find("One chance decides both, as in runs ") != std::string::npos) ==
+          (lost == one_chance));
+  }
 }
 
 TEST_CASE("what chance has decided stays so while other things happen") {
