@@ -194,7 +194,8 @@ class Campaign {
     for (const auto& trace : result_.traces) {
       members.push_back({trace.clean, trace.lost, trace.simulations,
                          trace.verdict == CampaignVerdict::kDiscrepancy, trace.rejected > 0,
-                         trace.trace->other_initial_states == base::Known::kYes, trace.stated});
+                         trace.trace->other_initial_states == base::Known::kYes, trace.stated,
+                         trace.law ? trace.law->text() : std::string()});
     }
     FamilyScope scope;
     scope.split_initial = options_.split_initial;

@@ -9,6 +9,7 @@
 #include "harness/campaign/cover_watch.h"
 #include "harness/campaign/sample_record.h"
 #include "harness/campaign/search_result.h"
+#include "harness/campaign/start_law.h"
 #include "harness/campaign/trace_input.h"
 #include "harness/confidence/comparison.h"
 #include "harness/confidence/criterion_spec.h"
@@ -117,6 +118,7 @@ struct TraceResult {
   CampaignVerdict verdict = CampaignVerdict::kInconclusive;
   std::vector<SampledDimension> start_region;  // the continuous states that it stands for
   std::vector<StartShare> start_shares;        // how much of their cells these are
+  std::optional<LawResult> law;                // none: starts are uniform
   std::int64_t simulations = 0;  // run and not rejected before they began; lost ones included
   std::int64_t clean = 0;
   std::int64_t admitted = 0;  // of the clean ones: went otherwise, as the model admits

@@ -163,6 +163,7 @@ SampleRecord record_of(const Json& object) {
   record.seed = get<std::uint64_t>(object, "seed");
   record.status = word_of(object, "status", {SampleStatus::kOk, SampleStatus::kLost});
   record.rejected = count_of(object, "rejected", 0);
+  if (object.contains("redrawn")) record.redrawn = count_of(object, "redrawn", 1);
   record.retries = count_of(object, "retries", 0);
   record.reason = get<std::string>(object, "reason");
   record.initial = state_of(field(object, "initial"), "initial");
@@ -296,6 +297,7 @@ std::string encode(const SampleRecord& record) {
                      {"retries", record.retries},
                      {"reason", record.reason},
                      {"initial", state_json<OrderedJson>(record.initial)}};
+  if (record.redrawn > 0) out["redrawn"] = record.redrawn;
   auto observations = OrderedJson::array();
   for (const auto& state : record.observations) {
     observations.push_back(state_json<OrderedJson>(state));

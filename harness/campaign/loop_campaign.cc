@@ -251,6 +251,7 @@ class LoopCampaign {
   std::optional<End> lost(SampleRecord record) {
     recorder_.judge(record, RunRecorder::Verdict::kNothing);
     stream_.rejected += record.rejected;
+    count_law(record);
     if (is_guided(record)) {
       note_guided();
     } else {
@@ -266,7 +267,12 @@ class LoopCampaign {
     return lost_too_often_ ? std::optional(End::kLost) : std::nullopt;
   }
 
+  void count_law(const SampleRecord& record) {
+    law_.add(samples_.start_of(record).sampler, options_.seed, loop_start_stream(), record);
+  }
+
   void count(const SampleRecord& record) {
+    count_law(record);
     if (!is_guided(record)) tally_.add_rejected(record.rejected);
     stream_.rejected += record.rejected;
     if (record.retries > 0) ++stream_.retried;
@@ -344,6 +350,7 @@ class LoopCampaign {
   void fill_stream() {
     const auto& criterion = scenario_.criterion;
     auto& stream = stream_;
+    stream.law = law_.result();
     const bool decided =
         criterion_->decide(tally_).stop && stream.loop->unfinished == 0 && is_covered();
     stream.verdict = !result_.discrepancies.empty() ? CampaignVerdict::kDiscrepancy
@@ -355,7 +362,8 @@ class LoopCampaign {
     stream.certified_level = bound.confidence_level;
     stream.certified_epsilon = bound.epsilon;
     stream.claim = loop_claim(tally_, criterion, scenario_.comparison(),
-                              {stream.loop->initial_states, stream.loop->has_weights});
+                              {stream.loop->initial_states, stream.loop->has_weights,
+                               stream.law ? stream.law->text() : std::string()});
     stream.caveats = caveats(tally_, criterion, std::nullopt);
     if (feed_.plan().performs().empty()) {
       stream.caveats.emplace_back("the plan performs nothing: initial states alone were compared");
@@ -453,6 +461,7 @@ class LoopCampaign {
   std::unique_ptr<ConfidenceCriterion> criterion_;
   RunLimit limit_;
   Tally tally_;
+  LawCounter law_;
   FixedCount rated_;
   CoverWatch* cover_ = nullptr;       // of a run that goes on until everything was shown
   std::vector<bool> shown_;           // by item

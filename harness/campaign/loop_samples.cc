@@ -183,7 +183,9 @@ std::optional<SampleRecord> LoopSamples::make_from(std::int64_t sample,
   const auto choices = choices_key(campaign_seed_, sample);
   PlanSource actions(scenario_, plan_, choices, {max_performs_, scenario_.limits.max_simulated_s});
   for (;; ++record.attempt, ++key.attempt) {
-    record.initial = start_of(record).sampler.draw(key);
+    auto drawn = start_of(record).sampler.draw_counting(key, nullptr);
+    record.initial = std::move(drawn.start);
+    record.redrawn += drawn.refused;
     record.seed = simulator_seed(key);
     const auto status = simulate_start(actions, repeats_losses_, simulator, record, abandoned);
     if (!status) return std::nullopt;

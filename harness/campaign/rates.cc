@@ -73,6 +73,9 @@ class Estimator {
       rates.trace += (t == 0 ? "" : " ") + trace.event(t);
     }
     std::map<std::string, CauseRate> causes;
+    LawCounter law;
+    const auto& plan = trial->plan();
+    law.name(plan.sampler);
     bool lost_too_often = false;
     bool enough = false;
     while (complete && !enough && trial->next_sample() <= options_.runs) {
@@ -81,11 +84,15 @@ class Estimator {
       if (!sample) return sink_.already_reported();
       lost_too_often = *sample && (*sample)->verdict == SampleVerdict::kLostTooOften;
       complete = *sample && !lost_too_often;
-      if (*sample) count(trace, **sample, rates, causes);
+      if (*sample) {
+        law.add(plan.sampler, plan.campaign_seed, plan.trace_key, (*sample)->record);
+        count(trace, **sample, rates, causes);
+      }
       enough = is_narrow(rates) || is_known(rates);
       report_progress(trace.number, trial->next_sample() - 1);
     }
     trial->end();
+    rates.law = law.result();
     // Bounds that hold at any time need nothing of what was not made.
     rates.unseen = runs_are_fixed() && lost_too_often ? options_.runs - rates.runs : rates.lost;
     finish(rates, causes);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "harness/campaign/campaign.h"
+#include "harness/campaign/start_law.h"
 #include "harness/confidence/rate_evidence.h"
 
 namespace parallax::harness {
@@ -19,6 +20,7 @@ struct TraceRates {
   /// known, and intervals allow for either.
   std::int64_t unseen = 0;
   std::int64_t rejected = 0;      // invalid starts that were drawn again
+  std::optional<LawResult> law;   // none: starts are uniform
   CauseRate any;                  // any discrepancy at all
   std::vector<CauseRate> causes;  // most frequent first
 };

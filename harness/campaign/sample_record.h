@@ -86,6 +86,7 @@ struct SampleRecord {
   std::uint64_t seed = 0;
   SampleStatus status = SampleStatus::kOk;
   std::int64_t rejected = 0;
+  std::int64_t redrawn = 0;  // candidates that conditions of the sampling law refused
   std::int64_t retries = 0;  // attempts that were lost and made again with the same start and seed
   std::string reason;        // why not kOk
   State initial;

@@ -285,10 +285,23 @@ std::string wrong_draw(const SampleRecord& record, const Sampler& sampler,
         record.seed == simulator_seed(search_key(campaign_seed, trace_key, record.sample));
     return same ? "" : "its seed is not that of its number";
   }
-  const DrawKey key{campaign_seed, trace_key, DrawPhase::kCertify,
-                    static_cast<std::uint64_t>(record.sample),
-                    static_cast<std::uint64_t>(record.attempt)};
+  DrawKey key{campaign_seed, trace_key, DrawPhase::kCertify,
+              static_cast<std::uint64_t>(record.sample),
+              static_cast<std::uint64_t>(record.attempt)};
   if (record.initial != sampler.draw(key)) return "its start is not that of its number";
+  if (sampler.law() != nullptr) {
+    std::int64_t redrawn = 0;
+    // No journal has more attempts than that many were allowed, which a forged one might.
+    constexpr std::int64_t kMostAttempts = 1'000'000;
+    if (record.attempt > kMostAttempts) return "it has too many attempts";
+    for (key.attempt = 0; key.attempt <= static_cast<std::uint64_t>(record.attempt);
+         ++key.attempt) {
+      redrawn += sampler.draw_counting(key, nullptr).refused;
+    }
+    key.attempt = static_cast<std::uint64_t>(record.attempt);
+    if (record.redrawn != redrawn)
+      return "its count of refused candidates is not that of its number";
+  }
   if (record.seed != simulator_seed(key)) return "its seed is not that of its number";
   return {};
 }
@@ -303,7 +316,9 @@ std::optional<SampleRecord> run_sample(const TracePlan& plan, std::int64_t sampl
               static_cast<std::uint64_t>(sample), 0};
   CallList calls(plan.calls);
   for (;; ++record.attempt, ++key.attempt) {
-    record.initial = plan.sampler.draw(key);
+    auto drawn = plan.sampler.draw_counting(key, nullptr);
+    record.initial = std::move(drawn.start);
+    record.redrawn += drawn.refused;
     record.seed = simulator_seed(key);
     const auto status = simulate_start(calls, plan.repeats_losses, simulator, record, abandoned);
     if (!status) return std::nullopt;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "harness/campaign/sample_margin.h"
+#include "harness/sampling/law_draw.h"
 
 namespace parallax::harness {
 namespace {
@@ -31,7 +32,7 @@ class SearchPhase {
       // Always a whole batch: what is proposed must not depend on where the search ends.
       auto points = strategy->propose(history(), kSearchBatch);
       points.resize(static_cast<std::size_t>(count));
-      std::vector<State> starts;
+      std::vector<std::optional<State>> starts;
       for (const auto& point : points) starts.push_back(cube_.start_at(point));
       auto tried = trial_.try_starts(next, std::move(starts));
       if (!tried) return sink.already_reported();
@@ -120,14 +121,26 @@ class SearchPhase {
 }  // namespace
 
 UnitCube::UnitCube(const Sampler& sampler) : sampler_(sampler) {
+  if (const auto* law = sampler.law()) {
+    for (std::size_t i = 0; i < law->coordinates(); ++i) free_ += law->is_free(i) ? 1 : 0;
+    return;
+  }
   for (const auto& dimension : sampler.cuboid().dimensions) {
     if (dimension.interval.lower != dimension.interval.upper) ++free_;
   }
 }
 
-State UnitCube::start_at(const UnitPoint& point) const {
-  State state;
+std::optional<State> UnitCube::start_at(const UnitPoint& point) const {
   std::size_t next = 0;
+  if (const auto* law = sampler_.law()) {
+    constexpr double kBelowOne = 1.0 - 0x1.0p-53;
+    std::vector<double> coordinates(law->coordinates());
+    for (std::size_t i = 0; i < coordinates.size(); ++i) {
+      if (law->is_free(i)) coordinates[i] = std::clamp(point[next++], 0.0, kBelowOne);
+    }
+    return law->start_at(coordinates, nullptr);
+  }
+  State state;
   for (const auto& [variable, interval] : sampler_.cuboid().dimensions) {
     double value = interval.lower;
     if (interval.lower != interval.upper) {

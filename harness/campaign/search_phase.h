@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "harness/campaign/search_result.h"
@@ -18,13 +19,15 @@ struct SearchOutcome {
   std::vector<TrialSample> samples;
 };
 
-/// A trace's start cuboid as a unit cube over the dimensions that are drawn.
+/// A trace's start cuboid as a unit cube over what is drawn. Equal parts of the cube are equally
+/// likely to be drawn from, before the conditions of a law.
 class UnitCube {
  public:
   /// `sampler` must outlive it.
   explicit UnitCube(const Sampler& sampler);
   std::size_t dimensions() const { return free_; }
-  State start_at(const UnitPoint& point) const;
+  /// None: a condition of the law refuses the point.
+  std::optional<State> start_at(const UnitPoint& point) const;
 
  private:
   const Sampler& sampler_;

@@ -38,6 +38,7 @@ class TraceCampaign {
     result.start_region = trial_.start().dimensions;
     result.start_shares =
         start_shares(*context.scenario.mapping, as_set(result.trace->holds(0)), trial_.start());
+    law_.name(trial_.plan().sampler);
   }
 
   base::Result<TraceOutcome> run() {
@@ -126,6 +127,8 @@ class TraceCampaign {
   std::optional<TraceEnd> consume(TrialSample sample) {
     auto& result = outcome_.result;
     tally_.add_rejected(sample.record.rejected);
+    const auto& plan = trial_.plan();
+    law_.add(plan.sampler, plan.campaign_seed, plan.trace_key, sample.record);
     result.rejected += sample.record.rejected;
     const bool is_lost =
         sample.verdict == SampleVerdict::kLost || sample.verdict == SampleVerdict::kLostTooOften;
@@ -237,11 +240,13 @@ class TraceCampaign {
     result.paper_stopped_at = paper_stopped_at(tally_, spec_.paper, spec_.confidence_level);
     result.paper_variant = paper_variant(tally_, spec_.paper);
     result.not_covered = tally_.frame().not_covered;
+    result.law = law_.result();
     if (result.search && result.search->found) {
       result.claim =
           "a search found a discrepancy; nothing is claimed about how often there is one";
     } else {
-      result.claim = claim(tally_, spec_, context_.scenario.comparison());
+      result.claim = claim(tally_, spec_, context_.scenario.comparison(),
+                           result.law ? result.law->text() : std::string());
       result.caveats = caveats(tally_, spec_, result.paper_stopped_at);
     }
     if (result.search) add_search_caveats(*result.search, result);
@@ -326,6 +331,7 @@ class TraceCampaign {
   Trial trial_;
   std::map<std::size_t, Failures> failures_;  // in clean runs, by event
   Tally tally_;
+  LawCounter law_;
   CriterionSpec spec_;  // with the share of the error that the trace may spend
   std::unique_ptr<ConfidenceCriterion> criterion_;
   std::int64_t max_runs_ = 0;

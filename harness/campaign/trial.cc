@@ -44,14 +44,26 @@ base::Result<PreparedTrace> prepare_trace(const Scenario& scenario,
                                           const SimulatorInfo& simulator,
                                           const CampaignTrace& trace, base::DiagnosticSink& sink) {
   const auto true_at_start = trace.holds(0);
-  auto start = scenario.mapping->start_cuboid(
-      fluents, std::set<std::string>(true_at_start.begin(), true_at_start.end()), scenario.sampling,
-      scenario.sampling_source, sink);
-  if (!start || !check_settable(scenario, *start, simulator, sink)) return sink.already_reported();
+  auto sampler = start_sampler(
+      scenario, fluents, std::set<std::string>(true_at_start.begin(), true_at_start.end()), sink);
+  if (sampler && !check_settable(scenario, sampler->cuboid(), simulator, sink)) {
+    return sink.already_reported();
+  }
   auto calls = action_calls(scenario, trace, sink);
-  auto sampler = Sampler::make(*start, scenario.sampling_inset_m, scenario.sampling_source, sink);
   if (!calls || !sampler) return sink.already_reported();
-  return PreparedTrace{std::move(*start), std::move(*calls), std::move(*sampler)};
+  auto start = sampler->cuboid();
+  return PreparedTrace{std::move(start), std::move(*calls), std::move(*sampler)};
+}
+
+base::Result<Sampler> start_sampler(const Scenario& scenario,
+                                    const std::vector<GroundFluent>& fluents,
+                                    const std::set<std::string>& true_at_start,
+                                    base::DiagnosticSink& sink) {
+  auto start = scenario.mapping->start_cuboid(fluents, true_at_start, scenario.sampling,
+                                              scenario.sampling_source, sink);
+  if (!start) return sink.already_reported();
+  return Sampler::make(*std::move(start), scenario.sampling_inset_m, scenario.sampling_source, sink,
+                       &scenario.law);
 }
 
 TrialBench::TrialBench(const Scenario& scenario, TraceFeed& feed,
@@ -190,15 +202,18 @@ class ChosenSamples final : public SampleMaker {
 
 }  // namespace
 
-base::Result<std::optional<std::vector<TrialSample>>> Trial::try_starts(std::int64_t first,
-                                                                        std::vector<State> starts) {
-  const auto chosen = std::make_shared<const ChosenSamples>(plan_, first, starts);
+base::Result<std::optional<std::vector<TrialSample>>> Trial::try_starts(
+    std::int64_t first, std::vector<std::optional<State>> starts) {
+  std::vector<State> states;
+  for (const auto& start : starts) states.push_back(start.value_or(State()));
+  const auto chosen = std::make_shared<const ChosenSamples>(plan_, first, std::move(states));
   for (std::size_t i = 0; i < starts.size(); ++i) {
+    if (!starts[i]) continue;
     const auto number = first + static_cast<std::int64_t>(i);
     const auto* known = recorded(number, DrawPhase::kCertify);
     if (known == nullptr) {
       bench_->pool_.submit(chosen, number);
-    } else if (!known->searched || known->initial != starts[i]) {
+    } else if (!known->searched || known->initial != *starts[i]) {
       return bench_->sink_.error(
           codes::kForeignJournalLine,
           journal_->recorded().places.at({known->trace, number, DrawPhase::kCertify}),
@@ -207,6 +222,16 @@ base::Result<std::optional<std::vector<TrialSample>>> Trial::try_starts(std::int
   }
   std::vector<TrialSample> out;
   for (std::size_t i = 0; i < starts.size(); ++i) {
+    if (!starts[i]) {
+      TrialSample none;
+      none.record.trace = plan_->trace->number;
+      none.record.sample = first + static_cast<std::int64_t>(i);
+      none.record.searched = true;
+      none.record.status = SampleStatus::kRejected;
+      none.verdict = SampleVerdict::kLost;
+      out.push_back(std::move(none));
+      continue;
+    }
     auto record = result_of(first + static_cast<std::int64_t>(i), DrawPhase::kCertify);
     if (!record) return std::optional<std::vector<TrialSample>>();
     if (record->status == SampleStatus::kRefused) return report_refused(*record);

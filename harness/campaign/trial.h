@@ -40,6 +40,12 @@ base::Result<PreparedTrace> prepare_trace(const Scenario& scenario,
                                           const SimulatorInfo& simulator,
                                           const CampaignTrace& trace, base::DiagnosticSink& sink);
 
+/// What draws the starts of an initial state. Reports what the mapping and the sampler report.
+base::Result<Sampler> start_sampler(const Scenario& scenario,
+                                    const std::vector<GroundFluent>& fluents,
+                                    const std::set<std::string>& true_at_start,
+                                    base::DiagnosticSink& sink);
+
 /// What the simulations of one command share: workers with a simulator each, what that says of
 /// itself, the model's fluents, and the count of losses in a row, which goes on from trace to
 /// trace.
@@ -146,11 +152,11 @@ class Trial {
   /// kMappingNotInverse), and for starts that are always invalid (kStartsRejected).
   base::Result<std::optional<TrialSample>> next();
   /// Simulates starts that were chosen, as the samples from number `first` on. They are no draws,
-  /// and nothing is claimed from them. One whose start was invalid has the status kRejected and the
-  /// verdict kLost. None when stopped; reports what `next` reports, and kForeignJournalLine where
-  /// the journal has another start under the number.
-  base::Result<std::optional<std::vector<TrialSample>>> try_starts(std::int64_t first,
-                                                                   std::vector<State> starts);
+  /// and nothing is claimed from them. One whose start was invalid, or is none, has the status
+  /// kRejected and the verdict kLost. None when stopped; reports what `next` reports, and
+  /// kForeignJournalLine where the journal has another start under the number.
+  base::Result<std::optional<std::vector<TrialSample>>> try_starts(
+      std::int64_t first, std::vector<std::optional<State>> starts);
   /// The samples up to this number were chosen ones: draws come after them.
   void begin_after(std::int64_t sample);
   /// Simulates the start and seed of `record` once more. None when stopped.

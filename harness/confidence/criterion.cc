@@ -237,25 +237,31 @@ std::string_view when(Comparison comparison) {
 
 }  // namespace
 
-std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison) {
+std::string drawn_from(std::string_view region, std::string_view law) {
+  if (law.empty()) return fmt::format("drawn uniformly from {}", region);
+  return fmt::format("drawn from {} by the scenario's law ({})", region, law);
+}
+
+std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,
+                  std::string_view law) {
   return claim_about(tally, spec,
-                     fmt::format("{}start states drawn uniformly from the start region",
-                                 tally.rejected() > 0 ? "valid " : ""),
+                     fmt::format("{}start states {}", tally.rejected() > 0 ? "valid " : "",
+                                 drawn_from("the start region", law)),
                      fmt::format("give a discrepancy {}", when(comparison)));
 }
 
 std::string loop_claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,
                        const StartLaw& starts) {
   const std::string_view valid = tally.rejected() > 0 ? "the valid part of " : "";
+  const auto drawn = drawn_from(fmt::format("{}its region", valid), starts.law);
   const auto from =
       starts.initial_states == 1
-          ? fmt::format("the only initial state{}, drawn uniformly from {}its region,",
-                        starts.has_weights ? " with a weight in `start_weights`" : "", valid)
-          : fmt::format("{} initial states, {} and drawn uniformly from {}its region,",
-                        starts.initial_states,
+          ? fmt::format("the only initial state{}, {},",
+                        starts.has_weights ? " with a weight in `start_weights`" : "", drawn)
+          : fmt::format("{} initial states, {} and {},", starts.initial_states,
                         starts.has_weights ? "each as likely as its weight in `start_weights`"
                                            : "each equally likely",
-                        valid);
+                        drawn);
   return claim_about(tally, spec, fmt::format("executions of the plan from {}", from),
                      fmt::format("leave what the model admits {}", when(comparison)));
 }

@@ -104,13 +104,18 @@ CertifiedBound stated_bound(const Tally& tally, const CriterionSpec& spec);
 
 /// Exactly what the runs of one trace support, as one sentence without a full stop: "with 99 %
 /// confidence, fewer than 5 % of start states drawn uniformly from the start region give a
-/// discrepancy (90 clean runs of 90)". Figures are rounded up, so never beyond the evidence.
-std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison);
+/// discrepancy (90 clean runs of 90)". Figures are rounded up, so never beyond the evidence. `law`:
+/// in words, where starts are not drawn uniformly.
+std::string claim(const Tally& tally, const CriterionSpec& spec, Comparison comparison,
+                  std::string_view law = {});
+/// "drawn uniformly from the start region", or by which law.
+std::string drawn_from(std::string_view region, std::string_view law);
 
 /// The initial states that executions begin in, and whether they are drawn by weights.
 struct StartLaw {
   std::int64_t initial_states = 0;
   bool has_weights = false;
+  std::string law{};  // as of `claim`
 };
 /// The same of executions of a plan from any of the model's initial states: "with 99 % confidence,
 /// fewer than 5 % of executions from 3 initial states, each equally likely and drawn uniformly from

@@ -50,10 +50,14 @@ std::string family_claim(std::span<const FamilyMember> members, const CriterionS
                          Comparison comparison, const FamilyScope& scope) {
   std::int64_t clean = 0, lost = 0, runs = 0, claimed = 0, first_start = 0;
   bool rejected = false;
+  const std::string* law = nullptr;
+  bool one_law = true;
   CertifiedBound worst{spec.confidence_level, 0.0};
   for (const auto& member : members) {
     if (member.is_discrepancy) continue;
     ++claimed;
+    one_law = one_law && (law == nullptr || *law == member.law);
+    law = &member.law;
     clean += member.clean;
     lost += member.lost;
     runs += member.runs;
@@ -78,11 +82,12 @@ std::string family_claim(std::span<const FamilyMember> members, const CriterionS
                 : fmt::format(", {} lost {} counted as {}", lost, lost == 1 ? "run" : "runs",
                               lost == 1 ? "a failure" : "failures");
   auto text = fmt::format(
-      "with {:.6g} % confidence, {}fewer than {} of {}start states drawn uniformly from {} start "
-      "region give a discrepancy {} ({} clean {} of {}{})",
+      "with {:.6g} % confidence, {}fewer than {} of {}start states {} give a discrepancy {} ({} "
+      "clean {} of {}{})",
       100.0 * worst.confidence_level, of_traces,
       percent_up(as_planned ? spec.epsilon : worst.epsilon), rejected ? "valid " : "",
-      all == 1 ? "the" : "its",
+      drawn_from(all == 1 ? "the start region" : "its start region",
+                 one_law ? *law : std::string("of each trace")),
       comparison == Comparison::kFinal ? "in the last state" : "at any step", clean,
       clean == 1 ? "run" : "runs", runs, lost_text);
   if (!scope.completeness.empty()) text += "; " + scope.completeness;

@@ -74,6 +74,9 @@ struct Key {
   static constexpr std::string_view kUntilCovered = "until_covered";
   static constexpr std::string_view kWhen = "when";
   static constexpr std::string_view kWeight = "weight";
+  static constexpr std::string_view kAreas = "areas";
+  static constexpr std::string_view kBox = "box";
+  static constexpr std::string_view kChoice = "choice";
   static constexpr std::string_view kComplete = "complete";
   static constexpr std::string_view kConfidence = "confidence";
   static constexpr std::string_view kConfusionRate = "confusion_rate";
@@ -86,7 +89,9 @@ struct Key {
   static constexpr std::string_view kDefaults = "defaults";
   static constexpr std::string_view kDetection = "detection";
   static constexpr std::string_view kDiameterM = "diameter_m";
+  static constexpr std::string_view kDisc = "disc";
   static constexpr std::string_view kDiscrepancies = "discrepancies";
+  static constexpr std::string_view kDistanceM = "distance_m";
   static constexpr std::string_view kDrawn = "drawn";
   static constexpr std::string_view kEffortN = "effort_n";
   static constexpr std::string_view kEpsilon = "epsilon";
@@ -106,6 +111,7 @@ struct Key {
   static constexpr std::string_view kFloorMaterial = "floor_material";
   static constexpr std::string_view kFluents = "fluents";
   static constexpr std::string_view kFor = "for";
+  static constexpr std::string_view kFormula = "formula";
   static constexpr std::string_view kFrame = "frame";
   static constexpr std::string_view kFriction = "friction";
   static constexpr std::string_view kFromPlan = "from_plan";
@@ -115,6 +121,7 @@ struct Key {
   static constexpr std::string_view kGravity = "gravity";
   static constexpr std::string_view kGripForceN = "grip_force_n";
   static constexpr std::string_view kHalfAngleRad = "half_angle_rad";
+  static constexpr std::string_view kHalfPlanes = "half_planes";
   static constexpr std::string_view kHandle = "handle";
   static constexpr std::string_view kHeightM = "height_m";
   static constexpr std::string_view kHeldAfterS = "held_after_s";
@@ -125,6 +132,7 @@ struct Key {
   static constexpr std::string_view kId = "id";
   static constexpr std::string_view kIgnored = "ignored";
   static constexpr std::string_view kInclude = "include";
+  static constexpr std::string_view kInnerM = "inner_m";
   static constexpr std::string_view kInsetM = "inset_m";
   static constexpr std::string_view kInside = "inside";
   static constexpr std::string_view kIntercept = "intercept";
@@ -151,6 +159,7 @@ struct Key {
   static constexpr std::string_view kMaxTraces = "max_traces";
   static constexpr std::string_view kMaxPerforms = "max_performs";
   static constexpr std::string_view kMaxSimulatedS = "max_simulated_s";
+  static constexpr std::string_view kMean = "mean";
   static constexpr std::string_view kMemoryMb = "memory_mb";
   static constexpr std::string_view kMinRealTimeFactor = "min_real_time_factor";
   static constexpr std::string_view kMissRate = "miss_rate";
@@ -159,17 +168,23 @@ struct Key {
   static constexpr std::string_view kNearPadBody = "near_pad_body";
   static constexpr std::string_view kNoiseM = "noise_m";
   static constexpr std::string_view kNoiseRad = "noise_rad";
+  static constexpr std::string_view kNormal = "normal";
   static constexpr std::string_view kObserveTimeoutS = "observe_timeout_s";
+  static constexpr std::string_view kOf = "of";
   static constexpr std::string_view kOnly = "only";
   static constexpr std::string_view kOnlyIf = "only_if";
   static constexpr std::string_view kOpeningM = "opening_m";
   static constexpr std::string_view kOutcome = "outcome";
+  static constexpr std::string_view kOuterM = "outer_m";
   static constexpr std::string_view kPalmBody = "palm_body";
+  static constexpr std::string_view kParameters = "parameters";
   static constexpr std::string_view kParent = "parent";
   static constexpr std::string_view kPlaces = "places";
   static constexpr std::string_view kPlan = "plan";
+  static constexpr std::string_view kPolygon = "polygon";
   static constexpr std::string_view kPositionM = "position_m";
   static constexpr std::string_view kPreset = "preset";
+  static constexpr std::string_view kRadiusM = "radius_m";
   static constexpr std::string_view kRange = "range";
   static constexpr std::string_view kRangeM = "range_m";
   static constexpr std::string_view kRate = "rate";
@@ -179,6 +194,7 @@ struct Key {
   static constexpr std::string_view kRegions = "regions";
   static constexpr std::string_view kReliefAmplitudeM = "relief_amplitude_m";
   static constexpr std::string_view kReliefWavelengthM = "relief_wavelength_m";
+  static constexpr std::string_view kRequire = "require";
   static constexpr std::string_view kResetTimeoutS = "reset_timeout_s";
   static constexpr std::string_view kRing = "ring";
   static constexpr std::string_view kRobot = "robot";
@@ -187,6 +203,7 @@ struct Key {
   static constexpr std::string_view kSampling = "sampling";
   static constexpr std::string_view kSays = "says";
   static constexpr std::string_view kScenario = "scenario";
+  static constexpr std::string_view kSd = "sd";
   static constexpr std::string_view kSets = "sets";
   static constexpr std::string_view kSettable = "settable";
   static constexpr std::string_view kShapes = "shapes";
@@ -210,9 +227,13 @@ struct Key {
   static constexpr std::string_view kTimestepS = "timestep_s";
   static constexpr std::string_view kToleranceM = "tolerance_m";
   static constexpr std::string_view kTorso = "torso";
+  static constexpr std::string_view kTowards = "towards";
   static constexpr std::string_view kTrace = "trace";
   static constexpr std::string_view kTraces = "traces";
+  static constexpr std::string_view kTriangular = "triangular";
   static constexpr std::string_view kType = "type";
+  static constexpr std::string_view kUniform = "uniform";
+  static constexpr std::string_view kUnion = "union";
   static constexpr std::string_view kUnless = "unless";
   static constexpr std::string_view kUpTo = "up_to";
   static constexpr std::string_view kUpright = "upright";
@@ -222,6 +243,7 @@ struct Key {
   static constexpr std::string_view kVerdict = "verdict";
   static constexpr std::string_view kWallM = "wall_m";
   static constexpr std::string_view kWidthM = "width_m";
+  static constexpr std::string_view kWithin = "within";
   static constexpr std::string_view kWorld = "world";
   static constexpr std::string_view kWorse = "worse";
   static constexpr std::string_view kWorseVerdict = "worse_verdict";

@@ -7,8 +7,6 @@
 #include "compiler/base/ascii.h"
 #include "compiler/base/codes/scenarios.h"
 #include "harness/config/sections.h"
-#include "harness/world/density.h"
-#include "harness/world/structure_check.h"
 
 namespace parallax::harness {
 
@@ -45,10 +43,28 @@ void read_bounds(const YamlFields& fields, Region& region) {
   }
 }
 
-/// Where starts are drawn: numbers or lists of two, within the bounds.
+bool has_area(const YamlFields& fields) {
+  return std::any_of(kAreaKeys.begin(), kAreaKeys.end(),
+                     [&](std::string_view key) { return given(fields, key) != nullptr; });
+}
+
+/// A region with a shape needs no bounds of x and y: those of the shape are the least.
+void bound_by(const Area& area, Region& region) {
+  const auto [lower, upper] = area.bounds();
+  const std::array<RegionAxis, 2> axes = {RegionAxis::kX, RegionAxis::kY};
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    auto& bounds = region.on(axes[i]);
+    if (!bounds) bounds = Interval{lower[i], upper[i]};
+  }
+}
+
+/// Where starts are drawn: numbers or lists of two, within the bounds, or a shape.
 void read_start(const YamlNode& node, Region& region, base::DiagnosticSink& sink) {
   YamlFields fields(node, fmt::format("`{}` of the region `{}`", Key::kStart, region.name), sink);
-  fields.only(axis_keys());
+  auto keys = axis_keys();
+  keys.insert(keys.end(), kAreaKeys.begin(), kAreaKeys.end());
+  fields.only(keys);
+  if (has_area(fields)) region.start_area = read_area(fields);
   for (const auto axis : kRegionAxes) {
     const auto* range = fields.find(to_string(axis));
     if (range == nullptr) continue;
@@ -98,8 +114,11 @@ Region read_region(const YamlEntry& entry, const WorldSpec& world, base::Diagnos
   YamlFields fields(entry.value, fmt::format("the region `{}`", entry.key), sink);
   auto keys = axis_keys();
   keys.insert(keys.end(), {Key::kFrame, Key::kStart});
+  keys.insert(keys.end(), kAreaKeys.begin(), kAreaKeys.end());
   fields.only(keys);
   read_bounds(fields, region);
+  if (has_area(fields)) region.area = read_area(fields);
+  if (region.area) bound_by(*region.area, region);
   read_frame(fields, world, region);
   if (const auto* start = fields.find(Key::kStart)) read_start(*start, region, sink);
   return region;
@@ -276,24 +295,6 @@ std::optional<FluentBinding> read_binding(const YamlEntry& entry, base::Diagnost
   return binding;
 }
 
-/// A mass that is drawn, at both ends.
-void warn_of_density(const WorldSpec& world, const YamlEntry& entry, const Interval& masses,
-                     base::DiagnosticSink& sink) {
-  constexpr std::string_view kMass = ".mass";
-  if (!entry.key.ends_with(kMass)) return;
-  const auto name = entry.key.substr(0, entry.key.size() - kMass.size());
-  for (const BodySpec& body : world.bodies) {
-    if (body.name != name || body.shapes.empty()) continue;
-    for (const double mass_kg : {masses.lower, masses.upper}) {
-      const auto odd = odd_density(body, mass_kg);
-      if (!odd) continue;
-      sink.warning(codes::kOddDensity, entry.value.range, fmt::format("{:g} kg", mass_kg),
-                   fmt::format("`{}` a thing", name), density_kg_m3(body, mass_kg), *odd);
-      return;
-    }
-  }
-}
-
 /// A symbol may have one entry only, whatever its parameters are called.
 template <typename Bindings, typename Name>
 void refuse_repeated(Bindings& bindings, Name name, base::DiagnosticSink& sink) {
@@ -386,35 +387,6 @@ std::vector<FluentBinding> read_mapping(const YamlNode& node, base::DiagnosticSi
   refuse_repeated(
       bindings, [](const FluentBinding& b) { return b.fluent; }, sink);
   return bindings;
-}
-
-void read_sampling(const YamlNode& node, Scenario& scenario, base::DiagnosticSink& sink) {
-  YamlFields fields(node, key_text(Key::kSampling), sink);
-  fields.only({Key::kInsetM, Key::kVariables});
-  fields.number(Key::kInsetM, kNotNegative, scenario.sampling_inset_m);
-  const auto* variables = fields.find(Key::kVariables);
-  if (variables == nullptr) return;
-  const YamlFields all(*variables, key_text(Key::kVariables), sink);
-  for (const auto& entry : variables->entries) {
-    const auto name = fmt::format("`{}`", entry.key);
-    const auto interval = read_interval(entry.value, name, sink);
-    if (!interval) continue;
-    if (interval->lower > interval->upper) {
-      sink.error(codes::kReversedSampling, entry.key_range, name, interval->lower, interval->upper);
-    }
-    const bool built_in = scenario.simulator.is_built_in();
-    if (built_in && entry.key.ends_with(".mass") &&
-        !(interval->lower > 0.0 && interval->upper <= kMaxMass_kg)) {
-      sink.error(codes::kYamlOutOfBounds, entry.value.range, name,
-                 fmt::format("from {} to {} kg", interval->lower, interval->upper),
-                 fmt::format("above 0 and at most {:g} kg", kMaxMass_kg));
-    }
-    if (built_in) warn_of_density(scenario.world, entry, *interval, sink);
-    scenario.sampling.push_back({entry.key, *interval});
-    scenario.sampled_sources[entry.key] = entry.key_range;
-  }
-  std::sort(scenario.sampling.begin(), scenario.sampling.end(),
-            [](const auto& a, const auto& b) { return a.variable < b.variable; });
 }
 
 }  // namespace parallax::harness

@@ -10,6 +10,7 @@
 #include "compiler/base/diagnostic.h"
 #include "harness/confidence/comparison.h"
 #include "harness/confidence/criterion_spec.h"
+#include "harness/law/sampling_law.h"
 #include "harness/region/state_mapping.h"
 #include "harness/search/strategy.h"
 #include "harness/world/world_spec.h"
@@ -134,6 +135,7 @@ struct Scenario {
   std::optional<StateMapping> mapping;
   std::vector<ActionBinding> actions;  // sorted by event
   std::vector<SampledDimension> sampling;
+  SamplingLaw law;                 // by which they are drawn, where that is not uniformly
   double sampling_inset_m = 1e-6;  // [m, rad] how far draws stay inside their cuboid
   base::SourceRange regions_source, mapping_source, actions_source, sampling_source;
   std::map<std::string, base::SourceRange> sampled_sources;  // of the variables there

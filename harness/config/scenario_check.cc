@@ -201,6 +201,7 @@ base::Status check_variables(const Scenario& scenario, const std::vector<Paramet
                  dimension.variable);
     }
   }
+  check_law(scenario, parameters, sink);
   if (sink.error_count() != errors_before) return sink.already_reported();
   return base::Unit{};
 }

@@ -2,7 +2,9 @@
 
 // Only harness/config/*.cc include this header.
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -46,6 +48,34 @@ std::vector<FluentBinding> read_mapping(const YamlNode& node, base::DiagnosticSi
 /// `actions`, sorted by event. With `built_in` the controllers and their arguments are checked.
 std::vector<ActionBinding> read_actions(const YamlNode& node, bool built_in,
                                         base::DiagnosticSink& sink);
+
+/// Keys of a map that gives a shape on the plane of x and y.
+inline constexpr std::array<std::string_view, 5> kAreaKeys = {Key::kBox, Key::kDisc, Key::kPolygon,
+                                                              Key::kRing, Key::kUnion};
+/// The value of the key; null where a variant has taken it back (`normal:`).
+const YamlNode* given(const YamlFields& fields, std::string_view key);
+/// A list of x and y [m].
+std::optional<PlanePoint> read_point(const YamlNode& node, std::string_view name,
+                                     base::DiagnosticSink& sink);
+/// The one shape among the fields, a union or another; null: there is none, which was reported.
+std::shared_ptr<const Area> read_area(const YamlFields& fields);
+
+/// One value of `sampling`: a number, a pair, or a law.
+struct SampledValue {
+  Interval interval;                  // in which it lies, but that of a formula
+  std::optional<Distribution> law;    // none: uniform, or fixed
+  std::optional<Expression> formula;  // then it is not drawn
+  std::optional<Interval> within;     // of a formula
+};
+std::optional<SampledValue> read_sampled_value(const YamlEntry& entry, base::DiagnosticSink& sink);
+/// What `sampling` says beside `variables`, and sorts the formulas. What a reset gives the bodies
+/// of the world can be named in them.
+void read_law(const YamlFields& fields, const WorldSpec& world, SamplingLaw& law,
+              base::DiagnosticSink& sink);
+/// What formulas and conditions name must be a parameter, a variable of the simulator, or of a body
+/// that stands in the world; what a formula gives must be settable.
+void check_law(const Scenario& scenario, const std::vector<Parameter>& parameters,
+               base::DiagnosticSink& sink);
 
 /// `sampling`: inset and the dimensions that no fluent bounds, sorted by variable.
 void read_sampling(const YamlNode& node, Scenario& scenario, base::DiagnosticSink& sink);

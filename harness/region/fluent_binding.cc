@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "compiler/base/contract.h"
+#include "harness/region/area.h"
 #include "harness/region/fluent_margin.h"
 
 namespace parallax::harness {
@@ -122,6 +123,11 @@ std::optional<double> margin_of(const InsideBinding& kind, const GroundFluent& f
   for (const RegionAxis axis : kRegionAxes) {
     const auto& bounds = region->on(axis);
     if (bounds) least = std::min(least, margin_in(*bounds, point[static_cast<std::size_t>(axis)]));
+  }
+  if (region->area) {
+    const auto [lower, upper] = region->area->bounds();
+    const double width_m = std::min(upper[0] - lower[0], upper[1] - lower[1]);
+    least = std::min(least, region->area->signed_distance_m({point[0], point[1]}) / width_m);
   }
   const auto& free = kind.upright_except;
   if (kind.upright && std::find(free.begin(), free.end(), region->name) == free.end()) {

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "compiler/base/contract.h"
+#include "harness/region/area.h"
 
 namespace parallax::harness {
 namespace {
@@ -51,6 +52,7 @@ std::optional<Membership> membership(const Region& region, const Point& point) {
     result.below_upper[static_cast<std::size_t>(axis)] = *below;
     result.half_open = result.half_open && *below;
   }
+  if (region.area && !region.area->contains({point[0], point[1]})) return std::nullopt;
   return result;
 }
 

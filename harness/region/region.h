@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,13 +32,17 @@ struct Interval {
   double midpoint() const { return 0.5 * (lower + upper); }
 };
 
-/// A cuboid over some of the axes; an axis that is not bounded does not matter.
+class Area;
+
+/// A cuboid over some of the axes; an axis that is not bounded does not matter. With an `area` only
+/// that part of it whose x and y lie there.
 struct Region {
   std::string name;
   std::array<std::optional<Interval>, kRegionAxes.size()> bounds;  // by RegionAxis
   base::SourceRange source;
   /// Where starts are drawn, on axes where that is narrower than the bounds.
   std::array<std::optional<Interval>, kRegionAxes.size()> start;
+  std::shared_ptr<const Area> area{}, start_area{};
   /// Body in whose frame the bounds are; empty: the world. `frame_start` is where it is at a reset
   /// (no turn).
   std::string frame;
@@ -50,7 +55,8 @@ struct Region {
 
 /// Disjoint regions. A value on a shared border belongs to the region above it; an upper bound
 /// that no other region takes over is closed, so that every point of the union belongs to exactly
-/// one region (the paper's r1 and r2 both own x = 1, which is no function).
+/// one region (the paper's r1 and r2 both own x = 1, which is no function). Regions with an area
+/// must be disjoint as cuboids, too, and need `gaps_allowed`.
 class RegionSet {
  public:
   /// Reports reversed or empty bounds, non-finite bounds, overlaps (naming both), different sets

@@ -225,7 +225,14 @@ base::Result<RegionSet> RegionSet::make(std::vector<Region> regions, bool gaps_a
   }
   // A gap beside a region that was refused would be reported twice.
   if (sink.error_count() == errors_before && !gaps_allowed && !good.empty()) {
-    report_gap(good, sink);
+    const auto shaped = std::find_if(good.begin(), good.end(),
+                                     [](const Region& region) { return region.area != nullptr; });
+    if (shaped == good.end()) {
+      report_gap(good, sink);
+    } else {
+      sink.error(codes::kRegionGap, shaped->source,
+                 fmt::format("what is around the shape of `{}`", shaped->name));
+    }
   }
   if (sink.error_count() != errors_before) return sink.already_reported();
 

@@ -136,6 +136,10 @@ class StartBuilder {
         narrow(variable(body, axis), *range, fmt::format("region `{}`", first.region->name));
       }
     }
+    for (const auto& area : {first.region->start_area, first.region->area}) {
+      const auto& at = first.region->frame_start;
+      if (area) areas_.push_back({body, area, {at[0], at[1]}, first.region->source});
+    }
   }
 
   void set(const std::string& variable, const Interval& value, const std::string& fluent) {
@@ -156,6 +160,7 @@ class StartBuilder {
   StartCuboid cuboid() const {
     StartCuboid result;
     for (const auto& [name, interval] : dimensions_) result.dimensions.push_back({name, interval});
+    result.areas = areas_;
     return result;
   }
 
@@ -230,6 +235,7 @@ class StartBuilder {
   }
 
   std::map<std::string, Interval> dimensions_;
+  std::vector<StartArea> areas_;
   std::vector<std::string> problems_;
 };
 

@@ -1,6 +1,7 @@
 #include "harness/region/start_share.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <tuple>
 
 namespace parallax::harness {
@@ -11,6 +12,36 @@ const Interval* find(const StartCuboid& start, const std::string& variable) {
       std::find_if(start.dimensions.begin(), start.dimensions.end(),
                    [&](const SampledDimension& one) { return one.variable == variable; });
   return found == start.dimensions.end() ? nullptr : &found->interval;
+}
+
+/// Of the part of the start cuboid's rectangle over x and y that is drawn from, over the part of
+/// the cell's rectangle that is in the cell; counted on a grid.
+double share_of_shape(const Region& region, const StartCuboid& start, const std::string& body) {
+  constexpr int kSteps = 400;
+  const auto part = [&](const Interval& x, const Interval& y, bool of_start) {
+    std::int64_t inside = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      for (int j = 0; j < kSteps; ++j) {
+        PlanePoint point = {x.lower + x.width() * (i + 0.5) / kSteps,
+                            y.lower + y.width() * (j + 0.5) / kSteps};
+        bool in = !region.area || region.area->contains(point);
+        if (of_start && region.start_area) in = in && region.start_area->contains(point);
+        inside += in ? 1 : 0;
+      }
+    }
+    return static_cast<double>(inside);
+  };
+  const auto &x = region.on(RegionAxis::kX), &y = region.on(RegionAxis::kY);
+  const auto* drawn_x = find(start, body + ".x");
+  const auto* drawn_y = find(start, body + ".y");
+  if (!x || !y || drawn_x == nullptr || drawn_y == nullptr) return 1.0;
+  const auto local = [&](Interval range, std::size_t axis) {
+    range.lower -= region.frame_start[axis];
+    range.upper -= region.frame_start[axis];
+    return range;
+  };
+  const double whole = part(*x, *y, false);
+  return whole > 0.0 ? part(local(*drawn_x, 0), local(*drawn_y, 1), true) / whole : 1.0;
 }
 
 StartShare share_of(const std::string& body, const Region& region, const StartCuboid& start) {
@@ -29,6 +60,7 @@ StartShare share_of(const std::string& body, const Region& region, const StartCu
     result.axes.push_back({name, drawn->width(), whole->width()});
     result.share *= drawn->width() / whole->width();
   }
+  if (region.area || region.start_area) result.share *= share_of_shape(region, start, body);
   return result;
 }
 

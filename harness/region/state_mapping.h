@@ -1,12 +1,14 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "harness/region/area.h"
 #include "harness/region/fluent_binding.h"
 
 namespace parallax::harness {
@@ -17,9 +19,18 @@ struct SampledDimension {
   Interval interval;
 };
 
-/// The cuboid of continuous states that a discrete state stands for.
+/// Where a body starts that the region it is in has a shape for, on the plane of x and y.
+struct StartArea {
+  std::string body;
+  std::shared_ptr<const Area> area;
+  PlanePoint offset{};  // of the region's frame at a reset
+  base::SourceRange source;
+};
+
+/// The cuboid of continuous states that a discrete state stands for, and what is cut out of it.
 struct StartCuboid {
   std::vector<SampledDimension> dimensions;  // sorted by variable
+  std::vector<StartArea> areas{};
 };
 
 /// Is the variable an angle? By its name: "box.yaw".

@@ -4,6 +4,7 @@
 
 #include "compiler/base/json.h"
 #include "harness/campaign/run_setup.h"
+#include "harness/report/law_json.h"
 #include "harness/report/report.h"
 #include "harness/simulator/state_json.h"
 
@@ -53,6 +54,11 @@ std::string rates_text(const RatesResult& result) {
   for (const TraceRates& trace : result.traces) {
     out += fmt::format("\ntrace {}: {} runs, {} starts rejected, {} lost\n  {}\n", trace.number,
                        trace.runs, trace.rejected, trace.lost, trace.trace);
+    if (trace.law) {
+      out += fmt::format("  starts: {}\n", trace.law->text());
+      const auto refused = trace.law->refused_text();
+      if (!refused.empty()) out += fmt::format("  refused: {}\n", refused);
+    }
     if (trace.unseen > 0) out += "  " + unseen_text(trace.unseen) + "\n";
     out += fmt::format("  {:>6} of {:<6} {:<26} any discrepancy\n", trace.any.count, trace.runs,
                        percent(trace.any));
@@ -94,6 +100,7 @@ std::string rates_json(const RatesResult& result) {
                                   {"unseen", trace.unseen},
                                   {"any", rate_object(trace.any)},
                                   {"causes", std::move(causes)}});
+    if (trace.law) document["traces"].back()["law"] = law_json<Json>(*trace.law);
   }
   return base::json_text(document) + "\n";
 }

@@ -4,6 +4,7 @@
 #include "compiler/base/json.h"
 #include "harness/campaign/result_json.h"
 #include "harness/report/discrepancy_summary.h"
+#include "harness/report/law_json.h"
 #include "harness/report/report.h"
 #include "harness/report/text_layout.h"
 #include "harness/simulator/state_json.h"
@@ -175,6 +176,7 @@ Json json_of(const TraceResult& result, const std::vector<ComparedFluents>& comp
                                {"reason", rate.reason}});
     }
   }
+  if (result.law) out["law"] = law_json<Json>(*result.law);
   if (result.search) out["search"] = json_of(*result.search);
   out["claim"] = result.claim;
   out["caveats"] = result.caveats;

@@ -139,6 +139,11 @@ class Summary {
     if (all.size() == 1) {
       const auto& trace = all.front();
       if (trace.search) line("searched", search_text(*trace.search, trace.trace->number));
+      if (trace.law) {
+        if (const auto refused = trace.law->refused_text(); !refused.empty()) {
+          line("refused", refused);
+        }
+      }
       line("runs", runs_of(trace) +
                        (trace.rejected > 0 ? fmt::format("; {} drawn again", trace.rejected) : ""));
       if (result_.discrepancies.empty() && !trace.loop && trace.trace->event_count() > 0) {

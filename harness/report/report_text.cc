@@ -95,6 +95,7 @@ class TextReport {
       start(trace);
     }
     if (trace.search) line("searched", search_text(*trace.search, trace.trace->number));
+    if (trace.law) law(*trace.law);
     auto runs = fmt::format("{} ({} clean", trace.simulations, trace.clean);
     if (trace.admitted > 0) {
       runs += fmt::format(", {} of them otherwise, as the model admits", trace.admitted);
@@ -152,6 +153,12 @@ class TextReport {
     constexpr std::string_view kLabel = "  start region";
     out_ += table(rows, kLabelEnd).replace(0, kLabel.size(), kLabel);
     start_shares(trace);
+  }
+
+  /// By which law, and what its conditions refused.
+  void law(const LawResult& law) {
+    line("start law", law.text());
+    if (const auto refused = law.refused_text(); !refused.empty()) line("refused", refused);
   }
 
   /// How much of a cell the starts are drawn from, where that is not all of it: what is claimed is

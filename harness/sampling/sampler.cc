@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "compiler/base/codes/scenarios.h"
+#include "harness/sampling/law_draw.h"
 
 namespace parallax::harness {
 namespace {
@@ -53,7 +54,7 @@ std::uint64_t simulator_seed(const DrawKey& key) {
 Sampler::Sampler(StartCuboid cuboid, double inset) : cuboid_(std::move(cuboid)), inset_(inset) {}
 
 base::Result<Sampler> Sampler::make(StartCuboid cuboid, double inset, base::SourceRange blame,
-                                    base::DiagnosticSink& sink) {
+                                    base::DiagnosticSink& sink, const SamplingLaw* law) {
   PARALLAX_REQUIRE(inset >= 0.0 && std::isfinite(inset), "an inset that is zero or more");
   const auto errors_before = sink.error_count();
   for (const auto& [variable, interval] : cuboid.dimensions) {
@@ -62,11 +63,27 @@ base::Result<Sampler> Sampler::make(StartCuboid cuboid, double inset, base::Sour
     sink.error(codes::kSamplingTooNarrow, blame, variable, interval.lower, interval.upper, inset);
   }
   if (sink.error_count() != errors_before) return sink.already_reported();
-  return Sampler(std::move(cuboid), inset);
+  Sampler sampler(std::move(cuboid), inset);
+  if ((law == nullptr || law->is_plain()) && sampler.cuboid_.areas.empty()) return sampler;
+  auto bound = LawDraw::make(sampler.cuboid_, law == nullptr ? SamplingLaw() : *law, inset, sink);
+  if (!bound) return sink.already_reported();
+  sampler.law_ = *std::move(bound);
+  return sampler;
 }
 
-State Sampler::draw(const DrawKey& key) const {
+DrawnStart Sampler::draw_counting(const DrawKey& key, std::vector<std::int64_t>* refusals) const {
   const CounterRng rng(key);
+  if (law_) {
+    // With one start in a thousand candidates it takes so many once in 10^43 draws.
+    constexpr std::int64_t kMostCandidates = 100'000;
+    std::vector<double> point(law_->coordinates());
+    for (std::int64_t refused = 0; refused < kMostCandidates; ++refused) {
+      const auto first = static_cast<std::uint64_t>(refused) * point.size();
+      for (std::size_t i = 0; i < point.size(); ++i) point[i] = rng.uniform(first + i);
+      if (auto start = law_->start_at(point, refusals)) return {*std::move(start), refused};
+    }
+    PARALLAX_REQUIRE(false, "a law that lets starts through, which was found when it was bound");
+  }
   State state;
   for (std::size_t i = 0; i < cuboid_.dimensions.size(); ++i) {
     const auto& [variable, interval] = cuboid_.dimensions[i];
@@ -80,7 +97,7 @@ State Sampler::draw(const DrawKey& key) const {
     }
     state.emplace(variable, value);
   }
-  return state;
+  return {std::move(state), 0};
 }
 
 }  // namespace parallax::harness

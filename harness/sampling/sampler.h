@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <vector>
 
 #include "compiler/base/diagnostic.h"
 #include "harness/region/state_mapping.h"
@@ -40,22 +42,37 @@ class CounterRng {
 /// that JSON readers keep it exactly.
 std::uint64_t simulator_seed(const DrawKey& key);
 
-/// Draws start states independently and uniformly from a cuboid.
+class LawDraw;
+struct SamplingLaw;
+
+/// A start, and how many candidates the conditions of its law had refused before it.
+struct DrawnStart {
+  State start;
+  std::int64_t refused = 0;
+};
+
+/// Draws start states independently, uniformly from a cuboid or by a law conditioned on it.
 ///
 /// Dimension i of the cuboid takes value i of the key's stream, so a draw can be repeated alone
-/// and does not depend on the draws before it. A dimension with equal bounds is fixed.
+/// and does not depend on the draws before it. A dimension with equal bounds is fixed. Where
+/// conditions refuse a candidate the next one takes the values that follow.
 class Sampler {
  public:
   /// How far [m, rad] a drawn value stays from the ends of its interval, so that no start is
   /// within rounding of a border.
   static constexpr double kDefaultInset = 1e-6;
 
-  /// Reports kSamplingTooNarrow for every dimension that the inset uses up.
+  /// Reports kSamplingTooNarrow for every dimension that the inset uses up, and what
+  /// LawDraw::make reports. Without a law every dimension is uniform.
   static base::Result<Sampler> make(StartCuboid cuboid, double inset, base::SourceRange blame,
-                                    base::DiagnosticSink& sink);
+                                    base::DiagnosticSink& sink, const SamplingLaw* law = nullptr);
 
   /// One value in [lower + inset, upper - inset) per dimension.
-  State draw(const DrawKey& key) const;
+  State draw(const DrawKey& key) const { return draw_counting(key, nullptr).start; }
+  /// Adds what each condition of law() has refused, unless `refusals` is null.
+  DrawnStart draw_counting(const DrawKey& key, std::vector<std::int64_t>* refusals) const;
+  /// Null where all dimensions are uniform and nothing is cut out of the cuboid.
+  const LawDraw* law() const { return law_.get(); }
   const StartCuboid& cuboid() const { return cuboid_; }
   double inset() const { return inset_; }
 
@@ -63,6 +80,7 @@ class Sampler {
   Sampler(StartCuboid cuboid, double inset);
   StartCuboid cuboid_;
   double inset_;
+  std::shared_ptr<const LawDraw> law_;
 };
 
 }  // namespace parallax::harness

@@ -5,6 +5,7 @@
 
 #include "harness/campaign/loop_samples.h"
 #include "harness/campaign/loop_stream.h"
+#include "harness/campaign/trial.h"
 
 namespace parallax::tools {
 
@@ -37,11 +38,7 @@ std::string ExecutionCheck::wrong(const harness::SampleRecord& record) const {
   for (const auto id : holds[static_cast<std::size_t>(path.start - 1)]) {
     names.emplace(loop_->symbols()->name(id));
   }
-  auto cuboid = scenario.mapping->start_cuboid(fluents.ground(), names, scenario.sampling,
-                                               scenario.sampling_source, unread);
-  if (!cuboid) return "it begins where no start can be drawn";
-  const auto sampler = harness::Sampler::make(*std::move(cuboid), scenario.sampling_inset_m,
-                                              scenario.sampling_source, unread);
+  const auto sampler = harness::start_sampler(scenario, fluents.ground(), names, unread);
   if (!sampler) return "it begins where no start can be drawn";
   auto why = harness::wrong_draw(record, *sampler, seed_, harness::loop_start_stream());
   if (!why.empty()) return why;

@@ -12,6 +12,7 @@
 #include "compiler/base/codes/texts.h"
 #include "compiler/base/diagnostic_printer.h"
 #include "compiler/base/hash.h"
+#include "harness/campaign/trial.h"
 #include "harness/sampling/sampler.h"
 #include "runtime/replay/trace_replay.h"
 #include "tools/app/execution_check.h"
@@ -119,12 +120,8 @@ std::optional<harness::Sampler> sampler_of(const harness::Scenario& scenario,
   base::DiagnosticSink unread;
   const harness::ModelFluents fluents(*trace.symbols);
   const auto holds = trace.holds(0);
-  auto cuboid = scenario.mapping->start_cuboid(fluents.ground(),
-                                               std::set<std::string>(holds.begin(), holds.end()),
-                                               scenario.sampling, scenario.sampling_source, unread);
-  if (!cuboid) return std::nullopt;
-  auto sampler = harness::Sampler::make(*std::move(cuboid), scenario.sampling_inset_m,
-                                        scenario.sampling_source, unread);
+  auto sampler = harness::start_sampler(scenario, fluents.ground(),
+                                        std::set<std::string>(holds.begin(), holds.end()), unread);
   if (!sampler) return std::nullopt;
   return *std::move(sampler);
 }

@@ -41,8 +41,14 @@ std::string not_comparable(const RatesRevision& before, const RatesRevision& aft
     if (side->traces.empty()) return fmt::format("{} has no trace", side->name);
   }
   for (const auto& trace : before.traces) {
-    if (rates_for(after, trace.events) == nullptr) {
+    const auto* same = rates_for(after, trace.events);
+    if (same == nullptr) {
       return fmt::format("{} has no rate of the trace {}", after.name, trace.events);
+    }
+    if (same->law != trace.law) {
+      const auto law_of = [](const std::string& law) { return law.empty() ? "uniformly" : law; };
+      return fmt::format("starts of the trace {} were drawn by other laws ({}, now {})",
+                         trace.events, law_of(trace.law), law_of(same->law));
     }
   }
   for (const auto& trace : after.traces) {

@@ -38,6 +38,13 @@ std::optional<RevisionRates> rates_of(const SortedJson& json, bool fixed) {
   if (!events || runs < 0 || lost < 0 || failures < 0 || failures > runs) return std::nullopt;
   if (causes == nullptr || !causes->is_array()) return std::nullopt;
   RevisionRates out{*events, {runs + lost, failures, lost, fixed}, {}};
+  const auto* law = base::json_member(json, "law");
+  const auto* words = law == nullptr ? nullptr : base::json_member(*law, "words");
+  if (words != nullptr && words->is_array()) {
+    for (const auto& word : *words) {
+      out.law += (out.law.empty() ? "" : "; ") + base::json_as<std::string>(word).value_or("");
+    }
+  }
   std::int64_t sum = 0;
   for (const auto& cause : *causes) {
     const auto text = at<std::string>(cause, "cause");
@@ -98,6 +105,7 @@ std::vector<Fact> rates_facts(const RatesRevision& rates) {
     const auto name = fmt::format("trace [{}]", trace.events);
     add(FactKind::kDeclaration, name,
         fmt::format("{} runs, {} lost", trace.any.runs - trace.any.lost, trace.any.lost));
+    if (!trace.law.empty()) add(FactKind::kDeclaration, name + ", starts", trace.law);
     add(FactKind::kAxiom, name, fmt::format("{} discrepancies", trace.any.failures));
     for (const auto& cause : trace.causes) {
       add(FactKind::kAxiom, fmt::format("{}, {}", name, cause.text), std::to_string(cause.count));

@@ -19,6 +19,7 @@ struct RevisionRates {
     std::int64_t count = 0;
   };
   std::vector<Cause> causes;
+  std::string law{};  // by which starts were drawn, in words; empty: uniformly
 };
 
 struct RatesRevision {
