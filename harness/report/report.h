@@ -5,6 +5,7 @@
 
 #include "compiler/base/diagnostic.h"
 #include "harness/campaign/campaign_result.h"
+#include "harness/campaign/rare_rates.h"
 #include "harness/campaign/rates.h"
 #include "harness/campaign/replay.h"
 
@@ -41,6 +42,8 @@ std::string rates_text(const RatesResult& result);
 /// "Clopper-Pearson", "valid whenever one looks"
 std::string_view interval_name(const RatesResult& result);
 std::string rates_json(const RatesResult& result);
+std::string rates_text(const RareRatesResult& result);
+std::string rates_json(const RareRatesResult& result);
 
 /// 0 no discrepancy, 1 discrepancy, 4 inconclusive, also without a trace; an interruption's 130 or
 /// 143 is the caller's.

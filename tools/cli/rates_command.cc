@@ -1,8 +1,12 @@
+#include <fmt/format.h>
+
 #include <memory>
+#include <utility>
 
 #include "compiler/base/codes/campaigns.h"
 #include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
+#include "harness/campaign/rare_rates.h"
 #include "harness/campaign/rates.h"
 #include "harness/report/report.h"
 #include "tools/app/evidence.h"
@@ -20,12 +24,14 @@ namespace {
 
 constexpr FiniteNumber kShare{1e-6, 1.0 - 1e-6};
 constexpr std::int64_t kMostRunsUntil = 100'000;
+constexpr std::int64_t kRareRuns = 10'000;
 
 struct RateOptions {
   std::string scenario;
   JudgingOptions judging;
   harness::RatesOptions rates;
   std::int64_t runs = 0;  // 0: not given
+  std::string method = "counting";
   CommandPermission commands;
   std::string samples, plot;
   bool cause_kinds = false;
@@ -62,7 +68,54 @@ void add_cause_kinds(const std::vector<harness::SampleRow>& rows, bool world_is_
   }
 }
 
+harness::RareEventMethod rare_method(const RateOptions& options) {
+  return options.method == "splitting" ? harness::RareEventMethod::kSplitting
+                                       : harness::RareEventMethod::kImportance;
+}
+
+/// What is about counting runs has no meaning for an estimate from chosen starts.
+base::Status check_method(const RateOptions& options, base::DiagnosticSink& sink) {
+  if (options.method == "counting") return base::Unit{};
+  const std::pair<const char*, bool> asked[] = {{"--until-width", options.rates.until_width > 0.0},
+                                                {"--until-below", options.below < 1.0},
+                                                {"--until-above", options.above > 0.0},
+                                                {"--cause-kinds", options.cause_kinds},
+                                                {"--samples", !options.samples.empty()},
+                                                {"--plot", !options.plot.empty()}};
+  for (const auto& [name, is_given] : asked) {
+    if (!is_given) continue;
+    return sink.error_about(codes::kUsage, name,
+                            "it is about uniform runs; leave it or --method out");
+  }
+  const auto least = harness::least_runs(rare_method(options));
+  if (options.runs == 0 || options.runs >= least) return base::Unit{};
+  return sink.error_about(
+      codes::kUsage, "--runs",
+      fmt::format("--method {} resolves nothing with fewer than {} runs", options.method, least));
+}
+
+/// With a method that reaches what is too rare to be counted.
+int run_rare(const RateOptions& options, const ScenarioModel& loaded, harness::TraceFeed& traces,
+             const harness::SimulatorFactory& simulator, Invocation& invocation) {
+  auto rates = options.rates;
+  rates.runs = options.runs > 0 ? options.runs : kRareRuns;
+  rates.stop = &stop_flag();
+  rates.progress = progress_on_terminal(invocation.options());
+  const auto result = harness::estimate_rare_rates(loaded.scenario, traces, simulator, rates,
+                                                   rare_method(options), invocation.sink());
+  if (rates.progress) write_error("\r\x1b[K");
+  if (!result) return 0;
+  if (invocation.options().json) {
+    invocation.document(harness::rates_json(*result));
+  } else {
+    invocation.result(harness::rates_text(*result));
+  }
+  if (!result->is_answered()) return 4;
+  return result->traces.empty() ? 1 : 0;
+}
+
 int run_rates(const RateOptions& options, Invocation& invocation) {
+  if (!check_method(options, invocation.sink())) return 0;
   auto loaded = load_scenario_model(options.scenario, invocation);
   if (!loaded) return 0;
   apply(options.judging, loaded->scenario);
@@ -77,6 +130,9 @@ int run_rates(const RateOptions& options, Invocation& invocation) {
   if (!simulator) return 0;
   EnumeratedTraces traces(model, invocation);
   traces.explain_absence_by([&] { return reasons_for_absence(*loaded, invocation); });
+  if (options.method != "counting") {
+    return run_rare(options, *loaded, traces, *simulator, invocation);
+  }
   auto rates = options.rates;
   if (options.below <= options.above) {
     invocation.sink().error_about(codes::kUsage, "",
@@ -130,8 +186,10 @@ Command rates_command() {
       "  parallax rates scenarios/two_regions/edge.yaml --until-below 0.1 --runs 400\n"
       "  parallax rates scenarios/kitchen/plan3.yaml --runs 200 --plot rates.html --samples "
       "rates.csv\n"
+      "  parallax rates scenarios/two_regions/edge.yaml --method importance --runs 1000\n"
       "Sample N starts as simulation N of `parallax run` with the same seed does.\n"
-      "Exit codes: 0 estimated, 1 no trace, 4 stopped before all runs were made.");
+      "Exit codes: 0 estimated, 1 no trace, 4 stopped before all runs were made, or not "
+      "resolved.");
   command.option("scenario", options->scenario, "Scenario file (YAML)").required();
   command.option("--trace", options->rates.trace, "Only this trace; default: all")
       .check(WholeNumber{1, 1'000'000});
@@ -153,6 +211,13 @@ Command rates_command() {
       .option("--until-above", options->above,
               "Go on until it is known whether the rate is above this")
       .check(kShare);
+  command
+      .option("--method", options->method,
+              "counting: uniform runs; or, for what is too rare to be counted, importance (its "
+              "interval holds whatever the simulator does) or splitting: --runs (10,000) is then "
+              "the most, and no cause is told")
+      .check(OneOf{{"counting", "importance", "splitting"}})
+      .show_default();
   command.flag("--cause-kinds", options->cause_kinds,
                "Also tell what kind of cause each is: always, region, random or simulator");
   add_judging_options(command, options->judging);

@@ -1,0 +1,210 @@
+#include "harness/campaign/rare_rates.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "compiler/base/codes/campaigns.h"
+#include "harness/campaign/sample_margin.h"
+#include "harness/campaign/search_phase.h"
+#include "harness/campaign/trial.h"
+
+namespace parallax::harness {
+namespace {
+
+/// Points for each job that are simulated before the next ones are made ready, and progress is
+/// shown; results do not depend on it.
+constexpr std::size_t kPointsOfJob = 8;
+
+class RareEstimator {
+ public:
+  RareEstimator(const Scenario& scenario, TraceFeed& traces, const SimulatorFactory& make_simulator,
+                const RatesOptions& options, RareEventMethod method, base::DiagnosticSink& sink)
+      : scenario_(scenario),
+        traces_(traces),
+        options_(options),
+        method_(method),
+        sink_(sink),
+        bench_(
+            scenario, traces, make_simulator, {options.seed, options.jobs, options.stop},
+            [](const SampleRecord&) {}, sink) {}
+
+  base::Result<RareRatesResult> run() {
+    RareRatesResult result;
+    result.scenario = scenario_.name;
+    result.seed = options_.seed;
+    result.confidence = options_.confidence;
+    result.method = method_;
+    result.budget = options_.runs;
+    result.comparison = scenario_.comparison();
+    const auto started = bench_.start();
+    if (!started) return sink_.already_reported();
+    result.complete = *started;
+    std::int64_t last = 0;
+    bool seen_all = false;
+    while (result.complete) {
+      auto trace = traces_.next();
+      if (!trace) return sink_.already_reported();
+      seen_all = !*trace;
+      if (seen_all) break;
+      const std::int64_t number = last = (*trace)->number;
+      if (options_.trace != 0 && number != options_.trace) continue;
+      auto rate = one_trace(std::move(**trace));
+      if (!rate) return sink_.already_reported();
+      result.complete = rate->estimate.end != RareEventEnd::kStopped;
+      result.traces.push_back(std::move(*rate));
+      if (number == options_.trace) break;
+    }
+    bench_.close();
+    if (seen_all) result.complete = traces_.exploration() != "stopped";
+    if (seen_all && result.complete && last < options_.trace) {
+      return sink_.error_about(codes::kNoSuchTrace, scenario_.name, options_.trace,
+                               last == 0   ? "the scenario has none"
+                               : last == 1 ? "the scenario has only one"
+                                           : fmt::format("the scenario has {}", last));
+    }
+    return result;
+  }
+
+ private:
+  base::Result<RareTraceRate> one_trace(CampaignTrace found) {
+    auto trial = Trial::prepare(bench_, std::move(found));
+    if (!trial) return sink_.already_reported();
+    const auto& trace = *trial->plan().trace;
+    RareTraceRate rate;
+    rate.number = trace.number;
+    for (std::size_t t = 0; t < trace.event_count(); ++t) {
+      rate.trace += (t == 0 ? "" : " ") + trace.event(t);
+    }
+    const UnitCube cube(trial->plan().sampler);
+    RareEventOptions options;
+    options.method = method_;
+    options.dimensions = std::max<std::size_t>(1, cube.dimensions());
+    options.budget = options_.runs;
+    options.confidence = options_.confidence;
+    options.seed = search_seed(trial->plan());
+    MarginScale scale;
+    std::int64_t next = 1;
+    bool failed = false;
+    rate.estimate = estimate_rare_event(options, [&](std::span<const UnitPoint> points) {
+      return simulated(*trial, cube, points, next, scale, failed);
+    });
+    trial->end();
+    if (failed) return sink_.already_reported();
+    rate.contradicting.assign(scale.contradicting().begin(), scale.contradicting().end());
+    return rate;
+  }
+
+  std::optional<std::vector<Evaluation>> simulated(Trial& trial, const UnitCube& cube,
+                                                   std::span<const UnitPoint> points,
+                                                   std::int64_t& next, MarginScale& scale,
+                                                   bool& failed) const {
+    const bool is_first = scale.size() == 0;
+    const auto at_once = kPointsOfJob * static_cast<std::size_t>(options_.jobs);
+    std::vector<Evaluation> out;
+    std::vector<MarginParts> parts;
+    for (std::size_t begin = 0; begin < points.size(); begin += at_once) {
+      const auto count = std::min(at_once, points.size() - begin);
+      std::vector<std::optional<State>> starts;
+      for (const auto& point : points.subspan(begin, count)) starts.push_back(cube.start_at(point));
+      const auto tried = trial.try_starts(next, std::move(starts));
+      failed = !tried;
+      if (failed || !*tried) return std::nullopt;
+      next += static_cast<std::int64_t>(count);
+      report_progress(trial.plan().trace->number, next - 1);
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto& sample = (**tried)[i];
+        Evaluation answer{points[begin + i], evaluation_kind(sample)};
+        parts.emplace_back();
+        if (sample.verdict == SampleVerdict::kLostTooOften) return std::nullopt;
+        if (answer.kind == EvaluationKind::kClean || answer.kind == EvaluationKind::kDiscrepancy) {
+          parts.back() = margin_parts(*scenario_.mapping, bench_.fluents(), *trial.plan().trace,
+                                      scenario_.comparison(), sample.record);
+          if (is_first) scale.add(parts.back(), answer.kind == EvaluationKind::kDiscrepancy);
+        }
+        out.push_back(std::move(answer));
+      }
+    }
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const bool discrepancy = out[i].kind == EvaluationKind::kDiscrepancy;
+      // Where no part of a margin counts all clean simulations are alike.
+      if (discrepancy || out[i].kind == EvaluationKind::kClean) {
+        out[i].margin = scale.margin_of(parts[i], discrepancy).value_or(1.0);
+      }
+    }
+    return out;
+  }
+
+  void report_progress(std::int64_t trace, std::int64_t done) const {
+    if (!options_.progress) return;
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started_;
+    const auto made = static_cast<double>(bench_.runs_made());
+    options_.progress(
+        {trace, done, options_.runs, elapsed.count() > 0.0 ? made / elapsed.count() : 0.0});
+  }
+
+  const Scenario& scenario_;
+  TraceFeed& traces_;
+  const RatesOptions& options_;
+  RareEventMethod method_;
+  base::DiagnosticSink& sink_;
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  TrialBench bench_;
+};
+
+}  // namespace
+
+bool RareRatesResult::is_answered() const {
+  return complete && std::all_of(traces.begin(), traces.end(), [](const auto& trace) {
+           return trace.estimate.end == RareEventEnd::kEstimated;
+         });
+}
+
+base::Result<RareRatesResult> estimate_rare_rates(const Scenario& scenario, TraceFeed& traces,
+                                                  const SimulatorFactory& make_simulator,
+                                                  const RatesOptions& options,
+                                                  RareEventMethod method,
+                                                  base::DiagnosticSink& sink) {
+  return RareEstimator(scenario, traces, make_simulator, options, method, sink).run();
+}
+
+std::string why_unanswered(const RareTraceRate& rate, const RareRatesResult& result) {
+  const auto& estimate = rate.estimate;
+  switch (estimate.end) {
+    case RareEventEnd::kEstimated:
+      break;
+    case RareEventEnd::kUnreached:
+      if (result.method == RareEventMethod::kSplitting) {
+        return fmt::format(
+            "{} runs did not lead to discrepancies: they are rarer than one start in so many, or "
+            "margins do not lead there; give more --runs",
+            result.budget);
+      }
+      return fmt::format(
+          "not resolved: none of the {} runs that count gave a discrepancy, so with {:g} % "
+          "confidence fewer than {:.3g} of the starts do; give more --runs",
+          estimate.runs - estimate.exploring, 100.0 * result.confidence, estimate.upper);
+    case RareEventEnd::kFlat:
+      return "no margin of the first runs changed, so none leads to discrepancies; --method "
+             "importance needs none, nor does counting (no --method)";
+    case RareEventEnd::kUnresolved:
+      return fmt::format(
+          "not resolved: {} (estimates from {:.2g} to {:.2g}); give more --runs, or --method "
+          "importance",
+          estimate.excess > 0.0 && estimate.acceptance >= 0.05
+              ? "independent estimates differ by too much to make an interval of them"
+              : "hardly any move was made",
+          *std::min_element(estimate.estimates.begin(), estimate.estimates.end()),
+          *std::max_element(estimate.estimates.begin(), estimate.estimates.end()));
+    case RareEventEnd::kLost:
+      return "runs were lost, for which splitting has no worst case; --method importance has one";
+    case RareEventEnd::kInvalid:
+      return "hardly any start is valid";
+    case RareEventEnd::kStopped:
+      return "stopped before all runs were made";
+  }
+  return {};
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/campaign/rates.h"
+#include "harness/search/rare_event.h"
+
+namespace parallax::harness {
+
+/// How often one trace goes wrong, where that is too seldom to be counted.
+struct RareTraceRate {
+  std::int64_t number = 0;
+  std::string trace;  // its events
+  RareEventResult estimate;
+  std::vector<std::string> contradicting;  // parts of margins that were left out
+};
+
+struct RareRatesResult {
+  std::string scenario;
+  std::uint64_t seed = 0;
+  double confidence = 0.0;
+  RareEventMethod method = RareEventMethod::kImportance;
+  std::int64_t budget = 0;
+  Comparison comparison = Comparison::kEveryStep;
+  bool complete = true;  // false: stopped, or the simulator was lost too often
+  std::vector<RareTraceRate> traces;
+  /// Every trace has its interval.
+  bool is_answered() const;
+};
+
+/// Estimates for each trace the probability that a uniform start gives a discrepancy, with
+/// `options.runs` simulations at most, by how near to one simulations come (sample_margin.h). Units
+/// of margins are those of the first batch. Reports as estimate_rates does.
+base::Result<RareRatesResult> estimate_rare_rates(const Scenario& scenario, TraceFeed& traces,
+                                                  const SimulatorFactory& make_simulator,
+                                                  const RatesOptions& options,
+                                                  RareEventMethod method,
+                                                  base::DiagnosticSink& sink);
+
+/// What is to be said where there is no interval; empty for kEstimated.
+std::string why_unanswered(const RareTraceRate& rate, const RareRatesResult& result);
+
+}  // namespace parallax::harness

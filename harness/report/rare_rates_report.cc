@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "compiler/base/json.h"
+#include "harness/report/report.h"
+
+namespace parallax::harness {
+namespace {
+
+using RareJson = nlohmann::ordered_json;
+
+std::string what_it_rests_on(const RareRatesResult& result) {
+  return result.method == RareEventMethod::kImportance
+             ? "they hold whatever the simulator does"
+             : "they suppose that moves reach every place with discrepancies";
+}
+
+std::string importance_text(const RareEventResult& estimate) {
+  return fmt::format(
+      "  from {} runs, {} of them uniform, after {} to find where to look; {} discrepancies, worth "
+      "{:.0f}\n  standard error {:.1e} where discrepancies were found; the interval is also about "
+      "elsewhere\n",
+      estimate.runs - estimate.exploring, estimate.uniform, estimate.exploring, estimate.found,
+      estimate.effective, estimate.standard_error);
+}
+
+std::string splitting_text(const RareEventResult& estimate) {
+  return fmt::format(
+      "  from {} independent estimates, {:.0f} % of moves made; their variance is {:.1f} times "
+      "what "
+      "it is at best\n",
+      estimate.estimates.size(), 100.0 * estimate.acceptance, estimate.excess);
+}
+
+RareJson interval_object(const RareEventResult& estimate, RareEventMethod method) {
+  const bool estimated = estimate.end == RareEventEnd::kEstimated;
+  RareJson object = {{"rate", estimated ? RareJson(estimate.probability) : RareJson(nullptr)},
+                     {"lower", estimate.lower},
+                     {"upper", estimate.upper}};
+  if (estimated) object["standard_error"] = estimate.standard_error;
+  if (method == RareEventMethod::kImportance) {
+    object["exploring"] = estimate.exploring;
+    object["uniform"] = estimate.uniform;
+    object["discrepancies"] = estimate.found;
+    object["effective"] = estimate.effective;
+  } else {
+    object["estimates"] = estimate.estimates;
+    object["acceptance"] = estimate.acceptance;
+    object["excess"] = estimate.excess;
+  }
+  return object;
+}
+
+/// Something is said of p.
+bool has_interval(const RareEventResult& estimate, RareEventMethod method) {
+  return estimate.end == RareEventEnd::kEstimated ||
+         (estimate.end == RareEventEnd::kUnreached && method == RareEventMethod::kImportance);
+}
+
+}  // namespace
+
+std::string rates_text(const RareRatesResult& result) {
+  std::string out = fmt::format(
+      "{}, seed {}; {} compared; intervals with {:g} % confidence by {}: {}\n", result.scenario,
+      result.seed, result.comparison == Comparison::kFinal ? "last states" : "every step",
+      100.0 * result.confidence, to_string(result.method), what_it_rests_on(result));
+  for (const RareTraceRate& trace : result.traces) {
+    const auto& estimate = trace.estimate;
+    out += fmt::format("\ntrace {}: {} runs, {} starts rejected, {} lost\n  {}\n", trace.number,
+                       estimate.runs, estimate.invalid, estimate.lost, trace.trace);
+    const auto why = why_unanswered(trace, result);
+    if (!why.empty()) {
+      out += fmt::format("  {}\n", why);
+    } else {
+      out += fmt::format("  {:.3g}  [{:.3g}, {:.3g}]  any discrepancy\n", estimate.probability,
+                         estimate.lower, estimate.upper);
+      out += result.method == RareEventMethod::kImportance ? importance_text(estimate)
+                                                           : splitting_text(estimate);
+    }
+    for (const auto& part : trace.contradicting) {
+      out += fmt::format("  left out, as it is below zero where all went as predicted: {}\n", part);
+    }
+  }
+  if (result.complete && result.traces.empty()) out += "\nno trace, so nothing was simulated\n";
+  return out;
+}
+
+std::string rates_json(const RareRatesResult& result) {
+  RareJson document = {{"status", "ok"},
+                       {"scenario", result.scenario},
+                       {"seed", result.seed},
+                       {"confidence", result.confidence},
+                       {"method", to_string(result.method)},
+                       {"compare", to_string(result.comparison)},
+                       {"complete", result.complete},
+                       {"traces", RareJson::array()}};
+  for (const RareTraceRate& trace : result.traces) {
+    const auto& estimate = trace.estimate;
+    RareJson object = {{"trace", trace.number},          {"events", trace.trace},
+                       {"runs", estimate.runs},          {"rejected", estimate.invalid},
+                       {"lost", estimate.lost},          {"end", to_string(estimate.end)},
+                       {"left_out", trace.contradicting}};
+    if (has_interval(estimate, result.method)) {
+      object["any"] = interval_object(estimate, result.method);
+    } else {
+      object["reason"] = why_unanswered(trace, result);
+    }
+    document["traces"].push_back(std::move(object));
+  }
+  return base::json_text(document) + "\n";
+}
+
+}  // namespace parallax::harness

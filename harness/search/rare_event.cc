@@ -1,0 +1,44 @@
+#include "harness/search/rare_event.h"
+
+#include "compiler/base/contract.h"
+#include "harness/search/rare_event_batches.h"
+
+namespace parallax::harness {
+
+std::string_view to_string(RareEventMethod method) {
+  return method == RareEventMethod::kSplitting ? "splitting" : "importance";
+}
+
+std::string_view to_string(RareEventEnd end) {
+  switch (end) {
+    case RareEventEnd::kEstimated:
+      return "estimated";
+    case RareEventEnd::kUnreached:
+      return "not-reached";
+    case RareEventEnd::kFlat:
+      return "flat";
+    case RareEventEnd::kUnresolved:
+      return "not-resolved";
+    case RareEventEnd::kLost:
+      return "lost";
+    case RareEventEnd::kInvalid:
+      return "invalid-starts";
+    case RareEventEnd::kStopped:
+      break;
+  }
+  return "stopped";
+}
+
+std::int64_t least_runs(RareEventMethod method) {
+  return method == RareEventMethod::kSplitting ? 3500 : 1000;
+}
+
+RareEventResult estimate_rare_event(const RareEventOptions& options,
+                                    const BatchEvaluator& evaluate) {
+  PARALLAX_REQUIRE(options.dimensions > 0 && options.budget >= least_runs(options.method),
+                   "something to estimate, and enough runs");
+  return options.method == RareEventMethod::kSplitting ? estimate_by_splitting(options, evaluate)
+                                                       : estimate_by_importance(options, evaluate);
+}
+
+}  // namespace parallax::harness
