@@ -110,21 +110,28 @@ class AxiomEdits {
       auto inner = negated ? ast(form).child(node, 0) : conjunct;
       if (ast(form)[inner].kind == NodeKind::kApply &&
           ast(form).name(ast(form)[inner]) == "HoldsAt") {
-        for (const auto& [term, oddity] : other_terms(form, ast(form).child(ast(form)[inner], 0))) {
-          replace(i, conjunct, (negated ? "!HoldsAt(" : "HoldsAt(") + term + "," + form.time + ")",
-                  oddity);
+        for (const auto& other : other_terms(form, ast(form).child(ast(form)[inner], 0))) {
+          ConditionLiteral literal{ConditionLiteral::Kind::kFluent, negated, other.symbol, {}};
+          for (const auto& name : other.arguments) {
+            literal.arguments.push_back({LiteralArgument::Kind::kVariable, name});
+          }
+          const auto instead =
+              (negated ? "!HoldsAt(" : "HoldsAt(") + other.text() + "," + form.time + ")";
+          replace(i, conjunct, instead, other.oddity, std::move(literal));
         }
       }
     }
   }
 
-  void replace(std::size_t i, NodeId node, std::string text, int oddity) {
+  void replace(std::size_t i, NodeId node, std::string text, int oddity,
+               std::optional<ConditionLiteral> literal = std::nullopt) {
     if (text == print_formula(ast(subject_.forms[i]), node)) return;
     Edit edit;
     edit.kind = Edit::Kind::kReplace;
     edit.axioms = {i};
     edit.node = node;
     edit.text = std::move(text);
+    edit.literal = std::move(literal);
     edit.event = subject_.forms[i].event_symbol;
     edit.oddity = oddity;
     out_.push_back(std::move(edit));
@@ -143,8 +150,8 @@ class AxiomEdits {
       replace(i, effect, atom(kind == "Initiates" ? "Terminates" : "Initiates", event, fluent), 1);
     }
     if (differs && tree[parts.fluent].kind == NodeKind::kApply) {
-      for (const auto& [term, oddity] : other_terms(form, parts.fluent)) {
-        replace(i, effect, atom(kind, event, term), oddity);
+      for (const auto& other : other_terms(form, parts.fluent)) {
+        replace(i, effect, atom(kind, event, other.text()), other.oddity);
       }
       for (const auto& [e, f] : exchanged(form, parts)) replace(i, effect, atom(kind, e, f), 2);
     }
@@ -219,11 +226,22 @@ class AxiomEdits {
     return out;
   }
 
+  struct OtherTerm {
+    std::string symbol;
+    std::vector<std::string> arguments;
+    int oddity = 0;
+
+    std::string text() const {
+      std::string out = symbol;
+      for (std::size_t i = 0; i < arguments.size(); ++i) out += (i == 0 ? "(" : ",") + arguments[i];
+      return out + ")";
+    }
+  };
   /// The term with one argument that is another one.
-  std::vector<std::pair<std::string, int>> other_terms(const AxiomForm& form, NodeId term) const {
+  std::vector<OtherTerm> other_terms(const AxiomForm& form, NodeId term) const {
     const auto& tree = ast(form);
     const auto& node = tree[term];
-    std::vector<std::pair<std::string, int>> out;
+    std::vector<OtherTerm> out;
     if (node.kind != NodeKind::kApply) return out;
     const auto symbol = subject_.typed.find_symbol(tree.name(node));
     if (!symbol || subject_.typed.symbols[*symbol].arguments.size() != node.child_count) return out;
@@ -231,11 +249,7 @@ class AxiomEdits {
     for (std::uint32_t i = 0; i < node.child_count; ++i) {
       arguments.push_back(print_formula(tree, tree.child(node, i)));
     }
-    const auto print = [&](const std::vector<std::string>& with) {
-      std::string text(tree.name(node));
-      for (std::size_t i = 0; i < with.size(); ++i) text += (i == 0 ? "(" : ",") + with[i];
-      return text + ")";
-    };
+    const std::string name_of(tree.name(node));
     for (std::size_t i = 0; i < arguments.size(); ++i) {
       const auto sort = subject_.typed.symbols[*symbol].arguments[i];
       auto with = arguments;
@@ -243,21 +257,21 @@ class AxiomEdits {
         if (variable.name == arguments[i] || !subject_.typed.sorts_overlap(variable.sort, sort))
           continue;
         with[i] = variable.name;
-        out.emplace_back(print(with), 1);
+        out.push_back({name_of, with, 1});
       }
       const auto constants = constants_of(subject_.typed, sort);
       if (constants.size() > kMostLiterals) continue;
       for (const auto& name : constants) {
         if (name == arguments[i]) continue;
         with[i] = name;
-        out.emplace_back(print(with), 3);
+        out.push_back({name_of, with, 3});
       }
       for (std::size_t j = i + 1; j < arguments.size(); ++j) {
         auto swapped = arguments;
         std::swap(swapped[i], swapped[j]);
         if (swapped != arguments &&
             subject_.typed.sorts_overlap(sort, subject_.typed.symbols[*symbol].arguments[j])) {
-          out.emplace_back(print(swapped), 1);
+          out.push_back({name_of, swapped, 1});
         }
       }
     }

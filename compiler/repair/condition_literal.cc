@@ -116,6 +116,57 @@ std::string print(const ConditionLiteral& literal, const std::string& time,
   return (literal.negated ? "!" : "") + atom;
 }
 
+namespace {
+
+/// Variables of the symbol's own sorts for those that may have other values.
+struct NarrowLiteral {
+  ConditionLiteral literal;
+  std::string quantified, equations;  // "drawer", "drawer=place"
+  std::vector<std::string> names;     // that are taken
+};
+
+NarrowLiteral narrowed(const ConditionLiteral& literal, const TypedModel& model,
+                       const std::vector<std::string>& taken) {
+  NarrowLiteral out{literal, {}, {}, taken};
+  const auto symbol = model.find_symbol(literal.symbol);
+  if (literal.kind == ConditionLiteral::Kind::kEqual || !symbol) return out;
+  for (std::size_t i = 0; i < literal.arguments.size(); ++i) {
+    auto& argument = out.literal.arguments[i];
+    if (argument.kind != Kind::kVariable) continue;
+    if (std::find(taken.begin(), taken.end(), argument.name) == taken.end()) continue;
+    const auto sort = sort_of_variable(model, argument.name);
+    const auto wanted = model.symbols[*symbol].arguments[i];
+    if (!sort || model.is_subsort(*sort, wanted)) continue;
+    auto name = model.sorts[wanted].name;
+    const auto is_taken = [&] {
+      return std::find(out.names.begin(), out.names.end(), name) != out.names.end();
+    };
+    for (int k = 1; is_taken(); ++k) name = model.sorts[wanted].name + std::to_string(k);
+    out.names.push_back(name);
+    out.quantified += (out.quantified.empty() ? "" : ",") + name;
+    out.equations += (out.equations.empty() ? "" : " & ") + name + "=" + argument.name;
+    argument.name = name;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string print_everywhere(const ConditionLiteral& literal, const TypedModel& model,
+                             const std::string& time, const std::vector<std::string>& taken) {
+  const auto narrow = narrowed(literal, model, taken);
+  const auto text = print(narrow.literal, time, narrow.names);
+  if (narrow.quantified.empty()) return text;
+  return "({" + narrow.quantified + "} " + narrow.equations + " & " + text + ")";
+}
+
+std::string typing_of(const ConditionLiteral& literal, const TypedModel& model,
+                      const std::vector<std::string>& taken) {
+  const auto narrow = narrowed(literal, model, taken);
+  if (narrow.quantified.empty()) return {};
+  return "({" + narrow.quantified + "} " + narrow.equations + ")";
+}
+
 ConditionLiteral renamed(ConditionLiteral literal,
                          const std::map<std::string, std::string>& names) {
   for (auto& argument : literal.arguments) {

@@ -38,6 +38,16 @@ struct ConditionLiteral {
 std::string print(const ConditionLiteral& literal, const std::string& time,
                   const std::vector<std::string>& taken);
 
+/// The same for an axiom that speaks of more than the literal's symbol does: where a variable of
+/// `taken` has a value outside of the symbol's sort there, it is false. A literal by itself has no
+/// instance there, and with it the whole axiom has none.
+std::string print_everywhere(const ConditionLiteral& literal, const TypedModel& model,
+                             const std::string& time, const std::vector<std::string>& taken);
+
+/// That each variable has a value there; empty: it always has one.
+std::string typing_of(const ConditionLiteral& literal, const TypedModel& model,
+                      const std::vector<std::string>& taken);
+
 /// The literal with other names for its variables: terms of the axiom that it is put into.
 ConditionLiteral renamed(ConditionLiteral literal, const std::map<std::string, std::string>& names);
 

@@ -23,7 +23,7 @@ struct Edit {
     kRequire,        // a new precondition: the event happens only where `literal` holds
     kDropCondition,  // the conjunct `node` of the axiom's condition goes
     kDropAxiom,      // an axiom about effects, or a precondition
-    kReplace,        // `node` of the axiom, a conjunct or an effect, becomes `text`
+    kReplace,        // `node` of the axiom, a conjunct or an effect, becomes `text` (`literal`)
     kAddEffect,      // a new axiom: the effect `text`
     kAddCondition,   // `literal` is the condition of the new axiom `of`
     kDelay,          // the effect comes later: `sentences` instead of the axiom

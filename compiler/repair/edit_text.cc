@@ -103,24 +103,31 @@ std::string of_event(const Edit& edit) {
 
 }  // namespace
 
-std::string literal_in(const ModelAst& model, const std::vector<AxiomForm>& forms, const Edit& edit,
-                       std::size_t axiom) {
+std::vector<ConditionLiteral> literals_in(const ModelAst& model,
+                                          const std::vector<AxiomForm>& forms, const Edit& edit,
+                                          std::size_t axiom) {
+  if (!edit.literal) return {};
+  if (edit.kind != Edit::Kind::kNarrowEvent) return {*edit.literal};
   const auto& form = forms[axiom];
-  if (!edit.literal) return edit.text;
-  if (edit.kind != Edit::Kind::kNarrowEvent) {
-    return print(*edit.literal, form.time, form.variables);
-  }
   const auto& ast = model.ast(form.place);
   std::map<std::string, std::string> names;
   const auto& event = ast[form.event];
   for (std::size_t i = 0; i < edit.variables.size() && i < event.child_count; ++i) {
     names[edit.variables[i]] = print_formula(ast, ast.child(event, static_cast<std::uint32_t>(i)));
   }
-  const auto printed = [&](const ConditionLiteral& literal) {
-    return print(renamed(literal, names), form.time, form.variables);
-  };
-  if (!edit.or_else) return printed(*edit.literal);
-  return "(" + printed(*edit.literal) + " | " + printed(*edit.or_else) + ")";
+  std::vector<ConditionLiteral> out = {renamed(*edit.literal, names)};
+  if (edit.or_else) out.push_back(renamed(*edit.or_else, names));
+  return out;
+}
+
+std::string literal_in(const ModelAst& model, const std::vector<AxiomForm>& forms, const Edit& edit,
+                       std::size_t axiom) {
+  const auto& form = forms[axiom];
+  const auto literals = literals_in(model, forms, edit, axiom);
+  if (literals.empty()) return edit.text;
+  auto out = print(literals.front(), form.time, form.variables);
+  if (literals.size() == 1) return out;
+  return "(" + out + " | " + print(literals.back(), form.time, form.variables) + ")";
 }
 
 std::string EditText::place(std::size_t axiom) const {

@@ -37,7 +37,12 @@ class EditText {
   const std::vector<Edit>& edits_;
 };
 
-/// The literal of an edit in the words of one of its axioms, whose event may have other arguments.
+/// What an edit adds to the condition of one of its axioms, whose event may have other arguments:
+/// one literal, or two of which one is enough. Empty: it is a text.
+std::vector<ConditionLiteral> literals_in(const ModelAst& model,
+                                          const std::vector<AxiomForm>& forms, const Edit& edit,
+                                          std::size_t axiom);
+/// The same printed, in the words of one of its axioms, whose event may have other arguments.
 std::string literal_in(const ModelAst& model, const std::vector<AxiomForm>& forms, const Edit& edit,
                        std::size_t axiom);
 

@@ -1,6 +1,7 @@
 #include "compiler/repair/guarded_model.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "compiler/repair/edit_text.h"
 #include "compiler/syntax/printer.h"
@@ -24,9 +25,14 @@ std::string joined(const std::vector<std::string>& parts, const std::string& eff
 
 class GuardedForm {
  public:
-  GuardedForm(const ModelAst& model, const std::vector<AxiomForm>& forms,
+  GuardedForm(const ModelAst& model, const TypedModel& typed, const std::vector<AxiomForm>& forms,
               const std::vector<Edit>& edits, std::size_t axiom)
-      : model_(model), forms_(forms), form_(forms[axiom]), edits_(edits), axiom_(axiom) {
+      : model_(model),
+        typed_(typed),
+        forms_(forms),
+        form_(forms[axiom]),
+        edits_(edits),
+        axiom_(axiom) {
     for (std::size_t i = 0; i < edits.size(); ++i) {
       const auto& axioms = edits[i].axioms;
       if (std::find(axioms.begin(), axioms.end(), axiom) != axioms.end()) touching_.push_back(i);
@@ -119,20 +125,67 @@ class GuardedForm {
         if (edits_[i].kind == Edit::Kind::kDropCondition) off += " | " + on(i);
         if (edits_[i].kind == Edit::Kind::kReplace) {
           off += " | " + on(i);
-          out.push_back("(!" + on(i) + " | (" + edits_[i].text + "))");
+          const auto& literal = edits_[i].literal;
+          out.push_back("(!" + on(i) + " | (" +
+                        (literal ? everywhere({*literal}) : edits_[i].text) + "))");
         }
       }
+      const auto literal = off.empty() ? std::nullopt : literal_of(conjunct);
+      if (literal) text = everywhere({*literal});
       out.push_back(off.empty() ? text : "(" + text + off + ")");
     }
     for (const auto i : touching_) {
       const auto kind = edits_[i].kind;
       if (kind != Edit::Kind::kNarrow && kind != Edit::Kind::kNarrowEvent) continue;
-      out.push_back("(!" + on(i) + " | " + literal_in(model_, forms_, edits_[i], axiom_) + ")");
+      const auto literals = literals_in(model_, forms_, edits_[i], axiom_);
+      out.push_back("(!" + on(i) + " | " +
+                    (literals.empty() ? edits_[i].text : everywhere(literals)) + ")");
     }
     return out;
   }
 
+  /// None: it is no literal over variables.
+  std::optional<ConditionLiteral> literal_of(NodeId conjunct) const {
+    const auto& ast = model_.ast(form_.place);
+    ConditionLiteral out;
+    auto node = conjunct;
+    if (ast[node].kind == NodeKind::kUnary && ast[node].op == Operator::kNot) {
+      out.negated = true;
+      node = ast.child(ast[node], 0);
+    }
+    if (ast[node].kind != NodeKind::kApply) return std::nullopt;
+    out.kind = ConditionLiteral::Kind::kPredicate;
+    if (ast.name(ast[node]) == "HoldsAt") {
+      out.kind = ConditionLiteral::Kind::kFluent;
+      node = ast.child(ast[node], 0);
+      if (ast[node].kind != NodeKind::kApply) return std::nullopt;
+    }
+    out.symbol = ast.name(ast[node]);
+    const auto symbol = typed_.find_symbol(out.symbol);
+    if (!symbol || typed_.symbols[*symbol].arguments.size() != ast[node].child_count) {
+      return std::nullopt;
+    }
+    for (std::uint32_t i = 0; i < ast[node].child_count; ++i) {
+      out.arguments.push_back(
+          {LiteralArgument::Kind::kVariable, print_formula(ast, ast.child(ast[node], i))});
+    }
+    return out;
+  }
+
+  /// One of them holds, and each of them is about something: as it is where it is written.
+  std::string everywhere(const std::vector<ConditionLiteral>& literals) const {
+    std::string any, all;
+    for (const auto& literal : literals) {
+      any += (any.empty() ? "" : " | ") +
+             print_everywhere(literal, typed_, form_.time, form_.variables);
+      const auto typing = typing_of(literal, typed_, form_.variables);
+      if (!typing.empty()) all += typing + " & ";
+    }
+    return literals.size() == 1 ? any : "(" + all + "(" + any + "))";
+  }
+
   const ModelAst& model_;
+  const TypedModel& typed_;
   const std::vector<AxiomForm>& forms_;
   const AxiomForm& form_;
   const std::vector<Edit>& edits_;
@@ -144,11 +197,12 @@ class GuardedForm {
 
 std::string edit_predicate(std::size_t edit) { return "RepairEdit" + std::to_string(edit); }
 
-std::string guarded_text(const ModelAst& model, const base::SourceFiles& files,
-                         const std::vector<AxiomForm>& forms, const std::vector<Edit>& edits) {
+std::string guarded_text(const ModelAst& model, const TypedModel& typed,
+                         const base::SourceFiles& files, const std::vector<AxiomForm>& forms,
+                         const std::vector<Edit>& edits) {
   std::vector<TextChange> changes;
   for (std::size_t i = 0; i < forms.size(); ++i) {
-    const GuardedForm guarded(model, forms, edits, i);
+    const GuardedForm guarded(model, typed, forms, edits, i);
     if (!guarded.is_touched()) continue;
     changes.push_back(
         {model.ast(forms[i].place).file(), forms[i].begin, forms[i].end, guarded.text()});
@@ -177,7 +231,8 @@ std::string guarded_text(const ModelAst& model, const base::SourceFiles& files,
     for (std::size_t j = i + 1; j < edits.size() && !requires_it; ++j) {
       if (edits[j].kind != Edit::Kind::kAddCondition || edits[j].of != i) break;
       conditions.push_back("(!" + on(j) + " | " +
-                           print(*edits[j].literal, "time", edits[j].variables) + ")");
+                           print_everywhere(*edits[j].literal, typed, "time", edits[j].variables) +
+                           ")");
     }
     auto effect = edit.text;
     if (requires_it) {

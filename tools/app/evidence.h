@@ -80,6 +80,8 @@ base::Result<std::vector<harness::SampleRecord>> further_executions(
 /// RUN_DIR/same_start and RUN_DIR/half_step. Of an executed plan the actions up to where it went
 /// wrong. Reports as further_runs does.
 inline constexpr std::int64_t kSameStartRuns = 5;
+inline constexpr const char* kOtherSeeds = "same_start";
+inline constexpr const char* kHalfStep = "half_step";
 struct SameStart {
   std::optional<harness::Persistence> other_seeds, half_step;
 };

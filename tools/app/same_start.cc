@@ -88,7 +88,7 @@ base::Result<SameStart> same_start_runs(const std::string& run_dir,
     if (!runs) return sink.already_reported();
     if (*runs == nullptr) return base::Unit{};
     const auto& info = (*runs)->bench().simulator();
-    if (!info.seeds && folder == std::string_view("same_start")) return base::Unit{};
+    if (!info.seeds && folder == std::string_view(kOtherSeeds)) return base::Unit{};
     std::vector<harness::ActionCall> calls;
     auto record = failing_record(found, calls);
     // The state that the trace, or the execution, begins in, as the simulator shows it.
@@ -122,8 +122,8 @@ base::Result<SameStart> same_start_runs(const std::string& run_dir,
     seen = *counted;
     return base::Unit{};
   };
-  if (!again("same_start", make_simulator, out.other_seeds)) return sink.already_reported();
-  if (half_step && !context.stopped() && !again("half_step", half_step, out.half_step)) {
+  if (!again(kOtherSeeds, make_simulator, out.other_seeds)) return sink.already_reported();
+  if (half_step && !context.stopped() && !again(kHalfStep, half_step, out.half_step)) {
     return sink.already_reported();
   }
   return out;

@@ -18,11 +18,11 @@
 namespace parallax::tools {
 namespace {
 
-/// Simulations that `explain` made; of those of another trace than the discrepancy's there are
-/// none.
-std::vector<harness::SampleRecord> further_records(const std::string& folder) {
+/// Simulations that `explain` made, in a folder of the run folder; of those of another trace than
+/// the discrepancy's there are none.
+std::vector<harness::SampleRecord> records_of(const std::string& folder, const char* name) {
   std::vector<harness::SampleRecord> out;
-  const auto further = (std::filesystem::path(folder) / kFurtherRuns).string();
+  const auto further = (std::filesystem::path(folder) / name).string();
   std::error_code error;
   if (!std::filesystem::exists(std::filesystem::path(further) / harness::kJournalName, error)) {
     return out;
@@ -32,6 +32,17 @@ std::vector<harness::SampleRecord> further_records(const std::string& folder) {
   if (!journal) return out;
   for (const auto& [key, record] : journal->samples) out.push_back(record);
   return out;
+}
+
+/// Does it happen again from the failing start?
+std::optional<harness::Persistence> persistence(const RecordedDiscrepancy& found,
+                                                const std::string& folder, const char* name,
+                                                Context& context) {
+  auto records = records_of(folder, name);
+  std::erase_if(records, [](const auto& one) { return one.status != harness::SampleStatus::kOk; });
+  if (records.empty()) return std::nullopt;
+  const auto counted = count_failures(found, records, context);
+  return counted ? std::optional(*counted) : std::nullopt;
 }
 
 PagePlace place_of(const compiler::Origin& origin) {
@@ -112,8 +123,11 @@ void add_blame(const PageOptions& options, Context& context, PageData& page) {
   }
   blame.words = blame_words(model, discrepancy.path, *discrepancy.parting, clauses);
   blame.more = consequence_words(discrepancy.path, *discrepancy.parting);
-  if (const auto evidence =
-          gather_evidence(discrepancy, further_records(options.folder), context)) {
+  if (auto evidence =
+          gather_evidence(discrepancy, records_of(options.folder, kFurtherRuns), context)) {
+    harness::weigh_persistence(persistence(discrepancy, options.folder, kOtherSeeds, context),
+                               persistence(discrepancy, options.folder, kHalfStep, context),
+                               evidence->finding);
     blame.cause = evidence->words();
     blame.cause_first = evidence->finding.contradictory_starts > 0;
     if (const auto& rule = evidence->finding.rule) page.rule = rule_of(*rule, evidence->parameters);

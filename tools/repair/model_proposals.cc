@@ -203,8 +203,8 @@ class ModelSearch {
     for (const auto& seen : evidence_) horizon = std::max(horizon, seen.needed());
     std::string why;
     do {
-      const auto text =
-          compiler::guarded_text(domain_.ast, domain_.files, domain_.forms, out->edits);
+      const auto text = compiler::guarded_text(domain_.ast, *domain_.typed, domain_.files,
+                                               domain_.forms, out->edits);
       out->model = compile_text(text, static_cast<std::int64_t>(horizon), context_, why);
     } while (!out->model && !context_.stopped() && fewer(out->edits));
     if (!out->model) {

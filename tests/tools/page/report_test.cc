@@ -120,6 +120,7 @@ TEST_CASE("a run in a world of bodies has a map, and explain's rule once it was 
   CHECK(after.ids.contains("starts"));
   CHECK(after.text.find("Simulations fail where box.x > 1.7") != std::string::npos);
   CHECK(after.text.find("made afterwards") != std::string::npos);
+  CHECK(after.text.find("with half its step it happens in 5 of 5 runs") != std::string::npos);
   CHECK(after.text.find("Proposed repairs") != std::string::npos);
   const auto data = Json::parse(after.data);
   CHECK(data["samples"].size() > 20);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compiler/repair/edit_text.h"
@@ -45,6 +46,83 @@ std::string switched(const std::string& guarded, std::size_t edits,
   return out;
 }
 
+/// Doors are places, and only they are open or not: of another place `Open(place)` has no instance.
+constexpr const char* kSubsort = R"(
+sort place
+sort door: place
+place hall
+door front, back
+fluent At(place)
+fluent Open(door)
+fluent Lit(place)
+event Go(place)
+[place,time] HoldsAt(Lit(place),time) -> Initiates(Go(place),At(place),time).
+[place,time] HoldsAt(Open(place),time) -> Terminates(Go(place),Lit(place),time).
+)";
+
+TEST_CASE("a switched condition about things of a subsort leaves other things alone") {
+  DomainModel domain;
+  base::DiagnosticSink sink;
+  auto ast =
+      compiler::load_model_text(domain.files.add("m.e", kSubsort), ".", {}, domain.files, sink);
+  REQUIRE(ast);
+  domain.ast = *std::move(ast);
+  compiler::CheckOptions check;
+  check.time_lower = 0;
+  check.time_upper = 1;
+  auto typed = compiler::check_model(domain.ast, domain.files, sink, check);
+  REQUIRE(typed);
+  domain.forms = compiler::axiom_forms(domain.ast, domain.files);
+  using Literal = compiler::ConditionLiteral;
+  const auto about = [](const char* fluent, bool negated) {
+    return Literal{Literal::Kind::kFluent,
+                   negated,
+                   fluent,
+                   {{compiler::LiteralArgument::Kind::kVariable, "place"}}};
+  };
+  std::vector<Edit> edits;
+  const auto edit = [&](Edit::Kind kind, std::vector<std::size_t> axioms) -> Edit& {
+    auto& out = edits.emplace_back();
+    out.kind = kind;
+    out.axioms = std::move(axioms);
+    out.event = "Go";
+    return out;
+  };
+  for (const bool negated : {false, true}) {
+    edit(Edit::Kind::kNarrow, {0}).literal = about("Open", negated);
+    auto& event = edit(Edit::Kind::kNarrowEvent, {0, 1});
+    event.variables = {"place"};
+    event.literal = about("Lit", false);
+    event.or_else = about("Open", negated);
+    auto& replace = edit(Edit::Kind::kReplace, {0});
+    replace.node = domain.forms[0].conjuncts.front();
+    replace.literal = about("Open", negated);
+    replace.text = compiler::print(*replace.literal, "time", {});
+  }
+  edit(Edit::Kind::kDropCondition, {1}).node = domain.forms[1].conjuncts.front();
+  const compiler::EditText texts(domain.ast, domain.files, domain.forms, edits);
+  const auto guarded =
+      compiler::guarded_text(domain.ast, *typed, domain.files, domain.forms, edits);
+  const Context context;
+  const auto same = [&](const std::string& a, const std::string& b) {
+    std::string why;
+    const auto first = compile_text(a, 1, context, why);
+    CAPTURE(why);
+    REQUIRE(first);
+    const auto second = compile_text(b, 1, context, why);
+    REQUIRE(second);
+    const auto difference = runtime::compare_traces(*first, *second, {});
+    CHECK(difference.lost.answer == runtime::Answer::kNone);
+    CHECK(difference.gained.answer == runtime::Answer::kNone);
+  };
+  same(switched(guarded, edits.size(), {}), kSubsort);
+  for (std::size_t i = 0; i < edits.size(); ++i) {
+    CAPTURE(texts.words({i}));
+    same(switched(guarded, edits.size(), {i}),
+         compiler::flat_text(domain.ast, domain.files, texts.changes({i})));
+  }
+}
+
 TEST_CASE("every edit of a model, switched on and written") {
   DomainModel domain;
   base::DiagnosticSink sink;
@@ -75,7 +153,8 @@ TEST_CASE("every edit of a model, switched on and written") {
                          {}});
   const auto edits = compiler::edits_in_scope(domain.ast, *typed, domain.forms, scope);
   const compiler::EditText texts(domain.ast, domain.files, domain.forms, edits);
-  const auto guarded = compiler::guarded_text(domain.ast, domain.files, domain.forms, edits);
+  const auto guarded =
+      compiler::guarded_text(domain.ast, *typed, domain.files, domain.forms, edits);
   const Context context;
   const auto same = [&](const std::string& a, const std::string& b) {
     std::string why;
