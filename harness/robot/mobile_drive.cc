@@ -11,7 +11,6 @@ namespace parallax::harness {
 namespace {
 
 constexpr double kApproachRate_hz = 6.0;
-constexpr double kTurnStep_rad = 0.035;
 
 /// Drives the base straight to a pose, with the heading that it has, and turns there. Before it
 /// moves, everything that will move is swept along the way.

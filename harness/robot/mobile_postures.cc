@@ -8,8 +8,6 @@
 namespace parallax::harness {
 namespace {
 
-constexpr double kTorsoTolerance_m = 0.005;
-
 /// Brings the tool to where it is carried.
 class Park final : public MobileController {
  public:

@@ -24,7 +24,6 @@ std::vector<BodyId> linked_with(const WorldLayout& layout, std::initializer_list
   return all;
 }
 
-constexpr double kParkedWithin_m = 0.03;
 constexpr double kOpenWithin_m = 0.01;
 
 Eigen::Vector3d level(const Eigen::Vector2d& p) { return {p.x(), p.y(), 0.0}; }

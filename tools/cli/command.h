@@ -93,6 +93,7 @@ Command export_command();
 Command fmt_command();
 Command learn_command();
 Command ledger_command();
+Command prove_command();
 Command rates_command();
 Command draw_command();
 Command explain_command();

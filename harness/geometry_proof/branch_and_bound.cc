@@ -1,0 +1,105 @@
+#include "harness/geometry_proof/branch_and_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <queue>
+#include <utility>
+
+namespace parallax::harness {
+namespace {
+
+struct Node {
+  StartBox bounds;
+  std::vector<std::uint32_t> questions;
+  std::vector<double> influence;
+  std::string culprit;
+  int halvings = 0;  // its share of the volume is 2^-halvings
+  std::int64_t number = 0;
+};
+
+/// The largest first, of these the oldest.
+struct Later {
+  bool operator()(const Node& a, const Node& b) const {
+    if (a.halvings != b.halvings) return a.halvings > b.halvings;
+    return a.number > b.number;
+  }
+};
+
+double share_of(int halvings) { return std::ldexp(1.0, -halvings); }
+
+/// The variable to halve: what sways the open question most, seen over the box; where nothing
+/// does, the one that is widest against its range. None if all are too narrow.
+std::optional<std::size_t> widest(const Node& node, const StartBox& whole, double finest) {
+  std::optional<std::size_t> best;
+  double most = -1.0;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const double width =
+        (node.bounds[i].upper - node.bounds[i].lower) / (whole[i].upper - whole[i].lower);
+    if (width < finest) continue;
+    const double weight = i < node.influence.size() ? node.influence[i] : 0.0;
+    const double score = weight > 0.0 ? weight : 1e-12 * width;
+    if (score > most) most = score, best = i;
+  }
+  return best;
+}
+
+}  // namespace
+
+ProofResult prove(const GeometricCheck& check, const StartBox& whole, const ProofLimits& limits) {
+  ProofResult result;
+  std::priority_queue<Node, std::vector<Node>, Later> open;
+  std::int64_t numbers = 0;
+  const auto examine = [&](Node node) {
+    const auto finding = check.examine(node.bounds, node.questions);
+    ++result.examined;
+    const double share = share_of(node.halvings);
+    if (finding.verdict == BoxVerdict::kOpen) {
+      node.questions = finding.open;
+      node.influence = finding.influence;
+      node.culprit = finding.culprit;
+      node.number = numbers++;
+      open.push(std::move(node));
+      return;
+    }
+    (finding.verdict == BoxVerdict::kSafe ? result.safe : result.refuted) += share;
+    result.boxes.push_back({std::move(node.bounds), finding.verdict, finding.culprit});
+  };
+  const auto give_up = [&](const Node& node) {
+    result.open += share_of(node.halvings);
+    result.boxes.push_back({node.bounds, BoxVerdict::kOpen, node.culprit});
+  };
+  examine({whole, check.questions(), {}, {}, 0, 0});
+  while (!open.empty()) {
+    result.stopped = limits.stop != nullptr && limits.stop->load();
+    const double undecided = 1.0 - result.safe - result.refuted;
+    const bool enough = result.examined + 2 > limits.boxes || undecided <= limits.open_share;
+    if (result.stopped || enough) break;
+    Node node = open.top();
+    open.pop();
+    const auto axis = widest(node, whole, limits.finest);
+    if (!axis) {
+      give_up(node);
+      continue;
+    }
+    const Bounds1 range = node.bounds[*axis];
+    const double middle = 0.5 * range.lower + 0.5 * range.upper;
+    Node low = node, high = std::move(node);
+    low.bounds[*axis].upper = middle;
+    high.bounds[*axis].lower = middle;
+    ++low.halvings, ++high.halvings;
+    examine(std::move(low));
+    examine(std::move(high));
+    if (limits.progress && result.examined % 512 < 2) limits.progress(result.examined, undecided);
+  }
+  for (; !open.empty(); open.pop()) give_up(open.top());
+  std::sort(result.boxes.begin(), result.boxes.end(), [](const auto& a, const auto& b) {
+    for (std::size_t i = 0; i < a.bounds.size(); ++i) {
+      if (a.bounds[i].lower != b.bounds[i].lower) return a.bounds[i].lower < b.bounds[i].lower;
+    }
+    return false;
+  });
+  return result;
+}
+
+}  // namespace parallax::harness

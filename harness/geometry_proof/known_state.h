@@ -1,0 +1,88 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "harness/geometry_proof/affine_form.h"
+#include "harness/region/state_mapping.h"
+#include "harness/simulator/simulator.h"
+#include "harness/world/arguments.h"
+#include "harness/world/world_layout.h"
+
+namespace parallax::harness {
+
+/// What is taken for granted about the actions before the one that is looked at.
+struct ProofAssumptions {
+  /// What no action was to move stays where it was, up to this.
+  double drift_m = 0.002, drift_rad = 0.005;
+  /// What lies in a drawer keeps its place in it, up to this, while the drawer moves.
+  double sliding_m = 0.010, sliding_rad = 0.05;
+  /// A parked tool is so near to where it is carried; the default is what `park` itself judges by.
+  double parked_m = 0.03;
+  /// What is held is so near to where it was gripped, turned and tilted by so much at most.
+  double held_m = 0.03, held_rad = 0.2;
+  /// Where sliders stand ("dMid.q"), in place of what the success of an action says.
+  std::vector<std::pair<std::string, Bounds1>> sliders;
+};
+
+/// Where an arm's tool may be: as it was at the start, where parking leaves it, or anywhere.
+enum class KnownArm { kAtStart, kParked, kAnywhere };
+
+/// What is known of a free body.
+struct KnownBody {
+  enum class Where { kAtStart, kHeld, kAnywhere };
+  Where where = Where::kAtStart;
+  std::string arm;                  // that holds it
+  int drives = 0;                   // before it was picked up
+  std::optional<SliderId> carrier;  // whose child it lies in and moves with
+};
+
+/// What is known of a mobile robot's world before an action, as far as it follows from the start
+/// and from the success of the actions before: what their controllers' own judgement asserts.
+struct KnownState {
+  bool is_start = true;  // nothing has moved yet: all is exactly where the start puts it
+  ProofAssumptions slack;  // all 0 while nothing has moved
+  int drives = 0;          // so far
+  /// Where it drove to; none: where the start put it.
+  struct Goal {
+    Eigen::Vector2d p = Eigen::Vector2d::Zero();
+    double yaw_rad = 0.0, within_m = 0.0, within_rad = 0.0;
+  };
+  std::optional<Goal> base_at;
+  double relief_m = 0.0;             // how far the wheels may have lifted or lowered the base
+  Bounds1 lift_m;                    // of the torso
+  std::vector<Bounds1> slider_m;     // by SliderId
+  std::vector<KnownArm> arms;        // as in MobileRobotSpec
+  std::vector<KnownBody> bodies;     // by BodyId
+  std::optional<PlaceSpec> gaze;     // where the camera was told to look, from where it is now
+  std::vector<std::string> assumed;  // in words, one for each thing that is taken for granted
+};
+
+/// Before the first action, of starts from `region`.
+KnownState state_at_start(const WorldSpec& spec, const WorldLayout& layout,
+                          const StartCuboid& region);
+
+/// What is known once `call` has succeeded as well; a text instead where nothing can be said any
+/// more.
+std::optional<std::string> assume_success(const WorldSpec& spec, const WorldLayout& layout,
+                                          const std::string& event,
+                                          const ControllerSpec& controller,
+                                          const Arguments& arguments,
+                                          const ProofAssumptions& assumptions, KnownState& state);
+
+/// A point of the world that a place names: where it is and how far it may be from there.
+struct KnownPoint {
+  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();
+};
+/// None where it lies in the frame of a body of which nothing is known.
+std::optional<KnownPoint> locate(const WorldLayout& layout, const KnownState& state,
+                                 const std::string& frame, const Eigen::Vector3d& p_F);
+
+/// The target of `drive` and `look`: arguments target.x, .y, .z over the place.
+std::optional<KnownPoint> target_of(const WorldLayout& layout, const KnownState& state,
+                                    const Arguments& arguments);
+
+}  // namespace parallax::harness
