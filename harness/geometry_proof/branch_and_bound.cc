@@ -50,6 +50,10 @@ ProofResult prove(const GeometricCheck& check, const StartBox& whole, const Proo
   ProofResult result;
   std::priority_queue<Node, std::vector<Node>, Later> open;
   std::int64_t numbers = 0;
+  const auto give_up = [&](const Node& node) {
+    result.open += share_of(node.halvings);
+    result.boxes.push_back({node.bounds, BoxVerdict::kOpen, node.culprit});
+  };
   const auto examine = [&](Node node) {
     const auto finding = check.examine(node.bounds, node.questions);
     ++result.examined;
@@ -58,6 +62,7 @@ ProofResult prove(const GeometricCheck& check, const StartBox& whole, const Proo
       node.questions = finding.open;
       node.influence = finding.influence;
       node.culprit = finding.culprit;
+      if (finding.is_hopeless) return give_up(node);
       node.number = numbers++;
       open.push(std::move(node));
       return;
@@ -65,14 +70,10 @@ ProofResult prove(const GeometricCheck& check, const StartBox& whole, const Proo
     (finding.verdict == BoxVerdict::kSafe ? result.safe : result.refuted) += share;
     result.boxes.push_back({std::move(node.bounds), finding.verdict, finding.culprit});
   };
-  const auto give_up = [&](const Node& node) {
-    result.open += share_of(node.halvings);
-    result.boxes.push_back({node.bounds, BoxVerdict::kOpen, node.culprit});
-  };
   examine({whole, check.questions(), {}, {}, 0, 0});
   while (!open.empty()) {
     result.stopped = limits.stop != nullptr && limits.stop->load();
-    const double undecided = 1.0 - result.safe - result.refuted;
+    const double undecided = 1.0 - result.safe - result.refuted - result.open;
     const bool enough = result.examined + 2 > limits.boxes || undecided <= limits.open_share;
     if (result.stopped || enough) break;
     Node node = open.top();

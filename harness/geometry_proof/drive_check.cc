@@ -28,6 +28,9 @@ namespace {
 /// What is halved goes by the question that is farthest from clear, and a little by the others.
 constexpr double kOtherInfluence = 0.01;
 constexpr double kTurnInfluence = 0.1;  // [m/rad]
+/// The rest of a form is what is not known, and what is not linear in a box: at least so much of it
+/// is taken for the former once it is larger than all that the box can sway.
+constexpr double kBlurred = 0.8;
 
 /// Unit vectors as functions of the start.
 struct Direction {
@@ -51,7 +54,8 @@ bool apart_in_height(const UprightBox& a, const UprightBox& b) {
 }
 
 bool surely_at_one_height(const UprightBox& a, const UprightBox& b) {
-  return a.top.lower - kEngineRoom_m > b.bottom.upper && b.top.lower - kEngineRoom_m > a.bottom.upper;
+  return a.top.lower - kEngineRoom_m > b.bottom.upper &&
+         b.top.lower - kEngineRoom_m > a.bottom.upper;
 }
 
 /// Two boxes seen along one axis: how far the middle of the other is ahead, and the two widths.
@@ -80,11 +84,10 @@ std::array<AxisView, 5> views(const UprightBox& part, const UprightBox& obstacle
   const AffineForm dx = obstacle.x - part.x, dy = obstacle.y - part.y;
   const double length = std::max(std::hypot(way_x.center(), way_y.center()), 1e-9);
   const AffineForm scale(1.0 / length);
-  const std::array<Direction, 5> axes = {Direction{part.cosine, part.sine},
-                                         Direction{-part.sine, part.cosine},
-                                         Direction{obstacle.cosine, obstacle.sine},
-                                         Direction{-obstacle.sine, obstacle.cosine},
-                                         Direction{-way_y * scale, way_x * scale}};
+  const std::array<Direction, 5> axes = {
+      Direction{part.cosine, part.sine}, Direction{-part.sine, part.cosine},
+      Direction{obstacle.cosine, obstacle.sine}, Direction{-obstacle.sine, obstacle.cosine},
+      Direction{-way_y * scale, way_x * scale}};
   std::array<AxisView, 5> out;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     out[i] = {dot(axes[i], dx, dy), i == 4 ? AffineForm(0.0) : dot(axes[i], way_x, way_y),
@@ -130,13 +133,13 @@ class DriveCheck final : public GeometricCheck {
     Finding finding;
     finding.influence.assign(box.size(), 0.0);
     std::optional<AffineForm> decisive;
+    bool any_blurred = false, any_may_refute = false;
     for (const std::uint32_t question : questions) {
       const Pair& pair = pairs_[question / 2];
       const bool is_turn = question % 2 == 1;
-      std::optional<AffineForm> room =
-          pair.part == pair.obstacle ? above_floor(box, motion, pair)
-          : is_turn                  ? room_in_turn(box, motion, pair)
-                                     : room_on_way(box, motion, pair);
+      std::optional<AffineForm> room = pair.part == pair.obstacle ? above_floor(box, motion, pair)
+                                       : is_turn                  ? room_in_turn(box, motion, pair)
+                                                                  : room_on_way(box, motion, pair);
       if (!room) continue;  // clear
       finding.open.push_back(question);
       if (is_turn ? surely_hit_in_turn(box, motion, pair) : surely_hit_on_way(box, motion, pair)) {
@@ -146,9 +149,15 @@ class DriveCheck final : public GeometricCheck {
       }
       // Which headings a turn goes through follows from the one that it begins with.
       if (is_turn) *room += AffineForm(kTurnInfluence) * motion.base.yaw;
+      double sway = 0.0;
       for (std::size_t i = 0; i < box.size(); ++i) {
         finding.influence[i] += kOtherInfluence * std::abs(room->slope(i));
+        sway += std::abs(room->slope(i));
       }
+      const bool may_refute = room->center() - sway < 0.0 && is_exact(pair);
+      any_may_refute = any_may_refute || may_refute;
+      // Apart at no start of the box, whatever share of the rest is due to its size.
+      any_blurred = any_blurred || room->center() + sway < kBlurred * room->rest();
       if (!decisive || room->center() < decisive->center()) {
         decisive = *room;
         finding.culprit = words(pair);
@@ -158,6 +167,7 @@ class DriveCheck final : public GeometricCheck {
       finding.verdict = BoxVerdict::kSafe;
       return finding;
     }
+    finding.is_hopeless = any_blurred && !any_may_refute;
     for (std::size_t i = 0; i < box.size(); ++i) {
       finding.influence[i] += std::abs(decisive->slope(i));
     }
@@ -177,6 +187,10 @@ class DriveCheck final : public GeometricCheck {
     Bounds1 start_yaw, turned_yaw;
     bool is_certain_turn = true;
   };
+
+  bool is_exact(const Pair& pair) const {
+    return scene_.pieces()[pair.part].is_exact && scene_.pieces()[pair.obstacle].is_exact;
+  }
 
   std::string words(const Pair& pair) const {
     const auto name = [&](std::size_t piece) {
@@ -260,8 +274,7 @@ class DriveCheck final : public GeometricCheck {
       for (int i = 0; i <= steps; ++i) {
         double least = 1e300;
         for (std::size_t axis = 0; axis < 4; ++axis) {
-          const double there =
-              along[axis].ahead.center() - along[axis].way.center() * i / steps;
+          const double there = along[axis].ahead.center() - along[axis].way.center() * i / steps;
           least = std::min(least, along[axis].width.center() - std::abs(there));
         }
         if (least > most) most = least, best = i;
@@ -346,8 +359,7 @@ class DriveCheck final : public GeometricCheck {
   bool surely_hit_in_turn(std::span<const Bounds1> box, const Motion& motion,
                           const Pair& pair) const {
     const ScenePiece& piece = scene_.pieces()[pair.part];
-    if (pair.part == pair.obstacle || !piece.is_exact ||
-        !scene_.pieces()[pair.obstacle].is_exact) {
+    if (pair.part == pair.obstacle || !piece.is_exact || !scene_.pieces()[pair.obstacle].is_exact) {
       return false;
     }
     const UprightBox obstacle = scene_.place(scene_.pieces()[pair.obstacle], box, motion.base);
@@ -367,8 +379,7 @@ class DriveCheck final : public GeometricCheck {
     const double shift = std::round((yaw_rad_ - middle) / kTurn) * kTurn;
     const AffineForm turn = AffineForm(yaw_rad_ - shift) - motion.base.yaw;
     const Bounds1 angle = absolute(turn).bounds();
-    const int fewest =
-        std::max(1, static_cast<int>(std::ceil(angle.lower / kTurnStep_rad - 1e-9)));
+    const int fewest = std::max(1, static_cast<int>(std::ceil(angle.lower / kTurnStep_rad - 1e-9)));
     const int most = std::max(1, static_cast<int>(std::ceil(angle.upper / kTurnStep_rad + 1e-9)));
     if (most - fewest > 2) return false;
     for (int steps = fewest; steps <= most; ++steps) {

@@ -13,8 +13,8 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 }
 
 Bounds1 product(const Bounds1& a, const Bounds1& b) {
-  const auto [low, high] = std::minmax(
-      {a.lower * b.lower, a.lower * b.upper, a.upper * b.lower, a.upper * b.upper});
+  const auto [low, high] =
+      std::minmax({a.lower * b.lower, a.lower * b.upper, a.upper * b.lower, a.upper * b.upper});
   return {low, high};
 }
 
@@ -104,8 +104,7 @@ bool surely_inside(const Eigen::Vector2d& point, const PlanarRange& frame,
   const double reach = middle.norm(), at = std::atan2(middle.y(), middle.x());
   constexpr double kQuarter = 0.5 * std::numbers::pi;
   const Bounds1 c = cosine_range(frame.yaw.lower + at, frame.yaw.upper + at);
-  const Bounds1 s =
-      cosine_range(frame.yaw.lower + at - kQuarter, frame.yaw.upper + at - kQuarter);
+  const Bounds1 s = cosine_range(frame.yaw.lower + at - kQuarter, frame.yaw.upper + at - kQuarter);
   const Bounds1 dx{point.x() - frame.x.upper - reach * c.upper,
                    point.x() - frame.x.lower - reach * c.lower};
   const Bounds1 dy{point.y() - frame.y.upper - reach * s.upper,

@@ -20,9 +20,7 @@ Eigen::Vector2d centroid_of(const Polygon& polygon);
 /// A place in the plane that is known up to intervals.
 struct PlanarRange {
   Bounds1 x, y, yaw;
-  Eigen::Vector2d middle() const {
-    return {0.5 * (x.lower + x.upper), 0.5 * (y.lower + y.upper)};
-  }
+  Eigen::Vector2d middle() const { return {0.5 * (x.lower + x.upper), 0.5 * (y.lower + y.upper)}; }
   double middle_yaw() const { return 0.5 * (yaw.lower + yaw.upper); }
 };
 

@@ -42,7 +42,10 @@ class GeometricCheck {
     BoxVerdict verdict = BoxVerdict::kOpen;
     std::vector<std::uint32_t> open = {};  // questions that are left
     std::vector<double> influence = {};    // of each variable on what is open
-    std::string culprit = {};              // "`base` would meet `drawer_mid`"
+    /// What is open is so for want of knowledge, not of boxes: it will not be decided anywhere in
+    /// this one.
+    bool is_hopeless = false;
+    std::string culprit = {};  // "`base` would meet `drawer_mid`"
   };
   virtual Finding examine(std::span<const Bounds1> box,
                           std::span<const std::uint32_t> questions) const = 0;
@@ -52,5 +55,12 @@ class GeometricCheck {
 /// `scene` outlives the check and knows of all bodies; `target` as target_of says.
 std::unique_ptr<GeometricCheck> make_drive_check(const ProofScene& scene, const KnownPoint& target,
                                                  double yaw_rad, double sweep_step_m);
+
+/// `require_reach` of points that stay where they are; `test` says of what.
+std::unique_ptr<GeometricCheck> make_reach_check(const ProofScene& scene, CheckedTest test,
+                                                 std::size_t arm, std::vector<KnownPoint> points);
+
+/// `Perception::look_at`.
+std::unique_ptr<GeometricCheck> make_gaze_check(const ProofScene& scene, const KnownPoint& place);
 
 }  // namespace parallax::harness

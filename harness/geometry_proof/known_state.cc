@@ -128,12 +128,14 @@ std::optional<std::string> assume_success(const WorldSpec& spec, const WorldLayo
     const double within = arguments.number("stop_tolerance_m");
     const double stop = name == "open-drawer" ? *joint.high_m : *joint.low_m;
     const Bounds1* given = given_slider(assumptions, joint);
-    // Beyond the stop by no more than contacts give way.
+    // Beyond the stop by no more than it gives way.
     Bounds1& q = state.slider_m[slider.index()];
-    q = {stop - within, stop + within};
+    const double beyond = std::min(assumptions.drift_m, within);
+    q = name == "open-drawer" ? Bounds1{stop - within, stop + beyond}
+                              : Bounds1{stop - beyond, stop + within};
     if (given != nullptr && given->upper >= q.lower && given->lower <= q.upper) q = *given;
     state.arms[arm_index(spec, arguments)] = KnownArm::kAnywhere;
-    assume(fmt::format("{}.q is {} to {} m", joint.name, q.lower, q.upper));
+    assume(fmt::format("{}.q is {:.6g} to {:.6g} m", joint.name, q.lower, q.upper));
     for (std::size_t i = 0; i < state.bodies.size(); ++i) {
       if (state.bodies[i].carrier != slider) continue;
       assume(fmt::format("`{}` keeps its place in `{}` within {} m and {} rad",
@@ -162,8 +164,8 @@ std::optional<std::string> assume_success(const WorldSpec& spec, const WorldLayo
     }
     KnownState::Goal goal;
     goal.p = 0.5 * (target->low + target->high).head<2>();
-    goal.within_m = arguments.number("goal_tolerance_m") +
-                    0.5 * (target->high - target->low).head<2>().norm();
+    goal.within_m =
+        arguments.number("goal_tolerance_m") + 0.5 * (target->high - target->low).head<2>().norm();
     goal.yaw_rad = std::isnan(yaw) ? place->yaw_rad : yaw;
     goal.within_rad = arguments.number("yaw_tolerance_rad");
     state.base_at = goal;

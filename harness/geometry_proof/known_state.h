@@ -43,7 +43,7 @@ struct KnownBody {
 /// What is known of a mobile robot's world before an action, as far as it follows from the start
 /// and from the success of the actions before: what their controllers' own judgement asserts.
 struct KnownState {
-  bool is_start = true;  // nothing has moved yet: all is exactly where the start puts it
+  bool is_start = true;    // nothing has moved yet: all is exactly where the start puts it
   ProofAssumptions slack;  // all 0 while nothing has moved
   int drives = 0;          // so far
   /// Where it drove to; none: where the start put it.

@@ -53,8 +53,11 @@ ProofScene::ProofScene(const WorldSpec& spec, const WorldLayout& layout, const S
   for (const Arm& arm : robot.arms()) {
     const JointSpec& finger = layout.sliders[*layout.find_slider(arm.spec().finger_joint)];
     const Eigen::Vector3d axis = finger.axis_W.normalized();
+    const BodyId palm = *layout.find_body(arm.spec().palm_body);
     arms_.push_back({arm.bodies(), arm.tool(), *layout.find_body(arm.spec().far_pad_body),
-                     finger.low_m.value_or(0.0) * axis, finger.high_m.value_or(0.0) * axis});
+                     finger.low_m.value_or(0.0) * axis, finger.high_m.value_or(0.0) * axis,
+                     arm.pad_line(arm.wrist_rad()), arm.palm_offset(), world.rotation(palm),
+                     layout.bodies[palm].shapes.front().size_m});
   }
   for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
     const BodyId id = layout.bodies.id_at(i);
@@ -97,8 +100,7 @@ void ProofScene::add_piece(BodyId id, const BoxShape& shape) {
     pieces_.push_back(piece);
     return;
   }
-  const Eigen::Vector2d middle =
-      body.p_WB.head<2>() + turned(shape.p_BS.head<2>(), body.yaw_rad);
+  const Eigen::Vector2d middle = body.p_WB.head<2>() + turned(shape.p_BS.head<2>(), body.yaw_rad);
   const double z = body.p_WB.z() + shape.p_BS.z();
   piece.middle = middle;
   piece.yaw_rad = body.yaw_rad + shape.yaw_rad;
@@ -133,9 +135,10 @@ void ProofScene::add_piece(BodyId id, const BoxShape& shape) {
       const SliderId one = layout_->sliders.id_at(k);
       if (in_link_of(*layout_, id, layout_->sliders[one].child)) slider = one;
     }
-    const bool is_simple = slider && (layout_->sliders[*slider].parent.empty() ||
-                                      !layout_->link_of[layout_->find_body(
-                                          layout_->sliders[*slider].parent)->index()]);
+    const bool is_simple =
+        slider &&
+        (layout_->sliders[*slider].parent.empty() ||
+         !layout_->link_of[layout_->find_body(layout_->sliders[*slider].parent)->index()]);
     if (!is_simple) {
       unknown_.push_back("`" + body.name + "`");
       return;
@@ -159,7 +162,7 @@ void ProofScene::add_arm_pieces(BodyId id, const BoxShape& shape, std::size_t ar
   const ArmSpec& spec = spec_->mobile->arms[arm];
   const Eigen::Vector3d tool = arms_[arm].tool_W;
   const Eigen::Vector2d middle = body.p_WB.head<2>() + turned(shape.p_BS.head<2>(), body.yaw_rad);
-  const double z = body.p_WB.z() + shape.p_BS.z() - tool.z() + spec.carry_B.z();
+  const double z = body.p_WB.z() + shape.p_BS.z() - tool.z() + spec.carry_B.z() + base_z();
   double off = (middle - tool.head<2>()).norm();
   if (layout_->link_of[id.index()] == layout_->link_of[arms_[arm].far_pad.index()]) {
     off = std::max((middle + arms_[arm].closed.head<2>() - tool.head<2>()).norm(),
@@ -192,8 +195,8 @@ void ProofScene::add_held(BodyId id, std::size_t arm) {
     unknown_.push_back("`" + body.name + "`");
     return;
   }
-  const Eigen::Vector2d grip = grasp.follows_body ? Eigen::Vector2d(grasp.p_BG.head<2>())
-                                                  : Eigen::Vector2d::Zero();
+  const Eigen::Vector2d grip =
+      grasp.follows_body ? Eigen::Vector2d(grasp.p_BG.head<2>()) : Eigen::Vector2d::Zero();
   for (const BoxShape& shape : body.shapes) {
     const double reach = (shape.p_BS - grasp.p_BG).norm() + 0.5 * shape.size_m.norm();
     ScenePiece piece;
@@ -209,12 +212,21 @@ void ProofScene::add_held(BodyId id, std::size_t arm) {
     piece.half_x = 0.5 * shape.size_m.x() + loose;
     piece.half_y = 0.5 * shape.size_m.y() + loose;
     piece.hand_radius_m = piece.hand.norm() + reach + grasp.p_BG.norm() + loose;
-    const Bounds1 z = plus(state_->lift_m, spec.carry_B.z() + shape.p_BS.z() - grasp.p_BG.z());
+    const Bounds1 z =
+        plus(state_->lift_m, base_z() + spec.carry_B.z() + shape.p_BS.z() - grasp.p_BG.z());
     const double half_z = 0.5 * shape.size_m.z();
     piece.bottom = widened(plus(z, -half_z), loose + state_->relief_m);
     piece.top = widened(plus(z, half_z), loose + state_->relief_m);
     pieces_.push_back(piece);
   }
+}
+
+double ProofScene::base_z() const {
+  return layout_->bodies[*layout_->find_body(spec_->mobile->base_body)].p_WB.z();
+}
+
+double ProofScene::base_yaw_rad() const {
+  return layout_->bodies[*layout_->find_body(spec_->mobile->base_body)].yaw_rad;
 }
 
 StartBox ProofScene::whole() const {
@@ -248,8 +260,10 @@ ProofScene::Base ProofScene::base(std::span<const Bounds1> box) const {
     base.yaw = AffineForm::within(goal.yaw_rad, goal.within_rad + state_->slack.drift_rad);
   } else {
     const BodySpec& body = layout_->bodies[*layout_->find_body(spec_->mobile->base_body)];
-    base.x = variable("robot.x", box, body.p_WB.x()) + AffineForm::within(0.0, state_->slack.drift_m);
-    base.y = variable("robot.y", box, body.p_WB.y()) + AffineForm::within(0.0, state_->slack.drift_m);
+    base.x =
+        variable("robot.x", box, body.p_WB.x()) + AffineForm::within(0.0, state_->slack.drift_m);
+    base.y =
+        variable("robot.y", box, body.p_WB.y()) + AffineForm::within(0.0, state_->slack.drift_m);
     base.yaw =
         variable("robot.yaw", box, body.yaw_rad) + AffineForm::within(0.0, state_->slack.drift_rad);
   }

@@ -32,12 +32,25 @@ struct ScenePiece {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // in the frame of its carrier [m]
   double yaw_rad = 0.0;                              // likewise
   double half_x = 0.0, half_y = 0.0;
-  Bounds1 bottom = {}, top = {};  // in the world
+  Bounds1 bottom = {}, top = {};                      // in the world
   Eigen::Vector2d slack_m = Eigen::Vector2d::Zero();  // of its middle, against its carrier
   // Of kHand: where the hand is in the base's frame, and a circle round it that holds the shape
   // however it is turned.
   Eigen::Vector2d hand = Eigen::Vector2d::Zero();
   double hand_radius_m = 0.0;
+};
+
+/// An arm at the default placement, as the controllers measure it.
+struct ArmGeometry {
+  std::vector<BodyId> bodies;
+  Eigen::Vector3d tool_W = Eigen::Vector3d::Zero();
+  BodyId far_pad;
+  Eigen::Vector3d closed = Eigen::Vector3d::Zero();  // the ends of the far pad's way
+  Eigen::Vector3d opened = Eigen::Vector3d::Zero();
+  Eigen::Vector3d pad_line_W = Eigen::Vector3d::UnitY();  // Arm::pad_line
+  Eigen::Vector3d palm_offset = Eigen::Vector3d::Zero();  // Arm::palm_offset
+  Eigen::Matrix3d R_WP = Eigen::Matrix3d::Identity();     // of the palm
+  Eigen::Vector3d palm_size_m = Eigen::Vector3d::Zero();
 };
 
 /// The boxes of a mobile robot's world before an action, seen as functions of the start.
@@ -50,6 +63,10 @@ class ProofScene {
   const std::vector<ScenePiece>& pieces() const { return pieces_; }
   /// Why the place of something is not known: "the left arm", "`cup1`"; empty if all is known.
   const std::vector<std::string>& unknown() const { return unknown_; }
+  const ArmGeometry& arm(std::size_t index) const { return arms_[index]; }
+  // Of the base at the default placement.
+  double base_z() const;
+  double base_yaw_rad() const;
   const KnownState& state() const { return *state_; }
   const WorldSpec& spec() const { return *spec_; }
   const WorldLayout& layout() const { return *layout_; }
@@ -66,8 +83,7 @@ class ProofScene {
   Base base(std::span<const Bounds1> box) const;
   UprightBox place(const ScenePiece& piece, std::span<const Bounds1> box, const Base& base) const;
   /// The value of a variable, which may be fixed, or `fallback` where it is not set.
-  AffineForm variable(const std::string& name, std::span<const Bounds1> box,
-                      double fallback) const;
+  AffineForm variable(const std::string& name, std::span<const Bounds1> box, double fallback) const;
   /// Where the origin of a free body is in the plane and how it is turned.
   Base free_body(BodyId id, std::span<const Bounds1> box) const;
   /// Range of the height of its origin.
@@ -85,13 +101,6 @@ class ProofScene {
   std::vector<std::string> variables_;
   std::vector<ScenePiece> pieces_;
   std::vector<std::string> unknown_;
-  struct ArmGeometry {
-    std::vector<BodyId> bodies;
-    Eigen::Vector3d tool_W = Eigen::Vector3d::Zero();  // at the default placement
-    BodyId far_pad;
-    Eigen::Vector3d closed = Eigen::Vector3d::Zero();  // the ends of the far pad's way
-    Eigen::Vector3d opened = Eigen::Vector3d::Zero();
-  };
   std::vector<ArmGeometry> arms_;
 };
 

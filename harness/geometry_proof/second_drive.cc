@@ -20,9 +20,9 @@ constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 struct FlatShape {
   enum class Frame { kWorld, kBase, kBody, kHand };
   Frame frame = Frame::kWorld;
-  std::size_t body = 0;  // of kBody, and of what a hand holds
+  std::size_t body = 0;                            // of kBody, and of what a hand holds
   Eigen::Vector2d hand = Eigen::Vector2d::Zero();  // in the frame of the base
-  Polygon corners;       // in the frame, round everywhere that it may be but for `slack_m`
+  Polygon corners;  // in the frame, round everywhere that it may be but for `slack_m`
   double slack_m = 0.0;
   Bounds1 bottom, top;
   // Where it certainly is, if its place is known.
@@ -37,7 +37,8 @@ Polygon corners_of(const BoxShape& shape) {
   const double c = std::cos(shape.yaw_rad), s = std::sin(shape.yaw_rad);
   for (const auto& [x, y] : {std::pair{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}) {
     const Eigen::Vector2d v(0.5 * x * shape.size_m.x(), 0.5 * y * shape.size_m.y());
-    out.push_back(shape.p_BS.head<2>() + Eigen::Vector2d(c * v.x() - s * v.y(), s * v.x() + c * v.y()));
+    out.push_back(shape.p_BS.head<2>() +
+                  Eigen::Vector2d(c * v.x() - s * v.y(), s * v.x() + c * v.y()));
   }
   return out;
 }
@@ -59,6 +60,9 @@ Polygon ring(const Eigen::Vector2d& middle, double radius_m) {
   }
   return out;
 }
+
+/// A part and an obstacle, by their numbers.
+using FlatPair = std::pair<std::size_t, std::size_t>;
 
 Bounds1 hull(double a, double b) { return {std::min(a, b), std::max(a, b)}; }
 
@@ -86,7 +90,7 @@ class SecondDrive final : public SecondEvaluation {
     if (verdict == BoxVerdict::kOpen) return true;
     const StartBox all(box.begin(), box.end());
     if (verdict == BoxVerdict::kRefuted) return surely_refused(all, effort);
-    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    std::vector<FlatPair> pairs;
     for (std::size_t a = 0; a < parts_.size(); ++a) {
       if (parts_[a].bottom.lower <= 0.0) return false;  // the floor
       for (std::size_t b = 0; b < obstacles_.size(); ++b) {
@@ -222,7 +226,8 @@ class SecondDrive final : public SecondEvaluation {
       flat.bottom = {flat.bottom.lower - half, flat.bottom.upper + half};
       flat.top = {flat.top.lower - half, flat.top.upper + half};
     }
-    flat.bottom = {flat.bottom.lower - state_.slack.drift_m, flat.bottom.upper + state_.slack.drift_m};
+    flat.bottom = {flat.bottom.lower - state_.slack.drift_m,
+                   flat.bottom.upper + state_.slack.drift_m};
     flat.top = {flat.top.lower - state_.slack.drift_m, flat.top.upper + state_.slack.drift_m};
   }
 
@@ -245,7 +250,8 @@ class SecondDrive final : public SecondEvaluation {
     if (arm < state_.arms.size() && state_.arms[arm] == KnownArm::kParked) {
       const ArmSpec& own = spec_.mobile->arms[arm];
       // From the middle between the pads, about which all turns and opens.
-      const Eigen::Vector3d near = pad_middle(own.near_pad_body), far = pad_middle(own.far_pad_body);
+      const Eigen::Vector3d near = pad_middle(own.near_pad_body),
+                            far = pad_middle(own.far_pad_body);
       const Eigen::Vector3d tool = 0.5 * (near + far);
       const JointSpec& finger = layout_.sliders[*layout_.find_slider(own.finger_joint)];
       const Eigen::Vector3d there =
@@ -262,7 +268,8 @@ class SecondDrive final : public SecondEvaluation {
       flat.corners = ring(own.carry_B.head<2>(), radius);
       flat.slack_m = state_.slack.parked_m + state_.slack.drift_m;
       flat.is_exact = false;
-      const double z = there.z() - tool.z() + own.carry_B.z(), half_z = 0.5 * shape.size_m.z();
+      const double z = base.p_WB.z() + there.z() - tool.z() + own.carry_B.z(),
+                   half_z = 0.5 * shape.size_m.z();
       flat.bottom = {z - half_z, z - half_z};
       flat.top = {z + half_z, z + half_z};
       raise(flat, slack + state_.slack.parked_m);
@@ -301,7 +308,9 @@ class SecondDrive final : public SecondEvaluation {
       if (arm.name != state_.bodies[i].arm) continue;
       flat.hand = arm.carry_B.head<2>();
       if (!grasp.follows_body) flat.hand -= grip;
-      const double z = arm.carry_B.z() + shape.p_BS.z() - grasp.p_BG.z();
+      const BodyId base = *layout_.find_body(spec_.mobile->base_body);
+      const double z =
+          layout_.bodies[base].p_WB.z() + arm.carry_B.z() + shape.p_BS.z() - grasp.p_BG.z();
       const double half_z = 0.5 * shape.size_m.z();
       flat.bottom = {z - half_z, z - half_z};
       flat.top = {z + half_z, z + half_z};
@@ -309,8 +318,8 @@ class SecondDrive final : public SecondEvaluation {
     if (grasp.follows_body) {
       for (Eigen::Vector2d& corner : flat.corners) corner -= grip;
     }
-    raise(flat, state_.relief_m + slack.drift_m + slack.held_m + slack.parked_m +
-                    slack.held_rad * far);
+    raise(flat,
+          state_.relief_m + slack.drift_m + slack.held_m + slack.parked_m + slack.held_rad * far);
     parts_.push_back(std::move(flat));
   }
 
@@ -337,7 +346,8 @@ class SecondDrive final : public SecondEvaluation {
       at.y = variable(box, "robot.y", body.p_WB.y());
       at.yaw = variable(box, "robot.yaw", body.yaw_rad);
     }
-    for (Bounds1* one : {&at.x, &at.y}) one->lower -= state_.slack.drift_m, one->upper += state_.slack.drift_m;
+    for (Bounds1* one : {&at.x, &at.y})
+      one->lower -= state_.slack.drift_m, one->upper += state_.slack.drift_m;
     at.yaw.lower -= state_.slack.drift_rad, at.yaw.upper += state_.slack.drift_rad;
     return at;
   }
@@ -487,13 +497,13 @@ class SecondDrive final : public SecondEvaluation {
     return axis;
   }
 
-  bool surely_clear(const StartBox& box, std::vector<std::pair<std::size_t, std::size_t>> pairs,
-                    int effort) const {
+  bool surely_clear(const StartBox& box, std::vector<FlatPair> pairs, int effort) const {
     const Bounds1 yaw = turned(base_range(box).yaw);
     std::erase_if(pairs, [&](const auto& pair) {
       const FlatShape& part = parts_[pair.first];
       const FlatShape& obstacle = obstacles_[pair.second];
-      return clear_on_way(part, obstacle, box) && clear_in_turn(part, turning_corners(part), obstacle, box, yaw, 0);
+      return clear_on_way(part, obstacle, box) &&
+             clear_in_turn(part, turning_corners(part), obstacle, box, yaw, 0);
     });
     if (pairs.empty()) return true;
     if (effort < 2 || box.empty()) return false;
@@ -502,7 +512,7 @@ class SecondDrive final : public SecondEvaluation {
   }
 
   /// The variable, of those that move the pair, that is widest.
-  std::size_t cut_axis(const StartBox& box, const std::pair<std::size_t, std::size_t>& pair) const {
+  std::size_t cut_axis(const StartBox& box, const FlatPair& pair) const {
     const FlatShape& obstacle = obstacles_[pair.second];
     std::string own;
     if (obstacle.frame == FlatShape::Frame::kBody) {
@@ -530,20 +540,21 @@ class SecondDrive final : public SecondEvaluation {
       return Bounds1{(1.0 - share) * a.lower + share * b.lower,
                      (1.0 - share) * a.upper + share * b.upper};
     };
-    return {blend(from.x, goal_.x, one.way), blend(from.y, goal_.y, one.way),
+    return {blend(from.x, goal_.x, one.way),
+            blend(from.y, goal_.y, one.way),
             {from.yaw.lower + one.turn * turn_low, from.yaw.upper + one.turn * turn_high}};
   }
 
   bool surely_refused(const StartBox& box, int effort) const {
-    if (refused_throughout(box)) return true;
+    std::optional<FlatPair> nearest;
+    if (refused_throughout(box, nearest)) return true;
     if (effort < 2 || box.empty()) return false;
-    std::size_t axis = widest_of(box);
-    if (last_pair_) axis = cut_axis(box, *last_pair_);
-    const auto [low, high] = cut(box, axis);
+    const auto [low, high] = cut(box, nearest ? cut_axis(box, *nearest) : widest_of(box));
     return surely_refused(low, effort / 2) && surely_refused(high, effort / 2);
   }
 
-  bool refused_throughout(const StartBox& box) const {
+  /// `nearest`: a pair that meets in the middle of the box.
+  bool refused_throughout(const StartBox& box, std::optional<FlatPair>& nearest) const {
     const PlanarRange from = base_range(box);
     // All numbers of steps that the length of the way may ask for.
     double shortest = 0.0, longest = 0.0;
@@ -558,12 +569,13 @@ class SecondDrive final : public SecondEvaluation {
     const int most = std::max(1, static_cast<int>(std::ceil(longest / step_m_ + 1e-9)));
     if (most - fewest > 8) return false;
     for (int steps = fewest; steps <= most; ++steps) {
-      if (!refused_in(box, from, steps)) return false;
+      if (!refused_in(box, from, steps, nearest)) return false;
     }
     return true;
   }
 
-  bool refused_in(const StartBox& box, const PlanarRange& from, int steps) const {
+  bool refused_in(const StartBox& box, const PlanarRange& from, int steps,
+                  std::optional<FlatPair>& nearest) const {
     const double low = std::remainder(yaw_rad_ - from.yaw.lower, kTurn_rad);
     const double high = std::remainder(yaw_rad_ - from.yaw.upper, kTurn_rad);
     const bool one_way = std::abs((low - high) - (from.yaw.upper - from.yaw.lower)) < 1e-9;
@@ -572,21 +584,21 @@ class SecondDrive final : public SecondEvaluation {
       if (part.is_exact && part.bottom.upper < 0.0) return true;
       for (std::size_t b = 0; b < obstacles_.size(); ++b) {
         const FlatShape& obstacle = obstacles_[b];
-        if (!part.is_exact || !obstacle.is_exact || !surely_meet_in_height(part, obstacle)) continue;
-        if (pair_refused(part, obstacle, box, from, steps, one_way, low, high)) {
-          last_pair_ = {a, b};
-          return true;
-        }
+        if (!part.is_exact || !obstacle.is_exact || !surely_meet_in_height(part, obstacle))
+          continue;
+        const auto refused = pair_refused(part, obstacle, box, from, steps, one_way, low, high);
+        if (refused) nearest = FlatPair{a, b};
+        if (refused.value_or(false)) return true;
       }
     }
     return false;
   }
 
   /// Is there one place that the controller tries from everywhere in the box, and a point that both
-  /// shapes contain then?
-  bool pair_refused(const FlatShape& part, const FlatShape& obstacle, const StartBox& box,
-                    const PlanarRange& from, int steps, bool one_way, double low,
-                    double high) const {
+  /// shapes contain then? None: they do not even meet in its middle.
+  std::optional<bool> pair_refused(const FlatShape& part, const FlatShape& obstacle,
+                                   const StartBox& box, const PlanarRange& from, int steps,
+                                   bool one_way, double low, double high) const {
     const Polygon there = at_middle(obstacle, box);
     std::vector<Try> tries;
     if (overlap(swept(part, from, box), there)) {
@@ -596,8 +608,8 @@ class SecondDrive final : public SecondEvaluation {
       tries.push_back({1.0, 1.0});
       const double turn = 0.5 * (low + high);
       const int turns = std::max(1, static_cast<int>(std::ceil(std::abs(turn) / kTurnStep_rad)));
-      const bool same = std::ceil(std::abs(low) / kTurnStep_rad) ==
-                        std::ceil(std::abs(high) / kTurnStep_rad);
+      const bool same =
+          std::ceil(std::abs(low) / kTurnStep_rad) == std::ceil(std::abs(high) / kTurnStep_rad);
       for (int i = 0; one_way && same && i < turns; ++i) {
         tries.push_back({1.0, static_cast<double>(i) / turns});
       }
@@ -614,7 +626,7 @@ class SecondDrive final : public SecondEvaluation {
       best = one;
       point = centroid_of(both);
     }
-    if (most <= 0.0) return false;
+    if (most <= 0.0) return std::nullopt;
     PlanarRange frame = at(best, from, one_way ? low : 0.0, one_way ? high : 0.0);
     if (best.turn == 1.0) frame.yaw = {yaw_rad_, yaw_rad_};
     return surely_inside(point, frame, part.middle, part.heading_rad, part.half,
@@ -631,17 +643,13 @@ class SecondDrive final : public SecondEvaluation {
   double yaw_rad_, step_m_;
   State reference_;
   std::vector<FlatShape> parts_, obstacles_;
-  mutable std::optional<std::pair<std::size_t, std::size_t>> last_pair_;
 };
 
 }  // namespace
 
-std::unique_ptr<SecondEvaluation> make_second_drive(const WorldSpec& spec,
-                                                    const WorldLayout& layout,
-                                                    const StartCuboid& region,
-                                                    const KnownState& state,
-                                                    const KnownPoint& target, double yaw_rad,
-                                                    double sweep_step_m) {
+std::unique_ptr<SecondEvaluation> make_second_drive(
+    const WorldSpec& spec, const WorldLayout& layout, const StartCuboid& region,
+    const KnownState& state, const KnownPoint& target, double yaw_rad, double sweep_step_m) {
   return std::make_unique<SecondDrive>(spec, layout, region, state, target, yaw_rad, sweep_step_m);
 }
 

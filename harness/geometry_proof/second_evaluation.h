@@ -25,11 +25,19 @@ class SecondEvaluation {
 };
 
 /// Of `Drive::is_blocked`. All outlive it.
-std::unique_ptr<SecondEvaluation> make_second_drive(const WorldSpec& spec,
+std::unique_ptr<SecondEvaluation> make_second_drive(
+    const WorldSpec& spec, const WorldLayout& layout, const StartCuboid& region,
+    const KnownState& state, const KnownPoint& target, double yaw_rad, double sweep_step_m);
+
+/// Of `require_reach` and of `Perception::look_at`.
+std::unique_ptr<SecondEvaluation> make_second_reach(const WorldSpec& spec,
                                                     const WorldLayout& layout,
                                                     const StartCuboid& region,
-                                                    const KnownState& state,
-                                                    const KnownPoint& target, double yaw_rad,
-                                                    double sweep_step_m);
+                                                    const KnownState& state, std::size_t arm,
+                                                    std::vector<KnownPoint> points);
+std::unique_ptr<SecondEvaluation> make_second_gaze(const WorldSpec& spec, const WorldLayout& layout,
+                                                   const StartCuboid& region,
+                                                   const KnownState& state,
+                                                   const KnownPoint& place);
 
 }  // namespace parallax::harness

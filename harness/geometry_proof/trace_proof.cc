@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <variant>
+
+#include "harness/robot/mobile_robot.h"
 
 namespace parallax::harness {
 namespace {
@@ -42,14 +46,105 @@ void add_drive(const ActionInput& in, ProvableAction& action) {
                                             fmt::join(test->scene().unknown(), ", "));
     return;
   }
-  test->set_check(make_drive_check(test->scene(), *target,
-                                   std::isnan(given) ? place->yaw_rad : given,
-                                   in.arguments.number("sweep_step_m")));
+  const double yaw_rad = std::isnan(given) ? place->yaw_rad : given;
+  const double step_m = in.arguments.number("sweep_step_m");
+  const ProofScene& scene = test->scene();
+  test->set(make_drive_check(scene, *target, yaw_rad, step_m),
+            make_second_drive(in.spec, in.layout, scene.region(), test->state(), *target, yaw_rad,
+                              step_m));
+  action.tests.push_back(std::move(test));
+}
+
+std::size_t arm_of(const ActionInput& in) {
+  const auto& arms = in.spec.mobile->arms;
+  const auto name = in.arguments.text("arm");
+  const auto found =
+      std::find_if(arms.begin(), arms.end(), [&](const ArmSpec& arm) { return arm.name == name; });
+  return static_cast<std::size_t>(found - arms.begin());
+}
+
+KnownPoint shifted(const KnownPoint& point, const Eigen::Vector3d& by) {
+  return {point.low + by, point.high + by};
+}
+
+/// The hand at the handle, and where it has moved it to, are within reach: the first thing that
+/// opening and closing ask.
+void add_drawer(const ActionInput& in, bool opens, ProvableAction& action) {
+  const SliderId slider = *in.arguments.slider("joint");
+  const JointSpec& joint = in.layout.sliders[slider];
+  const HandleSpec& handle = *joint.handle;
+  const Bounds1 q = in.state.slider_m[slider.index()];
+  const double goal = opens ? *joint.high_m : *joint.low_m;
+  const double drift = in.state.slack.drift_m, within = in.arguments.number("stop_tolerance_m");
+  const Bounds1 left{goal - q.upper - drift, goal - q.lower + drift};
+  const auto at = locate(in.layout, in.state, joint.child, handle.p_CH);
+  auto test = test_of(in);
+  const std::size_t index = arm_of(in);
+  const ArmGeometry& arm = test->scene().arm(index);
+  const bool is_free =
+      std::none_of(in.state.bodies.begin(), in.state.bodies.end(), [&](const KnownBody& body) {
+        return body.where == KnownBody::Where::kHeld &&
+               body.arm == in.spec.mobile->arms[index].name;
+      });
+  if (!at || (left.lower <= within && left.upper >= -within) || (opens && !is_free)) {
+    action.left_to_simulation = "whether there is anything to do does not follow from the start";
+    return;
+  }
+  // The wrist turns the hand to one heading in the world, whatever the base's is.
+  const Eigen::AngleAxisd turn(handle.wrist_rad - test->scene().base_yaw_rad(),
+                               Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d axis = joint.axis_W.normalized();
+  Eigen::Vector3d hand;  // from the handle
+  if (opens) {
+    hand = -(turn * arm.pad_line_W) * (0.5 * in.spec.mobile->arms[index].opening_m -
+                                       0.5 * handle.width_m - in.arguments.number("clearance_m"));
+  } else {
+    const Eigen::Vector3d ahead = left.lower > 0.0 ? axis : Eigen::Vector3d(-axis);
+    const Eigen::Vector3d in_palm = arm.R_WP.transpose() * (turn.inverse() * ahead);
+    const double half = 0.5 * in_palm.cwiseAbs().dot(arm.palm_size_m);
+    hand = -arm.palm_offset - ahead * (0.5 * handle.width_m + half);
+  }
+  // The hand goes on a little beyond the stop.
+  const double beyond = std::copysign(kBeyondStop_m, left.lower);
+  const Eigen::Vector3d one = (left.lower + beyond) * axis, other = (left.upper + beyond) * axis;
+  const KnownPoint grip = shifted(*at, hand);
+  const KnownPoint end{grip.low + one.cwiseMin(other), grip.high + one.cwiseMax(other)};
+  const CheckedTest about{
+      std::string(opens ? "open-drawer" : "close-drawer"),
+      opens ? "OpenDrawer::plan, require_reach" : "CloseDrawer::plan, require_reach",
+      "harness/robot/mobile_drawer.cc", "manipulation-pose-unreachable",
+      "the handle is within the arm's reach, where it is and where it is moved to"};
+  const ProofScene& scene = test->scene();
+  test->set(
+      make_reach_check(scene, about, index, {grip, end}),
+      make_second_reach(in.spec, in.layout, scene.region(), test->state(), index, {grip, end}));
+  action.tests.push_back(std::move(test));
+}
+
+void add_look(const ActionInput& in, ProvableAction& action) {
+  const PlaceSpec* place = in.arguments.place("place");
+  if (place == nullptr && std::isnan(in.arguments.number("target.x"))) {
+    action.left_to_simulation = "it is told neither a place nor a target";
+    return;
+  }
+  const auto there = place != nullptr ? locate(in.layout, in.state, place->frame, place->p_FP)
+                                      : target_of(in.layout, in.state, in.arguments);
+  if (!there) {
+    action.left_to_simulation = "where it looks does not follow from the start";
+    return;
+  }
+  auto test = test_of(in);
+  const ProofScene& scene = test->scene();
+  test->set(make_gaze_check(scene, *there),
+            make_second_gaze(in.spec, in.layout, scene.region(), test->state(), *there));
   action.tests.push_back(std::move(test));
 }
 
 void add_tests(const ActionInput& in, std::string_view controller, ProvableAction& action) {
   if (controller == "drive") return add_drive(in, action);
+  if (controller == "open-drawer") return add_drawer(in, true, action);
+  if (controller == "close-drawer") return add_drawer(in, false, action);
+  if (controller == "look") return add_look(in, action);
   action.left_to_simulation = "no test of its controller is decided by the start alone";
 }
 

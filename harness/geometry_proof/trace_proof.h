@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "harness/geometry_proof/branch_and_bound.h"
+#include "harness/geometry_proof/second_evaluation.h"
 
 namespace parallax::harness {
 
@@ -29,12 +30,17 @@ class ActionTest {
   const KnownState& state() const { return state_; }
   const ProofScene& scene() const { return scene_; }
   const GeometricCheck& check() const { return *check_; }
-  void set_check(std::unique_ptr<GeometricCheck> check) { check_ = std::move(check); }
+  const SecondEvaluation& second() const { return *second_; }
+  void set(std::unique_ptr<GeometricCheck> check, std::unique_ptr<SecondEvaluation> second) {
+    check_ = std::move(check);
+    second_ = std::move(second);
+  }
 
  private:
   KnownState state_;
   ProofScene scene_;
   std::unique_ptr<GeometricCheck> check_;
+  std::unique_ptr<SecondEvaluation> second_;
 };
 
 /// An action of a trace: tests of its controller that are pure geometry given the start, or why

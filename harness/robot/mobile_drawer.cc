@@ -10,7 +10,6 @@ namespace parallax::harness {
 namespace {
 
 constexpr double kPull_acceleration_m_s2 = 0.3;
-constexpr double kBeyondStop_m = 0.005;  // the hand goes on a little, so that the stop is met
 constexpr double kAtStop_m = 0.001;
 
 /// What opening and closing have in common: a slider with a handle, and the stop it is to go to.

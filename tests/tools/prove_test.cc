@@ -1,0 +1,121 @@
+// `parallax prove`: what it prints, its certificate, and what it refuses.
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/tools/cli_fixture.h"
+
+namespace parallax::test {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string kitchen(const std::string& name) {
+  return std::string(PARALLAX_SOURCE_DIR) + "/scenarios/kitchen/" + name;
+}
+
+bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+const Json& test_of(const Json& document, const std::string& function) {
+  static const Json kNone;
+  for (const auto& action : document["actions"]) {
+    for (const auto& test : action["tests"]) {
+      if (test["function"] == function) return test;
+    }
+  }
+  return kNone;
+}
+
+TEST_CASE("prove: the first drive of a plan is decided from the start alone") {
+  const CliFixture cli;
+  const auto ran =
+      cli.parallax({"prove", kitchen("plan3.yaml"), "--action", "0", "--json", "--simulate", "3"});
+  CAPTURE(ran.err);
+  REQUIRE(ran.code == 0);
+  const auto document = Json::parse(ran.out);
+  const auto& test = test_of(document, "Drive::is_blocked");
+  CHECK(test["safe"] == 1.0);
+  CHECK(test["assumed"].empty());
+  CHECK(document["simulated"][0]["safe"]["starts"] == 3);
+  CHECK(document["simulated"][0]["safe"]["refused"] == 0);
+  CHECK(document["simulated"][0]["not_as_assumed"] == 0);
+}
+
+TEST_CASE("prove: a certificate is written, checked, and noticed when it was changed") {
+  const CliFixture cli;
+  const std::vector<std::string> prove = {
+      "prove",    kitchen("plan2.yaml"), "--trace", "2",    "--action", "10",
+      "--assume", "dMid.q=0.447:0.452",  "--boxes", "3000", "--out",    "proof.json"};
+  const auto ran = cli.parallax(prove);
+  CAPTURE(ran.err);
+  CAPTURE(ran.out);
+  REQUIRE(ran.code == 1);
+  CHECK(says(ran.out, "Drive::is_blocked (harness/robot/mobile_drive.cc)"));
+  CHECK(says(ran.out, "`base` would meet `drawer_mid`"));
+  CHECK(says(ran.out, "given      OpenDrawer(left,dMid): dMid.q is 0.447 to 0.452 m"));
+  const std::string first = cli.read("proof.json");
+  REQUIRE(cli.parallax(prove).code == 1);  // its own output is replaced
+  CHECK(cli.read("proof.json") == first);
+
+  const auto checked = cli.parallax({"prove", kitchen("plan2.yaml"), "--check", "proof.json"});
+  CAPTURE(checked.out);
+  CHECK(checked.code == 0);
+  CHECK(says(checked.out, ", 0 not confirmed, 0 wrong"));
+
+  const auto other = cli.parallax({"prove", kitchen("plan3.yaml"), "--check", "proof.json"});
+  CHECK(other.code != 0);
+  CHECK(other.code != 1);
+
+  auto changed = Json::parse(first);
+  for (auto& box : changed["actions"][0]["tests"][0]["boxes"]) {
+    if (box["verdict"] == "refuted") box["verdict"] = "safe";
+  }
+  cli.write("changed.json", changed.dump());
+  const auto wrong = cli.parallax({"prove", kitchen("plan2.yaml"), "--check", "changed.json"});
+  CHECK(wrong.code == 1);
+
+  changed["region"][0][0] = changed["region"][0][0].get<double>() - 0.5;
+  cli.write("moved.json", changed.dump());
+  const auto moved = cli.parallax({"prove", kitchen("plan2.yaml"), "--check", "moved.json"});
+  CHECK(moved.code == 3);
+  CHECK(says(moved.err, "E7127"));
+}
+
+TEST_CASE("prove: what cannot be proved is refused with its reason") {
+  const CliFixture cli;
+  const auto line = cli.parallax({"prove", "edge.yaml"});
+  CHECK(line.code == 3);
+  CHECK(says(line.err, "E7126"));
+  CHECK(says(line.err, "its world has no mobile robot"));
+  const auto none = cli.parallax({"prove", kitchen("plan3.yaml"), "--trace", "99"});
+  CHECK(none.code == 2);
+  CHECK(says(none.err, "E7304"));
+  const auto beyond = cli.parallax({"prove", kitchen("plan3.yaml"), "--action", "99"});
+  CHECK(beyond.code == 2);
+  CHECK(says(beyond.err, "trace 1 has events 0 to 5"));
+  for (const std::string& given :
+       std::vector<std::string>{"drift", "drift=-1", "drift=nan", "drift=1x", "nothing=1",
+                                "dTop.q=2:1", "dTop.q=", "="}) {
+    const auto bad = cli.parallax({"prove", kitchen("plan3.yaml"), "--assume", given});
+    CAPTURE(given);
+    CHECK(bad.code == 2);
+    CHECK(says(bad.err, "E0007"));
+  }
+  cli.write("mine.json", "{\"mine\":1}");
+  const auto kept =
+      cli.parallax({"prove", kitchen("plan3.yaml"), "--action", "0", "--out", "mine.json"});
+  CHECK(kept.code == 2);
+  CHECK(cli.read("mine.json") == "{\"mine\":1}");
+  const auto foreign = cli.parallax({"prove", kitchen("plan3.yaml"), "--check", "mine.json"});
+  CHECK(foreign.code == 3);
+  CHECK(says(foreign.err, "it is no geometry proof of parallax"));
+  CHECK(cli.parallax({"prove", kitchen("plan3.yaml"), "--check", "absent.json"}).code == 2);
+}
+
+}  // namespace
+}  // namespace parallax::test
