@@ -111,7 +111,8 @@ std::vector<std::string> broken_assumptions(const WorldSpec& spec, const WorldLa
     const double by_yaw = number_in(start, body.name + ".yaw", body.yaw_rad);
     if (bx < low.x() - within - 1e-9 || bx > high.x() + within + 1e-9 ||
         by < low.y() - within - 1e-9 || by > high.y() + within + 1e-9 ||
-        std::abs(wrapped(number_in(now, body.name + ".yaw", by_yaw) - by_yaw)) > within_rad) {
+        std::abs(wrapped(number_in(now, body.name + ".yaw", by_yaw) - by_yaw)) >
+            within_rad + 1e-9) {
       broken.push_back(fmt::format("`{}` has moved", body.name));
     }
   }

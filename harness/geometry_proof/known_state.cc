@@ -182,10 +182,15 @@ std::optional<std::string> assume_success(const WorldSpec& spec, const WorldLayo
         body.where = KnownBody::Where::kAnywhere;
       }
     }
-    if (name == "place") state.arms[arm_index(spec, arguments)] = KnownArm::kAnywhere;
+    KnownArm& arm_state = state.arms[arm_index(spec, arguments)];
+    if (name == "place" || arm_state == KnownArm::kAtStart) arm_state = KnownArm::kAnywhere;
     return std::nullopt;
   }
-  if (name == "regrip") return std::nullopt;
+  if (name == "regrip") {
+    KnownArm& arm_state = state.arms[arm_index(spec, arguments)];
+    if (arm_state == KnownArm::kAtStart) arm_state = KnownArm::kAnywhere;
+    return std::nullopt;
+  }
   return fmt::format("nothing is known of the world after `{}`", name);
 }
 

@@ -120,9 +120,20 @@ void ProofScene::add_piece(BodyId id, const BoxShape& shape) {
     piece.moves_with_robot = true;
     piece.middle = turned(middle - base_body.p_WB.head<2>(), -base_body.yaw_rad);
     piece.yaw_rad -= base_body.yaw_rad;
-    // The base itself is not carried by the torso, all else may be.
     const bool is_base = in_link_of(*layout_, id, base_body.name);
-    const Bounds1 lift = is_base ? Bounds1{} : state_->lift_m;
+    const auto joints = joints_below(id);
+    bool on_torso = false;
+    for (const JointSpec* joint : joints) {
+      on_torso = on_torso || joint->name == spec_->mobile->torso_joint;
+      const auto slider = layout_->find_slider(joint->name);
+      if (slider && joint->name != spec_->mobile->torso_joint &&
+          (state_->slider_m[slider->index()].lower != 0.0 ||
+           state_->slider_m[slider->index()].upper != 0.0)) {
+        unknown_.push_back("`" + body.name + "`");
+        return;
+      }
+    }
+    const Bounds1 lift = on_torso ? state_->lift_m : Bounds1{};
     piece.bottom = widened(plus(piece.bottom, lift), state_->relief_m + state_->slack.drift_m);
     piece.top = widened(plus(piece.top, lift), state_->relief_m + state_->slack.drift_m);
     if (!is_base) piece.slack_m.setConstant(state_->slack.drift_m);
@@ -154,6 +165,23 @@ void ProofScene::add_piece(BodyId id, const BoxShape& shape) {
     piece.top = plus(piece.top, rise);
   }
   pieces_.push_back(piece);
+}
+
+/// The joints between the base and a body of the robot.
+std::vector<const JointSpec*> ProofScene::joints_below(BodyId id) const {
+  std::vector<const JointSpec*> found;
+  BodyId at = id;
+  for (std::size_t depth = 0; depth < spec_->joints.size(); ++depth) {
+    if (in_link_of(*layout_, at, spec_->mobile->base_body)) break;
+    const auto joint =
+        std::find_if(spec_->joints.begin(), spec_->joints.end(), [&](const JointSpec& one) {
+          return one.type != JointType::kFixed && in_link_of(*layout_, at, one.child);
+        });
+    if (joint == spec_->joints.end() || joint->parent.empty()) break;
+    found.push_back(&*joint);
+    at = *layout_->find_body(joint->parent);
+  }
+  return found;
 }
 
 /// The wrist may be turned and the gripper opened in any way: a box round all that.

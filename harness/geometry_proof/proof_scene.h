@@ -91,6 +91,7 @@ class ProofScene {
 
  private:
   void add_piece(BodyId id, const BoxShape& shape);
+  std::vector<const JointSpec*> joints_below(BodyId id) const;
   void add_arm_pieces(BodyId id, const BoxShape& shape, std::size_t arm);
   void add_held(BodyId id, std::size_t arm);
 

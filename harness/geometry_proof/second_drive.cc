@@ -30,7 +30,25 @@ struct FlatShape {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero(), half = Eigen::Vector2d::Zero();
   double heading_rad = 0.0;
   double shrink_m = 0.0;
+  // A circle round the corners, in the frame.
+  Eigen::Vector2d hub = Eigen::Vector2d::Zero();
+  double radius_m = 0.0;
 };
+
+void add_circle(FlatShape& shape) {
+  shape.hub = centroid_of(shape.corners);
+  for (const Eigen::Vector2d& corner : shape.corners) {
+    shape.radius_m = std::max(shape.radius_m, (corner - shape.hub).norm());
+  }
+}
+
+double distance_to_way(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
+                       const Eigen::Vector2d& b) {
+  const Eigen::Vector2d way = b - a;
+  const double length = way.squaredNorm();
+  const double share = length > 0.0 ? std::clamp((p - a).dot(way) / length, 0.0, 1.0) : 0.0;
+  return (p - a - share * way).norm();
+}
 
 Polygon corners_of(const BoxShape& shape) {
   Polygon out;
@@ -84,6 +102,8 @@ class SecondDrive final : public SecondEvaluation {
     const StartState start = read_start_state(spec, layout, reference_);
     PARALLAX_REQUIRE(start.status == SimStatus::kOk, "a start region that the world takes");
     for (std::size_t i = 0; i < layout.bodies.size(); ++i) add_body(i, start.placements);
+    for (FlatShape& part : parts_) add_circle(part);
+    for (FlatShape& obstacle : obstacles_) add_circle(obstacle);
   }
 
   bool confirms(std::span<const Bounds1> box, BoxVerdict verdict, int effort) const override {
@@ -112,10 +132,11 @@ class SecondDrive final : public SecondEvaluation {
       for (const FlatShape& obstacle : obstacles_) {
         if (!meet_in_height(part, obstacle)) continue;
         const Polygon there = at_middle(obstacle, box);
-        if (overlap(swept(part, base, box), there)) return true;
-        if (part.frame != FlatShape::Frame::kBase) continue;
-        const int steps =
-            4 * std::max(1, static_cast<int>(std::ceil(std::abs(turn) / kTurnStep_rad)));
+        if (!far_from_way(part, obstacle, base, box) && overlap(swept(part, base, box), there)) {
+          return true;
+        }
+        if (part.frame != FlatShape::Frame::kBase || far_from_turn(part, obstacle, box)) continue;
+        const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(turn) / kTurnStep_rad)));
         for (int i = 0; i <= steps; ++i) {
           if (overlap(moved(part.corners, goal, yaw + turn * i / steps), there)) return true;
         }
@@ -404,7 +425,7 @@ class SecondDrive final : public SecondEvaluation {
   /// The direction in which two polygons are farthest apart, of the normals of their sides and of
   /// some others.
   static double best_direction(const Polygon& a, const Polygon& b) {
-    constexpr int kOthers = 48;
+    constexpr int kOthers = 16;
     double best = 0.0, most = -1e300;
     const auto attempt = [&](double angle) {
       const Eigen::Vector2d n(std::cos(angle), std::sin(angle));
@@ -448,8 +469,41 @@ class SecondDrive final : public SecondEvaluation {
     return hull_of(both);
   }
 
+  struct Circle {
+    Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+    double radius_m = 0.0;
+  };
+  /// Round the shape wherever its frame is in the range.
+  static Circle circle_of(const FlatShape& shape, const PlanarRange& frame) {
+    const double wide =
+        0.5 * std::hypot(frame.x.upper - frame.x.lower, frame.y.upper - frame.y.lower);
+    const double swing = 0.5 * (frame.yaw.upper - frame.yaw.lower) * shape.hub.norm();
+    return {moved({shape.hub}, frame.middle(), frame.middle_yaw())[0],
+            shape.radius_m + shape.slack_m + wide + swing + kRounding_m};
+  }
+
+  /// So far apart that circles tell.
+  bool far_from_way(const FlatShape& part, const FlatShape& obstacle, const PlanarRange& from,
+                    const StartBox& box) const {
+    PlanarRange to = goal_;
+    to.yaw = from.yaw;
+    const Circle first = circle_of(part, carried(part, from, box));
+    const Circle last = circle_of(part, carried(part, to, box));
+    const Circle there = circle_of(obstacle, range_of(obstacle, box));
+    return distance_to_way(there.middle, first.middle, last.middle) >
+           there.radius_m + std::max(first.radius_m, last.radius_m);
+  }
+  bool far_from_turn(const FlatShape& part, const FlatShape& obstacle, const StartBox& box) const {
+    const Circle there = circle_of(obstacle, range_of(obstacle, box));
+    const double wide =
+        0.5 * std::hypot(goal_.x.upper - goal_.x.lower, goal_.y.upper - goal_.y.lower);
+    const double reach = part.hand.norm() + reach_of(part.corners) + part.slack_m + wide;
+    return (there.middle - goal_.middle()).norm() > there.radius_m + reach + kRounding_m;
+  }
+
   bool clear_on_way(const FlatShape& part, const FlatShape& obstacle, const StartBox& box) const {
     const PlanarRange from = base_range(box);
+    if (far_from_way(part, obstacle, from, box)) return true;
     PlanarRange to = goal_;
     to.yaw = from.yaw;
     return apart(part, part.corners, {carried(part, from, box), carried(part, to, box)},
@@ -503,7 +557,8 @@ class SecondDrive final : public SecondEvaluation {
       const FlatShape& part = parts_[pair.first];
       const FlatShape& obstacle = obstacles_[pair.second];
       return clear_on_way(part, obstacle, box) &&
-             clear_in_turn(part, turning_corners(part), obstacle, box, yaw, 0);
+             (far_from_turn(part, obstacle, box) ||
+              clear_in_turn(part, turning_corners(part), obstacle, box, yaw, 0));
     });
     if (pairs.empty()) return true;
     if (effort < 2 || box.empty()) return false;
@@ -513,16 +568,20 @@ class SecondDrive final : public SecondEvaluation {
 
   /// The variable, of those that move the pair, that is widest.
   std::size_t cut_axis(const StartBox& box, const FlatPair& pair) const {
+    const FlatShape& part = parts_[pair.first];
     const FlatShape& obstacle = obstacles_[pair.second];
-    std::string own;
-    if (obstacle.frame == FlatShape::Frame::kBody) {
-      own = layout_.bodies[layout_.bodies.id_at(obstacle.body)].name + ".";
-    }
+    const auto name_of = [&](std::size_t body) {
+      return layout_.bodies[layout_.bodies.id_at(body)].name;
+    };
+    std::string own, held;
+    if (obstacle.frame == FlatShape::Frame::kBody) own = name_of(obstacle.body) + ".";
+    if (part.frame == FlatShape::Frame::kHand) held = name_of(part.body) + ".yaw";
     std::optional<std::size_t> best;
     std::size_t drawn = 0;
     for (const auto& [name, interval] : region_.dimensions) {
       if (!(interval.lower < interval.upper)) continue;
-      const bool matters = name.starts_with("robot.") || (!own.empty() && name.starts_with(own));
+      const bool matters =
+          name.starts_with("robot.") || name == held || (!own.empty() && name.starts_with(own));
       const double width = box[drawn].upper - box[drawn].lower;
       if (matters && (!best || width > box[*best].upper - box[*best].lower)) best = drawn;
       ++drawn;
@@ -601,6 +660,9 @@ class SecondDrive final : public SecondEvaluation {
                                    bool one_way, double low, double high) const {
     const Polygon there = at_middle(obstacle, box);
     std::vector<Try> tries;
+    if (far_from_way(part, obstacle, from, box) && far_from_turn(part, obstacle, box)) {
+      return std::nullopt;
+    }
     if (overlap(swept(part, from, box), there)) {
       for (int i = 0; i <= steps; ++i) tries.push_back({static_cast<double>(i) / steps, 0.0});
     }
