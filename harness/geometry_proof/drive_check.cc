@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "harness/geometry_proof/axis_views.h"
 #include "harness/geometry_proof/geometric_check.h"
 #include "harness/robot/mobile_robot.h"
 
@@ -32,22 +33,6 @@ constexpr double kTurnInfluence = 0.1;  // [m/rad]
 /// is taken for the former once it is larger than all that the box can sway.
 constexpr double kBlurred = 0.8;
 
-/// Unit vectors as functions of the start.
-struct Direction {
-  AffineForm x, y;
-};
-
-AffineForm dot(const Direction& a, const AffineForm& x, const AffineForm& y) {
-  return a.x * x + a.y * y;
-}
-
-/// Half the width of a box seen along `n`.
-AffineForm half_width(const UprightBox& box, const Direction& n) {
-  const AffineForm along = absolute(n.x * box.cosine + n.y * box.sine);
-  const AffineForm across = absolute(n.y * box.cosine - n.x * box.sine);
-  return along * AffineForm(box.half_x) + across * AffineForm(box.half_y);
-}
-
 bool apart_in_height(const UprightBox& a, const UprightBox& b) {
   return a.top.upper + kEngineRoom_m < b.bottom.lower ||
          b.top.upper + kEngineRoom_m < a.bottom.lower;
@@ -56,44 +41,6 @@ bool apart_in_height(const UprightBox& a, const UprightBox& b) {
 bool surely_at_one_height(const UprightBox& a, const UprightBox& b) {
   return a.top.lower - kEngineRoom_m > b.bottom.upper &&
          b.top.lower - kEngineRoom_m > a.bottom.upper;
-}
-
-/// Two boxes seen along one axis: how far the middle of the other is ahead, and the two widths.
-struct AxisView {
-  AffineForm ahead;  // of the obstacle's middle
-  AffineForm way;    // of the motion
-  AffineForm width;  // half of both
-  /// The room on this side of a motion along the whole way.
-  AffineForm gap(double side) const {
-    const AffineForm first = (side > 0.0 ? ahead : -ahead) - width;
-    const AffineForm last = first - (side > 0.0 ? way : -way);
-    return first.lower() < last.lower() ? first : last;
-  }
-  /// By how much they overlap once the share `s` of the way is gone; the less certain side.
-  AffineForm overlap(double s) const {
-    const AffineForm there = ahead - AffineForm(s) * way;
-    const AffineForm one = width - there, other = width + there;
-    return one.lower() < other.lower() ? one : other;
-  }
-};
-
-/// The axes that tell convex shapes apart, of which one moves along a straight way: the normals of
-/// both and, last, of the way.
-std::array<AxisView, 5> views(const UprightBox& part, const UprightBox& obstacle,
-                              const AffineForm& way_x, const AffineForm& way_y) {
-  const AffineForm dx = obstacle.x - part.x, dy = obstacle.y - part.y;
-  const double length = std::max(std::hypot(way_x.center(), way_y.center()), 1e-9);
-  const AffineForm scale(1.0 / length);
-  const std::array<Direction, 5> axes = {
-      Direction{part.cosine, part.sine}, Direction{-part.sine, part.cosine},
-      Direction{obstacle.cosine, obstacle.sine}, Direction{-obstacle.sine, obstacle.cosine},
-      Direction{-way_y * scale, way_x * scale}};
-  std::array<AxisView, 5> out;
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    out[i] = {dot(axes[i], dx, dy), i == 4 ? AffineForm(0.0) : dot(axes[i], way_x, way_y),
-              half_width(part, axes[i]) + half_width(obstacle, axes[i])};
-  }
-  return out;
 }
 
 class DriveCheck final : public GeometricCheck {
@@ -243,7 +190,7 @@ class DriveCheck final : public GeometricCheck {
     const UprightBox part = scene_.place(scene_.pieces()[pair.part], box, motion.base);
     const UprightBox obstacle = scene_.place(scene_.pieces()[pair.obstacle], box, motion.base);
     if (apart_in_height(part, obstacle)) return std::nullopt;
-    const auto along = views(part, obstacle, motion.way_x, motion.way_y);
+    const auto along = views_on_way(part, obstacle, motion.way_x, motion.way_y);
     std::optional<AffineForm> best;
     for (std::size_t axis = 0; axis < along.size(); ++axis) {
       if (axis == 4 && !motion.has_direction) continue;
@@ -266,7 +213,7 @@ class DriveCheck final : public GeometricCheck {
     if (is_floor) return part.bottom.upper < -kEngineRoom_m;
     const UprightBox obstacle = scene_.place(scene_.pieces()[pair.obstacle], box, motion.base);
     if (!surely_at_one_height(part, obstacle)) return false;
-    const auto along = views(part, obstacle, motion.way_x, motion.way_y);
+    const auto along = views_on_way(part, obstacle, motion.way_x, motion.way_y);
     for (int steps = motion.fewest_steps; steps <= motion.most_steps; ++steps) {
       // The step at which they overlap most in the middle of the box.
       int best = 0;
@@ -297,7 +244,7 @@ class DriveCheck final : public GeometricCheck {
 
   static std::optional<AffineForm> gap_at_rest(const UprightBox& part, const UprightBox& obstacle,
                                                bool& is_clear) {
-    const auto seen = views(part, obstacle, AffineForm(0.0), AffineForm(0.0));
+    const auto seen = views_of(part, obstacle);
     std::optional<AffineForm> best;
     for (std::size_t axis = 0; axis < 4; ++axis) {
       for (const double side : {1.0, -1.0}) {
@@ -366,7 +313,7 @@ class DriveCheck final : public GeometricCheck {
     const auto hits = [&](const AffineForm& yaw) {
       const UprightBox part = at_goal(piece, box, yaw);
       if (!surely_at_one_height(part, obstacle)) return false;
-      const auto seen = views(part, obstacle, AffineForm(0.0), AffineForm(0.0));
+      const auto seen = views_of(part, obstacle);
       for (std::size_t axis = 0; axis < 4; ++axis) {
         if (!(seen[axis].overlap(0.0).lower() > kEngineRoom_m)) return false;
       }

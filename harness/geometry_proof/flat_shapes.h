@@ -1,11 +1,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <numbers>
 #include <vector>
 
 #include "harness/geometry_proof/affine_form.h"
 
 namespace parallax::harness {
+
+/// What the second evaluation leaves for rounding, and two right angles twice.
+inline constexpr double kFlatRounding_m = 1e-9;
+inline constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
 
 /// A convex polygon, corners in order against the clock [m].
 using Polygon = std::vector<Eigen::Vector2d>;

@@ -26,6 +26,7 @@ struct CheckedTest {
   std::string source;      // "harness/robot/mobile_drive.cc"
   std::string refusal;     // what the controller's reason begins with
   std::string statement;   // what it asks, in words
+  bool is_at_once = true;  // asked before the action takes any time
 };
 
 /// A test of a controller as a function of the start, decided for whole boxes.

@@ -178,8 +178,17 @@ std::vector<SimulatedTest> simulate_tests(const WorldSpec& spec, const WorldLayo
         }
         const DecidedBox* box = box_of(proved[action].tests[t], drawn);
         if (box == nullptr) continue;
-        const bool refused = outcome.status == SimStatus::kFailed && outcome.sim_time_s == 0.0 &&
-                             outcome.reason.starts_with(test.check().test().refusal);
+        const CheckedTest& about = test.check().test();
+        const bool failed_at_once =
+            outcome.status == SimStatus::kFailed && outcome.sim_time_s == 0.0;
+        if (!about.is_at_once && failed_at_once) {
+          ++tally.not_as_assumed;
+          ++tally.broken["the action failed before the test"];
+          continue;
+        }
+        const bool refused = outcome.status == SimStatus::kFailed &&
+                             failed_at_once == about.is_at_once &&
+                             outcome.reason.starts_with(about.refusal);
         auto& counted = tally.by_verdict[static_cast<std::size_t>(box->verdict)];
         ++counted.starts;
         counted.refused += refused ? 1 : 0;

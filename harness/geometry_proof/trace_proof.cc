@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "harness/geometry_proof/hand_shapes.h"
 #include "harness/robot/mobile_robot.h"
 
 namespace parallax::harness {
@@ -140,11 +141,36 @@ void add_look(const ActionInput& in, ProvableAction& action) {
   action.tests.push_back(std::move(test));
 }
 
+void add_pick_up(const ActionInput& in, ProvableAction& action) {
+  const BodyId object = *in.arguments.body("object");
+  auto test = test_of(in);
+  const ProofScene& scene = test->scene();
+  const auto elsewhere = std::find_if(scene.unknown().begin(), scene.unknown().end(),
+                                      [](const std::string& what) { return what.front() == '`'; });
+  if (in.state.bodies[object.index()].where != KnownBody::Where::kAtStart ||
+      elsewhere != scene.unknown().end()) {
+    action.left_to_simulation = "where things are does not follow from the start";
+    return;
+  }
+  const auto descent = descent_of(scene, arm_of(in), object, in.arguments);
+  if (!descent) {
+    action.left_to_simulation = "the hand does not come from above, or not as the body is turned";
+    return;
+  }
+  test->assume(fmt::format("`{}` is believed to be within {:.3g} m and {:.3g} rad of its place",
+                           in.layout.bodies[object].name, descent->error_m, descent->error_rad));
+  test->set(make_hand_check(scene, *descent),
+            make_second_hand(in.spec, in.layout, scene.region(), test->state(), arm_of(in), object,
+                             *descent));
+  action.tests.push_back(std::move(test));
+}
+
 void add_tests(const ActionInput& in, std::string_view controller, ProvableAction& action) {
   if (controller == "drive") return add_drive(in, action);
   if (controller == "open-drawer") return add_drawer(in, true, action);
   if (controller == "close-drawer") return add_drawer(in, false, action);
   if (controller == "look") return add_look(in, action);
+  if (controller == "pick-up") return add_pick_up(in, action);
   action.left_to_simulation = "no test of its controller is decided by the start alone";
 }
 

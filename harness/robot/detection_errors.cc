@@ -6,8 +6,6 @@
 namespace parallax::harness {
 namespace {
 
-constexpr double kCut = 2.0;  // in root mean squares
-
 /// splitmix64 (Steele, Lea, Flood 2014).
 std::uint64_t mixed(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -34,7 +32,7 @@ double DetectionErrors::uniform() {
 DetectionError DetectionErrors::draw(double rms_m, double rms_rad) {
   // The square of the length of a plane normal vector is exponential: cutting it off is cutting off
   // the range of the uniform number that it is made from.
-  const double least = std::exp(-kCut * kCut);
+  const double least = std::exp(-kDetectionCut * kDetectionCut);
   const double length_m = rms_m * std::sqrt(-std::log(least + (1.0 - least) * (1.0 - uniform())));
   const double direction_rad = 2.0 * std::numbers::pi * uniform();
   DetectionError error;
@@ -43,7 +41,7 @@ DetectionError DetectionErrors::draw(double rms_m, double rms_rad) {
   do {
     const double length = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     normal = length * std::cos(2.0 * std::numbers::pi * uniform());
-  } while (std::abs(normal) > kCut);
+  } while (std::abs(normal) > kDetectionCut);
   error.turn_rad = rms_rad * normal;
   return error;
 }

@@ -7,6 +7,9 @@
 
 namespace parallax::harness {
 
+/// Errors are cut off here, in root mean squares.
+inline constexpr double kDetectionCut = 2.0;
+
 /// By how much one estimate of a body is off.
 struct DetectionError {
   Eigen::Vector2d shift_m = Eigen::Vector2d::Zero();  // in the plane of the floor
