@@ -232,27 +232,34 @@ void FlatScene::add_held(std::size_t i, const BodySpec& body, const BoxShape& sh
   flat.body = i;
   flat.is_exact = false;
   const GraspSpec grasp = body.grasp.value_or(GraspSpec{});
-  const Eigen::Vector2d grip = grasp.p_BG.head<2>();
   const ProofAssumptions& slack = state_.slack;
   const double far = (shape.p_BS - grasp.p_BG).norm() + 0.5 * shape.size_m.norm();
   flat.slack_m = std::sqrt(2.0) * (slack.held_m + slack.parked_m + slack.held_rad * far);
+  const BodySpec& base = layout_.bodies[*layout_.find_body(spec_.mobile->base_body)];
   for (const ArmSpec& arm : spec_.mobile->arms) {
     if (arm.name != state_.bodies[i].arm) continue;
     flat.hand = arm.carry_B.head<2>();
-    if (!grasp.follows_body) flat.hand -= grip;
-    const BodyId base = *layout_.find_body(spec_.mobile->base_body);
-    const double z =
-        layout_.bodies[base].p_WB.z() + arm.carry_B.z() + shape.p_BS.z() - grasp.p_BG.z();
+    const double z = base.p_WB.z() + arm.carry_B.z() + shape.p_BS.z() - grasp.p_BG.z();
     const double half_z = 0.5 * shape.size_m.z();
     flat.bottom = {z - half_z, z - half_z};
     flat.top = {z + half_z, z + half_z};
+    raise(flat,
+          state_.relief_m + slack.drift_m + slack.held_m + slack.parked_m + slack.held_rad * far);
+    // The near pad is where the body is, the tool half an opening beside it; the hand may be turned
+    // either way.
+    const Eigen::Vector3d line = pad_middle(arm.near_pad_body) - pad_middle(arm.far_pad_body);
+    const Eigen::Vector2d beside =
+        0.5 * (arm.opening_m - grasp.width_m) *
+        moved({Eigen::Vector2d(line.head<2>().normalized())}, Eigen::Vector2d::Zero(),
+              grasp.wrist_rad - base.yaw_rad)[0];
+    for (const double side : {1.0, -1.0}) {
+      FlatShape one = flat;
+      for (Eigen::Vector2d& corner : one.corners) {
+        corner += side * beside - Eigen::Vector2d(grasp.p_BG.head<2>());
+      }
+      parts_.push_back(std::move(one));
+    }
   }
-  if (grasp.follows_body) {
-    for (Eigen::Vector2d& corner : flat.corners) corner -= grip;
-  }
-  raise(flat,
-        state_.relief_m + slack.drift_m + slack.held_m + slack.parked_m + slack.held_rad * far);
-  parts_.push_back(std::move(flat));
 }
 
 Bounds1 FlatScene::variable(const StartBox& box, const std::string& name, double fallback) const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -25,8 +26,8 @@ bool off(double a, double b, double by) { return std::abs(a - b) > by + 1e-9; }
 
 /// What of the state before an action is not as it was taken for granted.
 std::vector<std::string> broken_assumptions(const WorldSpec& spec, const WorldLayout& layout,
-                                            const KnownState& known, const State& start,
-                                            const State& now) {
+                                            const ProofScene& scene, const KnownState& known,
+                                            const State& start, const State& now) {
   std::vector<std::string> broken;
   const BodySpec& base = layout.bodies[*layout.find_body(spec.mobile->base_body)];
   double x = number_in(start, "robot.x", base.p_WB.x());
@@ -78,11 +79,12 @@ std::vector<std::string> broken_assumptions(const WorldSpec& spec, const WorldLa
       const double tilt = std::hypot(number_in(now, body.name + ".roll", 0.0),
                                      number_in(now, body.name + ".pitch", 0.0));
       const double start_yaw = number_in(start, body.name + ".yaw", body.yaw_rad);
-      const Eigen::Vector3d grip = body.grasp ? body.grasp->p_BG : Eigen::Vector3d::Zero();
+      const GraspSpec grasp = body.grasp.value_or(GraspSpec{});
       const Eigen::AngleAxisd frame(turned, Eigen::Vector3d::UnitZ());
       const double slid = known.bodies[i].carrier ? known.slack.sliding_rad : 0.0;
-      if ((p + frame * grip - tool).norm() > known.slack.held_m + 1e-9 ||
-          tilt > known.slack.held_rad ||
+      const double apart_m = std::min((p + frame * scene.gripped_at(grasp, a, 1.0) - tool).norm(),
+                                      (p + frame * scene.gripped_at(grasp, a, -1.0) - tool).norm());
+      if (apart_m > known.slack.held_m + 1e-9 || tilt > known.slack.held_rad ||
           std::abs(wrapped(turned - start_yaw)) >
               known.slack.held_rad + known.slack.drift_rad + slid) {
         broken.push_back(fmt::format("`{}` has slipped in the gripper", body.name));
@@ -170,7 +172,7 @@ std::vector<SimulatedTest> simulate_tests(const WorldSpec& spec, const WorldLayo
       for (std::size_t t = 0; is_tested && t < actions[action].tests.size(); ++t, ++index) {
         const ActionTest& test = *actions[action].tests[t];
         SimulatedTest& tally = out[index];
-        auto broken = broken_assumptions(spec, layout, test.state(), start, before);
+        auto broken = broken_assumptions(spec, layout, test.scene(), test.state(), start, before);
         if (!broken.empty()) {
           ++tally.not_as_assumed;
           for (const std::string& text : broken) ++tally.broken[text];

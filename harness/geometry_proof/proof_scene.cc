@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -219,34 +220,41 @@ void ProofScene::add_held(BodyId id, std::size_t arm) {
   const ArmSpec& spec = spec_->mobile->arms[arm];
   const GraspSpec grasp = body.grasp.value_or(GraspSpec{});
   const ProofAssumptions& slack = state_->slack;
-  if (known.drives != state_->drives) {  // the base has turned since
+  // The base has turned since, or the grasp goes by the robot's heading.
+  if (known.drives != state_->drives || !grasp.follows_body) {
     unknown_.push_back("`" + body.name + "`");
     return;
   }
-  const Eigen::Vector2d grip =
-      grasp.follows_body ? Eigen::Vector2d(grasp.p_BG.head<2>()) : Eigen::Vector2d::Zero();
   for (const BoxShape& shape : body.shapes) {
-    const double reach = (shape.p_BS - grasp.p_BG).norm() + 0.5 * shape.size_m.norm();
-    ScenePiece piece;
-    piece.body = id;
-    piece.carrier = ScenePiece::Carrier::kHand;
-    piece.moves_with_robot = true;
-    piece.is_exact = false;
-    piece.hand = spec.carry_B.head<2>();
-    if (!grasp.follows_body) piece.hand -= grasp.p_BG.head<2>();
-    piece.middle = shape.p_BS.head<2>() - grip;
-    piece.yaw_rad = shape.yaw_rad;
-    const double loose = slack.held_m + slack.parked_m + slack.drift_m + slack.held_rad * reach;
-    piece.half_x = 0.5 * shape.size_m.x() + loose;
-    piece.half_y = 0.5 * shape.size_m.y() + loose;
-    piece.hand_radius_m = piece.hand.norm() + reach + grasp.p_BG.norm() + loose;
-    const Bounds1 z =
-        plus(state_->lift_m, base_z() + spec.carry_B.z() + shape.p_BS.z() - grasp.p_BG.z());
-    const double half_z = 0.5 * shape.size_m.z();
-    piece.bottom = widened(plus(z, -half_z), loose + state_->relief_m);
-    piece.top = widened(plus(z, half_z), loose + state_->relief_m);
-    pieces_.push_back(piece);
+    for (const double side : {1.0, -1.0}) {  // the hand may be turned either way
+      const Eigen::Vector3d grip = gripped_at(grasp, arm, side);
+      const double reach = (shape.p_BS - grasp.p_BG).norm() + 0.5 * shape.size_m.norm();
+      ScenePiece piece;
+      piece.body = id;
+      piece.carrier = ScenePiece::Carrier::kHand;
+      piece.moves_with_robot = true;
+      piece.is_exact = false;
+      piece.hand = spec.carry_B.head<2>();
+      piece.middle = shape.p_BS.head<2>() - grip.head<2>();
+      piece.yaw_rad = shape.yaw_rad;
+      const double loose = slack.held_m + slack.parked_m + slack.drift_m + slack.held_rad * reach;
+      piece.half_x = 0.5 * shape.size_m.x() + loose;
+      piece.half_y = 0.5 * shape.size_m.y() + loose;
+      piece.hand_radius_m = piece.hand.norm() + reach + (grip - grasp.p_BG).norm() + loose;
+      const Bounds1 z =
+          plus(state_->lift_m, base_z() + spec.carry_B.z() + shape.p_BS.z() - grasp.p_BG.z());
+      const double half_z = 0.5 * shape.size_m.z();
+      piece.bottom = widened(plus(z, -half_z), loose + state_->relief_m);
+      piece.top = widened(plus(z, half_z), loose + state_->relief_m);
+      pieces_.push_back(piece);
+    }
   }
+}
+
+Eigen::Vector3d ProofScene::gripped_at(const GraspSpec& grasp, std::size_t arm, double side) const {
+  const double off = 0.5 * spec_->mobile->arms[arm].opening_m - 0.5 * grasp.width_m;
+  const Eigen::AngleAxisd turn(grasp.wrist_rad - base_yaw_rad(), Eigen::Vector3d::UnitZ());
+  return grasp.p_BG - side * off * (turn * arms_[arm].pad_line_W);
 }
 
 double ProofScene::base_z() const {

@@ -63,6 +63,10 @@ class ProofScene {
   const std::vector<ScenePiece>& pieces() const { return pieces_; }
   /// Why the place of something is not known: "the left arm", "`cup1`"; empty if all is known.
   const std::vector<std::string>& unknown() const { return unknown_; }
+  /// Where a body that the arm holds has the arm's tool, in the body's frame: beside the grasp, as
+  /// the near pad stays where it is while the far one closes; `side` -1 where the hand is turned
+  /// the other way.
+  Eigen::Vector3d gripped_at(const GraspSpec& grasp, std::size_t arm, double side) const;
   const ArmGeometry& arm(std::size_t index) const { return arms_[index]; }
   // Of the base at the default placement.
   double base_z() const;

@@ -26,7 +26,7 @@ TEST_CASE("boxes fill a region if they came from halving it") {
 }
 
 struct Made {
-  bench::ProofWorld world = bench::random_drive(7);
+  bench::ProofWorld world = bench::random_drive(6);
   WorldLayout layout = lay_out(world.spec);
   std::vector<ProvableAction> actions =
       provable_actions(world.spec, layout, world.region, {world.action}, {});
