@@ -199,6 +199,11 @@ std::optional<ProofTask> make_task(const ProveOptions& options, const ScenarioMo
   auto prepared =
       harness::prepare_trace(scenario, fluents.ground(), simulator.info(), *trace, sink);
   if (!prepared) return std::nullopt;
+  if (prepared->sampler.law() != nullptr) {
+    sink.error(codes::kNothingToProve, scenario.sampling_source,
+               "starts are drawn by a law, and proofs are about uniform ones");
+    return std::nullopt;
+  }
   ProofTask task{
       *std::move(trace), *std::move(prepared), harness::lay_out(scenario.world), {}, {}, {}};
   for (const auto& one : options.assume) {
