@@ -56,7 +56,7 @@ TEST_CASE("a certificate that was written and read is confirmed, and a changed o
 
   Certificate swapped = read;
   for (DecidedBox& one : swapped.actions.front().tests.front().boxes) {
-    if (one.verdict == BoxVerdict::kRefuted) one.verdict = BoxVerdict::kSafe;
+    if (one.verdict == BoxVerdict::kSafe) one.verdict = BoxVerdict::kRefuted;
   }
   CHECK(check_certificate(swapped, made.actions, nullptr).wrong > 0);
 
