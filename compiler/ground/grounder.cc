@@ -10,6 +10,7 @@
 #include "compiler/ground/completion.h"
 #include "compiler/ground/effect_constraints.h"
 #include "compiler/ground/effects.h"
+#include "compiler/ground/equal_bits.h"
 #include "compiler/ground/expansion_size.h"
 #include "compiler/ground/formula_grounder.h"
 #include "compiler/ground/ground_model.h"
@@ -109,7 +110,10 @@ class Grounder {
   void completion() { completion_.write(); }
   void trajectories() { assert_trajectories(model_, rows_, grounder_, sink_); }
   void inertia() { assert_inertia(model_, rows_, options_); }
-  void invariants() { add_invariants(model_, rows_); }
+  void invariants() {
+    add_invariants(model_, rows_);
+    add_equal_bits(model_, rows_);
+  }
 
   /// In the 2005 reasoner's meaning an atom that stands in no formula is false.
   void unmentioned_atoms() {

@@ -110,4 +110,13 @@ std::optional<std::vector<Literal>> make_canonical(SolverSession& session, Timep
   return fixed;
 }
 
+std::optional<std::vector<Literal>> in_order(SolverSession& session, Timepoint n,
+                                             std::span<const Literal> assumptions,
+                                             std::span<const Literal> order, TraceOrder wanted) {
+  if (wanted == TraceOrder::kCanonical) return make_canonical(session, n, assumptions, order);
+  std::vector<Literal> found;
+  for (const auto literal : order) found.push_back(session.value(literal) ? literal : ~literal);
+  return found;
+}
+
 }  // namespace parallax::runtime

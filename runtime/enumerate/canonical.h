@@ -27,4 +27,10 @@ std::vector<std::vector<Literal>> projection_blocks(const CompiledModel& model, 
     SolverSession& session, Timepoint n, std::span<const Literal> assumptions,
     std::span<const Literal> order);
 
+/// The same where the canonical order is wanted, else the literals as they are in the valuation.
+[[nodiscard]] std::optional<std::vector<Literal>> in_order(SolverSession& session, Timepoint n,
+                                                           std::span<const Literal> assumptions,
+                                                           std::span<const Literal> order,
+                                                           TraceOrder wanted);
+
 }  // namespace parallax::runtime

@@ -8,8 +8,8 @@
 
 namespace parallax::runtime {
 
-ModelEnumerator::ModelEnumerator(SolverSession& session, Distinct distinct)
-    : session_(&session), symbols_(symbols_of(session.model())) {
+ModelEnumerator::ModelEnumerator(SolverSession& session, Distinct distinct, TraceOrder order)
+    : session_(&session), symbols_(symbols_of(session.model())), wanted_(order) {
   for (const auto& block : projection_blocks(session.model(), distinct)) {
     for (const auto atom : block) order_.push_back(~atom);
   }
@@ -21,7 +21,7 @@ std::optional<Trace> ModelEnumerator::next() {
   const auto status = session_->solve(n, {});
   exhausted_ = status == SolveStatus::kUnsatisfiable;
   if (status != SolveStatus::kSatisfiable) return std::nullopt;
-  auto blocking = make_canonical(*session_, n, {}, order_);
+  auto blocking = in_order(*session_, n, {}, order_, wanted_);
   if (!blocking) return std::nullopt;
   session_->require_model(n);
   auto trace = decode_trace(session_->model(), symbols_, n,

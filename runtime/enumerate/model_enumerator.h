@@ -17,7 +17,8 @@ namespace parallax::runtime {
 class ModelEnumerator final : public TraceSource {
  public:
   /// `session` outlives the enumerator.
-  explicit ModelEnumerator(SolverSession& session, Distinct distinct = Distinct::kObservable);
+  explicit ModelEnumerator(SolverSession& session, Distinct distinct = Distinct::kObservable,
+                           TraceOrder order = TraceOrder::kCanonical);
   std::optional<Trace> next() override;
   bool exhausted() const override { return exhausted_; }
   SourceStats stats() const override;
@@ -26,6 +27,7 @@ class ModelEnumerator final : public TraceSource {
   SolverSession* session_;
   Symbols symbols_;
   std::vector<Literal> order_;  // the atoms, false preferred
+  TraceOrder wanted_;
   std::int64_t found_ = 0;
   bool exhausted_ = false;
 };

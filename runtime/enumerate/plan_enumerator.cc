@@ -92,7 +92,7 @@ std::optional<Trace> PlanEnumerator::next() {
     auto fixed = std::move(assumptions);
     const auto head = fixed.size();
     for (const auto* order : {&key_order_, &start_order_, &state_order_, &choice_order_}) {
-      const auto literals = make_canonical(*session_, n_, fixed, *order);
+      const auto literals = in_order(*session_, n_, fixed, *order, options_.order);
       done_ = !literals;
       if (done_) return std::nullopt;
       fixed.insert(fixed.end(), literals->begin(), literals->end());

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/enumerate/trace_source.h"
 #include "runtime/session/solver_session.h"
 #include "runtime/trace/trace.h"
 
@@ -26,6 +27,9 @@ struct PlanEnumeratorOptions {
   bool all_hits = false;
   /// Every initial state is a trace of its own, not only every key.
   bool split_initial = false;
+  /// Of the traces of one length: shorter ones come first in any case. With any order any initial
+  /// state stands for a trace.
+  TraceOrder order = TraceOrder::kCanonical;
 };
 
 /// Where executions go on that were not followed: none of them met the constraints before.

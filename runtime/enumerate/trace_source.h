@@ -16,6 +16,14 @@ enum class Distinct : std::uint8_t {
   kAll,         // also ReleasedAt and user predicates, as the 2005 reasoner counts models
 };
 
+/// Which trace comes next.
+enum class TraceOrder : std::uint8_t {
+  kCanonical,
+  /// The one that the solver finds first, for whoever wants one witness: to prove that none comes
+  /// before it can cost many times as much. The same on every machine with the same solver.
+  kAny,
+};
+
 /// What the search for traces took.
 struct SourceStats {
   std::string strategy;                     // "blocking", "guarded", "tree", "graph"
@@ -25,7 +33,7 @@ struct SourceStats {
 };
 
 /// The traces of a model at its full horizon, each once, in canonical order (timepoint, then
-/// declaration order, false before true), whatever the strategy.
+/// declaration order, false before true) whatever the strategy, unless any order is asked for.
 class TraceSource {
  public:
   TraceSource() = default;

@@ -57,7 +57,8 @@ ModelTraces::ModelTraces(const CompiledModel& model, TraceQuery query)
       if (paths_ == nullptr) refusal_ = remark_;
       break;
   }
-  if (source_ == nullptr) source_ = std::make_unique<ModelEnumerator>(session(), query.distinct);
+  if (source_ == nullptr)
+    source_ = std::make_unique<ModelEnumerator>(session(), query.distinct, query.order);
 }
 
 SolverSession& ModelTraces::session() {
@@ -122,7 +123,7 @@ void ModelTraces::leave_search() {
   if (!is_tried_) use_graph(kSmall);
   if (paths_ != nullptr) return;
   if (given_ == 0) {
-    source_ = std::make_unique<ModelEnumerator>(session(), query_.distinct);
+    source_ = std::make_unique<ModelEnumerator>(session(), query_.distinct, query_.order);
   } else {
     use_tree();
   }

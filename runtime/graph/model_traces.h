@@ -40,7 +40,8 @@ inline constexpr std::array<std::pair<Strategy, std::string_view>, 6> kStrategyN
 struct TraceQuery {
   Distinct distinct = Distinct::kObservable;
   Strategy strategy = Strategy::kAuto;
-  std::int64_t wanted = 0;  // so many traces will be asked for; 0: all
+  TraceOrder order = TraceOrder::kCanonical;  // of what a solver finds one by one
+  std::int64_t wanted = 0;                    // so many traces will be asked for; 0: all
   GraphLimits limits = {};
   const std::atomic<bool>* stop = nullptr;
 };

@@ -1,5 +1,8 @@
 #include <doctest/doctest.h>
 
+#include <set>
+#include <sstream>
+
 #include "tests/tools/cli_fixture.h"
 
 namespace parallax::test {
@@ -28,6 +31,51 @@ TEST_CASE("a forced strategy lists and counts the same") {
   }
   const auto stats = cli.parallax({"traces", "m.e", "--count", "--stats"});
   CHECK(stats.err.find("strategy graph; ") != std::string::npos);
+}
+
+TEST_CASE("in any order the traces are the same") {
+  const CliFixture cli;
+  cli.write("m.e", kSwitches);
+  const auto traces = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = {"traces", "m.e", "--format", "jsonl"};
+    all.insert(all.end(), more.begin(), more.end());
+    const auto result = cli.parallax(all);
+    CAPTURE(result.err);
+    CHECK(result.code == 0);
+    std::multiset<std::string> found;
+    std::istringstream lines(result.out);
+    for (std::string line; std::getline(lines, line);) {
+      const auto points = line.find("\"timepoints\"");
+      if (points != std::string::npos && line.find("\"summary\"") == std::string::npos)
+        found.insert(line.substr(points));
+    }
+    return found;
+  };
+  const auto listed = traces({"--limit", "0"});
+  CHECK(listed.size() == 256);
+  CHECK(traces({"--limit", "0", "--strategy", "blocking", "--order", "any"}) == listed);
+  const std::vector<std::string> goal = {"--until", "HoldsAt(On(A),time) & HoldsAt(On(B),time)"};
+  const auto reach = [&](std::vector<std::string> more) {
+    more.insert(more.end(), goal.begin(), goal.end());
+    return traces(std::move(more));
+  };
+  const auto ways = reach({"--limit", "0"});
+  CHECK(ways.size() > 3);
+  CHECK(reach({"--limit", "0", "--order", "any"}) == ways);
+  const auto one = reach({"--limit", "1"});
+  REQUIRE(one.size() == 1);
+  CHECK(ways.count(*one.begin()) == 1);
+  CHECK(one == reach({"--limit", "1", "--order", "any"}));
+  CHECK(one.begin()->find("Press(A)") != std::string::npos);
+}
+
+TEST_CASE("any order is refused where the canonical one is needed") {
+  const CliFixture cli;
+  cli.write("m.e", kSwitches);
+  for (const auto* needs : {"--certify", "--from=3", "--sample=2"}) {
+    CHECK(cli.parallax({"traces", "m.e", "--order", "any", needs}).code == 2);
+  }
+  CHECK(cli.parallax({"traces", "m.e", "--order", "every"}).code == 2);
 }
 
 TEST_CASE("--from goes on where an earlier list ended") {

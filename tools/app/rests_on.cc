@@ -148,7 +148,7 @@ base::Result<PropertyAnswer> ask_property(const std::string& scenario_file,
   if (!compilation) return context.sink().already_reported();
   const auto& model = compilation->model;
   runtime::SolverSession session(model, runtime::make_cadical_solver(&context.stop()));
-  runtime::PlanEnumerator enumerator(session);
+  runtime::PlanEnumerator enumerator(session, {.order = runtime::TraceOrder::kAny});
   const auto violation = enumerator.next();
   PropertyAnswer out;
   out.horizon = model.horizon;

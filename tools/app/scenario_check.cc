@@ -70,7 +70,7 @@ bool is_changed(const compiler::TypedModel& model, SymbolId fluent,
 /// The number of events of a shortest trace within the horizon, if there is one.
 std::optional<std::size_t> shortest_trace(const compiler::CompiledModel& model, Context& context) {
   runtime::SolverSession session(model, runtime::make_cadical_solver(&context.stop()));
-  runtime::PlanEnumerator enumerator(session);
+  runtime::PlanEnumerator enumerator(session, {.order = runtime::TraceOrder::kAny});
   const auto trace = enumerator.next();
   if (!trace) return std::nullopt;
   return trace->points.size() - 1;

@@ -29,6 +29,16 @@ runtime::TraceQuery query_of(const SearchOptions& options, const Context& contex
   return query;
 }
 
+/// Who asks for one trace that reaches something asks whether there is one. The traces of a plan
+/// are known by their numbers.
+runtime::TraceOrder order_of(const SearchOptions& options, const TraceCertifier& certifier,
+                             bool is_reached) {
+  const bool witness = is_reached && options.limit == 1 && !certifier.is_asked();
+  return options.order == "any" || (options.order.empty() && witness)
+             ? runtime::TraceOrder::kAny
+             : runtime::TraceOrder::kCanonical;
+}
+
 void show_stats(const SearchOptions& options, const runtime::SourceStats& stats, Context& context) {
   if (!options.stats || context.form().json) return;
   context.statistics(fmt::format("strategy {}{}{}; {} states, {} transitions, {} solver calls\n",
@@ -88,8 +98,10 @@ std::optional<Ending> draw(const SearchOptions& options, const compiler::Compile
 Ending list_plan_traces(const SearchOptions& options, const compiler::CompiledModel& model,
                         TraceCertifier& certifier, TraceWriter& writer, Context& context) {
   runtime::SolverSession session(model, certifier.solver(), certifier.loading());
-  runtime::PlanEnumerator enumerator(
-      session, {.all_hits = options.hits == "all", .split_initial = options.split_initial});
+  runtime::PlanEnumerator enumerator(session,
+                                     {.all_hits = options.hits == "all",
+                                      .split_initial = options.split_initial,
+                                      .order = order_of(options, certifier, model.plan.empty())});
   while (!writer.full() && !context.stopped()) {
     const auto trace = enumerator.next();
     if (!trace) break;
@@ -105,7 +117,8 @@ std::optional<Ending> list_model_traces(const SearchOptions& options,
                                         TraceCertifier& certifier, TraceWriter& writer,
                                         Context& context) {
   if (options.sample > 0) return draw(options, model, writer, context);
-  const auto query = query_of(options, context);
+  auto query = query_of(options, context);
+  query.order = order_of(options, certifier, false);
   if (leaves_proof(query, certifier)) {
     runtime::SourceStats stats;
     const auto ending = list_logged(query, model, certifier, writer, stats, context);

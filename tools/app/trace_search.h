@@ -22,6 +22,7 @@ struct SearchOptions {
   std::int64_t seed = 1;
   std::string hits = "first";  // the last two: of plans and state constraints
   bool split_initial = false;
+  std::string order;   // "canonical", "any"; empty: what suits
   bool stats = false;  // say how they were found
 };
 

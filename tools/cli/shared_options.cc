@@ -126,6 +126,11 @@ void add_search_options(OptionTable& command, SearchOptions& options) {
               "the same, the time is not")
       .check(OneOf{strategy_names()})
       .show_default();
+  command
+      .option("--order", options.order,
+              "canonical, or any: whichever trace the solver finds first. By default any where "
+              "--limit 1 asks for one trace that reaches a goal, which is many times as fast")
+      .check(OneOf{{"canonical", "any"}});
   add_hits_option(command, options.hits);
   command.flag("--split-initial", options.split_initial,
                "List every initial state, not only every sequence of events");

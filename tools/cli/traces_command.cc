@@ -142,6 +142,12 @@ bool is_usable(const TracesOptions& options, Invocation& invocation) {
                   "--certify proves a list of first hits complete; it does not go with "
                   "--hits=all or --split-initial");
   }
+  if (options.search.order == "any" &&
+      (!options.certify.file.empty() || options.search.sample > 0 || options.search.from > 1)) {
+    return refuse("",
+                  "--order any does not go with --certify, --sample or --from, which need the "
+                  "canonical order");
+  }
   if (options.count && options.search.from > 1) {
     return refuse("", "--count does not go with --from");
   }

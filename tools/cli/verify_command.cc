@@ -46,7 +46,7 @@ struct Answer {
 
 Answer ask(const compiler::CompiledModel& model, TraceCertifier& certifier) {
   runtime::SolverSession session(model, certifier.solver(), certifier.loading());
-  runtime::PlanEnumerator enumerator(session);
+  runtime::PlanEnumerator enumerator(session, {.order = runtime::TraceOrder::kAny});
   Answer answer;
   answer.violation = enumerator.next();
   answer.exploration = enumerator.exploration();

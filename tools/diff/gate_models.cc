@@ -86,7 +86,7 @@ base::Result<PropertyAnswer> ask_property(const std::string& path, RevisionKind 
   const auto compilation = compile_models(options, context);
   if (!compilation) return context.sink().already_reported();
   runtime::SolverSession session(compilation->model, runtime::make_cadical_solver(&context.stop()));
-  runtime::PlanEnumerator violations(session);
+  runtime::PlanEnumerator violations(session, {.order = runtime::TraceOrder::kAny});
   if (const auto violation = violations.next()) {
     out.holds = base::Known::kNo;
     out.witness = to_text(*violation);

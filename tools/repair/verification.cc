@@ -76,7 +76,7 @@ TraceEffects TraceComparer::compare(const std::string& edited) {
   const auto aimed = compile(edited, true);
   if (!aimed) return out;
   runtime::SolverSession session(aimed->model, runtime::make_cadical_solver(&context_.stop()));
-  runtime::PlanEnumerator traces(session);
+  runtime::PlanEnumerator traces(session, {.order = runtime::TraceOrder::kAny});
   out.reaches = traces.next().has_value();
   if (!*out.reaches && context_.stopped()) out.reaches.reset();
   return out;
