@@ -34,7 +34,8 @@ ModelTraces::ModelTraces(const CompiledModel& model, TraceQuery query)
   switch (query.strategy) {
     case Strategy::kAuto:
       if (query.wanted > 0 && query.wanted <= kFew) {
-        use_search(kConflicts);
+        // What comes first in canonical order is the search's to find; any one is the solver's.
+        if (query.order == TraceOrder::kCanonical) use_search(kConflicts);
       } else {
         attempts_ = {{kFar, query.limits}, {1, within(kMedium)}, {0, within(kSmall)}};
         attempt_graph();

@@ -65,6 +65,8 @@ class SolverSession {
   /// that answers wrongly is a broken contract. Linear in the clauses.
   void require_model(Timepoint n) const;
   bool is_fixed(Literal literal) const;
+  /// From now on the search tries the literal true first.
+  void prefer(Literal literal) { solver_->set_phase(in_solver(literal)); }
   std::int64_t solve_calls() const { return solver_->solve_calls(); }
   /// The largest horizon that was asked for, whose clauses the solver has; -1: none yet.
   Timepoint loaded() const { return loaded_; }

@@ -135,8 +135,10 @@ std::optional<Ending> list_model_traces(const SearchOptions& options,
   const auto before = options.from - 1 + writer.count();
   if (before > 0) traces.seek(static_cast<long>(before));
   writer.write_all(traces);
-  // At the limit one more call tells "these are all" from "there are more".
-  if (writer.full() && !context.stopped()) (void)traces.next();
+  // At the limit one more call tells "these are all" from "there are more". Who wants any witness
+  // does not want to wait for that.
+  const bool asks_on = query.order == runtime::TraceOrder::kCanonical;
+  if (asks_on && writer.full() && !context.stopped()) (void)traces.next();
   show_stats(options, traces.stats(), context);
   if (!traces.exhausted()) return Ending{};
   return Ending{options.from > 1 ? "complete from there on" : "complete", options.from == 1};

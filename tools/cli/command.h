@@ -85,6 +85,7 @@ Command bisect_command();
 Command check_command();
 Command coverage_command();
 Command compile_command();
+Command consequences_command();
 Command suite_command();
 Command traces_command();
 Command verify_command();

@@ -76,7 +76,8 @@ int run(int argc, char** argv) {
       worker_command(),      rates_command(),   draw_command(),    supervise_command(),
       coverage_command(),    monitor_command(), report_command(),  learn_command(),
       export_command(),      ledger_command(),  bisect_command(),  calibrate_command(),
-      prove_command()};
+      prove_command(),
+      consequences_command()};
   Program program{
       table, fmt::format("parallax {} (CaDiCaL {})", kVersion, kCadicalVersion), true, {}};
   for (auto& command : commands) {

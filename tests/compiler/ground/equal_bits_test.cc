@@ -53,13 +53,13 @@ std::vector<std::string> all_models_of(const std::string& text, bool invariants)
 
 const std::string kThing =
     "fluent Held()\nfluent Near()\nfluent Put()\nevent Take()\nevent Drop()\nevent Walk()\n"
-    "Initiates(Take(),Held(),time).\nTerminates(Drop(),Held(),time).\n"
+    "[time] Initiates(Take(),Held(),time).\n[time] Terminates(Drop(),Held(),time).\n"
     "[time] Initiates(Walk(),Near(),time).\n"
     "range time 0 3\n!HoldsAt(Near(),0).\n";
 const std::string kPlace =
-    "Releases(Take(),Put(),time).\n"
-    "HoldsAt(Near(),time) -> Initiates(Drop(),Put(),time).\n"
-    "!HoldsAt(Near(),time) -> Terminates(Drop(),Put(),time).\n";
+    "[time] Releases(Take(),Put(),time).\n"
+    "[time] HoldsAt(Near(),time) -> Initiates(Drop(),Put(),time).\n"
+    "[time] !HoldsAt(Near(),time) -> Terminates(Drop(),Put(),time).\n";
 
 }  // namespace
 
@@ -71,8 +71,8 @@ TEST_CASE("what is released while another fluent holds is said to be") {
 TEST_CASE("atoms that are always opposite are said to be") {
   const auto opposite = said_of(
       "fluent Open()\nfluent Shut()\nevent Push()\nevent Pull()\n"
-      "Initiates(Pull(),Open(),time).\nTerminates(Push(),Open(),time).\n"
-      "Initiates(Push(),Shut(),time).\nTerminates(Pull(),Shut(),time).\n"
+      "[time] Initiates(Pull(),Open(),time).\n[time] Terminates(Push(),Open(),time).\n"
+      "[time] Initiates(Push(),Shut(),time).\n[time] Terminates(Pull(),Shut(),time).\n"
       "range time 0 3\nHoldsAt(Shut(),0).\n!HoldsAt(Open(),0).\n");
   CHECK(opposite == std::set<std::string>{"-Open() -Shut()", "Open() Shut()"});
 }
@@ -85,18 +85,18 @@ TEST_CASE("equality needs every reason for it") {
   SUBCASE("a further event that ends only one of them") {
     CHECK(said_of(kThing + kPlace +
                   "!HoldsAt(Held(),0).\nevent Slip()\n"
-                  "Terminates(Slip(),Held(),time).\n")
+                  "[time] Terminates(Slip(),Held(),time).\n")
               .empty());
   }
   SUBCASE("a condition under which one of them stays") {
-    CHECK(said_of(kThing + "!HoldsAt(Held(),0).\nReleases(Take(),Put(),time).\n"
-                           "HoldsAt(Near(),time) -> Initiates(Drop(),Put(),time).\n")
+    CHECK(said_of(kThing + "!HoldsAt(Held(),0).\n[time] Releases(Take(),Put(),time).\n"
+                           "[time] HoldsAt(Near(),time) -> Initiates(Drop(),Put(),time).\n")
               .empty());
   }
   SUBCASE("what holds because it is released as well") {
     CHECK(said_of(kThing + kPlace +
                   "!HoldsAt(Held(),0).\nevent Juggle()\n"
-                  "Releases(Juggle(),Held(),time).\n")
+                  "[time] Releases(Juggle(),Held(),time).\n")
               .empty());
   }
 }

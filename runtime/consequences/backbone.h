@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "runtime/session/solver_session.h"
+
+namespace parallax::runtime {
+
+/// In which of some traces an atom is true.
+enum class Extent : std::uint8_t {
+  kNone,
+  kSome,  // in one, and not in another
+  kAll,
+  kAbsent,     // no trace has its timepoint
+  kUndecided,  // the solver was stopped
+};
+
+/// What the traces of a model have in common: its backbone and beyond. Traces end at the horizon,
+/// or where state constraints hold for the first time; of an atom those count that have its
+/// timepoint.
+struct Consequences {
+  /// One for each atom asked about.
+  std::vector<Extent> extents;
+  /// Is there a trace? None: the solver was stopped before one was found.
+  std::optional<bool> any;
+  bool complete = true;  // nothing is undecided
+};
+
+/// Asks about HoldsAt and Happens atoms. Every valuation found settles all atoms that differ from
+/// one found before; the solver is then asked to let some other one differ, until it cannot
+/// (Janota, Lynce and Marques-Silva 2015, iterative algorithm with chunks that hold all
+/// candidates). At most one call for each atom that is true in some only, and one for each length
+/// of traces.
+Consequences find_consequences(SolverSession& session, std::span<const Literal> atoms);
+
+}  // namespace parallax::runtime
