@@ -63,7 +63,10 @@ ModelTraces::ModelTraces(const CompiledModel& model, TraceQuery query)
 }
 
 SolverSession& ModelTraces::session() {
-  if (!session_) session_.emplace(model_, make_cadical_solver(query_.stop));
+  if (!session_) {
+    session_.emplace(model_, make_cadical_solver(query_.stop),
+                     query_.order == TraceOrder::kAny ? Loading::kWitness : Loading::kAsNeeded);
+  }
   return *session_;
 }
 

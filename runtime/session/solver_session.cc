@@ -30,7 +30,9 @@ Literal SolverSession::in_solver(Literal literal) {
   if (number == 0) {
     number = loading_ == Loading::kWhole ? literal.var() : ++solver_variable_count_;
     // The first solution that the search tries is the canonical one as often as possible.
-    if (literal.var() <= model_->variable_count()) solver_->set_phase(~Literal::positive(number));
+    if (literal.var() <= model_->variable_count() && loading_ != Loading::kWitness) {
+      solver_->set_phase(~Literal::positive(number));
+    }
   }
   const auto known = Literal::positive(number);
   return literal.is_positive() ? known : ~known;
@@ -63,7 +65,7 @@ void SolverSession::load_clause(std::size_t clause) {
   scratch_.clear();
   for (const auto literal : literals) scratch_.push_back(in_solver(literal));
   // A definition of an auxiliary is harmless at any horizon.
-  if (t > 0 && !model_->clause_is_definition[clause]) {
+  if (t > 0 && !model_->clause_is_definition[clause] && loading_ != Loading::kWitness) {
     scratch_.push_back(~in_solver(guards_[static_cast<std::size_t>(t) - 1]));
   }
   solver_->add_clause(scratch_);
@@ -95,7 +97,9 @@ void SolverSession::load(Timepoint n) {
 
 SolveStatus SolverSession::solve(Timepoint n, std::span<const Literal> assumptions) {
   load(std::min(n, model_->horizon));
-  for (Timepoint t = 1; t <= loaded_; ++t) {
+  PARALLAX_REQUIRE(loading_ != Loading::kWitness || n == model_->horizon,
+                   "without guards there is one horizon");
+  for (Timepoint t = 1; t <= loaded_ && loading_ != Loading::kWitness; ++t) {
     const auto guard = in_solver(guards_[static_cast<std::size_t>(t) - 1]);
     solver_->assume(t <= n ? guard : ~guard);
   }

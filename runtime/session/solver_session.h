@@ -39,6 +39,9 @@ class LengthVariables {
 enum class Loading : std::uint8_t {
   kAsNeeded,  // those of a timepoint with the first call that needs them
   kWhole,     // all before the first call, with the model's own numbers: for solvers that log
+  /// All as they stand, for any valuation of the full horizon: no guards, and no value is
+  /// preferred.
+  kWitness,
 };
 
 /// One solver for one compiled model, whose horizon is chosen per call. Every clause of timepoint
