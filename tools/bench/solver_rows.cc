@@ -24,18 +24,23 @@ Contestant lists_by(const char* strategy, const std::string& file, int limit) {
 
 void measure_first_trace(Bench& bench) {
   bench.begin("first trace of an artifact, beside CaDiCaL alone on the same file");
-  for (const auto* name : {"falling_40", "bankproj_8_400_10_60", "lamps_20_50", "robot_6_3_0",
-                           "robot_6_4_2", "robot_8_4_0"}) {
-    const auto file = bench.artifact_file(name);
-    auto ours = parallax_with({"traces", file, "--limit", "1", "--format", "jsonl"});
+  const auto first = [](const std::string& file, const std::string& order) {
+    auto ours =
+        parallax_with({"traces", file, "--limit", "1", "--format", "jsonl", "--order", order});
+    ours.program = "--order " + order;
     ours.answer = [](const ChildRun& run) {
       return jsonl_answer(run.tail) == "1" ? "satisfiable" : "unsatisfiable";
     };
+    return ours;
+  };
+  for (const auto* name : {"falling_40", "bankproj_8_400_10_60", "lamps_20_50", "robot_6_3_0",
+                           "robot_6_4_2", "robot_8_4_0", "robot_7_5_m1", "robot_9_5_0"}) {
+    const auto file = bench.artifact_file(name);
     Contestant plain{"cadical", {bench_program(), "solve", file}, "", {10, 20}, {}};
     plain.answer = [](const ChildRun& run) {
       return run.code == 10 ? "satisfiable" : "unsatisfiable";
     };
-    bench.compare(name, {ours, plain});
+    bench.compare(name, {first(file, "any"), first(file, "canonical"), plain});
   }
 }
 
