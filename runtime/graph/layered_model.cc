@@ -49,16 +49,16 @@ class Components {
 
 class Splitter {
  public:
-  Splitter(const CompiledModel& model, Distinct distinct, std::vector<std::int8_t> values)
+  Splitter(const CompiledModel& model, Distinct distinct, std::vector<std::int8_t> values,
+           FixedTies ties)
       : model_(model),
         distinct_(distinct),
         values_(std::move(values)),
+        ties_(ties),
         components_(static_cast<std::size_t>(model.base())) {}
 
   std::variant<LayeredModel, std::string> run() && {
     out_.horizon = model_.horizon;
-    out_.state_slots = model_.state_slots;
-    out_.stride = static_cast<std::uint32_t>(model_.stride());
     for (const auto& fluent : model_.fluents) {
       if (fluent.slot) out_.observed.push_back(*fluent.slot);
     }
@@ -67,12 +67,15 @@ class Splitter {
         if (slot) out_.observed.push_back(*slot);
       }
     }
-    for (const auto& event : model_.events) {
-      if (event.slot) out_.events.push_back(*event.slot);
-    }
     if (!read_fixed()) return reason_;
-    for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
-      if (!place_clause(c)) return reason_;
+    while (!place_clauses()) {
+      if (!carry_more()) return reason_;
+    }
+    const auto added = static_cast<std::uint32_t>(carried_.size());
+    out_.state_slots = model_.state_slots + added;
+    out_.stride = static_cast<std::uint32_t>(model_.stride()) + added;
+    for (const auto& event : model_.events) {
+      if (event.slot) out_.events.push_back(*event.slot + added);
     }
     find_copied();
     collect();
@@ -81,6 +84,30 @@ class Splitter {
   }
 
  private:
+  bool place_clauses() {
+    for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
+      if (!place_clause(c)) return false;
+    }
+    return true;
+  }
+
+  /// Carries the variables that could not be placed, so that the clauses can be placed anew. False
+  /// if that is not allowed, or would not help.
+  bool carry_more() {
+    if (ties_ == FixedTies::kRefused || tied_.empty()) return false;
+    std::vector<std::size_t> roots;
+    for (const auto v : tied_) roots.push_back(components_.find(v));
+    for (std::size_t v = 0; v < values_.size(); ++v) {
+      if (std::find(roots.begin(), roots.end(), components_.find(v)) == roots.end()) continue;
+      if (carried_.size() == kMostCarried) return false;
+      carried_.emplace(v, static_cast<std::uint32_t>(carried_.size()));
+    }
+    tied_.clear();
+    reason_.clear();
+    components_ = Components(values_.size());
+    return true;
+  }
+
   bool is_fixed(Literal literal) const { return literal.var() <= model_.base(); }
   std::int8_t fixed_value(Literal literal) const {
     const auto value = values_[static_cast<std::size_t>(literal.var()) - 1];
@@ -146,11 +173,14 @@ class Splitter {
       if (!fits) break;
       if (!is_fixed(literal) || fixed_value(literal) != 0) continue;
       const auto v = static_cast<std::size_t>(literal.var()) - 1;
+      if (carried_.contains(v)) continue;
+      if (window) tied_ = {v};
       if (first) fits = components_.unite(*first, v);
       if (fits && *window != kNoWindow) fits = components_.place(v, *window);
       first = v;
     }
     if (fits) return true;
+    if (!window) tied_.clear();
     reason_ = window ? why_tied(c, *window, *first) : why_too_far(c);
     return false;
   }
@@ -186,6 +216,7 @@ class Splitter {
       for (const auto literal : model_.clauses[other]) {
         if (!is_fixed(literal)) continue;
         const auto w = static_cast<std::size_t>(literal.var()) - 1;
+        if (carried_.contains(w)) continue;
         if (components_.find(w) != components_.find(v)) continue;
         const auto& atom = model_.fixed[w];
         const auto by = atom.name.empty() ? std::string() : fmt::format(" by `{}`", atom.name);
@@ -250,16 +281,18 @@ class Splitter {
     const auto frame = static_cast<std::int32_t>(out_.state_slots + out_.stride);
     for (std::size_t i = 0; i < windows.size(); ++i) {
       windows[i].variables = i == 0 ? static_cast<std::int32_t>(out_.state_slots) : frame;
+      if (i > 0) keep_carried(windows[i]);
     }
     for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
       if (is_satisfied(c)) continue;
       const auto clause = model_.clauses[c];
       auto window = *window_of(clause);
       for (const auto literal : clause) {
-        if (window == kNoWindow && is_fixed(literal) && fixed_value(literal) == 0) {
-          window = components_.window(static_cast<std::size_t>(literal.var()) - 1);
-        }
+        if (window != kNoWindow || !is_fixed(literal) || fixed_value(literal) != 0) continue;
+        const auto v = static_cast<std::size_t>(literal.var()) - 1;
+        window = carried_.contains(v) ? kNoWindow : components_.window(v);
       }
+      if (window == kNoWindow && is_carried(clause)) window = kStart;
       if (window == kNoWindow && !clause.empty()) {
         out_.has_unplaced = true;
         continue;
@@ -276,6 +309,27 @@ class Splitter {
     group(std::move(windows));
   }
 
+  /// Are all of its open variables carried?
+  bool is_carried(std::span<const Literal> clause) const {
+    std::size_t open = 0, carried = 0;
+    for (const auto literal : clause) {
+      if (is_fixed(literal) && fixed_value(literal) != 0) continue;
+      ++open;
+      if (is_fixed(literal)) carried += carried_.count(static_cast<std::size_t>(literal.var()) - 1);
+    }
+    return open > 0 && open == carried;
+  }
+
+  /// No step changes what is carried.
+  void keep_carried(WindowClauses& step) const {
+    for (std::uint32_t k = 0; k < carried_.size(); ++k) {
+      const auto before = static_cast<std::int32_t>(model_.state_slots + k + 1);
+      const auto after = before + static_cast<std::int32_t>(out_.state_slots);
+      step.clauses.push_back({-before, after});
+      step.clauses.push_back({-after, before});
+    }
+  }
+
   void write(std::span<const Literal> clause, std::int64_t window, WindowClauses& target,
              std::map<std::int32_t, std::int32_t>& locals) const {
     auto& written = target.clauses.emplace_back();
@@ -290,7 +344,10 @@ class Splitter {
   std::int32_t local(Literal literal, std::int64_t window, WindowClauses& target,
                      std::map<std::int32_t, std::int32_t>& locals) const {
     std::int32_t v = 0;
-    if (is_fixed(literal)) {
+    const auto fixed = static_cast<std::size_t>(literal.var()) - 1;
+    if (is_fixed(literal) && carried_.contains(fixed)) {
+      v = static_cast<std::int32_t>(model_.state_slots + carried_.at(fixed) + 1);
+    } else if (is_fixed(literal)) {
       const auto [entry, added] = locals.try_emplace(literal.var(), target.variables + 1);
       if (added) ++target.variables;
       v = entry->second;
@@ -298,8 +355,8 @@ class Splitter {
       const auto place = literal.var() - model_.base() - 1;
       const auto slot = place % model_.stride();
       const auto slots = static_cast<std::int32_t>(out_.state_slots);
-      if (slot >= slots) {
-        v = slots + slot + 1;
+      if (slot >= static_cast<std::int32_t>(model_.state_slots)) {
+        v = slots + slot + static_cast<std::int32_t>(carried_.size()) + 1;
       } else {
         const bool after = window != kStart && place / model_.stride() != window;
         v = slot + 1 + (after ? slots : 0);
@@ -324,6 +381,7 @@ class Splitter {
 
   void find_hidden() {
     const auto slots = out_.state_slots;
+    const auto own = model_.state_slots;
     std::vector<bool> before(slots, false), after(slots, false);
     const auto note = [&](const WindowClauses& window, bool is_start) {
       for (const auto& clause : window.clauses) {
@@ -338,7 +396,8 @@ class Splitter {
     for (const auto& step : out_.steps) note(step, false);
     std::vector<bool> seen(slots, false);
     for (const auto slot : out_.observed) seen[slot] = true;
-    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+    for (std::uint32_t slot = own; slot < slots; ++slot) out_.hidden.push_back(slot);
+    for (std::uint32_t slot = 0; slot < own; ++slot) {
       if (seen[slot] || copied_[slot]) continue;
       if (before[slot] && after[slot]) {
         out_.hidden.push_back(slot);
@@ -352,8 +411,12 @@ class Splitter {
   const CompiledModel& model_;
   Distinct distinct_;
   std::vector<std::int8_t> values_;
+  FixedTies ties_;
   Components components_;
-  std::vector<bool> copied_;  // by state slot
+  std::map<std::size_t, std::uint32_t>
+      carried_;                    // by fixed variable - 1: which state slot of these
+  std::vector<std::size_t> tied_;  // the variable at which a clause could not be placed
+  std::vector<bool> copied_;       // by state slot
   LayeredModel out_;
   std::string reason_;
 };
@@ -361,14 +424,14 @@ class Splitter {
 }  // namespace
 
 std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model,
-                                                           Distinct distinct) {
-  return Splitter(model, distinct, unit_values(model)).run();
+                                                           Distinct distinct, FixedTies ties) {
+  return Splitter(model, distinct, unit_values(model), ties).run();
 }
 
 std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model,
                                                            Distinct distinct,
                                                            std::vector<std::int8_t> values) {
-  return Splitter(model, distinct, std::move(values)).run();
+  return Splitter(model, distinct, std::move(values), FixedTies::kRefused).run();
 }
 
 }  // namespace parallax::runtime

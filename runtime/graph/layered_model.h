@@ -48,12 +48,23 @@ struct LayeredModel {
   bool has_unplaced = false;
 };
 
+/// What happens to variables without a timepoint that tie far windows together.
+enum class FixedTies : std::uint8_t {
+  kRefused,
+  /// Each becomes a hidden slot of every state, behind those of the model, that no step changes;
+  /// the step slots move up. At most kMostCarried.
+  kCarried,
+};
+inline constexpr std::size_t kMostCarried = 64;
+
 /// Splits the model into windows, or says why it cannot be split: "a clause of FILE:LINE spans
 /// timepoints 0 to 3". Fixed variables with a value of their own are replaced by it. Linear in the
-/// clauses. `values`, as of unit_values, are those that fixed variables have; without them what
-/// unit propagation over the whole horizon finds.
+/// clauses, for each time that further variables have to be carried. `values`, as of unit_values,
+/// are those that fixed variables have; without them what unit propagation over the whole horizon
+/// finds.
 std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model,
-                                                           Distinct distinct);
+                                                           Distinct distinct,
+                                                           FixedTies ties = FixedTies::kRefused);
 std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model,
                                                            Distinct distinct,
                                                            std::vector<std::int8_t> values);

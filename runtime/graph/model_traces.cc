@@ -80,7 +80,7 @@ void ModelTraces::use_graph(const GraphLimits& limits) {
   remark_.clear();
   is_tried_ = true;
   if (graph_.layered == nullptr) {
-    auto split = split_into_windows(model_, query_.distinct);
+    auto split = split_into_windows(model_, query_.distinct, FixedTies::kCarried);
     if (auto* layered = std::get_if<LayeredModel>(&split)) {
       graph_.layered = std::make_unique<LayeredModel>(std::move(*layered));
     } else {

@@ -82,7 +82,7 @@ class PathLister {
 };
 
 struct Seen {
-  std::size_t graphs = 0, traces = 0, undetermined = 0, nonlocal = 0;
+  std::size_t graphs = 0, traces = 0, undetermined = 0, nonlocal = 0, carried = 0;
 };
 
 void compare(const std::string& text, Seen& seen) {
@@ -92,11 +92,14 @@ void compare(const std::string& text, Seen& seen) {
   const auto wanted = blocking_traces(model.compiled, kLimit);
   if (wanted.empty() || wanted.size() == kLimit) return;
   CAPTURE(text);
-  const auto split = runtime::split_into_windows(model.compiled, runtime::Distinct::kObservable);
+  auto split = runtime::split_into_windows(model.compiled, runtime::Distinct::kObservable);
   if (!std::holds_alternative<runtime::LayeredModel>(split)) {
     ++seen.nonlocal;
     CHECK_FALSE(std::get<std::string>(split).empty());
-    return;
+    split = runtime::split_into_windows(model.compiled, runtime::Distinct::kObservable,
+                                        runtime::FixedTies::kCarried);
+    if (!std::holds_alternative<runtime::LayeredModel>(split)) return;
+    ++seen.carried;
   }
   std::string reason;
   const auto graph =
@@ -111,6 +114,26 @@ void compare(const std::string& text, Seen& seen) {
 
 }  // namespace
 
+TEST_CASE("a predicate that ties all timepoints together is carried from state to state") {
+  Seen seen;
+  // With one value of `P` each event is free, with the other it is not; `Q` and `P` exclude each
+  // other.
+  compare(
+      "predicate P()\npredicate Q()\nevent D()\nfluent F()\n"
+      "[time] P() -> Happens(D(),time).\n[time] Q() -> !Happens(D(),time).\n"
+      "P() | Q().\nHoldsAt(F(),0).\nrange time 0 6\n",
+      seen);
+  compare(
+      "sort s\ns A, B, C\npredicate P(s)\nevent D(s)\nfluent F(s)\n"
+      "[s,time] P(s) -> Initiates(D(s),F(s),time).\n[s] !HoldsAt(F(s),0).\n"
+      "[s1,s2] P(s1) & P(s2) -> s1=s2.\n[s1,s2,time] Happens(D(s1),time) & "
+      "Happens(D(s2),time) -> s1=s2.\nrange time 0 3\n",
+      seen);
+  CHECK(seen.graphs == 2);
+  CHECK(seen.carried == 2);
+  CHECK(seen.undetermined == 2);
+}
+
 TEST_CASE("the paths of the graph are the traces, in the same order") {
   Seen seen;
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
@@ -122,6 +145,7 @@ TEST_CASE("the paths of the graph are the traces, in the same order") {
   CHECK(seen.traces > 3000);
   CHECK(seen.undetermined > 5);
   CHECK(seen.nonlocal > 5);
+  CHECK(seen.carried > 5);
 }
 
 TEST_CASE("counts are exact beyond 64 bits") {
