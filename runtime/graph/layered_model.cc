@@ -55,7 +55,7 @@ class Splitter {
         distinct_(distinct),
         values_(std::move(values)),
         ties_(ties),
-        components_(static_cast<std::size_t>(model.base())) {}
+        components_(fixed_count()) {}
 
   std::variant<LayeredModel, std::string> run() && {
     out_.horizon = model_.horizon;
@@ -97,17 +97,18 @@ class Splitter {
     if (ties_ == FixedTies::kRefused || tied_.empty()) return false;
     std::vector<std::size_t> roots;
     for (const auto v : tied_) roots.push_back(components_.find(v));
-    for (std::size_t v = 0; v < values_.size(); ++v) {
+    for (std::size_t v = 0; v < fixed_count(); ++v) {
       if (std::find(roots.begin(), roots.end(), components_.find(v)) == roots.end()) continue;
       if (carried_.size() == kMostCarried) return false;
       carried_.emplace(v, static_cast<std::uint32_t>(carried_.size()));
     }
     tied_.clear();
     reason_.clear();
-    components_ = Components(values_.size());
+    components_ = Components(fixed_count());
     return true;
   }
 
+  std::size_t fixed_count() const { return static_cast<std::size_t>(model_.base()); }
   bool is_fixed(Literal literal) const { return literal.var() <= model_.base(); }
   std::int8_t fixed_value(Literal literal) const {
     const auto value = values_[static_cast<std::size_t>(literal.var()) - 1];

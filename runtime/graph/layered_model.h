@@ -55,7 +55,7 @@ enum class FixedTies : std::uint8_t {
   /// the step slots move up. At most kMostCarried.
   kCarried,
 };
-inline constexpr std::size_t kMostCarried = 64;
+inline constexpr std::size_t kMostCarried = 12;
 
 /// Splits the model into windows, or says why it cannot be split: "a clause of FILE:LINE spans
 /// timepoints 0 to 3". Fixed variables with a value of their own are replaced by it. Linear in the

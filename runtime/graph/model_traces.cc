@@ -184,6 +184,8 @@ TraceCount count_traces(const CompiledModel& model, const TraceQuery& query) {
       result.count = graph->count();
       result.complete = true;
       result.stats = traces.stats();
+      result.stats.strategy = "graph";  // it may count what it cannot list
+      result.stats.remark.clear();
       return result;
     }
     if (stopped() || !traces.next()) break;
