@@ -77,6 +77,16 @@ class PlanSource final : public ActionSource {
   double simulated_s_ = 0.0;
 };
 
+/// An execution ended so; a plan that does not know what became of a perform has been refused.
+void end_as(SimStatus status, SampleRecord& record) {
+  record.status = sample_status(status);
+  const auto end = record.path->end;
+  const bool is_error = end == PathEnd::kUnboundReason || end == PathEnd::kUnnamedObject;
+  if (record.status != SampleStatus::kOk || !is_error) return;
+  record.status = SampleStatus::kRefused;
+  record.reason = reason_word(record.outcomes.back());
+}
+
 /// The same, wherever the plan's file lies.
 bool is_same(const PathStep& a, const PathStep& b) {
   return a.step == b.step && a.event == b.event && a.call == b.call && a.succeeded == b.succeeded &&
@@ -189,17 +199,30 @@ std::optional<SampleRecord> LoopSamples::make_from(std::int64_t sample,
     record.seed = simulator_seed(key);
     const auto status = simulate_start(actions, repeats_losses_, simulator, record, abandoned);
     if (!status) return std::nullopt;
-    record.status = sample_status(*status);
-    const auto end = record.path->end;
-    const bool is_error = end == PathEnd::kUnboundReason || end == PathEnd::kUnnamedObject;
-    if (record.status == SampleStatus::kOk && is_error) {
-      record.status = SampleStatus::kRefused;
-      record.reason = reason_word(record.outcomes.back());
-    }
+    end_as(*status, record);
     if (record.status != SampleStatus::kRejected) return record;
     if (++record.rejected >= scenario_.limits.max_rejected_starts) return record;
     if (abandoned()) return std::nullopt;
   }
+}
+
+std::optional<SampleRecord> LoopSamples::make_at(const SampleRecord& like, std::int64_t sample,
+                                                 State start, Simulator& simulator,
+                                                 const std::function<bool()>& abandoned) const {
+  SampleRecord record;
+  record.trace = 1;
+  record.sample = sample;
+  record.searched = true;
+  record.path.emplace();
+  record.path->start = like.path->start;
+  record.initial = std::move(start);
+  record.seed = like.seed;
+  const auto choices = choices_key(campaign_seed_, like.sample);
+  PlanSource actions(scenario_, plan_, choices, {max_performs_, scenario_.limits.max_simulated_s});
+  const auto status = simulate_start(actions, repeats_losses_, simulator, record, abandoned);
+  if (!status) return std::nullopt;
+  end_as(*status, record);
+  return record;
 }
 
 std::optional<SampleRecord> LoopSamples::repeat(const SampleRecord& record, Simulator& simulator,

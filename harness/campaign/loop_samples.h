@@ -59,6 +59,11 @@ class LoopSamples final : public SampleMaker {
                                         const std::optional<GuidedStart>& guided,
                                         Simulator& simulator,
                                         const std::function<bool()>& abandoned) const;
+  /// The execution of `like`, with its seed and what the plan leaves open, from another start of
+  /// its initial state. An invalid one is not replaced.
+  std::optional<SampleRecord> make_at(const SampleRecord& like, std::int64_t sample, State start,
+                                      Simulator& simulator,
+                                      const std::function<bool()>& abandoned) const;
   /// The recorded actions, one after the other; the plan is not asked again.
   std::optional<SampleRecord> repeat(const SampleRecord& record, Simulator& simulator,
                                      const std::function<bool()>& abandoned) const override;

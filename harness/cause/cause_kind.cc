@@ -62,6 +62,61 @@ void weigh_persistence(std::optional<Persistence> other_seeds, std::optional<Per
   }
 }
 
+namespace {
+
+/// The part of the start region that borders of a failing start say, with the runs in it.
+std::optional<FailureRule> rule_of_borders(const std::vector<CauseBorder>& borders,
+                                           const std::vector<CauseRun>& runs,
+                                           const std::vector<std::string>& parameters) {
+  constexpr std::size_t kMost = 2;  // as of rules that runs show
+  if (borders.size() > kMost) return std::nullopt;
+  FailureRule out;
+  out.by_moving = true;
+  for (const auto& border : borders) {
+    const auto found = std::find(parameters.begin(), parameters.end(), border.parameter);
+    if (found == parameters.end()) return std::nullopt;
+    out.borders.push_back(
+        {static_cast<std::size_t>(found - parameters.begin()),
+         round_between(std::min(border.fails, border.other), std::max(border.fails, border.other)),
+         border.fails > border.other});
+  }
+  for (const auto& run : runs) {
+    const bool inside = std::all_of(out.borders.begin(), out.borders.end(),
+                                    [&](const auto& border) { return border.holds(run); });
+    ++(run.failed ? out.failures : out.clean);
+    if (inside) ++(run.failed ? out.failures_inside : out.clean_inside);
+  }
+  return out;
+}
+
+/// "Moved towards the middle of its cell, ...": what moving a failing start has shown.
+std::string border_sentence(const CauseFinding& finding) {
+  std::string out;
+  for (const auto& border : finding.borders) {
+    const auto apart = std::abs(border.fails - border.other);
+    const auto digits = apart > 0.0 ? std::ceil(-std::log10(apart)) + 1.0 : 16.0;
+    const auto value = [&](double number) {
+      return digits > 15.0
+                 ? fmt::format("{}", number)
+                 : fmt::format("{:.{}f}", number, static_cast<int>(std::max(0.0, digits)));
+    };
+    out += fmt::format("{}`{}`, with which it happens at {} and not at {}",
+                       out.empty() ? " From a failing start it takes " : "; ", border.parameter,
+                       value(border.fails), value(border.other));
+  }
+  return out.empty() ? out : out + ".";
+}
+
+}  // namespace
+
+void weigh_borders(const std::vector<CauseBorder>& borders, const std::vector<CauseRun>& runs,
+                   const std::vector<std::string>& parameters, CauseFinding& finding) {
+  finding.borders = borders;
+  if (borders.empty() || finding.kind != CauseKind::kUnknown) return;
+  finding.kind = CauseKind::kRegion;
+  finding.rule = rule_of_borders(borders, runs, parameters);
+}
+
 std::string_view to_string(CauseKind kind) {
   static constexpr std::string_view kWords[] = {"unknown", "always", "region", "random",
                                                 "simulator"};
@@ -111,7 +166,17 @@ std::string kind_words(const CauseFinding& finding, const std::vector<std::strin
       return out + fmt::format("It happens always, in each of {} of this trace: an axiom is wrong.",
                                runs_text(finding.runs));
     case CauseKind::kRegion: {
+      if (!finding.rule) return out + "It depends on the start, and the region is too coarse.";
       const auto& rule = *finding.rule;
+      if (rule.by_moving) {
+        return out +
+               fmt::format(
+                   "It depends on the start, and the region is too coarse: {} failures ({} of {}) "
+                   "have {}, and {} clean runs ({} of {}).",
+                   share(rule.failures_inside, rule.failures), rule.failures_inside, rule.failures,
+                   rule_text(rule.borders, parameters), share(rule.clean_inside, rule.clean),
+                   rule.clean_inside, rule.clean);
+      }
       return out + fmt::format(
                        "It depends on the start, and the region is too coarse: {} failures "
                        "({} of {}) have {}, and {} clean runs ({} of {}); cross-validated "
@@ -153,7 +218,7 @@ std::string kind_words(const CauseFinding& finding, const std::vector<std::strin
 }  // namespace
 
 std::string cause_words(const CauseFinding& finding, const std::vector<std::string>& parameters) {
-  return kind_words(finding, parameters) + persistence_words(finding);
+  return kind_words(finding, parameters) + border_sentence(finding) + persistence_words(finding);
 }
 
 }  // namespace parallax::harness

@@ -27,6 +27,12 @@ struct Persistence {
   bool in_most() const { return 2 * failures >= runs; }
 };
 
+/// Where a failing start, moved along one parameter, stops failing: both values were simulated.
+struct CauseBorder {
+  std::string parameter;
+  double fails = 0.0, other = 0.0;
+};
+
 struct CauseFinding {
   CauseKind kind = CauseKind::kUnknown;
   std::int64_t runs = 0, failures = 0;
@@ -35,6 +41,8 @@ struct CauseFinding {
   std::optional<FailureRule> rule;
   /// From a failing start, with other seeds of the simulator, and with half its step.
   std::optional<Persistence> other_seeds, half_step;
+  /// Of a failing start that was moved: each of these, alone, ends it.
+  std::vector<CauseBorder> borders;
 };
 
 /// `is_model`: the world is a model, so that what differs from one start is its open outcome.
@@ -44,6 +52,12 @@ CauseFinding tell_cause(const std::vector<CauseRun>& runs, bool is_model);
 /// else and it does not in most of either kind, the simulator is in doubt.
 void weigh_persistence(std::optional<Persistence> other_seeds, std::optional<Persistence> half_step,
                        CauseFinding& finding);
+
+/// Takes into account where a failing start that was moved stops failing (shrink_start): if the
+/// runs tell nothing else, it is the region, and one or two borders, of parameters that the runs
+/// have, are its rule.
+void weigh_borders(const std::vector<CauseBorder>& borders, const std::vector<CauseRun>& runs,
+                   const std::vector<std::string>& parameters, CauseFinding& finding);
 
 /// "`milk1.mass` > 0.98 and `robot.x` <= 0.7"
 std::string rule_text(const std::vector<Border>& borders,

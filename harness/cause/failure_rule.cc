@@ -32,16 +32,6 @@ struct Weights {
   double of(const CauseRun& run) const { return run.failed ? failed : clean; }
 };
 
-/// The number with the fewest digits from `lower` (included) to `upper` (not).
-double round_between(double lower, double upper) {
-  for (int digits = 1; digits < 17; ++digits) {
-    const auto middle = lower + (upper - lower) / 2;
-    const double candidate = std::strtod(fmt::format("{:.{}g}", middle, digits).c_str(), nullptr);
-    if (lower <= candidate && candidate < upper) return candidate;
-  }
-  return lower;
-}
-
 /// The weight of both kinds among some runs.
 struct Mass {
   double failed = 0.0, clean = 0.0;
@@ -55,6 +45,19 @@ struct Mass {
 
 /// Differences below this are those of the order in which weights were added.
 constexpr double kSame = 1e-9;
+
+}  // namespace
+
+double round_between(double lower, double upper) {
+  for (int digits = 1; digits < 17; ++digits) {
+    const auto middle = lower + (upper - lower) / 2;
+    const double candidate = std::strtod(fmt::format("{:.{}g}", middle, digits).c_str(), nullptr);
+    if (lower <= candidate && candidate < upper) return candidate;
+  }
+  return lower;
+}
+
+namespace {
 
 class TreeSearch {
  public:

@@ -54,7 +54,12 @@ struct FailureRule {
   /// Of the tree on runs it was not made from (ten parts, each left out once): the mean of the
   /// shares of failed and of clean runs that it foretells.
   double accuracy = 0.0;
+  /// The borders are those of a failing start that was moved; no accuracy is known.
+  bool by_moving = false;
 };
+
+/// The number with the fewest digits from `lower` (included) to `upper` (not).
+double round_between(double lower, double upper);
 
 /// None where the runs do not show one: fewer than five of a kind, a border that luck finds as well
 /// (a permutation test with the level 0.001), or an accuracy of less than 0.6.

@@ -291,6 +291,7 @@ class Summary {
     if (!result_.discrepancies.empty()) {
       const auto& found = result_.discrepancies.front();
       commands.push_back(replay_command(result_.replay_folder, found));
+      commands.push_back(fmt::format("parallax confirm {}", folder));
       commands.push_back(fmt::format("parallax explain {}", folder));
       commands.push_back(fmt::format("parallax repair {}", folder));
     } else if (result_.interrupted && !result_.failed) {

@@ -4,7 +4,8 @@
 #include <set>
 #include <utility>
 
-#include "runtime/session/solver_session.h"
+#include "tools/app/bearing.h"
+#include "tools/app/kept_borders.h"
 
 namespace parallax::tools {
 namespace {
@@ -34,59 +35,11 @@ std::vector<std::string> varying_parameters(const std::vector<const harness::Sta
   return out;
 }
 
-/// The journal as it was before its first simulation.
-harness::JournalText without_samples(const harness::JournalText& journal) {
-  harness::JournalText out;
-  out.header = journal.header;
-  out.traces = journal.traces;
-  out.trace_places = journal.trace_places;
-  return out;
-}
-
-/// How a simulation bears on a discrepancy.
-enum class Bearing : std::uint8_t { kSame, kClean, kOther };
-
-class EvidenceReader {
- public:
-  EvidenceReader(const RecordedDiscrepancy& found, Context& context)
-      : found_(found),
-        model_(found.loaded.compilation.model),
-        facts_(model_),
-        session_(model_, runtime::make_cadical_solver(&context.stop())) {}
-
-  Bearing bearing(const ObservedPath& path) {
-    const auto after = found_.parting->after;
-    if (path.steps.size() < after || !goes_the_same_way(path, after)) return Bearing::kOther;
-    const auto here = parting_of(path, facts_, session_);
-    if (here.undecided) return Bearing::kOther;
-    if (!here.after || *here.after > after) return Bearing::kClean;
-    if (*here.after < after) return Bearing::kOther;
-    const auto& differences = found_.parting->differences;
-    if (differences.empty() || differences.front().neither) return Bearing::kSame;
-    const auto& first = differences.front();
-    const auto seen = path.states[after].find(first.fluent);
-    const bool same = seen != path.states[after].end() && seen->second == first.observed;
-    return same ? Bearing::kSame : Bearing::kOther;
-  }
-
- private:
-  bool goes_the_same_way(const ObservedPath& path, std::size_t after) const {
-    for (std::size_t t = 0; t < after; ++t) {
-      if (path.steps[t].event != found_.path.steps[t].event) return false;
-    }
-    return true;
-  }
-
-  const RecordedDiscrepancy& found_;
-  const compiler::CompiledModel& model_;
-  PathFacts facts_;
-  runtime::SolverSession session_;
-};
-
 }  // namespace
 
 CauseEvidence cause_of(const std::vector<const harness::State*>& starts,
-                       const std::vector<bool>& failed, bool world_is_model) {
+                       const std::vector<bool>& failed, bool world_is_model,
+                       const std::vector<harness::CauseBorder>& borders) {
   CauseEvidence out;
   out.parameters = varying_parameters(starts);
   std::vector<harness::CauseRun> runs;
@@ -98,35 +51,27 @@ CauseEvidence cause_of(const std::vector<const harness::State*>& starts,
     }
   }
   out.finding = harness::tell_cause(runs, world_is_model);
+  harness::weigh_borders(borders, runs, out.parameters, out.finding);
   return out;
 }
 
 base::Result<harness::Persistence> count_failures(const RecordedDiscrepancy& found,
                                                   const std::vector<harness::SampleRecord>& records,
                                                   Context& context) {
-  const harness::SampleId id = found.path.id;
-  const harness::SampleKey known(id.trace, id.sample, harness::DrawPhase::kCertify);
-  auto journal = without_samples(found.journal);
-  for (const auto& record : records) {
-    const harness::SampleKey key(record.trace, record.sample, record.phase);
-    journal.places[key] = found.journal.places.at(known);
-    journal.samples.emplace(key, record);
-  }
-  EvidenceReader reader(found, context);
+  BearingReader reader(found, context);
   harness::Persistence out;
   for (const auto& record : records) {
-    const auto path = observed_path(
-        found.loaded, harness::recorded_run(journal, {record.trace, record.sample}), context);
-    if (!path) return context.sink().already_reported();
-    const auto how = reader.bearing(*path);
-    if (how == Bearing::kOther) continue;
+    const auto how = reader.bearing(record);
+    if (!how) return context.sink().already_reported();
+    if (*how == Bearing::kOther) continue;
     ++out.runs;
-    out.failures += how == Bearing::kSame ? 1 : 0;
+    out.failures += *how == Bearing::kSame ? 1 : 0;
   }
   return out;
 }
 
-base::Result<CauseEvidence> gather_evidence(const RecordedDiscrepancy& found,
+base::Result<CauseEvidence> gather_evidence(const std::string& run_dir,
+                                            const RecordedDiscrepancy& found,
                                             const std::vector<harness::SampleRecord>& further,
                                             Context& context) {
   const harness::SampleId id = found.path.id;
@@ -146,7 +91,7 @@ base::Result<CauseEvidence> gather_evidence(const RecordedDiscrepancy& found,
   }
   const auto paths = observed_paths(found.loaded, journal, context);
   if (!paths) return context.sink().already_reported();
-  EvidenceReader reader(found, context);
+  BearingReader reader(found, context);
   std::vector<const harness::State*> bearing;
   std::vector<bool> failed;
   for (const auto& path : *paths) {
@@ -162,7 +107,8 @@ base::Result<CauseEvidence> gather_evidence(const RecordedDiscrepancy& found,
     out.not_made = "stopped before those on record were looked at";
     return out;
   }
-  auto told = cause_of(bearing, failed, found.loaded.world != nullptr);
+  auto told = cause_of(bearing, failed, found.loaded.world != nullptr,
+                       kept_borders(run_dir, id, found.path.start));
   out.parameters = std::move(told.parameters);
   out.finding = std::move(told.finding);
   return out;

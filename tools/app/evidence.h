@@ -29,11 +29,14 @@ struct CauseEvidence {
 
 /// What the starts of simulations of one trace say of why some of them failed.
 CauseEvidence cause_of(const std::vector<const harness::State*>& starts,
-                       const std::vector<bool>& failed, bool world_is_model);
+                       const std::vector<bool>& failed, bool world_is_model,
+                       const std::vector<harness::CauseBorder>& borders = {});
 
 /// Those of the journal (and `further`, of the same trace) that get as far as the discrepancy: does
-/// it happen there again? Reports as observed_paths does.
-base::Result<CauseEvidence> gather_evidence(const RecordedDiscrepancy& found,
+/// it happen there again? What `confirm` has found in `run_dir` is taken into account. Reports as
+/// observed_paths does.
+base::Result<CauseEvidence> gather_evidence(const std::string& run_dir,
+                                            const RecordedDiscrepancy& found,
                                             const std::vector<harness::SampleRecord>& further,
                                             Context& context);
 
@@ -49,6 +52,8 @@ struct FurtherRunsOptions {
   std::int64_t enough = 10;  // until so many have failed, and as many or none at all have not
   std::int64_t jobs = 1;
   std::function<void(const harness::CampaignProgress&)> progress;
+  std::int64_t repeats = 5;    // of the failing start, of either kind (same_start_runs)
+  bool without_seeds = false;  // also where the simulator takes no seeds and is not deterministic
 };
 
 /// Do so many failed and clean runs say enough?
@@ -75,15 +80,15 @@ base::Result<std::vector<harness::SampleRecord>> further_executions(
     const harness::SimulatorFactory& make_simulator, const FurtherRunsOptions& options,
     Context& context);
 
-/// Simulates the discrepancy's own start and actions again, kSameStartRuns times each with other
-/// seeds and with the simulator of half the step (null: there is none), and records that in
+/// Simulates the discrepancy's own start and actions again, `repeats` times each with other seeds
+/// and with the simulator of half the step (null: there is none), and records that in
 /// RUN_DIR/same_start and RUN_DIR/half_step. Of an executed plan the actions up to where it went
 /// wrong. Reports as further_runs does.
-inline constexpr std::int64_t kSameStartRuns = 5;
 inline constexpr const char* kOtherSeeds = "same_start";
 inline constexpr const char* kHalfStep = "half_step";
 struct SameStart {
   std::optional<harness::Persistence> other_seeds, half_step;
+  bool has_seeds = true;  // the simulator takes them
 };
 base::Result<SameStart> same_start_runs(const std::string& run_dir,
                                         const RecordedDiscrepancy& found,

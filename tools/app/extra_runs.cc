@@ -23,8 +23,13 @@ base::Result<std::unique_ptr<ExtraRuns>> ExtraRuns::open(
     const harness::SimulatorFactory& make_simulator, const ExtraRunsOptions& options,
     Context& context) {
   auto& sink = context.sink();
-  auto claimed =
-      harness::RunFolder::claim(std::filesystem::path(folder.run_dir) / folder.name, true, sink);
+  const auto place = std::filesystem::path(folder.run_dir) / folder.name;
+  std::error_code ignored;
+  if (std::filesystem::is_symlink(place, ignored)) {
+    return sink.error_about(codes::kFileNotWritable, place.string(),
+                            "it is a link, which may lead out of the run folder");
+  }
+  auto claimed = harness::RunFolder::claim(place, true, sink);
   if (!claimed) return sink.already_reported();
   auto recorded = harness::read_for_continuation(*claimed, folder.header, context.files(), sink);
   if (!recorded) return sink.already_reported();
@@ -95,7 +100,7 @@ base::Result<bool> ExtraRuns::make(const Stream& stream, std::int64_t first, std
   for (const auto sample : missing) {
     auto record = bench_->pool().wait(sample, DrawPhase::kCertify);
     if (!record) return false;
-    const auto kept = keep(*std::move(record), *stream.start);
+    const auto kept = keep(*std::move(record), stream);
     if (!kept || !*kept) {
       bench_->pool().abandon();
       return kept;
@@ -111,10 +116,16 @@ base::Result<bool> ExtraRuns::make(const Stream& stream, std::int64_t first, std
   return true;
 }
 
-base::Result<bool> ExtraRuns::keep(SampleRecord record, const harness::CampaignTrace& start) {
+base::Result<bool> ExtraRuns::keep(SampleRecord record, const Stream& stream) {
+  const auto& start = *stream.start;
   auto& sink = context_.sink();
   const auto in = fmt::format("in simulation {}.{}", record.trace, record.sample);
   rejected_ = record.status == SampleStatus::kRejected;
+  if (rejected_ && stream.chosen) {
+    samples_.emplace(harness::SampleKey(record.trace, record.sample, record.phase),
+                     std::move(record));
+    return true;
+  }
   if (rejected_) {
     return report_rejected(scenario(), start, record.rejected, record.sample, record.reason, sink);
   }
@@ -132,7 +143,7 @@ base::Result<bool> ExtraRuns::keep(SampleRecord record, const harness::CampaignT
   }
   const auto first =
       harness::judge(*scenario().mapping, bench_->fluents(), start, {record.observations.front()});
-  if (first.missing.empty() && first.first_divergence) {
+  if (first.missing.empty() && first.first_divergence && !stream.chosen) {
     return report_other_start(scenario(), record, first.first.front(), sink);
   }
   bench_->end_row_of_losses();
@@ -146,7 +157,9 @@ base::Status ExtraRuns::close() {
   std::vector<harness::TraceLine> lines;
   for (const auto& [number, line] : traces_) lines.push_back(line);
   std::vector<SampleRecord> records;
-  for (const auto& [key, record] : samples_) records.push_back(record);
+  for (const auto& [key, record] : samples_) {
+    if (record.status != SampleStatus::kRejected) records.push_back(record);  // it is no result
+  }
   return journal_->rewrite(lines, std::move(records), context_.sink());
 }
 

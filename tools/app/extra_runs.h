@@ -59,6 +59,8 @@ class ExtraRuns {
     std::shared_ptr<const harness::SampleMaker> maker;
     /// In which the sample has to begin: one timepoint without events, by in_symbols.
     std::shared_ptr<const harness::CampaignTrace> start;
+    /// Its starts were chosen: one that is not valid, or begins elsewhere, is no error.
+    bool chosen = false;
   };
   /// Makes those of the samples that are not on record. False if it was stopped, or the simulator
   /// was lost too often, which was reported. Reports starts and actions that the simulator does not
@@ -75,7 +77,7 @@ class ExtraRuns {
         options_(options),
         context_(context),
         symbols_(std::make_shared<const compiler::SymbolTable>(as_run.compilation.model)) {}
-  base::Result<bool> keep(harness::SampleRecord record, const harness::CampaignTrace& start);
+  base::Result<bool> keep(harness::SampleRecord record, const Stream& stream);
 
   const ScenarioModel& as_run_;
   const ExtraRunsOptions& options_;

@@ -80,7 +80,7 @@ base::Result<SameStart> same_start_runs(const std::string& run_dir,
                                         const FurtherRunsOptions& options, Context& context) {
   auto& sink = context.sink();
   SameStart out;
-  const ExtraRunsOptions extra{options.jobs, kSameStartRuns, options.progress};
+  const ExtraRunsOptions extra{options.jobs, options.repeats, options.progress};
   const auto again = [&](const char* folder, const harness::SimulatorFactory& simulator,
                          std::optional<harness::Persistence>& seen) -> base::Status {
     auto runs = ExtraRuns::open({run_dir, folder, *found.journal.header}, as_run, simulator, extra,
@@ -88,7 +88,9 @@ base::Result<SameStart> same_start_runs(const std::string& run_dir,
     if (!runs) return sink.already_reported();
     if (*runs == nullptr) return base::Unit{};
     const auto& info = (*runs)->bench().simulator();
-    if (!info.seeds && folder == std::string_view(kOtherSeeds)) return base::Unit{};
+    out.has_seeds = info.seeds;
+    const bool draws_anew = options.without_seeds && info.determinism != "bitwise";
+    if (!info.seeds && !draws_anew && folder == std::string_view(kOtherSeeds)) return base::Unit{};
     std::vector<harness::ActionCall> calls;
     auto record = failing_record(found, calls);
     // The state that the trace, or the execution, begins in, as the simulator shows it.
@@ -110,10 +112,11 @@ base::Result<SameStart> same_start_runs(const std::string& run_dir,
     const bool executed = found.path.executed;
     const auto made = (*runs)->make({executed ? nullptr : &line->second, maker,
                                      std::make_shared<const harness::CampaignTrace>(start)},
-                                    1, kSameStartRuns);
+                                    1, options.repeats);
     if (!made) return sink.already_reported();
     std::vector<SampleRecord> records;
     for (const auto& [key, one] : (*runs)->samples()) {
+      if (one.sample > options.repeats) continue;  // an earlier call made more
       if (one.status == harness::SampleStatus::kOk) records.push_back(one);
     }
     if (!context.stopped() && !(*runs)->close()) return sink.already_reported();

@@ -83,6 +83,8 @@ Command replay_command();
 Command report_command();
 Command bisect_command();
 Command check_command();
+Command confirm_command();
+Command threshold_command();
 Command coverage_command();
 Command compile_command();
 Command consequences_command();

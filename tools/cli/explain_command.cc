@@ -113,14 +113,9 @@ base::Result<std::vector<harness::SampleRecord>> make_further_runs(const Explain
           ? further_executions(folder.folder, found, *loaded, *simulator, further, invocation)
           : further_runs(folder.folder, found, *loaded, *simulator, further, invocation);
   if (made && loaded->world == nullptr && !persistence.other_seeds && !invocation.stopped()) {
-    harness::SimulatorFactory half_step;
-    if (loaded->scenario.simulator.command.empty()) {
-      std::vector<std::string> worker = {"/proc/self/exe", "worker", "--half-step"};
-      if (invocation.form().allow_outside) worker.emplace_back("--allow-outside");
-      half_step = simulator_factory(*loaded, worker, stop_flag());
-    }
     const auto again =
-        same_start_runs(folder.folder, found, *loaded, *simulator, half_step, further, invocation);
+        same_start_runs(folder.folder, found, *loaded, *simulator,
+                        half_step_simulator(*loaded, invocation), further, invocation);
     if (!again) return sink.already_reported();
     persistence = *again;
   }
@@ -136,7 +131,9 @@ base::Result<CauseEvidence> with_further_runs(const ExplainOptions& options,
   const bool tells =
       on_record.kind != harness::CauseKind::kUnknown &&
       is_enough(options.further, on_record.failures, on_record.runs - on_record.failures);
-  if (tells || on_record.contradictory_starts > 0 || invocation.stopped()) return evidence;
+  if (tells || !on_record.borders.empty() || on_record.contradictory_starts > 0 ||
+      invocation.stopped())
+    return evidence;
   SameStart persistence;
   // Twice as many again, for as long as they do not tell.
   for (auto asked = options; true; asked.further.enough *= 2) {
@@ -147,7 +144,7 @@ base::Result<CauseEvidence> with_further_runs(const ExplainOptions& options,
     if (invocation.stopped()) {
       not_made = "stopped before there were enough";
     } else if (!further->empty()) {
-      auto more = gather_evidence(found, *further, invocation);
+      auto more = gather_evidence(options.model.models.front(), found, *further, invocation);
       if (!more) return more;
       evidence = *std::move(more);
     }
@@ -181,7 +178,7 @@ int explain_discrepancy(const RecordedDiscrepancy& found, const ExplainOptions& 
     invocation.result(no_contradiction_text(model, &run));
     return 0;
   }
-  const auto recorded = gather_evidence(found, {}, invocation);
+  const auto recorded = gather_evidence(all_options.model.models.front(), found, {}, invocation);
   if (!recorded) return 0;
   // Contradictory runs are told of first: then it is no axiom that has to change at once.
   const bool cause_first = recorded->finding.contradictory_starts > 0;

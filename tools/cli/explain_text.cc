@@ -217,6 +217,10 @@ std::string run_contradictions_json(const RecordedDiscrepancy& found,
   document["cause"] = to_string(finding.kind);
   document["cause_words"] = cause.words();
   if (finding.rule) document["rule"] = rule_json(*finding.rule, cause.parameters);
+  for (const auto& border : finding.borders) {
+    document["borders"].push_back(
+        {{"parameter", border.parameter}, {"fails_at", border.fails}, {"not_at", border.other}});
+  }
   document["evidence"] = {{"runs", finding.runs},
                           {"failures", finding.failures},
                           {"contradictory_starts", finding.contradictory_starts},

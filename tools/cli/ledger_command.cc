@@ -232,7 +232,7 @@ void add_blame(const NamedRun& run, const std::string& sample, const LedgerOptio
       break;
     }
   }
-  if (const auto evidence = gather_evidence(**found, {}, own)) {
+  if (const auto evidence = gather_evidence(run.folder, **found, {}, own)) {
     entry.cause = to_string(evidence->finding.kind);
   }
 }

@@ -194,6 +194,14 @@ base::Result<harness::SimulatorFactory> permitted_simulator(const ScenarioModel&
       });
 }
 
+harness::SimulatorFactory half_step_simulator(const ScenarioModel& loaded,
+                                              const Invocation& invocation) {
+  if (loaded.world != nullptr || !loaded.scenario.simulator.command.empty()) return nullptr;
+  std::vector<std::string> worker = {"/proc/self/exe", "worker", "--half-step"};
+  if (invocation.form().allow_outside) worker.emplace_back("--allow-outside");
+  return simulator_factory(loaded, worker, stop_flag());
+}
+
 void add_recorded_scenario_option(OptionTable& command, std::string& scenario) {
   command.option("--scenario", scenario,
                  "Of a run folder: where its scenario lies; default: as its journal says");

@@ -53,6 +53,11 @@ void add_command_options(OptionTable& command, CommandPermission& permission, bo
 base::Result<harness::SimulatorFactory> permitted_simulator(const ScenarioModel& loaded,
                                                             bool permitted, Invocation& invocation);
 
+/// The same with half the engine's step; null where the world is not that of the built-in
+/// simulator.
+harness::SimulatorFactory half_step_simulator(const ScenarioModel& loaded,
+                                              const Invocation& invocation);
+
 /// `--scenario` of commands that take a run folder.
 void add_recorded_scenario_option(OptionTable& command, std::string& scenario);
 

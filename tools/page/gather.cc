@@ -12,6 +12,7 @@
 #include "harness/report/text_layout.h"
 #include "tools/app/evidence.h"
 #include "tools/app/recorded_run.h"
+#include "tools/confirm/confirm.h"
 
 namespace parallax::tools {
 namespace {
@@ -82,6 +83,22 @@ void read_report(const std::string& folder, Context& context, PageData& page) {
   }
 }
 
+/// What `confirm` and `threshold` have left in the folder, of the discrepancies of the report.
+void add_findings(const harness::JournalText& journal, PageData& page) {
+  constexpr std::size_t kMost = 50;  // discrepancies that are asked about
+  for (std::size_t i = 0; i < page.discrepancies.size() && i < kMost; ++i) {
+    const auto& found = page.discrepancies[i];
+    const auto record =
+        journal.samples.find({found.trace, found.sample, harness::DrawPhase::kCertify});
+    if (record == journal.samples.end()) continue;
+    auto kept = kept_findings(page.folder, record->second);
+    PageFinding finding{sample_name(found.trace, found.sample), std::move(kept.confirmed)};
+    finding.sentences.insert(finding.sentences.end(), kept.thresholds.begin(),
+                             kept.thresholds.end());
+    if (!finding.sentences.empty()) page.findings.push_back(std::move(finding));
+  }
+}
+
 /// The scenario of the run, if it is still what it was; else a banner says what is missing.
 std::optional<ScenarioModel> scenario_of(const PageOptions& options,
                                          const harness::JournalHeader& header, Context& context,
@@ -146,6 +163,7 @@ base::Result<PageData> gather_page(const PageOptions& options, Context& context)
   if (loaded && page.closed_loop && !page.running) {
     judge_executions(*journal, *loaded, own, page);
   }
+  add_findings(*journal, page);
   add_timelines(*journal, loaded ? &*loaded : nullptr, page);
   add_motion(page);
   if (!loaded) return page;

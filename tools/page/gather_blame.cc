@@ -123,8 +123,8 @@ void add_blame(const PageOptions& options, Context& context, PageData& page) {
   }
   blame.words = blame_words(model, discrepancy.path, *discrepancy.parting, clauses);
   blame.more = consequence_words(discrepancy.path, *discrepancy.parting);
-  if (auto evidence =
-          gather_evidence(discrepancy, records_of(options.folder, kFurtherRuns), context)) {
+  if (auto evidence = gather_evidence(options.folder, discrepancy,
+                                      records_of(options.folder, kFurtherRuns), context)) {
     harness::weigh_persistence(persistence(discrepancy, options.folder, kOtherSeeds, context),
                                persistence(discrepancy, options.folder, kHalfStep, context),
                                evidence->finding);

@@ -162,6 +162,12 @@ struct PageBlame {
   bool cause_first = false;  // runs from one start contradict each other
 };
 
+/// What `confirm` or `threshold` found out of one simulation.
+struct PageFinding {
+  std::string sample;  // "2.4"
+  std::vector<std::string> sentences;
+};
+
 struct PageProposal {
   std::string words, patch;
   std::vector<std::string> facts;  // sentences
@@ -222,6 +228,7 @@ struct PageData {
   std::optional<std::pair<std::int64_t, std::int64_t>> not_recorded;  // that one would want to see
   std::optional<PageLedger> ledger;
   std::optional<PageBlame> blame;
+  std::vector<PageFinding> findings;
   std::optional<PageRule> rule;
   std::vector<PageProposal> proposals;
   bool repair_was_asked = false;

@@ -110,6 +110,18 @@ std::string blame_section(const PageData& page, const SourceLinks& links) {
         "region, is told by this command; a report made afterwards shows it:</p>\n" +
         command_box("parallax explain " + harness::shell_word(page.folder));
   }
+  for (const auto& finding : page.findings) {
+    out += "<h3>Simulation " + html_short(finding.sample) +
+           " repeated, and its start moved</h3>\n<ul>";
+    for (const auto& sentence : finding.sentences) out += "<li>" + html_words(sentence) + "</li>\n";
+    out += "</ul>\n";
+  }
+  if (!page.discrepancies.empty() && page.findings.empty()) {
+    out +=
+        "<p>Whether it happens again with other seeds and half the step, and which parameters of "
+        "the start it takes:</p>\n" +
+        command_box("parallax confirm " + harness::shell_word(page.folder));
+  }
   if (!page.proposals.empty()) out += "<h3>Proposed repairs</h3>\n";
   for (const auto& note : page.repair_notes) out += "<p>" + html_words(note) + "</p>\n";
   for (std::size_t i = 0; i < page.proposals.size(); ++i) {

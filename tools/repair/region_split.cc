@@ -14,6 +14,7 @@
 #include "compiler/repair/edit_grammar.h"
 #include "compiler/repair/start_split.h"
 #include "harness/cause/cause_kind.h"
+#include "tools/app/kept_borders.h"
 #include "tools/repair/mapping_line.h"
 
 namespace parallax::tools {
@@ -89,12 +90,13 @@ class SplitSearch {
     const auto& finding = cause.finding;
     if (finding.kind == harness::CauseKind::kUnknown) {
       out_.hints.push_back(fmt::format(
-          "Whether `{}` fails in a part of the start region cannot be told from {} runs; "
-          "`parallax explain {} --runs {}` makes more",
-          parting.step.event, finding.runs, input_.options.folder.folder,
+          "Whether `{1}` fails in a part of the start region cannot be told from {2} runs; "
+          "`parallax explain {0} --runs {3}` makes more, `parallax confirm {0}` moves one that "
+          "failed",
+          input_.options.folder.folder, parting.step.event, finding.runs,
           std::max<std::int64_t>(120, 2 * finding.runs)));
     }
-    if (finding.kind != harness::CauseKind::kRegion) return;
+    if (finding.kind != harness::CauseKind::kRegion || !finding.rule) return;
     propose(parting, cause);
   }
 
@@ -138,11 +140,36 @@ class SplitSearch {
       for (const auto& name : out.parameters) runs[i].start.push_back(*drawn(*starts[i], name));
     }
     out.finding = harness::tell_cause(runs, input_.loaded.world != nullptr);
+    const auto borders = borders_of(out);
+    harness::weigh_borders(borders, runs, out.parameters, out.finding);
     if (!out.finding.rule) return out;
+    if (out.finding.rule->by_moving) {
+      for (const auto& border : borders) {
+        out.gaps.push_back(fmt::format(
+            "The border of `{}` is that of a failing start that `parallax confirm` moved: from "
+            "{:.4g} to {:.4g}.",
+            border.parameter, std::min(border.fails, border.other),
+            std::max(border.fails, border.other)));
+      }
+      return out;
+    }
     for (const auto& border : out.finding.rule->borders) {
       out.gaps.push_back(gap(runs, border, out.parameters[border.parameter]));
     }
     return out;
+  }
+
+  /// What `confirm` has found of one of those that failed.
+  std::vector<harness::CauseBorder> borders_of(const Cause& cause) const {
+    for (const auto* seen : cause.failed) {
+      for (const auto& id : seen->ids) {
+        const auto& path = *paths_.at(id);
+        if (path.experiment) continue;
+        auto borders = kept_borders(input_.options.folder.folder, path.id, path.start);
+        if (!borders.empty()) return borders;
+      }
+    }
+    return {};
   }
 
   /// Between the runs next to the border it may be anywhere.

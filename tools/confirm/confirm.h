@@ -1,0 +1,139 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/base/result.h"
+#include "harness/campaign/replay.h"
+#include "harness/campaign/sample_runner.h"
+#include "harness/cause/cause_kind.h"
+#include "harness/cause/start_line.h"
+#include "tools/app/context.h"
+#include "tools/app/discrepancy.h"
+#include "tools/app/evidence.h"
+#include "tools/confirm/tried_starts.h"
+
+namespace parallax::tools {
+
+struct ConfirmOptions {
+  TriedStartsOptions starts;
+  std::int64_t repeats = 5;         // of the failing start, with other seeds and with half the step
+  std::optional<double> tolerance;  // of borders; none: a hundredth of the parameter's range
+};
+
+/// What simulates a recorded run again.
+struct ConfirmSimulators {
+  harness::SimulatorFactory usual;
+  harness::SimulatorFactory half_step;  // null: there is none
+};
+
+/// What the repetitions of a failing start say of its discrepancy.
+enum class ConfirmVerdict : std::uint8_t {
+  kOpen,         // it came to no repetition
+  kConfirmed,    // every repetition shows it, with other seeds and with half the step
+  kPartly,       // at least half of either kind do
+  kNotRepeated,  // the same start and seed do not show it again
+  kSeed,         // with most other seeds it does not happen
+  kStep,         // with half the step it does not, in most runs
+};
+/// "open", "confirmed", "partly", "not-repeated", "seed", "step"
+std::string_view to_string(ConfirmVerdict verdict);
+
+/// A discrepancy, repeated and made simple.
+struct Confirmation {
+  harness::SampleId sample;
+  std::uint64_t seed = 0;       // of that simulation
+  std::string digest, words;    // likewise; what went wrong in it
+  std::string determinism;      // of the simulator, as it says
+  bool repeats_itself = false;  // so it promises, and takes seeds
+  std::int64_t repeats = 0;     // that were asked for, of either kind
+  bool world_is_model = false, has_seeds = true, has_half_step = true;
+  /// The same start and seed once more; none: it was not simulated.
+  std::optional<harness::StartVerdict> repeated;
+  std::optional<harness::RecordDifference> difference;  // none: equal to the last bit
+  std::optional<harness::Persistence> other_seeds, half_step;
+  std::vector<StartParameter> parameters;
+  std::vector<std::string> fixed;  // parameters without a width
+  bool has_law = false;            // of starts
+  std::optional<harness::ShrunkStart> shrunk;
+  TriedStarts::End end = TriedStarts::End::kNot;
+  std::int64_t runs = 0, budget = 0;  // simulations that it took, on record by now
+  ConfirmVerdict verdict() const;
+  /// What a moved start shows is no matter of chance, as far as the repetitions tell.
+  bool may_move() const;
+  /// Everything that was asked for was simulated.
+  bool finished() const {
+    return end == TriedStarts::End::kNot && verdict() != ConfirmVerdict::kOpen;
+  }
+};
+
+/// Repeats the discrepancy, then moves its start towards the middle of its cell. `found` has a
+/// parting. Reports as TriedStarts and same_start_runs do. What came of it is kept in
+/// RUN_DIR/confirm for `report`.
+base::Result<Confirmation> confirm_discrepancy(const std::string& run_dir,
+                                               const RecordedDiscrepancy& found,
+                                               const ScenarioModel& as_run,
+                                               const ConfirmSimulators& simulators,
+                                               const ConfirmOptions& options, Context& context);
+
+struct ThresholdOptions {
+  TriedStartsOptions starts;
+  std::string parameter;
+  std::int64_t points = 5;
+  std::optional<double> tolerance;
+};
+
+/// Where along one parameter of its start a discrepancy ends.
+struct Threshold {
+  harness::SampleId sample;
+  std::uint64_t seed = 0;
+  std::string digest, words;
+  bool repeats = false;  // the simulator is deterministic and takes seeds
+  bool has_law = false;  // of starts
+  StartParameter parameter;
+  double tolerance = 0.0;
+  /// The failing start once more; kFails, or there is no scan.
+  std::optional<harness::StartVerdict> repeated;
+  harness::LineScan scan;
+  TriedStarts::End end = TriedStarts::End::kNot;
+  std::int64_t runs = 0, budget = 0;
+  /// Every bracket is as narrow as was asked for.
+  bool finished() const;
+};
+
+/// Reports kUsage for a parameter that starts do not have, or have only one value of.
+base::Result<Threshold> find_threshold(const std::string& run_dir, const RecordedDiscrepancy& found,
+                                       const ScenarioModel& as_run,
+                                       const harness::SimulatorFactory& simulator,
+                                       const ThresholdOptions& options, Context& context);
+
+/// As the commands print them, for people and as one JSON object.
+std::string confirm_text(const Confirmation& confirmation, const std::string& run_dir);
+std::string confirm_json(const Confirmation& confirmation);
+std::string threshold_text(const Threshold& threshold, const std::string& run_dir);
+std::string threshold_json(const Threshold& threshold);
+/// What was found out, a sentence each.
+std::vector<std::string> confirm_sentences(const Confirmation& confirmation);
+std::vector<std::string> threshold_sentences(const Threshold& threshold);
+
+/// "after `Go(r2)` at 0 `BoxIn(r1)` does not hold": where a discrepancy's simulation and the model
+/// part.
+std::string parting_words(const RecordedDiscrepancy& found);
+
+/// What `confirm` and `threshold` found out of one simulation, as its run folder has it: sentences.
+struct KeptFindings {
+  std::vector<std::string> confirmed;
+  std::vector<std::string> thresholds;
+};
+/// Of this simulation of the run; empty where nothing is on record. A damaged file is one of which
+/// nothing is on record.
+KeptFindings kept_findings(const std::string& run_dir, const harness::SampleRecord& record);
+/// Keeps it, in the place of what was kept of the same simulation (and parameter).
+base::Status keep_finding(const std::string& run_dir, const Confirmation& confirmation,
+                          base::DiagnosticSink& sink);
+base::Status keep_finding(const std::string& run_dir, const Threshold& threshold,
+                          base::DiagnosticSink& sink);
+
+}  // namespace parallax::tools
