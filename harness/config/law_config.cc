@@ -15,6 +15,9 @@ namespace parallax::harness {
 
 namespace {
 
+/// Far beyond what a world has, and sums and squares of them are numbers.
+constexpr NumberBounds kValue{-1e12, 1e12, false, false};
+constexpr NumberBounds kSpread{0.0, 1e12, true, false};
 constexpr std::size_t kMaxChoices = 1000;
 constexpr NumberBounds kDistance{-1e6, 1e6, false, false};  // [m]
 
@@ -24,8 +27,8 @@ std::optional<Distribution> read_normal(const YamlNode& node, base::DiagnosticSi
   fields.only({Key::kMean, Key::kSd});
   Distribution law;
   law.kind = Distribution::Kind::kNormal;
-  if (fields.require(Key::kMean)) fields.number(Key::kMean, kAnyNumber, law.mean);
-  if (fields.require(Key::kSd)) fields.number(Key::kSd, kPositive, law.sd);
+  if (fields.require(Key::kMean)) fields.number(Key::kMean, kValue, law.mean);
+  if (fields.require(Key::kSd)) fields.number(Key::kSd, kSpread, law.sd);
   if (sink.error_count() != errors_before) return std::nullopt;
   return law;
 }
@@ -39,7 +42,7 @@ std::optional<Distribution> read_triangular(const YamlNode& node, base::Diagnost
   }
   std::array<double, 3> numbers{};
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto number = read_number(node.items[i], name, kAnyNumber, sink);
+    const auto number = read_number(node.items[i], name, kValue, sink);
     if (!number) return std::nullopt;
     numbers[i] = *number;
   }
@@ -61,9 +64,15 @@ std::optional<Distribution> read_triangular(const YamlNode& node, base::Diagnost
 
 std::optional<Distribution> read_choice(const YamlNode& node, base::DiagnosticSink& sink) {
   const auto name = key_text(Key::kChoice);
-  if (!node.is_map() || node.entries.empty() || node.entries.size() > kMaxChoices) {
+  if (!node.is_map() || node.entries.empty()) {
     sink.error(codes::kWrongYamlKind, node.range, name, describe(node),
-               fmt::format("a map from 1 to {} values to their weights", kMaxChoices));
+               "a map from values to their weights");
+    return std::nullopt;
+  }
+  if (node.entries.size() > kMaxChoices) {
+    sink.error(codes::kYamlOutOfBounds, node.range, name,
+               fmt::format("of {} values", node.entries.size()),
+               fmt::format("of at most {}", kMaxChoices));
     return std::nullopt;
   }
   Distribution law;
@@ -74,9 +83,9 @@ std::optional<Distribution> read_choice(const YamlNode& node, base::DiagnosticSi
     key.kind = YamlNode::Kind::kScalar;
     key.range = entry.key_range;
     key.text = entry.key;
-    const auto value = read_number(key, "a value of " + name, kAnyNumber, sink);
+    const auto value = read_number(key, "a value of " + name, kValue, sink);
     const auto weight =
-        read_number(entry.value, fmt::format("the weight of {}", entry.key), kPositive, sink);
+        read_number(entry.value, fmt::format("the weight of {}", entry.key), kSpread, sink);
     if (!value || !weight) return std::nullopt;
     if (!seen.insert(*value).second) {
       sink.error(codes::kDuplicateKey, entry.key_range, entry.key);

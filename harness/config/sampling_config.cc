@@ -78,6 +78,11 @@ void read_sampling(const YamlNode& node, Scenario& scenario, base::DiagnosticSin
     const YamlFields all(*variables, key_text(Key::kVariables), sink);
     for (const auto& entry : variables->entries) read_sampled_variable(entry, scenario, sink);
   }
+  if (const auto* parameters = fields.find(Key::kParameters)) {
+    for (const auto& entry : parameters->entries) {
+      scenario.sampled_sources.emplace(entry.key, entry.key_range);
+    }
+  }
   read_law(fields, scenario.world, scenario.law, sink);
   std::sort(scenario.sampling.begin(), scenario.sampling.end(),
             [](const auto& a, const auto& b) { return a.variable < b.variable; });

@@ -12,6 +12,7 @@
 #include "compiler/base/file_io.h"
 #include "harness/config/sections.h"
 #include "harness/engine/world_check.h"
+#include "harness/region/area.h"
 #include "harness/world/world_layout.h"
 
 namespace parallax::harness {
@@ -27,7 +28,11 @@ void check_supported_starts(const Scenario& scenario, base::DiagnosticSink& sink
   std::vector<NamedPoint> points;
   for (const Region& region : scenario.mapping->regions().regions()) {
     const auto& bottom = region.start[static_cast<std::size_t>(RegionAxis::kBottom)];
-    const auto x = at(region, RegionAxis::kX), y = at(region, RegionAxis::kY);
+    auto x = at(region, RegionAxis::kX), y = at(region, RegionAxis::kY);
+    // The middle of a ring is none of its points.
+    if (const auto& shape = region.start_area ? region.start_area : region.area) {
+      if (const auto point = shape->at(0.0, 0.5)) x = (*point)[0], y = (*point)[1];
+    }
     if (!bottom || bottom->lower != bottom->upper || !x || !y) continue;
     const auto& o = region.frame_start;
     points.push_back({region.name, {*x + o[0], *y + o[1], bottom->lower + o[2]}});

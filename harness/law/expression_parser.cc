@@ -85,6 +85,9 @@ class ExpressionParser {
     } else if ((c == '<' || c == '>' || c == '=' || c == '!') && end < text_.size() &&
                text_[end] == '=') {
       ++end;
+    } else {
+      // A character of several bytes is one.
+      while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xc0U) == 0x80U) ++end;
     }
     token_ = text_.substr(at, end - at);
   }

@@ -153,8 +153,16 @@ TEST_CASE("laws of the sampling, each error at its word") {
        "box.yaw: [-0.1, 0.1]}, areas: {box: {half_planes: [{of: robot, towards: [0, 0]}]}}",
        "E5109 at 18:115: `towards` is (0, 0), but must be a direction"},
       {"box.yaw: [-0.1, 0.1]}", "box.yaw: [-0.1, 0.1]}, parameters: {robot.x: [0, 1]}",
-       "E5109 at 18:75: `robot.x` of `parameters` is a variable of the simulator, but must be "
+       "E5109 at 18:88: `robot.x` of `parameters` is a variable of the simulator, but must be "
        "under `variables`"},
+      {"box.yaw: [-0.1, 0.1]", "box.yaw: {normal: {mean: 1e308, sd: 1}}",
+       "E5109 at 18:77: `mean` is 1e308, but must be at least -1000000000000 and at most"},
+      {"box.yaw: [-0.1, 0.1]", "box.yaw: {triangular: [-1e300, 0, 1]}",
+       "E5109 at 18:75: `triangular` is -1e300, but must be"},
+      {"box.yaw: [-0.1, 0.1]", "box.yaw: {choice: {0.1: 1e300}}",
+       "E5109 at 18:76: the weight of 0.1 is 1e300, but must be"},
+      {"box.yaw: [-0.1, 0.1]", "box.yaw: {choice: 1}",
+       "E5107 at 18:70: `choice` is `1`, not a map from values to their weights"},
   });
 }
 

@@ -123,6 +123,8 @@ TEST_CASE("errors of formulas stand at the word that is wrong") {
   CHECK(error_of("1.2.3").find("is not a finite number") != std::string::npos);
   CHECK(error_of("1e999").find("is not a finite number") != std::string::npos);
   CHECK(error_of("0x10").find("is not a finite number") != std::string::npos);
+  CHECK(error_of("\u00f6 < 1").find("`\u00f6` stands where a value is wanted") !=
+        std::string::npos);
   CHECK(error_of("a ; b").substr(0, 3) == "2: ");
   CHECK(error_of("system(\"ls\")").find("0: ") == 0);
   for (const auto* open : {"(", "-", "not ", "abs(", "2^"}) {

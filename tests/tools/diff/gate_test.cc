@@ -283,6 +283,30 @@ TEST_CASE("a run that was lost is the worst for either answer") {
   CHECK(gate.hold(rules, "old.json", "new.json")["rates.worse"] == "not decidable");
 }
 
+TEST_CASE("rates under different laws of starts are not compared") {
+  const Gate gate;
+  const auto rates = [&](const std::string& file, const Json& words) {
+    Json trace = {{"events", "Go()"}, {"runs", 100}, {"lost", 0}};
+    trace["any"] = {{"count", 0}};
+    trace["causes"] = Json::array();
+    if (!words.empty()) trace["law"] = {{"words", words}};
+    gate.write(file, Json{{"status", "ok"},
+                          {"complete", true},
+                          {"compare", "every-step"},
+                          {"traces", Json::array({trace})}}
+                         .dump());
+  };
+  const std::string rules = "rates: {worse: {margin: 0.1}}\n";
+  const auto bell = Json::array({"box.x normal with mean 1 and sd 1", "given box.x < 2"});
+  rates("plain.json", Json::array());
+  rates("bell.json", bell);
+  CHECK(gate.hold(rules, "bell.json", "bell.json")["rates.worse"] == "kept");
+  CHECK(gate.hold(rules, "plain.json", "bell.json")["rates.worse"] == "not decidable");
+  CHECK(gate.hold(rules, "bell.json", "plain.json")["rates.worse"] == "not decidable");
+  const auto plain = gate.parallax({"diff", "plain.json", "bell.json"});
+  CHECK(holds(plain.out, "starts: box.x normal with mean 1 and sd 1; given box.x < 2"));
+}
+
 TEST_CASE("10: lists of traces, of which it matters whether they are whole, and plans") {
   const Gate gate;
   gate.write("old.e", kTurkey);
