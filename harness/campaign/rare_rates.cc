@@ -8,6 +8,7 @@
 #include "compiler/base/codes/campaigns.h"
 #include "harness/campaign/sample_margin.h"
 #include "harness/campaign/search_phase.h"
+#include "harness/campaign/start_law.h"
 #include "harness/campaign/trial.h"
 
 namespace parallax::harness {
@@ -77,6 +78,9 @@ class RareEstimator {
     for (std::size_t t = 0; t < trace.event_count(); ++t) {
       rate.trace += (t == 0 ? "" : " ") + trace.event(t);
     }
+    LawCounter law;
+    law.name(trial->plan().sampler);
+    if (law.result()) rate.law = law.result()->text();
     const UnitCube cube(trial->plan().sampler);
     RareEventOptions options;
     options.method = method_;

@@ -13,6 +13,7 @@ namespace parallax::harness {
 struct RareTraceRate {
   std::int64_t number = 0;
   std::string trace;  // its events
+  std::string law;    // that starts are drawn by, as LawResult::text; empty: uniform
   RareEventResult estimate;
   std::vector<std::string> contradicting;  // parts of margins that were left out
 };

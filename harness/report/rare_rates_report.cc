@@ -69,6 +69,7 @@ std::string rates_text(const RareRatesResult& result) {
     const auto& estimate = trace.estimate;
     out += fmt::format("\ntrace {}: {} runs, {} starts rejected, {} lost\n  {}\n", trace.number,
                        estimate.runs, estimate.invalid, estimate.lost, trace.trace);
+    if (!trace.law.empty()) out += fmt::format("  starts: {}\n", trace.law);
     const auto why = why_unanswered(trace, result);
     if (!why.empty()) {
       out += fmt::format("  {}\n", why);
@@ -101,6 +102,7 @@ std::string rates_json(const RareRatesResult& result) {
                        {"runs", estimate.runs},          {"rejected", estimate.invalid},
                        {"lost", estimate.lost},          {"end", to_string(estimate.end)},
                        {"left_out", trace.contradicting}};
+    if (!trace.law.empty()) object["law"] = trace.law;
     if (has_interval(estimate, result.method)) {
       object["any"] = interval_object(estimate, result.method);
     } else {

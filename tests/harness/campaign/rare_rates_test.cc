@@ -13,7 +13,7 @@ struct RareBench : Bench {
   RatesOptions rates;
   RareEventMethod method = RareEventMethod::kImportance;
 
-  RareBench() {
+  explicit RareBench(const std::string& more = "") : Bench(std::string(kScenarioText) + more) {
     rates.runs = 2000;
     script.drops = [](const State& start) { return number(start, "box.x") > 1.98; };
   }
@@ -58,6 +58,31 @@ TEST_CASE(
   CHECK(trace["any"]["lower"] <= trace["any"]["rate"]);
   CHECK(trace["any"]["rate"] <= trace["any"]["upper"]);
   CHECK(trace["any"]["uniform"] > 500);
+}
+
+TEST_CASE(
+    "rare rates: p is that of the scenario's law, given its conditions, and the report says "
+    "which") {
+  // Triangular over 1 to 2 with its mode at 1: a start lies beyond 1.9 with probability 0.01. The
+  // condition refuses the lower half, three in four starts: 0.04 of those that are left.
+  for (const bool conditioned : {false, true}) {
+    RareBench bench(std::string("sampling: {variables: {box.x: {triangular: [1, 1, 2]}}") +
+                    (conditioned ? ", require: [\"box.x > 1.5\"]}\n" : "}\n"));
+    bench.script.drops = box_far;
+    const auto result = bench.estimate();
+    REQUIRE(result.has_value());
+    const auto& estimate = result->traces[0].estimate;
+    const double p = conditioned ? 0.04 : 0.01;
+    CHECK(estimate.lower <= p);
+    CHECK(estimate.upper >= p);
+    CHECK(estimate.lower > p / 5);
+    CHECK(estimate.upper < p * 5);
+    CHECK(report_says(rates_text(*result), "starts: box.x triangular"));
+    const auto document = nlohmann::json::parse(rates_json(*result));
+    const auto law = document["traces"][0]["law"].get<std::string>();
+    CHECK(report_says(law, "box.x triangular over 1 to 2"));
+    CHECK(report_says(law, "given box.x > 1.5") == conditioned);
+  }
 }
 
 TEST_CASE("rare rates: no discrepancy is a bound and no estimate; splitting needs a margin") {
