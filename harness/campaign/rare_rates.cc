@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "compiler/base/codes/campaigns.h"
+#include "harness/campaign/asked_traces.h"
 #include "harness/campaign/sample_margin.h"
 #include "harness/campaign/search_phase.h"
 #include "harness/campaign/start_law.h"
@@ -39,32 +40,17 @@ class RareEstimator {
     result.method = method_;
     result.budget = options_.runs;
     result.comparison = scenario_.comparison();
-    const auto started = bench_.start();
-    if (!started) return sink_.already_reported();
-    result.complete = *started;
-    std::int64_t last = 0;
-    bool seen_all = false;
-    while (result.complete) {
-      auto trace = traces_.next();
-      if (!trace) return sink_.already_reported();
-      seen_all = !*trace;
-      if (seen_all) break;
-      const std::int64_t number = last = (*trace)->number;
-      if (options_.trace != 0 && number != options_.trace) continue;
-      auto rate = one_trace(std::move(**trace));
+    const auto visit = [&](CampaignTrace trace) -> base::Result<bool> {
+      auto rate = one_trace(std::move(trace));
       if (!rate) return sink_.already_reported();
-      result.complete = rate->estimate.end != RareEventEnd::kStopped;
+      const bool complete = rate->estimate.end != RareEventEnd::kStopped;
       result.traces.push_back(std::move(*rate));
-      if (number == options_.trace) break;
-    }
-    bench_.close();
-    if (seen_all) result.complete = traces_.exploration() != "stopped";
-    if (seen_all && result.complete && last < options_.trace) {
-      return sink_.error_about(codes::kNoSuchTrace, scenario_.name, options_.trace,
-                               last == 0   ? "the scenario has none"
-                               : last == 1 ? "the scenario has only one"
-                                           : fmt::format("the scenario has {}", last));
-    }
+      return complete;
+    };
+    const auto complete =
+        visit_asked_traces(bench_, traces_, options_.trace, scenario_.name, visit, sink_);
+    if (!complete) return sink_.already_reported();
+    result.complete = *complete;
     return result;
   }
 
@@ -75,9 +61,7 @@ class RareEstimator {
     const auto& trace = *trial->plan().trace;
     RareTraceRate rate;
     rate.number = trace.number;
-    for (std::size_t t = 0; t < trace.event_count(); ++t) {
-      rate.trace += (t == 0 ? "" : " ") + trace.event(t);
-    }
+    rate.trace = trace.events();
     LawCounter law;
     law.name(trial->plan().sampler);
     if (law.result()) rate.law = law.result()->text();

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "compiler/base/codes/campaigns.h"
+#include "harness/campaign/asked_traces.h"
 #include "harness/campaign/judge.h"
 #include "harness/campaign/run_setup.h"
 #include "harness/campaign/trial.h"
@@ -34,31 +35,17 @@ class Estimator {
     result.fixed_runs = runs_are_fixed();
     result.until_known = options_.until_known;
     result.comparison = scenario_.comparison();
-    const auto started = bench_.start();
-    if (!started) return sink_.already_reported();
-    result.complete = *started;
-    std::int64_t last = 0;
-    bool seen_all = false;
-    while (result.complete) {
-      auto trace = traces_.next();
-      if (!trace) return sink_.already_reported();
-      seen_all = !*trace;
-      if (seen_all) break;
-      const std::int64_t number = last = (*trace)->number;
-      if (options_.trace != 0 && number != options_.trace) continue;
-      auto rates = one_trace(std::move(**trace), result.complete);
+    const auto visit = [&](CampaignTrace trace) -> base::Result<bool> {
+      bool complete = true;
+      auto rates = one_trace(std::move(trace), complete);
       if (!rates) return sink_.already_reported();
       result.traces.push_back(std::move(*rates));
-      if (number == options_.trace) break;
-    }
-    bench_.close();
-    if (seen_all) result.complete = traces_.exploration() != "stopped";
-    if (seen_all && result.complete && last < options_.trace) {
-      return sink_.error_about(codes::kNoSuchTrace, scenario_.name, options_.trace,
-                               last == 0   ? "the scenario has none"
-                               : last == 1 ? "the scenario has only one"
-                                           : fmt::format("the scenario has {}", last));
-    }
+      return complete;
+    };
+    const auto complete =
+        visit_asked_traces(bench_, traces_, options_.trace, scenario_.name, visit, sink_);
+    if (!complete) return sink_.already_reported();
+    result.complete = *complete;
     return result;
   }
 
@@ -69,9 +56,7 @@ class Estimator {
     TraceRates rates;
     const auto& trace = *trial->plan().trace;
     rates.number = trace.number;
-    for (std::size_t t = 0; t < trace.event_count(); ++t) {
-      rates.trace += (t == 0 ? "" : " ") + trace.event(t);
-    }
+    rates.trace = trace.events();
     std::map<std::string, CauseRate> causes;
     LawCounter law;
     const auto& plan = trial->plan();

@@ -30,6 +30,12 @@ struct CampaignTrace : runtime::Trace {
   std::size_t event_count() const { return plan.size(); }
   /// Printed without blanks: "Go(r2)".
   const std::string& event(std::size_t t) const { return symbols->name(points[t].happens.front()); }
+  /// All of them: "Go(r2) PickUp()".
+  std::string events() const {
+    std::string out;
+    for (std::size_t t = 0; t < event_count(); ++t) out += (t == 0 ? "" : " ") + event(t);
+    return out;
+  }
 };
 
 /// The ground fluents of a model in order of their names, and their ids in traces.

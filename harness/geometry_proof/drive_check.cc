@@ -11,27 +11,9 @@
 #include "harness/robot/mobile_robot.h"
 
 namespace parallax::harness {
-
-std::string_view to_string(BoxVerdict verdict) {
-  switch (verdict) {
-    case BoxVerdict::kSafe:
-      return "safe";
-    case BoxVerdict::kRefuted:
-      return "refuted";
-    case BoxVerdict::kOpen:
-      return "open";
-  }
-  return "";
-}
-
 namespace {
 
-/// What is halved goes by the question that is farthest from clear, and a little by the others.
-constexpr double kOtherInfluence = 0.01;
 constexpr double kTurnInfluence = 0.1;  // [m/rad]
-/// The rest of a form is what is not known, and what is not linear in a box: at least so much of it
-/// is taken for the former once it is larger than all that the box can sway.
-constexpr double kBlurred = 0.8;
 
 bool apart_in_height(const UprightBox& a, const UprightBox& b) {
   return a.top.upper + kEngineRoom_m < b.bottom.lower ||
@@ -79,8 +61,7 @@ class DriveCheck final : public GeometricCheck {
     const Motion motion = motion_of(box);
     Finding finding;
     finding.influence.assign(box.size(), 0.0);
-    std::optional<AffineForm> decisive;
-    bool any_blurred = false, any_may_refute = false;
+    OpenRooms rooms(finding);
     for (const std::uint32_t question : questions) {
       const Pair& pair = pairs_[question / 2];
       const bool is_turn = question % 2 == 1;
@@ -96,28 +77,9 @@ class DriveCheck final : public GeometricCheck {
       }
       // Which headings a turn goes through follows from the one that it begins with.
       if (is_turn) *room += AffineForm(kTurnInfluence) * motion.base.yaw;
-      double sway = 0.0;
-      for (std::size_t i = 0; i < box.size(); ++i) {
-        finding.influence[i] += kOtherInfluence * std::abs(room->slope(i));
-        sway += std::abs(room->slope(i));
-      }
-      const bool may_refute = room->center() - sway < 0.0 && is_exact(pair);
-      any_may_refute = any_may_refute || may_refute;
-      // Apart at no start of the box, whatever share of the rest is due to its size.
-      any_blurred = any_blurred || room->center() + sway < kBlurred * room->rest();
-      if (!decisive || room->center() < decisive->center()) {
-        decisive = *room;
-        finding.culprit = words(pair);
-      }
+      if (rooms.add(*room, is_exact(pair))) finding.culprit = words(pair);
     }
-    if (finding.open.empty()) {
-      finding.verdict = BoxVerdict::kSafe;
-      return finding;
-    }
-    finding.is_hopeless = any_blurred && !any_may_refute;
-    for (std::size_t i = 0; i < box.size(); ++i) {
-      finding.influence[i] += std::abs(decisive->slope(i));
-    }
+    rooms.close();
     return finding;
   }
 

@@ -24,15 +24,10 @@ class GazeCheck final : public GeometricCheck {
   Finding examine(std::span<const Bounds1> box,
                   std::span<const std::uint32_t> questions) const override {
     const ProofScene::Base base = scene_.base(box);
-    const KnownState& state = scene_.state();
-    const AffineForm px(camera_.p_BC.x()), py(camera_.p_BC.y());
-    const AffineForm x = part(0) - (base.x + base.cosine * px - base.sine * py);
-    const AffineForm y = part(1) - (base.y + base.sine * px + base.cosine * py);
-    const double rise = 0.5 * (state.lift_m.lower + state.lift_m.upper);
-    const double slack =
-        0.5 * (state.lift_m.upper - state.lift_m.lower) + state.relief_m + state.slack.drift_m;
-    const AffineForm down = AffineForm(scene_.base_z() + camera_.p_BC.z() + rise) +
-                            AffineForm::within(0.0, slack) - part(2);
+    const ProofScene::Point camera = scene_.on_torso(camera_.p_BC, base);
+    const AffineForm x = coordinate(place_, 0) - camera.x;
+    const AffineForm y = coordinate(place_, 1) - camera.y;
+    const AffineForm down = camera.z - coordinate(place_, 2);
     const AffineForm level = root(x * x + y * y);
     const AffineForm ahead = base.cosine * x + base.sine * y;
     Finding finding;
@@ -53,30 +48,15 @@ class GazeCheck final : public GeometricCheck {
             AffineForm(std::sin(limit)) * level - AffineForm(std::cos(limit)) * down;
         margin = question == 1 ? ends : -ends;
       }
-      if (margin.lower() > kEngineRoom_m) continue;
       static constexpr std::array kWords = {"beyond the neck's turn", "below its tilt",
                                             "above its tilt"};
-      finding.culprit = kWords[question];
-      if (margin.upper() < -kEngineRoom_m) {
-        finding.verdict = BoxVerdict::kRefuted;
-        return finding;
-      }
-      finding.open.push_back(question);
-      for (std::size_t i = 0; i < box.size(); ++i) {
-        finding.influence[i] += std::abs(margin.slope(i));
-      }
+      if (!finding.settle(question, margin, kEngineRoom_m, kWords[question])) return finding;
     }
     if (finding.open.empty()) finding.verdict = BoxVerdict::kSafe;
     return finding;
   }
 
  private:
-  AffineForm part(Eigen::Index axis) const {
-    const double middle = 0.5 * (place_.low(axis) + place_.high(axis));
-    const double radius = std::max(place_.high(axis) - middle, middle - place_.low(axis));
-    return AffineForm::within(middle, radius * (1.0 + 1e-12));
-  }
-
   const ProofScene& scene_;
   const CameraSpec& camera_;
   CheckedTest test_;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,9 +48,31 @@ class GeometricCheck {
     /// this one.
     bool is_hopeless = false;
     std::string culprit = {};  // "`base` would meet `drawer_mid`"
+
+    /// A question passes where `margin` is positive and is refused where it is negative, but for
+    /// `room`. False: it is refused everywhere, and so is the box.
+    bool settle(std::uint32_t question, const AffineForm& margin, double room,
+                const std::string& refused_as);
   };
   virtual Finding examine(std::span<const Bounds1> box,
                           std::span<const std::uint32_t> questions) const = 0;
+};
+
+/// Questions of one box that are open because shapes come near to each other, by the room between
+/// them: the least room says what is to be halved.
+class OpenRooms {
+ public:
+  /// `finding` outlives it.
+  explicit OpenRooms(GeometricCheck::Finding& finding) : finding_(finding) {}
+  /// Is it the least so far? `may_be_hit`: a room below zero would be a refusal.
+  bool add(const AffineForm& room, bool may_be_hit);
+  /// The verdict, if there is no open question; else what sways it, and whether boxes can help.
+  void close();
+
+ private:
+  GeometricCheck::Finding& finding_;
+  std::optional<AffineForm> least_;
+  bool any_blurred_ = false, any_may_refute_ = false;
 };
 
 /// `Drive::is_blocked`: everything that moves swept along the straight way and turned at the goal.

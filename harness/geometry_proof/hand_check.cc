@@ -13,6 +13,8 @@
 namespace parallax::harness {
 namespace {
 
+constexpr double kWayInfluence = 0.02;  // [m/rad]
+
 /// `PickUp::check_last_stretch` of a grasp from above: the hand, which hangs over where the body is
 /// believed to be, straight down to it and up again. All in the frame of the believed body; only
 /// which of two ways round the hand is turned depends on the base.
@@ -56,8 +58,7 @@ class HandCheck final : public GeometricCheck {
     Finding finding;
     finding.influence.assign(box.size(), 0.0);
     std::array<bool, 2> hit = {!ways[0], !ways[1]};
-    std::optional<AffineForm> decisive;
-    bool any_blurred = false, any_may_refute = false;
+    OpenRooms rooms(finding);
     for (const std::uint32_t question : questions) {
       const Pair& pair = pairs_[question];
       const UprightBox obstacle = scene_.place(scene_.pieces()[pair.obstacle], box, base);
@@ -70,17 +71,7 @@ class HandCheck final : public GeometricCheck {
         if (!room) continue;
         is_open = true;
         hit[way] = hit[way] || surely_meets(shape, part, obstacle);
-        double sway = 0.0;
-        for (std::size_t i = 0; i < box.size(); ++i) {
-          finding.influence[i] += 0.01 * std::abs(room->slope(i));
-          sway += std::abs(room->slope(i));
-        }
-        any_may_refute = any_may_refute || room->center() - sway < 0.0;
-        any_blurred = any_blurred || room->center() + sway < 0.8 * room->rest();
-        if (!decisive || room->center() < decisive->center()) {
-          decisive = *room;
-          finding.culprit = words(pair);
-        }
+        if (rooms.add(*room, true)) finding.culprit = words(pair);
       }
       if (is_open) finding.open.push_back(question);
     }
@@ -88,15 +79,10 @@ class HandCheck final : public GeometricCheck {
       finding.verdict = BoxVerdict::kRefuted;
       return finding;
     }
-    if (finding.open.empty()) {
-      finding.verdict = BoxVerdict::kSafe;
-      return finding;
-    }
-    finding.is_hopeless = any_blurred && !any_may_refute;
-    for (std::size_t i = 0; i < box.size(); ++i) {
-      finding.influence[i] += std::abs(decisive->slope(i));
-      // Which way round it is matters as well.
-      if (ways[0] && ways[1]) finding.influence[i] += 0.02 * std::abs(wrist.slope(i));
+    rooms.close();
+    // Which way round it is matters as well.
+    for (std::size_t i = 0; i < box.size() && ways[0] && ways[1] && !finding.open.empty(); ++i) {
+      finding.influence[i] += kWayInfluence * std::abs(wrist.slope(i));
     }
     return finding;
   }

@@ -194,6 +194,12 @@ std::optional<std::string> assume_success(const WorldSpec& spec, const WorldLayo
   return fmt::format("nothing is known of the world after `{}`", name);
 }
 
+AffineForm coordinate(const KnownPoint& point, Eigen::Index axis) {
+  const double middle = 0.5 * (point.low(axis) + point.high(axis));
+  const double radius = std::max(point.high(axis) - middle, middle - point.low(axis));
+  return AffineForm::within(middle, radius * (1.0 + 1e-12));
+}
+
 std::optional<KnownPoint> locate(const WorldLayout& layout, const KnownState& state,
                                  const std::string& frame, const Eigen::Vector3d& p_F) {
   KnownPoint point{p_F, p_F};

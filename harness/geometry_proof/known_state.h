@@ -77,6 +77,8 @@ std::optional<std::string> assume_success(const WorldSpec& spec, const WorldLayo
 struct KnownPoint {
   Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();
 };
+/// One of its coordinates, rounded outwards.
+AffineForm coordinate(const KnownPoint& point, Eigen::Index axis);
 /// None where it lies in the frame of a body of which nothing is known.
 std::optional<KnownPoint> locate(const WorldLayout& layout, const KnownState& state,
                                  const std::string& frame, const Eigen::Vector3d& p_F);

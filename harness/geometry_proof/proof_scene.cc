@@ -308,6 +308,15 @@ ProofScene::Base ProofScene::base(std::span<const Bounds1> box) const {
   return base;
 }
 
+ProofScene::Point ProofScene::on_torso(const Eigen::Vector3d& p_B, const Base& base) const {
+  const AffineForm px(p_B.x()), py(p_B.y());
+  const Bounds1& lift = state_->lift_m;
+  const double rise = 0.5 * (lift.lower + lift.upper);
+  const double slack = 0.5 * (lift.upper - lift.lower) + state_->relief_m + state_->slack.drift_m;
+  return {base.x + base.cosine * px - base.sine * py, base.y + base.sine * px + base.cosine * py,
+          AffineForm(base_z() + p_B.z() + rise) + AffineForm::within(0.0, slack)};
+}
+
 ProofScene::Base ProofScene::free_body(BodyId id, std::span<const Bounds1> box) const {
   const BodySpec& body = layout_->bodies[id];
   const KnownBody& known = state_->bodies[id.index()];

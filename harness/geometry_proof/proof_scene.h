@@ -85,6 +85,11 @@ class ProofScene {
     AffineForm x, y, yaw, cosine, sine;
   };
   Base base(std::span<const Bounds1> box) const;
+  struct Point {
+    AffineForm x, y, z;
+  };
+  /// A point of what stands on the torso, given in the frame of the base.
+  Point on_torso(const Eigen::Vector3d& p_B, const Base& base) const;
   UprightBox place(const ScenePiece& piece, std::span<const Bounds1> box, const Base& base) const;
   /// The value of a variable, which may be fixed, or `fallback` where it is not set.
   AffineForm variable(const std::string& name, std::span<const Bounds1> box, double fallback) const;

@@ -31,20 +31,14 @@ class ReachCheck final : public GeometricCheck {
   Finding examine(std::span<const Bounds1> box,
                   std::span<const std::uint32_t> questions) const override {
     const ProofScene::Base base = scene_.base(box);
-    const KnownState& state = scene_.state();
-    const AffineForm px(arm_.p_BS.x()), py(arm_.p_BS.y());
-    const AffineForm x = base.x + base.cosine * px - base.sine * py;
-    const AffineForm y = base.y + base.sine * px + base.cosine * py;
-    const double rise = 0.5 * (state.lift_m.lower + state.lift_m.upper);
-    const double slack =
-        0.5 * (state.lift_m.upper - state.lift_m.lower) + state.relief_m + state.slack.drift_m;
-    const AffineForm z =
-        AffineForm(scene_.base_z() + arm_.p_BS.z() + rise) + AffineForm::within(0.0, slack);
+    const ProofScene::Point shoulder = scene_.on_torso(arm_.p_BS, base);
     Finding finding;
     finding.influence.assign(box.size(), 0.0);
     for (const std::uint32_t question : questions) {
       const KnownPoint& point = points_[question / 2];
-      const AffineForm dx = part(point, 0) - x, dy = part(point, 1) - y, dz = part(point, 2) - z;
+      const AffineForm dx = coordinate(point, 0) - shoulder.x;
+      const AffineForm dy = coordinate(point, 1) - shoulder.y;
+      const AffineForm dz = coordinate(point, 2) - shoulder.z;
       const AffineForm square = dx * dx + dy * dy + dz * dz;
       const bool is_far_end = question % 2 == 0;
       const double reach = is_far_end ? arm_.max_reach_m : arm_.min_reach_m;
@@ -52,15 +46,9 @@ class ReachCheck final : public GeometricCheck {
           is_far_end ? AffineForm(reach * reach) - square : square - AffineForm(reach * reach);
       // A length that is off by the room makes so much of its square.
       const double room = 2.0 * reach * kEngineRoom_m;
-      if (margin.lower() > room) continue;
-      finding.culprit = is_far_end ? "out of reach" : "too near to the shoulder";
-      if (margin.upper() < -room) {
-        finding.verdict = BoxVerdict::kRefuted;
+      if (!finding.settle(question, margin, room,
+                          is_far_end ? "out of reach" : "too near to the shoulder")) {
         return finding;
-      }
-      finding.open.push_back(question);
-      for (std::size_t i = 0; i < box.size(); ++i) {
-        finding.influence[i] += std::abs(margin.slope(i));
       }
     }
     if (finding.open.empty()) finding.verdict = BoxVerdict::kSafe;
@@ -68,12 +56,6 @@ class ReachCheck final : public GeometricCheck {
   }
 
  private:
-  static AffineForm part(const KnownPoint& point, Eigen::Index axis) {
-    const double middle = 0.5 * (point.low(axis) + point.high(axis));
-    const double radius = std::max(point.high(axis) - middle, middle - point.low(axis));
-    return AffineForm::within(middle, radius * (1.0 + 1e-12));
-  }
-
   const ProofScene& scene_;
   CheckedTest test_;
   const ArmSpec& arm_;

@@ -43,8 +43,7 @@ class SecondDrive final : public SecondEvaluation, private FlatScene {
   }
 
   bool refuses_at(std::span<const double> start) const override {
-    StartBox box;
-    for (const double value : start) box.push_back({value, value});
+    const StartBox box = box_at(start);
     const PlanarRange base = base_range(box);
     const Eigen::Vector2d goal = goal_.middle();
     const double yaw = base.middle_yaw();
@@ -67,7 +66,6 @@ class SecondDrive final : public SecondEvaluation, private FlatScene {
     return false;
   }
 
- private:
  private:
   /// The part on its whole way, seen from the middle of the box.
   Polygon swept(const FlatShape& part, const PlanarRange& from, const StartBox& box) const {

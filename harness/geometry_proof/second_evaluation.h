@@ -24,6 +24,9 @@ class SecondEvaluation {
   virtual bool refuses_at(std::span<const double> start) const = 0;
 };
 
+/// A box that has one start.
+StartBox box_at(std::span<const double> start);
+
 /// Of `Drive::is_blocked`. All outlive it.
 std::unique_ptr<SecondEvaluation> make_second_drive(
     const WorldSpec& spec, const WorldLayout& layout, const StartCuboid& region,

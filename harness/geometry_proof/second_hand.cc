@@ -33,8 +33,7 @@ class SecondHand final : public SecondEvaluation, private FlatScene {
   }
 
   bool refuses_at(std::span<const double> start) const override {
-    StartBox box;
-    for (const double value : start) box.push_back({value, value});
+    const StartBox box = box_at(start);
     const PlanarRange there = believed(box);
     const double wrist = std::remainder(
         there.middle_yaw() + wrist_rad_ - base_range(box).middle_yaw(), kFullTurn_rad);

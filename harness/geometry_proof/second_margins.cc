@@ -7,6 +7,13 @@
 #include "harness/geometry_proof/second_evaluation.h"
 
 namespace parallax::harness {
+
+StartBox box_at(std::span<const double> start) {
+  StartBox box;
+  for (const double value : start) box.push_back({value, value});
+  return box;
+}
+
 namespace {
 
 constexpr double kRounding = 1e-9;
@@ -24,8 +31,7 @@ class SecondMargins : public SecondEvaluation {
     return confirms_box(StartBox(box.begin(), box.end()), verdict, effort);
   }
   bool refuses_at(std::span<const double> start) const override {
-    StartBox box;
-    for (const double value : start) box.push_back({value, value});
+    const StartBox box = box_at(start);
     return refuses(middle_of(ranges(box)));
   }
 

@@ -74,6 +74,15 @@ int nothing(const std::string& words, Invocation& invocation) {
   return 0;
 }
 
+/// The options of one command with those that both have.
+template <typename Options>
+Options as_asked(Options options, const BorderOptions& border, const Invocation& invocation) {
+  options.starts = border.starts;
+  options.starts.progress = progress_on_terminal(invocation.options());
+  options.tolerance = border.asked_tolerance();
+  return options;
+}
+
 void end_progress(const TriedStartsOptions& starts) {
   if (starts.progress) write_error("\r\x1b[K");
 }
@@ -88,10 +97,7 @@ int confirm(const ConfirmCommandOptions& options, Invocation& invocation) {
   const auto at_hand = load(options.border, words, invocation);
   if (!at_hand) return 0;
   if (!*at_hand) return nothing(words, invocation);
-  auto asked = options.confirm;
-  asked.starts = options.border.starts;
-  asked.starts.progress = progress_on_terminal(invocation.options());
-  asked.tolerance = options.border.asked_tolerance();
+  const auto asked = as_asked(options.confirm, options.border, invocation);
   const auto& folder = options.border.run.folder;
   const auto told = confirm_discrepancy(folder, (*at_hand)->found, (*at_hand)->as_run,
                                         (*at_hand)->simulators, asked, invocation);
@@ -114,10 +120,7 @@ int threshold(const ThresholdCommandOptions& options, Invocation& invocation) {
   const auto at_hand = load(options.border, words, invocation);
   if (!at_hand) return 0;
   if (!*at_hand) return nothing(words, invocation);
-  auto asked = options.threshold;
-  asked.starts = options.border.starts;
-  asked.starts.progress = progress_on_terminal(invocation.options());
-  asked.tolerance = options.border.asked_tolerance();
+  const auto asked = as_asked(options.threshold, options.border, invocation);
   const auto& folder = options.border.run.folder;
   const auto told = find_threshold(folder, (*at_hand)->found, (*at_hand)->as_run,
                                    (*at_hand)->simulators.usual, asked, invocation);

@@ -97,13 +97,6 @@ std::string assume(const std::string& given, const harness::WorldLayout& layout,
 
 std::string percent(double share) { return fmt::format("{:6.2f} %", 100.0 * share); }
 
-std::string range_text(const harness::CampaignTrace& trace) {
-  std::string text;
-  for (std::size_t t = 0; t < trace.event_count(); ++t)
-    text += (t == 0 ? "" : " ") + trace.event(t);
-  return text;
-}
-
 /// How many boxes have the verdict, and what is met in most of them.
 std::string boxes_text(const harness::TestCertificate& test, harness::BoxVerdict verdict) {
   std::map<std::string, double> culprits;
@@ -258,7 +251,7 @@ void report(const harness::Certificate& certificate, const ProofTask& task,
     }
     return invocation.document(base::json_text(document) + "\n");
   }
-  std::string text = fmt::format("trace {}: {}\n", certificate.trace, range_text(task.trace));
+  std::string text = fmt::format("trace {}: {}\n", certificate.trace, task.trace.events());
   std::size_t index = 0;
   for (const auto& action : certificate.actions) {
     text += fmt::format("  {:>2}  {}\n", action.number, action.event);
