@@ -4,18 +4,18 @@
 #include <span>
 #include <vector>
 
-#include "compiler/artifact/literal.h"
+#include "runtime/enumerate/clause_propagation.h"
 
 namespace parallax::runtime {
 
-using compiler::Literal;
-
 /// The valuations of some variables that a set of clauses admits, one by one, by search: the
-/// variables in order, false first, with unit propagation over two watched literals and
-/// chronological backtracking (Davis, Logemann and Loveland 1962). Nothing is learned and no clause
-/// is added, so that an answer costs what it propagates, however many there were before; where many
-/// choices end in a conflict a solver that learns is the better tool, and the budget says when to
-/// turn to it.
+/// variables in order, false first, with unit propagation, and clauses learned from conflicts
+/// (first unique implication point, Marques-Silva and Sakallah 1999). No clause excludes what was
+/// found: the search goes back to the last variable that tells valuations apart and has another
+/// value left, and while it has that value, conflicts lead no further back (Gebser, Kaufmann and
+/// Schaub 2009). So an answer costs the same however many there were before. The order is fixed,
+/// and a solver that chooses its own may decide in time what the search does not; the budget says
+/// when to turn to it.
 class ClauseSearch {
  public:
   enum class Status : std::uint8_t {
@@ -25,56 +25,61 @@ class ClauseSearch {
   };
 
   /// Over the variables 1 .. `variables`. Valuations are told apart by `projected` and come in
-  /// lexicographic order of it, each once.
-  ClauseSearch(std::int32_t variables, std::span<const Literal> projected);
+  /// lexicographic order of it, each once. More than `most_learned` clauses are thinned out.
+  ClauseSearch(std::int32_t variables, std::span<const Literal> projected,
+               std::size_t most_learned = 4000);
   /// Before the first begin().
   void add_clause(std::span<const Literal> clause);
 
-  /// A new search, under these assumptions.
+  /// A new search, under these assumptions. What was learned stays.
   void begin(std::span<const Literal> assumptions);
   Status next(std::int64_t budget);
-  bool value(Literal literal) const { return is_true(code(literal)); }
+  bool value(Literal literal) const { return state_.is_true(ClausePropagation::code(literal)); }
   /// Choices that led nowhere, of all searches.
   std::int64_t conflicts() const { return conflicts_; }
 
  private:
-  using Code = std::uint32_t;  // 2 * (variable - 1), and 1 more for the negative literal
-  struct Watch {
-    std::uint32_t clause;  // where it begins in `literals_`
-    Code blocker;          // another of its literals: if it is true there is nothing to do
-  };
+  using Code = ClausePropagation::Code;
+  using Clause = ClausePropagation::Clause;
   struct Level {
     std::size_t trail;    // its length before the decision
     std::size_t decided;  // index into `order_`
-    bool is_second;       // both values have been tried
+    bool is_second;       // its other value has been searched, or there is none: assumptions
+  };
+  struct Learned {
+    Clause clause;
+    std::uint32_t levels;  // that its literals were set on (Audemard and Simon 2009)
   };
 
-  static Code code(Literal literal) {
-    return 2 * (static_cast<Code>(literal.var()) - 1) + (literal.is_positive() ? 0 : 1);
-  }
-  bool is_true(Code c) const { return values_[c >> 1U] == ((c & 1U) != 0 ? -1 : 1); }
-  bool is_open(Code c) const { return values_[c >> 1U] == 0; }
-  void set(Code c);
-  bool assume(Code c);
-  bool propagate();
-  bool visit(Code falsified);
-  void undo(std::size_t trail);
+  void enter(std::size_t decided, bool is_second);
+  void back_to(std::size_t level);
+  void note_levels();
   bool decide();
   bool flip();
+  bool assume_learned();
   void leave_unprojected();
+  bool resolve_conflict();
+  Clause learn();
+  bool is_implied(Code c) const;
+  void assert_if_unit(Clause clause);
+  void forget();
 
-  std::vector<Code> literals_;               // of clauses of two and more, each ended by kEnd
-  std::vector<Code> units_;                  // clauses of one literal
-  bool has_empty_ = false;                   // there is a clause of none
-  std::vector<std::vector<Watch>> watches_;  // by literal: clauses to visit when it becomes false
-  std::vector<std::int8_t> values_;          // by variable: 1, 0, -1
-  std::vector<Code> trail_;
-  std::size_t head_ = 0;              // of the trail that is not propagated yet
+  ClausePropagation state_;
+  std::vector<Code> units_;   // clauses of one literal
+  bool has_empty_ = false;    // there is a clause of none
+  Clause first_learned_ = 0;  // the clauses behind it were learned
+  std::vector<Learned> learned_;
+  std::vector<Clause> learned_units_;
+  std::size_t most_learned_;
   std::vector<std::uint32_t> order_;  // variables, the projected ones first
   std::size_t projected_ = 0;         // so many
   std::vector<Level> levels_;
-  bool is_over_ = true;    // there are no more valuations
-  bool is_found_ = false;  // value() has one
+  std::vector<std::uint32_t> level_of_;  // by variable that is set: 0 before the first level
+  std::size_t noted_ = 0;                // so much of the trail has a level
+  std::vector<bool> seen_;               // by variable, in a conflict
+  std::vector<Code> made_;               // the clause that is being learned
+  bool is_over_ = true;                  // there are no more valuations
+  bool is_found_ = false;                // value() has one
   std::int64_t conflicts_ = 0;
 };
 

@@ -57,6 +57,9 @@ ModelTraces::ModelTraces(const CompiledModel& model, TraceQuery query)
       use_graph(query.limits);
       if (paths_ == nullptr) refusal_ = remark_;
       break;
+    case Strategy::kComponents:
+      if (!use_components()) refusal_ = "they are more components than can be counted";
+      break;
   }
   if (source_ == nullptr)
     source_ = std::make_unique<ModelEnumerator>(session(), query.distinct, query.order);
@@ -64,8 +67,9 @@ ModelTraces::ModelTraces(const CompiledModel& model, TraceQuery query)
 
 SolverSession& ModelTraces::session() {
   if (!session_) {
+    const bool is_one = query_.order == TraceOrder::kAny || query_.wanted == 1;
     session_.emplace(model_, make_cadical_solver(query_.stop),
-                     query_.order == TraceOrder::kAny ? Loading::kWitness : Loading::kAsNeeded);
+                     is_one ? Loading::kWitness : Loading::kAsNeeded);
   }
   return *session_;
 }
@@ -102,6 +106,16 @@ void ModelTraces::use_graph(const GraphLimits& limits) {
   paths_ = paths.get();
   search_ = nullptr;
   source_ = std::move(paths);
+}
+
+bool ModelTraces::use_components() {
+  auto components = std::make_unique<ComponentTraces>(model_, query_.distinct, query_.stop);
+  if (!components->total()) return false;
+  components->seek(given_);
+  components_ = components.get();
+  search_ = nullptr;
+  source_ = std::move(components);
+  return true;
 }
 
 void ModelTraces::use_tree() {
@@ -145,7 +159,7 @@ std::optional<Trace> ModelTraces::next() {
 }
 
 bool ModelTraces::print_next(const TraceFormat& format, std::string& out) {
-  if (paths_ == nullptr) return TraceSource::print_next(format, out);
+  if (paths_ == nullptr && components_ == nullptr) return TraceSource::print_next(format, out);
   const bool found = source_->print_next(format, out);
   if (found) ++given_;
   return found;
@@ -155,12 +169,10 @@ void ModelTraces::seek(const mpz_class& before) {
   if (query_.strategy == Strategy::kAuto && paths_ == nullptr && before >= kFar) {
     attempts_.clear();
     if (can_grow()) use_graph(query_.limits);
-    if (paths_ == nullptr) use_tree();
+    if (paths_ == nullptr && !use_components()) use_tree();
   }
-  if (paths_ != nullptr) {
-    paths_->seek(before);
-    return;
-  }
+  if (paths_ != nullptr) return paths_->seek(before);
+  if (components_ != nullptr) return components_->seek(before);
   for (mpz_class i = given_; i < before && next(); ++i) continue;
 }
 
@@ -188,7 +200,19 @@ TraceCount count_traces(const CompiledModel& model, const TraceQuery& query) {
       result.stats.remark.clear();
       return result;
     }
-    if (stopped() || !traces.next()) break;
+    if (stopped()) break;
+    if (query.strategy == Strategy::kComponents ||
+        (query.strategy == Strategy::kAuto && result.count == kFar)) {
+      const ComponentTraces components(model, query.distinct, query.stop);
+      if (components.total()) {
+        result.count = *components.total();
+        result.complete = true;
+        result.stats = components.stats();
+        result.stats.remark = traces.stats().remark;
+        return result;
+      }
+    }
+    if (!traces.next()) break;
     ++result.count;
   }
   result.complete = traces.exhausted();

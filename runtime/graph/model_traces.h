@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "runtime/enumerate/model_enumerator.h"
+#include "runtime/graph/component_traces.h"
 #include "runtime/graph/graph_paths.h"
 #include "runtime/graph/trace_graph.h"
 #include "runtime/session/solver_session.h"
@@ -20,21 +21,23 @@
 namespace parallax::runtime {
 
 enum class Strategy : std::uint8_t {
-  kAuto,      // what suits the model and the number of traces
-  kSearch,    // propagation and backtracking, no solver
-  kBlocking,  // one clause for each trace
-  kGuarded,   // clauses that are retired with the first half of the horizon
-  kTree,      // assumed prefixes, clauses that are retired with them
-  kGraph,     // the paths of the layered graph
+  kAuto,        // what suits the model and the number of traces
+  kSearch,      // propagation and backtracking, no solver
+  kBlocking,    // one clause for each trace
+  kGuarded,     // clauses that are retired with the first half of the horizon
+  kTree,        // assumed prefixes, clauses that are retired with them
+  kGraph,       // the paths of the layered graph
+  kComponents,  // counted by components, each trace found by its number
 };
 
-inline constexpr std::array<std::pair<Strategy, std::string_view>, 6> kStrategyNames = {{
+inline constexpr std::array<std::pair<Strategy, std::string_view>, 7> kStrategyNames = {{
     {Strategy::kAuto, "auto"},
     {Strategy::kSearch, "search"},
     {Strategy::kBlocking, "blocking"},
     {Strategy::kGuarded, "guarded"},
     {Strategy::kTree, "tree"},
     {Strategy::kGraph, "graph"},
+    {Strategy::kComponents, "components"},
 }};
 
 struct TraceQuery {
@@ -68,7 +71,8 @@ class ModelTraces final : public TraceSource {
   /// The graph, once there is one; it may count traces that it cannot list.
   const TraceGraph* graph() const { return graph_.graph.get(); }
   /// The next trace becomes the one that `before` others precede, which is not before the one that
-  /// is next. At once where there is a graph, else by finding what comes before.
+  /// is next. At once where there is a graph or the number of traces is known by components, else
+  /// by finding what comes before.
   void seek(const mpz_class& before);
 
  private:
@@ -81,6 +85,7 @@ class ModelTraces final : public TraceSource {
   SolverSession& session();
   void use_search(std::int64_t conflicts);
   void use_graph(const GraphLimits& limits);
+  bool use_components();
   void attempt_graph();
   void leave_search();
   bool is_due() const { return !attempts_.empty() && attempts_.back().given == given_; }
@@ -94,8 +99,9 @@ class ModelTraces final : public TraceSource {
   std::optional<SolverSession> session_, tree_session_;
   ModelGraph graph_;
   std::unique_ptr<TraceSource> source_;
-  GraphPaths* paths_ = nullptr;     // `source_`, if it is the graph
-  SearchTraces* search_ = nullptr;  // `source_`, if it is a search
+  GraphPaths* paths_ = nullptr;            // `source_`, if it is the graph
+  SearchTraces* search_ = nullptr;         // `source_`, if it is a search
+  ComponentTraces* components_ = nullptr;  // `source_`, if it is that
   std::int64_t given_ = 0;
   bool is_tried_ = false;  // there was an attempt at the graph
   std::string refusal_;
@@ -110,8 +116,8 @@ struct TraceCount {
 };
 
 /// Counts the traces of a model without constraints at its full horizon. Left to choose, a few are
-/// found one by one; if there are more, the graph counts them, and where the model has none, the
-/// tree does.
+/// found one by one; if there are more, the graph counts them, and where the model has none, they
+/// are counted by components, or else one by one.
 TraceCount count_traces(const CompiledModel& model, const TraceQuery& query);
 
 struct TraceSample {
@@ -125,7 +131,8 @@ struct TraceSample {
 };
 
 /// Draws `size` traces uniformly, with replacement. The same seed draws the same traces whatever
-/// the strategy. With the graph each costs one walk; without it all traces are found twice.
+/// the strategy. With the graph each costs one walk, by components some counts; without both all
+/// traces are found twice.
 TraceSample sample_traces(const CompiledModel& model, const TraceQuery& query, std::size_t size,
                           std::uint64_t seed);
 

@@ -30,6 +30,8 @@ const TraceFormat& text_format();
 const TraceFormat& jsonl_format();
 
 std::string format_trace(const TraceFormat& format, const Trace& trace);
+/// With a number that may be too large for `trace.number`, in decimal digits.
+std::string format_trace(const TraceFormat& format, const Trace& trace, const std::string& number);
 
 /// What is known when a list of traces ends.
 struct ListEnd {

@@ -97,9 +97,13 @@ const TraceFormat& jsonl_format() {
 }
 
 std::string format_trace(const TraceFormat& format, const Trace& trace) {
+  return format_trace(format, trace, std::to_string(trace.number));
+}
+
+std::string format_trace(const TraceFormat& format, const Trace& trace, const std::string& number) {
   static const compiler::SymbolTable kNoSymbols;
   const auto& symbols = trace.symbols == nullptr ? kNoSymbols : *trace.symbols;
-  auto out = format.head(std::to_string(trace.number));
+  auto out = format.head(number);
   const TracePoint* before = nullptr;
   Timepoint t = 0;
   for (const auto& point : trace.points) {

@@ -143,6 +143,13 @@ class Comparer {
     if (found_once.size() != enumerated.traces.size()) {
       return difference("enumerator", "a trace is enumerated twice");
     }
+    if (enumerated.complete) {
+      const auto counted = counted_traces(*base_.compiled);
+      if (counted != std::to_string(enumerated.traces.size())) {
+        return difference("count by components",
+                          counted + " against " + std::to_string(enumerated.traces.size()));
+      }
+    }
     if (all.complete) {
       if (auto found = same("enumerator", found_once, "solver", observed(all))) return found;
     }

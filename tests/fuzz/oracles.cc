@@ -6,6 +6,7 @@
 #include "compiler/sema/check.h"
 #include "compiler/syntax/loader.h"
 #include "runtime/enumerate/model_enumerator.h"
+#include "runtime/graph/component_traces.h"
 #include "tools/app/trace_check.h"
 
 namespace parallax::test {
@@ -98,6 +99,11 @@ TraceList solver_valuations(const compiler::CompiledModel& model, std::size_t li
     session.add_clause(others);
   }
   return list;
+}
+
+std::string counted_traces(const compiler::CompiledModel& model) {
+  const runtime::ComponentTraces traces(model, runtime::Distinct::kObservable, nullptr);
+  return traces.total() ? traces.total()->get_str() : "not counted";
 }
 
 TraceList enumerated_traces(const compiler::CompiledModel& model, std::size_t limit) {

@@ -50,6 +50,8 @@ std::vector<GroundVariant> ground_variants();
 TraceList solver_valuations(const compiler::CompiledModel& model, std::size_t limit);
 /// What ModelEnumerator finds: each observable part once.
 TraceList enumerated_traces(const compiler::CompiledModel& model, std::size_t limit);
+/// How many the counter by components finds, in decimal digits.
+std::string counted_traces(const compiler::CompiledModel& model);
 /// Every assignment that the evaluator accepts; none if more than 2^`max_atoms` would be tried.
 std::optional<TraceList> brute_force_traces(const compiler::ReferenceEvaluator& evaluator,
                                             std::size_t max_atoms);

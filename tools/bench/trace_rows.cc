@@ -44,6 +44,10 @@ void measure_counting(Bench& bench) {
   }
   bench.begin("counting more than can be listed");
   compare_counts(bench, {"roaming_6_4_30", "36576324650499955"});
+  bench.begin("counting where clauses look far");
+  compare_counts(bench, {"distant_4_6", "331776"});
+  compare_counts(bench, {"distant_8_30",
+                         "690953945637403701925040179632561706444270720923002718939534323613696"});
   bench.begin("deciding that there is no trace");
   for (const auto* name : {"robot_6_4_m1", "pigeon_9_8"}) compare_counts(bench, {name, "0"});
 }

@@ -122,7 +122,8 @@ void add_search_options(OptionTable& command, SearchOptions& options) {
       .show_default();
   command
       .option("--strategy", options.strategy,
-              "auto, search, graph, tree, guarded or blocking: the traces and their order are "
+              "auto, search, graph, components, tree, guarded or blocking: the traces and their "
+              "order are "
               "the same, the time is not")
       .check(OneOf{strategy_names()})
       .show_default();

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <limits>
 #include <random>
-#include <set>
+
+#include "tests/support/clause_problem.h"
 
 namespace parallax::test {
 namespace {
@@ -13,63 +14,11 @@ namespace {
 using compiler::Literal;
 using runtime::ClauseSearch;
 using Status = ClauseSearch::Status;
-using Clauses = std::vector<std::vector<Literal>>;
-using Valuation = std::vector<bool>;
 
 constexpr auto kUnlimited = std::numeric_limits<std::int64_t>::max();
 
-struct Problem {
-  std::int32_t variables = 0;
-  Clauses clauses;
-  std::vector<Literal> projected, assumptions;
-};
-
-Problem random_problem(std::mt19937_64& random) {
-  const auto draw = [&](int least, int most) {
-    return std::uniform_int_distribution<int>(least, most)(random);
-  };
-  Problem problem;
-  problem.variables = draw(1, 10);
-  const auto literal = [&] {
-    const auto v = draw(1, problem.variables);
-    return Literal::from_dimacs(draw(0, 1) == 0 ? v : -v);
-  };
-  for (int i = draw(0, 25); i > 0; --i) {
-    auto& clause = problem.clauses.emplace_back();
-    for (int k = draw(0, 40) == 0 ? 0 : draw(1, 4); k > 0; --k) clause.push_back(literal());
-  }
-  std::vector<std::int32_t> some;
-  for (std::int32_t v = 1; v <= problem.variables; ++v) {
-    if (draw(0, 2) != 0) some.push_back(v);
-  }
-  std::shuffle(some.begin(), some.end(), random);
-  for (const auto v : some) problem.projected.push_back(Literal::positive(v));
-  for (int i = draw(0, 2); i > 0; --i) problem.assumptions.push_back(literal());
-  return problem;
-}
-
-/// Tries all valuations. In ascending order, false before true.
-std::set<Valuation> by_brute_force(const Problem& problem) {
-  std::set<Valuation> out;
-  for (std::uint32_t bits = 0; bits < (1U << static_cast<unsigned>(problem.variables)); ++bits) {
-    const auto holds = [&](Literal literal) {
-      return ((bits >> static_cast<unsigned>(literal.var() - 1) & 1U) != 0) ==
-             literal.is_positive();
-    };
-    bool is_model = true;
-    for (const auto& clause : problem.clauses) {
-      is_model = is_model && std::any_of(clause.begin(), clause.end(), holds);
-    }
-    for (const auto literal : problem.assumptions) is_model = is_model && holds(literal);
-    if (!is_model) continue;
-    Valuation valuation;
-    for (const auto literal : problem.projected) valuation.push_back(holds(literal));
-    out.insert(valuation);
-  }
-  return out;
-}
-
-std::vector<Valuation> found(ClauseSearch& search, const Problem& problem, std::int64_t budget) {
+std::vector<Valuation> found(ClauseSearch& search, const ClauseProblem& problem,
+                             std::int64_t budget) {
   std::vector<Valuation> out;
   search.begin(problem.assumptions);
   while (true) {
@@ -85,7 +34,7 @@ std::vector<Valuation> found(ClauseSearch& search, const Problem& problem, std::
   }
 }
 
-ClauseSearch made(const Problem& problem) {
+ClauseSearch made(const ClauseProblem& problem) {
   ClauseSearch search(problem.variables, problem.projected);
   for (const auto& clause : problem.clauses) search.add_clause(clause);
   return search;
@@ -97,7 +46,7 @@ TEST_CASE("the search finds what trying all valuations finds, each once and in o
   std::mt19937_64 random(7);
   std::size_t valuations = 0, empty = 0;
   for (int i = 0; i < 5000; ++i) {
-    auto problem = random_problem(random);
+    auto problem = random_clauses(random);
     auto search = made(problem);
     for (int again = 0; again < 2; ++again) {
       const auto wanted = by_brute_force(problem);
@@ -114,9 +63,39 @@ TEST_CASE("the search finds what trying all valuations finds, each once and in o
   CHECK(empty > 500);
 }
 
+/// Three literals a clause and about four clauses a variable: where most choices lead nowhere.
+TEST_CASE("what was learned and forgotten loses nothing and adds nothing") {
+  std::mt19937_64 random(11);
+  std::size_t valuations = 0;
+  std::int64_t conflicts = 0;
+  for (int i = 0; i < 300; ++i) {
+    ClauseProblem problem;
+    problem.variables = 16;
+    const int clauses = std::uniform_int_distribution<int>(45, 68)(random);
+    const auto literal = [&] {
+      const auto v = std::uniform_int_distribution<int>(1, 16)(random);
+      return Literal::from_dimacs(random() % 2 == 0 ? v : -v);
+    };
+    for (int c = 0; c < clauses; ++c) problem.clauses.push_back({literal(), literal(), literal()});
+    const int told_apart = std::uniform_int_distribution<int>(4, 16)(random);
+    for (int v = 1; v <= told_apart; ++v) problem.projected.push_back(Literal::positive(v));
+    ClauseSearch search(problem.variables, problem.projected, 3);
+    for (const auto& clause : problem.clauses) search.add_clause(clause);
+    for (int again = 0; again < 4; ++again) {
+      const auto wanted = by_brute_force(problem);
+      CHECK(found(search, problem, kUnlimited) == std::vector(wanted.begin(), wanted.end()));
+      valuations += wanted.size();
+      problem.assumptions = {literal(), literal()};
+    }
+    conflicts += search.conflicts();
+  }
+  CHECK(valuations > 10'000);
+  CHECK(conflicts > 3000);
+}
+
 TEST_CASE("a search gives up when its budget of conflicts is spent") {
   // Seven pigeons in six holes.
-  Problem problem;
+  ClauseProblem problem;
   const auto in = [](int pigeon, int hole) { return Literal::positive(pigeon * 6 + hole + 1); };
   problem.variables = 42;
   for (int p = 0; p < 7; ++p) {

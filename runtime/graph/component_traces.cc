@@ -1,0 +1,70 @@
+#include "runtime/graph/component_traces.h"
+
+#include "compiler/base/contract.h"
+#include "runtime/enumerate/canonical.h"
+
+namespace parallax::runtime {
+namespace {
+
+std::vector<Literal> told_apart(const CompiledModel& model, Distinct distinct) {
+  std::vector<Literal> out;
+  for (const auto& block : projection_blocks(model, distinct)) {
+    out.insert(out.end(), block.begin(), block.end());
+  }
+  return out;
+}
+
+/// Events decide what follows, so that states that cannot be reached are not met; but a clause that
+/// looks far may make too many of them differ.
+constexpr ComponentCounter::Limits kInOrderOfTime = {200'000'000, 300'000, 50'000'000};
+
+}  // namespace
+
+ComponentTraces::ComponentTraces(const CompiledModel& model, Distinct distinct,
+                                 const std::atomic<bool>* stop)
+    : model_(model),
+      symbols_(symbols_of(model)),
+      stop_(stop),
+      counter_(model.variable_count(), told_apart(model, distinct)),
+      search_(model.variable_count(), told_apart(model, distinct)) {
+  for (std::size_t c = 0; c < model.clauses.size(); ++c) {
+    counter_.add_clause(model.clauses[c]);
+    search_.add_clause(model.clauses[c]);
+  }
+  total_ = counter_.count({}, kInOrderOfTime, stop);
+  if (!total_ && counter_.reorder()) total_ = counter_.count({}, {}, stop);
+}
+
+std::optional<Trace> ComponentTraces::next() {
+  if (!total_ || next_ >= *total_) return std::nullopt;
+  const auto values = counter_.nth(next_, {}, stop_);
+  if (!values) return std::nullopt;
+  search_.begin(*values);
+  // Only what tells no traces apart is left to find.
+  auto status = ClauseSearch::Status::kGaveUp;
+  while (status == ClauseSearch::Status::kGaveUp) {
+    if (stop_ != nullptr && stop_->load()) return std::nullopt;
+    status = search_.next(1000);
+  }
+  PARALLAX_REQUIRE(status == ClauseSearch::Status::kFound, "what was counted is there");
+  ++next_;
+  const auto value = [&](Literal literal) { return search_.value(literal); };
+  auto trace = decode_trace(model_, symbols_, model_.horizon, value);
+  trace.number = next_.fits_slong_p() ? next_.get_si() : 0;
+  return trace;
+}
+
+bool ComponentTraces::print_next(const TraceFormat& format, std::string& out) {
+  const auto trace = next();
+  if (trace) out += format_trace(format, *trace, next_.get_str());
+  return trace.has_value();
+}
+
+SourceStats ComponentTraces::stats() const {
+  SourceStats stats;
+  stats.strategy = "components";
+  stats.states = counter_.components();
+  return stats;
+}
+
+}  // namespace parallax::runtime
