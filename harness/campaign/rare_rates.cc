@@ -75,11 +75,15 @@ class RareEstimator {
     MarginScale scale;
     std::int64_t next = 1;
     bool failed = false;
+    RareEventResult unfinished;  // counts of a batch that was not simulated to its end
     rate.estimate = estimate_rare_event(options, [&](std::span<const UnitPoint> points) {
-      return simulated(*trial, cube, points, next, scale, failed);
+      return simulated(*trial, cube, points, next, scale, failed, unfinished);
     });
     trial->end();
     if (failed) return sink_.already_reported();
+    rate.estimate.runs += unfinished.runs;
+    rate.estimate.lost += unfinished.lost;
+    rate.estimate.invalid += unfinished.invalid;
     rate.contradicting.assign(scale.contradicting().begin(), scale.contradicting().end());
     return rate;
   }
@@ -87,7 +91,8 @@ class RareEstimator {
   std::optional<std::vector<Evaluation>> simulated(Trial& trial, const UnitCube& cube,
                                                    std::span<const UnitPoint> points,
                                                    std::int64_t& next, MarginScale& scale,
-                                                   bool& failed) const {
+                                                   bool& failed,
+                                                   RareEventResult& unfinished) const {
     const bool is_first = scale.size() == 0;
     const auto at_once = kPointsOfJob * static_cast<std::size_t>(options_.jobs);
     std::vector<Evaluation> out;
@@ -98,14 +103,22 @@ class RareEstimator {
       for (const auto& point : points.subspan(begin, count)) starts.push_back(cube.start_at(point));
       const auto tried = trial.try_starts(next, std::move(starts));
       failed = !tried;
-      if (failed || !*tried) return std::nullopt;
+      if (failed) return std::nullopt;
+      if (!*tried) {
+        count_runs(out, unfinished);
+        return std::nullopt;
+      }
       next += static_cast<std::int64_t>(count);
       report_progress(trial.plan().trace->number, next - 1);
-      for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t i = 0; i < (**tried).size(); ++i) {
         const auto& sample = (**tried)[i];
         Evaluation answer{points[begin + i], evaluation_kind(sample)};
         parts.emplace_back();
-        if (sample.verdict == SampleVerdict::kLostTooOften) return std::nullopt;
+        if (sample.verdict == SampleVerdict::kLostTooOften) {
+          out.push_back(std::move(answer));
+          count_runs(out, unfinished);
+          return std::nullopt;
+        }
         if (answer.kind == EvaluationKind::kClean || answer.kind == EvaluationKind::kDiscrepancy) {
           parts.back() = margin_parts(*scenario_.mapping, bench_.fluents(), *trial.plan().trace,
                                       scenario_.comparison(), sample.record);

@@ -33,6 +33,7 @@ class Estimator {
     result.seed = options_.seed;
     result.confidence = options_.confidence;
     result.fixed_runs = runs_are_fixed();
+    result.until_width = options_.until_width;
     result.until_known = options_.until_known;
     result.comparison = scenario_.comparison();
     const auto visit = [&](CampaignTrace trace) -> base::Result<bool> {
@@ -172,6 +173,22 @@ class Estimator {
 };
 
 }  // namespace
+
+Evidence RatesResult::evidence(const TraceRates& trace) const {
+  return weigh(*until_known, {trace.runs + trace.lost, trace.any.count, trace.lost, false});
+}
+
+bool RatesResult::is_too_wide(const TraceRates& trace) const {
+  return until_width > 0.0 && trace.any.upper - trace.any.lower > until_width;
+}
+
+bool RatesResult::is_answered() const {
+  if (fixed_runs) return true;
+  return std::all_of(traces.begin(), traces.end(), [this](const TraceRates& trace) {
+    const bool narrow = until_width > 0.0 && !is_too_wide(trace);
+    return narrow || (until_known && evidence(trace) != Evidence::kTooLittle);
+  });
+}
 
 base::Result<RatesResult> estimate_rates(const Scenario& scenario, TraceFeed& traces,
                                          const SimulatorFactory& make_simulator,

@@ -46,11 +46,19 @@ struct RatesResult {
   std::string scenario;
   std::uint64_t seed = 0;
   double confidence = 0.0;
-  bool fixed_runs = true;  // false: intervals hold at any time, else for a fixed number of runs
+  bool fixed_runs = true;    // false: intervals hold at any time, else for a fixed number of runs
+  double until_width = 0.0;  // what was asked for, as in RatesOptions
   std::optional<RateClaim> until_known;
   Comparison comparison = Comparison::kEveryStep;
   bool complete = true;  // false: stopped, or the simulator was lost too often
   std::vector<TraceRates> traces;
+
+  /// What the runs of a trace say of `until_known`.
+  Evidence evidence(const TraceRates& trace) const;
+  /// The runs ended before the interval was as narrow as asked.
+  bool is_too_wide(const TraceRates& trace) const;
+  /// Every trace has what the runs were to go on for.
+  bool is_answered() const;
 };
 
 /// Simulates each trace `runs` times from uniform starts, whatever comes out, and counts what a

@@ -268,7 +268,7 @@ class TraceCampaign {
   }
 
   static void add_search_caveats(const SearchResult& search, TraceResult& result) {
-    if (search.runs > 1 && !search.nearest) {
+    if (search.runs - search.lost > 1 && !search.nearest) {
       result.caveats.push_back(
           "no margin of these simulations changed, so the search had no direction and spread its "
           "starts evenly");

@@ -239,6 +239,10 @@ base::Result<std::optional<std::vector<TrialSample>>> Trial::try_starts(
       out.push_back({*std::move(record), SampleVerdict::kLost, {}});
     } else if (record->status == SampleStatus::kLost) {
       out.push_back(lost(*std::move(record)));
+      if (out.back().verdict == SampleVerdict::kLostTooOften) {
+        bench_->pool_.abandon();
+        return std::optional(std::move(out));
+      }
     } else {
       auto sample = observed(*std::move(record));
       if (!sample) return bench_->sink_.already_reported();

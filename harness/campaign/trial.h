@@ -153,7 +153,8 @@ class Trial {
   base::Result<std::optional<TrialSample>> next();
   /// Simulates starts that were chosen, as the samples from number `first` on. They are no draws,
   /// and nothing is claimed from them. One whose start was invalid, or is none, has the status
-  /// kRejected and the verdict kLost. None when stopped; reports what `next` reports, and
+  /// kRejected and the verdict kLost. The last one is kLostTooOften where the rest was not
+  /// simulated for it. None when stopped; reports what `next` reports, and
   /// kForeignJournalLine where the journal has another start under the number.
   base::Result<std::optional<std::vector<TrialSample>>> try_starts(
       std::int64_t first, std::vector<std::optional<State>> starts);

@@ -302,9 +302,9 @@ std::string describe(const YamlNode& node) {
     case YamlNode::Kind::kNull:
       return "empty";
     case YamlNode::Kind::kMap:
-      return "a map";
+      return node.entries.empty() ? "an empty map" : "a map";
     case YamlNode::Kind::kList:
-      return "a list";
+      return node.items.empty() ? "an empty list" : "a list";
     case YamlNode::Kind::kScalar:
       break;
   }

@@ -36,8 +36,7 @@ std::string percent(const CauseRate& rate) {
 }
 
 /// Whether it came out, before all runs were made, that the rate is as asked.
-std::string known_text(const RateClaim& claim, const TraceRates& trace) {
-  const auto evidence = weigh(claim, {trace.runs + trace.lost, trace.any.count, trace.lost, false});
+std::string known_text(const RateClaim& claim, Evidence evidence) {
   const auto* is = evidence == Evidence::kSupports ? "it is" : "it is not";
   return fmt::format("  {} {} (with {:g} % confidence)\n",
                      evidence == Evidence::kTooLittle ? "not known whether it is" : is,
@@ -62,7 +61,11 @@ std::string rates_text(const RatesResult& result) {
     if (trace.unseen > 0) out += "  " + unseen_text(trace.unseen) + "\n";
     out += fmt::format("  {:>6} of {:<6} {:<26} any discrepancy\n", trace.any.count, trace.runs,
                        percent(trace.any));
-    if (result.until_known) out += known_text(*result.until_known, trace);
+    if (result.until_known) out += known_text(*result.until_known, result.evidence(trace));
+    if (result.is_too_wide(trace)) {
+      out += fmt::format("  not as narrow as asked, {:g} points; give more --runs\n",
+                         100.0 * result.until_width);
+    }
     for (const CauseRate& rate : trace.causes) {
       out += fmt::format("  {:>6} of {:<6} {:<26} {}\n", rate.count, trace.runs, percent(rate),
                          rate.cause);
@@ -100,7 +103,15 @@ std::string rates_json(const RatesResult& result) {
                                   {"unseen", trace.unseen},
                                   {"any", rate_object(trace.any)},
                                   {"causes", std::move(causes)}});
-    if (trace.law) document["traces"].back()["law"] = law_json<Json>(*trace.law);
+    auto& object = document["traces"].back();
+    if (trace.law) object["law"] = law_json<Json>(*trace.law);
+    if (result.until_width > 0.0) object["narrow"] = !result.is_too_wide(trace);
+    if (!result.until_known) continue;
+    const auto evidence = result.evidence(trace);
+    object["claim"] = {{"rate", to_string(*result.until_known)}, {"holds", nullptr}};
+    if (evidence != Evidence::kTooLittle) {
+      object["claim"]["holds"] = evidence == Evidence::kSupports;
+    }
   }
   return base::json_text(document) + "\n";
 }

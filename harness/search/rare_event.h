@@ -69,6 +69,9 @@ std::int64_t least_runs(RareEventMethod method);
 using BatchEvaluator =
     std::function<std::optional<std::vector<Evaluation>>(std::span<const UnitPoint>)>;
 
+/// Adds them to the counts `runs`, `lost` and `invalid`.
+void count_runs(const std::vector<Evaluation>& evaluations, RareEventResult& result);
+
 /// The probability that a valid start, uniform in the unit cube, gives a discrepancy.
 ///
 /// Importance sampling (importance.cc): the interval holds with the stated confidence whatever the

@@ -22,10 +22,8 @@ class RareEventBatches {
     for (const auto& one : *got) {
       const bool invalid = one.kind == EvaluationKind::kInvalid;
       invalid_in_a_row_ = invalid ? invalid_in_a_row_ + 1 : 0;
-      result_.invalid += invalid ? 1 : 0;
-      result_.runs += invalid ? 0 : 1;
-      result_.lost += one.kind == EvaluationKind::kLost ? 1 : 0;
     }
+    count_runs(*got, result_);
     answers = std::move(*got);
     if (invalid_in_a_row_ < kMostInvalid) return true;
     result_.end = RareEventEnd::kInvalid;

@@ -371,6 +371,11 @@ OutcomeReply read_outcome(FieldReader& reader, const Json& result) {
   if (!sane) reader.fail("`sim_time` is not within 0 to 1e9 s");
   if (const Json* margins = reader.object(result, "margins", false)) {
     reply.outcome.margins = reader.state(*margins);
+    for (const auto& [name, value] : reply.outcome.margins) {
+      if (!std::holds_alternative<double>(value) && !std::holds_alternative<std::int64_t>(value)) {
+        reader.fail("margin `" + name + "` is not a number");
+      }
+    }
   }
   read_motion(result, reply);
   return reply;

@@ -51,6 +51,36 @@ void check_interval(const Json& rate, int runs, double confidence) {
   CHECK(rate["upper"].get<double>() == doctest::Approx(upper).epsilon(1e-7));
 }
 
+TEST_CASE("what the runs were to go on for is told, or that they ended before") {
+  const CliFixture cli;
+  const auto rates = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = {"rates", "edge.yaml", "--json"};
+    all.insert(all.end(), more.begin(), more.end());
+    const auto ran = cli.parallax(all);
+    CAPTURE(ran.err);
+    REQUIRE(ran.err.empty());
+    return std::pair(ran.code, Json::parse(ran.out)["traces"][0]);
+  };
+  // About a third of the starts go wrong.
+  const auto [known, below] = rates({"--until-below", "0.95", "--runs", "60"});
+  CHECK(known == 0);
+  CHECK(below["claim"] == Json{{"rate", "below 95 %"}, {"holds", true}});
+  CHECK(below["runs"] < 60);
+  const auto [refuted, above] = rates({"--until-above", "0.95", "--runs", "60"});
+  CHECK(refuted == 0);
+  CHECK(above["claim"]["holds"] == false);
+  const auto [open, not_known] = rates({"--until-below", "0.9", "--runs", "1"});
+  CHECK(open == 4);
+  CHECK(not_known["claim"]["holds"].is_null());
+  const auto [wide, width] = rates({"--until-width", "0.01", "--runs", "5"});
+  CHECK(wide == 4);
+  CHECK(width["narrow"] == false);
+  const auto text = cli.parallax({"rates", "edge.yaml", "--until-width", "0.01", "--runs", "5"});
+  CHECK(text.code == 4);
+  CHECK(text.out.find("not as narrow as asked, 1 points; give more --runs") != std::string::npos);
+  CHECK(rates({"--until-width", "0.99", "--runs", "60"}).first == 0);
+}
+
 TEST_CASE("counts by cause add up to all discrepancies, the most frequent first") {
   const CliFixture cli;
   // Box and robot are uniform over a metre each, the arm reaches 0.6 m: out of reach in 82 %. The

@@ -139,6 +139,45 @@ TEST_CASE("search: every strategy, and a scenario that asks for one") {
   CHECK(Json::parse(ran.out)["traces"][0]["search"]["asked"] == 5);
 }
 
+/// A simulator that ends as soon as it is to do anything.
+constexpr const char* kEnding = R"sh(number() { rest=${line#*"\"$1\":"}; echo "${rest%%[,\}]*}"; }
+while read -r line; do
+  id=$(number id)
+  case $line in
+    *'"hello"'*) echo '{"id":'$id',"result":{"protocol":1,"name":"ending","version":"1","determinism":"none","seeds":false,"time_step":0.01,"params":[{"name":"robot.x","settable":true},{"name":"box.x","settable":true},{"name":"box.y","settable":true},{"name":"box.yaw","settable":true},{"name":"box.held"}],"actions":[{"name":"going"},{"name":"picking-up"},{"name":"placing"}]}}' ;;
+    *) exit 3 ;;
+  esac
+done
+)sh";
+
+TEST_CASE("search: a simulator that is lost again and again ends it, and is told of once") {
+  const CliFixture cli;
+  cli.write("ending.sh", kEnding);
+  cli.write("s.yaml", "include: scenario.yaml\nsimulator: {command: [sh, ending.sh]}\n");
+  for (const std::string jobs : {"1", "3"}) {
+    CAPTURE(jobs);
+    const auto ran = cli.parallax({"run", "s.yaml", "--search", "12", "--jobs", jobs, "--json"});
+    CAPTURE(ran.err);
+    CHECK(ran.code == 4);
+    CHECK(holds(ran.err, "E7107"));
+    CHECK(holds(ran.err, "lost 3 times in a row"));
+    CHECK(!holds(ran.err, "lost 4 times"));
+    const auto trace = Json::parse(ran.out)["traces"][0];
+    CHECK(trace["search"]["lost"] == 3);
+    CHECK(trace["simulations"] == 0);
+    CHECK(!holds(trace["caveats"].dump(), "no direction"));  // nothing was observed that could have
+  }
+  const auto rates =
+      cli.parallax({"rates", "s.yaml", "--method", "importance", "--runs", "1000", "--json"});
+  CAPTURE(rates.err);
+  CHECK(rates.code == 4);
+  CHECK(!holds(rates.err, "lost 4 times"));
+  const auto trace = Json::parse(rates.out)["traces"][0];
+  CHECK(trace["runs"] == 3);
+  CHECK(trace["lost"] == 3);
+  CHECK(trace["end"] == "stopped");
+}
+
 TEST_CASE("search: bad input") {
   const CliFixture cli;
   for (const std::string text : {"search: -1", "search: 10001", "search: {strategy: sobol}",

@@ -168,7 +168,7 @@ int run_rates(const RateOptions& options, Invocation& invocation) {
   } else {
     invocation.result(harness::rates_text(*result));
   }
-  if (!result->complete) return 4;
+  if (!result->complete || !result->is_answered()) return 4;
   return result->traces.empty() ? 1 : 0;
 }
 
@@ -188,8 +188,8 @@ Command rates_command() {
       "rates.csv\n"
       "  parallax rates scenarios/two_regions/edge.yaml --method importance --runs 1000\n"
       "Sample N starts as simulation N of `parallax run` with the same seed does.\n"
-      "Exit codes: 0 estimated, 1 no trace, 4 stopped before all runs were made, or not "
-      "resolved.");
+      "Exit codes: 0 estimated, 1 no trace, 4 stopped before all runs were made, or "
+      "--runs did not resolve what was asked.");
   command.option("scenario", options->scenario, "Scenario file (YAML)").required();
   command.option("--trace", options->rates.trace, "Only this trace; default: all")
       .check(WholeNumber{1, 1'000'000});

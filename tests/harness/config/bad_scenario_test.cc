@@ -100,6 +100,8 @@ TEST_CASE("laws of the sampling, each error at its word") {
        "E5125 at 18:78: `triangular` is reversed: 2 is above 1"},
       {"box.yaw: [-0.1, 0.1]", "box.yaw: {triangular: [0, 1]}",
        "E5107 at 18:62: `triangular` is a list, not a list of lower bound, mode and upper bound"},
+      {"box.yaw: [-0.1, 0.1]", "box.yaw: {choice: {}}",
+       "E5107 at 18:62: `choice` is an empty map, not a map from values to their weights"},
       {"box.yaw: [-0.1, 0.1]", "box.yaw: {choice: {0.1: 1, 0.2: -1}}",
        "E5109 at 18:84: the weight of 0.2 is -1, but must be above 0"},
       {"box.yaw: [-0.1, 0.1]", "box.yaw: {choice: {0.1: 1, 0.10: 1}}",

@@ -231,6 +231,10 @@ TEST_CASE("what a hostile simulator says of itself and of its outcomes is refuse
   CHECK(outcome(R"({"status":"ok","reason":[]})") == "`reason` is not a string");
   CHECK(outcome(R"({"status":"ok","margins":{"reach":{}}})") ==
         "`reach` is neither boolean, number nor string");
+  for (const std::string margin : {R"("wide")", "true"}) {
+    CHECK(outcome(R"({"status":"ok","margins":{"reach":)" + margin + "}}") ==
+          "margin `reach` is not a number");
+  }
   CHECK(malformed_message(R"({"id":3,"error":{}})", act) == "`code` is missing");
   CHECK(malformed_message(R"({"id":3,"error":"no"})", act) == "`error` is not an object");
   CHECK(malformed_message(R"({"id":3,"result":{"status":"ok","reason":"\ud800"}})", act) ==
