@@ -154,6 +154,7 @@ std::optional<FormulaId> FormulaGrounder::combine(Frame& frame) {
     case FormulaKind::kFalse:
     case FormulaKind::kAtom:
     case FormulaKind::kCompare:
+    case FormulaKind::kTemporal:
       break;
   }
   PARALLAX_REQUIRE(false, "a frame is a connective or a quantifier");
@@ -201,6 +202,7 @@ std::optional<FormulaId> FormulaGrounder::occurrence(const TypedFormula& atom, G
   const auto number = model_->event_number(event);
   if (!number) return std::nullopt;
   if (t < model_->horizon()) return model_->happens(*number, t);
+  if (names_last_events_) return model_->happens_last(*number);
   if (meaning_ == Meaning::kDecreasoner) {
     if (!whole_axiom_ || depth_ > 0) return std::nullopt;
     return model_->happens_last(*number);
@@ -317,7 +319,8 @@ bool FormulaGrounder::beyond_horizon(const TypedFormula& formula) {
   if (!time) return true;
   const auto t = model_->terms()[*time].integer;
   if (t < 0 || t > model_->horizon()) return true;
-  const bool named = typed_->terms[formula.terms[1]].kind == TermKind::kInteger;
+  const bool named =
+      names_last_events_ || typed_->terms[formula.terms[1]].kind == TermKind::kInteger;
   return formula.predicate == typed_->core.happens && t == model_->horizon() && !named;
 }
 

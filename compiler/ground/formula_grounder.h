@@ -34,6 +34,9 @@ class FormulaGrounder {
   /// Is what is grounded next a whole axiom? To the 2005 reasoner Happens at the last timepoint is
   /// an atom where no quantifier stands around it.
   void read_whole_axiom(bool whole) { whole_axiom_ = whole; }
+  /// Do events at the last timepoint get an atom of their own, `happens_last`? Otherwise they do
+  /// not exist.
+  void name_last_events(bool name) { names_last_events_ = name; }
   /// From now on an effect in a formula is the atom that the function gives; null: as before.
   using EffectAtoms =
       std::function<FormulaId(EffectKind, std::uint32_t event, std::uint32_t fluent, Timepoint)>;
@@ -91,6 +94,7 @@ class FormulaGrounder {
   EffectAtoms effect_atoms_;
   PossibleAtoms* possible_ = nullptr;
   bool whole_axiom_ = false;
+  bool names_last_events_ = false;
   std::size_t depth_ = 0;  // quantifiers around what is being grounded
   /// By formula; made for the set of variables that are bound when it is first met.
   std::map<std::uint32_t, Quantifier> quantifiers_;

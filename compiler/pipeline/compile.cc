@@ -20,6 +20,7 @@
 #include "compiler/pipeline/plan_encoder.h"
 #include "compiler/pipeline/plan_formulas.h"
 #include "compiler/pipeline/state_constraint.h"
+#include "compiler/pipeline/temporal_encoder.h"
 #include "compiler/plan/plan_binding.h"
 #include "compiler/sema/check.h"
 #include "compiler/sema/name_advice.h"
@@ -178,26 +179,40 @@ NodeId negation(Ast& ast, NodeId formula) {
   return ast.add(node, &formula, 1);
 }
 
-base::Result<CheckedFormula> check_constraint(const ConstraintText& constraint, TypedModel& model,
-                                              const base::SourceFiles& files,
-                                              base::DiagnosticSink& sink) {
-  auto parsed = parse_formula(constraint.text, files, sink);
+bool has_temporal_operator(const Ast& ast) {
+  for (std::size_t i = 0; i < ast.node_count(); ++i) {
+    const auto& node = ast[NodeId(static_cast<std::uint32_t>(i))];
+    const bool has_operator = node.kind == NodeKind::kUnary || node.kind == NodeKind::kBinary;
+    if (has_operator && is_temporal(node.op)) return true;
+  }
+  return false;
+}
+
+base::Result<StateConstraint> check_constraint(const ConstraintText& constraint, Constraints about,
+                                               TypedModel& model, const base::SourceFiles& files,
+                                               base::DiagnosticSink& sink) {
+  auto parsed = about == Constraints::kTraces ? parse_temporal_formula(constraint.text, files, sink)
+                                              : parse_formula(constraint.text, files, sink);
   if (!parsed) return sink.already_reported();
-  const auto root = constraint.negated ? negation(parsed->ast, parsed->root) : parsed->root;
-  return check_formula(model, parsed->ast, root, {}, sink);
+  const bool temporal = has_temporal_operator(parsed->ast);
+  const bool negate = constraint.negated && !temporal;
+  const auto root = negate ? negation(parsed->ast, parsed->root) : parsed->root;
+  const auto checked = check_formula(model, parsed->ast, root, {}, sink);
+  if (!checked) return sink.already_reported();
+  return StateConstraint{*checked, constraint.place, temporal, temporal && constraint.negated};
 }
 
 }  // namespace
 
 base::Result<std::vector<StateConstraint>> check_constraints(
-    const std::vector<ConstraintText>& constraints, TypedModel& model,
+    const std::vector<ConstraintText>& constraints, Constraints about, TypedModel& model,
     const base::SourceFiles& files, base::DiagnosticSink& sink) {
   std::vector<StateConstraint> checked;
   for (const auto& constraint : constraints) {
     const bool in_place = constraint.text.file == constraint.place.file;
     base::DiagnosticSink own;
-    const auto formula = check_constraint(constraint, model, files, in_place ? sink : own);
-    if (formula) checked.push_back({*formula, constraint.place});
+    const auto formula = check_constraint(constraint, about, model, files, in_place ? sink : own);
+    if (formula) checked.push_back(*formula);
     if (!in_place) sink.adopt(own, constraint.place, std::string(files.text(constraint.text)));
   }
   if (checked.size() != constraints.size()) return sink.already_reported();
@@ -206,6 +221,31 @@ base::Result<std::vector<StateConstraint>> check_constraints(
 
 namespace {
 
+/// By timepoint, from `first` on: does the constraint hold there? None where an instance names a
+/// timepoint before 0.
+base::Result<std::vector<std::optional<FormulaId>>> ground_constraint(
+    const StateConstraint& constraint, std::uint32_t origin, Timepoint first, GroundModel& model,
+    FormulaGrounder& grounder, base::DiagnosticSink& sink) {
+  if (constraint.temporal) {
+    auto fulfilled = TemporalEncoder(constraint, origin, model, grounder, sink).fulfilled();
+    if (!fulfilled) return sink.already_reported();
+    return *std::move(fulfilled);
+  }
+  std::vector<std::optional<FormulaId>> out(static_cast<std::size_t>(first));
+  for (Timepoint t = first; t <= model.horizon(); ++t) {
+    grounder.start(constraint.source);
+    if (constraint.formula.time) {
+      grounder.bind(*constraint.formula.time, model.terms().integer(t));
+    }
+    out.push_back(grounder.ground(constraint.formula.formula));
+    if (grounder.failed()) return sink.already_reported();
+    if (out.back() && model.needed_horizon_of(*out.back()) > t) {
+      return sink.error(codes::kConstraintLooksAhead, constraint.source);
+    }
+  }
+  return out;
+}
+
 /// Defines an atom `hit` for every timepoint from `first` on: all constraints
 /// hold there. An instance that names a timepoint before 0 does not hold.
 base::Status encode_constraints(const std::vector<StateConstraint>& constraints, Timepoint first,
@@ -213,31 +253,36 @@ base::Status encode_constraints(const std::vector<StateConstraint>& constraints,
                                 base::DiagnosticSink& sink) {
   const auto origin = model.add_origin(constraints.front().source, OriginKind::kStateConstraint);
   auto& formulas = model.formulas();
-  std::vector<bool> ever(constraints.size(), false);
-  for (Timepoint t = first; t <= model.horizon(); ++t) {
-    std::vector<FormulaId> parts;
-    for (std::size_t i = 0; i < constraints.size(); ++i) {
-      const auto& constraint = constraints[i];
-      grounder.start(constraint.source);
-      if (constraint.formula.time) {
-        grounder.bind(*constraint.formula.time, model.terms().integer(t));
-      }
-      const auto value = grounder.ground(constraint.formula.formula);
-      if (grounder.failed()) return sink.already_reported();
-      if (value) ever[i] = true;
-      if (value && model.needed_horizon_of(*value) > t) {
-        return sink.error(codes::kConstraintLooksAhead, constraint.source);
-      }
-      parts.push_back(value.value_or(formulas.falsity()));
+  std::vector<std::vector<FormulaId>> parts(static_cast<std::size_t>(model.horizon()) + 1);
+  for (const auto& constraint : constraints) {
+    const auto values = ground_constraint(constraint, origin, first, model, grounder, sink);
+    if (!values) return sink.already_reported();
+    bool ever = false;
+    for (auto t = static_cast<std::size_t>(first); t < values->size(); ++t) {
+      ever = ever || (*values)[t];
+      parts[t].push_back((*values)[t].value_or(formulas.falsity()));
     }
-    const auto hit = model.plan_atom(AtomKind::kHit, {}, t);
-    model.require(formulas.equivalence(hit, formulas.conjunction(parts)), origin);
+    if (!ever) return sink.error(codes::kNothingToSay, constraint.source, model.horizon());
   }
-  for (std::size_t i = 0; i < constraints.size(); ++i) {
-    if (ever[i]) continue;
-    return sink.error(codes::kNothingToSay, constraints[i].source, model.horizon());
+  for (Timepoint t = first; t <= model.horizon(); ++t) {
+    const auto hit = model.plan_atom(AtomKind::kHit, {}, t);
+    const auto all = formulas.conjunction(std::move(parts[static_cast<std::size_t>(t)]));
+    model.require(formulas.equivalence(hit, all), origin);
   }
   return base::Unit{};
+}
+
+/// The atoms `hit` of a property about traces, which ends them where it is violated.
+base::Status encode_violation(const StateConstraint& property, bool has_plan, GroundModel& model,
+                              FormulaGrounder& grounder, base::DiagnosticSink& sink) {
+  const auto origin = model.add_origin(property.source, OriginKind::kStateConstraint);
+  std::vector<FormulaId> hit, complete;
+  for (Timepoint t = 0; t <= model.horizon(); ++t) {
+    hit.push_back(model.plan_atom(AtomKind::kHit, {}, t));
+    complete.push_back(has_plan ? ~model.plan_atom(AtomKind::kRunning, {}, t)
+                                : model.formulas().constant(t == model.horizon()));
+  }
+  return TemporalEncoder(property, origin, model, grounder, sink).require_violation(hit, complete);
 }
 
 /// What the model says of its own making, so that it can be read without the
@@ -280,7 +325,8 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
   lint_model(difference_rules(), *ast, *typed, sink);
 
   // Constraints and the plan are independent: report the errors of both.
-  auto constraints = check_constraints(input.constraints, *typed, files, sink);
+  auto constraints =
+      check_constraints(input.constraints, Constraints::kTraces, *typed, files, sink);
   std::optional<CheckedPlan> plan;
   if (input.plan) {
     auto checked = check_plan(*input.plan, input.ground.stop, *typed, files, sink);
@@ -293,11 +339,18 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
   auto ground = ground_model(*typed, input.ground, sink, &log);
   if (!ground) return sink.already_reported();
   FormulaGrounder grounder(*ground, input.ground, sink);
-  if (plan && !encode_plan(plan->graph, plan->formulas, plan->events, *ground, grounder, sink)) {
+  const bool is_property = !constraints->empty() && constraints->front().violated;
+  const auto running = is_property ? RunningAtoms::kEverywhere : RunningAtoms::kAtHorizon;
+  if (plan &&
+      !encode_plan(plan->graph, plan->formulas, plan->events, running, *ground, grounder, sink)) {
     return sink.already_reported();
   }
-  if (!constraints->empty() &&
-      !encode_constraints(*constraints, input.hits_at_start ? 0 : 1, *ground, grounder, sink)) {
+  if (is_property) {
+    if (!encode_violation(constraints->front(), plan.has_value(), *ground, grounder, sink)) {
+      return sink.already_reported();
+    }
+  } else if (!constraints->empty() && !encode_constraints(*constraints, input.hits_at_start ? 0 : 1,
+                                                          *ground, grounder, sink)) {
     return sink.already_reported();
   }
   Compilation result;
@@ -311,6 +364,7 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
     result.plan = std::move(plan->graph);
     result.plan_formulas = std::make_shared<const PlanFormulas>(std::move(plan->formulas));
   }
+  result.constraints = *std::move(constraints);
   describe(input, files, result.model);
   result.typed = std::make_unique<TypedModel>(*std::move(typed));
   return result;

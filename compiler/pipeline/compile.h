@@ -13,6 +13,7 @@
 #include "compiler/pipeline/compile_report.h"
 #include "compiler/plan/plan_graph.h"
 #include "compiler/plan/pose_locator.h"
+#include "compiler/sema/check.h"
 #include "compiler/sema/typed_model.h"
 #include "compiler/syntax/loader.h"
 
@@ -44,6 +45,16 @@ struct ConstraintText {
   bool negated = false;  // what counts is that the formula does not hold
 };
 
+/// A formula about a state with its place; the timepoint of the state is called `time` in it. Or
+/// about a trace, if temporal operators stand in it.
+struct StateConstraint {
+  CheckedFormula formula;
+  base::SourceRange source;
+  bool temporal = false;
+  bool violated =
+      false;  // what counts is that it is not so; a formula about a state says so itself
+};
+
 struct CompileInput {
   std::vector<std::filesystem::path> models;
   std::optional<base::FileId> text;  // instead of the models: one that is among the files
@@ -61,10 +72,11 @@ struct CompileInput {
 
 struct Compilation {
   CompiledModel model;
-  std::unique_ptr<TypedModel> typed;  // the checked model, for an independent evaluation
-  std::vector<AxiomCost> costs;       // if asked for
-  PassLog passes;                     // what ran, how long, and the text of `emit_pass`
-  std::optional<PlanGraph> plan;      // the unrolled control flow
+  std::unique_ptr<TypedModel> typed;         // the checked model, for an independent evaluation
+  std::vector<StateConstraint> constraints;  // as they were asked for; part of `typed`
+  std::vector<AxiomCost> costs;              // if asked for
+  PassLog passes;                            // what ran, how long, and the text of `emit_pass`
+  std::optional<PlanGraph> plan;             // the unrolled control flow
   std::shared_ptr<const PlanFormulas> plan_formulas;  // its formulas, checked; part of `typed`
 };
 

@@ -190,17 +190,16 @@ class PlanEncoder {
     }
   }
 
-  base::Status run(const std::set<std::string>& plan_events) {
+  base::Status run(const std::set<std::string>& plan_events, RunningAtoms running) {
     if (!resolve_events()) return sink_.already_reported();
     const auto count = graph_.locations.size() + graph_.terminals.size();
     auto incoming = std::vector<std::vector<FormulaId>>(count);
     route(graph_.entry, model_.formulas().truth(), 0, incoming);
     for (Timepoint t = 0;; ++t) {
       const auto here = place_control(incoming, t);
-      if (t == model_.horizon()) {
-        mark_running(here, t);
-        break;
-      }
+      const bool at_horizon = t == model_.horizon();
+      if (at_horizon || running == RunningAtoms::kEverywhere) mark_running(here, t);
+      if (at_horizon) break;
       perform(here, t, plan_events);
       incoming.assign(count, {});
       leave(here, t, incoming);
@@ -366,7 +365,7 @@ class PlanEncoder {
     step.finish(origin_of(0));
   }
 
-  /// True at the horizon if the plan would go on: at a location, or where unrolling was cut.
+  /// True at t if the plan would go on: at a location, or where unrolling was cut.
   void mark_running(const std::vector<std::optional<FormulaId>>& here, Timepoint t) {
     std::vector<FormulaId> open;
     for (NodeNumber node = 0; node < here.size(); ++node) {
@@ -398,9 +397,10 @@ class PlanEncoder {
 }  // namespace
 
 base::Status encode_plan(const PlanGraph& graph, const PlanFormulas& formulas,
-                         const std::set<std::string>& plan_events, GroundModel& model,
-                         FormulaGrounder& grounder, base::DiagnosticSink& sink) {
-  return PlanEncoder(graph, formulas, model, grounder, sink).run(plan_events);
+                         const std::set<std::string>& plan_events, RunningAtoms running,
+                         GroundModel& model, FormulaGrounder& grounder,
+                         base::DiagnosticSink& sink) {
+  return PlanEncoder(graph, formulas, model, grounder, sink).run(plan_events, running);
 }
 
 std::vector<PlanCut> plan_cuts(const PlanGraph& graph) {

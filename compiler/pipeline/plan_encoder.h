@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <set>
 #include <string>
 #include <vector>
@@ -12,6 +13,9 @@
 
 namespace parallax::compiler {
 
+/// Where there are atoms that say whether the plan would go on.
+enum class RunningAtoms : std::uint8_t { kAtHorizon, kEverywhere };
+
 /// Unrolls the plan's control flow together with the model. Control is at exactly one location or
 /// terminal per timepoint (atoms `L0`, `DONE`, `FAILED(class)`, `BOUND(0)`); at a location its
 /// event happens; whether it succeeded (atom `L0` of kind kSucceeded, one timepoint later) is
@@ -22,8 +26,8 @@ namespace parallax::compiler {
 /// performs them; other events are the model's own. Size: reachable (location, timepoint) pairs
 /// times edges.
 base::Status encode_plan(const PlanGraph& graph, const PlanFormulas& formulas,
-                         const std::set<std::string>& plan_events, GroundModel& model,
-                         FormulaGrounder& grounder, base::DiagnosticSink& sink);
+                         const std::set<std::string>& plan_events, RunningAtoms running,
+                         GroundModel& model, FormulaGrounder& grounder, base::DiagnosticSink& sink);
 
 /// The plan's steps for the artifact, by location number.
 std::vector<PlanStep> plan_steps(const PlanGraph& graph);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "compiler/base/result.h"
@@ -8,16 +9,13 @@
 
 namespace parallax::compiler {
 
-/// A formula about a state with its place; the timepoint of the state is called `time` in it.
-struct StateConstraint {
-  CheckedFormula formula;
-  base::SourceRange source;
-};
+/// May temporal operators stand in them?
+enum class Constraints : std::uint8_t { kStates, kTraces };
 
 /// Checks them against the model, in whose stores they are afterwards. Reports what is wrong with
 /// any of them at its place.
 base::Result<std::vector<StateConstraint>> check_constraints(
-    const std::vector<ConstraintText>& constraints, TypedModel& model,
+    const std::vector<ConstraintText>& constraints, Constraints about, TypedModel& model,
     const base::SourceFiles& files, base::DiagnosticSink& sink);
 
 }  // namespace parallax::compiler

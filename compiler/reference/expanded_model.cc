@@ -256,6 +256,7 @@ FormulaTrees::Node FormulaTrees::connect(FormulaKind kind, const std::vector<Nod
     case FormulaKind::kCompare:
     case FormulaKind::kForall:
     case FormulaKind::kExists:
+    case FormulaKind::kTemporal:
       break;
   }
   PARALLAX_REQUIRE(false, "a connective");
@@ -353,6 +354,7 @@ bool FormulaTrees::value(Node node, const Values& values, const Effects& effects
     case FormulaKind::kCompare:
     case FormulaKind::kForall:
     case FormulaKind::kExists:
+    case FormulaKind::kTemporal:
       break;
   }
   PARALLAX_REQUIRE(false, "a tree has atoms and connectives");

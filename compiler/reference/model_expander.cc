@@ -273,6 +273,8 @@ std::optional<ModelExpander::Node> ModelExpander::expand(TypedFormulaId id) {
     case FormulaKind::kIff:
       node = connected(formula);
       break;
+    case FormulaKind::kTemporal:
+      return std::nullopt;  // TemporalTruth takes these apart
   }
   // What became a constant, or nothing, needs its parts no more.
   if (!node || *node == FormulaTrees::kTruth || *node == FormulaTrees::kFalsity) {
@@ -365,7 +367,8 @@ std::optional<ModelExpander::Node> ModelExpander::event_atom(const TypedFormula&
   const auto t = terms_.number(arguments[1]);
   if (!event || !t) return std::nullopt;
   if (*t < out_.horizon_) return out_.trees_.atom(out_.happens(*event, *t));
-  if (model_.terms[formula.terms[1]].kind == TermKind::kInteger) return FormulaTrees::kFalsity;
+  const bool named = model_.terms[formula.terms[1]].kind == TermKind::kInteger;
+  if (named || events_end_) return FormulaTrees::kFalsity;
   return std::nullopt;
 }
 

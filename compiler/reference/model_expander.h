@@ -29,6 +29,8 @@ class ModelExpander {
   bool bind(VariableId variable, const std::string& value);
   /// What it can stand for.
   std::vector<std::string> values(VariableId variable) const;
+  /// From now on nothing happens at the last timepoint; before, such events do not exist.
+  void end_events() { events_end_ = true; }
   /// A formula of the model's stores, written out. None: it does not exist.
   std::optional<Node> instance(TypedFormulaId formula) { return expand(formula); }
 
@@ -67,6 +69,7 @@ class ModelExpander {
   ReferenceTerms::Environment environment_;
   std::vector<bool> bound_;  // by variable
   bool effects_known_ = false;
+  bool events_end_ = false;
   /// By kind, event, fluent and timepoint: the number among the expanded model's effects.
   std::map<std::tuple<EffectKind, std::uint32_t, std::uint32_t, std::int64_t>, std::uint32_t>
       effect_numbers_;

@@ -186,6 +186,31 @@ bool ReferenceSearch::has_reason(const ExpandedModel::Completed& completed, Valu
   return found;
 }
 
+std::vector<std::uint8_t> atom_values(const ExpandedModel& expanded, const Valuation& valuation) {
+  std::vector<std::uint8_t> values(expanded.atom_count(), 0);
+  const auto last =
+      std::min(static_cast<std::int64_t>(valuation.holds.size()) - 1, expanded.horizon());
+  for (std::int64_t t = 0; t <= last; ++t) {
+    const auto now = static_cast<std::size_t>(t);
+    for (const auto& text : valuation.holds[now]) {
+      if (const auto f = expanded.fluent(text)) values[expanded.holds(*f, t)] = 1;
+    }
+    if (now < valuation.released.size()) {
+      for (const auto& text : valuation.released[now]) {
+        if (const auto f = expanded.fluent(text)) values[expanded.released(*f, t)] = 1;
+      }
+    }
+    if (t == last || now >= valuation.happens.size()) continue;
+    for (const auto& text : valuation.happens[now]) {
+      if (const auto e = expanded.event(text)) values[expanded.happens(*e, t)] = 1;
+    }
+  }
+  for (const auto& text : valuation.predicates) {
+    if (const auto number = expanded.predicate(text)) values[*number] = 1;
+  }
+  return values;
+}
+
 ReferenceEvaluator::ReferenceEvaluator(const TypedModel& model, const ReferenceLimits& limits)
     : model_(model),
       limits_(limits),
@@ -233,30 +258,6 @@ std::vector<base::SourceRange> ReferenceEvaluator::silent_axioms() const {
     sources.push_back(model_.axioms[axiom].source);
   }
   return sources;
-}
-
-ReferenceEvaluator::Values ReferenceEvaluator::values_of(const Valuation& valuation) const {
-  Values values(expanded_.atom_count(), 0);
-  const auto last = std::min(static_cast<std::int64_t>(valuation.holds.size()) - 1, horizon());
-  for (std::int64_t t = 0; t <= last; ++t) {
-    const auto now = static_cast<std::size_t>(t);
-    for (const auto& text : valuation.holds[now]) {
-      if (const auto f = expanded_.fluent(text)) values[expanded_.holds(*f, t)] = 1;
-    }
-    if (now < valuation.released.size()) {
-      for (const auto& text : valuation.released[now]) {
-        if (const auto f = expanded_.fluent(text)) values[expanded_.released(*f, t)] = 1;
-      }
-    }
-    if (t == last || now >= valuation.happens.size()) continue;
-    for (const auto& text : valuation.happens[now]) {
-      if (const auto e = expanded_.event(text)) values[expanded_.happens(*e, t)] = 1;
-    }
-  }
-  for (const auto& text : valuation.predicates) {
-    if (const auto number = expanded_.predicate(text)) values[*number] = 1;
-  }
-  return values;
 }
 
 /// Atoms that the model does not have, or that nothing could be a reason for.

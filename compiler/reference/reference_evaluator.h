@@ -92,6 +92,9 @@ struct Valuation {
   std::set<std::string> predicates;
 };
 
+/// By atom of the expanded model, of those it has so far: is it true? A trace may be shorter.
+std::vector<std::uint8_t> atom_values(const ExpandedModel& expanded, const Valuation& valuation);
+
 /// Something that a valuation gets wrong.
 struct Violation {
   base::SourceRange source;  // the axiom, effect axiom, completion, or fluent declaration
@@ -146,7 +149,7 @@ class ReferenceEvaluator {
   /// predicates that no formula mentions have no number; any value of theirs is fine unless the
   /// predicate is completed.
   bool accepts(const Values& values) const;
-  Values values_of(const Valuation& valuation) const;
+  Values values_of(const Valuation& valuation) const { return atom_values(expanded_, valuation); }
   const TypedModel& model() const { return model_; }
   const ExpandedModel& expanded() const { return expanded_; }
 

@@ -100,6 +100,7 @@ class ShapeReader {
         case FormulaKind::kTrue:
         case FormulaKind::kFalse:
         case FormulaKind::kCompare:
+        case FormulaKind::kTemporal:
           break;
         case FormulaKind::kAtom:
           if (effect(formula) || trajectory(formula)) {
@@ -199,6 +200,7 @@ class ShapeReader {
         case FormulaKind::kOr:
         case FormulaKind::kIff:
         case FormulaKind::kExists:
+        case FormulaKind::kTemporal:
           add_conjunct(task, root);
           break;
       }

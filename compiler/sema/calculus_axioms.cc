@@ -177,6 +177,15 @@ class ShapeMaker {
       case Operator::kNot:
       case Operator::kNegate:
       case Operator::kPlus:
+      case Operator::kAlways:
+      case Operator::kEventually:
+      case Operator::kNext:
+      case Operator::kWeakNext:
+      case Operator::kHistorically:
+      case Operator::kOnce:
+      case Operator::kPreviously:
+      case Operator::kUntil:
+      case Operator::kSince:
         return std::nullopt;
     }
     return std::nullopt;

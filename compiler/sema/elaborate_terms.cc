@@ -59,6 +59,9 @@ Elaborator::Value Elaborator::name(const Node& node, Position position,
     auto report = sink_.error(codes::kExpectedFormula, source(node),
                               variable ? "variable" : "constant", quoted(node));
     const auto symbol = variable ? std::nullopt : model_.find_symbol(text);
+    if (temporal_operator(text)) {
+      report.fix("`" + quoted(node) + "` is an operator here if a formula follows it");
+    }
     if (symbol && model_.symbols[*symbol].kind == SymbolKind::kPredicate) {
       report.fix("write the predicate with its arguments, as in `" +
                  signature(model_, model_.symbols[*symbol]) + "`");

@@ -32,6 +32,15 @@ bool is_comparison(Operator op) {
     case Operator::kNot:
     case Operator::kNegate:
     case Operator::kPlus:
+    case Operator::kAlways:
+    case Operator::kEventually:
+    case Operator::kNext:
+    case Operator::kWeakNext:
+    case Operator::kHistorically:
+    case Operator::kOnce:
+    case Operator::kPreviously:
+    case Operator::kUntil:
+    case Operator::kSince:
       return false;
   }
   return false;
@@ -39,8 +48,15 @@ bool is_comparison(Operator op) {
 
 bool is_connective(Operator op) {
   return op == Operator::kImplies || op == Operator::kIff || op == Operator::kOr ||
-         op == Operator::kAnd;
+         op == Operator::kAnd || is_temporal(op);
 }
+
+/// Both list the operators in the same order.
+TemporalOp temporal_op(Operator op) {
+  return static_cast<TemporalOp>(static_cast<int>(op) - static_cast<int>(Operator::kAlways));
+}
+static_assert(static_cast<int>(Operator::kSince) - static_cast<int>(Operator::kAlways) ==
+              static_cast<int>(TemporalOp::kSince));
 
 }  // namespace
 
@@ -158,14 +174,21 @@ void Elaborator::enter(Frame& frame, const Node& node) {
 }
 
 void Elaborator::enter_unary(Frame& frame, const Node& node) {
-  const bool is_formula = node.op == Operator::kNot;
+  const bool is_formula = node.op == Operator::kNot || is_temporal(node.op);
   frame.child_position = is_formula ? Position::kFormula : Position::kTerm;
-  if ((frame.position == Position::kFormula) == is_formula) return;
+  if ((frame.position == Position::kFormula) == is_formula) {
+    if (is_temporal(node.op)) check_time_is_free(frame, node);
+    return;
+  }
   frame.failed = true;
   frame.next_child = node.child_count;  // whatever is below would only repeat the complaint
   if (is_formula) {
     auto report = sink_.error(codes::kExpectedTerm, source(node), "formula", quoted(node));
-    report.fix("`!` binds tighter than a comparison: write `!(x=y)` or `x!=y`");
+    if (node.op == Operator::kNot) {
+      report.fix("`!` binds tighter than a comparison: write `!(x=y)` or `x!=y`");
+    } else {
+      report.fix("a temporal operator stands before a formula, as in `always HoldsAt(...)`");
+    }
   } else {
     sink_.error(codes::kExpectedFormula, source(node), "term", quoted(node));
   }
@@ -186,6 +209,27 @@ void Elaborator::enter_binary(Frame& frame, const Node& node) {
   } else if (node.op == Operator::kPower) {
     sink_.error(codes::kUnsupportedOperator, source(node), spelling(node.op));
     frame.failed = true;
+  } else if (is_temporal(node.op)) {
+    check_time_is_free(frame, node);
+  }
+}
+
+/// Below a temporal operator `time` moves by itself.
+void Elaborator::check_time_is_free(Frame& frame, const Node& node) {
+  for (const auto& outer : frames_) {
+    for (std::size_t i = 0; i < outer.variables.size(); ++i) {
+      const auto& variable = model_.variables[outer.variables[i]];
+      if (variable.sort != model_.core.time) continue;
+      frame.failed = true;
+      frame.next_child = node.child_count;
+      const Node& quantifier = (*ast_)[outer.node];
+      sink_
+          .error(codes::kTemporalUnderTime, source(node), spelling(node.op),
+                 shortened(variable.name))
+          .note(source((*ast_)[ast_->child(quantifier, static_cast<std::uint32_t>(i))]),
+                "bound here");
+      return;
+    }
   }
 }
 
@@ -316,7 +360,7 @@ Elaborator::Value Elaborator::leave(const Frame& frame, const Node& node) {
     case NodeKind::kApply:
       return apply(frame, node);
     case NodeKind::kUnary:
-      if (node.op == Operator::kNot) return connective(frame, node);
+      if (node.op == Operator::kNot || is_temporal(node.op)) return connective(frame, node);
       if (node.op == Operator::kNegate) return negation_of_term(node, term(0));
       return check_integer(node.op, term(0)) ? values_[frame.values] : failure();
     case NodeKind::kBinary:
@@ -339,6 +383,9 @@ Elaborator::Value Elaborator::connective(const Frame& frame, const Node& node) {
   if (node.kind == NodeKind::kForall || node.kind == NodeKind::kExists) {
     formula.kind = node.kind == NodeKind::kForall ? FormulaKind::kForall : FormulaKind::kExists;
     formula.variables = frame.variables;
+  } else if (is_temporal(node.op)) {
+    formula.kind = FormulaKind::kTemporal;
+    formula.temporal = temporal_op(node.op);
   } else if (node.op == Operator::kNot) {
     formula.kind = FormulaKind::kNot;
   } else if (node.op == Operator::kAnd) {

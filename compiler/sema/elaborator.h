@@ -78,6 +78,7 @@ class Elaborator {
   void enter(Frame& frame, const Node& node);
   void enter_unary(Frame& frame, const Node& node);
   void enter_binary(Frame& frame, const Node& node);
+  void check_time_is_free(Frame& frame, const Node& node);
   void enter_apply(Frame& frame, const Node& node);
   void enter_quantifier(Frame& frame, const Node& node);
   void advance();

@@ -118,6 +118,8 @@ class TreeWriter {
         return quantifier(what, "[", "] ", inside);
       case FormulaKind::kExists:
         return quantifier(what, "{", "} ", inside);
+      case FormulaKind::kTemporal:
+        return;  // no axiom has one
     }
   }
 

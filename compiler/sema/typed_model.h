@@ -150,7 +150,8 @@ enum class FormulaKind : std::uint8_t {
   kImplies,
   kIff,
   kForall,
-  kExists
+  kExists,
+  kTemporal  // in properties and state constraints only
 };
 enum class CompareOp : std::uint8_t {
   kEqual,
@@ -161,13 +162,27 @@ enum class CompareOp : std::uint8_t {
   kGreaterEqual
 };
 
+/// In the order of their Operators.
+enum class TemporalOp : std::uint8_t {
+  kAlways,
+  kEventually,
+  kNext,
+  kWeakNext,
+  kHistorically,
+  kOnce,
+  kPreviously,
+  kUntil,  // two children, as kSince has
+  kSince
+};
+
 struct TypedFormula {
   FormulaKind kind = FormulaKind::kTrue;
-  SymbolId predicate;                     // kAtom
-  CompareOp compare = CompareOp::kEqual;  // kCompare
-  std::vector<TermId> terms;              // kAtom: arguments; kCompare: two
-  std::vector<TypedFormulaId> children;   // connectives and quantifiers
-  std::vector<VariableId> variables;      // kForall, kExists
+  TemporalOp temporal = TemporalOp::kAlways;  // kTemporal
+  SymbolId predicate;                         // kAtom
+  CompareOp compare = CompareOp::kEqual;      // kCompare
+  std::vector<TermId> terms;                  // kAtom: arguments; kCompare: two
+  std::vector<TypedFormulaId> children;       // connectives and quantifiers
+  std::vector<VariableId> variables;          // kForall, kExists
   base::SourceRange source;
 };
 

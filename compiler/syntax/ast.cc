@@ -44,8 +44,34 @@ std::string_view spelling(Operator op) {
       return "%";
     case Operator::kNot:
       return "!";
+    case Operator::kAlways:
+      return "always";
+    case Operator::kEventually:
+      return "eventually";
+    case Operator::kNext:
+      return "next";
+    case Operator::kWeakNext:
+      return "weak_next";
+    case Operator::kHistorically:
+      return "historically";
+    case Operator::kOnce:
+      return "once";
+    case Operator::kPreviously:
+      return "previously";
+    case Operator::kUntil:
+      return "until";
+    case Operator::kSince:
+      return "since";
   }
   return {};
+}
+
+std::optional<Operator> temporal_operator(std::string_view word) {
+  for (auto op = Operator::kAlways; op <= Operator::kSince;
+       op = static_cast<Operator>(static_cast<int>(op) + 1)) {
+    if (word == spelling(op)) return op;
+  }
+  return std::nullopt;
 }
 
 NodeId Ast::add(Node node) {

@@ -48,7 +48,22 @@ enum class Operator : std::uint8_t {
   kNot,     // unary
   kNegate,  // unary -
   kPlus,    // unary +
+  // Of properties and state constraints; all but the last two are unary.
+  kAlways,
+  kEventually,
+  kNext,
+  kWeakNext,
+  kHistorically,
+  kOnce,
+  kPreviously,
+  kUntil,
+  kSince,
 };
+
+constexpr bool is_temporal(Operator op) { return op >= Operator::kAlways; }
+constexpr bool is_binary_temporal(Operator op) { return op >= Operator::kUntil; }
+/// The temporal operator that is written so: `always`.
+std::optional<Operator> temporal_operator(std::string_view word);
 
 /// The spelling in the source, such as "<->".
 std::string_view spelling(Operator op);

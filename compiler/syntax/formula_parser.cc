@@ -35,6 +35,7 @@ FormulaParser::Step FormulaParser::operand() {
     case TokenKind::kName:
       last_ = lexer_.next();
       if (const auto step = foreign_prefix(token)) return *step;
+      if (const auto step = temporal_prefix(token)) return *step;
       if (lexer_.peek().kind == TokenKind::kOpenParen) return open_call(token);
       if (is_word_quantifier(token)) return word_quantifier(token);
       leaf(NodeKind::kName, token);
@@ -135,12 +136,7 @@ bool FormulaParser::is_word_quantifier(const Token& name) const {
 std::optional<FormulaParser::Step> FormulaParser::foreign_prefix(const Token& word) {
   const auto* foreign = foreign_word(lexer_.text(word));
   if (foreign == nullptr || is_word_quantifier(word)) return std::nullopt;
-  const auto& next = lexer_.peek();
-  const bool begins_operand = next.kind == TokenKind::kName || next.kind == TokenKind::kOpenParen ||
-                              next.kind == TokenKind::kOpenBracket ||
-                              next.kind == TokenKind::kOpenBrace ||
-                              (next.kind == TokenKind::kOperator && next.op == Operator::kNot);
-  if (!begins_operand) return std::nullopt;
+  if (!begins_operand(lexer_.peek())) return std::nullopt;
   if (foreign->kind == ForeignSpelling::Kind::kQuantifier) {
     report_foreign(*foreign, lexer_.range(word), sink_);
     return Step::kFailed;
@@ -149,6 +145,19 @@ std::optional<FormulaParser::Step> FormulaParser::foreign_prefix(const Token& wo
   report_foreign(*foreign, lexer_.range(word), sink_);
   const bool pushed = push({.kind = Pending::kPrefix, .op = foreign->op, .token = word});
   return pushed ? Step::kMore : Step::kFailed;
+}
+
+/// Could it not follow a name?
+bool FormulaParser::begins_operand(const Token& token) const {
+  if (token.kind == TokenKind::kName) {
+    const auto op = temporal_operator(lexer_.text(token));
+    const auto* foreign = foreign_word(lexer_.text(token));
+    return (!op || !is_binary_temporal(*op)) &&
+           (foreign == nullptr || foreign->kind != ForeignSpelling::Kind::kOperator);
+  }
+  if (token.kind == TokenKind::kOperator) return token.op == Operator::kNot;
+  return token.kind == TokenKind::kOpenParen || token.kind == TokenKind::kOpenBracket ||
+         token.kind == TokenKind::kOpenBrace;
 }
 
 /// `exists i, j.`; commas may be missing.
@@ -192,6 +201,9 @@ FormulaParser::Step FormulaParser::after_operand(Period period) {
     case TokenKind::kEnd:
       return end_of_formula(token, period);
     case TokenKind::kName: {
+      if (const auto op = temporal_operator(lexer_.text(token)); op && is_binary_temporal(*op)) {
+        return temporal_binary(*op, token);
+      }
       const auto* foreign = foreign_word(lexer_.text(token));
       if (foreign == nullptr || foreign->kind != ForeignSpelling::Kind::kOperator) {
         return juxtaposed(token, period);
@@ -222,6 +234,11 @@ FormulaParser::Step FormulaParser::binary(const Token& token) {
       if (strength == kComparisonBinding) {
         sink_.error(codes::kComparisonChain, lexer_.range(token), lexer_.text(token))
             .note(lexer_.range(top.token), "the other comparison");
+        return Step::kFailed;
+      }
+      if (strength == kUntilBinding) {
+        sink_.error(codes::kUntilChain, lexer_.range(token), lexer_.text(token))
+            .note(lexer_.range(top.token), "the other one");
         return Step::kFailed;
       }
       if (is_flat(token.op)) {
@@ -299,6 +316,10 @@ FormulaParser::Step FormulaParser::juxtaposed(const Token& token, Period period)
     skip_to_period_ = false;
     return end_of_formula(token, period);
   }
+  // `allways F`: the name before, or the one that stands here.
+  const bool after_name = !operands_.empty() && last_.kind == TokenKind::kName;
+  if (after_name && report_unknown_temporal(last_)) return Step::kFailed;
+  if (token.kind == TokenKind::kName && report_unknown_temporal(token)) return Step::kFailed;
   return fail_here(codes::kExpectedOperator, token);
 }
 

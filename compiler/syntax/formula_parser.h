@@ -15,8 +15,11 @@ namespace parallax::compiler {
 /// once. After an error it leaves the lexer where the next formula probably starts.
 class FormulaParser {
  public:
-  FormulaParser(Ast& ast, Lexer& lexer, base::DiagnosticSink& sink)
-      : ast_(ast), lexer_(lexer), sink_(sink) {}
+  /// Is `always` an operator?
+  enum class Words : std::uint8_t { kPlain, kTemporal };
+
+  FormulaParser(Ast& ast, Lexer& lexer, base::DiagnosticSink& sink, Words words = Words::kPlain)
+      : ast_(ast), lexer_(lexer), sink_(sink), words_(words) {}
 
   enum class Period : std::uint8_t { kRequired, kOptional };
 
@@ -51,6 +54,10 @@ class FormulaParser {
   bool is_word_quantifier(const Token& name) const;
   Step word_quantifier(const Token& word);
   std::optional<Step> foreign_prefix(const Token& word);
+  bool begins_operand(const Token& token) const;
+  std::optional<Step> temporal_prefix(const Token& word);
+  Step temporal_binary(Operator op, Token token);
+  bool report_unknown_temporal(const Token& token);
   Step after_operand(Period period);
   Step binary(const Token& token);
   Step foreign_binary(const ForeignSpelling& spelling, Token token);
@@ -73,6 +80,7 @@ class FormulaParser {
   Ast& ast_;
   Lexer& lexer_;
   base::DiagnosticSink& sink_;
+  Words words_;
   std::vector<Entry> entries_;
   std::vector<Operand> operands_;
   std::vector<Pending> brackets_;  // those of entries_ that are brackets

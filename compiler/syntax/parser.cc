@@ -308,13 +308,14 @@ void parse_labelled(Ast& ast, Lexer& lexer, FormulaParser& parser) {
 }
 
 base::Result<ParsedFormula> parse_one(const base::SourceRange& range, std::string_view text,
-                                      Lexer::Mode mode, base::DiagnosticSink& sink) {
+                                      Lexer::Mode mode, base::DiagnosticSink& sink,
+                                      FormulaParser::Words words = FormulaParser::Words::kPlain) {
   PARALLAX_REQUIRE(range.begin <= range.end && range.end <= text.size(),
                    "the formula lies inside its file");
   ParsedFormula parsed{Ast(range.file, text), NodeId()};
   const auto errors_before = sink.error_count();
   Lexer lexer(range, text, mode, sink);
-  FormulaParser parser(parsed.ast, lexer, sink);
+  FormulaParser parser(parsed.ast, lexer, sink, words);
   const auto root = parser.parse(FormulaParser::Period::kOptional);
   if (root && lexer.peek().kind != TokenKind::kEnd) {
     return sink.error(codes::kTextAfterFormula, lexer.range(lexer.peek()),
@@ -358,6 +359,13 @@ base::Result<ParsedFormula> parse_formula(const base::SourceRange& range,
 base::Result<ParsedFormula> parse_formula(base::FileId file, const base::SourceFiles& files,
                                           base::DiagnosticSink& sink) {
   return parse_formula(whole(file, files), files, sink);
+}
+
+base::Result<ParsedFormula> parse_temporal_formula(const base::SourceRange& range,
+                                                   const base::SourceFiles& files,
+                                                   base::DiagnosticSink& sink) {
+  return parse_one(range, files[range.file].text(), Lexer::Mode::kFormulaOnly, sink,
+                   FormulaParser::Words::kTemporal);
 }
 
 base::Result<ParsedFormula> parse_binding_formula(const base::SourceRange& range,

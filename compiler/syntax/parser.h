@@ -36,6 +36,11 @@ base::Result<ParsedFormula> parse_formula(const base::SourceRange& range,
 base::Result<ParsedFormula> parse_formula(base::FileId file, const base::SourceFiles& files,
                                           base::DiagnosticSink& sink);
 
+/// The same, and temporal operators may stand in it (docs/temporal.md).
+base::Result<ParsedFormula> parse_temporal_formula(const base::SourceRange& range,
+                                                   const base::SourceFiles& files,
+                                                   base::DiagnosticSink& sink);
+
 /// A formula of a plan's binding table: `?arm` is a name, and `exists i, j.` and `forall i.` are
 /// quantifiers beside `{i,j}` and `[i]`. `text` is the text of the range's file, or as long with
 /// blanks for what is no part of the table. The Ast views it.

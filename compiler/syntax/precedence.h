@@ -6,7 +6,8 @@ namespace parallax::compiler {
 
 // How strongly operators bind; the printer and the parser agree by this table alone.
 inline constexpr int kQuantifierBinding = 1;
-inline constexpr int kComparisonBinding = 6;  // does not associate
+inline constexpr int kUntilBinding = 5;       // does not associate
+inline constexpr int kComparisonBinding = 7;  // does not associate
 
 constexpr int binding(Operator op) {
   switch (op) {
@@ -17,9 +18,12 @@ constexpr int binding(Operator op) {
       return 3;
     case Operator::kAnd:
       return 4;
+    case Operator::kUntil:
+    case Operator::kSince:
+      return kUntilBinding;
     case Operator::kEqual:
     case Operator::kNotEqual:
-      return 5;
+      return 6;
     case Operator::kLess:
     case Operator::kLessEqual:
     case Operator::kGreaterEqual:
@@ -29,14 +33,21 @@ constexpr int binding(Operator op) {
     case Operator::kSubtract:
     case Operator::kNegate:
     case Operator::kPlus:
-      return 7;
+      return 8;
     case Operator::kMultiply:
     case Operator::kDivide:
     case Operator::kPower:
     case Operator::kModulo:
-      return 8;
-    case Operator::kNot:
       return 9;
+    case Operator::kNot:
+    case Operator::kAlways:
+    case Operator::kEventually:
+    case Operator::kNext:
+    case Operator::kWeakNext:
+    case Operator::kHistorically:
+    case Operator::kOnce:
+    case Operator::kPreviously:
+      return 10;
   }
   return 0;
 }

@@ -241,6 +241,7 @@ struct Key {
   static constexpr std::string_view kUnobserved = "unobserved";
   static constexpr std::string_view kVariables = "variables";
   static constexpr std::string_view kVerdict = "verdict";
+  static constexpr std::string_view kViolated = "violated";
   static constexpr std::string_view kWallM = "wall_m";
   static constexpr std::string_view kWidthM = "width_m";
   static constexpr std::string_view kWithin = "within";

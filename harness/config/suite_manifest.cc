@@ -72,7 +72,8 @@ class ManifestReader {
     if (const auto* limits = fields.find(Key::kLimits)) read_limits(*limits, out);
     const auto errors_before = sink_.error_count();
     if (const auto* expect = fields.find(Key::kExpect)) read_expectation(*expect, out.expect);
-    const bool nothing = !out.expect.traces && !out.expect.golden;
+    const bool nothing =
+        !out.expect.lists_traces() && out.expect.holds.empty() && out.expect.violated.empty();
     if (nothing && sink_.error_count() == errors_before) {
       sink_.error(codes::kCaseExpectsNothing, out.source, out.id);
     }
@@ -104,9 +105,15 @@ class ManifestReader {
   void read_expectation(const YamlNode& node, TraceExpectation& out) {
     const auto errors_before = sink_.error_count();
     YamlFields fields(node, key_text(Key::kExpect) + " of a case", sink_);
-    fields.only({Key::kTraces, Key::kComplete, Key::kGolden});
+    fields.only({Key::kTraces, Key::kComplete, Key::kGolden, Key::kHolds, Key::kViolated});
     fields.integer(Key::kTraces, 0, kMaxTraces, out.traces);
     fields.boolean(Key::kComplete, out.complete);
+    if (const auto* holds = fields.find(Key::kHolds)) {
+      out.holds = located_texts(*holds, Key::kHolds, sink_);
+    }
+    if (const auto* violated = fields.find(Key::kViolated)) {
+      out.violated = located_texts(*violated, Key::kViolated, sink_);
+    }
     if (const auto* golden = fields.find(Key::kGolden)) {
       if (auto text = read_text(*golden, key_text(Key::kGolden), sink_)) {
         const auto path = path_beside(golden->range, *text, files_).lexically_normal();
@@ -114,7 +121,9 @@ class ManifestReader {
         if (!gate_.check(path, golden->range, sink_)) return;
       }
     }
-    if (!out.complete && out.traces.value_or(0) < 1 && sink_.error_count() == errors_before) {
+    const bool lists = out.lists_traces() || (out.holds.empty() && out.violated.empty());
+    if (lists && !out.complete && out.traces.value_or(0) < 1 &&
+        sink_.error_count() == errors_before) {
       const auto* place = fields.find(out.traces ? Key::kTraces : Key::kComplete);
       sink_.error(codes::kYamlOutOfBounds, place->range, key_text(Key::kTraces),
                   out.traces ? "0" : "not given",

@@ -11,13 +11,16 @@
 
 namespace parallax::harness {
 
-/// What the list of a model's traces is held against. At least one of `traces` and `golden` is set.
+/// What a model's traces are held against. Something of it is set.
 struct TraceExpectation {
   std::optional<std::int64_t> traces;
   /// False: `traces` are looked for and there must be more; then `traces` is at least 1.
   bool complete = true;
   /// The text that `parallax traces` must print; the file need not exist.
   std::optional<LocatedText> golden;
+  std::vector<LocatedText> holds, violated;  // properties (docs/temporal.md)
+
+  bool lists_traces() const { return traces || golden; }
 };
 
 /// One case: models compiled together and what is known of their traces. Paths are resolved against

@@ -61,6 +61,8 @@ class TypedText {
         return "[" + names(f.variables) + "]" + formula(f.children[0]);
       case FormulaKind::kExists:
         return "{" + names(f.variables) + "}" + formula(f.children[0]);
+      case FormulaKind::kTemporal:
+        return joined(f, " temporal ");
     }
     return {};
   }

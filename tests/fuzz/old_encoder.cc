@@ -117,6 +117,8 @@ class OldEncoder : OldTerms {
       return made;
     };
     switch (formula.kind) {
+      case FormulaKind::kTemporal:
+        break;
       case FormulaKind::kTrue:
       case FormulaKind::kFalse:
         return OldTree::constant(formula.kind == FormulaKind::kTrue);

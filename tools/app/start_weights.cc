@@ -29,7 +29,8 @@ base::Result<std::vector<compiler::StateConstraint>> check(const harness::Scenar
   for (const auto& entry : scenario.start_weights) {
     texts.push_back(constraint_text(entry.when, context.files()));
   }
-  return compiler::check_constraints(texts, model, context.files(), context.sink());
+  return compiler::check_constraints(texts, compiler::Constraints::kStates, model, context.files(),
+                                     context.sink());
 }
 
 base::Result<WeightQuestions> questions_of(const ScenarioModel& loaded, Context& context) {

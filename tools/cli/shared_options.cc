@@ -38,9 +38,9 @@ Option& add_model_options(OptionTable& command, ModelOptions& options) {
   command.option("--horizon", options.horizon, "Last timepoint; replaces the range of `time`")
       .check(IntRange{0, 1'000'000});
   command
-      .option(
-          "--until", options.until,
-          "Formula over `time`: traces end where it holds for the first time, from timepoint 0 on")
+      .option("--until", options.until,
+              "Formula over `time`, or a temporal one (docs/temporal.md): traces end where it "
+              "holds for the first time, from timepoint 0 on")
       .list(ListForm::kOneEachTime);
   return models;
 }

@@ -13,6 +13,7 @@
 #include "harness/report/text_layout.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/app/certify.h"
+#include "tools/app/property_check.h"
 #include "tools/app/rests_on.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_check.h"
@@ -42,6 +43,7 @@ struct Answer {
   std::string proof_origin;  // what made it, if it was accepted
   std::string proof_file;    // where it is kept
   std::optional<std::vector<RestsOn>> rests_on;  // none: no ledger was named
+  std::optional<PropertyBreak> broken;           // of a temporal property
 };
 
 Answer ask(const compiler::CompiledModel& model, TraceCertifier& certifier) {
@@ -118,8 +120,12 @@ std::string trace_text(const compiler::CompiledModel& model, const runtime::Trac
 
 std::string answer_text(const compiler::CompiledModel& model, const Answer& answer) {
   if (answer.violation) {
-    return fmt::format("violated at timepoint {}\n{}", answer.violation->length(),
-                       trace_text(model, *answer.violation));
+    auto out = fmt::format("violated at timepoint {}\n", answer.violation->length());
+    if (answer.broken) {
+      const auto& broken = *answer.broken;
+      out += harness::wrapped("", fmt::format("`{}` {}", broken.formula, broken.text), 2);
+    }
+    return out + trace_text(model, *answer.violation);
   }
   if (answer.exploration == runtime::Exploration::kStopped) {
     return "stopped before the end: nothing is known\n";
@@ -157,6 +163,11 @@ std::string answer_json(const compiler::CompiledModel& model, const Answer& answ
   if (!answer.bounds.empty()) out["bounds"] = answer.bounds;
   if (answer.violation) {
     out["timepoint"] = answer.violation->length();
+    if (answer.broken) {
+      out["broken"] = {{"formula", answer.broken->formula},
+                       {"timepoint", answer.broken->at},
+                       {"words", answer.broken->text}};
+    }
     auto performed = nlohmann::ordered_json::array();
     for (std::size_t t = 0; t + 1 < answer.violation->points.size(); ++t) {
       for (const auto& step : steps_at(model, *answer.violation, t)) {
@@ -237,6 +248,11 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
     TraceCheck check(*compilation->typed, &stop_flag(), invocation.sink());
     check.check(*answer.violation);
   }
+  if (answer.violation && compilation->constraints.front().temporal) {
+    PropertyCheck check(*compilation->typed, compilation->constraints.front(), options.check,
+                        invocation);
+    answer.broken = check.broken(*answer.violation);
+  }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   if (invocation.options().json) {
     invocation.document(answer_json(model, answer, wall.count()));
@@ -260,8 +276,12 @@ Command verify_command() {
       "      --regions scenario.yaml --horizon 6 --property \"!HoldsAt(Holding(),time)\"\n"
       "  parallax verify scenarios/two_regions/scenario.yaml \\\n"
       "      --property \"{region} HoldsAt(RobotIn(region),time)\"\n"
-      "The property is a formula over `time`, the last timepoint; it may also look back. The "
-      "answer\n"
+      "  parallax verify lamp.e --horizon 10 \\\n"
+      "      --property \"always (Happens(Press(),time) -> next HoldsAt(On(),time))\"\n"
+      "The property is a formula over `time`, the last timepoint, which may also look back; or it\n"
+      "speaks of whole traces, with always, eventually, next, weak_next, until, historically, "
+      "once,\n"
+      "previously and since (docs/temporal.md). The answer\n"
       "is one shortest trace (exit code 1), or that it holds up to the horizon (0), with a proof "
       "that\n"
       "is checked by independent means and kept under --certify. A scenario's own constraints play "

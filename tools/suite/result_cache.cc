@@ -79,6 +79,8 @@ std::string case_definition(const SuiteCase& one, const CaseKey& key) {
     json["traces"] = or_null(expect.traces);
     json["complete"] = expect.complete;
     json["golden"] = expect.golden ? Json(expect.golden->text) : Json();
+    json["holds"] = texts(expect.holds);
+    json["violated"] = texts(expect.violated);
   }
   return base::sha256_hex(base::json_text(json));
 }

@@ -45,11 +45,15 @@ std::int64_t one_too_many(const harness::TraceExpectation& expect) {
   return listed ? *listed + 1 : 0;
 }
 
+enum class Constraints : std::uint8_t { kCount, kIgnored };
+
 /// What every process of the case is told: horizon, constraints, limits, permissions, models.
-CommandWords model_words(const harness::ManifestCase& one, const RunnerOptions& options) {
+CommandWords model_words(const harness::ManifestCase& one, const RunnerOptions& options,
+                         Constraints constraints = Constraints::kCount) {
   CommandWords command;
   auto& words = command.options;
   for (const auto& constraint : one.constraints) {
+    if (constraints == Constraints::kIgnored) break;
     words.push_back("--until=" + constraint.text);  // also one that begins with `-`
   }
   if (one.horizon) words.insert(words.end(), {"--horizon", std::to_string(*one.horizon)});
@@ -192,14 +196,55 @@ void compare_golden(const std::string& path, const std::string& text, const fs::
   }
 }
 
+/// What `parallax verify --json` says of a violated property: where, and which part of it breaks.
+std::string violation_words(const nlohmann::json& found) {
+  auto out = fmt::format("violated at timepoint {}", found.value("timepoint", 0));
+  const auto broken = found.find("broken");
+  if (broken == found.end()) return out;
+  return out + fmt::format(": `{}` {}", broken->value("formula", ""), broken->value("words", ""));
+}
+
+/// Is the property as expected? False: there is no answer.
+bool check_property(const harness::ManifestCase& one, const std::string& property, bool holds,
+                    const RunnerOptions& options, Footprint& footprint,
+                    const std::atomic<bool>& stop, std::optional<std::uint64_t> cpu_limit_s,
+                    CaseResult& result) {
+  auto words = model_words(one, options, Constraints::kIgnored);
+  words.options.insert(words.options.begin(), {"verify", "--json", "--property=" + property});
+  const auto child = run_this_program(words, footprint, stop, cpu_limit_s);
+  result.messages = child.err;
+  const auto found = base::parse_json(child.out);
+  const auto verdict = found.is_object() ? found.value("verdict", "") : std::string();
+  if ((child.code != 0 && child.code != 1) || (verdict != "holds" && verdict != "violated")) {
+    report_no_answer(child, result);
+    return false;
+  }
+  if ((verdict == "holds") == holds) return true;
+  result.problems.push_back(
+      holds ? fmt::format("expected to hold: {}\n{}", property, violation_words(found))
+            : fmt::format("expected to be violated: {}\nit holds up to horizon {}", property,
+                          found.value("horizon", 0)));
+  return true;
+}
+
 }  // namespace
 
 void run_traces(const harness::ManifestCase& one, const fs::path& manifest,
                 const RunnerOptions& options, Footprint& footprint, const std::atomic<bool>& stop,
                 CaseResult& result) {
-  const auto command = traces_command(one, options);
   std::optional<std::uint64_t> cpu_limit_s;
   if (options.ends_early) cpu_limit_s = static_cast<std::uint64_t>(std::ceil(one.time_limit_s));
+  for (const auto* properties : {&one.expect.holds, &one.expect.violated}) {
+    const bool holds = properties == &one.expect.holds;
+    for (const auto& property : *properties) {
+      if (!check_property(one, property.text, holds, options, footprint, stop, cpu_limit_s,
+                          result)) {
+        return;
+      }
+    }
+  }
+  if (!one.expect.lists_traces()) return;
+  const auto command = traces_command(one, options);
   // A whole list that is the golden one has its number of traces.
   const bool listed = options.ends_early && one.expect.golden && one.expect.complete;
   if (one.expect.traces && !listed) {

@@ -1,0 +1,388 @@
+#include "compiler/pipeline/temporal_encoder.h"
+
+#include <algorithm>
+#include <set>
+
+#include "compiler/base/codes/grounding.h"
+
+namespace parallax::compiler {
+
+TemporalEncoder::TemporalEncoder(const StateConstraint& formula, std::uint32_t origin,
+                                 GroundModel& model, FormulaGrounder& grounder,
+                                 base::DiagnosticSink& sink)
+    : formula_(formula),
+      origin_(origin),
+      model_(model),
+      grounder_(grounder),
+      sink_(sink),
+      formulas_(model.formulas()),
+      tree_(model, grounder, formula.source, sink) {}
+
+std::optional<TemporalEncoder::Values> TemporalEncoder::fulfilled() {
+  auto root = tree_.add(formula_.formula.formula, false);
+  if (!root) return std::nullopt;
+  if (tree_[*root].looks_on) root = tree_.looking_back(*root).value_or(*root);
+  if (!settle(*root)) return std::nullopt;
+  if (!tree_[*root].looks_on) return nodes_[*root].ends;
+  // What is nested about later timepoints is another formula for each end.
+  Values out;
+  for (Timepoint n = 0; n <= model_.horizon(); ++n) {
+    const View view{n, nullptr, nullptr};
+    settle_future(view);
+    out.push_back(any(*root, 0, view));
+  }
+  return out;
+}
+
+base::Status TemporalEncoder::require_violation(const std::vector<FormulaId>& hit,
+                                                const std::vector<FormulaId>& complete) {
+  auto root = tree_.add(formula_.formula.formula, true);
+  if (!root) return sink_.already_reported();
+  if (!tree_[*root].looks_on) root = tree_.wrap(Kind::kEventually, {*root});
+  if (!settle(*root)) return sink_.already_reported();
+  const View view{model_.horizon(), &hit, &complete};
+  settle_future(view);
+  const auto violated = any(*root, 0, view).value_or(formulas_.falsity());
+  // A hit that nothing were said of would have no variable.
+  const bool in_any_case = violated == formulas_.truth();
+  for (const auto end : hit) {
+    model_.require(in_any_case ? end : formulas_.implication(end, violated), origin_);
+  }
+  return base::Unit{};
+}
+
+/// Works out all that does not depend on where traces end, but for the end itself.
+bool TemporalEncoder::settle(Number root) {
+  nodes_.assign(tree_.size(), {});
+  std::set<Number> wanted;
+  std::vector<Number> todo = {root};
+  while (!todo.empty()) {
+    const auto number = todo.back();
+    todo.pop_back();
+    if (!wanted.insert(number).second) continue;
+    const auto& children = tree_[number].children;
+    todo.insert(todo.end(), children.begin(), children.end());
+  }
+  wanted_.assign(wanted.begin(), wanted.end());
+  for (const auto number : wanted_) {
+    if (tree_[number].kind == Kind::kLeaf) {
+      if (!settle_leaf(number)) return false;
+    } else if (!tree_[number].looks_on) {
+      settle_past(number);
+    }
+  }
+  return true;
+}
+
+// --- leaves ----------------------------------------------------------------------------------
+
+bool TemporalEncoder::settle_leaf(Number number) {
+  const auto& leaf = tree_[number];
+  auto& node = nodes_[number];
+  const auto source = tree_.source(leaf.formula);
+  grounder_.start(source);
+  grounder_.name_last_events(true);
+  tree_.bind(leaf.binding);
+  bool fine = true;
+  for (Timepoint t = 0; t <= model_.horizon() && !grounder_.failed(); ++t) {
+    if (formula_.formula.time) {
+      grounder_.bind(*formula_.formula.time, model_.terms().integer(t));
+    }
+    auto value = grounder_.ground(leaf.formula);
+    fine = !value || !looks_ahead(*value, t);
+    if (!fine) {
+      sink_.error(codes::kConstraintLooksAhead, source);
+      break;
+    }
+    if (value && leaf.negated) value = ~*value;
+    node.ends.push_back(value ? Value(at_last(*value, t, true)) : Value());
+    node.surely.push_back(value ? Value(at_last(*value, t, false)) : Value());
+    if (t < model_.horizon()) node.goes_on.push_back(value);
+  }
+  tree_.unbind(leaf.binding);
+  grounder_.name_last_events(false);
+  return fine && !grounder_.failed();
+}
+
+bool TemporalEncoder::looks_ahead(FormulaId formula, Timepoint t) const {
+  const auto atoms = atoms_of(formulas_, std::vector{formula});
+  return std::any_of(atoms.begin(), atoms.end(),
+                     [&](std::int32_t variable) { return model_.atom(variable).time > t; });
+}
+
+/// The formula where t is the last timepoint: nothing happens there, or what happens is not known
+/// and the formula true in any case.
+FormulaId TemporalEncoder::at_last(FormulaId root, Timepoint t, bool nothing_happens) const {
+  const auto is_event = [&](std::int32_t variable) {
+    const auto& atom = model_.atom(variable);
+    return atom.kind == AtomKind::kHappens && atom.time == t;
+  };
+  const auto atoms = atoms_of(formulas_, std::vector{root});
+  if (std::none_of(atoms.begin(), atoms.end(), is_event)) return root;
+  // By node: the formula and its negation, children first.
+  std::set<std::uint32_t> nodes;
+  std::vector<FormulaId> todo = {root};
+  while (!todo.empty()) {
+    const auto id = todo.back();
+    todo.pop_back();
+    if (!nodes.insert(id.node()).second) continue;
+    if (formulas_.kind(id) != FormulaNodeKind::kAnd) continue;
+    const auto children = formulas_.children(id);
+    todo.insert(todo.end(), children.begin(), children.end());
+  }
+  std::map<std::uint32_t, std::pair<FormulaId, FormulaId>> made;
+  const auto of = [&](FormulaId id) {
+    const auto& both = made.at(id.node());
+    return id.negated() ? both.second : both.first;
+  };
+  for (const auto number : nodes) {
+    const auto id = formulas_.at(number);
+    auto& both = made[number] = {id, ~id};
+    if (formulas_.kind(id) == FormulaNodeKind::kAtom && is_event(formulas_.variable(id))) {
+      both = {formulas_.falsity(), formulas_.constant(nothing_happens)};
+    } else if (formulas_.kind(id) == FormulaNodeKind::kAnd) {
+      const auto children = formulas_.children(id);
+      std::vector<FormulaId> all, some;
+      for (const auto child : std::vector(children.begin(), children.end())) {
+        all.push_back(of(child));
+        some.push_back(of(~child));
+      }
+      both = {formulas_.conjunction(std::move(all)), formulas_.disjunction(std::move(some))};
+    }
+  }
+  return of(root);
+}
+
+// --- what looks back -------------------------------------------------------------------------
+
+void TemporalEncoder::settle_past(Number number) {
+  auto& node = nodes_[number];
+  for (Timepoint t = 0; t <= model_.horizon(); ++t) {
+    node.ends.push_back(past(number, t, &Node::ends));
+    node.surely.push_back(past(number, t, &Node::surely));
+    if (t == model_.horizon()) break;
+    node.goes_on.push_back(named(past(number, t, &Node::goes_on)));
+  }
+}
+
+/// Of a node that is no leaf and not about later timepoints: `column` says what its children are at
+/// t. Their past is over, so there they went on.
+TemporalEncoder::Value TemporalEncoder::past(Number number, Timepoint t,
+                                             const Values Node::*column) {
+  const auto& node = tree_[number];
+  const auto at = static_cast<std::size_t>(t);
+  const auto child = [&](std::size_t i) { return (nodes_[node.children[i]].*column)[at]; };
+  const auto before = [&](Number of) { return t > 0 ? nodes_[of].goes_on[at - 1] : std::nullopt; };
+  const auto truth = formulas_.truth(), falsity = formulas_.falsity();
+  switch (node.kind) {
+    case Kind::kOnce:
+      return formulas_.disjunction(child(0).value_or(falsity), before(number).value_or(falsity));
+    case Kind::kHistorically:
+      return formulas_.conjunction(child(0).value_or(truth), before(number).value_or(truth));
+    case Kind::kPreviously:
+      return t > 0 ? before(node.children[0]) : falsity;
+    case Kind::kWeakPreviously:
+      return t > 0 ? before(node.children[0]) : truth;
+    case Kind::kSince: {
+      const auto held =
+          formulas_.conjunction(child(0).value_or(truth), before(number).value_or(falsity));
+      return formulas_.disjunction(child(1).value_or(falsity), held);
+    }
+    case Kind::kTriggered: {
+      const auto held =
+          formulas_.disjunction(child(0).value_or(falsity), before(number).value_or(truth));
+      return formulas_.conjunction(child(1).value_or(truth), held);
+    }
+    case Kind::kAtStart:
+      return t > 0 ? nodes_[node.children[0]].goes_on[0] : child(0);
+    case Kind::kAnd:
+    case Kind::kOr:
+    case Kind::kAll:
+    case Kind::kAny: {
+      std::vector<Value> parts;
+      for (std::size_t i = 0; i < node.children.size(); ++i) parts.push_back(child(i));
+      return junction(number, parts);
+    }
+    case Kind::kLeaf:
+    case Kind::kAlways:
+    case Kind::kEventually:
+    case Kind::kNext:
+    case Kind::kWeakNext:
+    case Kind::kUntil:
+    case Kind::kRelease:
+      break;
+  }
+  return std::nullopt;
+}
+
+TemporalEncoder::Value TemporalEncoder::junction(Number number,
+                                                 const std::vector<Value>& parts) const {
+  const auto kind = tree_[number].kind;
+  std::vector<FormulaId> there;
+  for (const auto& part : parts) {
+    if (part) there.push_back(*part);
+  }
+  const bool quantified = kind == Kind::kAll || kind == Kind::kAny;
+  if (there.size() < parts.size() && (!quantified || there.empty())) return std::nullopt;
+  return kind == Kind::kAnd || kind == Kind::kAll ? formulas_.conjunction(std::move(there))
+                                                  : formulas_.disjunction(std::move(there));
+}
+
+// --- what looks on ---------------------------------------------------------------------------
+
+void TemporalEncoder::settle_future(const View& view) {
+  any_.clear();
+  for (const auto number : wanted_) {
+    if (!tree_[number].looks_on) continue;
+    auto& node = nodes_[number];
+    const auto size = static_cast<std::size_t>(view.last) + 1;
+    node = {Values(size), Values(size), Values(size)};
+    const bool backwards = tree_[number].kind < Kind::kHistorically;
+    for (Timepoint i = 0; i <= view.last; ++i) {
+      const auto t = backwards ? view.last - i : i;
+      const auto at = static_cast<std::size_t>(t);
+      if (view.hit != nullptr || t == view.last) {
+        node.ends[at] = node.surely[at] = ending(number, t, view);
+      }
+      if (t == view.last) continue;
+      node.goes_on[at] = going_on(number, t, view);
+      if (!backwards) node.goes_on[at] = named(node.goes_on[at]);
+    }
+  }
+}
+
+/// Of a trace that ends at t. Where it is not complete, only what is true in any case counts.
+TemporalEncoder::Value TemporalEncoder::end_value(Number number, Timepoint t,
+                                                  const View& view) const {
+  const auto& node = nodes_[number];
+  const auto at = static_cast<std::size_t>(t);
+  if (view.hit == nullptr || tree_[number].looks_on || !node.ends[at]) return node.ends[at];
+  return formulas_.disjunction(*node.surely[at],
+                               formulas_.conjunction(complete(t, view), *node.ends[at]));
+}
+
+FormulaId TemporalEncoder::complete(Timepoint t, const View& view) const {
+  return view.complete == nullptr ? formulas_.truth()
+                                  : (*view.complete)[static_cast<std::size_t>(t)];
+}
+
+TemporalEncoder::Value TemporalEncoder::ending(Number number, Timepoint t, const View& view) {
+  const auto& node = tree_[number];
+  const auto child = [&](std::size_t i) { return end_value(node.children[i], t, view); };
+  const auto truth = formulas_.truth(), falsity = formulas_.falsity();
+  switch (node.kind) {
+    case Kind::kAlways:
+      return formulas_.conjunction(child(0).value_or(truth), complete(t, view));
+    case Kind::kEventually:
+      return child(0).value_or(falsity);
+    case Kind::kNext:
+      return falsity;
+    case Kind::kWeakNext:
+      return complete(t, view);
+    case Kind::kUntil:
+      return child(1).value_or(falsity);
+    case Kind::kRelease:
+      return formulas_.conjunction(
+          child(1).value_or(truth),
+          formulas_.disjunction(child(0).value_or(falsity), complete(t, view)));
+    case Kind::kAnd:
+    case Kind::kOr:
+    case Kind::kAll:
+    case Kind::kAny: {
+      std::vector<Value> parts;
+      for (std::size_t i = 0; i < node.children.size(); ++i) parts.push_back(child(i));
+      return junction(number, parts);
+    }
+    case Kind::kLeaf:
+    case Kind::kHistorically:
+    case Kind::kOnce:
+    case Kind::kPreviously:
+    case Kind::kWeakPreviously:
+    case Kind::kSince:
+    case Kind::kTriggered:
+    case Kind::kAtStart:
+      break;
+  }
+  if (view.hit == nullptr) return past(number, t, &Node::ends);
+  const auto certain = past(number, t, &Node::surely);
+  const auto ended = past(number, t, &Node::ends);
+  if (!certain || !ended) return std::nullopt;
+  return formulas_.disjunction(*certain, formulas_.conjunction(complete(t, view), *ended));
+}
+
+TemporalEncoder::Value TemporalEncoder::going_on(Number number, Timepoint t, const View& view) {
+  const auto& node = tree_[number];
+  const auto child = [&](std::size_t i) {
+    return nodes_[node.children[i]].goes_on[static_cast<std::size_t>(t)];
+  };
+  const auto truth = formulas_.truth(), falsity = formulas_.falsity();
+  switch (node.kind) {
+    case Kind::kAlways:
+      return formulas_.conjunction(child(0).value_or(truth), *any(number, t + 1, view));
+    case Kind::kEventually:
+      return formulas_.disjunction(child(0).value_or(falsity), *any(number, t + 1, view));
+    case Kind::kNext:
+    case Kind::kWeakNext:
+      return any(node.children[0], t + 1, view);
+    case Kind::kUntil: {
+      const auto on = formulas_.conjunction(child(0).value_or(truth), *any(number, t + 1, view));
+      return formulas_.disjunction(child(1).value_or(falsity), on);
+    }
+    case Kind::kRelease: {
+      const auto on = formulas_.disjunction(child(0).value_or(falsity), *any(number, t + 1, view));
+      return formulas_.conjunction(child(1).value_or(truth), on);
+    }
+    case Kind::kAnd:
+    case Kind::kOr:
+    case Kind::kAll:
+    case Kind::kAny:
+    case Kind::kLeaf:
+    case Kind::kHistorically:
+    case Kind::kOnce:
+    case Kind::kPreviously:
+    case Kind::kWeakPreviously:
+    case Kind::kSince:
+    case Kind::kTriggered:
+    case Kind::kAtStart:
+      return past(number, t, &Node::goes_on);
+  }
+  return std::nullopt;
+}
+
+/// At t, wherever the trace ends.
+TemporalEncoder::Value TemporalEncoder::any(Number number, Timepoint t, const View& view) {
+  const auto at = static_cast<std::size_t>(t);
+  if (t == view.last && view.hit == nullptr) return end_value(number, t, view);
+  const auto [known, added] = any_.try_emplace({number, t});
+  if (!added) return known->second;
+  const auto ends = view.hit == nullptr ? Value() : end_value(number, t, view);
+  const auto goes_on = t == view.last ? Value() : nodes_[number].goes_on[at];
+  auto& value = known->second;
+  if (view.hit == nullptr) {
+    value = named(goes_on);
+  } else if (ends == goes_on) {
+    value = ends;
+  } else if (ends) {
+    value = model_.auxiliary_atom(t);
+    const auto hit = (*view.hit)[at];
+    model_.require(formulas_.implication(formulas_.conjunction(hit, *value), *ends), origin_);
+    if (goes_on) {
+      model_.require(formulas_.implication(formulas_.conjunction(~hit, *value), *goes_on), origin_);
+    }
+  }
+  return value;
+}
+
+/// The formula, or an atom that is defined to be it: what is built of it stays small.
+TemporalEncoder::Value TemporalEncoder::named(Value value) {
+  if (!value || formulas_.kind(*value) != FormulaNodeKind::kAnd) return value;
+  const auto [known, added] = names_.try_emplace(*value);
+  if (added) {
+    const auto name = model_.auxiliary_atom(model_.needed_horizon_of(*value));
+    model_.require(formulas_.equivalence(name, *value), origin_);
+    known->second = name;
+  }
+  return known->second;
+}
+
+}  // namespace parallax::compiler

@@ -1,0 +1,265 @@
+// Temporal formulas as properties and as state constraints, held against every trace that a small
+// model has, worked out by an evaluator of the test's own.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "compiler/pipeline/compile.h"
+#include "compiler/reference/temporal_truth.h"
+#include "runtime/enumerate/plan_enumerator.h"
+#include "tests/support/checked_traces.h"
+#include "tests/support/random_temporal.h"
+
+namespace parallax::test {
+namespace {
+
+using compiler::Valuation;
+
+constexpr int kHorizon = 3;
+
+struct Compiled {
+  base::SourceFiles files;
+  base::DiagnosticSink sink;
+  std::optional<compiler::Compilation> result;
+
+  /// `formula` empty: the model alone.
+  Compiled(const std::string& model, int horizon, const std::string& formula = {},
+           bool property = false) {
+    compiler::CompileInput input;
+    input.text = files.add("model.e", model);
+    input.horizon = horizon;
+    if (!formula.empty()) {
+      const auto file = files.add("--property", formula);
+      const base::SourceRange range{file, 0, static_cast<std::uint32_t>(formula.size())};
+      input.constraints = {{range, range, property}};
+      input.hits_at_start = true;
+    }
+    auto compiled = compiler::compile_model(input, files, sink);
+    if (compiled) result = *std::move(compiled);
+  }
+};
+
+/// The traces up to a timepoint. Each of a random_temporal_model goes on, so they are the
+/// beginnings of those up to the horizon.
+std::vector<Valuation> all_traces(const std::string& model, int length) {
+  const Compiled compiled(model, kHorizon);
+  REQUIRE(compiled.result);
+  std::vector<Valuation> out;
+  std::set<std::string> seen;
+  runtime::SolverSession session(compiled.result->model, runtime::make_cadical_solver());
+  runtime::ModelEnumerator enumerator(session);
+  while (const auto trace = enumerator.next()) {
+    auto valuation = tools::valuation_of(*trace);
+    for (auto* part : {&valuation.holds, &valuation.happens, &valuation.released}) {
+      part->resize(static_cast<std::size_t>(length) + 1);
+    }
+    valuation.happens.back().clear();
+    if (seen.insert(signature(valuation)).second) out.push_back(std::move(valuation));
+  }
+  return out;
+}
+
+bool is_prefix(const Valuation& shorter, const Valuation& longer) {
+  const auto n = shorter.holds.size();
+  return n <= longer.holds.size() &&
+         std::equal(shorter.holds.begin(), shorter.holds.end(), longer.holds.begin()) &&
+         std::equal(shorter.happens.begin(), shorter.happens.end() - 1, longer.happens.begin());
+}
+
+/// Does the trace fulfil the formula as docs/temporal.md says?
+bool fulfils(const TemporalFormula& formula, const Valuation& trace) {
+  const int last = static_cast<int>(trace.holds.size()) - 1;
+  return formula.value(trace, formula.looks_on() ? 0 : last).value_or(false);
+}
+
+/// Is a property false of the complete trace?
+bool violates(const TemporalFormula& formula, const Valuation& trace) {
+  const int last = static_cast<int>(trace.holds.size()) - 1;
+  for (int t = 0; t <= (formula.looks_on() ? 0 : last); ++t) {
+    if (!formula.value(trace, t).value_or(true)) return true;
+  }
+  return false;
+}
+
+/// A formula that is temporal at all.
+TemporalFormula temporal_formula(FuzzRandom& random) {
+  for (;;) {
+    auto formula = random_temporal(random, 1 + static_cast<int>(random.below(4)));
+    if (formula.looks_on() || formula.looks_back()) return formula;
+  }
+}
+
+TEST_CASE("a property is violated where some trace is, and the trace that is given violates it") {
+  FuzzRandom random(22);
+  int violated = 0, held = 0, early = 0;
+  for (int round = 0; round < 25; ++round) {
+    const auto model = random_temporal_model(random);
+    CAPTURE(model);
+    const auto traces = all_traces(model, kHorizon);
+    if (traces.empty()) continue;
+    for (int i = 0; i < 12; ++i) {
+      const auto formula = temporal_formula(random);
+      const auto text = formula.print();
+      CAPTURE(text);
+      const Compiled compiled(model, kHorizon, text, true);
+      REQUIRE(compiled.result);
+      runtime::SolverSession session(compiled.result->model, runtime::make_cadical_solver());
+      runtime::PlanEnumerator enumerator(session, {.order = runtime::TraceOrder::kAny});
+      const auto found = enumerator.next();
+      const bool expected = std::any_of(traces.begin(), traces.end(), [&](const Valuation& trace) {
+        return violates(formula, trace);
+      });
+      REQUIRE(found.has_value() == expected);
+      if (!found) {
+        CHECK(enumerator.exploration() != runtime::Exploration::kStopped);
+        ++held;
+        continue;
+      }
+      ++violated;
+      const auto valuation = tools::valuation_of(*found);
+      CHECK(violates(formula, valuation));
+      if (found->length() < kHorizon) ++early;
+      // However it goes on.
+      int extensions = 0;
+      for (const auto& trace : traces) {
+        if (!is_prefix(valuation, trace)) continue;
+        ++extensions;
+        CHECK(violates(formula, trace));
+      }
+      CHECK(extensions > 0);
+    }
+  }
+  CHECK(violated > 50);
+  CHECK(held > 30);
+  CHECK(early > 20);
+}
+
+TEST_CASE("a property that only looks back breaks at the first timepoint at which it can") {
+  FuzzRandom random(7);
+  for (int round = 0; round < 60; ++round) {
+    const auto model = random_temporal_model(random);
+    auto formula = random_temporal(random, 3);
+    if (formula.looks_on() || !formula.looks_back()) continue;
+    const auto text = formula.print();
+    if (text.find("Happens") != std::string::npos) continue;  // known one timepoint later
+    CAPTURE(model);
+    CAPTURE(text);
+    std::optional<int> first;
+    for (int n = 0; n <= kHorizon && !first; ++n) {
+      for (const auto& trace : all_traces(model, n)) {
+        if (!formula.value(trace, n).value_or(true)) first = n;
+      }
+    }
+    const Compiled compiled(model, kHorizon, text, true);
+    REQUIRE(compiled.result);
+    runtime::SolverSession session(compiled.result->model, runtime::make_cadical_solver());
+    const auto found = runtime::PlanEnumerator(session).next();
+    REQUIRE(found.has_value() == first.has_value());
+    if (found) CHECK(found->length() == *first);
+  }
+}
+
+TEST_CASE("traces end where a temporal constraint holds for the first time") {
+  FuzzRandom random(5);
+  int listed = 0;
+  for (int round = 0; round < 16; ++round) {
+    const auto model = random_temporal_model(random);
+    CAPTURE(model);
+    std::vector<std::vector<Valuation>> by_length;
+    for (int n = 0; n <= kHorizon; ++n) by_length.push_back(all_traces(model, n));
+    for (int i = 0; i < 6; ++i) {
+      const auto formula = temporal_formula(random);
+      const auto text = formula.print();
+      CAPTURE(text);
+      const Compiled compiled(model, kHorizon, text);
+      if (compiled.sink.has_errors()) {
+        // It says nothing at any timepoint.
+        for (const auto& traces : by_length) {
+          for (const auto& trace : traces) CHECK(!fulfils(formula, trace));
+        }
+        continue;
+      }
+      std::set<std::string> expected;
+      std::vector<Valuation> ended;
+      for (const auto& traces : by_length) {
+        std::vector<Valuation> here;
+        for (const auto& trace : traces) {
+          const bool before = std::any_of(ended.begin(), ended.end(), [&](const auto& shorter) {
+            return is_prefix(shorter, trace);
+          });
+          if (before || !fulfils(formula, trace)) continue;
+          expected.insert(signature(trace));
+          here.push_back(trace);
+        }
+        ended.insert(ended.end(), here.begin(), here.end());
+      }
+      std::set<std::string> got;
+      runtime::SolverSession session(compiled.result->model, runtime::make_cadical_solver());
+      runtime::PlanEnumerator enumerator(session, {.split_initial = true});
+      while (const auto trace = enumerator.next()) {
+        got.insert(signature(tools::valuation_of(*trace)));
+      }
+      CHECK(got == expected);
+      listed += static_cast<int>(got.size());
+    }
+  }
+  CHECK(listed > 500);
+}
+
+TEST_CASE("the reference evaluator works temporal formulas out as the test does") {
+  FuzzRandom random(3);
+  int compared = 0;
+  for (int round = 0; round < 20; ++round) {
+    const auto model = random_temporal_model(random);
+    const int length = static_cast<int>(random.below(kHorizon + 1));
+    auto traces = all_traces(model, length);
+    traces.resize(std::min<std::size_t>(traces.size(), 20));
+    for (int i = 0; i < 20; ++i) {
+      const auto formula = temporal_formula(random);
+      const auto text = formula.print();
+      CAPTURE(text);
+      const Compiled compiled(model, kHorizon, text, true);
+      REQUIRE(compiled.result);
+      const auto& checked = compiled.result->constraints.front().formula;
+      compiler::TemporalTruth truth(*compiled.result->typed);
+      for (const auto& trace : traces) {
+        const auto values = truth.values(checked.formula, checked.time, trace);
+        for (int t = 0; t <= length; ++t) {
+          CHECK(values[static_cast<std::size_t>(t)] == formula.value(trace, t));
+          ++compared;
+        }
+        const auto broken = std::find(values.begin(), values.end(), std::optional(false));
+        if (broken == values.end()) continue;
+        const auto why =
+            truth.why_false(checked.formula, broken - values.begin(), checked.time, trace);
+        CHECK(why.at >= 0);
+        CHECK(why.at <= length);
+        CHECK(!why.text.empty());
+      }
+    }
+  }
+  CHECK(compared > 5000);
+}
+
+TEST_CASE("the encoding grows with the horizon, not with its square") {
+  const std::string model = "fluent F()\nfluent G()\nevent E()\n[time] Initiates(E(),F(),time).\n";
+  const auto clauses = [&](int horizon, const std::string& property) {
+    const Compiled compiled(model, horizon, property, true);
+    REQUIRE(compiled.result);
+    return static_cast<double>(compiled.result->model.clauses.size());
+  };
+  for (const std::string property :
+       {"always (HoldsAt(F(),time) -> eventually HoldsAt(G(),time))",
+        "always (HoldsAt(F(),time) -> next (HoldsAt(F(),time) until HoldsAt(G(),time)))",
+        "always (HoldsAt(G(),time) -> HoldsAt(F(),time) since Happens(E(),time-1))"}) {
+    CAPTURE(property);
+    const auto small = clauses(50, property), large = clauses(200, property);
+    CHECK(large < 4.5 * small);
+  }
+}
+
+}  // namespace
+}  // namespace parallax::test
