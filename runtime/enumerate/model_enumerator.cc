@@ -8,8 +8,9 @@
 
 namespace parallax::runtime {
 
-ModelEnumerator::ModelEnumerator(SolverSession& session, Distinct distinct, TraceOrder order)
-    : session_(&session), symbols_(symbols_of(session.model())), wanted_(order) {
+ModelEnumerator::ModelEnumerator(SolverSession& session, Distinct distinct, TraceOrder order,
+                                 SymmetryBreaker* breaker)
+    : session_(&session), symbols_(symbols_of(session.model())), wanted_(order), breaker_(breaker) {
   for (const auto& block : projection_blocks(session.model(), distinct)) {
     for (const auto atom : block) order_.push_back(~atom);
   }
@@ -18,11 +19,16 @@ ModelEnumerator::ModelEnumerator(SolverSession& session, Distinct distinct, Trac
 std::optional<Trace> ModelEnumerator::next() {
   const auto n = session_->model().horizon;
   if (exhausted_) return std::nullopt;
-  const auto status = session_->solve(n, {});
+  std::vector<Literal> assumptions;
+  if (breaker_ != nullptr) assumptions.push_back(breaker_->assumption());
+  const auto status = session_->solve(n, assumptions);
   exhausted_ = status == SolveStatus::kUnsatisfiable;
+  by_symmetry_ = exhausted_ && breaker_ != nullptr && session_->failed(assumptions.front());
   if (status != SolveStatus::kSatisfiable) return std::nullopt;
-  auto blocking = in_order(*session_, n, {}, order_, wanted_);
+  auto blocking = in_order(*session_, n, assumptions, order_, wanted_);
   if (!blocking) return std::nullopt;
+  // What is left without the first trace tells constants apart.
+  if (breaker_ != nullptr) std::exchange(breaker_, nullptr)->retire();
   session_->require_model(n);
   auto trace = decode_trace(session_->model(), symbols_, n,
                             [&](Literal literal) { return session_->value(literal); });
@@ -36,6 +42,7 @@ SourceStats ModelEnumerator::stats() const {
   SourceStats stats;
   stats.strategy = "blocking";
   stats.solve_calls = session_->solve_calls();
+  stats.by_symmetry = by_symmetry_;
   return stats;
 }
 

@@ -8,6 +8,7 @@
 #include "runtime/enumerate/clause_search.h"
 #include "runtime/enumerate/trace_source.h"
 #include "runtime/session/solver_session.h"
+#include "runtime/symmetry/lex_leader.h"
 
 namespace parallax::runtime {
 
@@ -16,9 +17,11 @@ namespace parallax::runtime {
 /// one grows dearer with the number of those found.
 class ModelEnumerator final : public TraceSource {
  public:
-  /// `session` outlives the enumerator.
+  /// `session` outlives the enumerator. The first trace is looked for under `breaker`, if there is
+  /// one, which compares in canonical order and outlives the enumerator, and is retired then.
   explicit ModelEnumerator(SolverSession& session, Distinct distinct = Distinct::kObservable,
-                           TraceOrder order = TraceOrder::kCanonical);
+                           TraceOrder order = TraceOrder::kCanonical,
+                           SymmetryBreaker* breaker = nullptr);
   std::optional<Trace> next() override;
   bool exhausted() const override { return exhausted_; }
   SourceStats stats() const override;
@@ -28,8 +31,10 @@ class ModelEnumerator final : public TraceSource {
   Symbols symbols_;
   std::vector<Literal> order_;  // the atoms, false preferred
   TraceOrder wanted_;
+  SymmetryBreaker* breaker_;
   std::int64_t found_ = 0;
   bool exhausted_ = false;
+  bool by_symmetry_ = false;
 };
 
 /// Descends a tree whose levels are blocks of atoms. At a node, which is a valuation of the blocks

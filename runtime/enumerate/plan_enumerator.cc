@@ -30,6 +30,24 @@ PlanEnumerator::PlanEnumerator(SolverSession& session, const PlanEnumeratorOptio
   PARALLAX_REQUIRE(session.model().has_constraints, "the model was compiled with constraints");
   if (index_.hit(0)) first_ = 0;
   n_ = first_ - 1;
+  const bool any = options.order == TraceOrder::kAny;
+  if (options.symmetry != nullptr && !options.symmetry->empty() &&
+      (any || options.representatives)) {
+    breaker_.emplace(session, *options.symmetry, order_by_horizon(session.model()));
+  }
+}
+
+/// The assumption under which only representatives are looked for, at the length at hand. Once
+/// something was found, what is left tells constants apart.
+std::optional<Literal> PlanEnumerator::breaking() {
+  if (!breaker_ || (found_ > 0 && !options_.representatives)) return std::nullopt;
+  session_->load(n_);
+  breaker_->extend(static_cast<std::size_t>(n_) + 1);
+  return breaker_->assumption();
+}
+
+void PlanEnumerator::note_refuted(std::optional<Literal> breaking) {
+  by_symmetry_ = by_symmetry_ || (breaking && session_->failed(*breaking));
 }
 
 /// Hit at n and, unless all hits count, at no earlier timepoint.
@@ -77,12 +95,16 @@ std::optional<Trace> PlanEnumerator::next() {
     }
     auto assumptions = hit_at(n_);
     assumptions.push_back(*guard_);
-    const auto status = session_->solve(n_, assumptions);
+    auto searched = assumptions;
+    const auto broken = breaking();
+    if (broken) searched.push_back(*broken);
+    const auto status = session_->solve(n_, searched);
     if (status == SolveStatus::kUnknown) {
       done_ = true;
       return std::nullopt;
     }
     if (status == SolveStatus::kUnsatisfiable) {
+      note_refuted(broken);
       // Nothing of this length is left: its blocking clauses are of no use to longer ones.
       const auto retired = ~*guard_;
       session_->add_clause(std::span(&retired, 1));
@@ -92,7 +114,9 @@ std::optional<Trace> PlanEnumerator::next() {
     auto fixed = std::move(assumptions);
     const auto head = fixed.size();
     for (const auto* order : {&key_order_, &start_order_, &state_order_, &choice_order_}) {
-      const auto literals = in_order(*session_, n_, fixed, *order, options_.order);
+      // Which key it is, is asked of representatives; what belongs to the key, of all.
+      const auto& under = order == &key_order_ ? searched : fixed;
+      const auto literals = in_order(*session_, n_, under, *order, options_.order);
       done_ = !literals;
       if (done_) return std::nullopt;
       fixed.insert(fixed.end(), literals->begin(), literals->end());
@@ -184,8 +208,14 @@ void PlanEnumerator::finish() {
   const auto running = index_.running(n_);
   auto going_on = unmet;
   if (running) going_on.push_back(*running);
+  std::optional<Literal> broken;
+  if (breaker_) {
+    broken = breaker_->assumption();
+    going_on.push_back(*broken);
+  }
   switch (session_->solve(n_, going_on)) {
     case SolveStatus::kUnsatisfiable:
+      note_refuted(broken);
       exploration_ = Exploration::kAllTracesExplored;
       break;
     case SolveStatus::kSatisfiable:

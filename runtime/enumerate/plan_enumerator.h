@@ -10,6 +10,7 @@
 
 #include "runtime/enumerate/trace_source.h"
 #include "runtime/session/solver_session.h"
+#include "runtime/symmetry/lex_leader.h"
 #include "runtime/trace/trace.h"
 
 namespace parallax::runtime {
@@ -30,6 +31,10 @@ struct PlanEnumeratorOptions {
   /// Of the traces of one length: shorter ones come first in any case. With any order any initial
   /// state stands for a trace.
   TraceOrder order = TraceOrder::kCanonical;
+  /// Of the session's model. In any order the first trace is looked for among representatives of
+  /// orbits; with `representatives` all are, of each orbit of keys at least one. Null: as they are.
+  const ModelSymmetry* symmetry = nullptr;
+  bool representatives = false;
 };
 
 /// Where executions go on that were not followed: none of them met the constraints before.
@@ -55,6 +60,9 @@ class PlanEnumerator {
   /// Why it is complete up to the bound only.
   const OpenEnds& open_ends() const { return open_ends_; }
 
+  /// That there are no others was found for one trace of each orbit only.
+  bool by_symmetry() const { return by_symmetry_; }
+
   /// Does the model admit, for the trace's events and initial state, a last state in which each of
   /// these fluents has the value given? One solver call.
   base::Known admits(const Trace& trace,
@@ -63,6 +71,8 @@ class PlanEnumerator {
   const Symbols& symbols() const { return symbols_; }
 
  private:
+  std::optional<Literal> breaking();
+  void note_refuted(std::optional<Literal> breaking);
   base::Known has_alternative(std::span<const Literal> fixed, std::span<const Literal> different);
   void note_alternatives(std::span<const Literal> fixed, std::size_t length, Trace& trace);
   std::vector<Literal> hit_at(Timepoint n) const;
@@ -88,6 +98,8 @@ class PlanEnumerator {
   /// first.
   std::vector<Literal> choice_order_;
   std::int64_t found_ = 0;
+  std::optional<SymmetryBreaker> breaker_;
+  bool by_symmetry_ = false;
   bool done_ = false;
   Exploration exploration_ = Exploration::kStopped;
   OpenEnds open_ends_;

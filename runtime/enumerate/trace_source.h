@@ -30,6 +30,8 @@ struct SourceStats {
   std::string remark;                       // why not the graph, if it would have paid
   std::size_t states = 0, transitions = 0;  // of the graph
   std::int64_t solve_calls = 0;
+  /// That there is no trace was found for one of each orbit only (runtime/symmetry).
+  bool by_symmetry = false;
 };
 
 /// The traces of a model at its full horizon, each once, in canonical order (timepoint, then

@@ -219,7 +219,7 @@ bool GraphPaths::print_next(const TraceFormat& format, std::string& out) {
     path_[t].printed = body_.size();
   }
   unchanged_ = path_.size();
-  out += format.head(number_.get_str());
+  out += format.head(number_.get_str(), {});
   out += body_;
   out += format.tail(predicates_);
   return true;

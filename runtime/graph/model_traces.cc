@@ -6,7 +6,9 @@
 #include <utility>
 #include <variant>
 
+#include "runtime/enumerate/canonical.h"
 #include "runtime/enumerate/model_enumerator.h"
+#include "runtime/symmetry/lex_leader.h"
 
 namespace parallax::runtime {
 namespace {
@@ -17,6 +19,8 @@ constexpr std::int64_t kFew = 1000;
 constexpr std::int64_t kFar = 64;
 /// A trace that costs a search more conflicts than this is a solver's to find.
 constexpr std::int64_t kConflicts = 1000;
+/// That symmetry makes it easy to see that there is no trace shows within so many conflicts.
+constexpr std::int64_t kEasy = 20'000;
 /// Transitions are found by search some hundred times faster than traces by a solver that is to
 /// give them in order. So a graph that stays small is tried first, and larger ones as traces come.
 constexpr GraphLimits kSmall = {500'000, 50'000, 10'000};
@@ -61,8 +65,7 @@ ModelTraces::ModelTraces(const CompiledModel& model, TraceQuery query)
       if (!use_components()) refusal_ = "they are more components than can be counted";
       break;
   }
-  if (source_ == nullptr)
-    source_ = std::make_unique<ModelEnumerator>(session(), query.distinct, query.order);
+  if (source_ == nullptr) use_blocking();
 }
 
 SolverSession& ModelTraces::session() {
@@ -70,8 +73,32 @@ SolverSession& ModelTraces::session() {
     const bool is_one = query_.order == TraceOrder::kAny || query_.wanted == 1;
     session_.emplace(model_, make_cadical_solver(query_.stop),
                      is_one ? Loading::kWitness : Loading::kAsNeeded);
+    if (may_break_symmetry()) break_symmetry();
   }
   return *session_;
+}
+
+/// For the first call; the first trace in canonical order is the first one of its orbit, too.
+void ModelTraces::break_symmetry() {
+  const ModelSymmetry symmetry(model_);
+  if (symmetry.empty()) return;
+  session_->load(model_.horizon);
+  const auto order = whole_order(model_, projection_blocks(model_, query_.distinct));
+  breaker_.emplace(*session_, symmetry, order);
+  breaker_->extend(order.size());
+}
+
+SolveStatus ModelTraces::has_trace() {
+  auto& asked = session();
+  std::vector<Literal> assumptions;
+  if (breaker_) assumptions.push_back(breaker_->assumption());
+  return asked.solve(model_.horizon, assumptions);
+}
+
+void ModelTraces::use_blocking() {
+  auto& asked = session();
+  source_ = std::make_unique<ModelEnumerator>(asked, query_.distinct, query_.order,
+                                              breaker_ ? &*breaker_ : nullptr);
 }
 
 void ModelTraces::use_search(std::int64_t conflicts) {
@@ -93,11 +120,22 @@ void ModelTraces::use_graph(const GraphLimits& limits) {
     }
   }
   // What no window has is the solver's to decide.
-  if (graph_.layered->has_unplaced && given_ == 0 &&
-      session().solve(model_.horizon, {}) != SolveStatus::kSatisfiable) {
+  if (graph_.layered->has_unplaced && given_ == 0 && has_trace() != SolveStatus::kSatisfiable) {
     return;
   }
-  graph_.graph = TraceGraph::build(*graph_.layered, limits, query_.stop, remark_);
+  // Before a solver is given single states, it is asked whether there is any trace at all, which
+  // symmetry can make easy.
+  auto without_solver = limits;
+  without_solver.solver = given_ > 0 || !may_break_symmetry();
+  graph_.graph = TraceGraph::build(*graph_.layered, without_solver, query_.stop, remark_);
+  if (graph_.graph == nullptr && remark_ == TraceGraph::kWantsSolver) {
+    (void)session();
+    if (breaker_) {
+      session().limit_conflicts(kEasy);
+      if (has_trace() == SolveStatus::kUnsatisfiable) return;
+    }
+    graph_.graph = TraceGraph::build(*graph_.layered, limits, query_.stop, remark_);
+  }
   if (graph_.graph == nullptr) return;
   remark_ = GraphPaths::obstacle(*graph_.graph, model_);
   if (!remark_.empty()) return;
@@ -141,7 +179,7 @@ void ModelTraces::leave_search() {
   if (!is_tried_) use_graph(kSmall);
   if (paths_ != nullptr) return;
   if (given_ == 0) {
-    source_ = std::make_unique<ModelEnumerator>(session(), query_.distinct, query_.order);
+    use_blocking();
   } else {
     use_tree();
   }

@@ -45,6 +45,9 @@ struct TraceQuery {
   Strategy strategy = Strategy::kAuto;
   TraceOrder order = TraceOrder::kCanonical;  // of what a solver finds one by one
   std::int64_t wanted = 0;                    // so many traces will be asked for; 0: all
+  /// The first trace may be looked for among representatives of orbits, where a search does not
+  /// find it and no strategy is forced: that there is none is then said `by_symmetry`.
+  bool breaks_symmetry = true;
   GraphLimits limits = {};
   const std::atomic<bool>* stop = nullptr;
 };
@@ -83,6 +86,13 @@ class ModelTraces final : public TraceSource {
   };
 
   SolverSession& session();
+  void use_blocking();
+  bool may_break_symmetry() const {
+    return query_.breaks_symmetry && query_.strategy == Strategy::kAuto;
+  }
+  void break_symmetry();
+  /// Is there any trace?
+  SolveStatus has_trace();
   void use_search(std::int64_t conflicts);
   void use_graph(const GraphLimits& limits);
   bool use_components();
@@ -97,6 +107,7 @@ class ModelTraces final : public TraceSource {
   TraceQuery query_;
   std::vector<Attempt> attempts_;  // that are still to be made; the last one first
   std::optional<SolverSession> session_, tree_session_;
+  std::optional<SymmetryBreaker> breaker_;  // of `session_`, while no trace was found
   ModelGraph graph_;
   std::unique_ptr<TraceSource> source_;
   GraphPaths* paths_ = nullptr;            // `source_`, if it is the graph

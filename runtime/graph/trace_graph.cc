@@ -64,6 +64,10 @@ std::optional<std::vector<Move>> StepSolver::moves(const Bits& observed, const B
     const auto status = search(state, limits, found);
     if (status == ClauseSearch::Status::kNoMore) return found;
     if (status == ClauseSearch::Status::kFound || is_spent(limits)) return std::nullopt;
+    if (!limits.solver) {
+      wants_solver_ = true;
+      return std::nullopt;
+    }
     start_solver();
   }
   return solve(state, limits.moves);
@@ -179,7 +183,7 @@ std::uint32_t TraceGraph::intern_events(Bits events) {
 }
 
 bool TraceGraph::expand(std::string& reason) {
-  auto moves = start_.moves({}, {}, {limits_.nodes, limits_.conflicts});
+  auto moves = start_.moves({}, {}, {limits_.nodes, limits_.conflicts, limits_.solver});
   if (!moves) return give_up(reason);
   std::map<Bits, std::vector<Bits>> starts;
   for (auto& move : *moves) starts[move.observed].push_back(std::move(move.hidden));
@@ -209,7 +213,8 @@ bool TraceGraph::expand_node(std::uint32_t step, std::uint32_t node, std::string
   std::map<std::pair<Bits, Bits>, std::vector<Bits>> ways;  // by events and observed
   const auto& from = *nodes_[node];
   for (const auto& hidden : from.hidden) {
-    auto moves = steps_[step]->moves(from.observed, hidden, {limits_.edges, limits_.conflicts});
+    auto moves = steps_[step]->moves(from.observed, hidden,
+                                     {limits_.edges, limits_.conflicts, limits_.solver});
     if (!moves) return give_up(reason);
     for (auto& move : *moves) {
       ways[{std::move(move.events), std::move(move.observed)}].push_back(std::move(move.hidden));
@@ -225,8 +230,15 @@ bool TraceGraph::expand_node(std::uint32_t step, std::uint32_t node, std::string
   return edge_count_ <= limits_.edges || give_up(reason);
 }
 
+bool TraceGraph::wants_solver() const {
+  return start_.wants_solver() || std::any_of(steps_.begin(), steps_.end(), [](const auto& step) {
+           return step->wants_solver();
+         });
+}
+
 bool TraceGraph::give_up(std::string& reason) const {
   reason = stop_ != nullptr && stop_->load() ? "it was stopped" : "the graph has too many states";
+  if (wants_solver()) reason = kWantsSolver;
   return false;
 }
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <variant>
 #include <vector>
@@ -32,6 +33,7 @@ struct Move {
 struct MoveLimits {
   std::size_t moves = 0;       // from one state
   std::int64_t conflicts = 0;  // of the search, for all states together
+  bool solver = true;          // may answer where the search gives up
 };
 
 /// One window, which is asked for every way on from a state: by search, and from the first state on
@@ -48,6 +50,8 @@ class StepSolver {
   std::optional<std::vector<Move>> moves(const Bits& observed, const Bits& hidden,
                                          const MoveLimits& limits);
   std::int64_t solve_calls() const { return solver_ == nullptr ? 0 : solver_->solve_calls(); }
+  /// Some state was left because no solver was to answer.
+  bool wants_solver() const { return wants_solver_; }
 
  private:
   template <typename Value>
@@ -69,6 +73,7 @@ class StepSolver {
   ClauseSearch search_;
   std::unique_ptr<SatSolver> solver_;  // once the search has given up
   std::int32_t next_guard_;
+  bool wants_solver_ = false;
 };
 
 /// A state of the graph: what is observed, and every valuation of the hidden slots that some trace
@@ -91,6 +96,7 @@ struct GraphLimits {
   std::size_t nodes = 2'000'000;                                      // of all layers together
   std::size_t edges = 20'000'000;                                     // that are stored
   std::int64_t conflicts = std::numeric_limits<std::int64_t>::max();  // of the search for them
+  bool solver = true;  // states that a search does not settle are given to one
 };
 
 /// The traces of a model as the paths of a layered graph: every distinct state of a window is asked
@@ -104,6 +110,9 @@ class TraceGraph {
   /// graph, `stop` may be null.
   static std::unique_ptr<TraceGraph> build(const LayeredModel& model, const GraphLimits& limits,
                                            const std::atomic<bool>* stop, std::string& reason);
+
+  /// The reason where a state needs a solver and the limits say that it has none.
+  static constexpr std::string_view kWantsSolver = "a state has too many choices for a search";
 
   /// The exact number of traces.
   const mpz_class& count() const { return total_; }
@@ -128,6 +137,7 @@ class TraceGraph {
   TraceGraph(const LayeredModel& model, const GraphLimits& limits, const std::atomic<bool>* stop);
   bool expand(std::string& reason);
   bool expand_node(std::uint32_t step, std::uint32_t node, std::string& reason);
+  bool wants_solver() const;
   bool give_up(std::string& reason) const;
   void count_back();
   std::uint32_t intern(GraphNode node);

@@ -56,11 +56,15 @@ class SolverSession {
 
   const CompiledModel& model() const { return *model_; }
   const LengthVariables& lengths() const { return lengths_; }
+  /// Hands the clauses of horizon `n` to the solver, as the first call that needs them would.
+  void load(Timepoint n);
   /// A variable of the session's own, for guards.
   Literal new_variable();
   void add_clause(std::span<const Literal> clause);
   /// Is there a valuation with horizon `n` under these assumptions? `values()` has it afterwards.
   SolveStatus solve(Timepoint n, std::span<const Literal> assumptions);
+  /// Of the next call of solve, which answers kUnknown after so many.
+  void limit_conflicts(std::int64_t most) { solver_->limit_conflicts(most); }
   /// Value of a literal in the valuation that the last satisfiable call found; it stays available
   /// until the next satisfiable call.
   bool value(Literal literal) const;
@@ -68,6 +72,8 @@ class SolverSession {
   /// that answers wrongly is a broken contract. Linear in the clauses.
   void require_model(Timepoint n) const;
   bool is_fixed(Literal literal) const;
+  /// After an unsatisfiable call: is the assumption one that made it so?
+  bool failed(Literal assumption) { return solver_->failed(in_solver(assumption)); }
   /// From now on the search tries the literal true first.
   void prefer(Literal literal) { solver_->set_phase(in_solver(literal)); }
   std::int64_t solve_calls() const { return solver_->solve_calls(); }
@@ -75,7 +81,6 @@ class SolverSession {
   Timepoint loaded() const { return loaded_; }
 
  private:
-  void load(Timepoint n);
   void load_clause(std::size_t clause);
   void sort_by_timepoint();
   Literal in_solver(Literal literal);

@@ -72,6 +72,11 @@ class SatSolver {
 /// answers kUnknown soon; `stop` may be null and outlives the solver.
 std::unique_ptr<SatSolver> make_cadical_solver(const std::atomic<bool>* stop = nullptr);
 
+/// The same solver until it has met so many conflicts in all; then every call that needs more
+/// answers kUnknown. Unlike a limit on time, this is the same on every machine.
+std::unique_ptr<SatSolver> make_limited_solver(std::unique_ptr<SatSolver> solver,
+                                               std::int64_t conflicts);
+
 enum class ProofForm : std::uint8_t { kBinary, kText };
 
 enum class ProofUse : std::uint8_t {

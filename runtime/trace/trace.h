@@ -61,6 +61,8 @@ struct Trace {
   Symbols symbols;          // of the ids in `points`; null only where there are none
   std::vector<TracePoint> points;
   std::vector<std::string> predicates;  // true atoms of user predicates, sorted
+  /// How many traces exchanging constants makes of this one, in decimal, where it stands for them.
+  std::string orbit;
   /// Do other initial states lead to the same events? This one is the first in canonical order.
   base::Known other_initial_states = base::Known::kNo;
   /// Can the same events from the same initial state also end in other states?

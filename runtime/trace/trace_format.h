@@ -13,8 +13,9 @@ namespace parallax::runtime {
 class TraceFormat {
  public:
   virtual ~TraceFormat() = default;
-  /// What comes before the first timepoint. `number` is in decimal digits.
-  virtual std::string head(const std::string& number) const = 0;
+  /// What comes before the first timepoint. `number` is in decimal digits, and so is `orbit`
+  /// (Trace::orbit), which may be empty.
+  virtual std::string head(const std::string& number, const std::string& orbit) const = 0;
   /// What introduces timepoint t.
   virtual std::string introduction(Timepoint t) const = 0;
   /// One timepoint, independent of its number; `before` is the timepoint before, null at 0.

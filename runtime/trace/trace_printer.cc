@@ -44,7 +44,9 @@ std::string json_list(const std::vector<Text>& names) {
 
 class TextFormat final : public TraceFormat {
  public:
-  std::string head(const std::string& number) const override { return "trace " + number + '\n'; }
+  std::string head(const std::string& number, const std::string& orbit) const override {
+    return "trace " + number + (orbit.empty() ? "" : ", stands for " + orbit) + '\n';
+  }
   std::string introduction(Timepoint t) const override { return "  " + std::to_string(t) + '\n'; }
   std::string point(const compiler::SymbolTable& symbols, const TracePoint* before,
                     const TracePoint& point) const override {
@@ -64,8 +66,9 @@ class TextFormat final : public TraceFormat {
 
 class JsonlFormat final : public TraceFormat {
  public:
-  std::string head(const std::string& number) const override {
-    return "{\"trace\":" + number + ",\"timepoints\":[";
+  std::string head(const std::string& number, const std::string& orbit) const override {
+    return "{\"trace\":" + number + (orbit.empty() ? "" : ",\"orbit\":" + orbit) +
+           ",\"timepoints\":[";
   }
   std::string introduction(Timepoint t) const override {
     return (t == 0 ? "{\"time\":" : ",{\"time\":") + std::to_string(t);
@@ -103,7 +106,7 @@ std::string format_trace(const TraceFormat& format, const Trace& trace) {
 std::string format_trace(const TraceFormat& format, const Trace& trace, const std::string& number) {
   static const compiler::SymbolTable kNoSymbols;
   const auto& symbols = trace.symbols == nullptr ? kNoSymbols : *trace.symbols;
-  auto out = format.head(number);
+  auto out = format.head(number, trace.orbit);
   const TracePoint* before = nullptr;
   Timepoint t = 0;
   for (const auto& point : trace.points) {

@@ -80,13 +80,19 @@ void TraceCertifier::conclude(const std::string& exploration, bool searched) {
                               files_->formula_path().string()));
 }
 
+void TraceCertifier::rest_on_symmetry() {
+  if (!files_) verdict_ = kBySymmetry;
+}
+
 std::string TraceCertifier::remark(const std::string& exploration) const {
   return is_whole(exploration) ? fmt::format(" ({})", verdict_) : "";
 }
 
 std::string TraceCertifier::fields() const {
-  const auto short_form = verdict_ == "no proof" ? "none" : verdict_.substr(6);
+  const bool by_symmetry = verdict_ == kBySymmetry;
+  const auto short_form = by_symmetry || verdict_ == "no proof" ? "none" : verdict_.substr(6);
   auto out = fmt::format("\"proof\":\"{}\",", short_form);
+  if (by_symmetry) out += "\"symmetry\":true,";
   if (verdict_ == "proof checked") out += fmt::format("\"proof_origin\":\"{}\",", origin_);
   if (verdict_ == "proof checked" && option_.keep) {
     const auto text = [](const std::filesystem::path& path) {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "runtime/certify/certificate.h"
 #include "runtime/session/solver_session.h"
@@ -16,6 +17,9 @@ struct CertifyOption {
   std::string file;  // empty: not asked for
   bool keep = true;  // false: the files are gone when the command ends, so nobody is told of them
 };
+
+/// The verdict on a claim that rests on an argument by symmetry.
+inline constexpr std::string_view kBySymmetry = "symmetry, not proof checked";
 
 /// Collects the traces of a list and proves at its end that there are no others. Without the option
 /// it does nothing and says so.
@@ -47,7 +51,10 @@ class TraceCertifier {
 
   /// The list is not what it claims to be, or nobody could tell.
   bool refuted() const { return verdict_ == "proof not accepted"; }
-  /// `no proof`, `proof checked`, `proof not accepted` or `proof not checked`.
+  /// Without a proof: the claim rests on an argument by symmetry that nobody checked.
+  void rest_on_symmetry();
+  /// `no proof`, `symmetry, not proof checked`, `proof checked`, `proof not accepted` or `proof not
+  /// checked`.
   const std::string& verdict() const { return verdict_; }
   std::string proof_file() const { return files_ ? files_->proof_path().string() : ""; }
   /// ` (proof checked)` after what claims to be complete, else nothing.

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "compiler/base/codes/campaigns.h"
 #include "runtime/enumerate/model_enumerator.h"
 #include "runtime/enumerate/plan_enumerator.h"
-#include "runtime/graph/model_traces.h"
+#include "runtime/graph/orbit_traces.h"
 #include "tools/app/trace_writer.h"
 
 namespace parallax::tools {
@@ -72,7 +74,9 @@ std::optional<Ending> list_logged(const runtime::TraceQuery& query,
   // At the limit one more call tells "these are all" from "there are more".
   if (!enumerator.exhausted() && !context.stopped()) (void)enumerator.next();
   stats = enumerator.stats();
-  if (enumerator.exhausted()) return Ending{"complete", true, {}, true};
+  if (enumerator.exhausted()) {
+    return Ending{.exploration = "complete", .complete = true, .searched = true};
+  }
   if (writer.full() || context.stopped()) return Ending{};
   return std::nullopt;
 }
@@ -93,23 +97,94 @@ std::optional<Ending> draw(const SearchOptions& options, const compiler::Compile
                                            sample.population.get_str(), options.seed)};
 }
 
+/// What the listing rests on, for --stats.
+void show_constants(const SearchOptions& options, const runtime::Interchangeables& constants,
+                    Context& context) {
+  if (!options.stats || context.form().json) return;
+  std::string text = constants.empty() ? "interchangeable: no two constants" : "";
+  for (const auto& set : constants.sets) {
+    text += text.empty() ? "interchangeable: " : "; ";
+    for (std::size_t i = 0; i < set.size(); ++i) text += (i > 0 ? ", " : "") + set[i];
+  }
+  context.statistics(text + '\n');
+}
+
+/// One trace of each orbit.
+std::optional<Ending> list_orbits(const SearchOptions& options,
+                                  const compiler::CompiledModel& model,
+                                  const runtime::TraceQuery& query, TraceCertifier& certifier,
+                                  TraceWriter& writer, Context& context) {
+  runtime::OrbitTraces traces(model, query);
+  if (!traces.refusal().empty()) {
+    report_refusal(options, traces.refusal(), context);
+    return std::nullopt;
+  }
+  while (!writer.full() && !context.stopped()) {
+    auto trace = traces.next();
+    if (!trace) break;
+    trace->orbit = traces.size().get_str();
+    writer.write(*trace);
+  }
+  Ending ending;
+  ending.in_all = traces.total().get_str();
+  if (writer.full() && !context.stopped()) (void)traces.next();
+  show_stats(options, traces.stats(), context);
+  show_constants(options, traces.constants(), context);
+  if (!traces.exhausted()) return ending;
+  if (!traces.constants().empty()) certifier.rest_on_symmetry();
+  ending.exploration = "complete";
+  ending.complete = true;
+  return ending;
+}
+
 }  // namespace
 
 Ending list_plan_traces(const SearchOptions& options, const compiler::CompiledModel& model,
                         TraceCertifier& certifier, TraceWriter& writer, Context& context) {
+  const auto order = order_of(options, certifier, model.plan.empty());
+  const bool any = order == runtime::TraceOrder::kAny && !certifier.is_asked();
+  std::optional<runtime::ModelSymmetry> symmetry;
+  std::optional<runtime::TraceOrbits> orbits;
+  if (any || options.up_to_symmetry) symmetry.emplace(model);
+  if (options.up_to_symmetry) {
+    orbits.emplace(
+        model, symmetry->constants(),
+        options.split_initial ? runtime::Compared::kKeyAndStart : runtime::Compared::kKey);
+    show_constants(options, symmetry->constants(), context);
+  }
   runtime::SolverSession session(model, certifier.solver(), certifier.loading());
-  runtime::PlanEnumerator enumerator(session,
-                                     {.all_hits = options.hits == "all",
-                                      .split_initial = options.split_initial,
-                                      .order = order_of(options, certifier, model.plan.empty())});
+  runtime::PlanEnumerator enumerator(session, {.all_hits = options.hits == "all",
+                                               .split_initial = options.split_initial,
+                                               .order = order,
+                                               .symmetry = symmetry ? &*symmetry : nullptr,
+                                               .representatives = options.up_to_symmetry});
+  Ending ending;
+  mpz_class in_all;
+  std::set<std::string> forms;
   while (!writer.full() && !context.stopped()) {
-    const auto trace = enumerator.next();
+    auto trace = enumerator.next();
     if (!trace) break;
+    if (orbits) {
+      auto orbit = orbits->of(*trace);
+      if (!forms.insert(std::move(orbit.form)).second) continue;
+      in_all += orbit.size;
+      trace->orbit = orbit.size.get_str();
+      trace->number = static_cast<std::int64_t>(forms.size());
+    }
     writer.write(*trace);
   }
-  return {std::string(runtime::to_string(enumerator.exploration())),
-          enumerator.exploration() == runtime::Exploration::kAllTracesExplored,
-          open_end_texts(model, enumerator.open_ends()), true};
+  if (orbits) ending.in_all = in_all.get_str();
+  const bool rests = enumerator.by_symmetry() || (orbits && !symmetry->empty());
+  if (rests) certifier.rest_on_symmetry();
+  ending.exploration = runtime::to_string(enumerator.exploration());
+  ending.complete = enumerator.exploration() == runtime::Exploration::kAllTracesExplored;
+  ending.bounds = open_end_texts(model, enumerator.open_ends());
+  ending.searched = true;
+  return ending;
+}
+
+bool has_symmetry(const compiler::CompiledModel& model) {
+  return !runtime::ModelSymmetry(model).empty();
 }
 
 std::optional<Ending> list_model_traces(const SearchOptions& options,
@@ -119,6 +194,10 @@ std::optional<Ending> list_model_traces(const SearchOptions& options,
   if (options.sample > 0) return draw(options, model, writer, context);
   auto query = query_of(options, context);
   query.order = order_of(options, certifier, false);
+  query.breaks_symmetry = !certifier.is_asked();
+  if (options.up_to_symmetry) {
+    return list_orbits(options, model, query, certifier, writer, context);
+  }
   if (leaves_proof(query, certifier)) {
     runtime::SourceStats stats;
     const auto ending = list_logged(query, model, certifier, writer, stats, context);
@@ -141,6 +220,7 @@ std::optional<Ending> list_model_traces(const SearchOptions& options,
   if (asks_on && writer.full() && !context.stopped()) (void)traces.next();
   show_stats(options, traces.stats(), context);
   if (!traces.exhausted()) return Ending{};
+  if (traces.stats().by_symmetry) certifier.rest_on_symmetry();
   return Ending{options.from > 1 ? "complete from there on" : "complete", options.from == 1};
 }
 
@@ -149,11 +229,13 @@ std::optional<CountedTraces> count_model_traces(const SearchOptions& options,
                                                 TraceCertifier& certifier, Context& context) {
   auto query = query_of(options, context);
   query.wanted = 0;
+  query.breaks_symmetry = !certifier.is_asked();
   if (leaves_proof(query, certifier)) {
     // Only of a model without traces the number is proved.
     runtime::SolverSession session(model, certifier.solver(), certifier.loading());
     if (session.solve(model.horizon, {}) == runtime::SolveStatus::kUnsatisfiable) {
-      return CountedTraces{"0", "blocking", {"complete", true, {}, true}};
+      return CountedTraces{
+          "0", "blocking", {.exploration = "complete", .complete = true, .searched = true}};
     }
   }
   const auto counted = runtime::count_traces(model, query);
@@ -163,6 +245,7 @@ std::optional<CountedTraces> count_model_traces(const SearchOptions& options,
   }
   show_stats(options, counted.stats, context);
   CountedTraces result{counted.count.get_str(), counted.stats.strategy, {}};
+  if (counted.stats.by_symmetry) certifier.rest_on_symmetry();
   if (counted.complete) result.ending = {"complete", true};
   return result;
 }

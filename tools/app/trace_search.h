@@ -22,8 +22,9 @@ struct SearchOptions {
   std::int64_t seed = 1;
   std::string hits = "first";  // the last two: of plans and state constraints
   bool split_initial = false;
-  std::string order;   // "canonical", "any"; empty: what suits
-  bool stats = false;  // say how they were found
+  std::string order;            // "canonical", "any"; empty: what suits
+  bool up_to_symmetry = false;  // one of each orbit
+  bool stats = false;           // say how they were found
 };
 
 /// What is known of the traces that were not listed, and how.
@@ -31,12 +32,16 @@ struct Ending {
   std::string exploration = "stopped";
   bool complete = false;
   std::vector<std::string> bounds = {};  // why it is complete up to the bound only
+  std::string in_all = {};               // up to symmetry: for how many traces those given stand
   bool searched = false;  // the certifier's solver found by itself that there are no others
 };
 
 /// Traces of a model with a plan or constraints.
 Ending list_plan_traces(const SearchOptions& options, const compiler::CompiledModel& model,
                         TraceCertifier& certifier, TraceWriter& writer, Context& context);
+
+/// Can any two constants of the model be exchanged?
+bool has_symmetry(const compiler::CompiledModel& model);
 
 /// Traces of a model: listed, or drawn where a sample is asked for. None if the strategy cannot be
 /// had, reported. Where a proof is asked for the first ones are searched by the certifier's solver.

@@ -132,6 +132,9 @@ void add_search_options(OptionTable& command, SearchOptions& options) {
               "canonical, or any: whichever trace the solver finds first. By default any where "
               "--limit 1 asks for one trace that reaches a goal, which is many times as fast")
       .check(OneOf{{"canonical", "any"}});
+  command.flag("--up-to-symmetry", options.up_to_symmetry,
+               "List one trace of each orbit: of those that exchanging constants which model, plan "
+               "and goal do not tell apart makes of each other, and how many these are");
   add_hits_option(command, options.hits);
   command.flag("--split-initial", options.split_initial,
                "List every initial state, not only every sequence of events");

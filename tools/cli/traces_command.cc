@@ -50,7 +50,12 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
   }
   if (!stopped) invocation.answered();
   for (const auto& bound : ending.bounds) invocation.remark(bound);
-  const auto fields = certifier.fields();
+  auto fields = certifier.fields();
+  std::string in_all;
+  if (options.search.up_to_symmetry) {
+    fields += fmt::format("\"up_to_symmetry\":true,\"in_all\":{},", ending.in_all);
+    in_all = fmt::format(" up to symmetry, {} in all{}", ending.in_all, stopped ? " so far" : "");
+  }
   const bool complete = ending.complete && !certifier.refuted();
   if (complete && writer.count() == 0 && options.search.from == 1) {
     point_to_explanation(options, invocation);
@@ -63,7 +68,7 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
         writer.agreed() ? "ok" : "error", writer.count(), complete, ending.exploration,
         bounds_field(ending.bounds), fields, writer.checked_field(), list, timing));
   } else if (options.count) {
-    invocation.result(fmt::format("{}\n", writer.count()));
+    invocation.result(fmt::format("{}{}\n", writer.count(), in_all));
   } else if (listing != nullptr) {
     invocation.result(listing->end({writer.count(), complete, ending.exploration,
                                     certifier.remark(ending.exploration) + writer.checked_remark(),
@@ -75,9 +80,9 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
                     writer.count(), complete, fields, writer.checked_field(), ending.exploration,
                     runtime::model_hash(model), timing));
   } else {
-    invocation.result(fmt::format("{} {}, {}{}{}\n", writer.count(),
-                                  writer.count() == 1 ? "trace" : "traces", ending.exploration,
-                                  certifier.remark(ending.exploration), writer.checked_remark()));
+    invocation.result(fmt::format(
+        "{} {}{}, {}{}{}\n", writer.count(), writer.count() == 1 ? "trace" : "traces", in_all,
+        ending.exploration, certifier.remark(ending.exploration), writer.checked_remark()));
   }
 }
 
@@ -96,14 +101,20 @@ int count_only(const TracesOptions& options, const compiler::CompiledModel& mode
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   if (!ending.complete) invocation.remark("stopped before the end: there may be more traces");
   if (ending.complete && counted->number == "0") point_to_explanation(options, invocation);
+  // Without interchangeable constants every trace is an orbit of its own.
+  const bool all = options.search.up_to_symmetry;
+  const auto fields =
+      certifier.fields() +
+      (all ? fmt::format("\"up_to_symmetry\":true,\"in_all\":{},", counted->number) : "");
   if (invocation.options().json) {
     invocation.document(
         fmt::format("{{\"status\":\"ok\",\"traces\":{},\"complete\":{},\"exploration\":\"{}\","
                     "\"strategy\":\"{}\",{}\"timing\":{{\"wall_s\":{:.3f}}}}}\n",
-                    counted->number, ending.complete, ending.exploration, counted->strategy,
-                    certifier.fields(), wall.count()));
+                    counted->number, ending.complete, ending.exploration, counted->strategy, fields,
+                    wall.count()));
   } else {
-    invocation.result(counted->number + '\n');
+    invocation.result(counted->number +
+                      (all ? fmt::format(" up to symmetry, {} in all\n", counted->number) : "\n"));
   }
   return counted->number == "0" && options.expect_traces ? 1 : 0;
 }
@@ -147,6 +158,18 @@ bool is_usable(const TracesOptions& options, Invocation& invocation) {
     return refuse("",
                   "--order any does not go with --certify, --sample or --from, which need the "
                   "canonical order");
+  }
+  if (options.search.up_to_symmetry &&
+      (!options.certify.file.empty() || options.search.sample > 0 || options.search.from > 1)) {
+    return refuse("",
+                  "--up-to-symmetry lists one trace of each orbit and does not go with --certify, "
+                  "--sample or --from");
+  }
+  if (options.search.up_to_symmetry && options.listing.format != "text" &&
+      options.listing.format != "jsonl") {
+    return refuse("",
+                  "--up-to-symmetry says for how many traces each one stands, which only "
+                  "--format text and jsonl can");
   }
   if (options.count && options.search.from > 1) {
     return refuse("", "--count does not go with --from");
@@ -234,7 +257,8 @@ int list_traces(const TracesOptions& options, Invocation& invocation) {
   }
   TraceCertifier certifier(options.certify, options.model.models, compilation->model, invocation);
   if (!certifier.ready()) return 0;
-  if (options.count && !options.check && !compilation->model.has_constraints) {
+  if (options.count && !options.check && !compilation->model.has_constraints &&
+      (!options.search.up_to_symmetry || !has_symmetry(compilation->model))) {
     return count_only(options, compilation->model, certifier, start, invocation);
   }
   const auto& model = compilation->model;
@@ -281,6 +305,7 @@ Command traces_command() {
       "  parallax traces domain.e --count\n"
       "  parallax traces domain.e --from 1000001 --limit 10\n"
       "  parallax traces domain.e --sample 5 --seed 7\n"
+      "  parallax traces domain.e --limit 0 --up-to-symmetry\n"
       "  parallax traces scenarios/two_regions/scenario.yaml --format jsonl\n"
       "  parallax traces domain.e --limit 0 --certify=domain.drat\n"
       "  parallax traces domain.e --format csv > traces.csv\n"

@@ -39,6 +39,7 @@ struct Answer {
   std::optional<runtime::Trace> violation;
   runtime::Exploration exploration = runtime::Exploration::kStopped;
   std::vector<std::string> bounds;
+  bool by_symmetry = false;  // that there is none was found among representatives only
   std::string proof;         // "proof checked"; empty where there is nothing to prove
   std::string proof_origin;  // what made it, if it was accepted
   std::string proof_file;    // where it is kept
@@ -46,14 +47,36 @@ struct Answer {
   std::optional<PropertyBreak> broken;           // of a temporal property
 };
 
-Answer ask(const compiler::CompiledModel& model, TraceCertifier& certifier) {
-  runtime::SolverSession session(model, certifier.solver(), certifier.loading());
-  runtime::PlanEnumerator enumerator(session, {.order = runtime::TraceOrder::kAny});
+/// A contradiction that takes more conflicts than this is not proved where symmetry may do without.
+constexpr std::int64_t kProvable = 20'000;
+
+Answer ask(const compiler::CompiledModel& model, std::unique_ptr<runtime::SatSolver> solver,
+           runtime::Loading loading, const runtime::ModelSymmetry* symmetry) {
+  runtime::SolverSession session(model, std::move(solver), loading);
+  runtime::PlanEnumerator enumerator(session,
+                                     {.order = runtime::TraceOrder::kAny, .symmetry = symmetry});
   Answer answer;
   answer.violation = enumerator.next();
   answer.exploration = enumerator.exploration();
   answer.bounds = open_end_texts(model, enumerator.open_ends());
+  answer.by_symmetry = enumerator.by_symmetry();
   return answer;
+}
+
+/// With a proof wherever one is asked for, or can be had at little cost; where that takes long and
+/// constants are interchangeable, without.
+Answer ask(const compiler::CompiledModel& model, TraceCertifier& certifier, bool insists) {
+  std::optional<runtime::ModelSymmetry> symmetry;
+  if (!insists) symmetry.emplace(model);
+  if (!symmetry || symmetry->empty()) {
+    return ask(model, certifier.solver(), certifier.loading(), nullptr);
+  }
+  auto answer = ask(model, runtime::make_limited_solver(certifier.solver(), kProvable),
+                    certifier.loading(), nullptr);
+  const bool decided = answer.violation || answer.exploration != runtime::Exploration::kStopped;
+  if (decided || stop_flag().load()) return answer;
+  return ask(model, runtime::make_cadical_solver(&stop_flag()), runtime::Loading::kAsNeeded,
+             &*symmetry);
 }
 
 /// The proof is made and checked in any case, and kept if that was asked for.
@@ -189,7 +212,12 @@ std::string answer_json(const compiler::CompiledModel& model, const Answer& answ
                                  {"words", rests_on_words(one)}});
     }
   }
-  if (!answer.proof.empty()) out["proof"] = answer.proof.substr(std::string("proof ").size());
+  if (answer.proof == kBySymmetry) {
+    out["proof"] = "none";
+    out["symmetry"] = true;
+  } else if (!answer.proof.empty()) {
+    out["proof"] = answer.proof.substr(std::string("proof ").size());
+  }
   if (!answer.proof_origin.empty()) out["proof_origin"] = answer.proof_origin;
   if (!answer.proof_file.empty()) out["proof_file"] = answer.proof_file;
   out["timing"]["wall_s"] = wall_s;
@@ -230,14 +258,18 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   const auto certify = proof_option(options, folder);
   TraceCertifier certifier(certify, options.model.models, model, invocation);
   if (!certifier.ready()) return 0;
-  auto answer = ask(model, certifier);
+  auto answer = ask(model, certifier, !options.certify.file.empty());
   // Nothing can go wrong in a model without executions.
   if (!answer.violation && answer.exploration != runtime::Exploration::kStopped &&
       report_if_unsatisfiable(model, 0, invocation) == base::Known::kNo) {
     return 0;
   }
   const bool holds = !answer.violation && answer.exploration != runtime::Exploration::kStopped;
-  if (holds) prove(certify, certifier, answer);
+  if (holds && answer.by_symmetry) {
+    answer.proof = kBySymmetry;
+  } else if (holds) {
+    prove(certify, certifier, answer);
+  }
   if (*ledger) {
     const auto name = harness::ledger_name(options.model.models.front(), options.ledger);
     answer.rests_on = answer.violation ? rests_on(*answer.violation, **ledger, name)

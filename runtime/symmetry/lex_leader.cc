@@ -1,0 +1,198 @@
+#include "runtime/symmetry/lex_leader.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace parallax::runtime {
+
+using compiler::AtomKind;
+
+namespace {
+
+constexpr auto kUnordered = std::numeric_limits<std::size_t>::max();
+
+/// The variable that a node has at a timepoint; fixed ones are the same at each.
+std::int32_t variable_at(const CompiledModel& model, ModelNode node, Timepoint t) {
+  const auto variable = static_cast<std::int32_t>(node) + 1;
+  return variable <= model.base() ? variable : variable + t * model.stride();
+}
+
+/// By variable - 1: 1 and -1 of those that a clause of one literal settles.
+std::vector<std::int8_t> settled_values(const CompiledModel& model) {
+  std::vector<std::int8_t> values(static_cast<std::size_t>(model.variable_count()), 0);
+  for (std::size_t c = 0; c < model.clauses.size(); ++c) {
+    // A shorter horizon has only some of them.
+    if (model.clauses[c].size() != 1) continue;
+    const auto literal = model.clauses[c].front();
+    const auto place = literal.var() - 1 - model.base();
+    const auto t = place < 0 ? 0 : place / model.stride();
+    if (model.clause_timepoints[c] > t) continue;
+    values[static_cast<std::size_t>(literal.var()) - 1] = literal.is_positive() ? 1 : -1;
+  }
+  return values;
+}
+
+}  // namespace
+
+LexLeader::LexLeader(const CompiledModel& model, const ModelSymmetry& symmetry,
+                     const std::vector<std::vector<Literal>>& order) {
+  const auto count = static_cast<std::size_t>(model.variable_count());
+  std::vector<std::size_t> rank(count, kUnordered), block(count, 0);
+  std::size_t next = 0;
+  for (std::size_t b = 0; b < order.size(); ++b) {
+    for (const auto literal : order[b]) {
+      const auto place = static_cast<std::size_t>(literal.var()) - 1;
+      rank[place] = next++;
+      block[place] = b;
+    }
+  }
+  const auto settled = settled_values(model);
+  for (const auto& swap : symmetry.swaps()) {
+    std::vector<std::pair<std::size_t, Pair>> ranked;
+    const auto add = [&](std::int32_t a, std::int32_t b) {
+      const auto at = [](std::int32_t variable) { return static_cast<std::size_t>(variable) - 1; };
+      const auto& values = settled;
+      if (rank[at(a)] == kUnordered || rank[at(b)] == kUnordered) return;
+      if (values[at(a)] != 0 && values[at(a)] == values[at(b)]) return;
+      if (rank[at(b)] < rank[at(a)]) std::swap(a, b);
+      // Both are known where the later one is.
+      ranked.push_back({rank[at(a)], {a, b, std::max(block[at(a)], block[at(b)])}});
+    };
+    for (const auto& [one, other] : swap) {
+      const bool fixed = static_cast<std::int32_t>(one) < model.base();
+      for (Timepoint t = 0; t <= (fixed ? 0 : model.horizon); ++t) {
+        const auto a = variable_at(model, one, t);
+        const auto b = variable_at(model, other, t);
+        if (a <= model.variable_count() && b <= model.variable_count()) add(a, b);
+      }
+    }
+    std::sort(ranked.begin(), ranked.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
+    auto& chain = chains_.emplace_back();
+    std::size_t reached = 0;
+    for (const auto& [at, pair] : ranked) {
+      reached = std::max(reached, pair.block);
+      chain.pairs.push_back({pair.first, pair.second, reached});
+    }
+  }
+}
+
+void LexLeader::extend(std::size_t blocks, const AddClause& add_clause,
+                       const NewVariable& new_variable) {
+  for (auto& chain : chains_) {
+    const auto& pairs = chain.pairs;
+    for (; chain.next < pairs.size() && pairs[chain.next].block < blocks; ++chain.next) {
+      const auto first = Literal::positive(pairs[chain.next].first);
+      const auto second = Literal::positive(pairs[chain.next].second);
+      // (equal and first) -> second; equal and (second -> first) -> still equal.
+      std::array<Literal, 3> clause = {~first, second, first};
+      const auto add = [&](Literal a, Literal b) {
+        clause = {a, b, b};
+        if (chain.equal) clause[2] = ~*chain.equal;
+        add_clause(std::span(clause).first(chain.equal ? 3 : 2));
+      };
+      add(~first, second);
+      if (chain.next + 1 == pairs.size()) continue;
+      const auto equal = new_variable();
+      add(equal, ~first);
+      add(equal, second);
+      chain.equal = equal;
+    }
+  }
+}
+
+std::vector<std::vector<Literal>> whole_order(const CompiledModel& model,
+                                              std::vector<std::vector<Literal>> observed) {
+  std::vector<bool> known(static_cast<std::size_t>(model.variable_count()));
+  for (const auto& block : observed) {
+    for (const auto literal : block) known[static_cast<std::size_t>(literal.var()) - 1] = true;
+  }
+  std::vector<Literal> rest;
+  model.for_each_atom([&](const compiler::AtomRef& atom) {
+    if (known[static_cast<std::size_t>(atom.variable) - 1]) return;
+    if (!compiler::is_of_plan(atom.kind)) rest.push_back(atom.literal());
+  });
+  observed.push_back(std::move(rest));
+  return observed;
+}
+
+std::vector<std::vector<Literal>> order_by_horizon(const CompiledModel& model) {
+  std::vector<std::vector<Literal>> blocks(static_cast<std::size_t>(model.horizon) + 1);
+  model.for_each_atom([&](const compiler::AtomRef& atom) {
+    if (compiler::is_of_plan(atom.kind)) return;
+    const auto n = std::max(atom.needed_horizon(model.horizon), 0);
+    blocks[static_cast<std::size_t>(n)].push_back(atom.literal());
+  });
+  return blocks;
+}
+
+SymmetryBreaker::SymmetryBreaker(SolverSession& session, const ModelSymmetry& symmetry,
+                                 const std::vector<std::vector<Literal>>& order)
+    : session_(session),
+      clauses_(session.model(), symmetry, order),
+      guard_(session.new_variable()) {}
+
+void SymmetryBreaker::extend(std::size_t blocks) {
+  std::vector<Literal> guarded;
+  clauses_.extend(
+      blocks,
+      [&](std::span<const Literal> clause) {
+        guarded.assign(clause.begin(), clause.end());
+        guarded.push_back(~guard_);
+        session_.add_clause(guarded);
+      },
+      [&] { return session_.new_variable(); });
+}
+
+void SymmetryBreaker::retire() {
+  const auto never = ~guard_;
+  session_.add_clause(std::span(&never, 1));
+}
+
+CompiledModel broken_model(const CompiledModel& model, const ModelSymmetry& symmetry,
+                           const std::vector<std::vector<Literal>>& order) {
+  std::vector<std::vector<Literal>> clauses;
+  std::int32_t added = 0;
+  LexLeader leader(model, symmetry, order);
+  leader.extend(
+      order.size(),
+      [&](std::span<const Literal> clause) { clauses.emplace_back(clause.begin(), clause.end()); },
+      [&] { return Literal::positive(model.variable_count() + ++added); });
+  // The chains' variables come behind the fixed ones, and the slots move up.
+  const auto moved = [&](Literal literal) {
+    auto variable = literal.var();
+    if (variable > model.variable_count()) {
+      variable += model.base() - model.variable_count();
+    } else if (variable > model.base()) {
+      variable += added;
+    }
+    const auto positive = Literal::positive(variable);
+    return literal.is_positive() ? positive : ~positive;
+  };
+  CompiledModel out = model;
+  out.fixed.resize(model.fixed.size() + static_cast<std::size_t>(added),
+                   {AtomKind::kAuxiliary, {}, {}, {}});
+  out.clauses = {};
+  std::vector<Literal> scratch;
+  const auto add = [&](std::span<const Literal> clause) {
+    scratch.clear();
+    for (const auto literal : clause) scratch.push_back(moved(literal));
+    out.clauses.add(scratch);
+  };
+  for (std::size_t c = 0; c < model.clauses.size(); ++c) add(model.clauses[c]);
+  if (clauses.empty()) return out;
+  out.sections.push_back({model.clauses.size(), clauses.size(), 1, false, 0});
+  out.origins.push_back({{}, compiler::OriginKind::kInvariant, "symmetry", {}, "symmetry"});
+  for (const auto& clause : clauses) {
+    add(clause);
+    out.clause_timepoints.push_back(model.horizon);
+    out.clause_origins.push_back(static_cast<std::uint32_t>(out.origins.size()) - 1);
+    out.clause_is_definition.push_back(false);
+  }
+  return out;
+}
+
+}  // namespace parallax::runtime

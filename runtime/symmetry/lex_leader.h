@@ -1,0 +1,81 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "runtime/session/solver_session.h"
+#include "runtime/symmetry/interchangeable.h"
+
+namespace parallax::runtime {
+
+/// Clauses that of the valuations which exchanges of constants make of each other leave the first
+/// one in lexicographic order (false before true), and as a rule few others: for every exchange,
+/// the valuation is not after the one that it is exchanged into (Crawford, Ginsberg, Luks and Roy
+/// 1996). All exchanges are compared in one order of the variables, so they hold together. In the
+/// order of the traces they leave the first trace of a model, and of every orbit.
+class LexLeader {
+ public:
+  using AddClause = std::function<void(std::span<const Literal>)>;
+  using NewVariable = std::function<Literal()>;
+
+  /// `order`: blocks of positive literals of the model; what an order leaves out is left open.
+  LexLeader(const CompiledModel& model, const ModelSymmetry& symmetry,
+            const std::vector<std::vector<Literal>>& order);
+
+  /// The clauses over the first `blocks` blocks, as far as they were not made before. Each that
+  /// is left out makes the others weaker, never wrong. Linear in the literals that move.
+  void extend(std::size_t blocks, const AddClause& add_clause, const NewVariable& new_variable);
+
+ private:
+  /// `first` is at most `second`, as long as all before are equal.
+  struct Pair {
+    std::int32_t first = 0, second = 0;
+    std::size_t block = 0;
+  };
+  struct Chain {
+    std::vector<Pair> pairs;  // in order
+    std::size_t next = 0;
+    std::optional<Literal> equal;  // all pairs before `next` are; none: there are none
+  };
+  std::vector<Chain> chains_;
+};
+
+/// The atoms by which valuations are compared in canonical order, block by block: what tells
+/// traces apart (projection_blocks), then in one more block all others of the model's atoms, but
+/// those of a plan's control.
+std::vector<std::vector<Literal>> whole_order(const CompiledModel& model,
+                                              std::vector<std::vector<Literal>> observed);
+
+/// All atoms of the model by the horizon that they need, for questions about one length after the
+/// other: block n has those of the horizon n.
+std::vector<std::vector<Literal>> order_by_horizon(const CompiledModel& model);
+
+/// Breaks the symmetry of a session's model under an assumption, for questions whether there is
+/// anything at all: adding that says something of single traces ends it.
+class SymmetryBreaker {
+ public:
+  /// `session` outlives the breaker.
+  SymmetryBreaker(SolverSession& session, const ModelSymmetry& symmetry,
+                  const std::vector<std::vector<Literal>>& order);
+  /// The clauses over the first `blocks` blocks are the session's from now on.
+  void extend(std::size_t blocks);
+  /// Under it they hold.
+  Literal assumption() const { return guard_; }
+  /// They are of no more use.
+  void retire();
+
+ private:
+  SolverSession& session_;
+  LexLeader clauses_;
+  Literal guard_;
+};
+
+/// The model with the clauses over the whole order in it, for whoever lists what they leave. Its
+/// traces are traces of `model`. The chains' variables are added to the fixed ones.
+CompiledModel broken_model(const CompiledModel& model, const ModelSymmetry& symmetry,
+                           const std::vector<std::vector<Literal>>& order);
+
+}  // namespace parallax::runtime

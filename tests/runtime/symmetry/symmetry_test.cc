@@ -1,0 +1,132 @@
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "runtime/enumerate/canonical.h"
+#include "runtime/graph/orbit_traces.h"
+#include "tests/runtime/symmetry/symmetric_traces.h"
+#include "tests/support/text_model.h"
+
+namespace parallax::test {
+namespace {
+
+std::vector<std::vector<std::string>> sets_of(const std::string& text) {
+  TextModel model(text);
+  REQUIRE_MESSAGE(!model.sink.has_errors(), model.codes());
+  return runtime::ModelSymmetry(model.compiled).constants().sets;
+}
+
+using Sets = std::vector<std::vector<std::string>>;
+
+const std::string kThings =
+    "range time 0 2\nsort thing\nthing A, B, C\nfluent Held(thing)\nevent Take(thing)\n"
+    "[thing,time] Initiates(Take(thing),Held(thing),time).\n";
+
+TEST_CASE("constants that no axiom names are interchangeable") {
+  CHECK(sets_of(kThings) == Sets{{"A", "B", "C"}});
+}
+
+TEST_CASE("one that an axiom names is not") {
+  CHECK(sets_of(kThings + "!HoldsAt(Held(B),0).\n") == Sets{{"A", "C"}});
+  CHECK(sets_of(kThings + "{thing} thing!=A & HoldsAt(Held(thing),2).\n") == Sets{{"B", "C"}});
+  CHECK(sets_of(kThings + "[time] Happens(Take(A),time) -> HoldsAt(Held(B),time).\n").empty());
+}
+
+TEST_CASE("two that an axiom names alike are") {
+  CHECK(sets_of(kThings + "!HoldsAt(Held(A),0).\n!HoldsAt(Held(C),0).\n") == Sets{{"A", "C"}});
+  CHECK(sets_of(kThings + "HoldsAt(Held(A),0) | HoldsAt(Held(B),0).\n") == Sets{{"A", "B"}});
+}
+
+TEST_CASE("values of functions tell constants apart, and equal values do not") {
+  const std::string weights =
+      "sort number: integer\nrange number 0 3\nfunction Weight(thing): number\n";
+  const std::string heavy = "[thing,time] Weight(thing)>1 -> !Happens(Take(thing),time).\n";
+  CHECK(sets_of(kThings + weights + "Weight(A)=1.\nWeight(B)=2.\nWeight(C)=1.\n" + heavy) ==
+        Sets{{"A", "C"}});
+  CHECK(sets_of(kThings + weights + "Weight(A)=1.\nWeight(B)=1.\nWeight(C)=1.\n" + heavy) ==
+        Sets{{"A", "B", "C"}});
+  // An order between constants by their values.
+  const std::string order =
+      "[thing1,thing2,time] Weight(thing1)<Weight(thing2) & HoldsAt(Held(thing2),time) -> "
+      "HoldsAt(Held(thing1),time).\n";
+  CHECK(sets_of(kThings + weights + "Weight(A)=1.\nWeight(B)=2.\nWeight(C)=3.\n" + order).empty());
+}
+
+TEST_CASE("numbers are never exchanged") {
+  CHECK(sets_of("range time 0 1\nsort level: integer\nrange level 1 3\nfluent At(level)\n"
+                "event Go(level)\n[level,time] Initiates(Go(level),At(level),time).\n")
+            .empty());
+}
+
+TEST_CASE("constants of several sorts, in nested terms and beside each other") {
+  const std::string text =
+      "range time 0 1\nsort agent\nsort room\nagent Ann, Bob\nroom R1, R2, R3\n"
+      "fluent Sees(agent,agent)\nfluent In(agent,room)\nevent Go(agent,room)\n"
+      "[agent,room,time] Initiates(Go(agent,room),In(agent,room),time).\n";
+  CHECK(sets_of(text) == Sets{{"Ann", "Bob"}, {"R1", "R2", "R3"}});
+  CHECK(sets_of(text + "[agent,time] HoldsAt(Sees(agent,agent),time).\n") ==
+        Sets{{"Ann", "Bob"}, {"R1", "R2", "R3"}});
+  CHECK(sets_of(text + "HoldsAt(Sees(Ann,Bob),0).\n") == Sets{{"R1", "R2", "R3"}});
+  CHECK(sets_of(text + "HoldsAt(Sees(Ann,Bob),0).\nHoldsAt(Sees(Bob,Ann),0).\n") ==
+        Sets{{"Ann", "Bob"}, {"R1", "R2", "R3"}});
+}
+
+TEST_CASE("what stands below definitions is mapped along with them") {
+  const std::string text =
+      kThings +
+      "[time] ({thing} HoldsAt(Held(thing),time) & Happens(Take(thing),time)) | ({thing1,thing2} "
+      "thing1!=thing2 & !HoldsAt(Held(thing1),time) & !HoldsAt(Held(thing2),time)) | "
+      "({thing} !Happens(Take(thing),time) & HoldsAt(Held(thing),time+1)).\n";
+  CHECK(sets_of(text) == Sets{{"A", "B", "C"}});
+}
+
+/// Many constants whose connections are as symmetric as can be.
+TEST_CASE("orbits of traces with large groups are counted, not listed") {
+  std::string text = "range time 0 1\nsort pigeon\nsort hole\npigeon P1";
+  for (int i = 2; i <= 12; ++i) text += ", P" + std::to_string(i);
+  text += "\nhole H1";
+  for (int i = 2; i <= 13; ++i) text += ", H" + std::to_string(i);
+  text +=
+      "\nfluent In(pigeon,hole)\n[pigeon,time] {hole} HoldsAt(In(pigeon,hole),time).\n"
+      "[pigeon,hole1,hole2,time] HoldsAt(In(pigeon,hole1),time) & HoldsAt(In(pigeon,hole2),time) "
+      "-> hole1=hole2.\n"
+      "[pigeon1,pigeon2,hole,time] HoldsAt(In(pigeon1,hole),time) & "
+      "HoldsAt(In(pigeon2,hole),time) -> pigeon1=pigeon2.\n";
+  TextModel model(text);
+  REQUIRE(!model.sink.has_errors());
+  runtime::OrbitTraces traces(model.compiled, {});
+  CHECK(traces.next().has_value());
+  CHECK(!traces.next().has_value());
+  CHECK(traces.exhausted());
+  CHECK(traces.total() == 6227020800);  // 13! ways to sit, whatever time says
+}
+
+TEST_CASE("a trace whose constants stand in a ring or in a row") {
+  std::string text = "range time 0 0\nsort node\nnode N1, N2, N3, N4, N5\nfluent E(node,node)\n";
+  TextModel model(text);
+  REQUIRE(!model.sink.has_errors());
+  const runtime::ModelSymmetry symmetry(model.compiled);
+  const runtime::TraceOrbits orbits(model.compiled, symmetry.constants(),
+                                    runtime::Compared::kObserved);
+  auto symbols = runtime::symbols_of(model.compiled);
+  const auto trace_of = [&](const std::vector<std::string>& edges) {
+    runtime::Trace trace;
+    trace.symbols = symbols;
+    auto& point = trace.points.emplace_back();
+    for (const auto& edge : edges) point.holds.push_back(*symbols->fluent("E(" + edge + ")"));
+    std::sort(point.holds.begin(), point.holds.end());
+    return trace;
+  };
+  const auto ring = orbits.of(trace_of({"N1,N2", "N2,N3", "N3,N4", "N4,N5", "N5,N1"}));
+  const auto other = orbits.of(trace_of({"N1,N3", "N3,N5", "N5,N2", "N2,N4", "N4,N1"}));
+  const auto row = orbits.of(trace_of({"N1,N2", "N2,N3", "N3,N4", "N4,N5"}));
+  const auto two = orbits.of(trace_of({"N1,N2", "N2,N1", "N3,N4", "N4,N5", "N5,N3"}));
+  CHECK(ring.size == 24);
+  CHECK(ring.form == other.form);
+  CHECK(row.size == 120);
+  CHECK(two.size == 20);
+  CHECK(two.form != ring.form);
+}
+
+}  // namespace
+}  // namespace parallax::test
