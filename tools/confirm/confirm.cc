@@ -49,7 +49,7 @@ ConfirmVerdict Confirmation::verdict() const {
   if (vanishes(other_seeds)) return ConfirmVerdict::kSeed;
   if (vanishes(half_step)) return ConfirmVerdict::kStep;
   const auto in_all = [](const std::optional<harness::Persistence>& seen) {
-    return !seen || seen->failures == seen->runs;
+    return !seen || (seen->runs > 0 && seen->failures == seen->runs);
   };
   const bool all = in_all(other_seeds) && in_all(half_step);
   return all ? ConfirmVerdict::kConfirmed : ConfirmVerdict::kPartly;

@@ -33,7 +33,7 @@ struct ConfirmSimulators {
 enum class ConfirmVerdict : std::uint8_t {
   kOpen,         // it came to no repetition
   kConfirmed,    // every repetition shows it, with other seeds and with half the step
-  kPartly,       // at least half of either kind do
+  kPartly,       // at least half of either kind do, or none of a kind tells
   kNotRepeated,  // the same start and seed do not show it again
   kSeed,         // with most other seeds it does not happen
   kStep,         // with half the step it does not, in most runs

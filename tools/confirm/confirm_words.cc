@@ -99,6 +99,13 @@ std::string step_words(const Confirmation& confirmation) {
   return confirmation.repeats == 0 ? "not asked for (--repeats 0)" : "not simulated";
 }
 
+/// Of which every repetition was lost or went wrong otherwise; empty: of none.
+std::string_view kind_that_does_not_tell(const Confirmation& confirmation) {
+  const auto tells = [](const std::optional<Persistence>& seen) { return !seen || seen->runs > 0; };
+  if (!tells(confirmation.other_seeds)) return "repetitions with other seeds";
+  return tells(confirmation.half_step) ? "" : "repetitions with half the step";
+}
+
 std::string verdict_words(const Confirmation& confirmation) {
   switch (confirmation.verdict()) {
     case ConfirmVerdict::kOpen:
@@ -109,6 +116,9 @@ std::string verdict_words(const Confirmation& confirmation) {
       }
       return "It is confirmed.";
     case ConfirmVerdict::kPartly:
+      if (const auto kind = kind_that_does_not_tell(confirmation); !kind.empty()) {
+        return fmt::format("It repeats; of {} nothing is known.", kind);
+      }
       return confirmation.may_move()
                  ? "It happens in most repetitions, and not in all: chance has a part in it."
                  : "It happens in most repetitions, and not in all: chance has a part in it, so "

@@ -1,6 +1,8 @@
 // `parallax confirm` and `parallax threshold`: with a simulator behind the protocol of which is
 // known where it goes wrong, and in physics.
 
+#include "tools/confirm/confirm.h"
+
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -248,6 +250,26 @@ TEST_CASE("what a seed decides is in doubt, and so is what does not repeat") {
   CHECK(has(told.dump(), "Not every repetition shows it"));
   check_holds(parameter_of(told, "cup.a").at("border"), 0.7, 0.01);
   CHECK(has(drifting.threshold("cup.a").dump(), "does not promise to repeat itself"));
+}
+
+TEST_CASE("repetitions of which none tells confirm nothing") {
+  tools::Confirmation told;
+  told.repeats = 5;
+  told.repeated = harness::StartVerdict::kFails;
+  told.other_seeds = harness::Persistence{5, 5};
+  told.half_step = harness::Persistence{5, 5};
+  CHECK(told.verdict() == tools::ConfirmVerdict::kConfirmed);
+  told.half_step = harness::Persistence{0, 0};  // each was lost
+  CHECK(told.verdict() == tools::ConfirmVerdict::kPartly);
+  CHECK(!told.may_move());
+  CHECK(has(tools::confirm_text(told, "out"),
+            "It repeats; of repetitions with half the step nothing is known."));
+  told.repeats_itself = true;
+  CHECK(told.may_move());
+  told.other_seeds = harness::Persistence{0, 0};
+  told.half_step.reset();
+  CHECK(told.verdict() == tools::ConfirmVerdict::kPartly);
+  CHECK(has(tools::confirm_text(told, "out"), "of repetitions with other seeds nothing is known"));
 }
 
 TEST_CASE("starts that are refused, simulators that are lost, and other things that go wrong") {
