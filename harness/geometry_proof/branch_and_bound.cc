@@ -46,6 +46,17 @@ std::optional<std::size_t> widest(const Node& node, const StartBox& whole, doubl
 
 }  // namespace
 
+const DecidedBox* box_of(const std::vector<DecidedBox>& boxes, const std::vector<double>& start) {
+  for (const DecidedBox& box : boxes) {
+    bool inside = true;
+    for (std::size_t i = 0; i < start.size() && inside; ++i) {
+      inside = start[i] >= box.bounds[i].lower && start[i] <= box.bounds[i].upper;
+    }
+    if (inside) return &box;
+  }
+  return nullptr;
+}
+
 ProofResult prove(const GeometricCheck& check, const StartBox& whole, const ProofLimits& limits) {
   ProofResult result;
   std::priority_queue<Node, std::vector<Node>, Later> open;

@@ -26,6 +26,9 @@ struct DecidedBox {
   std::string culprit;  // of a box that is not safe: what would be met, or may be
 };
 
+/// The first box that holds the start; null if none does.
+const DecidedBox* box_of(const std::vector<DecidedBox>& boxes, const std::vector<double>& start);
+
 /// The whole start region as boxes that fill it without overlapping.
 struct ProofResult {
   std::vector<DecidedBox> boxes;  // in lexicographic order of their lower corners

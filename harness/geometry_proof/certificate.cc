@@ -44,6 +44,13 @@ double volume_share(const StartBox& box, const StartBox& region) {
   return share;
 }
 
+void add_share(const DecidedBox& box, const StartBox& region, TestCertificate& test) {
+  double& share = box.verdict == BoxVerdict::kSafe      ? test.safe
+                  : box.verdict == BoxVerdict::kRefuted ? test.refuted
+                                                        : test.open;
+  share += volume_share(box.bounds, region);
+}
+
 Json json_of(const TestCertificate& test) {
   Json boxes = Json::array();
   for (const DecidedBox& box : test.boxes) {
@@ -80,10 +87,18 @@ std::int64_t count_member(const Json& object, const char* name) {
   return member == nullptr ? 0 : base::json_as<std::int64_t>(*member).value_or(0);
 }
 
-std::optional<std::string> read_test(const Json& json, std::size_t variables,
+std::optional<std::string> read_test(const Json& json, const StartBox& region,
                                      TestCertificate& test) {
   test.test.controller = text_member(json, "controller");
   test.test.function = text_member(json, "function");
+  test.test.source = text_member(json, "source");
+  test.test.statement = text_member(json, "asks");
+  test.unconfirmed = count_member(json, "unconfirmed");
+  const Json* assumed = base::json_member(json, "assumed");
+  const Json none = Json::array();
+  for (const Json& one : assumed != nullptr && assumed->is_array() ? *assumed : none) {
+    test.assumed.push_back(base::json_as<std::string>(one).value_or(""));
+  }
   const Json* boxes = base::json_member(json, "boxes");
   if (test.test.function.empty() || boxes == nullptr || !boxes->is_array()) {
     return "a test lacks its `function` or its `boxes`";
@@ -98,10 +113,11 @@ std::optional<std::string> read_test(const Json& json, std::size_t variables,
     box.verdict = verdict == "safe"      ? BoxVerdict::kSafe
                   : verdict == "refuted" ? BoxVerdict::kRefuted
                                          : BoxVerdict::kOpen;
-    if (bounds == nullptr || !read_box(*bounds, box.bounds) || box.bounds.size() != variables) {
+    if (bounds == nullptr || !read_box(*bounds, box.bounds) || box.bounds.size() != region.size()) {
       return fmt::format("box {} of `{}` has no `bounds` for each of {} variables",
-                         test.boxes.size(), test.test.function, variables);
+                         test.boxes.size(), test.test.function, region.size());
     }
+    add_share(box, region, test);
     test.boxes.push_back(std::move(box));
   }
   return std::nullopt;
@@ -128,10 +144,7 @@ std::vector<ActionCertificate> certify(const std::vector<ProvableAction>& action
           box.verdict = BoxVerdict::kOpen;
           ++made.unconfirmed;
         }
-        double& share = box.verdict == BoxVerdict::kSafe      ? made.safe
-                        : box.verdict == BoxVerdict::kRefuted ? made.refuted
-                                                              : made.open;
-        share += volume_share(box.bounds, whole);
+        add_share(box, whole, made);
       }
       one.tests.push_back(std::move(made));
     }
@@ -161,6 +174,7 @@ std::string certificate_json(const Certificate& certificate) {
                          {"version", 1},
                          {"status", certificate.stopped ? "stopped" : "ok"},
                          {"scenario", certificate.scenario},
+                         {"scenario_hash", certificate.scenario_hash},
                          {"trace", certificate.trace},
                          {"variables", certificate.variables},
                          {"region", json_of(certificate.region)},
@@ -169,9 +183,13 @@ std::string certificate_json(const Certificate& certificate) {
                            {"drift-rad", given.drift_rad},
                            {"sliding", given.sliding_m},
                            {"sliding-rad", given.sliding_rad},
+                           {"goal", given.goal_m},
+                           {"goal-rad", given.goal_rad},
                            {"parked", given.parked_m},
                            {"held", given.held_m},
                            {"held-rad", given.held_rad},
+                           {"held-height", given.held_height_m},
+                           {"lean", given.lean_rad},
                            {"sliders", std::move(sliders)}}},
                          {"actions", std::move(actions)}};
   return base::json_text(document) + "\n";
@@ -184,6 +202,7 @@ std::optional<std::string> read_certificate(std::string_view text, Certificate& 
   }
   if (count_member(document, "version") != 1) return "it has another version";
   certificate.scenario = text_member(document, "scenario");
+  certificate.scenario_hash = text_member(document, "scenario_hash");
   certificate.trace = count_member(document, "trace");
   const Json* variables = base::json_member(document, "variables");
   const Json* region = base::json_member(document, "region");
@@ -192,6 +211,9 @@ std::optional<std::string> read_certificate(std::string_view text, Certificate& 
       !variables->is_array() || !read_box(*region, certificate.region) ||
       certificate.region.size() != variables->size()) {
     return "it lacks its variables, its region or its actions";
+  }
+  for (const Bounds1& one : certificate.region) {
+    if (!(one.lower < one.upper)) return "a variable of its region has no width";
   }
   for (const Json& name : *variables) {
     certificate.variables.push_back(base::json_as<std::string>(name).value_or(""));
@@ -202,9 +224,13 @@ std::optional<std::string> read_certificate(std::string_view text, Certificate& 
     out.drift_rad = number_member(*given, "drift-rad", out.drift_rad);
     out.sliding_m = number_member(*given, "sliding", out.sliding_m);
     out.sliding_rad = number_member(*given, "sliding-rad", out.sliding_rad);
+    out.goal_m = number_member(*given, "goal", out.goal_m);
+    out.goal_rad = number_member(*given, "goal-rad", out.goal_rad);
     out.parked_m = number_member(*given, "parked", out.parked_m);
     out.held_m = number_member(*given, "held", out.held_m);
     out.held_rad = number_member(*given, "held-rad", out.held_rad);
+    out.held_height_m = number_member(*given, "held-height", out.held_height_m);
+    out.lean_rad = number_member(*given, "lean", out.lean_rad);
     const Json* sliders = base::json_member(*given, "sliders");
     const Json none = Json::object();
     for (const auto& [name, range] : (sliders != nullptr ? *sliders : none).items()) {
@@ -223,7 +249,7 @@ std::optional<std::string> read_certificate(std::string_view text, Certificate& 
     const Json* tests = base::json_member(json, "tests");
     if (tests == nullptr || !tests->is_array()) return "an action lacks its `tests`";
     for (const Json& one : *tests) {
-      if (auto fault = read_test(one, certificate.variables.size(), action.tests.emplace_back())) {
+      if (auto fault = read_test(one, certificate.region, action.tests.emplace_back())) {
         return fault;
       }
     }
@@ -233,7 +259,11 @@ std::optional<std::string> read_certificate(std::string_view text, Certificate& 
 
 namespace {
 
-bool fills(std::vector<const StartBox*> boxes, const StartBox& region) {
+/// More halvings than any search makes.
+constexpr int kMostHalvings = 2000;
+
+bool fills(std::vector<const StartBox*> boxes, const StartBox& region, int halvings) {
+  if (halvings > kMostHalvings) return false;
   if (boxes.size() == 1) {
     for (std::size_t i = 0; i < region.size(); ++i) {
       const Bounds1& one = (*boxes.front())[i];
@@ -251,7 +281,8 @@ bool fills(std::vector<const StartBox*> boxes, const StartBox& region) {
     if (low.empty() || high.empty() || low.size() + high.size() != boxes.size()) continue;
     StartBox left = region, right = region;
     left[axis].upper = right[axis].lower = middle;
-    return fills(std::move(low), left) && fills(std::move(high), right);
+    boxes = {};  // not to be kept through the recursion
+    return fills(std::move(low), left, halvings + 1) && fills(std::move(high), right, halvings + 1);
   }
   return false;
 }
@@ -264,7 +295,7 @@ bool fill(const std::vector<DecidedBox>& boxes, const StartBox& region) {
     if (box.bounds.size() != region.size()) return false;
     all.push_back(&box.bounds);
   }
-  return !all.empty() && fills(std::move(all), region);
+  return !all.empty() && fills(std::move(all), region, 0);
 }
 
 CertificateCheck check_certificate(const Certificate& certificate,

@@ -29,6 +29,7 @@ struct ActionCertificate {
 /// What was proved of a trace, and all that it takes to check it again.
 struct Certificate {
   std::string scenario;
+  std::string scenario_hash;  // over all its texts; empty in certificates that do not say
   std::int64_t trace = 0;
   std::vector<std::string> variables;  // that are drawn
   StartBox region;
@@ -42,6 +43,7 @@ std::vector<ActionCertificate> certify(const std::vector<ProvableAction>& action
                                        const ProofLimits& limits);
 
 /// A certificate as JSON, and back; a text that says what is wrong with one that cannot be read.
+/// Shares are read off the boxes.
 std::string certificate_json(const Certificate& certificate);
 std::optional<std::string> read_certificate(std::string_view text, Certificate& certificate);
 

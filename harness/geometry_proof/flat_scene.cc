@@ -234,7 +234,8 @@ void FlatScene::add_held(std::size_t i, const BodySpec& body, const BoxShape& sh
   const GraspSpec grasp = body.grasp.value_or(GraspSpec{});
   const ProofAssumptions& slack = state_.slack;
   const double far = (shape.p_BS - grasp.p_BG).norm() + 0.5 * shape.size_m.norm();
-  flat.slack_m = std::sqrt(2.0) * (slack.held_m + slack.parked_m + slack.held_rad * far);
+  flat.slack_m =
+      std::sqrt(2.0) * (slack.held_m + slack.parked_m + (slack.held_rad + slack.lean_rad) * far);
   const BodySpec& base = layout_.bodies[*layout_.find_body(spec_.mobile->base_body)];
   for (const ArmSpec& arm : spec_.mobile->arms) {
     if (arm.name != state_.bodies[i].arm) continue;
@@ -243,8 +244,8 @@ void FlatScene::add_held(std::size_t i, const BodySpec& body, const BoxShape& sh
     const double half_z = 0.5 * shape.size_m.z();
     flat.bottom = {z - half_z, z - half_z};
     flat.top = {z + half_z, z + half_z};
-    raise(flat,
-          state_.relief_m + slack.drift_m + slack.held_m + slack.parked_m + slack.held_rad * far);
+    raise(flat, state_.relief_m + slack.drift_m + slack.held_height_m + slack.parked_m +
+                    slack.lean_rad * far);
     // The near pad is where the body is, the tool half an opening beside it; the hand may be turned
     // either way.
     const Eigen::Vector3d line = pad_middle(arm.near_pad_body) - pad_middle(arm.far_pad_body);

@@ -14,6 +14,7 @@ namespace parallax::harness {
 namespace {
 
 constexpr double kWayInfluence = 0.02;  // [m/rad]
+constexpr double kSeenInfluence = 0.5;
 
 /// `PickUp::check_last_stretch` of a grasp from above: the hand, which hangs over where the body is
 /// believed to be, straight down to it and up again. All in the frame of the believed body; only
@@ -48,8 +49,9 @@ class HandCheck final : public GeometricCheck {
                   std::span<const std::uint32_t> questions) const override {
     const ProofScene::Base base = scene_.base(box);
     ProofScene::Base believed = scene_.free_body(descent_.object, box);
-    believed.x += AffineForm::within(0.0, descent_.error_m);
-    believed.y += AffineForm::within(0.0, descent_.error_m);
+    const SightError seen = descent_.seen(box);
+    believed.x += AffineForm::within(0.0, descent_.error_m + seen.level_m);
+    believed.y += AffineForm::within(0.0, descent_.error_m + seen.level_m);
     believed.yaw += AffineForm::within(0.0, descent_.error_rad);
     believed.cosine = cosine(believed.yaw);
     believed.sine = sine(believed.yaw);
@@ -65,7 +67,9 @@ class HandCheck final : public GeometricCheck {
       bool is_open = false;
       for (std::size_t way = 0; way < 2; ++way) {
         if (!ways[way]) continue;
-        const HandShape& shape = descent_.shapes[pair.part];
+        HandShape shape = descent_.shapes[pair.part];
+        shape.bottom = {shape.bottom.lower - seen.height_m, shape.bottom.upper + seen.height_m};
+        shape.top = {shape.top.lower - seen.height_m, shape.top.upper + seen.height_m};
         const UprightBox part = scene_.place(shape.turned[way], box, believed);
         const auto room = room_for(shape, part, obstacle);
         if (!room) continue;
@@ -80,6 +84,12 @@ class HandCheck final : public GeometricCheck {
       return finding;
     }
     rooms.close();
+    // From where the camera sees it decides how high it is taken to lie.
+    for (std::size_t i = 0; i < box.size() && seen.height_m > kEngineRoom_m; ++i) {
+      if (finding.open.empty()) break;
+      finding.influence[i] +=
+          kSeenInfluence * (std::abs(base.x.slope(i)) + std::abs(base.y.slope(i)));
+    }
     // Which way round it is matters as well.
     for (std::size_t i = 0; i < box.size() && ways[0] && ways[1] && !finding.open.empty(); ++i) {
       finding.influence[i] += kWayInfluence * std::abs(wrist.slope(i));

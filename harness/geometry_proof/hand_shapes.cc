@@ -8,6 +8,7 @@
 #include "harness/engine/jaws.h"
 #include "harness/engine/ode_world.h"
 #include "harness/robot/detection_errors.h"
+#include "harness/robot/mobile_robot.h"
 
 namespace parallax::harness {
 namespace {
@@ -41,7 +42,8 @@ std::optional<HandDescent> descent_of(const ProofScene& scene, std::size_t arm, 
                                       const Arguments& arguments) {
   const WorldLayout& layout = scene.layout();
   const auto& grasp = layout.bodies[object].grasp;
-  if (!grasp || !grasp->from_above || !grasp->follows_body) return std::nullopt;
+  const auto& look = scene.state().bodies[object.index()].look;
+  if (!grasp || !grasp->from_above || !grasp->follows_body || !look) return std::nullopt;
   const ArmSpec& spec = scene.spec().mobile->arms[arm];
   const DetectionSpec& errors = scene.spec().mobile->camera.detection;
   const double clearance =
@@ -51,8 +53,11 @@ std::optional<HandDescent> descent_of(const ProofScene& scene, std::size_t arm, 
   out.object = object;
   out.wrist_rad = grasp->wrist_rad;
   out.clearance_m = arguments.number("clearance_m");
-  out.error_m = kDetectionCut * (errors.bias_m + errors.noise_m) + kSeen_m;
-  out.error_rad = kDetectionCut * (errors.bias_rad + errors.noise_rad) + kHandTurned_rad;
+  out.seen = [&scene, object, look = *look](std::span<const Bounds1> box) {
+    return sight_error(scene, box, object, look.points, look.needed);
+  };
+  out.error_m = kDetectionCut * (errors.bias_m + errors.noise_m);
+  out.error_rad = kDetectionCut * (errors.bias_rad + errors.noise_rad) + kWristTolerance_rad;
   out.rise_m = std::max(arguments.number("standoff_m"), arguments.number("lift_m"));
   add_heights(arguments.number("standoff_m"), out.heights_m);
   add_heights(arguments.number("lift_m"), out.heights_m);
@@ -89,10 +94,10 @@ std::optional<HandDescent> descent_of(const ProofScene& scene, std::size_t arm, 
         piece.yaw_rad = yaw + turn;
         piece.half_x = 0.5 * shape.size_m.x();
         piece.half_y = 0.5 * shape.size_m.y();
-        piece.slack_m.setConstant(kHandOpened_m);
+        piece.slack_m.setConstant((is_far ? kFingerTolerance_m : 0.0) + kJointRoom_m);
       }
       const double z = grasp->p_BG.z() + from_tool.z(), half = 0.5 * shape.size_m.z();
-      const double slack = kSeen_m + kHandOpened_m;
+      const double slack = kJointRoom_m;
       made.bottom = {height.lower + z - half - slack, height.upper + z - half + slack};
       made.top = {height.lower + z + half - slack, height.upper + z + half + slack};
       out.shapes.push_back(made);

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "harness/geometry_proof/geometric_check.h"
 #include "harness/geometry_proof/second_evaluation.h"
+#include "harness/geometry_proof/sight_error.h"
 
 namespace parallax::harness {
 
@@ -22,10 +24,12 @@ struct HandShape {
 struct HandDescent {
   BodyId object;
   double wrist_rad = 0.0;  // of the grasp, and with it of the hand against the believed heading
-  double error_m = 0.0, error_rad = 0.0;  // of what is believed
-  double clearance_m = 0.0;               // of each pad, as the action asks for it
-  double rise_m = 0.0;                    // of the way, above its lowest
-  std::vector<double> heights_m;          // that are tried, above the lowest
+  double error_m = 0.0, error_rad = 0.0;  // of what is believed as drawn; how nearly the hand turns
+  /// What the camera adds to that where it sees from anywhere in a box of starts.
+  std::function<SightError(std::span<const Bounds1>)> seen;
+  double clearance_m = 0.0;       // of each pad, as the action asks for it
+  double rise_m = 0.0;            // of the way, above its lowest
+  std::vector<double> heights_m;  // that are tried, above the lowest
   std::vector<HandShape> shapes;
 
   /// Which of the ways round are possible where the wrist, before it is brought within a quarter
@@ -33,8 +37,9 @@ struct HandDescent {
   std::array<bool, 2> ways_round(const Bounds1& wrist) const;
 };
 
-/// How a `pick-up` comes down; none for one that does not come from above or not follow the body.
-/// Of the camera's errors the greatest is taken.
+/// How a `pick-up` comes down; none for one that does not come from above or not follow the body,
+/// or whose body was seen from elsewhere. Of the camera's errors the greatest is taken. The scene
+/// outlives it.
 std::optional<HandDescent> descent_of(const ProofScene& scene, std::size_t arm, BodyId object,
                                       const Arguments& arguments);
 
@@ -46,9 +51,7 @@ std::unique_ptr<SecondEvaluation> make_second_hand(const WorldSpec& spec, const 
                                                    const KnownState& state, std::size_t arm,
                                                    BodyId object, const HandDescent& descent);
 
-/// How nearly the hand has turned and opened when it is looked at, by its servos' tolerances.
-inline constexpr double kHandTurned_rad = 0.02, kHandOpened_m = 0.003;
-/// How far the median of what rays find may lie from the body's own place.
-inline constexpr double kSeen_m = 0.003;
+/// How far the parts of a hand stand from where its joints have them: the engine holds them there.
+inline constexpr double kJointRoom_m = 1e-4;
 
 }  // namespace parallax::harness

@@ -82,9 +82,14 @@ std::vector<std::string> broken_assumptions(const WorldSpec& spec, const WorldLa
       const GraspSpec grasp = body.grasp.value_or(GraspSpec{});
       const Eigen::AngleAxisd frame(turned, Eigen::Vector3d::UnitZ());
       const double slid = known.bodies[i].carrier ? known.slack.sliding_rad : 0.0;
-      const double apart_m = std::min((p + frame * scene.gripped_at(grasp, a, 1.0) - tool).norm(),
-                                      (p + frame * scene.gripped_at(grasp, a, -1.0) - tool).norm());
-      if (apart_m > known.slack.held_m + 1e-9 || tilt > known.slack.held_rad ||
+      double apart_m = 1e300, higher_m = 0.0;
+      for (const double side : {1.0, -1.0}) {
+        const Eigen::Vector3d off = p + frame * scene.gripped_at(grasp, a, side) - tool;
+        apart_m = std::min(apart_m, off.head<2>().norm());
+        higher_m = std::abs(off.z());
+      }
+      if (apart_m > known.slack.held_m + 1e-9 || higher_m > known.slack.held_height_m + 1e-9 ||
+          tilt > known.slack.lean_rad ||
           std::abs(wrapped(turned - start_yaw)) >
               known.slack.held_rad + known.slack.drift_rad + slid) {
         broken.push_back(fmt::format("`{}` has slipped in the gripper", body.name));
@@ -117,19 +122,16 @@ std::vector<std::string> broken_assumptions(const WorldSpec& spec, const WorldLa
             within_rad + 1e-9) {
       broken.push_back(fmt::format("`{}` has moved", body.name));
     }
+    const Bounds1 height = scene.free_height(layout.bodies.id_at(i));
+    const double bz = number_in(now, body.name + ".z", height.lower);
+    const double lean = std::hypot(number_in(now, body.name + ".roll", 0.0),
+                                   number_in(now, body.name + ".pitch", 0.0));
+    if (bz < height.lower - 1e-9 || bz > height.upper + 1e-9 ||
+        lean > known.slack.drift_rad + 1e-9) {
+      broken.push_back(fmt::format("`{}` lies higher, lower or aslant", body.name));
+    }
   }
   return broken;
-}
-
-const DecidedBox* box_of(const TestCertificate& test, const std::vector<double>& start) {
-  for (const DecidedBox& box : test.boxes) {
-    bool inside = true;
-    for (std::size_t i = 0; i < start.size() && inside; ++i) {
-      inside = start[i] >= box.bounds[i].lower && start[i] <= box.bounds[i].upper;
-    }
-    if (inside) return &box;
-  }
-  return nullptr;
 }
 
 }  // namespace
@@ -178,7 +180,7 @@ std::vector<SimulatedTest> simulate_tests(const WorldSpec& spec, const WorldLayo
           for (const std::string& text : broken) ++tally.broken[text];
           continue;
         }
-        const DecidedBox* box = box_of(proved[action].tests[t], drawn);
+        const DecidedBox* box = box_of(proved[action].tests[t].boxes, drawn);
         if (box == nullptr) continue;
         const CheckedTest& about = test.check().test();
         const bool failed_at_once =

@@ -52,6 +52,11 @@ std::size_t arm_index(const WorldSpec& spec, const Arguments& arguments) {
   return 0;
 }
 
+/// The camera has moved: from where things were seen is not known any more.
+void forget_looks(KnownState& state) {
+  for (KnownBody& body : state.bodies) body.look.reset();
+}
+
 /// What an assumption of the user's says of a slider, if one does.
 const Bounds1* given_slider(const ProofAssumptions& assumptions, const JointSpec& joint) {
   for (const auto& [name, bounds] : assumptions.sliders) {
@@ -65,7 +70,7 @@ const Bounds1* given_slider(const ProofAssumptions& assumptions, const JointSpec
 KnownState state_at_start(const WorldSpec& spec, const WorldLayout& layout,
                           const StartCuboid& region) {
   KnownState state;
-  state.slack = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, {}};
+  state.slack = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, {}};
   state.slider_m.resize(layout.sliders.size());
   state.bodies.resize(layout.bodies.size());
   if (spec.mobile) state.arms.assign(spec.mobile->arms.size(), KnownArm::kAtStart);
@@ -108,12 +113,22 @@ std::optional<std::string> assume_success(const WorldSpec& spec, const WorldLayo
     state.gaze = place != nullptr ? *place : PlaceSpec{"", "", target->low, 0.0};
     return std::nullopt;
   }
-  if (name == "detect") return std::nullopt;
+  if (name == "detect") {
+    const auto kind = arguments.text("kind");
+    for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+      const BodyId id = layout.bodies.id_at(i);
+      if (!layout.is_free[i] || layout.bodies[id].kind_name() != kind) continue;
+      state.bodies[i].look = KnownBody::Look{static_cast<int>(arguments.number("points")),
+                                             static_cast<int>(arguments.number("points_needed"))};
+    }
+    return std::nullopt;
+  }
   if (name == "move-torso") {
     const double given = arguments.number("height_m");
     const PlaceSpec* place = arguments.place("place");
     const double height = std::isnan(given) && place != nullptr ? place->p_FP.z() : given;
     state.lift_m = {height - kTorsoTolerance_m, height + kTorsoTolerance_m};
+    forget_looks(state);
     assume(fmt::format("the torso stands within {} m of {} m", kTorsoTolerance_m, height));
     return std::nullopt;
   }
@@ -148,11 +163,16 @@ std::optional<std::string> assume_success(const WorldSpec& spec, const WorldLayo
     const BodyId body = *arguments.body("object");
     const std::size_t arm = arm_index(spec, arguments);
     state.arms[arm] = KnownArm::kAnywhere;
-    state.bodies[body.index()] = {KnownBody::Where::kHeld, spec.mobile->arms[arm].name,
-                                  state.drives, state.bodies[body.index()].carrier};
-    assume(fmt::format("`{}` is held by the {} arm, within {} m and {} rad of how it was gripped",
-                       layout.bodies[body].name, spec.mobile->arms[arm].name, assumptions.held_m,
-                       assumptions.held_rad));
+    state.bodies[body.index()] = {KnownBody::Where::kHeld,
+                                  spec.mobile->arms[arm].name,
+                                  state.drives,
+                                  state.bodies[body.index()].carrier,
+                                  {}};
+    assume(
+        fmt::format("`{}` is held by the {} arm, within {} m and {} rad of how it was gripped, "
+                    "{} m in height, leaning by {} rad at most",
+                    layout.bodies[body].name, spec.mobile->arms[arm].name, assumptions.held_m,
+                    assumptions.held_rad, assumptions.held_height_m, assumptions.lean_rad));
     return std::nullopt;
   }
   if (name == "drive") {
@@ -164,12 +184,13 @@ std::optional<std::string> assume_success(const WorldSpec& spec, const WorldLayo
     }
     KnownState::Goal goal;
     goal.p = 0.5 * (target->low + target->high).head<2>();
-    goal.within_m =
-        arguments.number("goal_tolerance_m") + 0.5 * (target->high - target->low).head<2>().norm();
+    goal.within_m = std::min(arguments.number("goal_tolerance_m"), assumptions.goal_m) +
+                    0.5 * (target->high - target->low).head<2>().norm();
     goal.yaw_rad = std::isnan(yaw) ? place->yaw_rad : yaw;
-    goal.within_rad = arguments.number("yaw_tolerance_rad");
+    goal.within_rad = std::min(arguments.number("yaw_tolerance_rad"), assumptions.goal_rad);
     state.base_at = goal;
     ++state.drives;
+    forget_looks(state);
     state.gaze.reset();  // the neck stays as it was left, and the place may be out of the cone
     assume(fmt::format("the base stands within {} m and {} rad of the goal", goal.within_m,
                        goal.within_rad));

@@ -20,10 +20,14 @@ struct ProofAssumptions {
   double drift_m = 0.002, drift_rad = 0.005;
   /// What lies in a drawer keeps its place in it, up to this, while the drawer moves.
   double sliding_m = 0.010, sliding_rad = 0.05;
+  /// The base stands so near to where it drove, where its controller does not ask for less.
+  double goal_m = 10.0, goal_rad = 10.0;
   /// A parked tool is so near to where it is carried; the default is what `park` itself judges by.
   double parked_m = 0.03;
-  /// What is held is so near to where it was gripped, turned and tilted by so much at most.
+  /// What is held is so near to where it was gripped, seen from above, and turned by so much; so
+  /// much higher or lower, and leaning by so much.
   double held_m = 0.03, held_rad = 0.2;
+  double held_height_m = 0.03, lean_rad = 0.2;
   /// Where sliders stand ("dMid.q"), in place of what the success of an action says.
   std::vector<std::pair<std::string, Bounds1>> sliders;
 };
@@ -38,6 +42,11 @@ struct KnownBody {
   std::string arm;                  // that holds it
   int drives = 0;                   // before it was picked up
   std::optional<SliderId> carrier;  // whose child it lies in and moves with
+  /// How it was looked for last, and from where: since then the camera has not moved.
+  struct Look {
+    int points = 0, needed = 0;
+  };
+  std::optional<Look> look;
 };
 
 /// What is known of a mobile robot's world before an action, as far as it follows from the start

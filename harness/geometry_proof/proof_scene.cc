@@ -237,15 +237,17 @@ void ProofScene::add_held(BodyId id, std::size_t arm) {
       piece.hand = spec.carry_B.head<2>();
       piece.middle = shape.p_BS.head<2>() - grip.head<2>();
       piece.yaw_rad = shape.yaw_rad;
-      const double loose = slack.held_m + slack.parked_m + slack.drift_m + slack.held_rad * reach;
+      const double carried = slack.parked_m + slack.drift_m + slack.lean_rad * reach;
+      const double loose = carried + slack.held_m + slack.held_rad * reach;
+      const double loose_z = carried + slack.held_height_m + state_->relief_m;
       piece.half_x = 0.5 * shape.size_m.x() + loose;
       piece.half_y = 0.5 * shape.size_m.y() + loose;
       piece.hand_radius_m = piece.hand.norm() + reach + (grip - grasp.p_BG).norm() + loose;
       const Bounds1 z =
           plus(state_->lift_m, base_z() + spec.carry_B.z() + shape.p_BS.z() - grasp.p_BG.z());
       const double half_z = 0.5 * shape.size_m.z();
-      piece.bottom = widened(plus(z, -half_z), loose + state_->relief_m);
-      piece.top = widened(plus(z, half_z), loose + state_->relief_m);
+      piece.bottom = widened(plus(z, -half_z), loose_z);
+      piece.top = widened(plus(z, half_z), loose_z);
       pieces_.push_back(piece);
     }
   }

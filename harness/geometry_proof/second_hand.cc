@@ -6,6 +6,7 @@
 
 #include "harness/geometry_proof/flat_scene.h"
 #include "harness/geometry_proof/hand_shapes.h"
+#include "harness/robot/mobile_robot.h"
 
 namespace parallax::harness {
 namespace {
@@ -21,6 +22,7 @@ class SecondHand final : public SecondEvaluation, private FlatScene {
         error_m_(descent.error_m),
         error_rad_(descent.error_rad),
         rise_m_(descent.rise_m),
+        seen_(descent.seen),
         heights_m_(descent.heights_m),
         clearance_m_(descent.clearance_m),
         wrist_rad_(layout.bodies[object].grasp->wrist_rad) {
@@ -116,11 +118,12 @@ class SecondHand final : public SecondEvaluation, private FlatScene {
           flat.corners.push_back(flat.middle + rotated(corner, flat.heading_rad));
         }
         const auto [move, turned] = free_slack(object_);
-        flat.slack_m = std::sqrt(2.0) * (error_m_ + kHandOpened_m + move) +
+        const double opened = is_far ? kFingerTolerance_m + kJointRoom_m : kJointRoom_m;
+        flat.slack_m = std::sqrt(2.0) * (error_m_ + opened + move) +
                        (error_rad_ + turned) * reach_of(flat.corners);
         flat.shrink_m = flat.slack_m;
         const double z = grasp.p_BG.z() + from_tool.z(), half = 0.5 * shape.size_m.z();
-        const double loose = kSeen_m + kHandOpened_m;
+        const double loose = kJointRoom_m;
         flat.bottom = {height.lower + z - half - loose, height.upper + z - half + loose};
         flat.top = {height.lower + z + half - loose, height.upper + z + half + loose};
         add_circle(flat);
@@ -169,7 +172,8 @@ class SecondHand final : public SecondEvaluation, private FlatScene {
     bool is_so = true;
     for (std::size_t way = 0; way < 2 && is_so; ++way) {
       if (!possible[way]) continue;
-      is_so = verdict == BoxVerdict::kSafe ? clear(way, box, there) : hit(way, box, there);
+      const auto hand = seen_from(box, way);
+      is_so = verdict == BoxVerdict::kSafe ? clear(hand, box, there) : hit(hand, box, there);
     }
     if (is_so) return true;
     if (effort < 2) return false;
@@ -189,8 +193,22 @@ class SecondHand final : public SecondEvaluation, private FlatScene {
     return confirms_box(low, verdict, effort / 2) && confirms_box(high, verdict, effort / 2);
   }
 
-  bool clear(std::size_t way, const StartBox& box, const PlanarRange& there) const {
-    for (const FlatShape& part : hand_[way]) {
+  /// With what the camera adds.
+  std::vector<FlatShape> seen_from(const StartBox& box, std::size_t way) const {
+    const SightError seen = seen_(box);
+    std::vector<FlatShape> hand = hand_[way];
+    for (FlatShape& part : hand) {
+      part.slack_m += std::sqrt(2.0) * seen.level_m;
+      part.shrink_m += std::sqrt(2.0) * seen.level_m;
+      part.bottom = {part.bottom.lower - seen.height_m, part.bottom.upper + seen.height_m};
+      part.top = {part.top.lower - seen.height_m, part.top.upper + seen.height_m};
+    }
+    return hand;
+  }
+
+  bool clear(const std::vector<FlatShape>& hand, const StartBox& box,
+             const PlanarRange& there) const {
+    for (const FlatShape& part : hand) {
       const Circle round = circle_of(part, there);
       const Polygon middle = moved(part.corners, there.middle(), there.middle_yaw());
       for (const FlatShape& obstacle : obstacles_) {
@@ -203,8 +221,9 @@ class SecondHand final : public SecondEvaluation, private FlatScene {
     return true;
   }
 
-  bool hit(std::size_t way, const StartBox& box, const PlanarRange& there) const {
-    for (const FlatShape& part : hand_[way]) {
+  bool hit(const std::vector<FlatShape>& hand, const StartBox& box,
+           const PlanarRange& there) const {
+    for (const FlatShape& part : hand) {
       const Polygon middle = moved(part.corners, there.middle(), there.middle_yaw());
       for (const FlatShape& obstacle : obstacles_) {
         if (is_own(obstacle) || !obstacle.is_exact || !surely_level(part, obstacle)) continue;
@@ -224,6 +243,7 @@ class SecondHand final : public SecondEvaluation, private FlatScene {
 
   std::size_t object_;
   double error_m_, error_rad_, rise_m_;
+  std::function<SightError(std::span<const Bounds1>)> seen_;
   std::vector<double> heights_m_;
   double clearance_m_, wrist_rad_;
   std::array<std::vector<FlatShape>, 2> hand_;

@@ -154,11 +154,20 @@ void add_pick_up(const ActionInput& in, ProvableAction& action) {
   }
   const auto descent = descent_of(scene, arm_of(in), object, in.arguments);
   if (!descent) {
-    action.left_to_simulation = "the hand does not come from above, or not as the body is turned";
+    action.left_to_simulation =
+        "the hand does not come from above, or not as the body is turned, or where the body was "
+        "seen from is not known";
     return;
   }
-  test->assume(fmt::format("`{}` is believed to be within {:.3g} m and {:.3g} rad of its place",
-                           in.layout.bodies[object].name, descent->error_m, descent->error_rad));
+  if (in.spec.mobile->camera.detection.confusion_rate > 0.0) {
+    action.left_to_simulation = "the camera may take something else for it";
+    return;
+  }
+  test->assume(fmt::format("the hand turns and opens as it is to, within {} rad and {} m",
+                           kWristTolerance_rad, kFingerTolerance_m));
+  test->assume(
+      fmt::format("`{}` is believed to be within {:.3g} m and {:.3g} rad of where it is seen",
+                  in.layout.bodies[object].name, descent->error_m, descent->error_rad));
   test->set(make_hand_check(scene, *descent),
             make_second_hand(in.spec, in.layout, scene.region(), test->state(), arm_of(in), object,
                              *descent));

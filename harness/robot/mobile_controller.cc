@@ -56,8 +56,8 @@ Eigen::Vector3d raised(const Eigen::Vector3d& p, double height_m) {
 constexpr double kToolAcceleration_m_s2 = 0.5;
 constexpr double kToolTolerance_m = 0.001;
 constexpr double kToolApproachRate_hz = 10.0;
-constexpr Motion kWrist{1.5, 4.0, 0.005, 10.0};  // radians
-constexpr Motion kFinger{0.10, 0.5, 0.001, 10.0};
+constexpr Motion kWrist{1.5, 4.0, kWristTolerance_rad, 10.0};  // radians
+constexpr Motion kFinger{0.10, 0.5, kFingerTolerance_m, 10.0};
 constexpr double kCloseSpeed_m_s = 0.05;
 /// Room round the arm that a way is looked for with, the most first. The last is for ways that
 /// begin in touch, as that of a load that was just lifted.

@@ -12,10 +12,12 @@
 namespace parallax::harness {
 
 /// What the judgements of controllers allow for, and proofs about them rest on.
-inline constexpr double kParkedWithin_m = 0.03;     // of the tool from where it is carried
-inline constexpr double kTorsoTolerance_m = 0.005;  // of the height that it was to go to
-inline constexpr double kTurnStep_rad = 0.035;      // between the headings that a drive tries
-inline constexpr double kBeyondStop_m = 0.005;      // a hand moves a drawer on, so that it stops
+inline constexpr double kParkedWithin_m = 0.03;       // of the tool from where it is carried
+inline constexpr double kTorsoTolerance_m = 0.005;    // of the height that it was to go to
+inline constexpr double kTurnStep_rad = 0.035;        // between the headings that a drive tries
+inline constexpr double kWristTolerance_rad = 0.005;  // of the heading that a hand is turned to
+inline constexpr double kFingerTolerance_m = 0.001;   // of the opening that it was to have
+inline constexpr double kBeyondStop_m = 0.005;        // a hand moves a drawer on, so that it stops
 
 /// A gripper on a gantry. The tool is the middle between the open pads; it hangs under the palm's
 /// axis, so that a turn of the wrist does not move it.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/tools/cli_fixture.h"
+#include "tests/tools/kitchen_copy.h"
 
 namespace parallax::test {
 namespace {
@@ -84,6 +85,36 @@ TEST_CASE("prove: a certificate is written, checked, and noticed when it was cha
   const auto moved = cli.parallax({"prove", kitchen("plan2.yaml"), "--check", "moved.json"});
   CHECK(moved.code == 3);
   CHECK(says(moved.err, "E7127"));
+}
+
+TEST_CASE("prove: a simulation that contradicts a certificate is told") {
+  const KitchenCopy cli;
+  // An arm so short that from some starts the handle is out of reach.
+  cli.replace("kitchen/world.yaml", "reach_m: [0.25, 0.95]", "reach_m: [0.25, 0.64]");
+  const std::string plan = (cli.folder() / "kitchen/plan2.yaml").string();
+  REQUIRE(cli.parallax({"prove", plan, "--trace", "2", "--action", "0", "--boxes", "1", "--out",
+                        "proof.json"})
+              .code == 4);
+  auto proof = Json::parse(cli.read("proof.json"));
+  const auto check = [&](const char* verdict) {
+    proof["actions"][0]["tests"][0]["boxes"][0]["verdict"] = verdict;
+    cli.write("one.json", proof.dump());
+    return cli.parallax({"prove", plan, "--check", "one.json", "--simulate", "12"});
+  };
+  // As it is, one open box: nothing can contradict it.
+  const auto open = check("open");
+  CAPTURE(open.err);
+  CHECK(open.code == 0);
+  CHECK(says(open.out, "simulated  refused: 0 of 0 safe, 0 of 0 refuted, "));
+  // What the middle of the box contradicts is wrong, whatever simulations say.
+  const auto refuted = check("refuted");
+  CHECK(says(refuted.out, "0 boxes confirmed, 0 not confirmed, 1 wrong"));
+  CHECK(refuted.code == 1);
+  const auto safe = check("safe");
+  CAPTURE(safe.out);
+  CHECK(says(safe.out, "0 boxes confirmed, 1 not confirmed, 0 wrong"));
+  CHECK(says(safe.err, "E7128"));
+  CHECK(safe.code == 5);
 }
 
 TEST_CASE("prove: the hand's way down into a drawer, against what simulations show") {

@@ -68,9 +68,12 @@ std::string assume(const std::string& given, const harness::WorldLayout& layout,
   const std::string name = given.substr(0, equals);
   const std::string value = equals == std::string::npos ? "" : given.substr(equals + 1);
   const std::pair<const char*, double*> known[] = {
-      {"drift", &out.drift_m},           {"drift-rad", &out.drift_rad}, {"sliding", &out.sliding_m},
-      {"sliding-rad", &out.sliding_rad}, {"parked", &out.parked_m},     {"held", &out.held_m},
-      {"held-rad", &out.held_rad}};
+      {"drift", &out.drift_m},     {"drift-rad", &out.drift_rad},
+      {"sliding", &out.sliding_m}, {"sliding-rad", &out.sliding_rad},
+      {"goal", &out.goal_m},       {"goal-rad", &out.goal_rad},
+      {"parked", &out.parked_m},   {"held", &out.held_m},
+      {"held-rad", &out.held_rad}, {"held-height", &out.held_height_m},
+      {"lean", &out.lean_rad}};
   for (const auto& [key, target] : known) {
     if (name != key) continue;
     const auto number = whole_number_text(value);
@@ -90,8 +93,9 @@ std::string assume(const std::string& given, const harness::WorldLayout& layout,
     return "";
   }
   return fmt::format(
-      "nothing is called `{}`; there are drift, drift-rad, sliding, sliding-rad, parked, held, "
-      "held-rad, and JOINT.q of a slider",
+      "nothing is called `{}`; there are drift, drift-rad, sliding, sliding-rad, goal, goal-rad, "
+      "parked, held, "
+      "held-rad, held-height, lean, and JOINT.q of a slider",
       name);
 }
 
@@ -276,6 +280,36 @@ void report(const harness::Certificate& certificate, const ProofTask& task,
   invocation.result(text);
 }
 
+/// Of the certificate, what stands beside the actions that have tests to be asked about; the others
+/// are dropped.
+std::vector<harness::ActionCertificate> beside(std::vector<harness::ProvableAction>& actions,
+                                               const harness::Certificate& certificate) {
+  std::vector<harness::ActionCertificate> out;
+  std::erase_if(actions, [&](const auto& action) {
+    const auto claimed = std::find_if(certificate.actions.begin(), certificate.actions.end(),
+                                      [&](const auto& one) { return one.number == action.number; });
+    if (action.tests.empty() || claimed == certificate.actions.end() ||
+        claimed->tests.size() != action.tests.size()) {
+      return true;
+    }
+    out.push_back(*claimed);
+    return false;
+  });
+  return out;
+}
+
+/// True where a simulation contradicts, which is reported.
+bool is_contradicted(const ProveOptions& options,
+                     const std::vector<harness::SimulatedTest>& simulated, Invocation& invocation) {
+  for (const auto& test : simulated) {
+    if (test.contradictions.empty()) continue;
+    invocation.sink().error_about(codes::kProofContradicted, options.scenario,
+                                  test.contradictions.size());
+    return true;
+  }
+  return false;
+}
+
 int run_proof(const ProveOptions& options, const ScenarioModel& loaded, Invocation& invocation) {
   auto task = make_task(options, loaded, nullptr, invocation);
   if (!task) return 0;
@@ -289,6 +323,7 @@ int run_proof(const ProveOptions& options, const ScenarioModel& loaded, Invocati
   if (!select_actions(options, *task, invocation)) return 0;
   harness::Certificate certificate;
   certificate.scenario = scenario.name;
+  certificate.scenario_hash = loaded.sources_hash;
   certificate.trace = task->trace.number;
   certificate.variables = variables_of(task->prepared.start, certificate.region);
   certificate.assumptions = task->assumptions;
@@ -323,12 +358,7 @@ int run_proof(const ProveOptions& options, const ScenarioModel& loaded, Invocati
       open = open || test.open > 0.0;
     }
   }
-  for (const auto& test : simulated) {
-    if (test.contradictions.empty()) continue;
-    invocation.sink().error_about(codes::kProofContradicted, options.scenario,
-                                  test.contradictions.size());
-    return 0;
-  }
+  if (is_contradicted(options, simulated, invocation)) return 0;
   if (certificate.stopped || !any) return 4;
   return refuted ? 1 : open ? 4 : 0;
 }
@@ -359,18 +389,29 @@ int check_proof(const ProveOptions& options, const ScenarioModel& loaded, Invoca
                                             task->prepared.start, task->calls, task->assumptions);
   const auto result = harness::check_certificate(certificate, task->actions, &stop_flag());
   if (!result.mismatch.empty()) return misfit(result.mismatch);
+  std::vector<harness::SimulatedTest> simulated;
+  if (options.simulate > 0) {
+    const auto proved = beside(task->actions, certificate);
+    simulated = harness::simulate_tests(loaded.scenario.world, task->layout, task->prepared.sampler,
+                                        options.seed, options.simulate, task->calls, task->actions,
+                                        proved, &stop_flag());
+  }
   if (invocation.options().json) {
-    const nlohmann::ordered_json document = {{"status", result.wrong > 0         ? "wrong"
-                                                        : result.unconfirmed > 0 ? "unconfirmed"
-                                                                                 : "ok"},
-                                             {"confirmed", result.confirmed},
-                                             {"unconfirmed", result.unconfirmed},
-                                             {"wrong", result.wrong}};
+    nlohmann::ordered_json document = {{"status", result.wrong > 0         ? "wrong"
+                                                  : result.unconfirmed > 0 ? "unconfirmed"
+                                                                           : "ok"},
+                                       {"confirmed", result.confirmed},
+                                       {"unconfirmed", result.unconfirmed},
+                                       {"wrong", result.wrong}};
+    for (const auto& test : simulated) document["simulated"].push_back(simulated_json(test));
     invocation.document(base::json_text(document) + "\n");
   } else {
-    invocation.result(fmt::format("{} boxes confirmed, {} not confirmed, {} wrong\n",
-                                  result.confirmed, result.unconfirmed, result.wrong));
+    auto told = fmt::format("{} boxes confirmed, {} not confirmed, {} wrong\n", result.confirmed,
+                            result.unconfirmed, result.wrong);
+    for (const auto& test : simulated) told += simulated_text(test);
+    invocation.result(told);
   }
+  if (result.wrong == 0 && is_contradicted(options, simulated, invocation)) return 0;
   return result.wrong > 0 ? 1 : result.unconfirmed > 0 || stop_flag().load() ? 4 : 0;
 }
 
@@ -408,7 +449,8 @@ Command prove_command() {
   command
       .option("--assume", options->assume,
               "NAME=VALUE, what is taken for granted before an action: drift, drift-rad, sliding, "
-              "sliding-rad, parked, held, held-rad [m, rad], or JOINT.q=LOW:HIGH")
+              "sliding-rad, goal, goal-rad, parked, held, held-rad, held-height, lean [m, rad], or "
+              "JOINT.q=LOW:HIGH")
       .list(ListForm::kOneEachTime);
   command.option("--boxes", options->limits.boxes, "Boxes examined for each test, at most")
       .check(WholeNumber{1, 100'000'000})
