@@ -166,6 +166,7 @@ base::Result<PageData> gather_page(const PageOptions& options, Context& context)
   add_findings(*journal, page);
   add_timelines(*journal, loaded ? &*loaded : nullptr, page);
   add_motion(page);
+  add_proofs(options, header, page);
   if (!loaded) return page;
   add_world(*loaded, own.files(), page);
   if (further) add_further(*further, *loaded, own, page);

@@ -56,6 +56,10 @@ void add_further(const harness::JournalText& further, const ScenarioModel& loade
 /// it.
 void add_rule(PageData& page);
 
+/// Certificates of `prove` that lie in the folder (`*.proof.json`), of the scenario as it was run.
+/// `page` has all simulations, judged.
+void add_proofs(const PageOptions& options, const harness::JournalHeader& header, PageData& page);
+
 /// Recorded motion of the simulations that matter most; `page` has all of them, judged.
 void add_motion(PageData& page);
 

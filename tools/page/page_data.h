@@ -197,6 +197,47 @@ struct PageLedger {
   std::vector<Property> properties;
 };
 
+/// A part of a plane of two variables of the start, and how the volume above it is shared out.
+struct PageProofPart {
+  std::array<double, 2> x{}, y{};
+  double safe = 0.0, refuted = 0.0;  // the rest is open
+};
+
+/// Where a test passes and where it refuses, over the two variables that it depends on most.
+struct PageProofMap {
+  std::string x_name, y_name;
+  std::array<double, 2> x{}, y{};
+  bool is_exact = false;  // parts are boxes of the proof, which no other variable divides
+  std::vector<PageProofPart> parts;
+};
+
+/// What was proved of one test of a controller, as a certificate has it.
+struct PageProofTest {
+  std::string function, source, asks;
+  std::vector<std::string> assumed;
+  double safe = 0.0, refuted = 0.0, open = 0.0;
+  std::optional<PageProofMap> map;
+  /// Simulations of drawn starts by the box that they began in: safe, refuted, open.
+  struct Began {
+    std::int64_t simulations = 0, not_clean = 0;
+  };
+  std::array<Began, 3> began{};
+};
+
+struct PageProofAction {
+  std::string event;
+  std::string left_to_simulation;  // why
+  std::vector<PageProofTest> tests;
+};
+
+/// A certificate of `prove` that lies in the run folder.
+struct PageProof {
+  std::string file, check;  // its name; the command that confirms it
+  std::int64_t trace = 0;
+  bool stopped = false;  // before it was done
+  std::vector<PageProofAction> actions;
+};
+
 /// Everything that the page of one run folder shows.
 struct PageData {
   std::string folder;  // as the user named it
@@ -229,6 +270,7 @@ struct PageData {
   std::optional<PageLedger> ledger;
   std::optional<PageBlame> blame;
   std::vector<PageFinding> findings;
+  std::vector<PageProof> proofs;
   std::optional<PageRule> rule;
   std::vector<PageProposal> proposals;
   bool repair_was_asked = false;

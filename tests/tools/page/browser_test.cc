@@ -14,6 +14,7 @@
 
 #include "harness/recording/recording_file.h"
 #include "tests/tools/cli_fixture.h"
+#include "tests/tools/page/proof_file.h"
 #include "tools/page/csp_hash.h"
 
 namespace parallax::test {
@@ -164,6 +165,7 @@ TEST_CASE("a page works in a browser, by light and by night") {
                         "--max-runs", "30", "--out", "loop"})
               .code <= 4);
   REQUIRE(cli.parallax({"run", "edge.yaml", "--out", "edge"}).code == 1);
+  cli.write("edge/one.proof.json", edge_proof(cli, "edge").dump());
   REQUIRE(cli.parallax({"report", "loop", "-o", "loop.html"}).code == 0);
   REQUIRE(cli.parallax({"report", "edge", "-o", "edge.html", "--explain"}).code == 0);
   REQUIRE(cli.parallax({"report", "edge", "loop", "-o", "both.html"}).code == 0);

@@ -86,6 +86,14 @@ PageData page_named(const std::string& name, std::int64_t samples) {
   page.proposals = {
       {name, "--- a\n+++ b\n-" + name + "\n+" + name + "\n", {name}, {2}, true, name}};
   page.repair_notes = {name};
+  PageProofMap map{name, "b.mass", {0.0, 30.0}, {0.0, 1.0}, true, {}};
+  map.parts = {{{0.0, 15.0}, {0.0, 1.0}, 1.0, 0.0}, {{15.0, 30.0}, {0.0, 1.0}, 0.0, 1.0}};
+  page.proofs = {
+      {name,
+       name,
+       1,
+       true,
+       {{name, "", {{name, name, name, {name}, 0.5, 0.5, 0.0, map, {}}}}, {name, name, {}}}}};
   return page;
 }
 
@@ -226,6 +234,7 @@ PageData executions(std::int64_t samples) {
 
 TEST_CASE("confidence is that of the runs whose starts were drawn") {
   auto page = executions(60);
+  page.proofs.clear();
   const auto shown = check_html(run_page(page)).text;
   CHECK(shown.find("Executions: 30 runs, 0 not clean. Not counted: 30 with starts") !=
         std::string::npos);

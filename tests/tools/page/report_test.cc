@@ -10,6 +10,7 @@
 
 #include "tests/tools/cli_json.h"
 #include "tests/tools/page/html_check.h"
+#include "tests/tools/page/proof_file.h"
 #include "tools/page/markup.h"
 
 namespace parallax::test {
@@ -250,6 +251,71 @@ TEST_CASE("a missing recording comes with the command that makes it, and a broke
   CHECK(mixed.code == 0);
   CHECK(mixed.err.find("it is that of another run") != std::string::npos);
   CHECK(page_of(cli, "page.html").motion.empty());
+}
+
+TEST_CASE("a certificate that lies in the folder is shown with its shares, or said why it is not") {
+  const CliFixture cli;
+  REQUIRE(
+      cli.parallax({"run", "edge.yaml", "--keep-going", "--max-runs", "8", "--out", "edge"}).code ==
+      1);
+  const auto proof = edge_proof(cli, "edge");
+  const auto page_with = [&](const Json& certificate) {
+    cli.write("edge/one.proof.json", certificate.dump());
+    const auto made = cli.parallax({"report", "edge", "-o", "page.html"});
+    CHECK(made.code == 0);
+    return std::pair{page_of(cli, "page.html"), made.err};
+  };
+  const auto [shown, said] = page_with(proof);
+  CHECK(said.empty());
+  CHECK(shown.ids.contains("proof"));
+  for (const auto* part : {"25.0 %", "50.0 %", "is the way free?", "contacts decide",
+                           "box stays within 0.002 m", "--check edge/one.proof.json", "box.x"}) {
+    CAPTURE(part);
+    CHECK(shown.text.find(part) != std::string::npos);
+  }
+  CHECK(shown.text.find("Dots are simulations of drawn starts: ") != std::string::npos);
+
+  const auto refused = [&](Json certificate, const std::string& why) {
+    const auto [page, err] = page_with(certificate);
+    CAPTURE(why);
+    CHECK(err.find("The proof one.proof.json is not shown: " + why) != std::string::npos);
+    CHECK_FALSE(page.ids.contains("proof"));
+  };
+  auto other = proof;
+  other["scenario_hash"] = "fnv1a64:0";
+  refused(other, "it is of another scenario");
+  other.erase("scenario_hash");
+  refused(other, "it is of another scenario");
+  other = proof;
+  other["actions"][0]["event"] = "Go(r1)";
+  refused(other, "its trace 1 is not that of the run");
+  other = proof;
+  other["actions"][0]["tests"][0]["boxes"].erase(1);
+  refused(other, "the boxes of Go(r2) do not fill the start region");
+  other = proof;
+  other["region"][0] = {1.0, 1.0};
+  refused(other, "a variable of its region has no width");
+  refused(Json{{"mine", 1}}, "it is no geometry proof");
+  std::filesystem::remove(cli.folder() / "edge/one.proof.json");
+  std::filesystem::create_symlink("/etc/hostname", cli.folder() / "edge/one.proof.json");
+  const auto made = cli.parallax({"report", "edge", "-o", "page.html"});
+  CHECK(made.code == 0);
+  CHECK(made.err.find("The proof one.proof.json is not shown: it cannot be read") !=
+        std::string::npos);
+}
+
+TEST_CASE("what prove writes into a run folder is what the page shows") {
+  const CliFixture cli;
+  const auto kitchen = kSource + "/scenarios/kitchen/plan3.yaml";
+  REQUIRE(cli.parallax({"run", kitchen, "--max-runs", "1", "--out", "run"}).code <= 4);
+  REQUIRE(
+      cli.parallax({"prove", kitchen, "--action", "0", "--out", "run/trace1.proof.json"}).code ==
+      0);
+  const auto made = cli.parallax({"report", "run", "-o", "page.html"});
+  CHECK(made.code == 0);
+  const auto page = page_of(cli, "page.html");
+  CHECK_MESSAGE(page.ids.contains("proof"), made.err);
+  CHECK(page.text.find("100.0 %") != std::string::npos);
 }
 
 TEST_CASE("a folder that is none is not watched") {

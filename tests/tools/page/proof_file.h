@@ -1,0 +1,44 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/tools/cli_fixture.h"
+
+namespace parallax::test {
+
+/// A certificate about the one perform `event` of a run of `edge.yaml` in `run`, over the two
+/// variables that it draws: a quarter safe, a quarter refuted, the rest open.
+inline nlohmann::json edge_proof(const CliFixture& cli, const std::string& run) {
+  using Json = nlohmann::json;
+  const auto journal = cli.read(run + "/journal.ndjson");
+  const auto header = Json::parse(journal.substr(0, journal.find('\n')));
+  const auto box = [](const char* verdict, Json x, Json y) {
+    return Json{{"verdict", verdict}, {"bounds", {x, y}}};
+  };
+  const Json test = {{"controller", "drive"},
+                     {"function", "Drive::is_blocked"},
+                     {"source", "harness/robot/mobile_drive.cc"},
+                     {"asks", "is the way free?"},
+                     {"assumed", {"`box` stays within 0.002 m"}},
+                     {"boxes",
+                      {box("safe", {1.0, 1.5}, {0.0, 0.5}), box("refuted", {1.0, 1.5}, {0.5, 1.0}),
+                       box("open", {1.5, 2.0}, {0.0, 1.0})}}};
+  return {{"kind", "parallax geometry proof"},
+          {"version", 1},
+          {"status", "ok"},
+          {"scenario", "edge"},
+          {"scenario_hash", header["scenario_hash"]},
+          {"trace", 1},
+          {"variables", {"box.x", "robot.x"}},
+          {"region", {{1.0, 2.0}, {0.0, 1.0}}},
+          {"actions",
+           {{{"number", 0}, {"event", "Go(r2)"}, {"controller", "go"}, {"tests", {test}}},
+            {{"number", 1},
+             {"event", "PickUp()"},
+             {"controller", "pick"},
+             {"tests", Json::array()},
+             {"left_to_simulation", "contacts decide"}}}}};
+}
+
+}  // namespace parallax::test
