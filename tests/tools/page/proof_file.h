@@ -7,8 +7,8 @@
 
 namespace parallax::test {
 
-/// A certificate about the one perform `event` of a run of `edge.yaml` in `run`, over the two
-/// variables that it draws: a quarter safe, a quarter refuted, the rest open.
+/// A certificate about a run of the two regions (`edge.yaml`, `scenario.yaml`) in `run`, over the
+/// two variables that it draws: a quarter safe, a quarter refuted, the rest open.
 inline nlohmann::json edge_proof(const CliFixture& cli, const std::string& run) {
   using Json = nlohmann::json;
   const auto journal = cli.read(run + "/journal.ndjson");

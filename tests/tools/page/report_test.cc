@@ -255,9 +255,7 @@ TEST_CASE("a missing recording comes with the command that makes it, and a broke
 
 TEST_CASE("a certificate that lies in the folder is shown with its shares, or said why it is not") {
   const CliFixture cli;
-  REQUIRE(
-      cli.parallax({"run", "edge.yaml", "--keep-going", "--max-runs", "8", "--out", "edge"}).code ==
-      1);
+  REQUIRE(cli.parallax({"run", "scenario.yaml", "--max-runs", "8", "--out", "edge"}).code == 4);
   const auto proof = edge_proof(cli, "edge");
   const auto page_with = [&](const Json& certificate) {
     cli.write("edge/one.proof.json", certificate.dump());
@@ -302,20 +300,6 @@ TEST_CASE("a certificate that lies in the folder is shown with its shares, or sa
   CHECK(made.code == 0);
   CHECK(made.err.find("The proof one.proof.json is not shown: it cannot be read") !=
         std::string::npos);
-}
-
-TEST_CASE("what prove writes into a run folder is what the page shows") {
-  const CliFixture cli;
-  const auto kitchen = kSource + "/scenarios/kitchen/plan3.yaml";
-  REQUIRE(cli.parallax({"run", kitchen, "--max-runs", "1", "--out", "run"}).code <= 4);
-  REQUIRE(
-      cli.parallax({"prove", kitchen, "--action", "0", "--out", "run/trace1.proof.json"}).code ==
-      0);
-  const auto made = cli.parallax({"report", "run", "-o", "page.html"});
-  CHECK(made.code == 0);
-  const auto page = page_of(cli, "page.html");
-  CHECK_MESSAGE(page.ids.contains("proof"), made.err);
-  CHECK(page.text.find("100.0 %") != std::string::npos);
 }
 
 TEST_CASE("a folder that is none is not watched") {
