@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "runtime/graph/far_atoms.h"
 #include "runtime/graph/unit_values.h"
 
 namespace parallax::runtime {
@@ -426,7 +427,16 @@ class Splitter {
 
 std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model,
                                                            Distinct distinct, FixedTies ties) {
-  return Splitter(model, distinct, unit_values(model), ties).run();
+  auto split = Splitter(model, distinct, unit_values(model), ties).run();
+  if (ties == FixedTies::kRefused || std::holds_alternative<LayeredModel>(split)) return split;
+  const auto tied = with_far_atoms_fixed(model, kMostCarried);
+  if (!tied) return split;
+  auto again = Splitter(*tied, distinct, unit_values(*tied), ties).run();
+  if (!std::holds_alternative<LayeredModel>(again)) return split;
+  // What was added is no atom of the model.
+  const auto is_added = [&](std::int32_t v) { return v > model.base(); };
+  std::erase_if(std::get<LayeredModel>(again).true_fixed, is_added);
+  return again;
 }
 
 std::variant<LayeredModel, std::string> split_into_windows(const CompiledModel& model,

@@ -52,7 +52,8 @@ struct LayeredModel {
 enum class FixedTies : std::uint8_t {
   kRefused,
   /// Each becomes a hidden slot of every state, behind those of the model, that no step changes;
-  /// the step slots move up. At most kMostCarried.
+  /// the step slots move up. So do atoms that clauses look back at from beyond the next timepoint.
+  /// At most kMostCarried.
   kCarried,
 };
 inline constexpr std::size_t kMostCarried = 12;

@@ -235,6 +235,8 @@ TraceCount count_traces(const CompiledModel& model, const TraceQuery& query) {
       result.complete = true;
       result.stats = traces.stats();
       result.stats.strategy = "graph";  // it may count what it cannot list
+      result.stats.states = graph->node_count();
+      result.stats.transitions = graph->edge_count();
       result.stats.remark.clear();
       return result;
     }
