@@ -133,6 +133,8 @@ std::string_view to_string(OriginKind kind) {
       return "plan step";
     case OriginKind::kStateConstraint:
       return "state constraint";
+    case OriginKind::kObjective:
+      return "objective";
     case OriginKind::kTrace:
       return "trace";
   }
@@ -144,7 +146,7 @@ std::optional<OriginKind> origin_kind(std::string_view text) {
        {OriginKind::kAxiom, OriginKind::kEffectAxiom, OriginKind::kTrajectoryAxiom,
         OriginKind::kFrameAxiom, OriginKind::kCompletion, OriginKind::kInvariant,
         OriginKind::kUnmentioned, OriginKind::kPlanStep, OriginKind::kStateConstraint,
-        OriginKind::kTrace}) {
+        OriginKind::kObjective, OriginKind::kTrace}) {
     if (to_string(kind) == text) return kind;
   }
   return std::nullopt;

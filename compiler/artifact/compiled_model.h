@@ -15,6 +15,7 @@
 
 #include "compiler/artifact/atom.h"
 #include "compiler/artifact/literal.h"
+#include "compiler/artifact/objective.h"
 #include "compiler/base/source_file.h"
 
 namespace parallax::compiler {
@@ -30,7 +31,8 @@ enum class OriginKind : std::uint8_t {
   kUnmentioned,  // denies, in the meaning of the 2005 reasoner, what no formula mentions
   kPlanStep,
   kStateConstraint,
-  kTrace,  // of a trace from elsewhere that is held against the model
+  kObjective,  // what an objective counts; true of every trace, and no reason of anything
+  kTrace,      // of a trace from elsewhere that is held against the model
 };
 
 /// `axiom`, `effect axiom`, ... as artifacts and messages write it.
@@ -181,9 +183,10 @@ struct CompiledModel {
   std::vector<bool> clause_is_definition;     // defines an auxiliary: true in itself, says nothing
   std::vector<Section> sections;              // cover the clauses, in order
   std::vector<Origin> origins;
-  std::vector<PlanStep> plan;      // by location number; empty without a plan
-  std::vector<PlanCut> plan_cuts;  // empty if the whole plan was unrolled
-  bool has_constraints = false;    // kHit atoms exist
+  std::vector<PlanStep> plan;         // by location number; empty without a plan
+  std::vector<PlanCut> plan_cuts;     // empty if the whole plan was unrolled
+  bool has_constraints = false;       // kHit atoms exist
+  std::vector<Objective> objectives;  // what best traces have least of, the first one first
 
   std::int32_t base() const { return static_cast<std::int32_t>(fixed.size()); }
   std::int32_t stride() const { return static_cast<std::int32_t>(slots.size()); }

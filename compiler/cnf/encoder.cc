@@ -39,6 +39,11 @@ class Encoder {
     return numbered_lines(out_, files);
   }
 
+  bool is_impossible(const GroundAtom& atom) const {
+    return (atom.kind == AtomKind::kHoldsAt && !model_.may_hold(atom.index)) ||
+           (atom.kind == AtomKind::kHappens && !model_.may_happen(atom.index));
+  }
+
   /// Atoms that no trace can make true are false, and have no variable.
   void drop_impossible() {
     RewriteMemo memo;
@@ -46,10 +51,8 @@ class Encoder {
       constraint.formula = rewrite_atoms(
           model_.formulas(), constraint.formula,
           [&](std::int32_t variable) {
-            const auto& atom = model_.atom(variable);
-            const bool never = (atom.kind == AtomKind::kHoldsAt && !model_.may_hold(atom.index)) ||
-                               (atom.kind == AtomKind::kHappens && !model_.may_happen(atom.index));
-            return never ? formulas_.falsity() : formulas_.atom(variable);
+            return is_impossible(model_.atom(variable)) ? formulas_.falsity()
+                                                        : formulas_.atom(variable);
           },
           memo);
     }
@@ -102,6 +105,12 @@ class Encoder {
         }
       }
     };
+    for (const auto& objective : model_.objectives()) {
+      for (const auto& term : objective.terms) {
+        if (formulas_.kind(term.formula) != FormulaNodeKind::kAtom) continue;
+        mentioned[static_cast<std::size_t>(formulas_.variable(term.formula))] = true;
+      }
+    }
     note(builder_->once());
     for (const auto& [width, clauses] : builder_->repeated()) note(clauses);
     for (std::size_t i = 1; i < mentioned.size(); ++i) {
@@ -231,6 +240,24 @@ class Encoder {
     out_.origins = model_.origins();
     write(builder_->once(), Constraint::kOnce);
     for (const auto& [width, clauses] : builder_->repeated()) write(clauses, width);
+    for (const auto& objective : model_.objectives()) write(objective);
+  }
+
+  void write(const GroundObjective& objective) {
+    auto& out = out_.objectives.emplace_back(Objective{objective.text, {}});
+    for (const auto& term : objective.terms) {
+      ObjectiveTerm written{term.weight, std::nullopt, term.needed};
+      if (formulas_.kind(term.formula) == FormulaNodeKind::kAtom) {
+        const auto variable = formulas_.variable(term.formula);
+        if (is_impossible(model_.atom(variable))) {
+          if (!term.formula.negated()) continue;
+        } else {
+          written.literal =
+              number({false, term.formula.negated(), static_cast<std::uint32_t>(variable)});
+        }
+      }
+      out.terms.push_back(written);
+    }
   }
 
   void write(const std::vector<OpenClause>& clauses, Timepoint width) {

@@ -47,6 +47,7 @@ class FactMaker {
         return each(statement, "ignore ");
       case StatementKind::kCompletion:
       case StatementKind::kLoad:
+      case StatementKind::kMinimize:
         return declare(statement.source, print_statement(ast_, statement), "");
       case StatementKind::kFormula:
         return formula(statement);

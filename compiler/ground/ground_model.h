@@ -43,6 +43,17 @@ struct Constraint {
   Timepoint width = kOnce;
 };
 
+/// A sum of weights over formulas, each an atom, a negated one or true.
+struct GroundObjective {
+  struct Term {
+    std::int64_t weight = 0;
+    FormulaId formula;
+    Timepoint needed = 0;  // the horizon from which on it counts
+  };
+  std::string text;
+  std::vector<Term> terms;
+};
+
 /// The model without variables: atoms, and the formulas that hold over them.
 class GroundModel {
  public:
@@ -125,6 +136,9 @@ class GroundModel {
     return charges_;
   }
 
+  void add_objective(GroundObjective objective) { objectives_.push_back(std::move(objective)); }
+  const std::vector<GroundObjective>& objectives() const { return objectives_; }
+
   const std::vector<Constraint>& constraints() const { return constraints_; }
   const std::vector<Origin>& origins() const { return origins_; }
 
@@ -148,6 +162,7 @@ class GroundModel {
   std::map<std::tuple<AtomKind, PlanAtom, Timepoint>, std::int32_t> plan_variables_;
   std::vector<PlanAtom> plan_atoms_;
   std::vector<Constraint> constraints_;
+  std::vector<GroundObjective> objectives_;
   std::vector<Origin> origins_;
   std::vector<std::pair<base::SourceRange, std::int64_t>> charges_;
 };

@@ -17,6 +17,7 @@
 #include "compiler/ground/grounder.h"
 #include "compiler/interpreter/unroller.h"
 #include "compiler/lint/lint.h"
+#include "compiler/pipeline/objective.h"
 #include "compiler/pipeline/plan_encoder.h"
 #include "compiler/pipeline/plan_formulas.h"
 #include "compiler/pipeline/state_constraint.h"
@@ -327,13 +328,23 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
   // Constraints and the plan are independent: report the errors of both.
   auto constraints =
       check_constraints(input.constraints, Constraints::kTraces, *typed, files, sink);
+  std::vector<CheckedObjective> objectives;
+  auto wanted = input.objectives;
+  if (input.objectives_of_model) {
+    for (const auto& statement : typed->objectives) wanted.push_back(statement.source);
+  }
+  for (const auto& text : wanted) {
+    auto objective = check_objective(text, *typed, files, sink);
+    if (objective) objectives.push_back(*std::move(objective));
+  }
   std::optional<CheckedPlan> plan;
   if (input.plan) {
     auto checked = check_plan(*input.plan, input.ground.stop, *typed, files, sink);
     if (checked) plan = *std::move(checked);
     if (plan && !input.horizon) set_horizon(plan->graph, input.plan->max_horizon, *typed);
   }
-  if (!constraints || (input.plan && !plan)) return sink.already_reported();
+  if (!constraints || objectives.size() != wanted.size() || (input.plan && !plan))
+    return sink.already_reported();
 
   PassLog log{input.emit_pass, &files};
   auto ground = ground_model(*typed, input.ground, sink, &log);
@@ -352,6 +363,9 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
   } else if (!constraints->empty() && !encode_constraints(*constraints, input.hits_at_start ? 0 : 1,
                                                           *ground, grounder, sink)) {
     return sink.already_reported();
+  }
+  for (const auto& objective : objectives) {
+    if (!encode_objective(objective, *ground, grounder, sink)) return sink.already_reported();
   }
   Compilation result;
   result.model = encode(*ground, &log);

@@ -62,7 +62,10 @@ struct CompileInput {
   std::optional<std::int64_t> horizon;  // replaces the range of `time`
   std::optional<PlanInput> plan;
   std::vector<ConstraintText> constraints;
-  bool hits_at_start = false;  // the constraints may also hold at timepoint 0
+  /// What best traces have least of, the most important one first; see objective.h.
+  std::vector<base::SourceRange> objectives = {};
+  bool objectives_of_model = false;  // those that its `minimize` statements say
+  bool hits_at_start = false;        // the constraints may also hold at timepoint 0
   GroundOptions ground;
   std::string producer;   // the program and its version, for the artifact; may be empty
   bool costs = false;     // also count what each axiom costs

@@ -351,4 +351,26 @@ base::Result<CheckedFormula> check_formula(TypedModel& model, const Ast& ast, No
   return CheckedFormula{*formula, elaborator.free_time()};
 }
 
+base::Result<CheckedSum> check_sum(TypedModel& model, TreePart formula,
+                                   std::optional<TreePart> weight, base::DiagnosticSink& sink) {
+  Elaborator elaborator(model, {.allow_free_variables = true, .allow_effects = false}, sink);
+  std::optional<TypedFormulaId> bound;
+  if (weight) {
+    // A comparison asks for integers, in the words that are known from formulas.
+    auto& ast = *weight->ast;
+    Node node;
+    node.kind = NodeKind::kBinary;
+    node.op = Operator::kLessEqual;
+    node.begin = ast[weight->root].begin;
+    node.end = ast[weight->root].end;
+    const NodeId sides[] = {weight->root, weight->root};
+    bound = elaborator.elaborate(ast, ast.add(node, sides, 2));
+  }
+  const auto checked = elaborator.elaborate(*formula.ast, formula.root);
+  if (!checked || (weight && !bound)) return sink.already_reported();
+  CheckedSum sum{*checked, std::nullopt, elaborator.free_variables()};
+  if (bound) sum.weight = model.formulas[*bound].terms[0];
+  return sum;
+}
+
 }  // namespace parallax::compiler

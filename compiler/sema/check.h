@@ -52,4 +52,22 @@ base::Result<CheckedFormula> check_formula(TypedModel& model, const Ast& ast, No
                                            const FormulaOptions& options,
                                            base::DiagnosticSink& sink);
 
+/// `weight` times the number of assignments of the free variables under which `formula` is true.
+struct CheckedSum {
+  TypedFormulaId formula;
+  std::optional<TermId> weight;       // an integer; none: 1
+  std::vector<VariableId> variables;  // free in one of them
+};
+
+/// A formula or term in a tree of its own. The tree may grow.
+struct TreePart {
+  Ast* ast = nullptr;
+  NodeId root;
+};
+
+/// Checks formula and weight as check_formula does, but for their free variables: every name that
+/// reads as a variable of some sort is one, in both the same.
+base::Result<CheckedSum> check_sum(TypedModel& model, TreePart formula,
+                                   std::optional<TreePart> weight, base::DiagnosticSink& sink);
+
 }  // namespace parallax::compiler

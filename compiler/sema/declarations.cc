@@ -61,6 +61,10 @@ class Declarer {
         mark(ast, statement, &Symbol::manual_release);
       }
       if (statement.kind == StatementKind::kCompletion) completion(ast, statement);
+      if (statement.kind == StatementKind::kMinimize) {
+        model_.objectives.push_back(
+            {std::string(ast.text(statement.value)), ast.source(statement.value)});
+      }
     });
     release_manually();
   }

@@ -89,8 +89,26 @@ Elaborator::Value Elaborator::variable(const Node& node, std::optional<SortId> e
   }
   // Constants may be spelled like variables (`r1`); a quantifier around the name goes first.
   if (model_.find_object(text)) return constant(node, expected);
+  if (const auto free = free_variable(node)) {
+    term.variable = *free;
+    return add(std::move(term));
+  }
   if (reported_free_.insert(text).second) report_free(node, expected);
   return failure();
+}
+
+/// A new variable, bound around everything that is still to come.
+std::optional<VariableId> Elaborator::free_variable(const Node& node) {
+  if (!options_.allow_free_variables) return std::nullopt;
+  const auto name = ast_->name(node);
+  const auto sort = model_.find_sort(sort_of_variable(name));
+  if (!sort) return std::nullopt;
+  if (model_.sorts[*sort].integer) require_range(*sort, source(node));
+  const auto variable = model_.variables.add({std::string(name), *sort});
+  free_variables_.push_back(variable);
+  free_names_.push_back(name);
+  scope_[name].push_back(variable);
+  return variable;
 }
 
 void Elaborator::report_free(const Node& node, std::optional<SortId> expected) {

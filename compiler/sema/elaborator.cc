@@ -79,6 +79,9 @@ std::optional<TypedFormulaId> Elaborator::elaborate(const Ast& ast, NodeId root)
   frames_.clear();
   values_.clear();
   scope_.clear();
+  for (std::size_t i = 0; i < free_variables_.size(); ++i) {
+    scope_[free_names_[i]].push_back(free_variables_[i]);
+  }
   bound_names_.clear();
   reported_free_.clear();
   free_time_.reset();

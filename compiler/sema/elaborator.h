@@ -21,6 +21,9 @@ std::string_view sort_of_variable(std::string_view name);
 /// What a formula may use beyond its own quantifiers.
 struct ElaborationOptions {
   bool allow_free_time = false;
+  /// Names that no quantifier binds are variables of their sort, the same ones in all formulas that
+  /// are elaborated.
+  bool allow_free_variables = false;
   bool fluents_as_atoms = false;
   std::optional<TermId> fluent_time = std::nullopt;
   bool allow_effects = true;   // Initiates, Trajectory, ...
@@ -43,6 +46,8 @@ class Elaborator {
   /// Of the formula elaborated last:
   bool mentions_effects() const { return mentions_effects_; }  // also trajectories
   std::optional<VariableId> free_time() const { return free_time_; }
+  /// Of all formulas so far, in order of occurrence.
+  const std::vector<VariableId>& free_variables() const { return free_variables_; }
 
   /// By symbol: was it used in any formula so far?
   bool mentioned(SymbolId symbol) const { return mentioned_[symbol.index()]; }
@@ -102,6 +107,7 @@ class Elaborator {
   std::vector<SortId> sorts_of(TermId term) const;
   void report_unknown_symbol(const Node& node, Position position, std::optional<SortId> expected);
   void report_constant(const Node& node, std::optional<SortId> expected);
+  std::optional<VariableId> free_variable(const Node& node);
   void report_free(const Node& node, std::optional<SortId> expected);
   std::optional<SortId> sort_beside(const Node& comparison, std::uint32_t index) const;
   std::optional<SortId> sort_of_use(const Node& formula, std::string_view name) const;
@@ -133,6 +139,8 @@ class Elaborator {
   std::unordered_set<std::uint32_t> reported_ranges_;  // sorts
   std::vector<bool> mentioned_;                        // by symbol
   std::optional<VariableId> free_time_;
+  std::vector<VariableId> free_variables_;
+  std::vector<std::string_view> free_names_;  // of these, views into the source text
   bool mentions_effects_ = false;
   bool full_ = false;
 };

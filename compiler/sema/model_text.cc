@@ -219,6 +219,7 @@ class ModelWriter {
     for (const auto& effect : model_.effects) write(effect);
     for (const auto& path : model_.trajectories) write(path);
     for (const auto& completion : model_.completions) write(completion);
+    for (const auto& objective : model_.objectives) line("minimize " + objective.text);
     return std::move(out_);
   }
 

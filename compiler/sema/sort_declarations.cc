@@ -270,9 +270,9 @@ std::optional<SortId> resolve_sort(const Ast& ast, Word word, TypedModel& model,
     return std::nullopt;
   }
   // A misspelt keyword looks like a declaration of constants.
-  static const std::array<std::string, 10> kKeywords = {
-      "option", "range",  "sort",          "xor",        "mutex",
-      "load",   "ignore", "manualrelease", "completion", "noninertial"};
+  static const std::array<std::string, 11> kKeywords = {
+      "option", "range",         "sort",       "xor",         "mutex",   "load",
+      "ignore", "manualrelease", "completion", "noninertial", "minimize"};
   if (const auto near = base::nearest_name(name, kKeywords)) {
     report.fix(NameAdvice::replace(name, *near));
   }

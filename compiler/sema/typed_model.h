@@ -253,6 +253,12 @@ struct Completion {
   base::SourceRange source;
 };
 
+/// `minimize OBJECTIVE`; what the objective says is looked at where best traces are asked for.
+struct ObjectiveStatement {
+  std::string text;
+  base::SourceRange source;
+};
+
 /// The predicates of the event calculus, declared by the built-in foundations.
 struct CoreSymbols {
   std::optional<SymbolId> happens, holds_at, released_at, initiates, terminates, releases,
@@ -271,6 +277,7 @@ struct TypedModel {
   std::vector<Axiom> axioms;         // in source order
   std::vector<EffectAxiom> effects;  // in source order
   std::vector<Completion> completions;
+  std::vector<ObjectiveStatement> objectives;  // in source order
   CoreSymbols core;
   std::vector<TrajectoryAxiom> trajectories;   // in source order
   std::vector<FunctionValue> function_values;  // in source order

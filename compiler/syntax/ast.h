@@ -101,6 +101,7 @@ enum class StatementKind : std::uint8_t {
   kIgnore,         // ignore N1, N2                items
   kCompletion,     // completion [LABEL] P         label, name
   kLoad,           // load PATH                    value
+  kMinimize,       // minimize OBJECTIVE           value
   kFormula,        // [LABEL:] formula.            label, formula, first_node
 };
 

@@ -49,9 +49,9 @@ constexpr std::array<Spelled, 28> kPunctuation = {{
     {"\n", TokenKind::kEnd},  // likewise
 }};
 
-constexpr std::array<std::string_view, 11> kKeywords = {
+constexpr std::array<std::string_view, 12> kKeywords = {
     "option",  "range",         "sort",   "xor",        "mutex", "noninertial",
-    "reified", "manualrelease", "ignore", "completion", "load"};
+    "reified", "manualrelease", "ignore", "completion", "load",  "minimize"};
 
 bool starts_token(char c) {
   if (base::is_name_character(c) || is_blank(c)) return true;

@@ -45,7 +45,8 @@ class StatementParser {
     if (word == "option") return option();
     if (word == "range") return range();
     if (word == "completion") return completion();
-    if (word == "load") return load();
+    if (word == "load") return rest(StatementKind::kLoad, "a path");
+    if (word == "minimize") return rest(StatementKind::kMinimize, "`count` or `sum`");
     if (word == "xor") return names(StatementKind::kXor);
     if (word == "mutex") return names(StatementKind::kMutex);
     if (word == "noninertial") return names(StatementKind::kNoninertial);
@@ -138,12 +139,13 @@ class StatementParser {
     ast_.add(statement_);
   }
 
-  void load() {
-    statement_.kind = StatementKind::kLoad;
+  /// What follows the keyword is looked at elsewhere.
+  void rest(StatementKind kind, const char* wanted) {
+    statement_.kind = kind;
     skip_blanks();
     statement_.value = {position_, end()};
     position_ = end();
-    if (statement_.value.empty()) return malformed("a path");
+    if (statement_.value.empty()) return malformed(wanted);
     ast_.add(statement_);
   }
 

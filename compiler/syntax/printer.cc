@@ -215,6 +215,9 @@ void append_statement(const Ast& ast, const Statement& statement, std::string& o
     case StatementKind::kLoad:
       (out += "load ") += ast.text(statement.value);
       return;
+    case StatementKind::kMinimize:
+      (out += "minimize ") += ast.text(statement.value);
+      return;
     case StatementKind::kFormula:
       return print_labelled(ast, statement, out);
   }

@@ -72,6 +72,7 @@ class Splitter {
     while (!place_clauses()) {
       if (!carry_more()) return reason_;
     }
+    anchor_to_carried();
     const auto added = static_cast<std::uint32_t>(carried_.size());
     out_.state_slots = model_.state_slots + added;
     out_.stride = static_cast<std::uint32_t>(model_.stride()) + added;
@@ -107,6 +108,23 @@ class Splitter {
     reason_.clear();
     components_ = Components(fixed_count());
     return true;
+  }
+
+  /// Variables that belong to no window, but are tied to carried ones, belong to the start, where
+  /// these have their values.
+  void anchor_to_carried() {
+    for (std::size_t c = 0; c < model_.clauses.size() && !carried_.empty(); ++c) {
+      const auto clause = model_.clauses[c];
+      if (is_satisfied(c) || window_of(clause) != kNoWindow) continue;
+      const bool tied = std::any_of(clause.begin(), clause.end(), [&](Literal literal) {
+        return carried_.contains(static_cast<std::size_t>(literal.var()) - 1);
+      });
+      for (const auto literal : clause) {
+        const auto v = static_cast<std::size_t>(literal.var()) - 1;
+        const bool open = fixed_value(literal) == 0 && !carried_.contains(v);
+        if (tied && open && components_.window(v) == kNoWindow) components_.place(v, kStart);
+      }
+    }
   }
 
   std::size_t fixed_count() const { return static_cast<std::size_t>(model_.base()); }

@@ -114,4 +114,18 @@ std::optional<ClingoAnswer> clingo_traces(const compiler::AspProgram& program, s
   return answer;
 }
 
+std::variant<std::optional<std::int64_t>, std::string> clingo_optimum(
+    const compiler::AspProgram& program, const std::string& minimize) {
+  static const ProgramFile file;
+  const auto result = run_process(
+      {"clingo", "--verbose=0", "--warn=none", file.write(program.text + minimize + "\n")});
+  if (result.code == 20) return std::nullopt;
+  const std::string heading = "Optimization: ";
+  const auto last = result.out.rfind(heading);
+  if (result.code != 30 || last == std::string::npos) {
+    return "clingo ended with " + std::to_string(result.code) + "\n" + result.err;
+  }
+  return std::stoll(result.out.substr(last + heading.size()));
+}
+
 }  // namespace parallax::test

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "compiler/base/codes/grounding.h"
+#include "runtime/optimize/optimum.h"
 #include "tests/fuzz/old_encoder.h"
 #include "tests/fuzz/oracles.h"
 
@@ -36,6 +37,7 @@ class Comparer {
     result_.clingo = clingo_.has_value();
     if (auto found = compare_traces()) return *found;
     if (auto found = compare_export()) return *found;
+    if (auto found = compare_optimum()) return *found;
     if (auto found = compare_variants()) return *found;
     return result_;
   }
@@ -202,6 +204,41 @@ class Comparer {
     }
     return same("parallax", in_full(ours, ours), "clingo over all atoms",
                 in_full(theirs->found, theirs->found));
+  }
+
+  /// Costs and gains of events and states, and how often a state changes.
+  std::optional<Comparison> compare_optimum() {
+    if (!clingo_) return std::nullopt;
+    const FuzzCompilation made(text_, {},
+                               "sum 1+2*time: Happens(event,time), "
+                               "sum 4-3*time: HoldsAt(fluent,time), "
+                               "count HoldsAt(fluent,time) & !HoldsAt(fluent,time+1)");
+    const bool has_atoms = !base_.compiled->fluents.empty() || !base_.compiled->events.empty();
+    if (!has_atoms && made.codes() == "E3017") return std::nullopt;
+    if (!made.compiled) return difference("objective", made.codes());
+    const auto program = compiler::to_asp(*base_.typed, base_.files, {}, base_.sink);
+    if (!program) return difference("export", base_.codes());
+    const auto horizon = std::to_string(evaluator_->horizon());
+    const auto theirs =
+        clingo_optimum(*program, "#minimize{ 1+2*T,e,E,T : happens(E,T), T < " + horizon +
+                                     "; 4-3*T,f,F,T : holds_at(F,T); "
+                                     "1,c,F,T : holds_at(F,T), not holds_at(F,T+1), T < " +
+                                     horizon + " }.");
+    if (const auto* failure = std::get_if<std::string>(&theirs)) {
+      return difference("clingo", *failure);
+    }
+    runtime::SolverSession session(*made.compiled, runtime::make_cadical_solver());
+    const auto ours = runtime::find_optimum(session);
+    const auto& wanted = std::get<std::optional<std::int64_t>>(theirs);
+    const auto text = [](bool any, std::int64_t value) {
+      return any ? std::to_string(value) : std::string("no trace");
+    };
+    const auto found = text(ours.witness.has_value(), ours.witness ? ours.values.front() : 0);
+    const auto expected = text(wanted.has_value(), wanted.value_or(0));
+    if (!ours.proved() || found != expected) {
+      return difference("optimum", found + ", clingo: " + expected);
+    }
+    return std::nullopt;
   }
 
   std::optional<Comparison> check_part(const TraceList& enumerated) const {

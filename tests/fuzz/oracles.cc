@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "compiler/cnf/encoder.h"
+#include "compiler/pipeline/objective.h"
 #include "compiler/sema/check.h"
 #include "compiler/syntax/loader.h"
 #include "runtime/enumerate/model_enumerator.h"
@@ -15,7 +16,8 @@ using compiler::AtomKind;
 using compiler::Literal;
 using compiler::Valuation;
 
-FuzzCompilation::FuzzCompilation(const std::string& text, const compiler::GroundOptions& options) {
+FuzzCompilation::FuzzCompilation(const std::string& text, const compiler::GroundOptions& options,
+                                 const std::string& objective) {
   const auto file = files.add("random.e", text);
   const auto ast = compiler::load_model_text(file, ".", {}, files, sink);
   if (!ast) return;
@@ -24,8 +26,19 @@ FuzzCompilation::FuzzCompilation(const std::string& text, const compiler::Ground
   auto checked = compiler::check_model(*ast, files, sink, check);
   if (!checked) return;
   typed = std::make_unique<compiler::TypedModel>(*std::move(checked));
+  std::optional<compiler::CheckedObjective> wanted;
+  if (!objective.empty()) {
+    const auto place = files.add("objective", objective);
+    const auto size = static_cast<std::uint32_t>(objective.size());
+    auto sound = compiler::check_objective({place, 0, size}, *typed, files, sink);
+    if (!sound) return;
+    wanted = *std::move(sound);
+  }
   auto ground = compiler::ground_model(*typed, options, sink);
-  if (ground) compiled = compiler::encode(*ground);
+  if (!ground) return;
+  compiler::FormulaGrounder grounder(*ground, options, sink);
+  if (wanted && !compiler::encode_objective(*wanted, *ground, grounder, sink)) return;
+  compiled = compiler::encode(*ground);
 }
 
 std::string FuzzCompilation::codes() const {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "compiler/artifact/compiled_model.h"
@@ -31,7 +32,9 @@ struct FuzzCompilation {
   std::unique_ptr<compiler::TypedModel> typed;
   std::optional<compiler::CompiledModel> compiled;
 
-  FuzzCompilation(const std::string& text, const compiler::GroundOptions& options);
+  /// With an objective, as `--minimize` has it, unless that is empty.
+  FuzzCompilation(const std::string& text, const compiler::GroundOptions& options,
+                  const std::string& objective = {});
   /// The ids of errors, each once, blank-separated.
   std::string codes() const;
   /// The lines that they stand on, counted from 1.
@@ -64,6 +67,10 @@ struct ClingoAnswer {
 /// None: clingo failed, `error` says how.
 std::optional<ClingoAnswer> clingo_traces(const compiler::AspProgram& program, std::size_t limit,
                                           bool observable, std::size_t horizon, std::string& error);
+/// The optimum of an exported program with `minimize`, `#minimize` statements; none without an
+/// answer set. A text: clingo failed, and how.
+std::variant<std::optional<std::int64_t>, std::string> clingo_optimum(
+    const compiler::AspProgram& program, const std::string& minimize);
 bool clingo_is_installed();
 
 /// A trace as one line of its HoldsAt and Happens; in full also of its ReleasedAt.

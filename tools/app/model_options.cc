@@ -19,6 +19,7 @@ compiler::CompileInput compile_input(const ModelOptions& options, const Context&
   if (options.horizon >= 0) input.horizon = options.horizon;
   if (!options.compat.empty()) input.ground.meaning = compiler::Meaning::kDecreasoner;
   input.ground.stop = &context.stop();
+  input.objectives_of_model = options.best;
   input.costs = options.stats;
   input.lint = options.lint;
   input.producer = fmt::format("parallax {}", kVersion);
@@ -40,6 +41,9 @@ base::Result<compiler::CompiledModel> load_artifact(const ModelOptions& options,
   }
   if (!options.compat.empty() || !options.until.empty()) {
     return refuse("the meaning of a compiled model is fixed; give --compat and --until to compile");
+  }
+  if (!options.minimize.empty() || options.best) {
+    return refuse("--minimize and --best need the texts of the model; name them instead");
   }
   auto model = compiler::load_artifact(options.models.front(), context.files(), sink);
   if (model && options.horizon >= 0 && options.horizon != model->horizon) {

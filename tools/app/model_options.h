@@ -14,9 +14,11 @@ namespace parallax::tools {
 struct ModelOptions {
   std::vector<std::string> models;
   std::vector<std::string> include_dirs;
-  std::string compat;              // "decreasoner", or empty for the standard meaning
-  std::int64_t horizon = -1;       // -1: as the model says
-  std::vector<std::string> until;  // state constraints
+  std::string compat;                      // "decreasoner", or empty for the standard meaning
+  std::int64_t horizon = -1;               // -1: as the model says
+  std::vector<std::string> until;          // state constraints
+  std::vector<std::string> minimize = {};  // objectives, the most important one first
+  bool best = false;  // by the objectives that the model's `minimize` statements say
   /// `verify`: traces end where this formula does not hold.
   std::optional<std::string> property = std::nullopt;
   std::vector<std::string> plan;  // Lisp files and folders in order; none or with `bind`

@@ -105,6 +105,16 @@ base::Status look_for_violations(const std::string& property, compiler::CompileI
   return base::Unit{};
 }
 
+base::Status add_objectives(const std::vector<std::string>& objectives,
+                            compiler::CompileInput& input, Context& context) {
+  for (const auto& objective : objectives) {
+    const auto range = formula_argument("--minimize", objective, context);
+    if (!range) return context.sink().already_reported();
+    input.objectives.push_back(*range);
+  }
+  return base::Unit{};
+}
+
 }  // namespace
 
 compiler::ConstraintText constraint_text(const harness::LocatedText& text,
@@ -195,7 +205,8 @@ void execute(const harness::Scenario& scenario, compiler::CompileInput& input) {
 
 base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& context,
                                  const Switches& switches,
-                                 const std::optional<std::string>& property = std::nullopt) {
+                                 const std::optional<std::string>& property = std::nullopt,
+                                 const std::vector<std::string>& minimize = {}, bool best = false) {
   auto& sink = context.sink();
   if (!expect_kind(path.string(), {FileKind::kScenario}, "a scenario", context)) {
     return sink.already_reported();
@@ -224,6 +235,8 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
   if (property && !look_for_violations(*property, *input, context)) {
     return sink.already_reported();
   }
+  if (!add_objectives(minimize, *input, context)) return sink.already_reported();
+  input->objectives_of_model = best;
   auto compilation = compiler::compile_model(*input, context.files(), sink);
   if (!compilation) return sink.already_reported();
   if (!scenario->start_weights.empty() &&
@@ -335,7 +348,7 @@ base::Result<compiler::Compilation> compile(const ModelOptions& options, Context
     return compiled;
   }
   if (options.models.size() == 1 && (first.ends_with(".yaml") || first.ends_with(".yml"))) {
-    auto loaded = load(first, context, switches, options.property);
+    auto loaded = load(first, context, switches, options.property, options.minimize, options.best);
     if (!loaded) return context.sink().already_reported();
     return std::move(loaded->compilation);
   }
@@ -348,6 +361,7 @@ base::Result<compiler::Compilation> compile(const ModelOptions& options, Context
     input.constraints.push_back({*range, *range, false});
     input.hits_at_start = true;
   }
+  if (!add_objectives(options.minimize, input, context)) return context.sink().already_reported();
   std::optional<harness::Scenario> regions;
   std::optional<RegionLocator> locator;
   if (!options.plan.empty() && !add_plan(options, regions, locator, input, context)) {

@@ -71,6 +71,7 @@ void measure_examples(Bench& bench);
 void measure_counting(Bench& bench);
 void measure_listing(Bench& bench);
 void measure_first_trace(Bench& bench);
+void measure_optimum(Bench& bench);
 void measure_strategies(Bench& bench);
 void measure_difference(Bench& bench);
 void measure_proofs(Bench& bench);

@@ -103,6 +103,14 @@ std::string clingo_answer(const std::string& tail) {
   return number_after(tail.substr(at, tail.find('\n', at + 1) - at), ":");
 }
 
+std::string clingo_optimum(const std::string& tail) {
+  const auto at = tail.rfind("\nOptimization ");
+  if (at == std::string::npos || tail.find("OPTIMUM FOUND") == std::string::npos) return "";
+  return number_after(tail.substr(at, tail.find('\n', at + 1) - at), ":");
+}
+
+std::string optimum_answer(const std::string& tail) { return number_after(tail, "\"optimum\":"); }
+
 std::string jsonl_answer(const std::string& tail) {
   const auto at = tail.rfind("{\"summary\":true");
   return at == std::string::npos ? "" : number_after(tail.substr(at), "\"traces\":");

@@ -41,6 +41,12 @@ std::optional<ChildRun> run_child(const std::vector<std::string>& command,
 /// The number in `Models       : 3488` of clingo's statistics.
 std::string clingo_answer(const std::string& tail);
 
+/// The number in `Optimization : 82`, if the optimum was found.
+std::string clingo_optimum(const std::string& tail);
+
+/// The number in `"optimum":82`.
+std::string optimum_answer(const std::string& tail);
+
 /// The number of traces in the closing object of a list in jsonl.
 std::string jsonl_answer(const std::string& tail);
 

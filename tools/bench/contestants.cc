@@ -41,6 +41,16 @@ Contestant clingo_lists(const std::string& file, Encoding encoding) {
   return clingo_with({"clingo", file, "0", "--warn=none"}, encoding);
 }
 
+Contestant clingo_minimizes(const std::string& file, const std::string& costs,
+                            const std::string& configuration) {
+  auto clingo =
+      clingo_with({"clingo", file, costs, "-q", "--warn=none", "--configuration=" + configuration},
+                  Encoding::kTuned);
+  clingo.program = "clingo, " + configuration;
+  clingo.answer = [](const ChildRun& run) { return clingo_optimum(run.tail); };
+  return clingo;
+}
+
 Contestant clingo_grounds(const std::string& file, Encoding encoding) {
   auto gringo = clingo_with({"clingo", "--mode=gringo", file, "--warn=none"}, encoding);
   gringo.good_codes.push_back(0);

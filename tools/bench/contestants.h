@@ -24,6 +24,9 @@ enum class Encoding {
 Contestant clingo_counts(const std::string& file, Encoding encoding);
 /// `clingo FILE 0`: prints them.
 Contestant clingo_lists(const std::string& file, Encoding encoding);
+/// `clingo FILE COSTS --configuration=CONFIGURATION`: the optimum of a program written by hand.
+Contestant clingo_minimizes(const std::string& file, const std::string& costs,
+                            const std::string& configuration);
 /// `clingo --mode=gringo FILE`: grounds and stops.
 Contestant clingo_grounds(const std::string& file, Encoding encoding);
 

@@ -18,6 +18,7 @@ const std::vector<Section>& sections() {
       {"counting", "counting traces, beside clingo", measure_counting},
       {"listing", "listing traces, beside clingo", measure_listing},
       {"first-trace", "the first trace, beside CaDiCaL alone", measure_first_trace},
+      {"optimum", "the cheapest trace, beside clingo", measure_optimum},
       {"strategies", "ways to enumerate, side by side", measure_strategies},
       {"proofs", "a checked proof that a list is complete, beside the list alone", measure_proofs},
       {"examples", "the examples of the reasoner of 2005", measure_examples},

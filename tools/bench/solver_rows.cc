@@ -2,7 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <fstream>
 #include <utility>
+#include <vector>
 
 #include "tools/bench/bench.h"
 #include "tools/bench/child_run.h"
@@ -41,6 +43,26 @@ void measure_first_trace(Bench& bench) {
       return run.code == 10 ? "satisfiable" : "unsatisfiable";
     };
     bench.compare(name, {first(file, "any"), first(file, "canonical"), plain});
+  }
+}
+
+void measure_optimum(Bench& bench) {
+  bench.begin("the optimum, beside clingo on a program written by hand");
+  const auto costs = bench.path("costs.lp");
+  std::ofstream(costs) << "#minimize { R,e,T : happens(enter(R),T); 2,g,X,T : happens(grasp(X),T); "
+                          "1,d,X,T : happens(drop(X),T) }.\n";
+  for (const auto* name : {"robot_6_4_0", "robot_6_4_2", "robot_6_4_4"}) {
+    auto ours = parallax_with(
+        {"traces", bench.model_file(name), "--limit", "1", "--format", "jsonl", "--minimize",
+         "sum room: Happens(Enter(room),time), "
+         "sum 2: Happens(Grasp(thing),time), count Happens(Drop(thing),time)"});
+    ours.answer = [](const ChildRun& run) { return optimum_answer(run.tail); };
+    std::vector<Contestant> contestants = {ours};
+    for (const auto* configuration : {"auto", "handy", "trendy"}) {
+      contestants.push_back(
+          clingo_minimizes(bench.program_file(name, Encoding::kTuned), costs, configuration));
+    }
+    bench.compare(name, contestants);
   }
 }
 

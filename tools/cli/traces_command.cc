@@ -5,6 +5,7 @@
 #include "compiler/base/codes/files.h"
 #include "compiler/base/json.h"
 #include "runtime/trace/trace.h"
+#include "tools/app/best_traces.h"
 #include "tools/app/certify.h"
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_listing.h"
@@ -43,7 +44,8 @@ void point_to_explanation(const TracesOptions& options, const Invocation& invoca
 /// Says what is known of the rest: complete, up to the bound, or stopped by the limit.
 void close_list(const TracesOptions& options, const compiler::CompiledModel& model,
                 const TraceWriter& writer, runtime::ListFormat* listing, const Ending& ending,
-                const TraceCertifier& certifier, double wall_s, Invocation& invocation) {
+                const TraceCertifier& certifier, const BestTraces* best, double wall_s,
+                Invocation& invocation) {
   const bool stopped = ending.exploration == "stopped" || certifier.is_asked();
   if (stopped && stop_flag().load() && !invocation.sink().has_errors()) {
     invocation.remark("stopped before the end: there may be more traces");
@@ -51,6 +53,9 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
   if (!stopped) invocation.answered();
   for (const auto& bound : ending.bounds) invocation.remark(bound);
   auto fields = certifier.fields();
+  if (best != nullptr) {
+    fields = best->fields() + (best->proof_fields().empty() ? fields : best->proof_fields());
+  }
   std::string in_all;
   if (options.search.up_to_symmetry) {
     fields += fmt::format("\"up_to_symmetry\":true,\"in_all\":{},", ending.in_all);
@@ -83,13 +88,14 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
     invocation.result(fmt::format(
         "{} {}{}, {}{}{}\n", writer.count(), writer.count() == 1 ? "trace" : "traces", in_all,
         ending.exploration, certifier.remark(ending.exploration), writer.checked_remark()));
+    if (best != nullptr) invocation.result(best->text());
   }
 }
 
 /// `--count` without a plan or constraints: no trace needs to be made.
 int count_only(const TracesOptions& options, const compiler::CompiledModel& model,
-               TraceCertifier& certifier, std::chrono::steady_clock::time_point start,
-               Invocation& invocation) {
+               TraceCertifier& certifier, const BestTraces* best,
+               std::chrono::steady_clock::time_point start, Invocation& invocation) {
   const auto counted = count_model_traces(options.search, model, certifier, invocation);
   if (!counted) return 0;
   const auto& ending = counted->ending;
@@ -103,8 +109,10 @@ int count_only(const TracesOptions& options, const compiler::CompiledModel& mode
   if (ending.complete && counted->number == "0") point_to_explanation(options, invocation);
   // Without interchangeable constants every trace is an orbit of its own.
   const bool all = options.search.up_to_symmetry;
+  const bool proved = best != nullptr && !best->proof_fields().empty();
   const auto fields =
-      certifier.fields() +
+      (best != nullptr ? best->fields() : "") +
+      (proved ? best->proof_fields() : certifier.fields()) +
       (all ? fmt::format("\"up_to_symmetry\":true,\"in_all\":{},", counted->number) : "");
   if (invocation.options().json) {
     invocation.document(
@@ -170,6 +178,12 @@ bool is_usable(const TracesOptions& options, Invocation& invocation) {
     return refuse("",
                   "--up-to-symmetry says for how many traces each one stands, which only "
                   "--format text and jsonl can");
+  }
+  if (options.search.up_to_symmetry && (options.model.best || !options.model.minimize.empty())) {
+    return refuse("--up-to-symmetry", "does not go with --minimize or --best");
+  }
+  if (options.model.best && !options.model.minimize.empty()) {
+    return refuse("--best", "takes the model's own objectives; it does not go with --minimize");
   }
   if (options.count && options.search.from > 1) {
     return refuse("", "--count does not go with --from");
@@ -245,52 +259,161 @@ int replay(const TracesOptions& options, Invocation& invocation) {
   return result->finished ? 0 : 4;
 }
 
+using StartTime = std::chrono::steady_clock::time_point;
+
+double seconds_since(StartTime start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::unique_ptr<runtime::ListFormat> listing_of(const TracesOptions& options,
+                                                const compiler::Compilation& compilation,
+                                                Invocation& invocation) {
+  if (options.count || invocation.options().json) return nullptr;
+  const auto wanted = options.search.sample > 0 ? options.search.sample : options.search.limit;
+  return make_listing(options.model, options.listing, wanted == 1, compilation, invocation);
+}
+
+TraceWriter::Form form_of(const TracesOptions& options, runtime::ListFormat* listing) {
+  return {options.listing.format, options.count,
+          options.search.sample > 0 ? 0 : options.search.limit, listing};
+}
+
+/// Lists, draws or counts the traces of what was compiled; with `best` these are the best ones of
+/// the model `all`.
+int list_compiled(const TracesOptions& options, const compiler::Compilation& compilation,
+                  BestTraces* best, const compiler::CompiledModel* all, StartTime start,
+                  Invocation& invocation) {
+  const auto& model = compilation.model;
+  const CertifyOption not_asked;
+  std::optional<TraceCertifier> certifier;
+  certifier.emplace(options.certify, options.model.models, model, invocation);
+  if (!certifier->ready()) return 0;
+  // Where the list says less, the optimum has a proof of its own.
+  const auto prove_optimum = [&] {
+    if (best == nullptr || !best->optimum().witness || !certifier->is_asked()) return;
+    certifier.emplace(not_asked, options.model.models, model, invocation);
+    best->certify(options.certify, options.model.models, *all, invocation);
+  };
+  if (options.count && !options.check && !model.has_constraints &&
+      (!options.search.up_to_symmetry || !has_symmetry(model))) {
+    prove_optimum();
+    return count_only(options, model, *certifier, best, start, invocation);
+  }
+  std::optional<TraceCheck> check;
+  if (options.check) check.emplace(*compilation.typed, &stop_flag(), invocation.sink());
+  const auto listing = listing_of(options, compilation, invocation);
+  const bool lists = !options.count && !invocation.options().json;
+  const StoppedText stopped(lists ? stopped_text(options.listing.format) : "");
+  TraceWriter writer(form_of(options, listing.get()), check ? &*check : nullptr, *certifier,
+                     invocation);
+  std::optional<Ending> ending;
+  if (model.has_constraints) {
+    ending = list_plan_traces(options.search, model, *certifier, writer, invocation);
+  } else {
+    ending = list_model_traces(options.search, model, *certifier, writer, invocation);
+  }
+  if (!ending) return 0;
+  if (best != nullptr && ending->exploration == "stopped") {
+    prove_optimum();
+  } else {
+    certifier->conclude(ending->exploration, ending->searched);
+    if (best != nullptr) best->adopt(*certifier);
+  }
+  close_list(options, model, writer, listing.get(), *ending, *certifier, best, seconds_since(start),
+             invocation);
+  return writer.count() == 0 && options.expect_traces ? 1 : 0;
+}
+
+/// One best trace, or the best so far; of the others nothing is said.
+int list_witness(const TracesOptions& options, const compiler::Compilation& compilation,
+                 BestTraces& best, StartTime start, Invocation& invocation) {
+  const auto& model = compilation.model;
+  const CertifyOption not_asked;
+  TraceCertifier none(not_asked, options.model.models, model, invocation);
+  std::optional<TraceCheck> check;
+  if (options.check) check.emplace(*compilation.typed, &stop_flag(), invocation.sink());
+  const auto listing = listing_of(options, compilation, invocation);
+  TraceWriter writer(form_of(options, listing.get()), check ? &*check : nullptr, none, invocation);
+  const auto& optimum = best.optimum();
+  if (optimum.witness) writer.write(*optimum.witness);
+  if (optimum.proved()) {
+    if (!options.certify.file.empty()) {
+      best.certify(options.certify, options.model.models, model, invocation);
+    } else {
+      invocation.answered();
+    }
+  }
+  close_list(options, model, writer, listing.get(), {}, none, &best, seconds_since(start),
+             invocation);
+  return optimum.proved() ? 0 : 4;
+}
+
+/// Traces with the least values of the objectives.
+int list_best(const TracesOptions& options, compiler::Compilation& compilation, StartTime start,
+              Invocation& invocation) {
+  if (compilation.model.objectives.empty()) {
+    invocation.sink().error_about(codes::kUsage, "--best",
+                                  "the model has no `minimize` statement; or give --minimize");
+    return 0;
+  }
+  if (options.search.hits == "all") {
+    invocation.sink().error_about(codes::kUsage, options.model.best ? "--best" : "--minimize",
+                                  "does not go with --hits all: a trace ends at its first hit");
+    return 0;
+  }
+  {
+    // That its files cannot be written is told before the search.
+    const TraceCertifier early(options.certify, options.model.models, compilation.model,
+                               invocation);
+    if (!early.ready()) return 0;
+  }
+  BestTraces best(compilation.model, invocation);
+  if (best.optimum().none) {
+    return list_compiled(options, compilation, &best, &compilation.model, start, invocation);
+  }
+  const auto& search = options.search;
+  const bool any_will_do = search.limit == 1 && search.order != "canonical" && !options.count &&
+                           search.sample == 0 && search.from == 1 && search.strategy == "auto" &&
+                           !search.split_initial && !options.distinct_given;
+  if (any_will_do || !best.optimum().proved()) {
+    return list_witness(options, compilation, best, start, invocation);
+  }
+  auto bounded = best.model_of_best(compilation.model);
+  if (!bounded && (options.count || search.sample > 0 || search.from > 1)) {
+    invocation.sink().error_about(codes::kUsage, "--minimize",
+                                  "the objective has too many different sums for its best traces "
+                                  "to be counted or drawn; --limit 1 gives one of them");
+    return 0;
+  }
+  if (!bounded) {
+    invocation.remark(
+        "the objective has too many different sums for a list: this is one best trace");
+    return list_witness(options, compilation, best, start, invocation);
+  }
+  std::swap(compilation.model, *bounded);
+  return list_compiled(options, compilation, &best, &*bounded, start, invocation);
+}
+
 int list_traces(const TracesOptions& options, Invocation& invocation) {
   const auto start = std::chrono::steady_clock::now();
   if (!options.replay.file.empty()) return replay(options, invocation);
   if (!is_usable(options, invocation)) return 0;
   if (!check_listing(options.model, options.listing, invocation.sink())) return 0;
-  const auto compilation = compile_models(options.model, invocation);
+  auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
   if (options.model.stats && !invocation.options().json && !compilation->costs.empty()) {
     write_error(compiler::cost_table(compilation->costs, invocation.files()));
   }
-  TraceCertifier certifier(options.certify, options.model.models, compilation->model, invocation);
-  if (!certifier.ready()) return 0;
-  if (options.count && !options.check && !compilation->model.has_constraints &&
-      (!options.search.up_to_symmetry || !has_symmetry(compilation->model))) {
-    return count_only(options, compilation->model, certifier, start, invocation);
-  }
-  const auto& model = compilation->model;
-  if (model.has_constraints && asks_for_models(options)) {
+  if (compilation->model.has_constraints && asks_for_models(options)) {
     invocation.sink().error_about(codes::kUsage, options.model.models.front(),
                                   "--sample, --from, --distinct and --strategy do not go with a "
                                   "plan or state constraints");
     return 0;
   }
-  std::optional<TraceCheck> check;
-  if (options.check) check.emplace(*compilation->typed, &stop_flag(), invocation.sink());
-  const bool lists = !options.count && !invocation.options().json;
-  const bool one_trace =
-      (options.search.sample > 0 ? options.search.sample : options.search.limit) == 1;
-  const auto listing =
-      lists ? make_listing(options.model, options.listing, one_trace, *compilation, invocation)
-            : nullptr;
-  const StoppedText stopped(lists ? stopped_text(options.listing.format) : "");
-  TraceWriter writer({options.listing.format, options.count,
-                      options.search.sample > 0 ? 0 : options.search.limit, listing.get()},
-                     check ? &*check : nullptr, certifier, invocation);
-  std::optional<Ending> ending;
-  if (model.has_constraints) {
-    ending = list_plan_traces(options.search, model, certifier, writer, invocation);
-  } else {
-    ending = list_model_traces(options.search, model, certifier, writer, invocation);
+  if (!options.model.minimize.empty() || options.model.best) {
+    return list_best(options, *compilation, start, invocation);
   }
-  if (!ending) return 0;
-  certifier.conclude(ending->exploration, ending->searched);
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  close_list(options, model, writer, listing.get(), *ending, certifier, wall.count(), invocation);
-  return writer.count() == 0 && options.expect_traces ? 1 : 0;
+  return list_compiled(options, *compilation, nullptr, nullptr, start, invocation);
 }
 
 }  // namespace
@@ -308,12 +431,20 @@ Command traces_command() {
       "  parallax traces domain.e --limit 0 --up-to-symmetry\n"
       "  parallax traces scenarios/two_regions/scenario.yaml --format jsonl\n"
       "  parallax traces domain.e --limit 0 --certify=domain.drat\n"
+      "  parallax traces domain.e --minimize \"count Happens(event,time)\"\n"
       "  parallax traces domain.e --format csv > traces.csv\n"
       "  parallax traces domain.e --limit 0 --format itf --output traces/\n"
       "  parallax traces old.e --compat decreasoner --format decreasoner\n"
       "  parallax traces domain.e --replay traces/trace_000001.itf.json");
   add_model_options(command, options->model);
   add_plan_options(command, options->model);
+  command
+      .option("--minimize", options->model.minimize,
+              "`count FORMULA` or `sum TERM: FORMULA` over their free variables: only traces for "
+              "which this is least; again: of these, those for which that is least")
+      .list(ListForm::kOneEachTime);
+  command.flag("--best", options->model.best,
+               "The same with what the model's `minimize` statements say, in their order");
   add_search_options(command, options->search);
   command.flag("--count", options->count, "Print only the number of traces");
   command

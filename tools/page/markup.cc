@@ -16,13 +16,13 @@ namespace {
 
 constexpr std::size_t kLongestName = 300;
 
-constexpr std::array<std::string_view, 34> kModelWords = {
+constexpr std::array<std::string_view, 35> kModelWords = {
     "sort",       "fluent",     "event",          "predicate", "function",   "range",
     "option",     "completion", "noninertial",    "xor",       "mutex",      "load",
     "reified",    "HoldsAt",    "Happens",        "Initiates", "Terminates", "Releases",
     "ReleasedAt", "Trajectory", "AntiTrajectory", "Started",   "Stopped",    "Clipped",
     "Declipped",  "true",       "false",          "agent",     "integer",    "boolean",
-    "predicates", "fluents",    "events",         "import"};
+    "predicates", "fluents",    "events",         "import",    "minimize"};
 constexpr std::array<std::string_view, 30> kPlanWords = {"def-cram-function",
                                                          "defun",
                                                          "defparameter",

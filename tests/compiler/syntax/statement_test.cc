@@ -42,6 +42,7 @@ TEST_CASE("every statement of the language is read and printed") {
       "mutex A, B, C\n"
       "xor A, B\n"
       "ignore N1, N2\n"
+      "minimize sum Price(item): Happens(Buy(item),time), count Happens(Go(),time)\n"
       "Delta: P(A).\n"
       "7: P(A).\n"
       "[x] P(x) -> Q(x).\n";
@@ -131,6 +132,7 @@ TEST_CASE("malformed statements are reported where they go wrong") {
       {"function F(a):", "E1010 1:1-8"},
       {"completion", "E1010 1:1-10"},
       {"completion A B C", "E1010 1:16-16"},
+      {"minimize", "E1010 1:1-8"},
       {"mutex A B", "E1010 1:9-9"},
       {"xor", "E1010 1:1-3"},
       {"ignore ,", "E1010 1:8-8"},
