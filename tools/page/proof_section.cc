@@ -135,7 +135,7 @@ std::string map_svg(const PageData& page, std::int64_t trace, const PageProofMap
   const PageProofPart whole{map.x, map.y, 0.0, 0.0};
   auto out = fmt::format(
       "<svg class=\"plot proof-map\" viewBox=\"0 0 {0} {0}\" role=\"img\" aria-label=\"Safe, "
-      "refuted and open over {1} and {2}\">\n<g class=\"parts\">{3}\n",
+      "refuted and open over {1} and {2}\">\n<g class=\"proved\">{3}\n",
       px(kMapSide), html_short(map.x_name), html_short(map.y_name), rect("open", x, y, whole, 1.0));
   for (const auto& part : joined_parts(map)) {
     // The second colour lies over the first one: together they are as much as each is to be.

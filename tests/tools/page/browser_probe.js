@@ -203,7 +203,9 @@ addEventListener("load", async () => {
     const found = await axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"] });
     seen.axe = found.passes.length;
     for (const violation of found.violations) {
-      faults.push(`axe ${violation.id}: ${violation.nodes[0].html.slice(0, 120)}`);
+      const [node] = violation.nodes;
+      const why = [...node.any, ...node.all, ...node.none].map((check) => check.message).join("; ");
+      faults.push(`axe ${violation.id}: ${node.html.slice(0, 120)}: ${why.slice(0, 200)}`);
     }
   }
   const report = btoa(unescape(encodeURIComponent(JSON.stringify({ faults, seen }))));
