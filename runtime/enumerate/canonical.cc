@@ -100,6 +100,14 @@ std::vector<std::vector<Literal>> projection_blocks(const CompiledModel& model, 
   return blocks;
 }
 
+std::vector<Literal> projected_atoms(const CompiledModel& model, Distinct distinct) {
+  std::vector<Literal> out;
+  for (const auto& block : projection_blocks(model, distinct)) {
+    out.insert(out.end(), block.begin(), block.end());
+  }
+  return out;
+}
+
 std::optional<std::vector<Literal>> make_canonical(SolverSession& session, Timepoint n,
                                                    std::span<const Literal> assumptions,
                                                    std::span<const Literal> order) {

@@ -15,6 +15,8 @@ using compiler::Literal;
 /// events at t and the state at t + 1; at last, if they count, the user predicates. One after the
 /// other the blocks are in canonical order.
 std::vector<std::vector<Literal>> projection_blocks(const CompiledModel& model, Distinct distinct);
+/// The same atoms, one block after the other.
+std::vector<Literal> projected_atoms(const CompiledModel& model, Distinct distinct);
 
 /// Moves the session's valuation to the first one in lexicographic order: `order` lists literals
 /// by weight, each in its preferred polarity. The session must hold a valuation found with horizon

@@ -11,9 +11,7 @@ namespace parallax::runtime {
 ModelEnumerator::ModelEnumerator(SolverSession& session, Distinct distinct, TraceOrder order,
                                  SymmetryBreaker* breaker)
     : session_(&session), symbols_(symbols_of(session.model())), wanted_(order), breaker_(breaker) {
-  for (const auto& block : projection_blocks(session.model(), distinct)) {
-    for (const auto atom : block) order_.push_back(~atom);
-  }
+  for (const auto atom : projected_atoms(session.model(), distinct)) order_.push_back(~atom);
 }
 
 std::optional<Trace> ModelEnumerator::next() {
@@ -157,12 +155,9 @@ SourceStats TraceTree::stats() const {
 }
 
 std::unique_ptr<TraceTree> make_trace_tree(SolverSession& session, Distinct distinct) {
-  std::vector<Literal> atoms;
-  for (const auto& block : projection_blocks(session.model(), distinct)) {
-    atoms.insert(atoms.end(), block.begin(), block.end());
-  }
-  return std::make_unique<TraceTree>(session, std::vector<std::vector<Literal>>{std::move(atoms)},
-                                     "tree", kMostChildren);
+  return std::make_unique<TraceTree>(
+      session, std::vector<std::vector<Literal>>{projected_atoms(session.model(), distinct)},
+      "tree", kMostChildren);
 }
 
 std::unique_ptr<TraceTree> make_guarded_blocking(SolverSession& session, Distinct distinct) {
@@ -180,12 +175,6 @@ namespace {
 /// The flag is looked at after so many conflicts.
 constexpr std::int64_t kSlice = 1000;
 
-std::vector<Literal> joined(const std::vector<std::vector<Literal>>& blocks) {
-  std::vector<Literal> out;
-  for (const auto& block : blocks) out.insert(out.end(), block.begin(), block.end());
-  return out;
-}
-
 }  // namespace
 
 SearchTraces::SearchTraces(const CompiledModel& model, Distinct distinct,
@@ -194,7 +183,7 @@ SearchTraces::SearchTraces(const CompiledModel& model, Distinct distinct,
       symbols_(symbols_of(model)),
       stop_(stop),
       conflicts_(conflicts),
-      search_(model.variable_count(), joined(projection_blocks(model, distinct))) {
+      search_(model.variable_count(), projected_atoms(model, distinct)) {
   for (std::size_t c = 0; c < model.clauses.size(); ++c) search_.add_clause(model.clauses[c]);
   search_.begin({});
 }

@@ -6,14 +6,6 @@
 namespace parallax::runtime {
 namespace {
 
-std::vector<Literal> told_apart(const CompiledModel& model, Distinct distinct) {
-  std::vector<Literal> out;
-  for (const auto& block : projection_blocks(model, distinct)) {
-    out.insert(out.end(), block.begin(), block.end());
-  }
-  return out;
-}
-
 /// Events decide what follows, so that states that cannot be reached are not met; but a clause that
 /// looks far may make too many of them differ.
 constexpr ComponentCounter::Limits kInOrderOfTime = {200'000'000, 300'000, 50'000'000};
@@ -25,8 +17,8 @@ ComponentTraces::ComponentTraces(const CompiledModel& model, Distinct distinct,
     : model_(model),
       symbols_(symbols_of(model)),
       stop_(stop),
-      counter_(model.variable_count(), told_apart(model, distinct)),
-      search_(model.variable_count(), told_apart(model, distinct)) {
+      counter_(model.variable_count(), projected_atoms(model, distinct)),
+      search_(model.variable_count(), projected_atoms(model, distinct)) {
   for (std::size_t c = 0; c < model.clauses.size(); ++c) {
     counter_.add_clause(model.clauses[c]);
     search_.add_clause(model.clauses[c]);

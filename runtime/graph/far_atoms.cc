@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/artifact/extended_model.h"
+
 namespace parallax::runtime {
 namespace {
 
@@ -42,19 +44,21 @@ class FarAtoms {
     out.release_slots = model_.release_slots;
     out.events = model_.events;
     out.origins = model_.origins;
+    const compiler::FixedInsertion moved(model_, fixed_.size());
     std::vector<Literal> written;
     for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
       const auto last = last_window(model_.clauses[c]);
       written.clear();
       for (const auto literal : model_.clauses[c]) {
-        written.push_back(is_far(literal, last) ? of_fixed(literal) : moved(literal));
+        written.push_back(moved(is_far(literal, last) ? of_fixed(literal) : literal));
       }
       add(written, model_.clause_origins[c], out);
       // The clause that needs the variable also says what it is.
       for (const auto literal : model_.clauses[c]) {
         if (!is_far(literal, last)) continue;
-        add(std::array{of_fixed(literal), ~moved(literal)}, model_.clause_origins[c], out);
-        add(std::array{~of_fixed(literal), moved(literal)}, model_.clause_origins[c], out);
+        const auto fixed = moved(of_fixed(literal));
+        add(std::array{fixed, ~moved(literal)}, model_.clause_origins[c], out);
+        add(std::array{~fixed, moved(literal)}, model_.clause_origins[c], out);
       }
     }
     return out;
@@ -81,14 +85,10 @@ class FarAtoms {
     return (literal.var() - model_.base() - 1) % model_.stride() <
            static_cast<std::int32_t>(model_.state_slots);
   }
+  /// By the number that an insertion takes for the added variable.
   Literal of_fixed(Literal literal) const {
-    const auto fixed = Literal::positive(model_.base() + fixed_.at(literal.var()) + 1);
+    const auto fixed = Literal::positive(model_.variable_count() + fixed_.at(literal.var()) + 1);
     return literal.is_positive() ? fixed : ~fixed;
-  }
-  Literal moved(Literal literal) const {
-    const auto by = is_timed(literal) ? static_cast<std::int32_t>(fixed_.size()) : 0;
-    const auto there = Literal::positive(literal.var() + by);
-    return literal.is_positive() ? there : ~there;
   }
   static void add(std::span<const Literal> clause, std::uint32_t origin, CompiledModel& out) {
     out.clauses.add(clause);

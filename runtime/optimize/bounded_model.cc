@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/artifact/extended_model.h"
+
 namespace parallax::runtime {
 namespace {
 
@@ -19,12 +21,6 @@ struct Reached {
   Literal literal;
 };
 using Sum = std::vector<Reached>;
-
-struct NewClause {
-  std::vector<Literal> literals;
-  Timepoint needed = 0;
-  bool is_definition = false;
-};
 
 /// Clauses over the model's variables and new ones behind them.
 class Totals {
@@ -44,7 +40,7 @@ class Totals {
     clauses_.push_back({std::move(literals), needed, is_definition});
   }
   bool full() const { return full_; }
-  const std::vector<NewClause>& clauses() const { return clauses_; }
+  const std::vector<compiler::AddedClause>& clauses() const { return clauses_; }
   const std::vector<Timepoint>& times() const { return times_; }
 
   Sum add_up(const Sum& a, const Sum& b, std::int64_t most, Timepoint t) {
@@ -100,7 +96,7 @@ class Totals {
   std::int32_t next_;
   std::size_t most_;
   bool full_ = false;
-  std::vector<NewClause> clauses_;
+  std::vector<compiler::AddedClause> clauses_;
   std::vector<Timepoint> times_;  // of the new variables
 };
 
@@ -180,59 +176,6 @@ std::int64_t largest_rest(const CompiledModel& model, const compiler::Objective&
   return std::max<std::int64_t>(value - from, -1);
 }
 
-/// The new variables go behind the fixed ones, so that blocks of timepoints stay whole.
-class Insertion {
- public:
-  Insertion(const CompiledModel& model, std::size_t added)
-      : base_(model.base()),
-        last_(model.variable_count()),
-        added_(static_cast<std::int32_t>(added)) {}
-  Literal operator()(Literal literal) const {
-    auto variable = literal.var();
-    if (variable > last_) {
-      variable += base_ - last_;
-    } else if (variable > base_) {
-      variable += added_;
-    }
-    const auto moved = Literal::positive(variable);
-    return literal.is_positive() ? moved : ~moved;
-  }
-
- private:
-  std::int32_t base_, last_, added_;
-};
-
-CompiledModel with_clauses(const CompiledModel& model, const Totals& totals) {
-  CompiledModel out = model;
-  const Insertion moved(model, totals.times().size());
-  for (const auto t : totals.times()) {
-    out.fixed.push_back({compiler::AtomKind::kAuxiliary, "", t, {}});
-  }
-  out.clauses = {};
-  std::vector<Literal> clause;
-  const auto write = [&](std::span<const Literal> literals) {
-    clause.clear();
-    for (const auto literal : literals) clause.push_back(moved(literal));
-    out.clauses.add(clause);
-  };
-  for (std::size_t i = 0; i < model.clauses.size(); ++i) write(model.clauses[i]);
-  const auto origin = static_cast<std::uint32_t>(out.origins.size());
-  out.origins.push_back({{}, compiler::OriginKind::kObjective, "objective", {}, "objective"});
-  out.sections.push_back({model.clauses.size(), totals.clauses().size(), 1, false, 0});
-  for (const auto& added : totals.clauses()) {
-    write(added.literals);
-    out.clause_timepoints.push_back(added.needed);
-    out.clause_origins.push_back(origin);
-    out.clause_is_definition.push_back(added.is_definition);
-  }
-  for (auto& objective : out.objectives) {
-    for (auto& term : objective.terms) {
-      if (term.literal) term.literal = moved(*term.literal);
-    }
-  }
-  return out;
-}
-
 }  // namespace
 
 std::optional<CompiledModel> with_bound(const CompiledModel& model,
@@ -272,7 +215,13 @@ std::optional<CompiledModel> with_bound(const CompiledModel& model,
     totals.add(some, 0);
   }
   if (totals.full()) return std::nullopt;
-  return with_clauses(model, totals);
+  std::vector<compiler::Atom> sums;
+  for (const auto t : totals.times()) {
+    sums.push_back({compiler::AtomKind::kAuxiliary, "", t, {}});
+  }
+  return compiler::extended_model(
+      model, sums, totals.clauses(),
+      {{}, compiler::OriginKind::kObjective, "objective", {}, "objective"});
 }
 
 }  // namespace parallax::runtime

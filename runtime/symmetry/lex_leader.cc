@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "compiler/artifact/extended_model.h"
+
 namespace parallax::runtime {
 
 using compiler::AtomKind;
@@ -154,45 +156,19 @@ void SymmetryBreaker::retire() {
 
 CompiledModel broken_model(const CompiledModel& model, const ModelSymmetry& symmetry,
                            const std::vector<std::vector<Literal>>& order) {
-  std::vector<std::vector<Literal>> clauses;
+  std::vector<compiler::AddedClause> clauses;
   std::int32_t added = 0;
   LexLeader leader(model, symmetry, order);
   leader.extend(
       order.size(),
-      [&](std::span<const Literal> clause) { clauses.emplace_back(clause.begin(), clause.end()); },
+      [&](std::span<const Literal> clause) {
+        clauses.push_back({{clause.begin(), clause.end()}, model.horizon, false});
+      },
       [&] { return Literal::positive(model.variable_count() + ++added); });
-  // The chains' variables come behind the fixed ones, and the slots move up.
-  const auto moved = [&](Literal literal) {
-    auto variable = literal.var();
-    if (variable > model.variable_count()) {
-      variable += model.base() - model.variable_count();
-    } else if (variable > model.base()) {
-      variable += added;
-    }
-    const auto positive = Literal::positive(variable);
-    return literal.is_positive() ? positive : ~positive;
-  };
-  CompiledModel out = model;
-  out.fixed.resize(model.fixed.size() + static_cast<std::size_t>(added),
-                   {AtomKind::kAuxiliary, {}, {}, {}});
-  out.clauses = {};
-  std::vector<Literal> scratch;
-  const auto add = [&](std::span<const Literal> clause) {
-    scratch.clear();
-    for (const auto literal : clause) scratch.push_back(moved(literal));
-    out.clauses.add(scratch);
-  };
-  for (std::size_t c = 0; c < model.clauses.size(); ++c) add(model.clauses[c]);
-  if (clauses.empty()) return out;
-  out.sections.push_back({model.clauses.size(), clauses.size(), 1, false, 0});
-  out.origins.push_back({{}, compiler::OriginKind::kInvariant, "symmetry", {}, "symmetry"});
-  for (const auto& clause : clauses) {
-    add(clause);
-    out.clause_timepoints.push_back(model.horizon);
-    out.clause_origins.push_back(static_cast<std::uint32_t>(out.origins.size()) - 1);
-    out.clause_is_definition.push_back(false);
-  }
-  return out;
+  const std::vector<compiler::Atom> chains(static_cast<std::size_t>(added),
+                                           {AtomKind::kAuxiliary, {}, {}, {}});
+  return compiler::extended_model(
+      model, chains, clauses, {{}, compiler::OriginKind::kInvariant, "symmetry", {}, "symmetry"});
 }
 
 }  // namespace parallax::runtime

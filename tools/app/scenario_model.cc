@@ -16,7 +16,6 @@
 #include "harness/campaign/campaign.h"
 #include "harness/campaign/replay.h"
 #include "harness/discrete/model_simulator.h"
-#include "harness/simulator/process_simulator.h"
 #include "tools/app/edited_scenario.h"
 #include "tools/app/file_kind.h"
 #include "tools/app/start_weights.h"
@@ -469,37 +468,6 @@ base::Result<base::SourceRange> formula_argument(const std::string& option, cons
     return context.sink().error_about(codes::kUsage, option, "the formula is empty");
   }
   return range;
-}
-
-harness::SimulatorFactory simulator_factory(const ScenarioModel& loaded,
-                                            const std::vector<std::string>& worker,
-                                            const std::atomic<bool>& stop,
-                                            const std::vector<std::string>& supervisor) {
-  const auto& spec = loaded.scenario.simulator;
-  if (loaded.world) {
-    return [world = loaded.world, &stop] {
-      return std::make_unique<harness::ModelSimulator>(world, &stop);
-    };
-  }
-  harness::ProcessOptions options;
-  options.command = spec.command;
-  if (options.command.empty()) {
-    options.command = worker;
-    options.command.insert(options.command.end(), {"--scenario-hash", loaded.scenario_hash, "--",
-                                                   loaded.scenario.file.string()});
-  } else {
-    options.command.insert(options.command.begin(), supervisor.begin(), supervisor.end());
-  }
-  options.hello_timeout_s = spec.hello_timeout_s;
-  options.reset_timeout_s = spec.reset_timeout_s;
-  options.act_timeout_s = spec.act_timeout_s;
-  options.observe_timeout_s = spec.observe_timeout_s;
-  options.close_timeout_s = spec.close_timeout_s;
-  options.min_real_time_factor = spec.min_real_time_factor;
-  options.memory_mb = spec.memory_mb;
-  options.recycle_after = spec.recycle_after;
-  options.stop = &stop;
-  return [options] { return std::make_unique<harness::ProcessSimulator>(options); };
 }
 
 }  // namespace parallax::tools

@@ -12,6 +12,7 @@
 #include "harness/campaign/sample_runner.h"
 #include "harness/campaign/trial.h"
 #include "tools/app/closed_loop.h"
+#include "tools/app/simulator_factory.h"
 #include "tools/app/start_guide.h"
 #include "tools/bench/bench.h"
 

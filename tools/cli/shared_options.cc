@@ -11,6 +11,7 @@
 #include "compiler/base/subprocess.h"
 #include "compiler/base/whole_number.h"
 #include "runtime/graph/model_traces.h"
+#include "tools/app/simulator_factory.h"
 #include "tools/cli/command.h"
 #include "tools/cli/limits.h"
 

@@ -8,6 +8,7 @@
 #include "compiler/base/codes/files.h"
 #include "compiler/base/file_io.h"
 #include "compiler/base/json.h"
+#include "tools/app/simulator_factory.h"
 
 namespace parallax::tools {
 

@@ -17,6 +17,7 @@
 #include "harness/simulator/process_simulator.h"
 #include "harness/simulator/simulator.h"
 #include "tools/app/scenario_model.h"
+#include "tools/app/simulator_factory.h"
 
 namespace parallax {
 
