@@ -9,11 +9,14 @@ namespace {
 /// Events decide what follows, so that states that cannot be reached are not met; but a clause that
 /// looks far may make too many of them differ.
 constexpr ComponentCounter::Limits kInOrderOfTime = {200'000'000, 300'000, 50'000'000};
+/// Some tenths of a second. The limits are of all calls together.
+constexpr ComponentCounter::Limits kTrialInOrderOfTime = {10'000'000, 20'000, 5'000'000};
+constexpr ComponentCounter::Limits kTrial = {30'000'000, 60'000, 10'000'000};
 
 }  // namespace
 
 ComponentTraces::ComponentTraces(const CompiledModel& model, Distinct distinct,
-                                 const std::atomic<bool>* stop)
+                                 const std::atomic<bool>* stop, ComponentEffort effort)
     : model_(model),
       symbols_(symbols_of(model)),
       stop_(stop),
@@ -23,8 +26,11 @@ ComponentTraces::ComponentTraces(const CompiledModel& model, Distinct distinct,
     counter_.add_clause(model.clauses[c]);
     search_.add_clause(model.clauses[c]);
   }
-  total_ = counter_.count({}, kInOrderOfTime, stop);
-  if (!total_ && counter_.reorder()) total_ = counter_.count({}, {}, stop);
+  const bool is_trial = effort == ComponentEffort::kTrial;
+  total_ = counter_.count({}, is_trial ? kTrialInOrderOfTime : kInOrderOfTime, stop);
+  if (!total_ && counter_.reorder()) {
+    total_ = counter_.count({}, is_trial ? kTrial : ComponentCounter::Limits{}, stop);
+  }
 }
 
 std::optional<Trace> ComponentTraces::next() {

@@ -3,6 +3,7 @@
 #include <gmpxx.h>
 
 #include <atomic>
+#include <cstdint>
 #include <optional>
 
 #include "compiler/artifact/compiled_model.h"
@@ -14,13 +15,17 @@ namespace parallax::runtime {
 
 using compiler::CompiledModel;
 
+/// How much may be looked at: a trial tells models that fall apart soon from others.
+enum class ComponentEffort : std::uint8_t { kTrial, kFull };
+
 /// The traces of a model whatever its clauses tie together, by their numbers: counted by
 /// components, and the k-th one found by what is left to count when its atoms are set one after the
 /// other.
 class ComponentTraces final : public TraceSource {
  public:
   /// `model` outlives the traces; `stop` may be null.
-  ComponentTraces(const CompiledModel& model, Distinct distinct, const std::atomic<bool>* stop);
+  ComponentTraces(const CompiledModel& model, Distinct distinct, const std::atomic<bool>* stop,
+                  ComponentEffort effort = ComponentEffort::kFull);
   /// How many there are; none: stopped, or too much to count.
   const std::optional<mpz_class>& total() const { return total_; }
   /// The next trace becomes the one that `before` others precede.

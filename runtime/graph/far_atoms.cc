@@ -19,6 +19,15 @@ class FarAtoms {
  public:
   explicit FarAtoms(const CompiledModel& model) : model_(model) {}
 
+  bool any() const {
+    for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
+      const auto last = last_window(model_.clauses[c]);
+      for (const auto literal : model_.clauses[c]) {
+        if (is_far(literal, last)) return true;
+      }
+    }
+    return false;
+  }
   /// False: more than `most` of them.
   bool find(std::size_t most) {
     for (std::size_t c = 0; c < model_.clauses.size(); ++c) {
@@ -106,5 +115,7 @@ std::optional<CompiledModel> with_far_atoms_fixed(const CompiledModel& model, st
   if (!atoms.find(most)) return std::nullopt;
   return atoms.replaced();
 }
+
+bool looks_far(const CompiledModel& model) { return FarAtoms(model).any(); }
 
 }  // namespace parallax::runtime

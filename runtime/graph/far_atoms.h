@@ -16,4 +16,7 @@ using compiler::CompiledModel;
 /// than `most` such atoms. Linear in the clauses.
 std::optional<CompiledModel> with_far_atoms_fixed(const CompiledModel& model, std::size_t most);
 
+/// Whether a clause ties atoms together that lie more than one timepoint apart.
+bool looks_far(const CompiledModel& model);
+
 }  // namespace parallax::runtime

@@ -9,6 +9,7 @@
 
 #include "runtime/enumerate/canonical.h"
 #include "runtime/enumerate/model_enumerator.h"
+#include "runtime/graph/far_atoms.h"
 #include "runtime/symmetry/lex_leader.h"
 
 namespace parallax::runtime {
@@ -65,7 +66,8 @@ ModelTraces::ModelTraces(const CompiledModel& model, TraceQuery query)
       if (paths_ == nullptr) refusal_ = remark_;
       break;
     case Strategy::kComponents:
-      if (!use_components()) refusal_ = "they are more components than can be counted";
+      if (!use_components(ComponentEffort::kFull))
+        refusal_ = "they are more components than can be counted";
       break;
   }
   if (source_ == nullptr) use_blocking();
@@ -153,8 +155,8 @@ void ModelTraces::use_graph(const GraphLimits& limits) {
   source_ = std::move(paths);
 }
 
-bool ModelTraces::use_components() {
-  auto components = std::make_unique<ComponentTraces>(model_, query_.distinct, query_.stop);
+bool ModelTraces::use_components(ComponentEffort effort) {
+  auto components = std::make_unique<ComponentTraces>(model_, query_.distinct, query_.stop, effort);
   if (!components->total()) return false;
   components->seek(given_);
   components_ = components.get();
@@ -213,8 +215,10 @@ bool ModelTraces::print_next(const TraceFormat& format, std::string& out) {
 void ModelTraces::seek(const mpz_class& before) {
   if (query_.strategy == Strategy::kAuto && paths_ == nullptr && before >= kFar) {
     attempts_.clear();
-    if (can_grow()) use_graph(query_.limits);
-    if (paths_ == nullptr && !use_components()) use_tree();
+    // What clauses tie together from afar a graph has to carry along.
+    const bool falls_apart = looks_far(model_) && use_components(ComponentEffort::kTrial);
+    if (!falls_apart && can_grow()) use_graph(query_.limits);
+    if (!falls_apart && paths_ == nullptr && !use_components(ComponentEffort::kFull)) use_tree();
   }
   if (paths_ != nullptr) return paths_->seek(before);
   if (components_ != nullptr) return components_->seek(before);
@@ -228,8 +232,27 @@ SourceStats ModelTraces::stats() const {
   return stats;
 }
 
+namespace {
+
+bool count_components(const CompiledModel& model, const TraceQuery& query, ComponentEffort effort,
+                      TraceCount& result) {
+  const ComponentTraces components(model, query.distinct, query.stop, effort);
+  if (!components.total()) return false;
+  result.count = *components.total();
+  result.complete = true;
+  result.stats = components.stats();
+  return true;
+}
+
+}  // namespace
+
 TraceCount count_traces(const CompiledModel& model, const TraceQuery& query) {
   TraceCount result;
+  // What clauses tie together from afar a graph has to carry along.
+  if (query.strategy == Strategy::kAuto && looks_far(model) &&
+      count_components(model, query, ComponentEffort::kTrial, result)) {
+    return result;
+  }
   ModelTraces traces(model, query);
   if (traces.graph() == nullptr && !traces.refusal().empty()) {
     result.refusal = traces.refusal();
@@ -250,11 +273,7 @@ TraceCount count_traces(const CompiledModel& model, const TraceQuery& query) {
     if (stopped()) break;
     if (query.strategy == Strategy::kComponents ||
         (query.strategy == Strategy::kAuto && result.count == kFar)) {
-      const ComponentTraces components(model, query.distinct, query.stop);
-      if (components.total()) {
-        result.count = *components.total();
-        result.complete = true;
-        result.stats = components.stats();
+      if (count_components(model, query, ComponentEffort::kFull, result)) {
         result.stats.remark = traces.stats().remark;
         return result;
       }

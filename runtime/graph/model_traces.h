@@ -95,7 +95,7 @@ class ModelTraces final : public TraceSource {
   SolveStatus has_trace();
   void use_search(std::int64_t conflicts);
   void use_graph(const GraphLimits& limits);
-  bool use_components();
+  bool use_components(ComponentEffort effort);
   void attempt_graph();
   void leave_search();
   bool is_due() const { return !attempts_.empty() && attempts_.back().given == given_; }

@@ -40,9 +40,11 @@ std::string action_rows(const PageProofAction& action) {
   std::string out;
   for (const auto& test : action.tests) {
     out += fmt::format(
-        "<tr><th scope=\"row\"><code>{}</code></th><td>{}<br><code>{}</code> in <code>{}</code>"
-        "</td><td>{}</td><td class=\"num\">{}</td><td class=\"num\">{}</td><td "
-        "class=\"num\">{}</td></tr>\n",
+        "<tr><th scope=\"row\"><code>{}</code></th><td data-label=\"Test\">{}<br><code>{}</code> "
+        "in <code>{}</code></td><td data-label=\"Share of the starts\">{}</td><td "
+        "class=\"num\" data-label=\"Safe\">{}</td><td class=\"num\" "
+        "data-label=\"Refuted\">{}</td><td "
+        "class=\"num\" data-label=\"Open\">{}</td></tr>\n",
         html_short(action.event), html_short(test.asks), html_short(test.function),
         html_short(test.source), bar(test), share_text(test.safe), share_text(test.refuted),
         share_text(test.open));
@@ -207,8 +209,9 @@ std::string proof_html(const PageData& page, const PageProof& proof) {
   }
   auto out = fmt::format(
       "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Proofs of trace {0}\">"
-      "<table><caption>Trace {0}{1}</caption><thead><tr><th scope=\"col\">Action</th><th "
-      "scope=\"col\">Test of its controller</th><th scope=\"col\">Share of the starts</th><th "
+      "<table class=\"flow\"><caption>Trace {0}{1}</caption><thead><tr><th "
+      "scope=\"col\">Action</th><th scope=\"col\">Test of its controller</th><th "
+      "scope=\"col\">Share of the starts</th><th "
       "scope=\"col\">Safe</th><th scope=\"col\">Refuted</th><th scope=\"col\">Open</th></tr>"
       "</thead><tbody>\n{2}</tbody></table></div>\n",
       proof.trace, proof.stopped ? " (the search was stopped early)" : "", rows);
@@ -228,11 +231,12 @@ std::string proof_section(const PageData& page) {
   if (page.proofs.empty()) return {};
   std::string out =
       "<p>Tests of controllers that are geometry and nothing else, decided for whole boxes of "
-      "starts: where such a test passes throughout (<span class=\"mark safe\"></span>safe), where "
-      "the "
-      "controller refuses throughout (<span class=\"mark refuted\"></span>refuted), and what is "
-      "left to simulation (<span class=\"mark undecided\"></span>open). From a safe start another "
-      "part of the action may still fail.</p>\n";
+      "starts: where such a test passes throughout <span class=\"legend\">(<span class=\"mark "
+      "safe\"></span>safe)</span>, where the controller refuses throughout <span "
+      "class=\"legend\">(<span class=\"mark "
+      "refuted\"></span>refuted)</span>, and what is left to simulation <span "
+      "class=\"legend\">(<span class=\"mark undecided\"></span>open)</span>. From a safe start "
+      "another part of the action may still fail.</p>\n";
   for (const auto& proof : page.proofs) out += proof_html(page, proof);
   return section_of("proof", "Proofs about starts", out);
 }
