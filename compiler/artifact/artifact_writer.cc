@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "compiler/artifact/artifact_text.h"
 #include "compiler/artifact/clause_runs.h"
@@ -13,9 +14,10 @@ namespace {
 
 class ArtifactWriter {
  public:
-  explicit ArtifactWriter(const CompiledModel& model) : model_(model) {}
+  using Take = std::function<void(std::string_view)>;
+  ArtifactWriter(const CompiledModel& model, const Take& take) : model_(model), take_(take) {}
 
-  std::string run(const ArtifactOptions& options) && {
+  void run(const ArtifactOptions& options) && {
     check_names();
     write_frame();
     write_names();
@@ -24,12 +26,20 @@ class ArtifactWriter {
     write_axioms();
     write_sections();
     write_plan();
+    const auto header =
+        fmt::format("p cnf {} {}\n", model_.variable_count(), model_.clause_count());
+    LineHash hash;
+    add_lines(out_ + header, hash);
+    const auto entries = std::exchange(out_, {});
+    write_clauses([&](std::string_view lines) { add_lines(lines, hash); });
+
+    take_(entries);
+    print("{}fnv1a64 {:016x}\n", kHashEntry, hash.value());
     if (options.projection_line) out_ += "c t pmc\n";
-    print("p cnf {} {}\n", model_.variable_count(), model_.clauses.size());
+    out_ += header;
     if (options.projection_line) write_projection();
-    write_clauses();
-    write_hash();
-    return std::move(out_);
+    hand_over(take_);
+    write_clauses(take_);
   }
 
  private:
@@ -152,7 +162,7 @@ class ArtifactWriter {
     for (const auto& section : model_.sections) {
       PARALLAX_REQUIRE(section.begin == begin, "sections cover the clauses, in order");
       if (section.copies == 0) continue;  // it says nothing at this horizon
-      begin += section.clauses * static_cast<std::size_t>(section.copies);
+      begin += section.clauses * static_cast<std::size_t>(model_.stored_copies(section));
       PARALLAX_REQUIRE(begin <= model_.clauses.size(), "sections cover the clauses, in order");
       if (section.repeated) {
         require_copies(section);
@@ -174,7 +184,7 @@ class ArtifactWriter {
   void require_copies(const Section& section) const {
     PARALLAX_REQUIRE(section.copies == model_.horizon - section.width + 1,
                      "one copy for every timepoint");
-    for (std::int64_t copy = 1; copy < section.copies; ++copy) {
+    for (std::int64_t copy = 1; copy < model_.stored_copies(section); ++copy) {
       for (std::size_t i = section.begin; i < section.begin + section.clauses; ++i) {
         const auto j = i + section.clauses * static_cast<std::size_t>(copy);
         PARALLAX_REQUIRE(is_shifted(model_, model_.clauses[i], model_.clauses[j], copy) &&
@@ -220,37 +230,53 @@ class ArtifactWriter {
 
   void write_projection() {
     out_ += "c p show";
-    for (const auto v : observable_variables(model_)) number(v);
+    for_each_observable(model_, [&](std::int32_t v) {
+      number(v);
+      if (out_.size() >= kPiece) hand_over(take_);
+    });
     out_ += " 0\n";
   }
 
-  void write_clauses() {
-    for (std::size_t i = 0; i < model_.clauses.size(); ++i) {
-      for (const auto literal : model_.clauses[i]) {
-        const fmt::format_int digits(literal.dimacs());
-        out_.append(digits.data(), digits.size());
-        out_ += ' ';
+  /// In pieces of whole lines.
+  void write_clauses(const Take& take) {
+    for (const auto& section : model_.sections) {
+      for (std::int64_t copy = 0; copy < section.copies; ++copy) {
+        const auto stored = model_.folded ? 0 : copy;
+        const auto begin = section.begin + section.clauses * static_cast<std::size_t>(stored);
+        for (auto i = begin; i < begin + section.clauses; ++i) {
+          write_clause(model_.clauses[i], copy - stored);
+          if (out_.size() >= kPiece) hand_over(take);
+        }
       }
-      out_ += "0\n";
+    }
+    hand_over(take);
+  }
+  void write_clause(std::span<const Literal> clause, std::int64_t steps) {
+    for (const auto literal : clause) {
+      const fmt::format_int digits(model_.moved(literal, steps).dimacs());
+      out_.append(digits.data(), digits.size());
+      out_ += ' ';
+    }
+    out_ += "0\n";
+  }
+
+  void hand_over(const Take& take) {
+    take(out_);
+    out_.clear();
+  }
+  static void add_lines(std::string_view lines, LineHash& hash) {
+    while (!lines.empty()) {
+      const auto end = lines.find('\n');
+      hash.add(lines.substr(0, end));
+      lines.remove_prefix(end + 1);
     }
   }
 
-  /// Behind the other entries.
-  void write_hash() {
-    LineHash hash;
-    std::size_t header = 0, next = 0;
-    for (std::size_t at = 0; at < out_.size(); at = next) {
-      const auto end = out_.find('\n', at);
-      const auto text = std::string_view(out_).substr(at, end - at);
-      next = end + 1;
-      if (text.starts_with("c dec ")) header = next;
-      hash.add(text);
-    }
-    out_.insert(header, fmt::format("{}fnv1a64 {:016x}\n", kHashEntry, hash.value()));
-  }
+  static constexpr std::size_t kPiece = std::size_t{1} << 16U;  // bytes, or one clause more
 
   const CompiledModel& model_;
-  std::string out_;
+  const Take& take_;
+  std::string out_;          // what is not yet handed over
   std::vector<bool> named_;  // slots of fluents, releases and events
   std::vector<bool> fixed_occur_;
   PlaceWriter places_;
@@ -259,7 +285,14 @@ class ArtifactWriter {
 }  // namespace
 
 std::string to_artifact(const CompiledModel& model, const ArtifactOptions& options) {
-  return ArtifactWriter(model).run(options);
+  std::string text;
+  write_artifact(model, options, [&](std::string_view piece) { text += piece; });
+  return text;
+}
+
+void write_artifact(const CompiledModel& model, const ArtifactOptions& options,
+                    const std::function<void(std::string_view)>& take) {
+  ArtifactWriter(model, take).run(options);
 }
 
 bool is_artifact_name(std::string_view name) { return name.ends_with(".cnf"); }

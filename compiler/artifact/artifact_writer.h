@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,12 @@ struct ArtifactOptions {
 /// moved, with equal origins and flags; origins have ids (describe_sources); the slots of fluents,
 /// releases and events carry their kinds and names. Linear in the size of the text.
 std::string to_artifact(const CompiledModel& model, const ArtifactOptions& options = {});
+
+/// The same bytes piece by piece. A folded model gives those of the model with all copies. The
+/// clauses are gone through twice, since the hash of all lines comes before them: what is held is
+/// the model and a piece.
+void write_artifact(const CompiledModel& model, const ArtifactOptions& options,
+                    const std::function<void(std::string_view)>& take);
 
 /// The file name ends in `.cnf`: the program reads it as a compiled model, not as a domain file.
 bool is_artifact_name(std::string_view name);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <set>
 
 namespace parallax::compiler {
 namespace {
@@ -62,14 +63,29 @@ Occurrences occurrences(const CompiledModel& model) {
   return found;
 }
 
-std::vector<std::int32_t> observable_variables(const CompiledModel& model) {
-  std::vector<std::int32_t> variables;
-  model.for_each_atom([&](const AtomRef& atom) {
-    const bool observable = atom.kind == AtomKind::kHoldsAt || atom.kind == AtomKind::kHappens;
-    if (observable) variables.push_back(atom.variable);
-  });
-  std::sort(variables.begin(), variables.end());
-  return variables;
+void for_each_observable(const CompiledModel& model,
+                         const std::function<void(std::int32_t)>& visit) {
+  std::set<std::string_view> events;
+  std::vector<std::uint32_t> slots;
+  for (const auto& fluent : model.fluents) {
+    if (fluent.slot) slots.push_back(*fluent.slot);
+  }
+  for (const auto& event : model.events) {
+    events.insert(event.name);
+    if (event.slot) slots.push_back(*event.slot);
+  }
+  std::sort(slots.begin(), slots.end());
+  for (std::size_t i = 0; i < model.fixed.size(); ++i) {
+    const auto& atom = model.fixed[i];
+    const bool observable = atom.kind == AtomKind::kHoldsAt ||
+                            (atom.kind == AtomKind::kHappens && events.contains(atom.name));
+    if (observable) visit(static_cast<std::int32_t>(i) + 1);
+  }
+  for (Timepoint t = 0; t <= model.horizon; ++t) {
+    for (const auto slot : slots) {
+      if (t < model.horizon || slot < model.state_slots) visit(model.variable(slot, t));
+    }
+  }
 }
 
 bool is_shifted(const CompiledModel& model, std::span<const Literal> first,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,8 +31,10 @@ struct Occurrences {
 };
 Occurrences occurrences(const CompiledModel& model);
 
-/// The variables of HoldsAt and Happens, ascending: two models that agree on them are one trace.
-std::vector<std::int32_t> observable_variables(const CompiledModel& model);
+/// Calls `visit` for the variables of HoldsAt and Happens, ascending: two models that agree on them
+/// are one trace.
+void for_each_observable(const CompiledModel& model,
+                         const std::function<void(std::int32_t)>& visit);
 
 /// Is `later` the clause `first` moved by `steps` timepoints?
 bool is_shifted(const CompiledModel& model, std::span<const Literal> first,

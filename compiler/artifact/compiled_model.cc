@@ -23,6 +23,15 @@ Atom CompiledModel::atom(std::int32_t v) const {
   return {slot.kind, slot.name, place / stride(), {}};
 }
 
+std::size_t CompiledModel::clause_count() const {
+  if (!folded) return clauses.size();
+  std::size_t count = 0;
+  for (const auto& section : sections) {
+    count += section.clauses * static_cast<std::size_t>(section.copies);
+  }
+  return count;
+}
+
 void CompiledModel::for_each_atom(const std::function<void(const AtomRef&)>& visit) const {
   const PlanAtom none;
   const auto show = [&](AtomKind kind, std::uint32_t slot, Timepoint t, const std::string& name,

@@ -182,6 +182,9 @@ struct CompiledModel {
   std::vector<std::uint32_t> clause_origins;  // index into `origins`
   std::vector<bool> clause_is_definition;     // defines an auxiliary: true in itself, says nothing
   std::vector<Section> sections;              // cover the clauses, in order
+  /// Of each section only the first copy is among the clauses: enough to write the model, whatever
+  /// its horizon, and to be written is all that such a model is good for.
+  bool folded = false;
   std::vector<Origin> origins;
   std::vector<PlanStep> plan;         // by location number; empty without a plan
   std::vector<PlanCut> plan_cuts;     // empty if the whole plan was unrolled
@@ -196,6 +199,18 @@ struct CompiledModel {
   std::int32_t variable(std::uint32_t slot, Timepoint t) const {
     return base() + t * stride() + static_cast<std::int32_t>(slot) + 1;
   }
+  /// The literal `steps` timepoints later; one of a fixed variable stays.
+  Literal moved(Literal literal, std::int64_t steps) const {
+    if (literal.var() <= base()) return literal;
+    const auto by = static_cast<std::int32_t>(steps) * stride();
+    return Literal::from_dimacs(literal.dimacs() + (literal.is_positive() ? by : -by));
+  }
+  /// Copies of the section that are among the clauses.
+  std::int64_t stored_copies(const Section& section) const {
+    return folded ? std::min<std::int64_t>(section.copies, 1) : section.copies;
+  }
+  /// With all copies of all sections.
+  std::size_t clause_count() const;
   /// The atom of a variable, 1 <= v <= variable_count().
   Atom atom(std::int32_t v) const;
   /// None: false in every trace, or there is no such timepoint.

@@ -120,7 +120,7 @@ void sort_clauses(CompiledModel& model) {
             return std::pair(x.var(), x.dimacs()) < std::pair(y.var(), y.dimacs());
           });
     });
-    for (std::int64_t copy = 0; copy < section.copies; ++copy) {
+    for (std::int64_t copy = 0; copy < model.stored_copies(section); ++copy) {
       for (auto i : order) {
         i += section.clauses * static_cast<std::size_t>(copy);
         sorted.clauses.add(model.clauses[i]);

@@ -309,16 +309,16 @@ bool ClauseReader::read_header(std::uint64_t expected_clauses) {
 /// The current line is `c p show`.
 bool ClauseReader::read_projection() {
   cursor_.raw_word(), cursor_.raw_word(), cursor_.raw_word();
-  for (const auto wanted : observable_variables(model_)) {
+  bool good = true;
+  for_each_observable(model_, [&](std::int32_t wanted) {
     std::int64_t v = 0;
-    if (!cursor_.number("a variable", 0, model_.variable_count(), v)) return false;
-    if (v != wanted) {
-      return cursor_.fail(codes::kArtifactProjection,
-                          fmt::format("found {} where {} belongs", v, wanted));
-    }
-  }
+    good = good && cursor_.number("a variable", 0, model_.variable_count(), v);
+    if (!good || v == wanted) return;
+    good = cursor_.fail(codes::kArtifactProjection,
+                        fmt::format("found {} where {} belongs", v, wanted));
+  });
   std::int64_t end = 0;
-  return cursor_.number("the closing 0", 0, 0, end) && cursor_.end_of_line();
+  return good && cursor_.number("the closing 0", 0, 0, end) && cursor_.end_of_line();
 }
 
 bool ClauseReader::read_section(const Section& section, const std::vector<ClauseRun>& runs) {

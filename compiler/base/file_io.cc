@@ -115,8 +115,10 @@ Result<FileId> register_text(std::string name, std::string text, SourceFiles& fi
   return id;
 }
 
-Status write_file_atomically(const std::filesystem::path& path, std::string_view text,
-                             DiagnosticSink& sink) {
+namespace {
+
+Status write_pieces_atomically(const std::filesystem::path& path, const TextPieces& pieces,
+                               DiagnosticSink& sink) {
   struct ::stat status {};
   // Renaming over a device or a pipe would replace it, and over /dev/stdout that link.
   if (::stat(path.c_str(), &status) == 0 &&
@@ -143,10 +145,27 @@ Status write_file_atomically(const std::filesystem::path& path, std::string_view
   };
   {
     const Descriptor fd(opened);
-    if (!write_all(fd.get(), text) || ::fsync(fd.get()) != 0) return fail();
+    int reason = 0;
+    pieces([&](std::string_view piece) {
+      if (reason == 0 && !write_all(fd.get(), piece)) reason = errno;
+    });
+    if (reason == 0 && ::fsync(fd.get()) != 0) reason = errno;
+    errno = reason;
+    if (reason != 0) return fail();
   }
   if (::rename(temporary.c_str(), path.c_str()) != 0) return fail();
   return Unit{};
+}
+
+TextPieces one_piece(std::string_view text) {
+  return [text](const std::function<void(std::string_view)>& take) { take(text); };
+}
+
+}  // namespace
+
+Status write_file_atomically(const std::filesystem::path& path, std::string_view text,
+                             DiagnosticSink& sink) {
+  return write_pieces_atomically(path, one_piece(text), sink);
 }
 
 Status check_output(const std::filesystem::path& path, const SourceFiles& files,
@@ -162,8 +181,13 @@ Status check_output(const std::filesystem::path& path, const SourceFiles& files,
 
 Status write_output(const std::filesystem::path& path, std::string_view text,
                     const SourceFiles& files, DiagnosticSink& sink) {
+  return write_output(path, one_piece(text), files, sink);
+}
+
+Status write_output(const std::filesystem::path& path, const TextPieces& pieces,
+                    const SourceFiles& files, DiagnosticSink& sink) {
   if (!check_output(path, files, sink)) return sink.already_reported();
-  return write_file_atomically(path, text, sink);
+  return write_pieces_atomically(path, pieces, sink);
 }
 
 Result<std::string> read_file_of(const std::filesystem::path& folder, std::string_view name,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -38,6 +39,12 @@ Status check_output(const std::filesystem::path& path, const SourceFiles& files,
 
 /// write_file_atomically for what a command was asked to write, after check_output.
 Status write_output(const std::filesystem::path& path, std::string_view text,
+                    const SourceFiles& files, DiagnosticSink& sink);
+
+/// Hands a text over piece by piece, as it is made.
+using TextPieces = std::function<void(const std::function<void(std::string_view)>&)>;
+/// The same for a text that is never held as a whole.
+Status write_output(const std::filesystem::path& path, const TextPieces& pieces,
                     const SourceFiles& files, DiagnosticSink& sink);
 
 /// Reads FOLDER/NAME, which must really lie there: a link that leads out is refused (kLoadOutside).

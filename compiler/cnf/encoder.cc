@@ -21,8 +21,10 @@ namespace {
 /// place, and writes the clauses over the places. The passes stand in the table below.
 class Encoder {
  public:
-  explicit Encoder(GroundModel& model)
-      : model_(model), formulas_(model.formulas()), constraints_(model.constraints()) {}
+  Encoder(GroundModel& model, bool folded)
+      : model_(model), formulas_(model.formulas()), constraints_(model.constraints()) {
+    out_.folded = folded;
+  }
 
   static std::span<const Pass<Encoder>> passes();
   PassSize size() const;
@@ -277,15 +279,10 @@ class Encoder {
       section.copies = model_.horizon() - width + 1;
     }
     std::vector<Literal> moved;
-    for (Timepoint s = 0; s < section.copies; ++s) {
+    for (Timepoint s = 0; s < out_.stored_copies(section); ++s) {
       for (std::size_t i = 0; i < clauses.size(); ++i) {
         moved.clear();
-        for (const auto literal : numbered[i]) {
-          const bool moves = literal.var() > out_.base();
-          const auto variable = literal.var() + (moves ? s * out_.stride() : 0);
-          moved.push_back(literal.is_positive() ? Literal::positive(variable)
-                                                : ~Literal::positive(variable));
-        }
+        for (const auto literal : numbered[i]) moved.push_back(out_.moved(literal, s));
         out_.clauses.add(moved);
         out_.clause_timepoints.push_back(clauses[i].needed + s);
         out_.clause_origins.push_back(clauses[i].origin);
@@ -372,8 +369,8 @@ std::string Encoder::hash_text(const base::SourceFiles* /*files*/) const {
 
 std::vector<PassInfo> encode_passes() { return infos_of(Encoder::passes()); }
 
-CompiledModel encode(GroundModel& model, PassLog* log) {
-  Encoder encoder(model);
+CompiledModel encode(GroundModel& model, PassLog* log, bool folded) {
+  Encoder encoder(model, folded);
   run_passes(Encoder::passes(), encoder, log);
   return std::move(encoder).take();
 }

@@ -13,7 +13,8 @@ namespace parallax::compiler {
 /// in which it is used (Plaisted and Greenbaum 1986). What holds at every timepoint is encoded once
 /// and repeated by moving its variables. Fills everything of the result but `plan` and
 /// `has_constraints`. Linear in the formula graph, and in the clauses written. `log` may be null.
-CompiledModel encode(GroundModel& model, PassLog* log = nullptr);
+/// `folded`: as CompiledModel::folded.
+CompiledModel encode(GroundModel& model, PassLog* log = nullptr, bool folded = false);
 
 /// The passes of encoding in their order.
 std::vector<PassInfo> encode_passes();

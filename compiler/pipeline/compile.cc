@@ -368,7 +368,7 @@ base::Result<Compilation> compile_model(const CompileInput& input, base::SourceF
     if (!encode_objective(objective, *ground, grounder, sink)) return sink.already_reported();
   }
   Compilation result;
-  result.model = encode(*ground, &log);
+  result.model = encode(*ground, &log, input.folded);
   result.passes = std::move(log);
   if (input.costs) result.costs = axiom_costs(*ground, result.model);
   result.model.has_constraints = !constraints->empty();

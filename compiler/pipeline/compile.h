@@ -71,6 +71,9 @@ struct CompileInput {
   bool costs = false;     // also count what each axiom costs
   std::string emit_pass;  // the value after this pass is wanted as text; may be empty
   bool lint = false;      // also report what is legal but hardly meant (W21xx)
+  /// The model is only to be written (CompiledModel::folded): its memory does not grow with the
+  /// horizon by what holds at every timepoint.
+  bool folded = false;
 };
 
 struct Compilation {

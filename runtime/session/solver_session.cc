@@ -12,6 +12,7 @@ SolverSession::SolverSession(const CompiledModel& model, std::unique_ptr<SatSolv
       lengths_(model),
       variable_count_(lengths_.last()),
       loading_(loading) {
+  PARALLAX_REQUIRE(!model.folded, "a model with all copies of its clauses");
   for (Timepoint t = 1; t <= model.horizon; ++t) guards_.push_back(lengths_.reaches(t));
   values_.resize(static_cast<std::size_t>(model.variable_count()));
   if (loading_ == Loading::kWhole) load(model.horizon);

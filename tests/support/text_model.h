@@ -20,7 +20,8 @@ struct TextModel {
   std::unique_ptr<compiler::GroundModel> ground;
   compiler::CompiledModel compiled;
 
-  explicit TextModel(const std::string& text, const compiler::GroundOptions& options = {}) {
+  explicit TextModel(const std::string& text, const compiler::GroundOptions& options = {},
+                     bool folded = false) {
     const auto file = files.add("test.e", text);
     auto ast = compiler::load_model_text(file, ".", {}, files, sink);
     if (!ast) return;
@@ -30,7 +31,7 @@ struct TextModel {
     auto grounded = compiler::ground_model(*typed, options, sink);
     if (!grounded) return;
     ground = std::make_unique<compiler::GroundModel>(*std::move(grounded));
-    compiled = compiler::encode(*ground);
+    compiled = compiler::encode(*ground, nullptr, folded);
   }
 
   /// The ids of what was reported, in order, blank-separated.

@@ -33,6 +33,7 @@ struct ModelOptions {
   bool lint = false;                  // `check`: report what is legal but hardly meant
   std::string emit_pass;              // `compile`: the pass whose value is printed
   bool stats = false;                 // count what each axiom costs; commands offer it themselves
+  bool folded = false;                // `compile`: the model is only to be written
 };
 
 compiler::CompileInput compile_input(const ModelOptions& options, const Context& context);

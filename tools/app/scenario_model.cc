@@ -168,6 +168,7 @@ struct Switches {
   bool costs = false;
   bool plain = false;  // plain_models.h
   std::string emit_pass = {};
+  bool folded = false;
   std::optional<std::int64_t> horizon = std::nullopt;
   bool with_plan = true;
   bool lint = false;
@@ -179,6 +180,7 @@ struct Switches {
   void apply(compiler::CompileInput& input) const {
     input.costs = costs;
     input.emit_pass = emit_pass;
+    input.folded = folded;
     input.lint = input.lint || lint;
     if (horizon) input.horizon = *horizon;
     if (!with_plan) input.plan.reset();
@@ -448,7 +450,7 @@ base::Result<ScenarioModel> load_plain_run(const std::filesystem::path& path,
 }
 
 base::Result<compiler::Compilation> compile_models(const ModelOptions& options, Context& context) {
-  return compile(options, context, {options.stats, false, options.emit_pass});
+  return compile(options, context, {options.stats, false, options.emit_pass, options.folded});
 }
 
 base::Result<compiler::Compilation> compile_plain_models(const ModelOptions& options,

@@ -67,6 +67,7 @@ const std::vector<Section>& sections();
 void measure_start(Bench& bench);
 void measure_compilation(Bench& bench);
 void measure_horizons(Bench& bench);
+void measure_growth(Bench& bench);
 void measure_examples(Bench& bench);
 void measure_counting(Bench& bench);
 void measure_listing(Bench& bench);
@@ -84,10 +85,15 @@ void measure_monitor(Bench& bench);
 void measure_starts(Bench& bench);
 void measure_build(Bench& bench);
 
-/// Compiles a model file in this process and prints one line: processor time of reading and
-/// grounding, of making clauses, of writing them as text; numbers of clauses and bytes. 3 if the
-/// model has an error.
-int print_stages(const std::string& file);
+/// A model file, and a plan with its binding table or none.
+struct StagesInput {
+  std::string model, plan, binding;
+};
+
+/// Compiles in this process and prints one line: processor time of reading and checking the model,
+/// of grounding it, of the plan and making clauses, of writing them as text; numbers of clauses and
+/// bytes. Grounding is measured by wall time. 3 if there is an error.
+int print_stages(const StagesInput& input);
 
 /// CaDiCaL and nothing else: reads a DIMACS file with the solver's own reader and solves it once.
 /// The exit code of a SAT competition program: 10 satisfiable, 20 unsatisfiable; 1 if the file

@@ -24,6 +24,7 @@ const std::vector<Section>& sections() {
       {"examples", "the examples of the reasoner of 2005", measure_examples},
       {"difference", "two revisions of a model compared", measure_difference},
       {"horizons", "compile time over the horizon", measure_horizons},
+      {"growth", "every stage over items, rooms and steps of a household", measure_growth},
       {"plan", "a long plan in the kitchen", measure_plan},
       {"plan-folder", "a folder of plans of 3,000 lines", measure_plan_folder},
       {"world", "the two-region world", measure_world},
@@ -109,12 +110,17 @@ int run(int argc, char** argv) {
   for (auto* command : {&model, &solve, &stages}) {
     command->option("name", argument, "Name or file").required();
   }
+  StagesInput staged;
+  stages.option("--plan", staged.plan, "A plan that goes with the model, with its --bind");
+  stages.option("--bind", staged.binding, "Its binding table");
   const auto line = parse_and_print(program, argc, argv);
   if (line.exit_code) return *line.exit_code;
   if (!line.command) return measure_all(options);
   const auto* command = program.commands[*line.command];
   if (command == &model) return print_model(argument, tuned);
-  return command == &solve ? solve_plainly(argument) : print_stages(argument);
+  if (command == &solve) return solve_plainly(argument);
+  staged.model = argument;
+  return print_stages(staged);
 }
 
 }  // namespace

@@ -67,12 +67,18 @@ int compile_and_write(CompileOptions& options, Invocation& invocation) {
   if (is_front_end_stage(options.emit)) return write_front_end_stage(options, invocation);
   auto& sink = invocation.sink();
   if (is_pass(options.emit)) options.model.emit_pass = options.emit;
+  options.model.folded = true;
   const auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
   report_costs(options, *compilation, invocation);
-  std::string text;
+  const auto& model = compilation->model;
+  std::string text;  // if it is not the artifact
+  const base::TextPieces pieces = [&](const std::function<void(std::string_view)>& take) {
+    if (options.emit != "cnf") return take(text);
+    compiler::write_artifact(model, {.projection_line = !options.no_projection}, take);
+  };
   if (options.emit == "cnf") {
-    text = compiler::to_artifact(compilation->model, {.projection_line = !options.no_projection});
+    // Written below.
   } else if (compilation->passes.text) {
     text = *compilation->passes.text;
   } else if (!compilation->plan) {
@@ -88,11 +94,10 @@ int compile_and_write(CompileOptions& options, Invocation& invocation) {
   if (options.out.empty() && invocation.options().json) {
     sink.error_about(codes::kUsage, "", "--json needs --output: the text is no JSON");
   } else if (options.out.empty()) {
-    invocation.result(text);
-  } else if (base::write_output(options.out, text, invocation.files(), sink)) {
+    pieces([&](std::string_view piece) { invocation.result(std::string(piece)); });
+  } else if (base::write_output(options.out, pieces, invocation.files(), sink)) {
     invocation.remark(fmt::format("{}: {} variables, {} clauses, horizon {}", options.out,
-                                  compilation->model.variable_count(),
-                                  compilation->model.clauses.size(), compilation->model.horizon));
+                                  model.variable_count(), model.clause_count(), model.horizon));
     if (invocation.options().json) {
       const auto axioms =
           options.model.stats
@@ -100,8 +105,7 @@ int compile_and_write(CompileOptions& options, Invocation& invocation) {
                     ",\"passes\":" + compiler::pass_json(compilation->passes)
               : "";
       invocation.document(fmt::format("{{\"status\":\"ok\",\"variables\":{},\"clauses\":{}{}}}\n",
-                                      compilation->model.variable_count(),
-                                      compilation->model.clauses.size(), axioms));
+                                      model.variable_count(), model.clause_count(), axioms));
     }
   }
   return 0;

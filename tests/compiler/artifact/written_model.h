@@ -12,7 +12,8 @@ namespace parallax::test {
 
 /// A model text, compiled and ready to be written; `ground` is absent if it was refused.
 struct WrittenModel : TextModel {
-  explicit WrittenModel(const std::string& text) : TextModel(text) {
+  explicit WrittenModel(const std::string& text, bool folded = false)
+      : TextModel(text, {}, folded) {
     if (ground == nullptr) return;
     compiled.producer = "test 1";
     compiler::describe_sources(compiled, files);
