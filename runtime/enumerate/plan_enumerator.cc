@@ -30,10 +30,10 @@ PlanEnumerator::PlanEnumerator(SolverSession& session, const PlanEnumeratorOptio
   PARALLAX_REQUIRE(session.model().has_constraints, "the model was compiled with constraints");
   if (index_.hit(0)) first_ = 0;
   n_ = first_ - 1;
-  const bool any = options.order == TraceOrder::kAny;
-  if (options.symmetry != nullptr && !options.symmetry->empty() &&
-      (any || options.representatives)) {
-    breaker_.emplace(session, *options.symmetry, order_by_horizon(session.model()));
+  if (options.symmetry != nullptr && !options.symmetry->empty()) {
+    const auto& symmetry = *options.symmetry;
+    breaker_.emplace(session, options.representatives ? symmetry.generators() : symmetry.all(),
+                     order_by_horizon(session.model()));
   }
 }
 
@@ -114,8 +114,10 @@ std::optional<Trace> PlanEnumerator::next() {
     auto fixed = std::move(assumptions);
     const auto head = fixed.size();
     for (const auto* order : {&key_order_, &start_order_, &state_order_, &choice_order_}) {
-      // Which key it is, is asked of representatives; what belongs to the key, of all.
-      const auto& under = order == &key_order_ ? searched : fixed;
+      // Which key it is, is asked of representatives, unless the first is wanted, which need not be
+      // the first of those; what belongs to the key, of all.
+      const bool first = options_.order == TraceOrder::kCanonical && !options_.representatives;
+      const auto& under = order == &key_order_ && !first ? searched : fixed;
       const auto literals = in_order(*session_, n_, under, *order, options_.order);
       done_ = !literals;
       if (done_) return std::nullopt;

@@ -31,7 +31,7 @@ struct PlanEnumeratorOptions {
   /// Of the traces of one length: shorter ones come first in any case. With any order any initial
   /// state stands for a trace.
   TraceOrder order = TraceOrder::kCanonical;
-  /// Of the session's model. In any order the first trace is looked for among representatives of
+  /// Of the session's model. Whether there is a first trace is looked for among representatives of
   /// orbits; with `representatives` all are, of each orbit of keys at least one. Null: as they are.
   const ModelSymmetry* symmetry = nullptr;
   bool representatives = false;

@@ -1,7 +1,6 @@
 #include "runtime/graph/model_traces.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <random>
 #include <utility>
@@ -23,8 +22,6 @@ constexpr std::int64_t kFar = 64;
 constexpr std::int64_t kConflicts = 1000;
 /// That symmetry makes it easy to see that there is no trace shows within so many conflicts.
 constexpr std::int64_t kEasy = 20'000;
-/// Clauses that leave one of fewer arrangements of the constants cost a solver more than they save.
-constexpr double kWorthBreaking = 100;
 /// Transitions are found by search some hundred times faster than traces by a solver that is to
 /// give them in order. So a graph that stays small is tried first, and larger ones as traces come.
 constexpr GraphLimits kSmall = {500'000, 50'000, 10'000};
@@ -86,14 +83,10 @@ SolverSession& ModelTraces::session() {
 /// For the first call; the first trace in canonical order is the first one of its orbit, too.
 void ModelTraces::break_symmetry() {
   const ModelSymmetry symmetry(model_);
-  double arrangements = 1;
-  for (const auto& set : symmetry.constants().sets) {
-    arrangements *= std::tgamma(static_cast<double>(set.size()) + 1);
-  }
-  if (arrangements < kWorthBreaking) return;
+  if (symmetry.known_order() < kWorthBreaking) return;
   session_->load(model_.horizon);
   const auto order = whole_order(model_, projection_blocks(model_, query_.distinct));
-  breaker_.emplace(*session_, symmetry, order);
+  breaker_.emplace(*session_, symmetry.all(), order);
   breaker_->extend(order.size());
 }
 

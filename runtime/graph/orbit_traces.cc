@@ -5,26 +5,24 @@
 
 namespace parallax::runtime {
 
-OrbitTraces::OrbitTraces(const CompiledModel& model, const TraceQuery& query) {
-  const ModelSymmetry symmetry(model);
-  constants_ = symmetry.constants();
+OrbitTraces::OrbitTraces(const CompiledModel& model, const TraceQuery& query) : symmetry_(model) {
   // The clauses leave more than one trace of some orbits, and symmetry is broken already.
   auto whole = query;
   whole.breaks_symmetry = false;
-  if (symmetry.empty()) {
+  if (constants().empty()) {
     traces_ = std::make_unique<ModelTraces>(model, whole);
   } else {
     const auto order = whole_order(model, projection_blocks(model, query.distinct));
-    broken_ = broken_model(model, symmetry, order);
+    broken_ = broken_model(model, symmetry_.generators(), order);
     traces_ = std::make_unique<ModelTraces>(broken_, whole);
   }
-  orbits_.emplace(model, constants_,
+  orbits_.emplace(model, symmetry_.group(),
                   query.distinct == Distinct::kAll ? Compared::kEverything : Compared::kObserved);
 }
 
 SourceStats OrbitTraces::stats() const {
   auto stats = traces_->stats();
-  if (!constants_.empty() && !stats.remark.empty()) {
+  if (!constants().empty() && !stats.remark.empty()) {
     stats.remark = "comparing traces with exchanged ones ties all timepoints together";
   }
   return stats;
@@ -32,7 +30,7 @@ SourceStats OrbitTraces::stats() const {
 
 std::optional<Trace> OrbitTraces::next() {
   while (auto trace = traces_->next()) {
-    if (constants_.empty()) {
+    if (constants().empty()) {
       size_ = 1;
       total_ = ++given_;
       return trace;

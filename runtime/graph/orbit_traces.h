@@ -29,10 +29,10 @@ class OrbitTraces {
   bool exhausted() const { return traces_->exhausted(); }
   SourceStats stats() const;
   const std::string& refusal() const { return traces_->refusal(); }
-  const Interchangeables& constants() const { return constants_; }
+  const Interchangeables& constants() const { return symmetry_.constants(); }
 
  private:
-  Interchangeables constants_;
+  ModelSymmetry symmetry_;
   CompiledModel broken_;
   std::optional<TraceOrbits> orbits_;
   std::unique_ptr<ModelTraces> traces_;

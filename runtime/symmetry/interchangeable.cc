@@ -1,8 +1,10 @@
 #include "runtime/symmetry/interchangeable.h"
 
+#include <algorithm>
 #include <map>
+#include <numeric>
 
-#include "runtime/symmetry/swap_check.h"
+#include "runtime/symmetry/symmetry_search.h"
 
 namespace parallax::runtime {
 
@@ -13,42 +15,96 @@ namespace {
 /// Clauses that checks may look at, beyond so many of each that the model has.
 constexpr std::int64_t kWork = 1'000'000;
 
-NodeSwap named_swap(const NamedAtoms& atoms, std::uint32_t a, std::uint32_t b) {
-  NodeSwap swap;
-  for (const auto node : atoms.mentions(a)) {
-    const auto to = atoms.swapped(node, a, b);
-    PARALLAX_REQUIRE(to.has_value(), "an exchange was checked");
-    // What mentions both is met once from either side.
-    if (*to != node) swap.emplace_back(std::min(node, *to), std::max(node, *to));
+NodeMap moved_nodes(const NamedAtoms& atoms, const ConstantMap& map) {
+  NodeMap moved;
+  for (std::uint32_t constant = 0; constant < map.size(); ++constant) {
+    if (map[constant] == constant) continue;
+    for (const auto node : atoms.mentions(constant)) {
+      const auto to = atoms.image(node, map);
+      PARALLAX_REQUIRE(to.has_value(), "a symmetry was checked");
+      if (*to != node) moved.emplace_back(node, *to);
+    }
   }
-  std::sort(swap.begin(), swap.end());
-  swap.erase(std::unique(swap.begin(), swap.end()), swap.end());
-  return swap;
+  // What mentions several is met once from each.
+  std::sort(moved.begin(), moved.end());
+  moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+  return moved;
+}
+
+std::vector<std::vector<std::string>> cycles_of(const std::vector<std::string>& constants,
+                                                const ConstantMap& map) {
+  std::vector<std::vector<std::string>> cycles;
+  std::vector<bool> seen(map.size());
+  for (std::uint32_t first = 0; first < map.size(); ++first) {
+    if (seen[first] || map[first] == first) continue;
+    auto& cycle = cycles.emplace_back();
+    for (auto at = first; !seen[at]; at = map[at]) {
+      seen[at] = true;
+      cycle.push_back(constants[at]);
+    }
+  }
+  return cycles;
 }
 
 }  // namespace
 
 ModelSymmetry::ModelSymmetry(const CompiledModel& model) {
   const NamedAtoms atoms(model);
+  const auto& names = atoms.constants();
+  if (names.size() < 2) return;
+  PermutationCheck check(model, atoms);
+  find_sets(model, atoms, check);
+  exchanges_ = generators_.size();
+  if (is_settled_) {
+    group_ = group_of(names, set_of_, {});
+    known_order_ = group_.order();
+    return;
+  }
+  ConstantColours colours(model, atoms, check);
+  const SymmetrySearch search(check, colours, set_of_);
+  is_complete_ = search.is_complete();
+  // From the first base to the last, as exchanges come.
+  const auto& found = search.generators();
+  for (auto g = found.size(); g-- > 0;) {
+    add(atoms, found[g]);
+    if (is_complete_) constants_.together.push_back(cycles_of(names, found[g]));
+  }
+  group_ = search.group(names);
+  known_order_ = search.known_order();
+}
+
+void ModelSymmetry::add(const NamedAtoms& atoms, const ConstantMap& map) {
+  auto moved = moved_nodes(atoms, map);
+  if (!moved.empty()) generators_.push_back(std::move(moved));
+}
+
+void ModelSymmetry::find_sets(const CompiledModel& model, const NamedAtoms& atoms,
+                              PermutationCheck& check) {
   const auto count = static_cast<std::uint32_t>(atoms.constants().size());
-  if (count < 2) return;
-  SwapCheck check(model, atoms);
   const auto most = kWork + 16 * static_cast<std::int64_t>(model.clauses.size());
   // By signature the sets found so far; in the order of their first members.
   std::map<std::uint64_t, std::vector<std::size_t>> alike;
   std::vector<std::vector<std::uint32_t>> sets;
+  ConstantMap map(count);
+  std::iota(map.begin(), map.end(), 0U);
+  const auto exchange = [&](std::uint32_t a, std::uint32_t b) { std::swap(map[a], map[b]); };
   for (std::uint32_t constant = 0; constant < count; ++constant) {
     auto& candidates = alike[check.signature(constant)];
     bool is_placed = false;
     for (const auto set : candidates) {
       if (check.work() > most) break;
-      is_placed = check.is_symmetric(sets[set].front(), constant);
+      exchange(sets[set].front(), constant);
+      is_placed = check.is_symmetric(map);
+      exchange(sets[set].front(), constant);
       if (!is_placed) continue;
       sets[set].push_back(constant);
+      set_of_.push_back(static_cast<std::uint32_t>(set));
       break;
     }
     if (is_placed) continue;
+    if (!candidates.empty()) is_settled_ = false;
     candidates.push_back(sets.size());
+    set_of_.push_back(static_cast<std::uint32_t>(sets.size()));
     sets.push_back({constant});
   }
   for (const auto& set : sets) {
@@ -56,8 +112,9 @@ ModelSymmetry::ModelSymmetry(const CompiledModel& model) {
     auto& names = constants_.sets.emplace_back();
     for (const auto constant : set) names.push_back(atoms.constants()[constant]);
     for (std::size_t i = 0; i + 1 < set.size(); ++i) {
-      auto swap = named_swap(atoms, set[i], set[i + 1]);
-      if (!swap.empty()) swaps_.push_back(std::move(swap));
+      exchange(set[i], set[i + 1]);
+      add(atoms, map);
+      exchange(set[i], set[i + 1]);
     }
   }
 }

@@ -1,37 +1,60 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "runtime/symmetry/constant_group.h"
 #include "runtime/symmetry/named_atoms.h"
 
 namespace parallax::runtime {
 
-/// Constants that a compiled model does not tell apart: exchanging any two of a set in all names
-/// makes a trace of a trace. Found on the clauses, so a start state, a plan, a state constraint or
-/// a goal that names one of them tells it apart.
+/// Constants that a compiled model does not tell apart: replacing them in all names makes a trace
+/// of a trace. Found on the clauses, so a start state, a plan, a state constraint or a goal that
+/// names one of them tells it apart.
 struct Interchangeables {
-  /// Each of two and more, in the order in which the model mentions them first.
+  /// Any two of a set; each of two and more, in the order in which the model mentions them first.
   std::vector<std::vector<std::string>> sets;
-  bool empty() const { return sets.empty(); }
+  /// Several at once, which makes more of them together with the sets: by symmetry, its cycles, in
+  /// each of which a constant takes the place of the one before it.
+  std::vector<std::vector<std::vector<std::string>>> together;
+  bool empty() const { return sets.empty() && together.empty(); }
 };
 
-/// An exchange of two constants, as the nodes that change places.
-using NodeSwap = std::vector<std::pair<ModelNode, ModelNode>>;
+/// A symmetry as the named nodes that it moves: each, and the one whose place it takes.
+using NodeMap = std::vector<std::pair<ModelNode, ModelNode>>;
 
-/// The sets of a model; sets that it would take too long to find are left out. Deterministic.
+/// The symmetries of a model that permute constants. Deterministic. Each was checked clause by
+/// clause; where finding all of them would take too long, some are left out.
 class ModelSymmetry {
  public:
   explicit ModelSymmetry(const compiler::CompiledModel& model);
   const Interchangeables& constants() const { return constants_; }
-  /// The exchanges of neighbours in each set: they generate all of them.
-  const std::vector<NodeSwap>& swaps() const { return swaps_; }
-  bool empty() const { return swaps_.empty(); }
+  /// They generate the group: exchanges of neighbours in each set, and those of several at once.
+  std::span<const NodeMap> generators() const {
+    return std::span(generators_).first(is_complete_ ? generators_.size() : exchanges_);
+  }
+  /// Also those found by a search that was given up: for questions of existence.
+  std::span<const NodeMap> all() const { return generators_; }
+  bool empty() const { return generators_.empty(); }
+  const ConstantGroup& group() const { return group_; }
+  /// At least so many symmetries there are.
+  const mpz_class& known_order() const { return known_order_; }
 
  private:
+  void find_sets(const compiler::CompiledModel& model, const NamedAtoms& atoms,
+                 PermutationCheck& check);
+  void add(const NamedAtoms& atoms, const ConstantMap& map);
+
   Interchangeables constants_;
-  std::vector<NodeSwap> swaps_;
+  std::vector<NodeMap> generators_;
+  std::size_t exchanges_ = 0;  // so many exchange two constants; they come first
+  bool is_complete_ = true;
+  bool is_settled_ = true;             // what sets do not connect differs
+  std::vector<std::uint32_t> set_of_;  // by constant
+  ConstantGroup group_;
+  mpz_class known_order_ = 1;
 };
 
 }  // namespace parallax::runtime

@@ -37,9 +37,33 @@ std::vector<std::int8_t> settled_values(const CompiledModel& model) {
   return values;
 }
 
+/// Variables that are equal because others are.
+class EqualVariables {
+ public:
+  /// False: they were equal before.
+  bool join(std::int32_t a, std::int32_t b) {
+    a = first_of(a);
+    b = first_of(b);
+    if (a == b) return false;
+    parent_[a] = b;
+    return true;
+  }
+
+ private:
+  std::int32_t first_of(std::int32_t variable) {
+    for (auto up = parent_.find(variable); up != parent_.end(); up = parent_.find(variable)) {
+      const auto above = parent_.find(up->second);
+      if (above != parent_.end()) up->second = above->second;
+      variable = up->second;
+    }
+    return variable;
+  }
+  std::unordered_map<std::int32_t, std::int32_t> parent_;
+};
+
 }  // namespace
 
-LexLeader::LexLeader(const CompiledModel& model, const ModelSymmetry& symmetry,
+LexLeader::LexLeader(const CompiledModel& model, std::span<const NodeMap> generators,
                      const std::vector<std::vector<Literal>>& order) {
   const auto count = static_cast<std::size_t>(model.variable_count());
   std::vector<std::size_t> rank(count, kUnordered), block(count, 0);
@@ -52,18 +76,15 @@ LexLeader::LexLeader(const CompiledModel& model, const ModelSymmetry& symmetry,
     }
   }
   const auto settled = settled_values(model);
-  for (const auto& swap : symmetry.swaps()) {
+  const auto at = [](std::int32_t variable) { return static_cast<std::size_t>(variable) - 1; };
+  for (const auto& generator : generators) {
     std::vector<std::pair<std::size_t, Pair>> ranked;
     const auto add = [&](std::int32_t a, std::int32_t b) {
-      const auto at = [](std::int32_t variable) { return static_cast<std::size_t>(variable) - 1; };
-      const auto& values = settled;
       if (rank[at(a)] == kUnordered || rank[at(b)] == kUnordered) return;
-      if (values[at(a)] != 0 && values[at(a)] == values[at(b)]) return;
-      if (rank[at(b)] < rank[at(a)]) std::swap(a, b);
-      // Both are known where the later one is.
+      if (settled[at(a)] != 0 && settled[at(a)] == settled[at(b)]) return;
       ranked.push_back({rank[at(a)], {a, b, std::max(block[at(a)], block[at(b)])}});
     };
-    for (const auto& [one, other] : swap) {
+    for (const auto& [one, other] : generator) {
       const bool fixed = static_cast<std::int32_t>(one) < model.base();
       for (Timepoint t = 0; t <= (fixed ? 0 : model.horizon); ++t) {
         const auto a = variable_at(model, one, t);
@@ -75,7 +96,11 @@ LexLeader::LexLeader(const CompiledModel& model, const ModelSymmetry& symmetry,
               [](const auto& a, const auto& b) { return a.first < b.first; });
     auto& chain = chains_.emplace_back();
     std::size_t reached = 0;
-    for (const auto& [at, pair] : ranked) {
+    EqualVariables equal;
+    for (const auto& [position, pair] : ranked) {
+      // Where all before are equal, these two may be, too: the second half of an exchange.
+      if (!equal.join(pair.first, pair.second)) continue;
+      // Both are known where the later one is.
       reached = std::max(reached, pair.block);
       chain.pairs.push_back({pair.first, pair.second, reached});
     }
@@ -131,10 +156,10 @@ std::vector<std::vector<Literal>> order_by_horizon(const CompiledModel& model) {
   return blocks;
 }
 
-SymmetryBreaker::SymmetryBreaker(SolverSession& session, const ModelSymmetry& symmetry,
+SymmetryBreaker::SymmetryBreaker(SolverSession& session, std::span<const NodeMap> generators,
                                  const std::vector<std::vector<Literal>>& order)
     : session_(session),
-      clauses_(session.model(), symmetry, order),
+      clauses_(session.model(), generators, order),
       guard_(session.new_variable()) {}
 
 void SymmetryBreaker::extend(std::size_t blocks) {
@@ -154,11 +179,11 @@ void SymmetryBreaker::retire() {
   session_.add_clause(std::span(&never, 1));
 }
 
-CompiledModel broken_model(const CompiledModel& model, const ModelSymmetry& symmetry,
+CompiledModel broken_model(const CompiledModel& model, std::span<const NodeMap> generators,
                            const std::vector<std::vector<Literal>>& order) {
   std::vector<compiler::AddedClause> clauses;
   std::int32_t added = 0;
-  LexLeader leader(model, symmetry, order);
+  LexLeader leader(model, generators, order);
   leader.extend(
       order.size(),
       [&](std::span<const Literal> clause) {

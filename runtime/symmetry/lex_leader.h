@@ -11,18 +11,24 @@
 
 namespace parallax::runtime {
 
-/// Clauses that of the valuations which exchanges of constants make of each other leave the first
-/// one in lexicographic order (false before true), and as a rule few others: for every exchange,
-/// the valuation is not after the one that it is exchanged into (Crawford, Ginsberg, Luks and Roy
-/// 1996). All exchanges are compared in one order of the variables, so they hold together. In the
-/// order of the traces they leave the first trace of a model, and of every orbit.
+/// Clauses that leave one of fewer symmetric traces cost a solver more than they save.
+inline constexpr unsigned long kWorthBreaking = 100;
+
+/// Clauses that of the valuations which symmetries make of each other leave the first one in
+/// lexicographic order (false before true), and as a rule few others: for every generator g, the
+/// valuation is not after the one that g makes of it. The first of an orbit is before all others of
+/// it, so that clauses for any set of symmetries leave it, whatever these generate (Crawford,
+/// Ginsberg, Luks and Roy 1996); and all are compared in one order of the variables, so they hold
+/// together. The clauses are linear in the variables that move (chains of equalities; Aloul,
+/// Sakallah and Markov 2003). In the order of the traces they leave the first trace of a model, and
+/// of every orbit.
 class LexLeader {
  public:
   using AddClause = std::function<void(std::span<const Literal>)>;
   using NewVariable = std::function<Literal()>;
 
   /// `order`: blocks of positive literals of the model; what an order leaves out is left open.
-  LexLeader(const CompiledModel& model, const ModelSymmetry& symmetry,
+  LexLeader(const CompiledModel& model, std::span<const NodeMap> generators,
             const std::vector<std::vector<Literal>>& order);
 
   /// The clauses over the first `blocks` blocks, as far as they were not made before. Each that
@@ -58,7 +64,7 @@ std::vector<std::vector<Literal>> order_by_horizon(const CompiledModel& model);
 class SymmetryBreaker {
  public:
   /// `session` outlives the breaker.
-  SymmetryBreaker(SolverSession& session, const ModelSymmetry& symmetry,
+  SymmetryBreaker(SolverSession& session, std::span<const NodeMap> generators,
                   const std::vector<std::vector<Literal>>& order);
   /// The clauses over the first `blocks` blocks are the session's from now on.
   void extend(std::size_t blocks);
@@ -75,7 +81,7 @@ class SymmetryBreaker {
 
 /// The model with the clauses over the whole order in it, for whoever lists what they leave. Its
 /// traces are traces of `model`. The chains' variables are added to the fixed ones.
-CompiledModel broken_model(const CompiledModel& model, const ModelSymmetry& symmetry,
+CompiledModel broken_model(const CompiledModel& model, std::span<const NodeMap> generators,
                            const std::vector<std::vector<Literal>>& order);
 
 }  // namespace parallax::runtime

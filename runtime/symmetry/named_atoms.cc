@@ -78,15 +78,15 @@ void NamedAtoms::add_place(Node& entry, ModelNode node, std::size_t begin, std::
       {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin), found->second});
 }
 
-std::optional<ModelNode> NamedAtoms::swapped(ModelNode node, std::uint32_t a,
-                                             std::uint32_t b) const {
+std::optional<ModelNode> NamedAtoms::image(ModelNode node,
+                                           std::span<const std::uint32_t> images) const {
   const auto& entry = nodes_[node];
   std::string name;
   std::size_t copied = 0;
   for (const auto& place : entry.places) {
-    if (place.constant != a && place.constant != b) continue;
+    if (images[place.constant] == place.constant) continue;
     name.append(entry.name, copied, place.begin - copied);
-    name += constants_[place.constant == a ? b : a];
+    name += constants_[images[place.constant]];
     copied = place.begin + place.size;
   }
   if (copied == 0) return node;

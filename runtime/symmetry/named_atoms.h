@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -45,8 +46,9 @@ class NamedAtoms {
   const std::vector<ModelNode>& mentions(std::uint32_t constant) const {
     return mentions_[constant];
   }
-  /// The node whose name is that of `node` with two constants exchanged; none: there is none.
-  std::optional<ModelNode> swapped(ModelNode node, std::uint32_t a, std::uint32_t b) const;
+  /// The node whose name is that of `node` with every constant replaced by its image; none: there
+  /// is none.
+  std::optional<ModelNode> image(ModelNode node, std::span<const std::uint32_t> images) const;
 
  private:
   void add(ModelNode node, std::string prefix, std::string_view name);

@@ -25,11 +25,13 @@ using Form = std::vector<std::uint32_t>;
 /// Kinds of edges that are no atoms of the model's: the length of the trace, what was returned.
 constexpr auto kLength = std::numeric_limits<std::uint32_t>::max();
 
-/// The least form of a graph, and how many relabellings leave the graph as it is.
+/// The least form that a group's permutations give a graph, and how many leave the graph as it is.
+/// Permutations are composed level by level: at a node of the search tree, `to` takes the constants
+/// chosen so far to the bases of the levels above.
 class FormSearch {
  public:
-  explicit FormSearch(std::vector<Edge> edges, std::size_t vertices)
-      : edges_(std::move(edges)), at_(vertices) {
+  FormSearch(std::vector<Edge> edges, const ConstantGroup& group)
+      : edges_(std::move(edges)), group_(group), at_(group.constants.size()) {
     for (std::uint32_t e = 0; e < edges_.size(); ++e) {
       for (const auto end : edges_[e].ends) {
         if (at_[end].empty() || at_[end].back() != e) at_[end].push_back(e);
@@ -37,16 +39,51 @@ class FormSearch {
     }
   }
 
-  std::pair<Form, mpz_class> run(Colours colours) {
-    refine(colours);
-    return least(std::move(colours));
+  std::pair<Form, mpz_class> run() {
+    Node root;
+    root.to.resize(at_.size());
+    std::iota(root.to.begin(), root.to.end(), 0U);
+    root.colours.assign(at_.size(), 0);
+    split_by_orbits(root);
+    refine(root);
+    return least(root);
   }
 
  private:
+  struct Node {
+    std::size_t level = 0;
+    ConstantMap to;
+    Colours colours;
+  };
+
+  /// Colours that begin to differ where `label` does; a cell's colour is the number of constants
+  /// before it.
+  template <typename Label>
+  static void split(Colours& colours, const Label& label) {
+    std::vector<std::uint32_t> order(colours.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto key = [&](std::uint32_t v) { return std::pair(colours[v], label(v)); };
+    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
+    Colours next(colours.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i) {
+      const bool same = i > 0 && key(order[i]) == key(order[i - 1]);
+      next[order[i]] = same ? next[order[i - 1]] : i;
+    }
+    colours = std::move(next);
+  }
+
+  /// What no permutation of the node's level takes to each other is told apart.
+  void split_by_orbits(Node& node) const {
+    if (node.level >= group_.orbits.size()) return;
+    const auto& orbits = group_.orbits[node.level];
+    split(node.colours, [&](std::uint32_t v) { return orbits[node.to[v]]; });
+  }
+
   /// Splits cells until equal constants are connected to equal constants in equal ways. New
-  /// colours depend on the graph, never on the numbers of its constants.
-  void refine(Colours& colours) const {
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> seen(colours.size());
+  /// colours depend on the graph and the group, never on the numbers of its constants.
+  void refine(Node& node) const {
+    auto& colours = node.colours;
+    std::vector<std::uint64_t> sums(colours.size());
     auto cells = count(colours);
     while (cells < colours.size()) {
       for (std::uint32_t v = 0; v < colours.size(); ++v) {
@@ -59,22 +96,30 @@ class FormSearch {
           }
           sum += hash;
         }
-        seen[v] = {sum, v};
+        sums[v] = sum;
       }
-      std::sort(seen.begin(), seen.end(), [&](const auto& a, const auto& b) {
-        return std::pair(colours[a.second], a.first) < std::pair(colours[b.second], b.first);
-      });
-      // A cell's colour is the number of constants before it, as everywhere.
-      Colours next(colours.size());
-      for (std::uint32_t i = 0; i < seen.size(); ++i) {
-        const bool same = i > 0 && seen[i].first == seen[i - 1].first &&
-                          colours[seen[i].second] == colours[seen[i - 1].second];
-        next[seen[i].second] = same ? next[seen[i - 1].second] : i;
-      }
-      colours = std::move(next);
+      add_ties(node, sums);
+      split(colours, [&](std::uint32_t v) { return sums[v]; });
       const auto more = count(colours);
       if (more == cells) return;
       cells = more;
+    }
+  }
+
+  /// Where fixing a base leaves some other constants fewer places to go than others of their orbit,
+  /// they belong together, as a room and its door do.
+  void add_ties(const Node& node, std::vector<std::uint64_t>& sums) const {
+    if (node.level + 1 >= group_.orbits.size()) return;
+    std::vector<std::uint32_t> from(node.to.size());
+    for (std::uint32_t v = 0; v < from.size(); ++v) from[node.to[v]] = v;
+    for (const auto& tie : group_.ties[node.level]) {
+      const auto one = from[tie.one], other = from[tie.other];
+      const auto hash = [&](std::uint64_t side, std::uint32_t at) {
+        const auto kind = base::fnv1a64_word(base::kFnvStart, 2 * std::uint64_t{tie.kind} + side);
+        return base::fnv1a64_word(kind, node.colours[at]);
+      };
+      sums[one] += hash(0, other);
+      sums[other] += hash(1, one);
     }
   }
 
@@ -84,32 +129,47 @@ class FormSearch {
     return static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
   }
 
-  /// The first cell of more than one constant; empty if there is none.
-  static std::vector<std::uint32_t> first_cell(const Colours& colours) {
-    std::vector<std::vector<std::uint32_t>> cells(colours.size());
-    for (std::uint32_t v = 0; v < colours.size(); ++v) cells[colours[v]].push_back(v);
-    for (auto& cell : cells) {
-      if (cell.size() > 1) return std::move(cell);
+  /// The constants that may be taken to the base of the node's level: those of the least colour.
+  /// By place in the level's orbit.
+  std::vector<std::size_t> candidates(const Node& node) const {
+    const auto& orbit = group_.levels[node.level].orbit;
+    std::vector<std::uint32_t> from(node.to.size());
+    for (std::uint32_t v = 0; v < from.size(); ++v) from[node.to[v]] = v;
+    std::vector<std::size_t> best;
+    for (std::size_t i = 0; i < orbit.size(); ++i) {
+      const auto colour = node.colours[from[orbit[i]]];
+      const auto least = best.empty() ? colour : node.colours[from[orbit[best.front()]]];
+      if (colour < least) best.clear();
+      if (colour <= least) best.push_back(i);
     }
-    return {};
+    return best;
   }
 
-  /// The constant comes before the others of its cell.
-  Colours individualized(const Colours& colours, std::uint32_t vertex) const {
-    auto out = colours;
-    for (std::uint32_t v = 0; v < out.size(); ++v) {
-      if (v != vertex && out[v] == colours[vertex]) ++out[v];
+  /// The constant that stands at the place of the level's orbit is taken to its base.
+  Node child(const Node& node, std::size_t place) const {
+    const auto& level = group_.levels[node.level];
+    Node out = node;
+    ++out.level;
+    const auto at = level.orbit[place];
+    if (level.to.empty()) {
+      for (auto& to : out.to) to = to == at ? level.base : to == level.base ? at : to;
+    } else {
+      ConstantMap back(out.to.size());
+      for (std::uint32_t v = 0; v < back.size(); ++v) back[level.to[place][v]] = v;
+      for (auto& to : out.to) to = back[to];
     }
+    split(out.colours, [&](std::uint32_t v) { return out.to[v] == level.base ? 0 : 1; });
+    split_by_orbits(out);
     refine(out);
     return out;
   }
 
-  /// The graph with constants named by their colours, each of which has one.
-  Form relabelled(const Colours& colours) const {
+  /// The graph with constants where the node takes them.
+  Form relabelled(const Node& node) const {
     std::vector<Form> lines;
     for (const auto& edge : edges_) {
       auto& line = lines.emplace_back(Form{edge.kind, edge.layer});
-      for (const auto end : edge.ends) line.push_back(colours[end]);
+      for (const auto end : edge.ends) line.push_back(node.to[end]);
     }
     std::sort(lines.begin(), lines.end());
     Form out;
@@ -120,63 +180,87 @@ class FormSearch {
     return out;
   }
 
-  /// The leaf that is reached by always taking the first constant of a cell.
-  Form first_leaf(Colours colours) const {
-    for (auto cell = first_cell(colours); !cell.empty(); cell = first_cell(colours)) {
-      colours = individualized(colours, cell.front());
-    }
-    return relabelled(colours);
+  /// The leaf that is reached by always taking the first candidate.
+  Form first_leaf(Node node) const {
+    while (node.level < group_.levels.size()) node = child(node, candidates(node).front());
+    return relabelled(node);
   }
 
-  /// Does exchanging two constants of one cell leave the graph as it is?
-  bool are_twins(std::uint32_t a, std::uint32_t b) const {
+  /// Does a permutation leave the graph as it is?
+  bool is_kept(const ConstantMap& map) const {
+    std::set<std::uint32_t> touched;
+    for (std::uint32_t v = 0; v < map.size(); ++v) {
+      if (map[v] != v) touched.insert(at_[v].begin(), at_[v].end());
+    }
     std::vector<Form> before, after;
-    for (const auto* edges : {&at_[a], &at_[b]}) {
-      for (const auto e : *edges) {
-        Form line = {edges_[e].kind, edges_[e].layer};
-        line.insert(line.end(), edges_[e].ends.begin(), edges_[e].ends.end());
-        before.push_back(line);
-        for (std::size_t i = 2; i < line.size(); ++i) {
-          line[i] = line[i] == a ? b : line[i] == b ? a : line[i];
-        }
-        after.push_back(std::move(line));
-      }
+    for (const auto e : touched) {
+      Form line = {edges_[e].kind, edges_[e].layer};
+      line.insert(line.end(), edges_[e].ends.begin(), edges_[e].ends.end());
+      before.push_back(line);
+      for (std::size_t i = 2; i < line.size(); ++i) line[i] = map[line[i]];
+      after.push_back(std::move(line));
     }
     std::sort(before.begin(), before.end());
     std::sort(after.begin(), after.end());
     return before == after;
   }
 
-  /// Below a node whose colours are refined. Constants of the cell that some relabelling which
-  /// respects the colours makes of each other lead to equal subtrees: one is followed for all.
-  std::pair<Form, mpz_class> least(Colours colours) {
-    const auto cell = first_cell(colours);
-    if (cell.empty()) return {relabelled(colours), 1};
+  /// A permutation of the group that takes what stands at one place of the level's orbit to what
+  /// stands at another, and leaves what was chosen before where it is.
+  ConstantMap between(const Node& node, std::size_t one, std::size_t other) const {
+    const auto& level = group_.levels[node.level];
+    ConstantMap map(node.to.size());
+    for (std::uint32_t v = 0; v < map.size(); ++v) map[node.to[v]] = v;  // back
+    const auto back = map;
+    if (level.to.empty()) {
+      std::iota(map.begin(), map.end(), 0U);
+      std::swap(map[back[level.orbit[one]]], map[back[level.orbit[other]]]);
+      return map;
+    }
+    const auto &from = level.to[one], &to = level.to[other];
+    for (std::uint32_t v = 0; v < map.size(); ++v) map[back[from[v]]] = back[to[v]];
+    return map;
+  }
+
+  /// Candidates that some permutation which leaves the graph as it is takes to each other lead to
+  /// equal subtrees: one is followed for all.
+  std::pair<Form, mpz_class> least(const Node& at) const {
+    auto node = at;
+    auto places = std::vector<std::size_t>();
+    for (; node.level < group_.levels.size(); node = child(node, places.front())) {
+      places = candidates(node);
+      if (places.size() > 1) break;
+    }
+    if (node.level == group_.levels.size()) return {relabelled(node), 1};
     struct Child {
-      std::uint32_t vertex;
+      std::size_t place;
+      Node node;
       Form first_leaf;
       unsigned long alike = 1;
     };
     std::vector<Child> children;
-    for (const auto vertex : cell) {
-      auto same = std::find_if(children.begin(), children.end(),
-                               [&](const Child& one) { return are_twins(one.vertex, vertex); });
+    for (const auto place : places) {
+      auto same = std::find_if(children.begin(), children.end(), [&](const Child& one) {
+        return is_kept(between(node, one.place, place));
+      });
+      Node below;
       Form leaf;
       if (same == children.end()) {
-        leaf = first_leaf(individualized(colours, vertex));
+        below = child(node, place);
+        leaf = first_leaf(below);
         same = std::find_if(children.begin(), children.end(),
                             [&](const Child& one) { return one.first_leaf == leaf; });
       }
       if (same != children.end()) {
         ++same->alike;
       } else {
-        children.push_back({vertex, std::move(leaf)});
+        children.push_back({place, std::move(below), std::move(leaf)});
       }
     }
     std::pair<Form, mpz_class> best;
     bool any = false;
     for (const auto& child : children) {
-      auto [form, automorphisms] = least(individualized(colours, child.vertex));
+      auto [form, automorphisms] = least(child.node);
       automorphisms *= child.alike;
       if (any && form == best.first) {
         best.second += automorphisms;
@@ -189,21 +273,16 @@ class FormSearch {
   }
 
   std::vector<Edge> edges_;
+  const ConstantGroup& group_;
   std::vector<std::vector<std::uint32_t>> at_;  // edges, by constant
 };
 
 }  // namespace
 
-TraceOrbits::TraceOrbits(const CompiledModel& model, const Interchangeables& constants,
-                         Compared compared)
-    : compared_(compared) {
-  for (const auto& set : constants.sets) {
-    for (const auto& name : set) {
-      constants_.emplace(name, static_cast<std::uint32_t>(set_of_.size()));
-      set_of_.push_back(static_cast<std::uint32_t>(set_sizes_.size()));
-    }
-    set_sizes_.push_back(set.size());
-    for (std::size_t i = 2; i <= set.size(); ++i) group_ *= static_cast<unsigned long>(i);
+TraceOrbits::TraceOrbits(const CompiledModel& model, const ConstantGroup& group, Compared compared)
+    : group_(group), compared_(compared), order_(group.order()) {
+  for (std::uint32_t i = 0; i < group.constants.size(); ++i) {
+    constants_.emplace(group.constants[i], i);
   }
   for (const auto& fluent : model.fluents) fluents_.push_back(parse(fluent.name));
   for (const auto& event : model.events) events_.push_back(parse(event.name));
@@ -258,18 +337,11 @@ Orbit TraceOrbits::of(const Trace& trace) const {
     if (compared_ == Compared::kEverything && found != predicates_.end())
       add(found->second, layers - 1);
   }
-  Colours colours;
-  std::uint32_t first = 0;
-  for (const auto size : set_sizes_) {
-    colours.insert(colours.end(), size, first);
-    first += static_cast<std::uint32_t>(size);
-  }
-  const auto vertices = colours.size();
-  auto [form, automorphisms] = FormSearch(std::move(edges), vertices).run(std::move(colours));
+  auto [form, automorphisms] = FormSearch(std::move(edges), group_).run();
   Orbit orbit;
   orbit.form.resize(form.size() * sizeof(form.front()));
   if (!form.empty()) std::memcpy(orbit.form.data(), form.data(), orbit.form.size());
-  orbit.size = group_ / automorphisms;
+  orbit.size = order_ / automorphisms;
   return orbit;
 }
 

@@ -101,10 +101,20 @@ std::optional<Ending> draw(const SearchOptions& options, const compiler::Compile
 void show_constants(const SearchOptions& options, const runtime::Interchangeables& constants,
                     Context& context) {
   if (!options.stats || context.form().json) return;
-  std::string text = constants.empty() ? "interchangeable: no two constants" : "";
+  std::string text = constants.empty() ? "interchangeable: no constants" : "";
+  const auto start = [&] { text += text.empty() ? "interchangeable: " : "; "; };
   for (const auto& set : constants.sets) {
-    text += text.empty() ? "interchangeable: " : "; ";
+    start();
     for (std::size_t i = 0; i < set.size(); ++i) text += (i > 0 ? ", " : "") + set[i];
+  }
+  for (const auto& cycles : constants.together) {
+    start();
+    for (std::size_t i = 0; i < cycles.size(); ++i) {
+      if (i > 0) text += i + 1 < cycles.size() ? ", " : " and ";
+      for (const auto& name : cycles[i])
+        text += (&name == &cycles[i].front() ? "" : " with ") + name;
+    }
+    if (cycles.size() > 1) text += " together";
   }
   context.statistics(text + '\n');
 }
@@ -145,10 +155,16 @@ Ending list_plan_traces(const SearchOptions& options, const compiler::CompiledMo
   const bool any = order == runtime::TraceOrder::kAny && !certifier.is_asked();
   std::optional<runtime::ModelSymmetry> symmetry;
   std::optional<runtime::TraceOrbits> orbits;
-  if (any || options.up_to_symmetry) symmetry.emplace(model);
+  // A plan names what it is about; of what is reached without one, many things may be alike.
+  const bool asks_first = model.plan.empty() && !certifier.is_asked();
+  if (any || asks_first || options.up_to_symmetry) symmetry.emplace(model);
+  if (!any && !options.up_to_symmetry && symmetry &&
+      symmetry->known_order() < runtime::kWorthBreaking) {
+    symmetry.reset();
+  }
   if (options.up_to_symmetry) {
     orbits.emplace(
-        model, symmetry->constants(),
+        model, symmetry->group(),
         options.split_initial ? runtime::Compared::kKeyAndStart : runtime::Compared::kKey);
     show_constants(options, symmetry->constants(), context);
   }

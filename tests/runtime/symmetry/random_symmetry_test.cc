@@ -91,7 +91,7 @@ std::string model_text(FuzzRandom& random) {
 }
 
 struct Seen {
-  std::size_t models = 0, symmetric = 0, unsatisfiable = 0, large = 0;
+  std::size_t models = 0, symmetric = 0, together = 0, unsatisfiable = 0, large = 0;
 };
 
 void check_orbits(const compiler::CompiledModel& model, bool all_atoms, Seen& seen) {
@@ -104,14 +104,15 @@ void check_orbits(const compiler::CompiledModel& model, bool all_atoms, Seen& se
   runtime::TraceQuery query;
   if (all_atoms) query.distinct = runtime::Distinct::kAll;
   runtime::OrbitTraces orbits(model, query);
-  const auto& sets = orbits.constants().sets;
-  if (!sets.empty()) ++seen.symmetric;
+  const auto& constants = orbits.constants();
+  if (!constants.empty()) ++seen.symmetric;
+  if (!constants.together.empty()) ++seen.together;
   if (traces.empty()) ++seen.unsatisfiable;
   std::set<TraceWords> covered;
   std::size_t given = 0;
   while (const auto trace = orbits.next()) {
     const auto words = words_of(*trace, all_atoms);
-    const auto orbit = orbit_of(words, sets);
+    const auto orbit = orbit_of(words, constants);
     CHECK(orbits.size() == orbit.size());
     // No second representative, and what exchanges make of it are traces.
     CHECK(!covered.contains(words));
@@ -139,7 +140,7 @@ void check_existence(const compiler::CompiledModel& model) {
   runtime::SolverSession session(model, runtime::make_cadical_solver());
   const auto order = runtime::whole_order(
       model, runtime::projection_blocks(model, runtime::Distinct::kObservable));
-  runtime::SymmetryBreaker breaker(session, symmetry, order);
+  runtime::SymmetryBreaker breaker(session, symmetry.all(), order);
   breaker.extend(order.size());
   runtime::ModelEnumerator broken(session, runtime::Distinct::kObservable,
                                   runtime::TraceOrder::kCanonical, &breaker);
@@ -183,6 +184,112 @@ TEST_CASE("random models of all constructs: every exchange that is found makes t
   MESSAGE(seen.models << " models, " << seen.symmetric << " symmetric, " << seen.large
                       << " left out");
   CHECK(seen.symmetric > 5);
+}
+
+/// Constants that belong together, told by facts: the symmetries of a structure, as their cycles.
+struct Planted {
+  std::string facts;
+  std::vector<std::vector<std::vector<std::string>>> symmetries;
+};
+
+/// Of things T1, T2, T3 and places P1, P2, P3.
+const std::vector<Planted> kPlanted = {
+    // Each thing with its own place.
+    {"Own(T1,P1).\nOwn(T2,P2).\nOwn(T3,P3).\n[thing,place] Own(thing,place) -> (thing=T1 & "
+     "place=P1)"
+     " | (thing=T2 & place=P2) | (thing=T3 & place=P3).\n",
+     {{{"T1", "T2"}, {"P1", "P2"}}, {{"T2", "T3"}, {"P2", "P3"}}}},
+    // A ring in one direction, beside places that are free.
+    {"[thing1,thing2] Next(thing1,thing2) <-> (thing1=T1 & thing2=T2) | (thing1=T2 & thing2=T3) | "
+     "(thing1=T3 & thing2=T1).\n",
+     {{{"T1", "T2", "T3"}}, {{"P1", "P2"}}}},
+    // A row that can be mirrored, each with its place.
+    {"[thing1,thing2] Next(thing1,thing2) <-> (thing1=T1 & thing2=T2) | (thing1=T2 & thing2=T1) | "
+     "(thing1=T2 & thing2=T3) | (thing1=T3 & thing2=T2).\n"
+     "[thing,place] Own(thing,place) <-> (thing=T1 & place=P1) | (thing=T2 & place=P2) | (thing=T3 "
+     "& "
+     "place=P3).\n",
+     {{{"T1", "T3"}, {"P1", "P3"}}}},
+    // Two of the things at each of two places: exchanges within exchanges.
+    {"thing T4\n[thing,place] Own(thing,place) <-> ((thing=T1 | thing=T2) & place=P1) | ((thing=T3 "
+     "| "
+     "thing=T4) & place=P2).\n",
+     {{{"T1", "T2"}}, {{"T1", "T3"}, {"T2", "T4"}, {"P1", "P2"}}}},
+};
+
+/// What the structure decides about.
+const std::vector<std::string> kTied = {
+    "[thing,place,time] Happens(Put(thing,place),time) -> Own(thing,place).",
+    "[thing,place,time] HoldsAt(In(thing,place),time) -> Own(thing,place).",
+    "[thing1,thing2,time] Next(thing1,thing2) & HoldsAt(Held(thing1),time) -> "
+    "!HoldsAt(Held(thing2),time).",
+    "[thing1,thing2,time] Next(thing1,thing2) & Happens(Take(thing1),time) -> "
+    "HoldsAt(Held(thing2),time+1).",
+    "[thing,place,time] Own(thing,place) & Happens(Take(thing),time) -> "
+    "{thing1} HoldsAt(In(thing1,place),time).",
+    "[thing1,thing2,place,time] Own(thing1,place) & HoldsAt(In(thing2,place),time) & "
+    "thing1!=thing2 -> "
+    "HoldsAt(Held(thing1),time).",
+    "[thing,place,time] !HoldsAt(In(thing,place),time) | HoldsAt(Held(thing),time).",
+    "[thing1,thing2,time] Happens(Take(thing1),time) & Happens(Take(thing2),time) -> "
+    "thing1=thing2.",
+    "[thing,time] Initiates(Take(thing),Held(thing),time).",
+    "[thing,place,time] Own(thing,place) -> Initiates(Take(thing),In(thing,place),time).",
+    "[thing,place] !HoldsAt(In(thing,place),0).",
+    "[thing] !HoldsAt(Held(thing),0).",
+};
+
+std::string planted_text(FuzzRandom& random, const Planted& planted, bool is_named) {
+  std::string text =
+      "range time 0 1\nsort thing\nsort place\nthing T1, T2, T3\nplace P1, P2, P3\n"
+      "fluent Held(thing)\nfluent In(thing,place)\nevent Take(thing)\nevent Put(thing,place)\n"
+      "predicate Own(thing,place)\npredicate Next(thing,thing)\n"
+      "[thing] !Happens(Take(thing),1).\n[thing,place] !Happens(Put(thing,place),1).\n"
+      "[thing,place,time] !Happens(Put(thing,place),time) | Own(thing,place).\n" +
+      planted.facts;
+  for (std::size_t n = 9 + random.below(6); n > 0; --n) text += random.pick(kTied) + '\n';
+  if (is_named) text += random.chance(50) ? "!HoldsAt(Held(T1),1).\n" : "!Happens(Take(T3),0).\n";
+  return text;
+}
+
+TEST_CASE("random models with constants that belong together: orbits, sizes and existence") {
+  Seen seen;
+  std::size_t named = 0;
+  for (std::uint64_t seed = 1; seed <= 160; ++seed) {
+    FuzzRandom random(seed);
+    const auto& planted = kPlanted[seed % kPlanted.size()];
+    const bool is_named = random.chance(25);
+    const auto text = planted_text(random, planted, is_named);
+    CAPTURE(text);
+    TextModel model(text);
+    if (model.sink.has_errors() || model.ground == nullptr) continue;
+    ++seen.models;
+    check_orbits(model.compiled, random.chance(40), seen);
+    check_existence(model.compiled);
+    // What was planted is found: of all traces it makes none of another orbit.
+    const runtime::ModelSymmetry symmetry(model.compiled);
+    const auto traces = all_traces(model.compiled);
+    if (traces.size() > kMostTraces) continue;
+    const std::set<TraceWords> known(traces.begin(), traces.end());
+    std::map<TraceWords, std::size_t> orbit;
+    for (const auto& trace : traces) {
+      if (orbit.contains(trace)) continue;
+      const auto number = orbit.size();
+      for (const auto& one : orbit_of(trace, symmetry.constants())) orbit[one] = number;
+    }
+    for (const auto& trace : traces) {
+      for (const auto& cycles : planted.symmetries) {
+        for (const auto& words : orbit_of(trace, {{}, {cycles}})) {
+          if (is_named && !known.contains(words)) ++named;
+          if (!is_named) CHECK(orbit[words] == orbit[trace]);
+        }
+      }
+    }
+  }
+  MESSAGE(seen.models << " models, " << seen.symmetric << " symmetric, " << seen.together
+                      << " of several at once, " << seen.large << " left out");
+  CHECK(seen.together > 50);
+  CHECK(named > 10);
 }
 
 }  // namespace

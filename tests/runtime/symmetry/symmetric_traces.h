@@ -52,30 +52,32 @@ inline TraceWords renamed(const TraceWords& words, const std::map<std::string, s
   return out;
 }
 
-/// All ways to permute the constants within their sets.
-inline std::vector<std::map<std::string, std::string>> permutations(
-    const std::vector<std::vector<std::string>>& sets) {
-  std::vector<std::map<std::string, std::string>> all = {{}};
-  for (const auto& set : sets) {
-    auto sorted = set;
-    std::sort(sorted.begin(), sorted.end());
-    std::vector<std::map<std::string, std::string>> more;
-    auto image = sorted;
-    do {
-      for (auto one : all) {
-        for (std::size_t i = 0; i < sorted.size(); ++i) one[sorted[i]] = image[i];
-        more.push_back(std::move(one));
-      }
-    } while (std::next_permutation(image.begin(), image.end()));
-    all = std::move(more);
-  }
-  return all;
-}
-
+/// What repeated replacing by symmetries makes of the words: exchanges of any two of a set, and
+/// the cycles of what is replaced together.
 inline std::set<TraceWords> orbit_of(const TraceWords& words,
-                                     const std::vector<std::vector<std::string>>& sets) {
-  std::set<TraceWords> orbit;
-  for (const auto& to : permutations(sets)) orbit.insert(renamed(words, to));
+                                     const runtime::Interchangeables& constants) {
+  std::vector<std::map<std::string, std::string>> replacements;
+  for (const auto& set : constants.sets) {
+    for (std::size_t i = 1; i < set.size(); ++i) {
+      replacements.push_back({{set[i], set[i - 1]}, {set[i - 1], set[i]}});
+    }
+  }
+  for (const auto& cycles : constants.together) {
+    auto& to = replacements.emplace_back();
+    for (const auto& cycle : cycles) {
+      for (std::size_t i = 0; i < cycle.size(); ++i) to[cycle[i]] = cycle[(i + 1) % cycle.size()];
+    }
+  }
+  std::set<TraceWords> orbit = {words};
+  std::vector<TraceWords> open = {words};
+  while (!open.empty()) {
+    const auto one = std::move(open.back());
+    open.pop_back();
+    for (const auto& to : replacements) {
+      auto next = renamed(one, to);
+      if (orbit.insert(next).second) open.push_back(std::move(next));
+    }
+  }
   return orbit;
 }
 

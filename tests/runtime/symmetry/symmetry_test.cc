@@ -80,6 +80,75 @@ TEST_CASE("what stands below definitions is mapped along with them") {
   CHECK(sets_of(text) == Sets{{"A", "B", "C"}});
 }
 
+std::vector<std::vector<std::vector<std::string>>> together_in(const std::string& text) {
+  TextModel model(text);
+  REQUIRE_MESSAGE(!model.sink.has_errors(), model.codes());
+  return runtime::ModelSymmetry(model.compiled).constants().together;
+}
+
+/// Rooms in a row, with a door between neighbours.
+std::string row_of_rooms(int rooms, bool is_ring) {
+  const auto name = [&](const char* letter, int i) { return letter + std::to_string(i); };
+  std::string text = "range time 0 2\nsort room\nsort door\nroom R1";
+  for (int i = 2; i <= rooms; ++i) text += ", " + name("R", i);
+  text += "\ndoor D1";
+  const auto doors = is_ring ? rooms : rooms - 1;
+  for (int i = 2; i <= doors; ++i) text += ", " + name("D", i);
+  text +=
+      "\nfluent In(room)\nfluent Open(door)\nevent Go(door)\nevent Turn(door)\n"
+      "[door,time] Initiates(Turn(door),Open(door),time).\n"
+      "[door,time] Happens(Go(door),time) -> HoldsAt(Open(door),time).\n"
+      "[room1,room2,time] HoldsAt(In(room1),time) & HoldsAt(In(room2),time) -> room1=room2.\n"
+      "[time] {room} HoldsAt(In(room),time).\n";
+  for (int i = 1; i <= doors; ++i) {
+    const auto a = name("R", i), b = name("R", i % rooms + 1), door = name("D", i);
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
+      const auto at = "[time] HoldsAt(In(" + from + "),time) -> ";
+      text += at + "Initiates(Go(" + door + "),In(" + to + "),time).\n";
+      text += at + "Terminates(Go(" + door + "),In(" + from + "),time).\n";
+    }
+  }
+  return text;
+}
+
+TEST_CASE("a row of rooms is mirrored with its doors, unless something is said of an end") {
+  const auto row = row_of_rooms(5, false);
+  CHECK(sets_of(row).empty());
+  CHECK(together_in(row) == std::vector<std::vector<std::vector<std::string>>>{
+                                {{"R1", "R5"}, {"R2", "R4"}, {"D1", "D4"}, {"D2", "D3"}}});
+  CHECK(together_in(row + "HoldsAt(In(R3),0).\n").size() == 1);
+  CHECK(together_in(row + "HoldsAt(In(R1),0).\n").empty());
+  CHECK(together_in(row + "!HoldsAt(Open(D2),0).\n").empty());
+  CHECK(together_in(row + "!HoldsAt(Open(D2),0).\n!HoldsAt(Open(D3),0).\n").size() == 1);
+}
+
+TEST_CASE("a ring of rooms has a symmetry for each room and direction") {
+  TextModel ring(row_of_rooms(6, true));
+  REQUIRE(!ring.sink.has_errors());
+  const runtime::ModelSymmetry symmetry(ring.compiled);
+  CHECK(symmetry.group().order() == 12);
+  CHECK(symmetry.known_order() == 12);
+  TextModel named(row_of_rooms(6, true) + "HoldsAt(In(R2),0).\n");
+  CHECK(runtime::ModelSymmetry(named.compiled).group().order() == 2);
+}
+
+TEST_CASE("twins in pairs of rooms: exchanges within exchanges") {
+  std::string text =
+      "range time 0 1\nsort room\nsort lamp\nroom R1, R2, R3\nlamp L11, L12, L21, L22";
+  text +=
+      ", L31, L32\nfluent On(lamp)\nfluent Bright(room)\nevent Press(lamp)\n"
+      "[lamp,time] Initiates(Press(lamp),On(lamp),time).\n";
+  for (const std::string room : {"1", "2", "3"}) {
+    text += "[time] HoldsAt(Bright(R" + room + "),time) <-> HoldsAt(On(L" + room +
+            "1),time) | HoldsAt(On(L" + room + "2),time).\n";
+  }
+  TextModel model(text);
+  REQUIRE_MESSAGE(!model.sink.has_errors(), model.codes());
+  const runtime::ModelSymmetry symmetry(model.compiled);
+  CHECK(symmetry.constants().sets == Sets{{"L11", "L12"}, {"L21", "L22"}, {"L31", "L32"}});
+  CHECK(symmetry.group().order() == 48);
+}
+
 /// Many constants whose connections are as symmetric as can be.
 TEST_CASE("orbits of traces with large groups are counted, not listed") {
   std::string text = "range time 0 1\nsort pigeon\nsort hole\npigeon P1";
@@ -106,8 +175,7 @@ TEST_CASE("a trace whose constants stand in a ring or in a row") {
   TextModel model(text);
   REQUIRE(!model.sink.has_errors());
   const runtime::ModelSymmetry symmetry(model.compiled);
-  const runtime::TraceOrbits orbits(model.compiled, symmetry.constants(),
-                                    runtime::Compared::kObserved);
+  const runtime::TraceOrbits orbits(model.compiled, symmetry.group(), runtime::Compared::kObserved);
   auto symbols = runtime::symbols_of(model.compiled);
   const auto trace_of = [&](const std::vector<std::string>& edges) {
     runtime::Trace trace;

@@ -1,4 +1,4 @@
-#include "runtime/symmetry/swap_check.h"
+#include "runtime/symmetry/permutation_check.h"
 
 #include <algorithm>
 #include <limits>
@@ -24,7 +24,7 @@ std::uint64_t mixed(std::uint64_t a, std::uint64_t b) {
 
 }  // namespace
 
-SwapCheck::SwapCheck(const CompiledModel& model, const NamedAtoms& atoms)
+PermutationCheck::PermutationCheck(const CompiledModel& model, const NamedAtoms& atoms)
     : model_(model), atoms_(atoms) {
   const auto nodes = atoms.node_count();
   mentions_.resize(nodes);
@@ -35,7 +35,7 @@ SwapCheck::SwapCheck(const CompiledModel& model, const NamedAtoms& atoms)
   collect();
 }
 
-void SwapCheck::collect() {
+void PermutationCheck::collect() {
   for (std::size_t s = 0; s < model_.sections.size(); ++s) {
     const auto& section = model_.sections[s];
     if (section.copies < 1) continue;
@@ -62,7 +62,7 @@ void SwapCheck::collect() {
 }
 
 /// What only a check needs: many models have no two constants that are worth one.
-void SwapCheck::prepare() {
+void PermutationCheck::prepare() {
   seen_.assign(entries_.size(), 0);
   by_hash_.reserve(entries_.size());
   for (std::uint32_t e = 0; e < entries_.size(); ++e) by_hash_.emplace(clause_hash(entries_[e]), e);
@@ -70,7 +70,7 @@ void SwapCheck::prepare() {
 }
 
 /// Auxiliaries after those that they are defined by. One in a circle has no rank, and is no image.
-void SwapCheck::order_auxiliaries() {
+void PermutationCheck::order_auxiliaries() {
   std::vector<std::uint32_t> open(definitions_.size(), 0);  // auxiliaries it waits for
   std::vector<ModelNode> ready;
   const auto is_defined = [&](ModelNode node) { return !definitions_[node].empty(); };
@@ -95,24 +95,25 @@ void SwapCheck::order_auxiliaries() {
   }
 }
 
-ModelNode SwapCheck::image(ModelNode node) const {
+ModelNode PermutationCheck::image(ModelNode node) const {
   return images_[node] == kNoImage ? node : images_[node];
 }
 
-std::int32_t SwapCheck::time_of(std::int32_t variable) const {
+std::int32_t PermutationCheck::time_of(std::int32_t variable) const {
   const auto place = variable - 1 - model_.base();
   return place < 0 ? -1 : place / model_.stride();
 }
 
 /// Of a literal whose variable is taken for the node `image`, seen from timepoint `origin`.
-std::uint64_t SwapCheck::literal_hash(Literal literal, ModelNode image, std::int32_t origin) const {
+std::uint64_t PermutationCheck::literal_hash(Literal literal, ModelNode image,
+                                             std::int32_t origin) const {
   const auto time = time_of(literal.var());
   const auto from = time < 0 ? 0 : static_cast<std::uint64_t>(time - origin + (1 << 20));
   return mixed(image, 2 * from + (literal.is_positive() ? 1 : 0));
 }
 
 /// The same whatever the order of the literals.
-std::uint64_t SwapCheck::clause_hash(const Entry& entry) const {
+std::uint64_t PermutationCheck::clause_hash(const Entry& entry) const {
   std::uint64_t sum = 0;
   for (const auto literal : model_.clauses[entry.clause]) {
     sum += literal_hash(literal, image(node_of(model_, literal.var())), 0);
@@ -120,8 +121,8 @@ std::uint64_t SwapCheck::clause_hash(const Entry& entry) const {
   return mixed(sum, static_cast<std::uint64_t>(entry.section));
 }
 
-/// Of what the swapped definitions of an auxiliary say; the same whatever their order.
-std::uint64_t SwapCheck::definition_hash(ModelNode auxiliary) const {
+/// Of what the mapped definitions of an auxiliary say; the same whatever their order.
+std::uint64_t PermutationCheck::definition_hash(ModelNode auxiliary) const {
   std::uint64_t all = 0;
   for (const auto number : definitions_[auxiliary]) {
     const auto& entry = entries_[number];
@@ -138,7 +139,7 @@ std::uint64_t SwapCheck::definition_hash(ModelNode auxiliary) const {
   return all;
 }
 
-std::uint64_t SwapCheck::signature(std::uint32_t constant) const {
+std::uint64_t PermutationCheck::signature(std::uint32_t constant) const {
   std::uint64_t all = 0;
   for (const auto node : atoms_.mentions(constant)) {
     const auto& [name, places] = atoms_.node(node);
@@ -166,7 +167,7 @@ std::uint64_t SwapCheck::signature(std::uint32_t constant) const {
   return all;
 }
 
-bool SwapCheck::set_image(ModelNode node, ModelNode to) {
+bool PermutationCheck::set_image(ModelNode node, ModelNode to) {
   const auto state = static_cast<ModelNode>(model_.base()) + model_.state_slots;
   const auto fixed = static_cast<ModelNode>(model_.base());
   const auto place = [&](ModelNode n) { return n < fixed ? 0 : n < state ? 1 : 2; };
@@ -176,19 +177,29 @@ bool SwapCheck::set_image(ModelNode node, ModelNode to) {
   return true;
 }
 
-bool SwapCheck::map_names(std::uint32_t a, std::uint32_t b) {
-  for (const auto constant : {a, b}) {
+bool PermutationCheck::map_names(const ConstantMap& map) {
+  for (std::uint32_t constant = 0; constant < map.size(); ++constant) {
+    if (map[constant] == constant) continue;
     for (const auto node : atoms_.mentions(constant)) {
-      if (images_[node] != kNoImage) continue;  // mentions both
-      const auto to = atoms_.swapped(node, a, b);
+      if (images_[node] != kNoImage) continue;  // mentions several
+      const auto to = atoms_.image(node, map);
       if (!to || !set_image(node, *to)) return false;
     }
   }
   return true;
 }
 
+/// Are what moves and where it moves the same nodes, each once?
+bool PermutationCheck::is_bijective() {
+  std::vector<ModelNode> from = moved_, to;
+  for (const auto node : moved_) to.push_back(images_[node]);
+  std::sort(from.begin(), from.end());
+  std::sort(to.begin(), to.end());
+  return from == to;
+}
+
 /// In order of rank, so that what an auxiliary is defined by has its image before.
-bool SwapCheck::map_auxiliaries() {
+bool PermutationCheck::map_auxiliaries() {
   std::set<std::pair<std::uint32_t, ModelNode>> due;
   const auto touch = [&](ModelNode node) {
     for (const auto user : users_[node]) due.emplace(rank_[user], user);
@@ -205,13 +216,11 @@ bool SwapCheck::map_auxiliaries() {
     if (!set_image(auxiliary, found->second)) return false;
     touch(auxiliary);
   }
-  // An exchange is its own inverse, so that no two have one image.
-  return std::all_of(moved_.begin(), moved_.end(),
-                     [&](ModelNode node) { return image(image(node)) == node; });
+  return is_bijective();
 }
 
-/// Is the swapped clause one of the model's? Equal hashes are looked at literal by literal.
-bool SwapCheck::has_image(const Entry& entry) {
+/// Is the mapped clause one of the model's? Equal hashes are looked at literal by literal.
+bool PermutationCheck::has_image(const Entry& entry) {
   const auto sorted = [](std::vector<std::int32_t>& all) { std::sort(all.begin(), all.end()); };
   std::vector<std::int32_t> wanted, other;
   for (const auto literal : model_.clauses[entry.clause]) {
@@ -241,16 +250,16 @@ bool SwapCheck::has_image(const Entry& entry) {
   });
 }
 
-void SwapCheck::clear() {
+void PermutationCheck::clear() {
   for (const auto node : moved_) images_[node] = kNoImage;
   moved_.clear();
 }
 
-bool SwapCheck::is_symmetric(std::uint32_t a, std::uint32_t b) {
+bool PermutationCheck::is_symmetric(const ConstantMap& map) {
   if (checks_ == 0) prepare();
   clear();
   ++checks_;
-  bool maps = map_names(a, b) && map_auxiliaries();
+  bool maps = map_names(map) && map_auxiliaries();
   for (std::size_t i = 0; maps && i < moved_.size(); ++i) {
     for (const auto number : mentions_[moved_[i]]) {
       if (std::exchange(seen_[number], checks_) == checks_) continue;

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -10,28 +8,34 @@
 
 namespace parallax::runtime {
 
-/// Does exchanging two constants in all names map the clauses of a model onto themselves? Clauses
-/// that hold at every timepoint are looked at once. Auxiliaries are mapped along with what they
-/// are defined by; invariants, which follow from the rest, are left out. Whatever the clauses come
-/// from (axioms, a plan, state constraints) counts alike.
-class SwapCheck {
+/// Every constant's image, by constant.
+using ConstantMap = std::vector<std::uint32_t>;
+
+/// Does replacing constants by their images in all names map the clauses of a model onto
+/// themselves? Clauses that hold at every timepoint are looked at once. Auxiliaries are mapped
+/// along with what they are defined by; invariants, which follow from the rest, are left out.
+/// Whatever the clauses come from (axioms, a plan, state constraints) counts alike.
+class PermutationCheck {
  public:
   /// `model` and `atoms` outlive the check. Linear in the clauses of one timepoint and in those
   /// that hold once.
-  SwapCheck(const compiler::CompiledModel& model, const NamedAtoms& atoms);
+  PermutationCheck(const compiler::CompiledModel& model, const NamedAtoms& atoms);
 
-  /// Equal for two constants that are exchangeable; what differs is told apart without a check.
-  std::uint64_t signature(std::uint32_t constant) const;
-  /// Linear in the clauses that mention one of them.
-  bool is_symmetric(std::uint32_t a, std::uint32_t b);
-  /// Clauses looked at by all checks so far.
-  std::int64_t work() const { return work_; }
-
- private:
   struct Entry {
     std::uint32_t clause = 0;  // number in the model
     std::int32_t section = 0;  // 0: holds once; else the section's number + 1
   };
+
+  /// Equal for a constant and its image; what differs is told apart without a check.
+  std::uint64_t signature(std::uint32_t constant) const;
+  /// `map` is a permutation. Linear in the clauses that mention a constant that it moves.
+  bool is_symmetric(const ConstantMap& map);
+  /// The clauses that the check looks at.
+  const std::vector<Entry>& entries() const { return entries_; }
+  /// Clauses looked at by all checks so far.
+  std::int64_t work() const { return work_; }
+
+ private:
   std::uint64_t literal_hash(compiler::Literal literal, ModelNode image, std::int32_t origin) const;
   std::uint64_t clause_hash(const Entry& entry) const;
   std::uint64_t definition_hash(ModelNode auxiliary) const;
@@ -40,7 +44,8 @@ class SwapCheck {
   void collect();
   void prepare();
   void order_auxiliaries();
-  bool map_names(std::uint32_t a, std::uint32_t b);
+  bool map_names(const ConstantMap& map);
+  bool is_bijective();
   bool map_auxiliaries();
   bool set_image(ModelNode node, ModelNode to);
   bool has_image(const Entry& entry);
@@ -55,7 +60,7 @@ class SwapCheck {
   std::vector<std::uint32_t> rank_;            // of auxiliaries: those they are defined by first
   std::unordered_multimap<std::uint64_t, std::uint32_t> by_hash_;  // entries
   std::unordered_map<std::uint64_t, ModelNode> by_definition_;
-  std::vector<ModelNode> images_;  // of the swap at hand, by node; kNoImage: itself
+  std::vector<ModelNode> images_;  // of the permutation at hand, by node; kNoImage: itself
   std::vector<ModelNode> moved_;
   std::vector<std::uint32_t> seen_;  // by entry: number of the check
   std::uint32_t checks_ = 0;

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <gmpxx.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runtime/symmetry/permutation_check.h"
+
+namespace parallax::runtime {
+
+/// A group of permutations of constants as a chain of stabilizers (Sims 1970): a level has the
+/// permutations that leave the bases of the levels before it where they are. Every permutation of
+/// the group is in exactly one way a product of one from each level.
+struct ConstantGroup {
+  struct Level {
+    std::uint32_t base = 0;
+    std::vector<std::uint32_t> orbit;  // of the base under this level's group; the base first
+    /// By place in the orbit: a permutation of this level's group that takes the base there. Empty:
+    /// exchanging the two does.
+    std::vector<ConstantMap> to;
+  };
+
+  /// Those that some permutation moves; everywhere here a constant is its number in this list.
+  std::vector<std::string> constants;
+  std::vector<Level> levels;
+  /// By level, as far as levels have permutations, and once more: by constant, the number of its
+  /// orbit under that level's group. The levels behind these exchange within the last orbits.
+  std::vector<std::vector<std::uint32_t>> orbits;
+  /// Of `one`, which is in the orbit of a level's base, and of another constant: what permutations
+  /// of the level take to each other has one kind. Left out is the largest kind of each orbit.
+  struct Tie {
+    std::uint32_t one, other, kind;
+  };
+  std::vector<std::vector<Tie>> ties;  // by level, as far as levels have permutations
+
+  mpz_class order() const;
+};
+
+/// What group_of makes a group of, in numbers of all constants.
+struct GroupParts {
+  std::vector<ConstantGroup::Level> levels;
+  std::vector<std::uint32_t> bases;                // theirs, and others that do not move
+  std::vector<std::vector<std::uint32_t>> orbits;  // by level and once more; none: only exchanges
+};
+
+/// The levels, then all exchanges of constants of one set that are no bases.
+ConstantGroup group_of(const std::vector<std::string>& constants,
+                       const std::vector<std::uint32_t>& set_of, const GroupParts& parts);
+
+}  // namespace parallax::runtime
