@@ -3,7 +3,13 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/tools/cli_fixture.h"
 
@@ -177,6 +183,74 @@ TEST_CASE("what cannot be an objective is refused at its place") {
             .code == 2);
   CHECK(cli.parallax({"compile", "m.e", "-o", "m.dec.cnf"}).code == 0);
   CHECK(cli.parallax({"traces", "m.dec.cnf", "--minimize", "count Happens(event,time)"}).code == 2);
+}
+
+/// How often an atom is in the lists called `name` of a trace.
+std::size_t times_of(const Json& trace, const char* name, const std::string& atom) {
+  std::size_t times = 0;
+  for (const auto& point : trace.at("timepoints")) {
+    if (!point.contains(name)) continue;
+    times += static_cast<std::size_t>(
+        std::count(point.at(name).begin(), point.at(name).end(), Json(atom)));
+  }
+  return times;
+}
+
+TEST_CASE("the best of a plan's traces are those that counting all of them finds") {
+  const CliFixture cli;
+  std::size_t compared = 0, differing = 0;
+  for (const std::string plan : {"plan1", "plan2", "plan3"}) {
+    CAPTURE(plan);
+    const auto scenario = std::string(PARALLAX_SOURCE_DIR) + "/scenarios/kitchen/" + plan + ".yaml";
+    const auto listed = [&](std::vector<std::string> more) {
+      std::vector<std::string> words = {"traces", scenario,          "--limit",
+                                        "0",      "--split-initial", "--json"};
+      words.insert(words.end(), more.begin(), more.end());
+      const auto result = cli.parallax(words);
+      CAPTURE(result.err);
+      CHECK(result.code == 0);
+      return Json::parse(result.out);
+    };
+    const auto all = listed({}).at("list");
+    REQUIRE(all.size() > 1);
+    std::set<std::pair<std::string, std::string>> atoms;  // the name of their list, and they
+    for (const auto& trace : all) {
+      for (const auto& point : trace.at("timepoints")) {
+        for (const std::string name : {"happens", "holds"}) {
+          if (!point.contains(name)) continue;
+          for (const auto& atom : point.at(name)) atoms.emplace(name, atom.get<std::string>());
+        }
+      }
+    }
+    std::size_t number = 0;
+    for (const auto& [name, atom] : atoms) {
+      if (++number % 5 != 0) continue;
+      CAPTURE(atom);
+      std::size_t least = std::numeric_limits<std::size_t>::max(), most = 0;
+      for (const auto& trace : all) {
+        least = std::min(least, times_of(trace, name.c_str(), atom));
+        most = std::max(most, times_of(trace, name.c_str(), atom));
+      }
+      Json best_of_all = Json::array();
+      for (const auto& trace : all) {
+        if (times_of(trace, name.c_str(), atom) == least) {
+          best_of_all.push_back(trace.at("timepoints"));
+        }
+      }
+      const auto found =
+          listed({"--minimize", std::string("count ") +
+                                    (name == "holds" ? "HoldsAt(" : "Happens(") + atom + ",time)"});
+      CHECK(found.at("optimum") == least);
+      Json given = Json::array();
+      for (const auto& trace : found.at("list")) given.push_back(trace.at("timepoints"));
+      const bool are_those = given == best_of_all;  // too long to be printed
+      CHECK(are_those);
+      ++compared;
+      if (most > least) ++differing;
+    }
+  }
+  CHECK(compared > 15);
+  CHECK(differing > 5);
 }
 
 TEST_CASE("a model without traces has no optimum") {
