@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "runtime/cubes/cube_solver.h"
 #include "runtime/enumerate/canonical.h"
 #include "runtime/enumerate/model_enumerator.h"
 #include "runtime/graph/far_atoms.h"
@@ -73,7 +74,7 @@ ModelTraces::ModelTraces(const CompiledModel& model, TraceQuery query)
 SolverSession& ModelTraces::session() {
   if (!session_) {
     const bool is_one = query_.order == TraceOrder::kAny || query_.wanted == 1;
-    session_.emplace(model_, make_cadical_solver(query_.stop),
+    session_.emplace(model_, make_solver_for_jobs(query_.jobs, query_.stop),
                      is_one ? Loading::kWitness : Loading::kAsNeeded);
     if (may_break_symmetry()) break_symmetry();
   }

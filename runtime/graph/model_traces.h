@@ -49,6 +49,8 @@ struct TraceQuery {
   /// find it and no strategy is forced: that there is none is then said `by_symmetry`.
   bool breaks_symmetry = true;
   GraphLimits limits = {};
+  /// Threads for a question that is hard for a solver (CubeOptions::jobs); 0: it is not cut.
+  std::int64_t jobs = 0;
   const std::atomic<bool>* stop = nullptr;
 };
 

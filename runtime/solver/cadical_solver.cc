@@ -1,18 +1,22 @@
 #include <algorithm>
 #include <cadical.hpp>
 #include <climits>
+#include <utility>
 
-#include "runtime/solver/sat_solver.h"
+#include "runtime/solver/sharing_solver.h"
 
 namespace parallax::runtime {
 namespace {
 
-class CadicalSolver final : public SatSolver {
+class CadicalSolver final : public SharingSolver {
  public:
   explicit CadicalSolver(const std::atomic<bool>* stop) : terminator_(stop) {
     solver_.set("quiet", 1);
     solver_.connect_learner(&learned_);
     if (stop != nullptr) solver_.connect_terminator(&terminator_);
+  }
+  CadicalSolver(std::size_t longest, const std::atomic<bool>* stop) : CadicalSolver(stop) {
+    learned_.longest = longest;
   }
   CadicalSolver(std::FILE* proof, ProofForm form, const std::atomic<bool>* stop, ProofUse use)
       : CadicalSolver(stop) {
@@ -69,6 +73,9 @@ class CadicalSolver final : public SatSolver {
   }
   std::int64_t conflicts() const override { return learned_.clauses; }
   std::int64_t solve_calls() const override { return calls_; }
+  std::vector<std::vector<Literal>> take_learned() override {
+    return std::exchange(learned_.kept, {});
+  }
 
  private:
   enum class State : std::uint8_t { kReady, kSatisfied, kFailed };
@@ -82,12 +89,24 @@ class CadicalSolver final : public SatSolver {
   };
   class LearnedClauses final : public CaDiCaL::Learner {
    public:
-    bool learning(int) override {
+    bool learning(int size) override {
       ++clauses;
-      return false;  // the literals are of no interest
+      return static_cast<std::size_t>(size) <= longest;  // others are of no interest
     }
-    void learn(int) override {}
+    void learn(int literal) override {
+      if (literal == 0) {
+        kept.push_back(std::exchange(next_, {}));
+      } else {
+        const auto variable = Literal::positive(literal < 0 ? -literal : literal);
+        next_.push_back(literal < 0 ? ~variable : variable);
+      }
+    }
+    std::size_t longest = 0;
+    std::vector<std::vector<Literal>> kept;
     std::int64_t clauses = 0;
+
+   private:
+    std::vector<Literal> next_;
   };
   StopFlag terminator_;
   LearnedClauses learned_;
@@ -101,6 +120,11 @@ class CadicalSolver final : public SatSolver {
 
 std::unique_ptr<SatSolver> make_cadical_solver(const std::atomic<bool>* stop) {
   return std::make_unique<CadicalSolver>(stop);
+}
+
+std::unique_ptr<SharingSolver> make_sharing_solver(std::size_t longest,
+                                                   const std::atomic<bool>* stop) {
+  return std::make_unique<CadicalSolver>(longest, stop);
 }
 
 std::unique_ptr<SatSolver> make_proving_solver(std::FILE* proof, ProofForm form,

@@ -21,6 +21,9 @@ struct CertifyOption {
 /// The verdict on a claim that rests on an argument by symmetry.
 inline constexpr std::string_view kBySymmetry = "symmetry, not proof checked";
 
+/// The verdict on a claim that was searched by cubes.
+inline constexpr std::string_view kByCubes = "cubes, not proof checked";
+
 /// Collects the traces of a list and proves at its end that there are no others. Without the option
 /// it does nothing and says so.
 class TraceCertifier {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "compiler/base/codes/campaigns.h"
+#include "runtime/cubes/cube_solver.h"
 #include "runtime/enumerate/model_enumerator.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/graph/orbit_traces.h"
@@ -28,6 +29,7 @@ runtime::TraceQuery query_of(const SearchOptions& options, const Context& contex
   }
   query.wanted = options.sample > 0 ? 0 : options.limit;
   query.stop = &context.stop();
+  query.jobs = options.jobs;
   return query;
 }
 
@@ -168,7 +170,12 @@ Ending list_plan_traces(const SearchOptions& options, const compiler::CompiledMo
         options.split_initial ? runtime::Compared::kKeyAndStart : runtime::Compared::kKey);
     show_constants(options, symmetry->constants(), context);
   }
-  runtime::SolverSession session(model, certifier.solver(), certifier.loading());
+  // Cubes leave no proof.
+  runtime::SolverSession session(model,
+                                 certifier.is_asked()
+                                     ? certifier.solver()
+                                     : runtime::make_solver_for_jobs(options.jobs, &context.stop()),
+                                 certifier.loading());
   runtime::PlanEnumerator enumerator(session, {.all_hits = options.hits == "all",
                                                .split_initial = options.split_initial,
                                                .order = order,

@@ -24,6 +24,7 @@ struct SearchOptions {
   bool split_initial = false;
   std::string order;            // "canonical", "any"; empty: what suits
   bool up_to_symmetry = false;  // one of each orbit
+  std::int64_t jobs = 0;        // threads for a hard question; 0: it is not cut into cubes
   bool stats = false;           // say how they were found
 };
 

@@ -109,6 +109,14 @@ void apply(const JudgingOptions& options, harness::Scenario& scenario) {
   }
 }
 
+void add_cubes_option(OptionTable& command, std::int64_t& jobs) {
+  command
+      .option("-j,--jobs", jobs,
+              "Cut a question that is hard for the solver into cubes, for so many threads (two are "
+              "of use); the answer is the same for any number, and no proof is made of it")
+      .check(WholeNumber{1, 256});
+}
+
 void add_search_options(OptionTable& command, SearchOptions& options) {
   command.option("--limit", options.limit, "Stop after this many traces; 0: all")
       .check(NonNegative{})
@@ -133,6 +141,7 @@ void add_search_options(OptionTable& command, SearchOptions& options) {
               "canonical, or any: whichever trace the solver finds first. By default any where "
               "--limit 1 asks for one trace that reaches a goal, which is many times as fast")
       .check(OneOf{{"canonical", "any"}});
+  add_cubes_option(command, options.jobs);
   command.flag("--up-to-symmetry", options.up_to_symmetry,
                "List one trace of each orbit: of those that exchanging constants which model, plan "
                "and goal do not tell apart makes of each other, and how many these are");

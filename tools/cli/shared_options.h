@@ -32,6 +32,8 @@ struct JudgingOptions {
 };
 void add_judging_options(OptionTable& command, JudgingOptions& options);
 void apply(const JudgingOptions& options, harness::Scenario& scenario);
+/// `--jobs` of commands that ask a solver. 0, the default: questions are not cut into cubes.
+void add_cubes_option(OptionTable& command, std::int64_t& jobs);
 void add_search_options(OptionTable& command, SearchOptions& options);
 void add_listing_options(OptionTable& command, ListingOptions& options);
 /// `--certify` takes its file after `=` only, so that a model may follow it.

@@ -11,6 +11,7 @@
 #include "compiler/base/temporary_folder.h"
 #include "harness/config/ledger.h"
 #include "harness/report/text_layout.h"
+#include "runtime/cubes/cube_solver.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "tools/app/certify.h"
 #include "tools/app/property_check.h"
@@ -31,6 +32,7 @@ struct VerifyOptions {
   std::string property;
   CertifyOption certify;
   bool check = false;
+  std::int64_t jobs = 0;
   std::string ledger;
 };
 
@@ -40,6 +42,7 @@ struct Answer {
   runtime::Exploration exploration = runtime::Exploration::kStopped;
   std::vector<std::string> bounds;
   bool by_symmetry = false;  // that there is none was found among representatives only
+  bool by_cubes = false;     // it was searched without a log
   std::string proof;         // "proof checked"; empty where there is nothing to prove
   std::string proof_origin;  // what made it, if it was accepted
   std::string proof_file;    // where it is kept
@@ -47,7 +50,8 @@ struct Answer {
   std::optional<PropertyBreak> broken;           // of a temporal property
 };
 
-/// A contradiction that takes more conflicts than this is not proved where symmetry may do without.
+/// A contradiction that takes more conflicts than this is not proved where symmetry or cubes may do
+/// without.
 constexpr std::int64_t kProvable = 20'000;
 
 Answer ask(const compiler::CompiledModel& model, std::unique_ptr<runtime::SatSolver> solver,
@@ -64,19 +68,22 @@ Answer ask(const compiler::CompiledModel& model, std::unique_ptr<runtime::SatSol
 }
 
 /// With a proof wherever one is asked for, or can be had at little cost; where that takes long and
-/// constants are interchangeable, without.
-Answer ask(const compiler::CompiledModel& model, TraceCertifier& certifier, bool insists) {
+/// constants are interchangeable or there are jobs for cubes, without.
+Answer ask(const compiler::CompiledModel& model, TraceCertifier& certifier, bool insists,
+           std::int64_t jobs) {
   std::optional<runtime::ModelSymmetry> symmetry;
   if (!insists) symmetry.emplace(model);
-  if (!symmetry || symmetry->empty()) {
+  if (!symmetry || (symmetry->empty() && jobs == 0)) {
     return ask(model, certifier.solver(), certifier.loading(), nullptr);
   }
   auto answer = ask(model, runtime::make_limited_solver(certifier.solver(), kProvable),
                     certifier.loading(), nullptr);
   const bool decided = answer.violation || answer.exploration != runtime::Exploration::kStopped;
   if (decided || stop_flag().load()) return answer;
-  return ask(model, runtime::make_cadical_solver(&stop_flag()), runtime::Loading::kAsNeeded,
-             &*symmetry);
+  answer = ask(model, runtime::make_solver_for_jobs(jobs, &stop_flag()),
+               runtime::Loading::kAsNeeded, &*symmetry);
+  answer.by_cubes = jobs > 0;
+  return answer;
 }
 
 /// The proof is made and checked in any case, and kept if that was asked for.
@@ -215,6 +222,9 @@ std::string answer_json(const compiler::CompiledModel& model, const Answer& answ
   if (answer.proof == kBySymmetry) {
     out["proof"] = "none";
     out["symmetry"] = true;
+  } else if (answer.proof == kByCubes) {
+    out["proof"] = "none";
+    out["cubes"] = true;
   } else if (!answer.proof.empty()) {
     out["proof"] = answer.proof.substr(std::string("proof ").size());
   }
@@ -258,7 +268,7 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   const auto certify = proof_option(options, folder);
   TraceCertifier certifier(certify, options.model.models, model, invocation);
   if (!certifier.ready()) return 0;
-  auto answer = ask(model, certifier, !options.certify.file.empty());
+  auto answer = ask(model, certifier, !options.certify.file.empty(), options.jobs);
   // Nothing can go wrong in a model without executions.
   if (!answer.violation && answer.exploration != runtime::Exploration::kStopped &&
       report_if_unsatisfiable(model, 0, invocation) == base::Known::kNo) {
@@ -267,6 +277,8 @@ int verify(const VerifyOptions& options, Invocation& invocation) {
   const bool holds = !answer.violation && answer.exploration != runtime::Exploration::kStopped;
   if (holds && answer.by_symmetry) {
     answer.proof = kBySymmetry;
+  } else if (holds && answer.by_cubes) {
+    answer.proof = kByCubes;
   } else if (holds) {
     prove(certify, certifier, answer);
   }
@@ -324,6 +336,7 @@ Command verify_command() {
   command.option("--property", options->property, "Formula that should hold at all times")
       .required();
   add_certify_option(command, options->certify);
+  add_cubes_option(command, options->jobs);
   command.option("--ledger", options->ledger,
                  "Also say which known discrepancies of this file the answer rests on "
                  "(docs/ledger.md)");
