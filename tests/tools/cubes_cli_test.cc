@@ -67,6 +67,10 @@ TEST_CASE(
   const auto json = json_of(cli, with, 0);
   CHECK(json["proof"] == "none");
   CHECK(json["cubes"] == true);
+  // A proof that is asked for is made, without cubes.
+  auto proved = with;
+  proved.push_back("--certify=birds.drat");
+  CHECK(cli.parallax(proved).out.find("(proof checked)") != std::string::npos);
   auto easy = with;
   easy[3] = "[lamp,hole] HoldsAt(In(lamp,hole),time) -> time>0";
   CHECK(cli.parallax(easy).out.find("(proof checked)") != std::string::npos);
