@@ -15,6 +15,10 @@ namespace {
 /// Clauses that checks may look at, beyond so many of each that the model has.
 constexpr std::int64_t kWork = 1'000'000;
 
+/// Literals that refinements may look at, beyond 16 times those of the model.
+constexpr std::int64_t kQuick = 50'000'000;
+constexpr std::int64_t kThorough = 300'000'000;
+
 NodeMap moved_nodes(const NamedAtoms& atoms, const ConstantMap& map) {
   NodeMap moved;
   for (std::uint32_t constant = 0; constant < map.size(); ++constant) {
@@ -48,7 +52,7 @@ std::vector<std::vector<std::string>> cycles_of(const std::vector<std::string>& 
 
 }  // namespace
 
-ModelSymmetry::ModelSymmetry(const CompiledModel& model) {
+ModelSymmetry::ModelSymmetry(const CompiledModel& model, SymmetryEffort effort) {
   const NamedAtoms atoms(model);
   const auto& names = atoms.constants();
   if (names.size() < 2) return;
@@ -61,7 +65,8 @@ ModelSymmetry::ModelSymmetry(const CompiledModel& model) {
     return;
   }
   ConstantColours colours(model, atoms, check);
-  const SymmetrySearch search(check, colours, set_of_);
+  const auto most = effort == SymmetryEffort::kQuick ? kQuick : kThorough;
+  const SymmetrySearch search(check, colours, set_of_, most);
   is_complete_ = search.is_complete();
   // From the first base to the last, as exchanges come.
   const auto& found = search.generators();

@@ -25,11 +25,18 @@ struct Interchangeables {
 /// A symmetry as the named nodes that it moves: each, and the one whose place it takes.
 using NodeMap = std::vector<std::pair<ModelNode, ModelNode>>;
 
+/// How long may be searched for symmetries of several constants at once?
+enum class SymmetryEffort : std::uint8_t {
+  kQuick,     // before anything is known to be hard: some tenths of a second
+  kThorough,  // some seconds
+};
+
 /// The symmetries of a model that permute constants. Deterministic. Each was checked clause by
 /// clause; where finding all of them would take too long, some are left out.
 class ModelSymmetry {
  public:
-  explicit ModelSymmetry(const compiler::CompiledModel& model);
+  explicit ModelSymmetry(const compiler::CompiledModel& model,
+                         SymmetryEffort effort = SymmetryEffort::kThorough);
   const Interchangeables& constants() const { return constants_; }
   /// They generate the group: exchanges of neighbours in each set, and those of several at once.
   std::span<const NodeMap> generators() const {

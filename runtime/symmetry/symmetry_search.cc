@@ -10,9 +10,7 @@ namespace parallax::runtime {
 
 namespace {
 
-/// Literals that refinements may look at, beyond so many times those of the model.
-constexpr std::int64_t kRefinement = 300'000'000;
-/// Clauses that checks may look at, in the same way.
+/// Clauses that checks may look at, beyond so many times those of the model.
 constexpr std::int64_t kChecks = 1'000'000;
 /// Words that permutations of all levels may take.
 constexpr std::int64_t kMostWords = 8'000'000;
@@ -48,11 +46,11 @@ class Classes {
 }  // namespace
 
 SymmetrySearch::SymmetrySearch(PermutationCheck& check, ConstantColours& colours,
-                               const std::vector<std::uint32_t>& set_of)
+                               const std::vector<std::uint32_t>& set_of, std::int64_t most)
     : check_(check), colours_(colours), set_of_(set_of) {
   const auto clauses = static_cast<std::int64_t>(check.entries().size());
   most_check_ = check.work() + kChecks + 16 * clauses;
-  most_colours_ = kRefinement + 16 * colours.size();
+  most_colours_ = most + 16 * colours.size();
   choose_bases();
   find_generators();
 }

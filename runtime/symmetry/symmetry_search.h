@@ -15,9 +15,10 @@ namespace parallax::runtime {
 class SymmetrySearch {
  public:
   /// `set_of`: by constant, the number of the set in which any two are exchangeable. All outlive
-  /// the search.
+  /// the search. `most`: so many literals may be looked at by refinements, beyond 16 times those of
+  /// the model.
   SymmetrySearch(PermutationCheck& check, ConstantColours& colours,
-                 const std::vector<std::uint32_t>& set_of);
+                 const std::vector<std::uint32_t>& set_of, std::int64_t most);
 
   /// With the exchanges within the sets they generate all symmetries, if the search is complete.
   const std::vector<ConstantMap>& generators() const { return generators_; }

@@ -159,7 +159,10 @@ Ending list_plan_traces(const SearchOptions& options, const compiler::CompiledMo
   std::optional<runtime::TraceOrbits> orbits;
   // A plan names what it is about; of what is reached without one, many things may be alike.
   const bool asks_first = model.plan.empty() && !certifier.is_asked();
-  if (any || asks_first || options.up_to_symmetry) symmetry.emplace(model);
+  if (any || asks_first || options.up_to_symmetry) {
+    symmetry.emplace(model, options.up_to_symmetry ? runtime::SymmetryEffort::kThorough
+                                                   : runtime::SymmetryEffort::kQuick);
+  }
   if (!any && !options.up_to_symmetry && symmetry &&
       symmetry->known_order() < runtime::kWorthBreaking) {
     symmetry.reset();

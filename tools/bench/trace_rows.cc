@@ -67,7 +67,8 @@ void measure_counting(Bench& bench) {
   bench.begin("deciding that there is no trace");
   compare_counts(bench, {"robot_6_4_m1", "0"});
   bench.begin("deciding that there is no trace of things that are interchangeable");
-  for (const auto* name : {"pigeon_9_8", "pigeon_10_9", "pigeon_11_10", "pigeon_20_19"}) {
+  for (const auto* name : {"pigeon_9_8", "pigeon_10_9", "pigeon_11_10", "pigeon_20_19",
+                           "ringed_9_8", "ringed_10_9", "ringed_20_19"}) {
     compare_configurations(bench, {name, "0"});
   }
 }

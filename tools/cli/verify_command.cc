@@ -72,7 +72,7 @@ Answer ask(const compiler::CompiledModel& model, std::unique_ptr<runtime::SatSol
 Answer ask(const compiler::CompiledModel& model, TraceCertifier& certifier, bool insists,
            std::int64_t jobs) {
   std::optional<runtime::ModelSymmetry> symmetry;
-  if (!insists) symmetry.emplace(model);
+  if (!insists) symmetry.emplace(model, runtime::SymmetryEffort::kQuick);
   if (!symmetry || (symmetry->empty() && jobs == 0)) {
     return ask(model, certifier.solver(), certifier.loading(), nullptr);
   }
@@ -80,6 +80,7 @@ Answer ask(const compiler::CompiledModel& model, TraceCertifier& certifier, bool
                     certifier.loading(), nullptr);
   const bool decided = answer.violation || answer.exploration != runtime::Exploration::kStopped;
   if (decided || stop_flag().load()) return answer;
+  symmetry.emplace(model);
   answer = ask(model, runtime::make_solver_for_jobs(jobs, &stop_flag()),
                runtime::Loading::kAsNeeded, &*symmetry);
   answer.by_cubes = jobs > 0;

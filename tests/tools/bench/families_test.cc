@@ -36,6 +36,8 @@ TEST_CASE("distant: lamps that are not flipped both first and last, (3*2^(horizo
 
 TEST_CASE("pigeons: injective maps into the holes") {
   CHECK(traces_of("pigeon_1_1") == 1);
+  CHECK(traces_of("ringed_3_4") == 24);
+  CHECK(traces_of("ringed_4_3") == 0);
   CHECK(traces_of("pigeon_2_3") == 3 * 2);
   CHECK(traces_of("pigeon_3_4") == 4 * 3 * 2);
   CHECK(traces_of("pigeon_4_3") == 0);

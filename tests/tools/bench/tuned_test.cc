@@ -37,6 +37,8 @@ TEST_CASE("programs by hand: as many answer sets as the models have traces") {
   CHECK(answer_sets("distant_2_4") == "36");
   CHECK(answer_sets("pigeon_3_4") == "24");
   CHECK(answer_sets("pigeon_4_3") == "0");
+  CHECK(answer_sets("ringed_3_4") == "24");
+  CHECK(answer_sets("ringed_4_3") == "0");
   CHECK(answer_sets("chain_8") == "0");
   CHECK(answer_sets("falling_5") == "1");
   CHECK(answer_sets("bankproj_3_12_3_8") == "1");

@@ -33,6 +33,9 @@ std::string roaming_model(int rooms, int things, int horizon);
 /// holes!/(holes-pigeons)! traces.
 std::string pigeon_model(int pigeons, int holes);
 
+/// The same of pigeons that wear a ring of their own each, in holes that have a door each.
+std::string ringed_model(int pigeons, int holes);
+
 /// A tick lights the next of `stages` stages; does the last one stay dark? No trace.
 std::string chain_model(int stages);
 

@@ -46,6 +46,8 @@ const Family kFamilies[] = {
      [](P p) { return tuned_roaming(p[0], p[1], p[2]); }},
     {"pigeon", 2, 0, any, [](P p) { return pigeon_model(p[0], p[1]); },
      [](P p) { return tuned_pigeon(p[0], p[1]); }},
+    {"ringed", 2, 0, any, [](P p) { return ringed_model(p[0], p[1]); },
+     [](P p) { return tuned_ringed(p[0], p[1]); }},
     {"chain", 1, 0, [](P p) { return p[0] >= 2; }, [](P p) { return chain_model(p[0]); },
      [](P p) { return tuned_chain(p[0]); }},
     {"bankproj", 4, 0, has_transfers, [](P p) { return bank_projection_model(bank(p)); },

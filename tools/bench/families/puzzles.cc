@@ -93,6 +93,63 @@ releases(come(P),sits(P,H),T) :- happens(come(P),T), hole(H).
   return tuned_calculus(1) + fmt::format(kText, pigeons, holes);
 }
 
+std::string ringed_model(int pigeons, int holes) {
+  auto text = fmt::format(
+      R"(; {0} pigeons come home to {1} holes; each wears a ring of its own, and each hole has a door.
+
+range time 0 1
+sort pigeon
+pigeon {2}
+sort ring
+ring {3}
+sort hole
+hole {4}
+sort door
+door {5}
+
+fluent Home(pigeon)
+fluent SitsIn(ring,hole)
+fluent Shut(door)
+event ComeHome(pigeon)
+
+[pigeon,time] Initiates(ComeHome(pigeon),Home(pigeon),time).
+[pigeon,door,time] Releases(ComeHome(pigeon),Shut(door),time).
+
+[ring,hole1,hole2,time]
+HoldsAt(SitsIn(ring,hole1),time) & HoldsAt(SitsIn(ring,hole2),time) -> hole1=hole2.
+[ring1,ring2,hole,time]
+HoldsAt(SitsIn(ring1,hole),time) & HoldsAt(SitsIn(ring2,hole),time) -> ring1=ring2.
+
+[pigeon] !HoldsAt(Home(pigeon),0).
+[ring,hole] !HoldsAt(SitsIn(ring,hole),0).
+[pigeon] Happens(ComeHome(pigeon),0).
+)",
+      pigeons, holes, numbered_names("Pigeon", pigeons), numbered_names("Ring", pigeons),
+      numbered_names("Hole", holes), numbered_names("Door", holes));
+  // What sits in a hole is the ring of the pigeon that has come home.
+  for (int i = 1; i <= pigeons; ++i) {
+    text += fmt::format(
+        "[hole,time] Releases(ComeHome(Pigeon{0}),SitsIn(Ring{0},hole),time).\n"
+        "[time] HoldsAt(Home(Pigeon{0}),time) -> ({{hole}} HoldsAt(SitsIn(Ring{0},hole),time)).\n",
+        i);
+  }
+  for (int i = 1; i <= holes; ++i) {
+    text += fmt::format(
+        "[time] HoldsAt(Shut(Door{0}),time) <-> ({{ring}} HoldsAt(SitsIn(ring,Hole{0}),time)).\n",
+        i);
+  }
+  return text;
+}
+
+std::string tuned_ringed(int pigeons, int holes) {
+  return tuned_pigeon(pigeons, holes) + R"(door(H) :- hole(H).
+fluent(shut(D)) :- door(D).
+releases(come(P),shut(D),T) :- happens(come(P),T), door(D).
+:- holds(shut(D),T), not holds(sits(P,D),T) : pigeon(P).
+:- door(D), holds(sits(P,D),T), not holds(shut(D),T).
+)";
+}
+
 std::string chain_model(int stages) {
   constexpr const char* kText = R"(; A chain of {0} stages; each tick of a clock lights one more.
 

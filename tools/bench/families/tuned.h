@@ -27,6 +27,7 @@ std::string tuned_distant(int lamps, int horizon);
 std::string tuned_robot(int rooms, int things, int slack);
 std::string tuned_roaming(int rooms, int things, int horizon);
 std::string tuned_pigeon(int pigeons, int holes);
+std::string tuned_ringed(int pigeons, int holes);
 std::string tuned_chain(int stages);
 std::string tuned_bank_projection(const BankSize& size);
 std::string tuned_bank_planning(const BankSize& size);
