@@ -28,6 +28,7 @@ PermutationCheck::PermutationCheck(const CompiledModel& model, const NamedAtoms&
     : model_(model), atoms_(atoms) {
   const auto nodes = atoms.node_count();
   mentions_.resize(nodes);
+  facts_.resize(nodes);
   definitions_.resize(nodes);
   users_.resize(nodes);
   rank_.assign(nodes, kNoRank);
@@ -49,6 +50,9 @@ void PermutationCheck::collect() {
       const auto literals = model_.clauses[c];
       for (const auto literal : literals) {
         mentions_[node_of(model_, literal.var())].push_back(number);
+      }
+      if (!defines && literals.size() == 1) {
+        facts_[node_of(model_, literals.front().var())].push_back(number);
       }
       if (!defines || literals.empty()) continue;
       const auto self = node_of(model_, literals.front().var());
@@ -177,11 +181,28 @@ bool PermutationCheck::set_image(ModelNode node, ModelNode to) {
   return true;
 }
 
+/// Most constants that are alike differ by facts, such as where each thing is at first.
+bool PermutationCheck::map_facts(const ConstantMap& map) {
+  for (std::uint32_t constant = 0; constant < map.size(); ++constant) {
+    if (map[constant] == constant) continue;
+    for (const auto node : atoms_.mentions(constant)) {
+      if (facts_[node].empty() || images_[node] != kNoImage) continue;
+      const auto to = atoms_.image(node, map);
+      if (!to || !set_image(node, *to)) return false;
+      for (const auto number : facts_[node]) {
+        ++work_;
+        if (!has_image(entries_[number])) return false;
+      }
+    }
+  }
+  return true;
+}
+
 bool PermutationCheck::map_names(const ConstantMap& map) {
   for (std::uint32_t constant = 0; constant < map.size(); ++constant) {
     if (map[constant] == constant) continue;
     for (const auto node : atoms_.mentions(constant)) {
-      if (images_[node] != kNoImage) continue;  // mentions several
+      if (images_[node] != kNoImage) continue;  // mentions several, or has facts
       const auto to = atoms_.image(node, map);
       if (!to || !set_image(node, *to)) return false;
     }
@@ -259,7 +280,7 @@ bool PermutationCheck::is_symmetric(const ConstantMap& map) {
   if (checks_ == 0) prepare();
   clear();
   ++checks_;
-  bool maps = map_names(map) && map_auxiliaries();
+  bool maps = map_facts(map) && map_names(map) && map_auxiliaries();
   for (std::size_t i = 0; maps && i < moved_.size(); ++i) {
     for (const auto number : mentions_[moved_[i]]) {
       if (std::exchange(seen_[number], checks_) == checks_) continue;

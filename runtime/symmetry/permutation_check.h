@@ -28,7 +28,8 @@ class PermutationCheck {
 
   /// Equal for a constant and its image; what differs is told apart without a check.
   std::uint64_t signature(std::uint32_t constant) const;
-  /// `map` is a permutation. Linear in the clauses that mention a constant that it moves.
+  /// `map` is a permutation. Linear in the clauses that mention a constant that it moves; where
+  /// facts differ, in those about such constants.
   bool is_symmetric(const ConstantMap& map);
   /// The clauses that the check looks at.
   const std::vector<Entry>& entries() const { return entries_; }
@@ -44,6 +45,7 @@ class PermutationCheck {
   void collect();
   void prepare();
   void order_auxiliaries();
+  bool map_facts(const ConstantMap& map);
   bool map_names(const ConstantMap& map);
   bool is_bijective();
   bool map_auxiliaries();
@@ -55,6 +57,7 @@ class PermutationCheck {
   const NamedAtoms& atoms_;
   std::vector<Entry> entries_;
   std::vector<std::vector<std::uint32_t>> mentions_;     // entries, by node
+  std::vector<std::vector<std::uint32_t>> facts_;        // entries of one literal, by node
   std::vector<std::vector<std::uint32_t>> definitions_;  // entries, by auxiliary
   std::vector<std::vector<ModelNode>> users_;  // auxiliaries whose definitions mention the node
   std::vector<std::uint32_t> rank_;            // of auxiliaries: those they are defined by first

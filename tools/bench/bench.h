@@ -92,7 +92,7 @@ struct StagesInput {
 
 /// Compiles in this process and prints one line: processor time of reading and checking the model,
 /// of grounding it, of the plan and making clauses, of writing them as text; numbers of clauses and
-/// bytes. Grounding is measured by wall time. 3 if there is an error.
+/// bytes. 3 if there is an error.
 int print_stages(const StagesInput& input);
 
 /// CaDiCaL and nothing else: reads a DIMACS file with the solver's own reader and solves it once.

@@ -46,8 +46,12 @@ int print_stages(const StagesInput& staged) {
   Stopwatch watch;
   const std::vector<std::filesystem::path> paths = {staged.model};
   const auto ast = compiler::load_model(paths, {}, files, sink);
-  if (!ast || !compiler::check_model(*ast, files, sink)) return 3;
+  if (!ast) return 3;
+  const auto typed = compiler::check_model(*ast, files, sink);
+  if (!typed) return 3;
   const double read_ms = watch.lap_ms();
+  if (!compiler::ground_model(*typed, {}, sink)) return 3;
+  const double ground_ms = watch.lap_ms();
   const NoPoses places;
   compiler::CompileInput input;
   input.models = paths;
@@ -61,12 +65,6 @@ int print_stages(const StagesInput& staged) {
   const auto compiled = compiler::compile_model(input, files, sink);
   if (!compiled) return 3;
   const double compile_ms = watch.lap_ms();
-  const auto grounding = compiler::ground_passes();
-  double ground_ms = 0.0;
-  for (const auto& run : compiled->passes.runs) {
-    const auto is_it = [&](const auto& pass) { return pass.name == run.pass.name; };
-    if (std::any_of(grounding.begin(), grounding.end(), is_it)) ground_ms += 1e3 * run.seconds;
-  }
   std::size_t bytes = 0;
   watch.lap_ms();
   compiler::write_artifact(compiled->model, {},

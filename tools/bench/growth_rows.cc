@@ -19,7 +19,7 @@ struct Size {
   int steps = 0;
 };
 
-constexpr Size kItems[] = {{4, 2, 24}, {8, 2, 24}, {16, 2, 24}, {32, 2, 24}, {64, 2, 24}};
+constexpr Size kItems[] = {{4, 2, 16}, {8, 2, 16}, {16, 2, 16}, {32, 2, 16}, {64, 2, 16}};
 constexpr Size kRooms[] = {{8, 2, 24}, {8, 8, 24}, {8, 32, 24}};
 constexpr Size kSteps[] = {{4, 2, 24}, {4, 2, 48}, {4, 2, 100}, {4, 2, 200}, {4, 2, 400}};
 

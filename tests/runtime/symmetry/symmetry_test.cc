@@ -1,9 +1,12 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <numeric>
 #include <string>
 
 #include "runtime/enumerate/canonical.h"
 #include "runtime/graph/orbit_traces.h"
+#include "runtime/symmetry/permutation_check.h"
 #include "tests/runtime/symmetry/symmetric_traces.h"
 #include "tests/support/text_model.h"
 
@@ -50,6 +53,37 @@ TEST_CASE("values of functions tell constants apart, and equal values do not") {
       "[thing1,thing2,time] Weight(thing1)<Weight(thing2) & HoldsAt(Held(thing2),time) -> "
       "HoldsAt(Held(thing1),time).\n";
   CHECK(sets_of(kThings + weights + "Weight(A)=1.\nWeight(B)=2.\nWeight(C)=3.\n" + order).empty());
+}
+
+TEST_CASE("things that differ by a fact are told apart by it, however much is said of them") {
+  std::string text =
+      "range time 0 2\nsort thing\nsort place\nthing A, B\nplace P1, P2, P3, P4, P5, P6, P7, P8\n"
+      "fluent At(thing,place)\nevent Put(thing,place)\n"
+      "[thing,place,time] Initiates(Put(thing,place),At(thing,place),time).\n"
+      "[thing,place1,place2,time]\n"
+      "  HoldsAt(At(thing,place1),time) & HoldsAt(At(thing,place2),time) -> place1=place2.\n"
+      "HoldsAt(At(A,P1),0).\nHoldsAt(At(B,P2),0).\n";
+  const TextModel model(text);
+  REQUIRE(model.codes() == "");
+  const runtime::NamedAtoms atoms(model.compiled);
+  const auto number = [&](const std::string& name) {
+    const auto& all = atoms.constants();
+    return static_cast<std::uint32_t>(std::find(all.begin(), all.end(), name) - all.begin());
+  };
+  const auto exchange = [&](std::uint32_t one, std::uint32_t other) {
+    runtime::ConstantMap map(atoms.constants().size());
+    std::iota(map.begin(), map.end(), 0U);
+    std::swap(map[one], map[other]);
+    return map;
+  };
+  runtime::PermutationCheck check(model.compiled, atoms);
+  const auto a = number("A"), b = number("B");
+  CHECK(check.signature(a) == check.signature(b));
+  CHECK(!check.is_symmetric(exchange(a, b)));
+  CHECK(check.work() <= 2);
+  const auto before = check.work();
+  CHECK(check.is_symmetric(exchange(number("P3"), number("P4"))));
+  CHECK(check.work() > before + 20);
 }
 
 TEST_CASE("numbers are never exchanged") {
