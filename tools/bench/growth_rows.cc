@@ -40,7 +40,7 @@ void measure(Bench& bench, const Size& size) {
     contestant.program = std::move(stage);
     return contestant;
   };
-  const auto name = fmt::format("{} items, {} rooms, {} steps", size.items, size.rooms, size.steps);
+  const auto name = fmt::format("{} / {} / {}", size.items, size.rooms, size.steps);
   const auto stages =
       run_child({bench_program(), "stages", model, "--plan", plan, "--bind", binding},
                 {bench.path("output"), "", 600.0});
@@ -61,7 +61,7 @@ void measure(Bench& bench, const Size& size) {
 
 void measure_growth(Bench& bench) {
   const auto all = [&](const char* over, const auto& sizes) {
-    bench.begin(fmt::format("a household, over its {}", over));
+    bench.begin(fmt::format("a household (items / rooms / steps), over its {}", over));
     for (const auto& size : sizes) measure(bench, size);
   };
   all("items", kItems);
