@@ -156,9 +156,11 @@ base::Result<CheckedPlan> check_plan(const PlanInput& input, const std::atomic<b
           constants_of(query.formula, name, model).value_or(std::vector<std::string>()));
     }
   }
-  auto graph = unroll_plan(files, input.plan, *binding, *input.locator, options, sink);
+  const NoRegions no_regions;
+  const PoseLocator& locator = input.locator != nullptr ? *input.locator : no_regions;
+  auto graph = unroll_plan(files, input.plan, *binding, locator, options, sink);
   if (!graph || !check_performed(*graph, *binding, model, sink) ||
-      !check_regions(*graph, *input.locator, model, sink)) {
+      !check_regions(*graph, locator, model, sink)) {
     return sink.already_reported();
   }
   auto formulas = check_plan_formulas(*graph, model, files, sink);

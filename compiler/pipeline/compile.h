@@ -25,8 +25,9 @@ struct PlanFormulas;
 struct PlanInput {
   std::vector<base::FileId> plan;  // its files in order (load_plan_files)
   base::FileId binding;
-  std::optional<std::string> entry;      // the function to run; the default is the last one defined
-  const PoseLocator* locator = nullptr;  // outlives the call
+  std::optional<std::string> entry =
+      std::nullopt;                      // the function to run; the default is the last one defined
+  const PoseLocator* locator = nullptr;  // outlives the call; none: there are no regions
   std::int32_t max_call_depth = 8;       // as in UnrollOptions
   std::int32_t max_loop = 16;
   std::int32_t location_samples = 0;

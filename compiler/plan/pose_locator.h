@@ -45,4 +45,15 @@ class PoseLocator {
   }
 };
 
+/// Of a model without regions: no pose lies in one.
+class NoRegions final : public PoseLocator {
+ public:
+  std::optional<std::string> region_of(std::string_view, const Pose&) const override {
+    return std::nullopt;
+  }
+  std::optional<Nearest> nearest(std::string_view, const Pose&) const override {
+    return std::nullopt;
+  }
+};
+
 }  // namespace parallax::compiler

@@ -27,17 +27,6 @@ Contestant grounding(Bench& bench, const std::string& name, Encoding encoding) {
   return clingo_grounds(bench.program_file(name, encoding), encoding);
 }
 
-/// The plan names its places.
-class NoPoses final : public compiler::PoseLocator {
- public:
-  std::optional<std::string> region_of(std::string_view, const compiler::Pose&) const override {
-    return std::nullopt;
-  }
-  std::optional<Nearest> nearest(std::string_view, const compiler::Pose&) const override {
-    return std::nullopt;
-  }
-};
-
 }  // namespace
 
 int print_stages(const StagesInput& staged) {
@@ -52,7 +41,6 @@ int print_stages(const StagesInput& staged) {
   const double read_ms = watch.lap_ms();
   if (!compiler::ground_model(*typed, {}, sink)) return 3;
   const double ground_ms = watch.lap_ms();
-  const NoPoses places;
   compiler::CompileInput input;
   input.models = paths;
   input.folded = true;
@@ -60,7 +48,7 @@ int print_stages(const StagesInput& staged) {
     const auto plan = base::load_text(staged.plan, files, sink);
     const auto bind = base::load_text(staged.binding, files, sink);
     if (!plan || !bind) return 3;
-    input.plan = compiler::PlanInput{{*plan}, *bind, std::nullopt, &places};
+    input.plan = compiler::PlanInput{{*plan}, *bind};
   }
   const auto compiled = compiler::compile_model(input, files, sink);
   if (!compiled) return 3;

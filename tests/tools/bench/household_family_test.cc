@@ -9,27 +9,13 @@
 namespace parallax::tools {
 namespace {
 
-/// The plan names its places.
-class NoPoses final : public compiler::PoseLocator {
- public:
-  std::optional<std::string> region_of(std::string_view, const compiler::Pose&) const override {
-    return std::nullopt;
-  }
-  std::optional<Nearest> nearest(std::string_view, const compiler::Pose&) const override {
-    return std::nullopt;
-  }
-};
-
 std::optional<compiler::Compilation> compiled(const Household& made) {
   base::SourceFiles files;
   base::DiagnosticSink sink;
-  const NoPoses places;
   compiler::CompileInput input;
   input.text = files.add("household.e", made.model);
   input.plan = compiler::PlanInput{{files.add("household.lisp", made.plan)},
-                                   files.add("household.bind", made.binding),
-                                   std::nullopt,
-                                   &places};
+                                   files.add("household.bind", made.binding)};
   auto compilation = compiler::compile_model(input, files, sink);
   CHECK(sink.sorted().empty());
   if (!compilation) return std::nullopt;
