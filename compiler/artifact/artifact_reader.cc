@@ -24,7 +24,10 @@ constexpr std::int64_t kBytesPerTableEntry = 8;
 class ArtifactReader {
  public:
   ArtifactReader(base::FileId file, const base::SourceFiles& files, base::DiagnosticSink& sink)
-      : cursor_(files, file, sink), symbols_(cursor_, model_), provenance_(cursor_, model_) {}
+      : cursor_(files, file, sink),
+        symbols_(cursor_, model_),
+        objectives_(cursor_, model_),
+        provenance_(cursor_, model_) {}
 
   base::Result<CompiledModel> run() && {
     if (!read_format() || !read_entries()) return cursor_.sink().already_reported();
@@ -62,6 +65,8 @@ class ArtifactReader {
   bool read_event() { return symbols_.read_event(); }
   bool read_slot() { return symbols_.read_slot(); }
   bool read_atom() { return symbols_.read_atom(); }
+  bool read_objective() { return objectives_.read_objective(); }
+  bool read_term() { return objectives_.read_term(); }
   bool read_in() { return provenance_.read_in(); }
   bool read_axiom() { return provenance_.read_axiom(); }
   bool read_section() { return provenance_.read_section(); }
@@ -79,6 +84,7 @@ class ArtifactReader {
   ArtifactCursor cursor_;
   CompiledModel model_;
   SymbolReader symbols_;
+  ObjectiveReader objectives_;
   ProvenanceReader provenance_;
   std::set<std::string_view> seen_;  // keys that stand once
   std::int64_t minor_ = 0;
@@ -103,6 +109,8 @@ const std::vector<ArtifactReader::Entry>& ArtifactReader::entries() {
       {"event", &Reader::read_event, false, true},
       {"slot", &Reader::read_slot, false, true},
       {"atom", &Reader::read_atom, false, true},
+      {"objective", &Reader::read_objective, false, true},
+      {"term", &Reader::read_term, false, true},
       {"in", &Reader::read_in, false, false},
       {"axiom", &Reader::read_axiom, false, false},
       {"section", &Reader::read_section, false, true},

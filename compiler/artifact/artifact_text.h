@@ -13,7 +13,7 @@
 namespace parallax::compiler {
 
 inline constexpr std::int64_t kFormatMajor = 1;
-inline constexpr std::int64_t kFormatMinor = 0;
+inline constexpr std::int64_t kFormatMinor = 1;
 
 /// Appends a blank and the word. A word of visible ASCII characters other than `"` and `\` stands
 /// as it is; any other is quoted, with `\"`, `\\` and `\xHH` for what is not visible ASCII.

@@ -23,6 +23,7 @@ class ArtifactWriter {
     write_names();
     write_other_slots();
     write_fixed();
+    write_objectives();
     write_axioms();
     write_sections();
     write_plan();
@@ -75,7 +76,8 @@ class ArtifactWriter {
   }
 
   void write_frame() {
-    print("c dec format {}.{}\n", kFormatMajor, kFormatMinor);
+    // What has no objectives is read by readers of the first version.
+    print("c dec format {}.{}\n", kFormatMajor, model_.objectives.empty() ? 0 : kFormatMinor);
     if (!model_.producer.empty()) line("producer", model_.producer);
     for (const auto& [name, value] : model_.options) {
       out_ += "c dec option";
@@ -141,6 +143,17 @@ class ArtifactWriter {
       word(printed(atom));
       if (atom.time) number(*atom.time);
       out_ += '\n';
+    }
+  }
+
+  void write_objectives() {
+    for (const auto& objective : model_.objectives) {
+      line("objective", objective.text);
+      for (const auto& term : objective.terms) {
+        print("c dec term {} at {}", term.weight, term.needed);
+        if (term.literal) number(term.literal->dimacs());
+        out_ += '\n';
+      }
     }
   }
 

@@ -17,7 +17,10 @@ struct ObjectiveTerm {
   friend bool operator==(const ObjectiveTerm&, const ObjectiveTerm&) = default;
 };
 
-/// A sum that is to be small. The weights' magnitudes add up to less than 2^62.
+/// Sums of fewer never overflow, whichever of their terms are added.
+inline constexpr std::int64_t kMostObjectiveWeight = std::int64_t{1} << 62;
+
+/// A sum that is to be small. The weights' magnitudes add up to less than kMostObjectiveWeight.
 struct Objective {
   std::string text;  // as it was given, on one line
   std::vector<ObjectiveTerm> terms;

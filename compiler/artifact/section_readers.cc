@@ -149,6 +149,49 @@ bool SymbolReader::check_hits() {
   return true;
 }
 
+bool ObjectiveReader::read_objective() {
+  Objective objective;
+  if (!cursor_.word("what is to be least", objective.text)) return false;
+  model_.objectives.push_back(std::move(objective));
+  total_ = 0;
+  return cursor_.end_of_line();
+}
+
+/// `WEIGHT at TIMEPOINT [LITERAL]`
+bool ObjectiveReader::read_term() {
+  if (model_.objectives.empty()) {
+    return cursor_.fail(codes::kArtifactMissing, "c dec objective TEXT");
+  }
+  constexpr auto kMost = kMostObjectiveWeight - 1;
+  ObjectiveTerm term;
+  if (!cursor_.number("a weight", -kMost, kMost, term.weight)) return false;
+  if (term.weight == 0) return cursor_.expected("a weight that is not 0");
+  total_ += term.weight < 0 ? -term.weight : term.weight;  // both are below 2^62
+  if (total_ > kMost) {
+    return cursor_.fail(codes::kArtifactRange, "the sum of all weights", total_, 0, kMost);
+  }
+  if (cursor_.raw_word() != "at") return cursor_.expected("`at`");
+  std::int64_t needed = 0;
+  if (!cursor_.number("a timepoint", 0, model_.horizon, needed)) return false;
+  term.needed = static_cast<Timepoint>(needed);
+  if (cursor_.at_line_end()) {
+    model_.objectives.back().terms.push_back(term);
+    return true;
+  }
+  const std::int64_t variables = model_.variable_count();
+  std::int64_t literal = 0;
+  if (!cursor_.number("a literal", -variables, variables, literal)) return false;
+  if (literal == 0) return cursor_.expected("a literal");
+  term.literal = Literal::from_dimacs(static_cast<std::int32_t>(literal));
+  const auto own = std::min(needed_horizon(model_.atom(term.literal->var())), model_.horizon);
+  if (own > term.needed) {
+    return cursor_.fail(codes::kArtifactRange, "the timepoint of a term", needed, own,
+                        model_.horizon);
+  }
+  model_.objectives.back().terms.push_back(term);
+  return cursor_.end_of_line();
+}
+
 bool ProvenanceReader::read_axiom() {
   Origin origin;
   if (!cursor_.word("the id of an axiom", origin.id)) return false;

@@ -41,6 +41,21 @@ class SymbolReader {
   std::unordered_set<std::string> names_;  // for look-up only
 };
 
+/// Reads the lines of an artifact that say what best traces have least of: `objective` and `term`.
+/// The tables of the model have their sizes already.
+class ObjectiveReader {
+ public:
+  ObjectiveReader(ArtifactCursor& cursor, CompiledModel& model) : cursor_(cursor), model_(model) {}
+
+  bool read_objective();
+  bool read_term();
+
+ private:
+  ArtifactCursor& cursor_;
+  CompiledModel& model_;
+  std::int64_t total_ = 0;  // of the magnitudes of the last objective's weights
+};
+
 /// Reads the lines of an artifact that say where clauses and plan steps come from: `in`, `axiom`,
 /// `section`, `clauses`, `step` and `argument`.
 class ProvenanceReader {

@@ -15,9 +15,6 @@
 namespace parallax::compiler {
 namespace {
 
-/// Sums of fewer never overflow, whichever of their terms are added.
-constexpr std::int64_t kMostWeight = std::int64_t{1} << 62;
-
 /// Where the parts of an objective stand.
 struct SumText {
   Token word;  // `count`, `sum`
@@ -101,7 +98,7 @@ class ObjectiveGrounder {
     std::int64_t total = 0;
     for (const auto& [key, weight] : weights_) {
       const auto magnitude = weight < 0 ? -weight : weight;
-      if (__builtin_add_overflow(total, magnitude, &total) || total >= kMostWeight) {
+      if (__builtin_add_overflow(total, magnitude, &total) || total >= kMostObjectiveWeight) {
         return sink_.error(codes::kObjectiveTooLarge, objective_.source);
       }
       if (weight != 0) out.terms.push_back({weight, literal(key.second, key.first), key.first});
@@ -149,8 +146,8 @@ class ObjectiveGrounder {
       needed = std::max(needed, static_cast<Timepoint>(model_.terms()[instance[v]].integer));
     }
     auto& known = weights_[{needed, *formula}];
-    if (__builtin_add_overflow(known, weight, &known) || known >= kMostWeight ||
-        known <= -kMostWeight) {
+    if (__builtin_add_overflow(known, weight, &known) || known >= kMostObjectiveWeight ||
+        known <= -kMostObjectiveWeight) {
       return sink_.error(codes::kObjectiveTooLarge, objective_.source);
     }
     return base::Unit{};

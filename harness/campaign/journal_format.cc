@@ -237,6 +237,7 @@ JournalHeader journal_header(const Scenario& scenario, const CampaignOptions& op
   header.simulator = simulator;
   header.simulator.parameters.clear();
   header.simulator.actions.clear();
+  header.simulator.arguments.clear();
   header.max_runs = scenario.limits.max_runs;
   header.options = recorded_options_json(scenario, options);
   header.asked = std::get<RecordedOptions>(recorded_options(header.options));

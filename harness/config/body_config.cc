@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "compiler/base/codes/scenarios.h"
 #include "harness/config/sections.h"
+#include "harness/world/shapes.h"
 
 namespace parallax::harness {
 
@@ -16,15 +18,76 @@ namespace {
 constexpr NumberBounds kDetectionError{0.0, 0.5, false, false};
 constexpr NumberBounds kUnit{0.0, 1.0, false, false};
 
-BoxShape read_shape(const YamlNode& node, std::string what, base::DiagnosticSink& sink) {
-  BoxShape shape;
+struct RoundForm {
+  std::string_view key;
+  ShapeForm form;
+};
+constexpr std::array<RoundForm, 3> kRoundForms = {{{Key::kSphere, ShapeForm::kSphere},
+                                                   {Key::kCylinder, ShapeForm::kCylinder},
+                                                   {Key::kCapsule, ShapeForm::kCapsule}}};
+
+void read_round(const YamlNode& node, const RoundForm& round, BodyShape& shape,
+                base::DiagnosticSink& sink) {
+  YamlFields fields(node, key_text(round.key), sink);
+  double radius_m = 0.0, length_m = 0.0;
+  fields.only({Key::kRadiusM, round.form == ShapeForm::kSphere ? Key::kRadiusM : Key::kLengthM});
+  fields.require(Key::kRadiusM);
+  fields.number(Key::kRadiusM, kPositive, radius_m);
+  if (round.form != ShapeForm::kSphere) {
+    fields.require(Key::kLengthM);
+    fields.number(Key::kLengthM, kPositive, length_m);
+  }
+  shape.form = round.form;
+  shape.size_m = round_size_m(round.form, radius_m, length_m);
+}
+
+/// The one form that is given: a box by its `size_m`, or something round.
+void read_form(const YamlFields& fields, BodyShape& shape) {
+  const RoundForm* form = nullptr;
+  bool taken = fields.find(Key::kSizeM) != nullptr;
+  for (const RoundForm& round : kRoundForms) {
+    const auto* node = fields.find(round.key);
+    if (node == nullptr) continue;
+    if (taken) {
+      fields.sink().error(codes::kUnknownKey, node->range, round.key,
+                          fields.what() + ", which has another form already");
+      return;
+    }
+    taken = true;
+    form = &round;
+  }
+  if (form != nullptr) {
+    read_round(*fields.find(form->key), *form, shape, fields.sink());
+  } else if (fields.require(Key::kSizeM) != nullptr) {
+    read_vector(fields, Key::kSizeM, shape.size_m);
+  }
+}
+
+BodyShape read_shape(const YamlNode& node, std::string what, base::DiagnosticSink& sink) {
+  BodyShape shape;
   YamlFields fields(node, std::move(what), sink);
-  fields.only({Key::kSizeM, Key::kAtM, Key::kYawRad});
-  fields.require(Key::kSizeM);
-  read_vector(fields, Key::kSizeM, shape.size_m);
+  fields.only({Key::kSizeM, Key::kSphere, Key::kCylinder, Key::kCapsule, Key::kAtM, Key::kYawRad,
+               Key::kPitchRad, Key::kRollRad});
+  read_form(fields, shape);
   read_vector(fields, Key::kAtM, shape.p_BS);
   fields.number(Key::kYawRad, kAnyNumber, shape.yaw_rad);
+  fields.number(Key::kPitchRad, kAnyNumber, shape.pitch_rad);
+  fields.number(Key::kRollRad, kAnyNumber, shape.roll_rad);
   return shape;
+}
+
+InertiaSpec read_inertia(const YamlNode& node, std::string what, base::DiagnosticSink& sink) {
+  InertiaSpec inertia;
+  YamlFields fields(node, std::move(what), sink);
+  fields.only({Key::kCentreM, Key::kMomentsKgM2});
+  fields.require(Key::kMomentsKgM2);
+  read_vector(fields, Key::kCentreM, inertia.p_BC);
+  if (const auto six = fields.numbers(Key::kMomentsKgM2, 6)) {
+    const auto& [xx, yy, zz] = std::tie((*six)[0], (*six)[1], (*six)[2]);
+    const auto& [xy, xz, yz] = std::tie((*six)[3], (*six)[4], (*six)[5]);
+    inertia.I_C_kg_m2 << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  }
+  return inertia;
 }
 
 /// A bowl: a bottom and a ring of walls, its origin in the middle of its height.
@@ -57,18 +120,16 @@ void read_ring(const YamlNode& node, BodySpec& body, base::DiagnosticSink& sink)
   }
 }
 
-/// One box, or a list of them under `shapes`, or a ring of them.
+/// One shape, or a list of them under `shapes`, or a ring of boxes.
 void read_shapes(const YamlFields& fields, BodySpec& body) {
   const auto* list = fields.find(Key::kShapes);
   const auto* ring = fields.find(Key::kRing);
   if (list == nullptr && ring == nullptr) {
-    if (fields.require(Key::kSizeM) == nullptr) return;
-    BoxShape shape;
-    read_vector(fields, Key::kSizeM, shape.size_m);
-    body.shapes.push_back(shape);
+    read_form(fields, body.shapes.emplace_back());
     return;
   }
-  for (const auto other : {Key::kSizeM, list != nullptr ? Key::kRing : Key::kSizeM}) {
+  for (const auto other : {Key::kSizeM, Key::kSphere, Key::kCylinder, Key::kCapsule,
+                           list != nullptr ? Key::kRing : Key::kSizeM}) {
     const auto* extra = fields.find(other);
     if (extra == nullptr) continue;
     fields.sink().error(
@@ -82,7 +143,7 @@ void read_shapes(const YamlFields& fields, BodySpec& body) {
   }
   if (!list->is_list()) {
     fields.sink().error(codes::kWrongYamlKind, list->range, key_text(Key::kShapes), describe(*list),
-                        "a list of boxes");
+                        "a list of shapes");
     return;
   }
   for (const auto& item : list->items) {
@@ -223,8 +284,9 @@ BodySpec read_body(const YamlEntry& entry, base::DiagnosticSink& sink) {
   BodySpec body;
   body.name = entry.key;
   YamlFields fields(entry.value, fmt::format("the body `{}`", entry.key), sink);
-  fields.only({Key::kSizeM, Key::kShapes, Key::kRing, Key::kMassKg, Key::kMaterial, Key::kPositionM,
-               Key::kYawRad, Key::kGravity, Key::kCollides, Key::kSettable, Key::kKind,
+  fields.only({Key::kSizeM, Key::kSphere, Key::kCylinder, Key::kCapsule, Key::kShapes, Key::kRing,
+               Key::kMassKg, Key::kInertia, Key::kMaterial, Key::kPositionM, Key::kYawRad,
+               Key::kGravity, Key::kCollides, Key::kApart, Key::kSettable, Key::kKind,
                Key::kGrasp});
   read_shapes(fields, body);
   fields.number(Key::kMassKg, kNotNegative, body.mass_kg);
@@ -233,6 +295,11 @@ BodySpec read_body(const YamlEntry& entry, base::DiagnosticSink& sink) {
   fields.number(Key::kYawRad, kAnyNumber, body.yaw_rad);
   fields.boolean(Key::kGravity, body.gravity);
   fields.boolean(Key::kCollides, body.collides);
+  fields.text(Key::kApart, body.apart);
+  if (const auto* inertia = fields.find(Key::kInertia)) {
+    body.inertia = read_inertia(
+        *inertia, fmt::format("`{}` of the body `{}`", Key::kInertia, entry.key), sink);
+  }
   fields.texts(Key::kSettable, body.settable);
   fields.text(Key::kKind, body.kind);
   if (const auto* grasp = fields.find(Key::kGrasp)) {

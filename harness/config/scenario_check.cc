@@ -253,6 +253,29 @@ base::Status check_against_model(const Scenario& scenario, const std::vector<std
   return base::Unit{};
 }
 
+namespace {
+
+/// What the scenario gives a controller of a simulator that tells what it takes. What the plan
+/// gives is known when it acts.
+void check_arguments(const ActionBinding& action, const SimulatorInfo& info,
+                     base::DiagnosticSink& sink) {
+  const auto told = info.arguments.find(action.controller);
+  if (told == info.arguments.end()) return;
+  std::vector<std::string> names;
+  for (const auto& argument : told->second) names.push_back(argument.name);
+  const auto check = [&](const std::string& name, const base::SourceRange& source) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) return;
+    auto error = sink.error(codes::kUnknownArgument, source, action.controller, name);
+    add_suggestion(error, name, names, "arguments");
+  };
+  for (const auto& [name, value] : action.arguments) {
+    const auto place = action.argument_sources.find(name);
+    check(name, place != action.argument_sources.end() ? place->second : action.source);
+  }
+}
+
+}  // namespace
+
 base::Status check_against_simulator(const Scenario& scenario,
                                      const std::vector<GroundFluent>& fluents,
                                      const SimulatorInfo& info, base::DiagnosticSink& sink) {
@@ -270,6 +293,7 @@ base::Status check_against_simulator(const Scenario& scenario,
     auto error = sink.error(codes::kUnknownController, action.source, action.controller);
     add_suggestion(error, action.controller, known, "controllers");
   }
+  for (const auto& action : scenario.actions) check_arguments(action, info, sink);
   if (sink.error_count() != errors_before) return sink.already_reported();
   return base::Unit{};
 }
@@ -288,6 +312,27 @@ void check_action_names(const Scenario& scenario, const std::vector<GroundFluent
   }
 }
 
+namespace {
+
+struct Stops {
+  std::string_view name;
+  std::optional<double> low, high;  // [m], or [rad] of a hinge
+};
+
+std::optional<Stops> stops_of(const WorldLayout& layout, std::string_view name) {
+  if (const auto slider = layout.find_slider(name)) {
+    const JointSpec& joint = layout.sliders[*slider];
+    return Stops{joint.name, joint.low_m, joint.high_m};
+  }
+  if (const auto hinge = layout.find_hinge(name)) {
+    const JointSpec& joint = layout.hinges[*hinge];
+    return Stops{joint.name, joint.low_rad, joint.high_rad};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 void check_ranges(const Scenario& scenario, const std::vector<GroundFluent>& fluents,
                   base::DiagnosticSink& sink) {
   const auto layout = lay_out(scenario.world);
@@ -299,21 +344,19 @@ void check_ranges(const Scenario& scenario, const std::vector<GroundFluent>& flu
     if (range == nullptr) continue;
     auto variable = with_arguments(range->variable, fluent);
     if (!variable.ends_with(".q")) continue;
-    const auto slider =
-        layout.find_slider(std::string_view(variable).substr(0, variable.size() - 2));
-    if (!slider) continue;
-    const JointSpec& joint = layout.sliders[*slider];
+    const auto stops = stops_of(layout, std::string_view(variable).substr(0, variable.size() - 2));
+    if (!stops) continue;
     for (const auto& [key, interval] :
          {std::pair{Key::kHolds, &range->holds}, std::pair{Key::kFails, &range->fails}}) {
-      const bool met = (!joint.high_m || interval->lower <= *joint.high_m + kPlay_m) &&
-                       (!joint.low_m || interval->upper >= *joint.low_m - kPlay_m);
+      const bool met = (!stops->high || interval->lower <= *stops->high + kPlay_m) &&
+                       (!stops->low || interval->upper >= *stops->low - kPlay_m);
       if (met || !reported.insert(fluent.symbol + std::string(key)).second) continue;
       sink.error(
           codes::kBadWorld, binding->source, fmt::format("mapping/{}/{}", fluent.symbol, key),
           fmt::format("is from {:g} to {:g}, which `{}` never reaches: it moves from {} to {}",
-                      interval->lower, interval->upper, joint.name,
-                      joint.low_m ? fmt::format("{:g}", *joint.low_m) : "anywhere below",
-                      joint.high_m ? fmt::format("{:g}", *joint.high_m) : "anywhere above"));
+                      interval->lower, interval->upper, stops->name,
+                      stops->low ? fmt::format("{:g}", *stops->low) : "anywhere below",
+                      stops->high ? fmt::format("{:g}", *stops->high) : "anywhere above"));
     }
   }
 }

@@ -48,16 +48,41 @@ void read_axis(const YamlFields& fields, JointSpec& joint) {
   }
 }
 
+/// Keys that say nothing of a joint of this type would be read past without a word.
+void refuse_other_types(const YamlFields& fields, JointType type) {
+  const auto refuse = [&](std::string_view key, std::string_view others) {
+    const auto* node = fields.find(key);
+    if (node == nullptr) return;
+    fields.sink().error(codes::kUnknownKey, node->range, key,
+                        fmt::format("{}: it belongs to {}", fields.what(), others));
+  };
+  if (type == JointType::kHinge) {
+    refuse(Key::kRangeM, "sliders (a hinge has `range_rad`)");
+    refuse(Key::kMaxForceN, "sliders (a hinge has `max_torque_nm`)");
+    refuse(Key::kDampingNSM, "sliders (a hinge has `damping_nm_s`)");
+  } else {
+    for (const auto key : {Key::kAtM, Key::kRangeRad, Key::kDampingNmS}) refuse(key, "hinges");
+    if (type != JointType::kSlider) refuse(Key::kDampingNSM, "sliders");
+  }
+}
+
 JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
-  static constexpr std::array<std::string_view, 3> kTypes = {"slider", "fixed", "gantry"};
+  static constexpr std::array<std::string_view, 4> kTypes = {"slider", "fixed", "gantry", "hinge"};
   JointSpec joint;
   joint.name = entry.key;
   YamlFields fields(entry.value, fmt::format("the joint `{}`", entry.key), sink);
   fields.only({Key::kType, Key::kParent, Key::kChild, Key::kAxis, Key::kRangeM, Key::kMaxForceN,
-               Key::kMaxTorqueNm, Key::kHandle});
+               Key::kMaxTorqueNm, Key::kHandle, Key::kAtM, Key::kRangeRad, Key::kDampingNSM,
+               Key::kDampingNmS});
   const auto type = fields.choice(Key::kType, "type of joint", kTypes);
   if (type == std::size_t{1}) joint.type = JointType::kFixed;
   if (type == std::size_t{2}) joint.type = JointType::kGantry;
+  if (type == std::size_t{3}) {
+    joint.type = JointType::kHinge;
+    joint.max_torque_nm = 0.0;  // free, as a slider is
+    fields.require(Key::kAtM);
+  }
+  refuse_other_types(fields, joint.type);
   fields.text(Key::kParent, joint.parent);
   if (joint.parent == "world") joint.parent.clear();
   fields.require(Key::kChild);
@@ -67,6 +92,13 @@ JointSpec read_joint(const YamlEntry& entry, base::DiagnosticSink& sink) {
     joint.low_m = (*range)[0];
     joint.high_m = (*range)[1];
   }
+  read_vector(fields, Key::kAtM, joint.p_WA);
+  if (const auto range = fields.numbers(Key::kRangeRad, 2)) {
+    joint.low_rad = (*range)[0];
+    joint.high_rad = (*range)[1];
+  }
+  fields.number(Key::kDampingNSM, kNotNegative, joint.damping_n_s_m);
+  fields.number(Key::kDampingNmS, kNotNegative, joint.damping_nm_s);
   fields.number(Key::kMaxForceN, kNotNegative, joint.max_force_n);
   fields.number(Key::kMaxTorqueNm, kNotNegative, joint.max_torque_nm);
   if (const auto* handle = fields.find(Key::kHandle)) joint.handle = read_handle(*handle, sink);

@@ -10,6 +10,7 @@
 #include "harness/recording/scene_json.h"
 #include "harness/robot/motion_recorder.h"
 #include "harness/world/arguments.h"
+#include "harness/world/shapes.h"
 #include "harness/world/world_layout.h"
 
 namespace parallax::harness {
@@ -28,6 +29,16 @@ Eigen::Vector3d vector_of(const std::array<double, 3>& p) { return {p[0], p[1], 
 
 Eigen::Matrix3d matrix_of(const std::array<double, 4>& q) {
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
+}
+
+Probe probe_of(const RecordedShape& shape, const Pose& at) {
+  Probe out{vector_of(shape.size), vector_of(at.p), matrix_of(at.q)};
+  if (shape.kind == ShapeKind::kBox) return out;
+  out.form = shape.kind == ShapeKind::kSphere     ? ShapeForm::kSphere
+             : shape.kind == ShapeKind::kCylinder ? ShapeForm::kCylinder
+                                                  : ShapeForm::kCapsule;
+  out.size_m = round_size_m(out.form, shape.size[0], shape.size[1]);
+  return out;
 }
 
 SceneKind shown_kind(BodyKind kind) {
@@ -116,8 +127,7 @@ Scene RecordedActions::shown() const {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (const auto& shape : bodies[i].shapes) {
       const Pose at = composed(poses_[i], shape.pose);
-      scene.boxes.push_back({bodies[i].name, shown_kind(bodies[i].kind),
-                             Probe{vector_of(shape.size), vector_of(at.p), matrix_of(at.q)},
+      scene.boxes.push_back({bodies[i].name, shown_kind(bodies[i].kind), probe_of(shape, at),
                              vector_of(poses_[i].p)});
     }
   }

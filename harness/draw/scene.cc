@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "harness/world/shapes.h"
 
 namespace parallax::harness {
 namespace {
@@ -22,7 +26,7 @@ SceneKind kind_of(const WorldLayout& layout, const WorldSpec& spec, BodyId id) {
   return pad ? SceneKind::kGripper : SceneKind::kRobot;
 }
 
-std::vector<SceneArm> arms_of(const OdeWorld& world, const MobileRobotSpec& robot) {
+std::vector<SceneArm> arms_of(const PhysicsWorld& world, const MobileRobotSpec& robot) {
   const WorldLayout& layout = world.layout();
   const auto base = layout.find_body(robot.base_body);
   const auto torso = layout.find_slider(robot.torso_joint);
@@ -38,14 +42,51 @@ std::vector<SceneArm> arms_of(const OdeWorld& world, const MobileRobotSpec& robo
   return arms;
 }
 
+constexpr int kRound = 32;  // points of a circle
+
+/// A circle about the z axis.
+void add_circle_points(double radius_m, double z_m, std::vector<Eigen::Vector3d>& points) {
+  for (int i = 0; i < kRound; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kRound;
+    points.emplace_back(radius_m * std::cos(angle), radius_m * std::sin(angle), z_m);
+  }
+}
+
+/// Points of the surface, in the frame of the shape, whose hull looks like the shape.
+std::vector<Eigen::Vector3d> outline_points(const Probe& shape) {
+  std::vector<Eigen::Vector3d> points;
+  const Eigen::Vector3d half = 0.5 * shape.size_m;
+  if (shape.form == ShapeForm::kBox) {
+    for (int i = 0; i < 8; ++i) {
+      const Eigen::Vector3d sign(i % 2 == 0 ? 0.5 : -0.5, i / 2 % 2 == 0 ? 0.5 : -0.5,
+                                 i / 4 == 0 ? 0.5 : -0.5);
+      points.emplace_back(sign.cwiseProduct(shape.size_m));
+    }
+    return points;
+  }
+  if (shape.form == ShapeForm::kCylinder) {
+    for (const double z : {-half.z(), half.z()}) add_circle_points(half.x(), z, points);
+    return points;
+  }
+  // Circles of latitude, the upper and the lower half as far apart as the straight part is long.
+  const double straight_m = half.z() - half.x();
+  for (int i = 0; i <= kRound; ++i) {
+    const double latitude = std::numbers::pi * (static_cast<double>(i) / kRound - 0.5);
+    const double z = half.x() * std::sin(latitude);
+    add_circle_points(half.x() * std::cos(latitude), z + (z < 0.0 ? -straight_m : straight_m),
+                      points);
+  }
+  return points;
+}
+
 }  // namespace
 
-Scene scene_of(const OdeWorld& world, const WorldSpec& spec) {
+Scene scene_of(const PhysicsWorld& world, const WorldSpec& spec) {
   Scene scene;
   const WorldLayout& layout = world.layout();
   for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
     const BodyId id = layout.bodies.id_at(i);
-    for (const BoxShape& shape : layout.bodies[id].shapes) {
+    for (const BodyShape& shape : layout.bodies[id].shapes) {
       scene.boxes.push_back({layout.bodies[id].name, kind_of(layout, spec, id),
                              world.placed(id, shape), world.position(id)});
     }
@@ -138,18 +179,16 @@ std::vector<Eigen::Vector2d> Projection::pixels(
   return out;
 }
 
-std::vector<Eigen::Vector2d> Projection::outline(const Probe& box) const {
+std::vector<Eigen::Vector2d> Projection::outline(const Probe& shape) const {
   std::vector<Eigen::Vector2d> corners;
-  for (int i = 0; i < 8; ++i) {
-    const Eigen::Vector3d sign(i % 2 == 0 ? 0.5 : -0.5, i / 2 % 2 == 0 ? 0.5 : -0.5,
-                               i / 4 == 0 ? 0.5 : -0.5);
-    corners.push_back(anywhere(box.p_WS + box.R_WS * sign.cwiseProduct(box.size_m)));
+  for (const Eigen::Vector3d& p : outline_points(shape)) {
+    corners.push_back(anywhere(shape.p_WS + shape.R_WS * p));
   }
   return clipped(hull(corners), area());
 }
 
 double Projection::nearness(const Probe& box) const {
-  const Eigen::Vector3d half = 0.5 * box.R_WS.cwiseAbs() * box.size_m;
+  const Eigen::Vector3d half = half_extents(box.form, box.size_m, box.R_WS);
   if (kind_ == ViewKind::kFront) return box.p_WS.x() + half.x();
   return kind_ == ViewKind::kAbove ? box.p_WS.z() + half.z() : half.y() - box.p_WS.y();
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/engine/ode_world.h"
+#include "harness/engine/physics_world.h"
 
 namespace parallax::harness {
 
@@ -34,7 +34,7 @@ struct Scene {
   std::string base;  // the robot's body that drives; empty: none
 };
 
-Scene scene_of(const OdeWorld& world, const WorldSpec& spec);
+Scene scene_of(const PhysicsWorld& world, const WorldSpec& spec);
 
 /// The way of a base, a hand or an item.
 struct SceneTrack {
@@ -149,7 +149,7 @@ class Projection {
   Eigen::Vector2d pixel(const Eigen::Vector3d& p_W) const;
   std::vector<Eigen::Vector2d> pixels(const std::vector<Eigen::Vector3d>& points_W) const;
   /// Cut off at the border; empty if all of it lies outside.
-  std::vector<Eigen::Vector2d> outline(const Probe& box) const;
+  std::vector<Eigen::Vector2d> outline(const Probe& shape) const;
   /// Of the face that the viewer looks at; greater is nearer [m].
   double nearness(const Probe& box) const;
 

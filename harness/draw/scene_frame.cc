@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "harness/world/shapes.h"
+
 namespace parallax::harness {
 namespace {
 
@@ -19,7 +21,7 @@ class FrameBounds {
     high_ = high_.cwiseMax(p);
   }
   void include(const SceneBox& item) {
-    const Eigen::Vector3d half = 0.5 * item.box.R_WS.cwiseAbs() * item.box.size_m;
+    const Eigen::Vector3d half = half_extents(item.box.form, item.box.size_m, item.box.R_WS);
     include(item.box.p_WS - half);
     include(item.box.p_WS + half);
   }
@@ -103,7 +105,7 @@ SceneFrame frame_around(const std::vector<Picture>& pictures, const RegionMap* r
   };
   const auto include_scene = [&](const Scene& scene) {
     for (const SceneBox& item : scene.boxes) {
-      const Eigen::Vector3d half = 0.5 * item.box.R_WS.cwiseAbs() * item.box.size_m;
+      const Eigen::Vector3d half = half_extents(item.box.form, item.box.size_m, item.box.R_WS);
       include(item.box.p_WS - half, item.box.p_WS + half);
     }
     for (const SceneArm& arm : scene.arms) include(arm.from_W, arm.from_W);

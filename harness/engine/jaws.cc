@@ -15,7 +15,7 @@ Eigen::Vector3d middle(const Bounds& bounds) { return 0.5 * (bounds.low + bounds
 
 }  // namespace
 
-Jaws::Jaws(const ArmSpec& spec, const OdeWorld& world) {
+Jaws::Jaws(const ArmSpec& spec, const PhysicsWorld& world) {
   const WorldLayout& layout = world.layout();
   const BodyId palm = *layout.find_body(spec.palm_body);
   const BodyId near_pad = *layout.find_body(spec.near_pad_body);

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <utility>
 
-#include "harness/engine/ode_world.h"
+#include "harness/engine/physics_world.h"
 
 namespace parallax::harness {
 
@@ -12,7 +12,7 @@ namespace parallax::harness {
 class Jaws {
  public:
   /// `world` is fresh: nothing has moved since it was made.
-  Jaws(const ArmSpec& spec, const OdeWorld& world);
+  Jaws(const ArmSpec& spec, const PhysicsWorld& world);
 
   const Eigen::Vector3d& tool_P() const { return tool_P_; }  // the middle between the pads [m]
   const Eigen::Vector3d& pad_line_P() const { return pad_line_P_; }  // far to near, unit

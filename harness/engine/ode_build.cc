@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "harness/engine/ode_engine.h"
+#include "harness/world/shapes.h"
 
 namespace parallax::harness {
 namespace {
@@ -15,31 +16,63 @@ Eigen::Matrix3d rotation_z(double angle_rad) {
   return R;
 }
 
-double volume_m3(const BodySpec& body) {
+double total_volume_m3(const BodySpec& body) {
   double sum = 0.0;
-  for (const BoxShape& shape : body.shapes) sum += shape.size_m.prod();
+  for (const BodyShape& shape : body.shapes) sum += volume_m3(shape);
   return sum;
 }
 
 Eigen::Vector3d centre_of_mass_B(const BodySpec& body) {
+  if (body.inertia) return body.inertia->p_BC;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const BoxShape& shape : body.shapes) sum += shape.size_m.prod() * shape.p_BS;
-  return sum / volume_m3(body);
+  for (const BodyShape& shape : body.shapes) sum += volume_m3(shape) * shape.p_BS;
+  return sum / total_volume_m3(body);
+}
+
+/// About its middle, along its own axes.
+dMass mass_of(const BodyShape& shape, double mass_kg) {
+  constexpr int kAlongZ = 3;
+  const Eigen::Vector3d& size_m = shape.size_m;
+  const double radius_m = 0.5 * size_m.x();
+  dMass mass;
+  switch (shape.form) {
+    case ShapeForm::kBox:
+      dMassSetBoxTotal(&mass, mass_kg, size_m.x(), size_m.y(), size_m.z());
+      break;
+    case ShapeForm::kSphere:
+      dMassSetSphereTotal(&mass, mass_kg, radius_m);
+      break;
+    case ShapeForm::kCylinder:
+      dMassSetCylinderTotal(&mass, mass_kg, kAlongZ, radius_m, size_m.z());
+      break;
+    case ShapeForm::kCapsule:
+      dMassSetCapsuleTotal(&mass, mass_kg, kAlongZ, radius_m, size_m.z() - size_m.x());
+      break;
+  }
+  return mass;
+}
+
+void put(dMass& mass, const Eigen::Matrix3d& R, const Eigen::Vector3d& p) {
+  dMatrix3 rotation_in_rows;
+  copy_rotation(R, rotation_in_rows);
+  dMassRotate(&mass, rotation_in_rows);
+  dMassTranslate(&mass, p.x(), p.y(), p.z());
 }
 
 /// Mass of a body whose frame is placed in the link as `place` says.
 dMass mass_in_link(const BodySpec& body, const BodyInLink& place) {
   dMass total;
+  if (body.inertia) {
+    const Eigen::Matrix3d& I = body.inertia->I_C_kg_m2;
+    dMassSetParameters(&total, body.mass_kg, 0.0, 0.0, 0.0, I(0, 0), I(1, 1), I(2, 2), I(0, 1),
+                       I(0, 2), I(1, 2));
+    put(total, place.R_LB, place.p_LB + place.R_LB * body.inertia->p_BC);
+    return total;
+  }
   dMassSetZero(&total);
-  for (const BoxShape& shape : body.shapes) {
-    dMass part;
-    dMassSetBoxTotal(&part, body.mass_kg * shape.size_m.prod() / volume_m3(body), shape.size_m.x(),
-                     shape.size_m.y(), shape.size_m.z());
-    dMatrix3 R;
-    copy_rotation(place.R_LB * rotation_z(shape.yaw_rad), R);
-    dMassRotate(&part, R);
-    const Eigen::Vector3d p_LS = place.p_LB + place.R_LB * shape.p_BS;
-    dMassTranslate(&part, p_LS.x(), p_LS.y(), p_LS.z());
+  for (const BodyShape& shape : body.shapes) {
+    dMass part = mass_of(shape, body.mass_kg * volume_m3(shape) / total_volume_m3(body));
+    put(part, place.R_LB * shape_rotation(shape), place.p_LB + place.R_LB * shape.p_BS);
     dMassAdd(&total, &part);
   }
   return total;
@@ -52,6 +85,21 @@ void copy_rotation(const Eigen::Matrix3d& R, double (&out)[12]) {
     for (int column = 0; column < 3; ++column) out[4 * row + column] = R(row, column);
     out[4 * row + 3] = 0.0;
   }
+}
+
+dxGeom* create_geom(dxSpace* space, ShapeForm form, const Eigen::Vector3d& size_m) {
+  const double radius_m = 0.5 * size_m.x();
+  switch (form) {
+    case ShapeForm::kBox:
+      break;
+    case ShapeForm::kSphere:
+      return dCreateSphere(space, radius_m);
+    case ShapeForm::kCylinder:
+      return dCreateCylinder(space, radius_m, size_m.z());
+    case ShapeForm::kCapsule:
+      return dCreateCapsule(space, radius_m, size_m.z() - size_m.x());
+  }
+  return dCreateBox(space, size_m.x(), size_m.y(), size_m.z());
 }
 
 OdeBuilder::OdeBuilder(const WorldSpec& spec, OdeWorld::Engine& engine)
@@ -72,6 +120,7 @@ void OdeBuilder::build() {
   create_geoms();
   create_sliders();
   create_gantries();
+  create_hinges();
 }
 
 void OdeBuilder::collect_friction() {
@@ -164,8 +213,12 @@ void OdeBuilder::create_links() {
 GeomInfo OdeBuilder::info_for(BodyId id) const {
   const WorldLayout& layout = engine_.layout;
   const BodySpec& body = layout.bodies[id];
-  GeomInfo info{id, layout.assembly_of[id.index()], material_index(body.material),
-                ContactRole::kWorld, 0};
+  GeomInfo info{id,
+                layout.assembly_of[id.index()],
+                layout.apart_of[id.index()],
+                material_index(body.material),
+                ContactRole::kWorld,
+                0};
   if (layout.is_free[id.index()]) {
     info.role = ContactRole::kFree;
   } else if (robot_assembly_ != 0 && info.assembly == robot_assembly_) {
@@ -195,22 +248,22 @@ void OdeBuilder::create_geoms() {
       engine_.in_link[i] = BodyInLink{body.p_WB, rotation_z(body.yaw_rad)};
     }
     if (!body.collides) continue;
-    for (const BoxShape& shape : body.shapes) {
-      create_box(shape, id, engine_.geoms.emplace_back(info_for(id)));
+    for (const BodyShape& shape : body.shapes) {
+      create_shape(shape, id, engine_.geoms.emplace_back(info_for(id)));
     }
   }
   dSpaceClean(engine_.static_space);
 }
 
-void OdeBuilder::create_box(const BoxShape& shape, BodyId id, GeomInfo& info) {
+void OdeBuilder::create_shape(const BodyShape& shape, BodyId id, GeomInfo& info) {
   const std::optional<LinkId> link = engine_.layout.link_of[id.index()];
   const BodyInLink& place = engine_.in_link[id.index()];
   const Eigen::Vector3d p = place.p_LB + place.R_LB * shape.p_BS;
-  dxGeom* geom = dCreateBox(link ? engine_.movable_space : engine_.static_space, shape.size_m.x(),
-                            shape.size_m.y(), shape.size_m.z());
+  dxGeom* geom =
+      create_geom(link ? engine_.movable_space : engine_.static_space, shape.form, shape.size_m);
   dGeomSetData(geom, &info);
   dMatrix3 R;
-  const Eigen::Matrix3d R_LS = place.R_LB * rotation_z(shape.yaw_rad);
+  const Eigen::Matrix3d R_LS = place.R_LB * shape_rotation(shape);
   copy_rotation(R_LS, R);
   if (!link) {
     dGeomSetPosition(geom, p.x(), p.y(), p.z());
@@ -239,6 +292,49 @@ void OdeBuilder::create_sliders() {
     if (spec.low_m) dJointSetSliderParam(joint, dParamLoStop, *spec.low_m);
     if (spec.high_m) dJointSetSliderParam(joint, dParamHiStop, *spec.high_m);
     engine_.sliders.push_back(joint);
+    if (spec.damping_n_s_m > 0.0) damp_slider(spec);
+  }
+}
+
+// A motor at rest that may exert any force, but gives: the force is that of a damper, taken at the
+// end of the step, so that no damping is too much for the length of a step.
+
+void OdeBuilder::damp_slider(const JointSpec& spec) {
+  dxJoint* motor = dJointCreateLMotor(engine_.world, nullptr);
+  dJointAttach(motor, body_of(spec.child), body_of(spec.parent));
+  dJointSetLMotorNumAxes(motor, 1);
+  const Eigen::Vector3d axis = spec.axis_W.normalized();
+  dJointSetLMotorAxis(motor, 0, 1, axis.x(), axis.y(), axis.z());
+  dJointSetLMotorParam(motor, dParamFMax, dInfinity);
+  dJointSetLMotorParam(motor, dParamCFM, 1.0 / spec.damping_n_s_m);
+}
+
+dxJoint* OdeBuilder::turner_of(const JointSpec& spec) {
+  dxJoint* motor = dJointCreateAMotor(engine_.world, nullptr);
+  dJointAttach(motor, body_of(spec.child), body_of(spec.parent));
+  dJointSetAMotorMode(motor, dAMotorUser);
+  dJointSetAMotorNumAxes(motor, 1);
+  const Eigen::Vector3d axis = spec.axis_W.normalized();
+  dJointSetAMotorAxis(motor, 0, 1, axis.x(), axis.y(), axis.z());
+  return motor;
+}
+
+void OdeBuilder::create_hinges() {
+  for (const JointSpec& spec : engine_.layout.hinges) {
+    dxJoint* joint = dJointCreateHinge(engine_.world, nullptr);
+    dJointAttach(joint, body_of(spec.child), body_of(spec.parent));
+    const Eigen::Vector3d axis = spec.axis_W.normalized();
+    dJointSetHingeAnchor(joint, spec.p_WA.x(), spec.p_WA.y(), spec.p_WA.z());
+    dJointSetHingeAxis(joint, axis.x(), axis.y(), axis.z());
+    if (spec.low_rad) dJointSetHingeParam(joint, dParamLoStop, *spec.low_rad);
+    if (spec.high_rad) dJointSetHingeParam(joint, dParamHiStop, *spec.high_rad);
+    engine_.hinges.push_back(joint);
+    // At a stop the motor of the hinge itself would push with all its force, also one at rest.
+    engine_.turners.push_back(turner_of(spec));
+    if (spec.damping_nm_s == 0.0) continue;
+    dxJoint* damper = turner_of(spec);
+    dJointSetAMotorParam(damper, dParamFMax, dInfinity);
+    dJointSetAMotorParam(damper, dParamCFM, 1.0 / spec.damping_nm_s);
   }
 }
 
@@ -281,6 +377,7 @@ void OdeBuilder::create_gantries() {
 void set_free_mass(OdeWorld::Engine& engine, BodyId id, double mass_kg) {
   const std::optional<LinkId> link = engine.layout.link_of[id.index()];
   BodySpec body = engine.layout.bodies[id];
+  if (body.inertia) body.inertia->I_C_kg_m2 *= mass_kg / body.mass_kg;
   body.mass_kg = mass_kg;
   // From scratch each time, so that no rounding of earlier resets is left.
   dMass mass = mass_in_link(body, engine.in_link[id.index()]);

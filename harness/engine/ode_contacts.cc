@@ -48,8 +48,9 @@ void note_touch(const GeomInfo& self, const GeomInfo& other, std::vector<Touch>&
 /// Contact points of a pair, none when both hang together.
 int contact_points(dGeomID a, dGeomID b, std::int64_t limit,
                    std::array<dContact, kMostContacts>& out) {
-  const std::uint32_t assembly = info_of(a).assembly;
-  if (assembly != 0 && assembly == info_of(b).assembly) return 0;
+  const GeomInfo &one = info_of(a), &other = info_of(b);
+  if (one.assembly != 0 && one.assembly == other.assembly) return 0;
+  if (one.apart != 0 && one.apart == other.apart) return 0;
   return dCollide(a, b, static_cast<int>(std::min<std::int64_t>(limit, kMostContacts)),
                   &out[0].geom, sizeof(dContact));
 }
@@ -167,14 +168,14 @@ void visit_ray(OdeWorld::Engine& engine, const Eigen::Vector3d& from_W, const Ei
   dGeomDestroy(ray);
 }
 
-void visit_box(OdeWorld::Engine& engine, const Probe& probe, ProbeSearch& search) {
-  const dGeomID box = dCreateBox(nullptr, probe.size_m.x(), probe.size_m.y(), probe.size_m.z());
+void visit_probe(OdeWorld::Engine& engine, const Probe& probe, ProbeSearch& search) {
+  const dGeomID geom = create_geom(nullptr, probe.form, probe.size_m);
   dMatrix3 R;
   copy_rotation(probe.R_WS, R);
-  dGeomSetPosition(box, probe.p_WS.x(), probe.p_WS.y(), probe.p_WS.z());
-  dGeomSetRotation(box, R);
-  visit_all(engine, box, search);
-  dGeomDestroy(box);
+  dGeomSetPosition(geom, probe.p_WS.x(), probe.p_WS.y(), probe.p_WS.z());
+  dGeomSetRotation(geom, R);
+  visit_all(engine, geom, search);
+  dGeomDestroy(geom);
 }
 
 }  // namespace
@@ -202,7 +203,7 @@ std::optional<Overlap> find_deepest_overlap(OdeWorld::Engine& engine) {
 std::optional<Overlap> OdeWorld::find_obstacle(const Probe& probe, const BodyMask& ignored,
                                                double tolerance_m) const {
   ProbeSearch search{ignored};
-  visit_box(*engine_, probe, search);
+  visit_probe(*engine_, probe, search);
   if (search.found == nullptr || search.best <= tolerance_m) return std::nullopt;
   return Overlap{name_of(*engine_, *search.found), {}, search.best};
 }
@@ -212,7 +213,7 @@ bool OdeWorld::overlaps(const Probe& probe, BodyId id) const {
   others[id.index()] = false;
   ProbeSearch search{others};
   search.floor_counts = false;
-  visit_box(*engine_, probe, search);
+  visit_probe(*engine_, probe, search);
   return search.found != nullptr;
 }
 

@@ -24,7 +24,7 @@ enum class ContactRole : std::uint8_t { kWorld, kFree, kNearPad, kFarPad, kPart 
 /// What the collision callback knows of a geom.
 struct GeomInfo {
   std::optional<BodyId> body;  // none: the floor
-  std::uint32_t assembly = 0;
+  std::uint32_t assembly = 0, apart = 0;
   std::uint32_t material = 0;
   ContactRole role = ContactRole::kWorld;
   std::uint32_t gripper = 0;  // of a pad
@@ -63,6 +63,8 @@ struct OdeWorld::Engine {
   std::vector<bool> never_sleeps;   // by LinkId: parts of the robot
   std::vector<dxJoint*> sliders;    // by SliderId
   std::vector<Gantry> gantries;     // by GantryId
+  std::vector<dxJoint*> hinges;     // by HingeId
+  std::vector<dxJoint*> turners;    // by HingeId: their motors
   std::vector<BodyInLink> in_link;  // by BodyId
   std::vector<GeomInfo> geoms;      // never grows after building: geoms point into it
   std::uint32_t material_count = 0;
@@ -80,6 +82,9 @@ std::string name_of(const OdeWorld::Engine& engine, const GeomInfo& info);
 /// A rotation as the engine wants it: four numbers a row.
 void copy_rotation(const Eigen::Matrix3d& R, double (&out)[12]);
 
+/// A geom of this form and size; `space` may be null.
+dxGeom* create_geom(dxSpace* space, ShapeForm form, const Eigen::Vector3d& size_m);
+
 /// Creates everything from the layout, in its order. One use per engine.
 class OdeBuilder {
  public:
@@ -90,9 +95,12 @@ class OdeBuilder {
   void create_world();
   void create_links();
   void create_geoms();
-  void create_box(const BoxShape& shape, BodyId id, GeomInfo& info);
+  void create_shape(const BodyShape& shape, BodyId id, GeomInfo& info);
   void create_sliders();
   void create_gantries();
+  void create_hinges();
+  void damp_slider(const JointSpec& spec);
+  dxJoint* turner_of(const JointSpec& spec);
   dxBody* body_of(const std::string& name) const;
   void collect_friction();
   std::uint32_t material_index(const std::string& name) const;

@@ -14,6 +14,7 @@
 #include "compiler/base/hash.h"
 #include "harness/engine/ode_engine.h"
 #include "harness/world/angles.h"
+#include "harness/world/shapes.h"
 
 namespace parallax::harness {
 namespace {
@@ -124,8 +125,8 @@ class Stopwatch {
   Clock::time_point start_;
 };
 
-}  // namespace
-
+/// Brings the engine up once per process and gives the calling thread its data. Cheap when done
+/// already; called at the start of everything that touches the engine.
 void enter_ode() {
   // A second initialisation would trip an assertion inside the engine; it is never closed, because
   // worlds of other threads may outlive any place where that could be done.
@@ -137,7 +138,7 @@ void enter_ode() {
   thread_local const ThreadData data;
 }
 
-std::string ode_version() { return dODE_VERSION; }
+}  // namespace
 
 OdeWorld::OdeWorld(const WorldSpec& spec) : engine_(std::make_unique<Engine>()) {
   enter_ode();
@@ -153,6 +154,8 @@ OdeWorld::~OdeWorld() {
   dThreadingFreeImplementation(engine_->threading);  // only after the world that uses it
 }
 
+EngineName OdeWorld::engine() const { return {"ode", dODE_VERSION}; }
+void OdeWorld::enter_thread() const { enter_ode(); }
 const WorldLayout& OdeWorld::layout() const { return engine_->layout; }
 double OdeWorld::timestep_s() const { return engine_->solver.timestep_s; }
 std::uint64_t OdeWorld::digest() const { return engine_->digest; }
@@ -190,6 +193,10 @@ std::optional<Overlap> OdeWorld::reset(std::span<const Placement> placements, st
   for (std::size_t i = 0; i < engine_->gantries.size(); ++i) {
     set_gantry(engine_->layout.gantries.id_at(i), Eigen::Vector3d::Zero(), 0.0);
   }
+  for (std::size_t i = 0; i < engine_->hinges.size(); ++i) {
+    const HingeId id = engine_->layout.hinges.id_at(i);
+    set_hinge_motor(id, 0.0, engine_->layout.hinges[id].max_torque_nm);
+  }
   std::fill(engine_->touches.begin(), engine_->touches.end(), Touch{});
   dRandSetSeed(static_cast<unsigned long>(seed));  // one generator per process
   engine_->digest = base::kFnvStart;
@@ -224,6 +231,21 @@ void OdeWorld::set_motor(SliderId id, double velocity_m_s, double max_force_n) {
   dxJoint* const joint = engine_->sliders[id.index()];
   dJointSetSliderParam(joint, dParamVel, velocity_m_s);
   dJointSetSliderParam(joint, dParamFMax, max_force_n);
+  for (int side = 0; side < 2; ++side) wake(dJointGetBody(joint, side));
+}
+
+double OdeWorld::hinge_angle_rad(HingeId id) const {
+  return dJointGetHingeAngle(engine_->hinges[id.index()]);
+}
+
+double OdeWorld::hinge_rate_rad_s(HingeId id) const {
+  return dJointGetHingeAngleRate(engine_->hinges[id.index()]);
+}
+
+void OdeWorld::set_hinge_motor(HingeId id, double rate_rad_s, double max_torque_nm) {
+  dxJoint* const joint = engine_->turners[id.index()];
+  dJointSetAMotorParam(joint, dParamVel, rate_rad_s);
+  dJointSetAMotorParam(joint, dParamFMax, max_torque_nm);
   for (int side = 0; side < 2; ++side) wake(dJointGetBody(joint, side));
 }
 
@@ -296,29 +318,6 @@ Eigen::Matrix3d OdeWorld::rotation(BodyId id) const {
   const std::optional<LinkId> link = engine_->layout.link_of[id.index()];
   if (!link) return place.R_LB;
   return to_matrix(dBodyGetRotation(engine_->links[link->index()])) * place.R_LB;
-}
-
-Probe OdeWorld::placed(BodyId id, const BoxShape& shape) const {
-  const Eigen::Matrix3d R_WB = rotation(id);
-  return {shape.size_m, position(id) + R_WB * shape.p_BS,
-          R_WB * Eigen::AngleAxisd(shape.yaw_rad, Eigen::Vector3d::UnitZ())};
-}
-
-Bounds OdeWorld::bounds(BodyId id, const BoxShape& shape) const {
-  const Probe box = placed(id, shape);
-  const Eigen::Vector3d half = 0.5 * (box.R_WS.cwiseAbs() * box.size_m);
-  return Bounds{box.p_WS - half, box.p_WS + half};
-}
-
-Bounds OdeWorld::bounds(BodyId id) const {
-  const std::vector<BoxShape>& shapes = engine_->layout.bodies[id].shapes;
-  Bounds all = bounds(id, shapes.front());
-  for (const BoxShape& shape : shapes) {
-    const Bounds one = bounds(id, shape);
-    all.low = all.low.cwiseMin(one.low);
-    all.high = all.high.cwiseMax(one.high);
-  }
-  return all;
 }
 
 const Touch& OdeWorld::touch(BodyId id) const { return engine_->touches[id.index()]; }

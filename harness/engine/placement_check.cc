@@ -2,11 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <memory>
 #include <set>
 
-#include "harness/engine/ode_world.h"
+#include "harness/engine/physics_world.h"
 #include "harness/engine/sweep.h"
 #include "harness/engine/world_check.h"
+#include "harness/world/shapes.h"
 
 namespace parallax::harness {
 namespace {
@@ -42,11 +44,12 @@ bool SolidBox::contains(const SolidBox& other) const {
   return true;
 }
 
-/// The boxes of a body that collides; none of another.
+/// The upright boxes of a body that collides; none of another.
 std::vector<SolidBox> solid_boxes(const BodySpec& body) {
   std::vector<SolidBox> boxes;
   if (!body.collides) return boxes;
-  for (const BoxShape& shape : body.shapes) {
+  for (const BodyShape& shape : body.shapes) {
+    if (!is_upright_box(shape)) continue;
     boxes.push_back(
         {shape.size_m, body.p_WB + turn(body.yaw_rad) * shape.p_BS, body.yaw_rad + shape.yaw_rad});
   }
@@ -62,7 +65,7 @@ bool can_set_any(const BodySpec& body, std::initializer_list<std::string_view> i
 class OverlapChecker {
  public:
   OverlapChecker(const WorldSpec& spec, ProblemList& problems)
-      : spec_(spec), problems_(problems), world_(spec), layout_(world_.layout()) {
+      : spec_(spec), problems_(problems), owned_(make_world(spec)), layout_(world_.layout()) {
     for (std::size_t i = 0; i < layout_.bodies.size(); ++i) {
       elsewhere_.push_back(chosen(i, {"x", "y", "z", "bottom", "yaw"}));
     }
@@ -100,7 +103,9 @@ class OverlapChecker {
     for (std::size_t k = 0; k < layout_.bodies.size(); ++k) {
       const bool together = !layout_.is_free[i] && layout_.link_of[k] &&
                             layout_.assembly_of[k] == layout_.assembly_of[i];
-      if (together) ignored[k] = true;
+      if (together || layout_.never_collide(layout_.bodies.id_at(i), layout_.bodies.id_at(k))) {
+        ignored[k] = true;
+      }
     }
     const Sweep sweep(world_, self, ignored, spec_.solver.start_penetration_m);
     const Eigen::Vector3d none = Eigen::Vector3d::Zero();
@@ -113,15 +118,19 @@ class OverlapChecker {
   /// Furniture may reach into furniture; two pieces at one place are one too many.
   void check_twins(std::size_t i) {
     for (std::size_t k = 0; k < i; ++k) {
-      if (layout_.link_of[k] || !covers(body(k), body(i)) || !covers(body(i), body(k))) continue;
+      if (layout_.link_of[k] ||
+          layout_.never_collide(layout_.bodies.id_at(i), layout_.bodies.id_at(k)) ||
+          !covers(body(k), body(i)) || !covers(body(i), body(k)))
+        continue;
       problems_.add("bodies/" + body(i).name,
                     fmt::format("occupies the same place as `{}`", body(k).name));
       return;
     }
   }
 
-  /// Is every box of `inner` inside a box of `outer`?
+  /// Is every shape of `inner` an upright box inside one of `outer`?
   bool covers(const BodySpec& outer, const BodySpec& inner) const {
+    if (!std::all_of(inner.shapes.begin(), inner.shapes.end(), &is_upright_box)) return false;
     const auto outer_boxes = solid_boxes(outer), inner_boxes = solid_boxes(inner);
     return !inner_boxes.empty() &&
            std::all_of(inner_boxes.begin(), inner_boxes.end(), [&](const SolidBox& box) {
@@ -132,14 +141,15 @@ class OverlapChecker {
 
   const WorldSpec& spec_;
   ProblemList& problems_;
-  OdeWorld world_;
+  std::unique_ptr<const PhysicsWorld> owned_;
+  const PhysicsWorld& world_ = *owned_;
   const WorldLayout& layout_;
   BodyMask elsewhere_;  // those whose place a start may choose
   std::set<std::pair<std::string, std::string>> reported_;
 };
 
 /// Of all free bodies, each standing on its longest edge.
-double stack_height_m(const OdeWorld& world) {
+double stack_height_m(const PhysicsWorld& world) {
   const WorldLayout& layout = world.layout();
   double height_m = 0.0;
   for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
@@ -166,7 +176,8 @@ void check_overlaps(const WorldSpec& spec, ProblemList& problems) {
 
 std::vector<std::string> unsupported_points(const WorldSpec& spec,
                                             const std::vector<NamedPoint>& points) {
-  const OdeWorld world(spec);
+  const std::unique_ptr<const PhysicsWorld> owned = make_world(spec);
+  const PhysicsWorld& world = *owned;
   const WorldLayout& layout = world.layout();
   BodyMask ignored(layout.bodies.size(), false);
   const auto base = layout.find_body(base_body(spec));
@@ -184,7 +195,8 @@ std::vector<std::string> unsupported_points(const WorldSpec& spec,
 
 std::vector<std::string> boxes_without_support(const WorldSpec& spec,
                                                const std::vector<NamedBox>& boxes) {
-  const OdeWorld world(spec);
+  const std::unique_ptr<const PhysicsWorld> owned = make_world(spec);
+  const PhysicsWorld& world = *owned;
   const WorldLayout& layout = world.layout();
   const double stack_m = stack_height_m(world);
   const Eigen::Vector3d travel_m = Eigen::Vector3d::Constant(longest_travel_m(layout));

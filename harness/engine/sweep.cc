@@ -19,9 +19,9 @@ Extent extent_along(const Probe& box, const Eigen::Vector3d& direction) {
   return {middle - half, middle + half};
 }
 
-/// By how much two boxes overlap, seen along `ahead`: the least shift across it that takes them
-/// apart, sideways if the way is level; 0 where one passes the other. Exact, because both look like
-/// convex polygons, whose sides are edges of the boxes.
+/// By how much two boxes, or the boxes round shapes, overlap, seen along `ahead`: the least shift
+/// across it that takes them apart, sideways if the way is level; 0 where one passes the other.
+/// Exact, because both look like convex polygons, whose sides are edges of the boxes.
 double overlap_across(const Probe& a, const Probe& b, const Eigen::Vector3d& ahead) {
   constexpr double kSmall = 1e-9;
   const bool level = std::abs(ahead.z()) < kSmall;
@@ -47,7 +47,7 @@ double overlap_across(const Probe& a, const Probe& b, const Eigen::Vector3d& ahe
 
 }  // namespace
 
-Sweep::Sweep(const OdeWorld& world, const BodyMask& bodies, const BodyMask& ignored,
+Sweep::Sweep(const PhysicsWorld& world, const BodyMask& bodies, const BodyMask& ignored,
              double tolerance_m)
     : world_(world), ignored_(ignored), tolerance_m_(std::max(tolerance_m, 0.0)) {
   const Eigen::Vector3d room = Eigen::Vector3d::Constant(2.0 * std::max(-tolerance_m, 0.0));
@@ -57,7 +57,7 @@ Sweep::Sweep(const OdeWorld& world, const BodyMask& bodies, const BodyMask& igno
     ignored_[i] = true;
     const BodyId id = layout.bodies.id_at(i);
     if (!layout.bodies[id].collides) continue;
-    for (const BoxShape& shape : layout.bodies[id].shapes) {
+    for (const BodyShape& shape : layout.bodies[id].shapes) {
       Probe box = world.placed(id, shape);
       box.size_m += room;
       parts_.push_back({layout.bodies[id].name, box});
@@ -71,7 +71,7 @@ std::optional<Obstacle> Sweep::at(const Eigen::Vector3d& offset, const Eigen::Ve
       Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   for (const Part& part : parts_) {
     const Eigen::Vector3d p = axis_W + turn * (part.probe.p_WS + offset - axis_W);
-    const Probe moved{part.probe.size_m, p, turn * part.probe.R_WS};
+    const Probe moved{part.probe.size_m, p, turn * part.probe.R_WS, part.probe.form};
     if (const auto hit = world_.find_obstacle(moved, ignored_, tolerance_m_)) {
       return Obstacle{part.name, hit->first, 0.0};
     }
@@ -87,9 +87,10 @@ std::optional<double> Sweep::clearance_of(const Obstacle& hit, const Eigen::Vect
   double most = 0.0;
   for (const Part& part : parts_) {
     if (part.name != hit.part) continue;
-    const Probe moved{part.probe.size_m, part.probe.p_WS + offset, part.probe.R_WS};
+    const Probe moved{part.probe.size_m, part.probe.p_WS + offset, part.probe.R_WS,
+                      part.probe.form};
     const Extent begin = extent_along(moved, ahead);
-    for (const BoxShape& shape : world_.layout().bodies[*id].shapes) {
+    for (const BodyShape& shape : world_.layout().bodies[*id].shapes) {
       const Probe box = world_.placed(*id, shape);
       const Extent there = extent_along(box, ahead);
       if (there.high < begin.low || there.low > begin.high + way.norm()) continue;

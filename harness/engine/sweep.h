@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/engine/ode_world.h"
+#include "harness/engine/physics_world.h"
 
 namespace parallax::harness {
 
@@ -25,7 +25,8 @@ class Sweep {
  public:
   /// Overlaps of at most `tolerance_m` count as touching; a negative one asks for so much room all
   /// round.
-  Sweep(const OdeWorld& world, const BodyMask& bodies, const BodyMask& ignored, double tolerance_m);
+  Sweep(const PhysicsWorld& world, const BodyMask& bodies, const BodyMask& ignored,
+        double tolerance_m);
 
   /// The first obstacle on the straight way by `way`, looked at every `step_m`, ends included.
   std::optional<Obstacle> along(const Eigen::Vector3d& offset, const Eigen::Vector3d& way,
@@ -44,7 +45,7 @@ class Sweep {
   std::optional<double> clearance_of(const Obstacle& hit, const Eigen::Vector3d& offset,
                                      const Eigen::Vector3d& way) const;
 
-  const OdeWorld& world_;
+  const PhysicsWorld& world_;
   BodyMask ignored_;
   double tolerance_m_;
   std::vector<Part> parts_;

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 
 #include "harness/engine/jaws.h"
-#include "harness/engine/ode_world.h"
+#include "harness/engine/physics_world.h"
 #include "harness/engine/sweep.h"
 #include "harness/engine/world_check.h"
 
@@ -29,7 +30,7 @@ class GeometryChecker {
   GeometryChecker(const WorldSpec& spec, ProblemList& problems)
       : spec_(spec),
         problems_(problems),
-        world_(spec),
+        owned_(make_world(spec)),
         layout_(world_.layout()),
         movable_(movable_bodies(layout_)) {}
 
@@ -65,8 +66,13 @@ class GeometryChecker {
   void check_travel(const JointSpec& joint) {
     if (!joint.low_m || !joint.high_m) return;
     BodyMask child(layout_.bodies.size(), false);
-    child[layout_.find_body(joint.child)->index()] = true;
-    const Sweep sweep(world_, child, movable_, kTouching_m);
+    const BodyId moved = *layout_.find_body(joint.child);
+    child[moved.index()] = true;
+    BodyMask ignored = movable_;
+    for (std::size_t i = 0; i < ignored.size(); ++i) {
+      ignored[i] = ignored[i] || layout_.never_collide(moved, layout_.bodies.id_at(i));
+    }
+    const Sweep sweep(world_, child, ignored, kTouching_m);
     const Eigen::Vector3d axis = joint.axis_W.normalized();
     const auto hit =
         sweep.along(*joint.low_m * axis, (*joint.high_m - *joint.low_m) * axis, kStep_m);
@@ -125,7 +131,8 @@ class GeometryChecker {
 
   const WorldSpec& spec_;
   ProblemList& problems_;
-  OdeWorld world_;
+  std::unique_ptr<const PhysicsWorld> owned_;
+  const PhysicsWorld& world_ = *owned_;
   const WorldLayout& layout_;
   BodyMask movable_;
 };
@@ -166,7 +173,8 @@ class GripperChecker {
  public:
   GripperChecker(const WorldSpec& spec, ProblemList& problems)
       : problems_(problems), grips_(grips_of(spec)) {
-    const OdeWorld world(spec);
+    const std::unique_ptr<const PhysicsWorld> owned = make_world(spec);
+    const PhysicsWorld& world = *owned;
     for (const ArmSpec& arm : spec.mobile->arms) {
       const auto limits = Jaws(arm, world).opening_limits_m();
       const auto finger = world.layout().find_slider(arm.finger_joint);

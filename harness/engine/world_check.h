@@ -9,7 +9,7 @@
 namespace parallax::harness {
 
 /// Everything wrong with `spec`: its structure, and then what cannot work whatever the start, which
-/// takes building it. Empty: OdeWorld takes it.
+/// takes building it. Empty: make_world takes it.
 std::vector<WorldProblem> check_world(const WorldSpec& spec);
 
 /// Bodies that overlap, or reach into the floor, whatever start is drawn; furniture that stands

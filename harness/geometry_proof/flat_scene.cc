@@ -10,7 +10,7 @@
 namespace parallax::harness {
 namespace {
 
-Polygon corners_of(const BoxShape& shape) {
+Polygon corners_of(const BodyShape& shape) {
   Polygon out;
   const double c = std::cos(shape.yaw_rad), s = std::sin(shape.yaw_rad);
   for (const auto& [x, y] : {std::pair{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}) {
@@ -82,7 +82,7 @@ void FlatScene::add_body(std::size_t i, const std::vector<Placement>& placements
   const std::size_t base = layout_.find_body(spec_.mobile->base_body)->index();
   const bool on_base = layout_.assembly_of[i] == layout_.assembly_of[base];
   const KnownBody& known = state_.bodies[i];
-  for (const BoxShape& shape : body.shapes) {
+  for (const BodyShape& shape : body.shapes) {
     FlatShape flat;
     flat.corners = corners_of(shape);
     flat.middle = shape.p_BS.head<2>();
@@ -171,7 +171,7 @@ void FlatScene::raise(FlatShape& flat, double slack_m) const {
               flat.top.upper + state_.lift_m.upper + slack_m};
 }
 
-void FlatScene::add_part(std::size_t i, const BodySpec& body, const BoxShape& shape,
+void FlatScene::add_part(std::size_t i, const BodySpec& body, const BodyShape& shape,
                          const Placement& placement, const Placement& base, FlatShape flat) {
   flat.frame = FlatShape::Frame::kBase;
   const Eigen::Vector2d p = placement.p_WB.head<2>() - base.p_WB.head<2>();
@@ -226,7 +226,7 @@ Eigen::Vector3d FlatScene::pad_middle(const std::string& name) const {
          Eigen::AngleAxisd(body.yaw_rad, Eigen::Vector3d::UnitZ()) * body.shapes.front().p_BS;
 }
 
-void FlatScene::add_held(std::size_t i, const BodySpec& body, const BoxShape& shape,
+void FlatScene::add_held(std::size_t i, const BodySpec& body, const BodyShape& shape,
                          FlatShape flat) {
   flat.frame = FlatShape::Frame::kHand;
   flat.body = i;

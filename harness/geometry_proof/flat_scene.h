@@ -91,11 +91,11 @@ class FlatScene {
   void add_slider(std::size_t i, FlatShape& flat) const;
   void add_free(std::size_t i, const BodySpec& body, FlatShape& flat) const;
   void raise(FlatShape& flat, double slack_m) const;
-  void add_part(std::size_t i, const BodySpec& body, const BoxShape& shape,
+  void add_part(std::size_t i, const BodySpec& body, const BodyShape& shape,
                 const Placement& placement, const Placement& base, FlatShape flat);
   Eigen::Vector3d pad_middle(const std::string& name) const;
   /// Turned against the world as when it was gripped, at the hand.
-  void add_held(std::size_t i, const BodySpec& body, const BoxShape& shape, FlatShape flat);
+  void add_held(std::size_t i, const BodySpec& body, const BodyShape& shape, FlatShape flat);
   Bounds1 variable(const StartBox& box, const std::string& name, double fallback) const;
   double sliding_rad(const FlatShape& part) const;
 };

@@ -3,10 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "harness/engine/jaws.h"
-#include "harness/engine/ode_world.h"
+#include "harness/engine/physics_world.h"
 #include "harness/robot/detection_errors.h"
 #include "harness/robot/mobile_robot.h"
 
@@ -62,7 +63,8 @@ std::optional<HandDescent> descent_of(const ProofScene& scene, std::size_t arm, 
   add_heights(arguments.number("standoff_m"), out.heights_m);
   add_heights(arguments.number("lift_m"), out.heights_m);
 
-  const OdeWorld world(scene.spec());
+  const std::unique_ptr<const PhysicsWorld> owned = make_world(scene.spec());
+  const PhysicsWorld& world = *owned;
   const Jaws jaws(spec, world);
   const ArmGeometry& hand = scene.arm(arm);
   const JointSpec& finger = layout.sliders[*layout.find_slider(spec.finger_joint)];
@@ -76,7 +78,7 @@ std::optional<HandDescent> descent_of(const ProofScene& scene, std::size_t arm, 
     if (!body.collides) continue;
     const bool is_far =
         layout.link_of[id.index()] == layout.link_of[layout.find_body(spec.far_pad_body)->index()];
-    for (const BoxShape& shape : body.shapes) {
+    for (const BodyShape& shape : body.shapes) {
       const Probe placed = world.placed(id, shape);
       const Eigen::Vector3d from_tool =
           placed.p_WS - hand.tool_W + (is_far ? closing : Eigen::Vector3d::Zero());

@@ -34,7 +34,7 @@ bool lies_in(const StartCuboid& region, const BodySpec& body, const BodySpec& ca
   const Bounds1 x = range_of(region, body.name + ".x", body.p_WB.x());
   const Bounds1 y = range_of(region, body.name + ".y", body.p_WB.y());
   Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
-  for (const BoxShape& shape : carrier.shapes) {
+  for (const BodyShape& shape : carrier.shapes) {
     if (shape.yaw_rad != 0.0 || carrier.yaw_rad != 0.0) return false;
     low = low.cwiseMin(carrier.p_WB + shape.p_BS - 0.5 * shape.size_m);
     high = high.cwiseMax(carrier.p_WB + shape.p_BS + 0.5 * shape.size_m);

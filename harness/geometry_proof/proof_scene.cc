@@ -5,8 +5,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
-#include "harness/engine/ode_world.h"
+#include "harness/engine/physics_world.h"
 #include "harness/robot/mobile_robot.h"
 
 namespace parallax::harness {
@@ -30,7 +31,7 @@ bool in_link_of(const WorldLayout& layout, BodyId body, const std::string& other
 
 double lowest_m(const BodySpec& body) {
   double lowest = 1e300;
-  for (const BoxShape& shape : body.shapes) {
+  for (const BodyShape& shape : body.shapes) {
     lowest = std::min(lowest, shape.p_BS.z() - 0.5 * shape.size_m.z());
   }
   return lowest;
@@ -49,7 +50,8 @@ ProofScene::ProofScene(const WorldSpec& spec, const WorldLayout& layout, const S
   for (const auto& [name, interval] : region_.dimensions) {
     if (interval.lower < interval.upper) variables_.push_back(name);
   }
-  OdeWorld world(spec);
+  const std::unique_ptr<PhysicsWorld> owned = make_world(spec);
+  PhysicsWorld& world = *owned;
   MobileRobot robot(spec, world);
   for (const Arm& arm : robot.arms()) {
     const JointSpec& finger = layout.sliders[*layout.find_slider(arm.spec().finger_joint)];
@@ -72,7 +74,7 @@ ProofScene::ProofScene(const WorldSpec& spec, const WorldLayout& layout, const S
         if (spec.mobile->arms[a].name == known.arm) add_held(id, a);
       }
     } else {
-      for (const BoxShape& shape : body.shapes) add_piece(id, shape);
+      for (const BodyShape& shape : body.shapes) add_piece(id, shape);
     }
   }
   for (std::size_t a = 0; a < state.arms.size(); ++a) {
@@ -82,7 +84,7 @@ ProofScene::ProofScene(const WorldSpec& spec, const WorldLayout& layout, const S
   }
 }
 
-void ProofScene::add_piece(BodyId id, const BoxShape& shape) {
+void ProofScene::add_piece(BodyId id, const BodyShape& shape) {
   const BodySpec& body = layout_->bodies[id];
   const BodyId base = *layout_->find_body(spec_->mobile->base_body);
   const std::uint32_t assembly = layout_->assembly_of[id.index()];
@@ -186,7 +188,7 @@ std::vector<const JointSpec*> ProofScene::joints_below(BodyId id) const {
 }
 
 /// The wrist may be turned and the gripper opened in any way: a box round all that.
-void ProofScene::add_arm_pieces(BodyId id, const BoxShape& shape, std::size_t arm) {
+void ProofScene::add_arm_pieces(BodyId id, const BodyShape& shape, std::size_t arm) {
   const BodySpec& body = layout_->bodies[id];
   const ArmSpec& spec = spec_->mobile->arms[arm];
   const Eigen::Vector3d tool = arms_[arm].tool_W;
@@ -225,7 +227,7 @@ void ProofScene::add_held(BodyId id, std::size_t arm) {
     unknown_.push_back("`" + body.name + "`");
     return;
   }
-  for (const BoxShape& shape : body.shapes) {
+  for (const BodyShape& shape : body.shapes) {
     for (const double side : {1.0, -1.0}) {  // the hand may be turned either way
       const Eigen::Vector3d grip = gripped_at(grasp, arm, side);
       const double reach = (shape.p_BS - grasp.p_BG).norm() + 0.5 * shape.size_m.norm();

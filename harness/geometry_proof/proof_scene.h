@@ -99,9 +99,9 @@ class ProofScene {
   Bounds1 free_height(BodyId id) const;
 
  private:
-  void add_piece(BodyId id, const BoxShape& shape);
+  void add_piece(BodyId id, const BodyShape& shape);
   std::vector<const JointSpec*> joints_below(BodyId id) const;
-  void add_arm_pieces(BodyId id, const BoxShape& shape, std::size_t arm);
+  void add_arm_pieces(BodyId id, const BodyShape& shape, std::size_t arm);
   void add_held(BodyId id, std::size_t arm);
 
   const WorldSpec* spec_;

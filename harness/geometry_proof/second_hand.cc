@@ -74,7 +74,7 @@ class SecondHand final : public SecondEvaluation, private FlatScene {
   void add_hand(const ArmSpec& arm, int way) {
     const BodySpec& near_pad = layout_.bodies[*layout_.find_body(arm.near_pad_body)];
     const BodySpec& far_pad = layout_.bodies[*layout_.find_body(arm.far_pad_body)];
-    const auto middle_of = [](const BodySpec& body, const BoxShape& shape) {
+    const auto middle_of = [](const BodySpec& body, const BodyShape& shape) {
       const Eigen::Vector2d p = rotated(shape.p_BS.head<2>(), body.yaw_rad);
       return Eigen::Vector3d(body.p_WB.x() + p.x(), body.p_WB.y() + p.y(),
                              body.p_WB.z() + shape.p_BS.z());
@@ -84,7 +84,7 @@ class SecondHand final : public SecondEvaluation, private FlatScene {
     const Eigen::Vector3d tool = 0.5 * (at_near + at_far);
     const Eigen::Vector2d line = (at_near - at_far).head<2>().normalized();
     const auto thick = [&](const BodySpec& pad) {
-      const BoxShape& shape = pad.shapes.front();
+      const BodyShape& shape = pad.shapes.front();
       const Eigen::Vector2d along = rotated(line, -pad.yaw_rad - shape.yaw_rad);
       return along.cwiseAbs().dot(shape.size_m.head<2>());
     };
@@ -105,7 +105,7 @@ class SecondHand final : public SecondEvaluation, private FlatScene {
       };
       const bool is_far = in_link_of(arm.far_pad_body);
       if (!body.collides || !(is_far || in_link_of(arm.palm_body))) continue;
-      for (const BoxShape& shape : body.shapes) {
+      for (const BodyShape& shape : body.shapes) {
         const Eigen::Vector3d from_tool = middle_of(body, shape) - tool;
         Eigen::Vector2d p = from_tool.head<2>() - line * (room - clearance);
         if (is_far) p += line * (gap - opening);
@@ -134,7 +134,7 @@ class SecondHand final : public SecondEvaluation, private FlatScene {
 
   Bounds1 height_of(const BodySpec& object) const {
     double lowest = 1e300;
-    for (const BoxShape& shape : object.shapes) {
+    for (const BodyShape& shape : object.shapes) {
       lowest = std::min(lowest, shape.p_BS.z() - 0.5 * shape.size_m.z());
     }
     Bounds1 z{object.p_WB.z(), object.p_WB.z()};

@@ -17,7 +17,7 @@ double size_of(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
 
 std::pair<Eigen::Vector3d, Eigen::Vector3d> own_bounds_of(const BodySpec& body) {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(INFINITY), high = -low;
-  for (const BoxShape& shape : body.shapes) {
+  for (const BodyShape& shape : body.shapes) {
     const double c = std::abs(std::cos(shape.yaw_rad)), s = std::abs(std::sin(shape.yaw_rad));
     const Eigen::Vector3d& size = shape.size_m;
     const Eigen::Vector3d half =
@@ -97,7 +97,7 @@ ChordError chord_error(const BodySpec& body, const Eigen::Vector3d& point, Eigen
   for (const int side : {0, 1}) {
     const double sign = side == 0 ? -1.0 : 1.0;
     is_short[side] = half(axis) - sign * off(axis) < in_own;
-    for (const BoxShape& other : body.shapes) {
+    for (const BodyShape& other : body.shapes) {
       if (&other == &*own) continue;
       const Eigen::Vector3d way_there = other.p_BS - point, wide = 0.5 * other.size_m;
       const double far = sign * way_there(axis) + wide(axis);

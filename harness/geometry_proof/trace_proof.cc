@@ -11,6 +11,7 @@
 
 #include "harness/geometry_proof/hand_shapes.h"
 #include "harness/robot/mobile_robot.h"
+#include "harness/world/shapes.h"
 
 namespace parallax::harness {
 namespace {
@@ -183,6 +184,15 @@ void add_tests(const ActionInput& in, std::string_view controller, ProvableActio
   action.left_to_simulation = "no test of its controller is decided by the start alone";
 }
 
+/// What the tests know of.
+bool is_of_upright_boxes(const WorldLayout& layout) {
+  return layout.hinges.empty() &&
+         std::all_of(layout.bodies.begin(), layout.bodies.end(), [](const BodySpec& body) {
+           return body.apart.empty() &&
+                  std::all_of(body.shapes.begin(), body.shapes.end(), &is_upright_box);
+         });
+}
+
 }  // namespace
 
 std::vector<ProvableAction> provable_actions(const WorldSpec& spec, const WorldLayout& layout,
@@ -200,6 +210,10 @@ std::vector<ProvableAction> provable_actions(const WorldSpec& spec, const WorldL
     }
     if (lost.empty() && !spec.mobile) {
       lost = action.left_to_simulation = "the world has no mobile robot";
+    }
+    if (lost.empty() && !is_of_upright_boxes(layout)) {
+      lost = action.left_to_simulation =
+          "the world has shapes that are no upright boxes, or hinges";
     }
     if (lost.empty()) {
       const auto checked = Arguments::check(*controller, actions[i].arguments, spec, layout);

@@ -19,7 +19,7 @@ namespace parallax::harness {
 /// What a controller acts on. All outlive the controller. One of the robots is there.
 struct ControlContext {
   const WorldSpec& spec;
-  const OdeWorld& world;
+  const PhysicsWorld& world;
   const GraspMonitor& grasp;
   LineRobot* line = nullptr;
   MobileRobot* mobile = nullptr;
@@ -72,7 +72,7 @@ class PhasedController : public Controller {
   explicit PhasedController(const ControlContext& context) : context_(context) {}
 
   const ControlContext& context() const { return context_; }
-  const OdeWorld& world() const { return context_.world; }
+  const PhysicsWorld& world() const { return context_.world; }
   const std::string& name_of(BodyId id) const { return world().layout().bodies[id].name; }
   /// At the end, or, while a phase begins, right behind it.
   void add(std::string_view name, std::function<double()> begin, std::function<bool()> done);

@@ -13,7 +13,7 @@ bool overlap_in_plan(const Bounds& a, const Bounds& b) {
 
 }  // namespace
 
-GraspMonitor::GraspMonitor(const WorldSpec& spec, const OdeWorld& world)
+GraspMonitor::GraspMonitor(const WorldSpec& spec, const PhysicsWorld& world)
     : world_(world), clearance_needed_m_(spec.solver.held_clearance_m) {
   const WorldLayout& layout = world.layout();
   const std::vector<GripperSpec> all = grippers(spec);
@@ -65,7 +65,7 @@ double GraspMonitor::clearance_m(BodyId id) const {
     const BodyId other = layout.bodies.id_at(i);
     const bool robot = robot_assembly_ != 0 && layout.assembly_of[i] == robot_assembly_;
     if (other == id || robot || !layout.bodies[other].collides) continue;
-    for (const BoxShape& shape : layout.bodies[other].shapes) {
+    for (const BodyShape& shape : layout.bodies[other].shapes) {
       const Bounds support = world_.bounds(other, shape);
       if (support.low.z() >= self.low.z() || !overlap_in_plan(self, support)) continue;
       highest_support_m = std::max(highest_support_m, support.high.z());

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "harness/engine/ode_world.h"
+#include "harness/engine/physics_world.h"
 
 namespace parallax::harness {
 
@@ -14,7 +14,7 @@ namespace parallax::harness {
 class GraspMonitor {
  public:
   /// A world without a robot holds nothing.
-  GraspMonitor(const WorldSpec& spec, const OdeWorld& world);
+  GraspMonitor(const WorldSpec& spec, const PhysicsWorld& world);
 
   void reset();
   /// After each timestep.
@@ -30,7 +30,7 @@ class GraspMonitor {
   double clearance_m(BodyId id) const;
 
  private:
-  const OdeWorld& world_;
+  const PhysicsWorld& world_;
   std::uint32_t robot_assembly_ = 0;
   std::int64_t steps_needed_ = 1;
   std::vector<BodyId> free_bodies_;

@@ -10,13 +10,13 @@
 namespace parallax::harness {
 namespace {
 
-SliderId slider_named(const OdeWorld& world, std::string_view name) {
+SliderId slider_named(const PhysicsWorld& world, std::string_view name) {
   const std::optional<SliderId> id = world.layout().find_slider(name);
   PARALLAX_REQUIRE(id.has_value(), "a robot whose joints exist");
   return *id;
 }
 
-BodyId body_named(const OdeWorld& world, std::string_view name) {
+BodyId body_named(const PhysicsWorld& world, std::string_view name) {
   const std::optional<BodyId> id = world.layout().find_body(name);
   PARALLAX_REQUIRE(id.has_value(), "a robot whose bodies exist");
   return *id;
@@ -34,7 +34,7 @@ Extent extent_along(const Eigen::Vector3d& axis, const Bounds& bounds) {
 
 }  // namespace
 
-LineRobot::LineRobot(const WorldSpec& spec, OdeWorld& world) : world_(world) {
+LineRobot::LineRobot(const WorldSpec& spec, PhysicsWorld& world) : world_(world) {
   const LineRobotSpec& roles = spec.robot;
   drive(LineAxis::kBase).slider = slider_named(world, roles.base_joint);
   drive(LineAxis::kReach).slider = slider_named(world, roles.reach_joint);

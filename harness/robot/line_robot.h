@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "harness/engine/ode_world.h"
+#include "harness/engine/physics_world.h"
 #include "harness/robot/servo.h"
 
 namespace parallax::harness {
@@ -15,7 +15,7 @@ enum class LineAxis : std::uint8_t { kBase, kReach, kLift, kFinger };
 class LineRobot {
  public:
   /// `spec.robot` names all roles.
-  LineRobot(const WorldSpec& spec, OdeWorld& world);
+  LineRobot(const WorldSpec& spec, PhysicsWorld& world);
 
   /// All axes at rest where they are, with the force of their joints.
   void reset();
@@ -54,7 +54,7 @@ class LineRobot {
     return world_.layout().sliders[drive(axis).slider];
   }
 
-  OdeWorld& world_;
+  PhysicsWorld& world_;
   std::array<Drive, 4> drives_;
   BodyId base_, near_pad_, far_pad_;
   double open_gap_m_ = 0.0;    // at finger position 0

@@ -30,7 +30,7 @@ Eigen::Vector3d level(const Eigen::Vector2d& p) { return {p.x(), p.y(), 0.0}; }
 
 }  // namespace
 
-Arm::Arm(const ArmSpec& spec, std::uint32_t gripper, OdeWorld& world)
+Arm::Arm(const ArmSpec& spec, std::uint32_t gripper, PhysicsWorld& world)
     : spec_(spec),
       gripper_(gripper),
       world_(world),
@@ -111,7 +111,7 @@ void Arm::drive_motors() {
   world_.set_motor(finger_joint_, finger, finger_force_n_);
 }
 
-MobileBase::MobileBase(const MobileRobotSpec& spec, OdeWorld& world)
+MobileBase::MobileBase(const MobileRobotSpec& spec, PhysicsWorld& world)
     : world_(world),
       body_(*world.layout().find_body(spec.base_body)),
       gantry_(*world.layout().find_gantry(spec.base_joint)),
@@ -167,7 +167,7 @@ void MobileBase::drive_motors() {
   world_.set_gantry(gantry_, velocity, turn_.next_velocity(yaw_rad_, 0.0, step_s));
 }
 
-MobileRobot::MobileRobot(const WorldSpec& spec, OdeWorld& world)
+MobileRobot::MobileRobot(const WorldSpec& spec, PhysicsWorld& world)
     : spec_(*spec.mobile), world_(world), base_(spec_, world) {
   std::uint32_t gripper = 0;
   for (const ArmSpec& arm : spec_.arms) arms_.emplace_back(arm, gripper++, world);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "harness/engine/jaws.h"
-#include "harness/engine/ode_world.h"
+#include "harness/engine/physics_world.h"
 #include "harness/robot/servo.h"
 
 namespace parallax::harness {
@@ -23,7 +23,7 @@ inline constexpr double kBeyondStop_m = 0.005;        // a hand moves a drawer o
 /// axis, so that a turn of the wrist does not move it.
 class Arm {
  public:
-  Arm(const ArmSpec& spec, std::uint32_t gripper, OdeWorld& world);
+  Arm(const ArmSpec& spec, std::uint32_t gripper, PhysicsWorld& world);
 
   void reset();
   /// Straight to a point of the world, as the base stands now; a base that drives takes it along.
@@ -56,7 +56,7 @@ class Arm {
  private:
   ArmSpec spec_;
   std::uint32_t gripper_;
-  OdeWorld& world_;
+  PhysicsWorld& world_;
   GantryId gantry_;
   SliderId finger_joint_;
   BodyId palm_;
@@ -78,7 +78,7 @@ struct PlanarPose {
 /// a sine of the way driven, so that what it carries is shaken by the square of its speed.
 class MobileBase {
  public:
-  MobileBase(const MobileRobotSpec& spec, OdeWorld& world);
+  MobileBase(const MobileRobotSpec& spec, PhysicsWorld& world);
 
   void reset();
   void drive_to(const Eigen::Vector2d& target, const Motion& motion);
@@ -95,7 +95,7 @@ class MobileBase {
   void drive_motors();
 
  private:
-  OdeWorld& world_;
+  PhysicsWorld& world_;
   BodyId body_;
   GantryId gantry_;
   double amplitude_m_, wave_number_rad_m_;
@@ -109,7 +109,7 @@ class MobileBase {
 /// The robot of a world with MobileRobotSpec: a base, a lifting torso, arms.
 class MobileRobot {
  public:
-  MobileRobot(const WorldSpec& spec, OdeWorld& world);
+  MobileRobot(const WorldSpec& spec, PhysicsWorld& world);
 
   /// All motors at rest where things are.
   void reset();
@@ -144,7 +144,7 @@ class MobileRobot {
 
  private:
   MobileRobotSpec spec_;
-  OdeWorld& world_;
+  PhysicsWorld& world_;
   MobileBase base_;
   std::vector<Arm> arms_;
   std::optional<SliderId> torso_;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/world/shapes.h"
+
 namespace parallax::harness {
 namespace {
 
@@ -20,6 +22,29 @@ Eigen::Matrix3d turn_about_z(double yaw_rad) {
 
 std::array<double, 4> yaw_quaternion(double yaw_rad) {
   return {std::cos(0.5 * yaw_rad), 0.0, 0.0, std::sin(0.5 * yaw_rad)};
+}
+
+RecordedShape recorded_shape(const BodyShape& shape) {
+  RecordedShape out;
+  const double radius_m = 0.5 * shape.size_m.x(), length_m = shape.size_m.z();
+  switch (shape.form) {
+    case ShapeForm::kBox:
+      out = {ShapeKind::kBox, listed(shape.size_m), {}};
+      break;
+    case ShapeForm::kSphere:
+      out = {ShapeKind::kSphere, {radius_m, 0.0, 0.0}, {}};
+      break;
+    case ShapeForm::kCylinder:
+      out = {ShapeKind::kCylinder, {radius_m, length_m, 0.0}, {}};
+      break;
+    case ShapeForm::kCapsule:
+      out = {ShapeKind::kCapsule, {radius_m, length_m - 2.0 * radius_m, 0.0}, {}};
+      break;
+  }
+  const bool upright = shape.roll_rad == 0.0 && shape.pitch_rad == 0.0;
+  out.pose = {listed(shape.p_BS),
+              upright ? yaw_quaternion(shape.yaw_rad) : quaternion_of(shape_rotation(shape))};
+  return out;
 }
 
 /// X_AB, by default, of two bodies that are given in the world.
@@ -98,8 +123,7 @@ RecordedScene recorded_scene(const WorldSpec& spec, const WorldLayout& layout) {
     body.name = given.name;
     body.kind = kind_in_recordings(spec, layout, id);
     for (const auto& shape : given.shapes) {
-      body.shapes.push_back({ShapeKind::kBox, listed(shape.size_m),
-                             Pose{listed(shape.p_BS), yaw_quaternion(shape.yaw_rad)}});
+      body.shapes.push_back(recorded_shape(shape));
     }
     if (const auto link = layout.link_of[i]) {
       body.moves = true;
@@ -122,7 +146,7 @@ RecordedScene recorded_scene(const WorldSpec& spec, const WorldLayout& layout) {
   return scene;
 }
 
-MotionRecorder::MotionRecorder(const WorldSpec& spec, const OdeWorld& world,
+MotionRecorder::MotionRecorder(const WorldSpec& spec, const PhysicsWorld& world,
                                const GraspMonitor& grasp, const MobileRobot* robot,
                                const Perception* perception)
     : world_(world),

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/engine/ode_world.h"
+#include "harness/engine/physics_world.h"
 #include "harness/recording/motion_stream.h"
 #include "harness/recording/recorded_scene.h"
 #include "harness/robot/grasp_monitor.h"
@@ -21,7 +21,7 @@ RecordedScene recorded_scene(const WorldSpec& spec, const WorldLayout& layout);
 class MotionRecorder {
  public:
   /// All but `spec` outlive the recorder; `robot` and `perception` may be null.
-  MotionRecorder(const WorldSpec& spec, const OdeWorld& world, const GraspMonitor& grasp,
+  MotionRecorder(const WorldSpec& spec, const PhysicsWorld& world, const GraspMonitor& grasp,
                  const MobileRobot* robot, const Perception* perception);
 
   const RecordedScene& scene() const { return scene_; }
@@ -41,7 +41,7 @@ class MotionRecorder {
   void add();
   void fill_grips(BodyId id, std::size_t index);
 
-  const OdeWorld& world_;
+  const PhysicsWorld& world_;
   const GraspMonitor& grasp_;
   const MobileRobot* robot_;
   const Perception* perception_;

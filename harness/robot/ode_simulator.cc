@@ -4,9 +4,10 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "compiler/base/contract.h"
-#include "harness/engine/ode_world.h"
+#include "harness/engine/physics_world.h"
 #include "harness/engine/world_check.h"
 #include "harness/robot/controller.h"
 #include "harness/robot/motion_recorder.h"
@@ -58,10 +59,20 @@ void observe_belief(const Perception& perception, BodyId id, const std::string& 
   out[prefix + "seen.bottom"] = perception.believed_bottom_m(id).value_or(0.0);
 }
 
+void observe_joint(const PhysicsWorld& world, const JointSpec& joint, double position, State& out) {
+  const BodyId child = *world.layout().find_body(joint.child);
+  const Eigen::Vector3d p = world.position(child);
+  out[joint.name + ".q"] = position;
+  out[joint.child + ".x"] = p.x();
+  out[joint.child + ".y"] = p.y();
+  out[joint.child + ".z"] = p.z();
+  out[joint.child + ".yaw"] = heading_rad(world.rotation(child));
+}
+
 /// Adds to `out` what `observables` lists of a world with a mobile robot, but for the poses of free
 /// bodies.
-void observe_mobile(const OdeWorld& world, const MobileRobot& robot, const Perception& perception,
-                    const GraspMonitor& grasp, State& out) {
+void observe_mobile(const PhysicsWorld& world, const MobileRobot& robot,
+                    const Perception& perception, const GraspMonitor& grasp, State& out) {
   const PlanarPose pose = robot.base().pose();
   out["robot.x"] = pose.p.x();
   out["robot.y"] = pose.p.y();
@@ -82,14 +93,7 @@ void observe_mobile(const OdeWorld& world, const MobileRobot& robot, const Perce
     observe_belief(perception, id, prefix, out);
   }
   for (const SliderId id : observed_sliders(layout, robot.spec())) {
-    const JointSpec& joint = layout.sliders[id];
-    const BodyId child = *layout.find_body(joint.child);
-    const Eigen::Vector3d p = world.position(child);
-    out[joint.name + ".q"] = world.slider_position_m(id);
-    out[joint.child + ".x"] = p.x();
-    out[joint.child + ".y"] = p.y();
-    out[joint.child + ".z"] = p.z();
-    out[joint.child + ".yaw"] = heading_rad(world.rotation(child));
+    observe_joint(world, layout.sliders[id], world.slider_position_m(id), out);
   }
 }
 
@@ -99,7 +103,7 @@ struct OdeSimulator::Impl {
   enum class Condition : std::uint8_t { kFresh, kReady, kLost };
 
   explicit Impl(const WorldSpec& world_spec)
-      : spec(checked(world_spec)), world(spec), grasp(spec, world) {
+      : spec(checked(world_spec)), owned(make_world(spec)), grasp(spec, world) {
     if (spec.mobile) {
       mobile.emplace(spec, world);
       perception.emplace(world, *mobile);
@@ -129,7 +133,8 @@ struct OdeSimulator::Impl {
   }
 
   WorldSpec spec;
-  OdeWorld world;
+  std::unique_ptr<PhysicsWorld> owned;
+  PhysicsWorld& world = *owned;
   GraspMonitor grasp;
   std::optional<LineRobot> line;
   std::optional<MobileRobot> mobile;
@@ -143,7 +148,7 @@ struct OdeSimulator::Impl {
 OdeSimulator::OdeSimulator(const WorldSpec& spec) : impl_(std::make_unique<Impl>(spec)) {}
 OdeSimulator::~OdeSimulator() = default;
 
-const OdeWorld& OdeSimulator::world() const { return impl_->world; }
+const PhysicsWorld& OdeSimulator::world() const { return impl_->world; }
 std::optional<Gaze> OdeSimulator::gaze() const {
   return impl_->perception ? impl_->perception->line_of_sight() : std::nullopt;
 }
@@ -159,8 +164,9 @@ void OdeSimulator::record_motion(double interval_s) { impl_->motion->set_interva
 
 SimulatorInfo OdeSimulator::info() {
   SimulatorInfo info;
-  info.name = "ode";
-  info.version = ode_version();
+  EngineName engine = impl_->world.engine();
+  info.name = std::move(engine.name);
+  info.version = std::move(engine.version);
   info.determinism = "bitwise";
   info.seeds = true;
   info.parameters = observables(impl_->spec);
@@ -208,7 +214,7 @@ Outcome OdeSimulator::act(std::string_view action, const State& arguments,
   if (const auto* message = std::get_if<std::string>(&checked_arguments)) {
     return {SimStatus::kUnsupported, *message, 0.0, {}};
   }
-  enter_ode();
+  impl_->world.enter_thread();
   const ControlContext context{impl_->spec,
                                impl_->world,
                                impl_->grasp,
@@ -275,6 +281,10 @@ State OdeSimulator::state() const {
   }
   if (impl_->mobile) {
     observe_mobile(impl_->world, *impl_->mobile, *impl_->perception, impl_->grasp, state);
+  }
+  for (std::size_t i = 0; i < layout.hinges.size(); ++i) {
+    const HingeId id = layout.hinges.id_at(i);
+    observe_joint(impl_->world, layout.hinges[id], impl_->world.hinge_angle_rad(id), state);
   }
   state["digest"] = fmt::format("{:016x}", impl_->world.digest());
   return state;

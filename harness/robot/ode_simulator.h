@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "harness/engine/ode_world.h"
+#include "harness/engine/physics_world.h"
 #include "harness/robot/perception.h"
 #include "harness/simulator/simulator.h"
 #include "harness/world/world_spec.h"
@@ -37,7 +37,7 @@ class OdeSimulator final : public Simulator {
   using Watcher = void (*)(void* context, double time_s, const OdeSimulator& simulator);
   void watch(Watcher watcher, void* context);
 
-  const OdeWorld& world() const;
+  const PhysicsWorld& world() const;
   /// Of the camera of a mobile robot that has looked at something.
   std::optional<Gaze> gaze() const;
   const StepStatistics& statistics() const;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "harness/world/angles.h"
+#include "harness/world/shapes.h"
 
 namespace parallax::harness {
 namespace {
@@ -16,11 +17,8 @@ namespace {
 Bounds own_bounds(const BodySpec& body) {
   Bounds all;
   bool first = true;
-  for (const BoxShape& shape : body.shapes) {
-    const double c = std::abs(std::cos(shape.yaw_rad)), s = std::abs(std::sin(shape.yaw_rad));
-    const Eigen::Vector3d half(0.5 * (c * shape.size_m.x() + s * shape.size_m.y()),
-                               0.5 * (s * shape.size_m.x() + c * shape.size_m.y()),
-                               0.5 * shape.size_m.z());
+  for (const BodyShape& shape : body.shapes) {
+    const Eigen::Vector3d half = half_extents(shape.form, shape.size_m, shape_rotation(shape));
     const Eigen::Vector3d low = shape.p_BS - half, high = shape.p_BS + half;
     all.low = first ? low : Eigen::Vector3d(all.low.cwiseMin(low));
     all.high = first ? high : Eigen::Vector3d(all.high.cwiseMax(high));
@@ -58,11 +56,8 @@ Eigen::Vector3d median(std::vector<Eigen::Vector3d> points) {
 
 /// Is the point, in the body's frame, in the matter of the body?
 bool is_solid_at(const BodySpec& body, const Eigen::Vector3d& p_B) {
-  return std::any_of(body.shapes.begin(), body.shapes.end(), [&](const BoxShape& shape) {
-    const Eigen::AngleAxisd back(-shape.yaw_rad, Eigen::Vector3d::UnitZ());
-    const Eigen::Vector3d p_S = back * (p_B - shape.p_BS);
-    return (p_S.array().abs() <= 0.5 * shape.size_m.array()).all();
-  });
+  return std::any_of(body.shapes.begin(), body.shapes.end(),
+                     [&](const BodyShape& shape) { return contains(shape, p_B); });
 }
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -71,7 +66,7 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 }  // namespace
 
-Perception::Perception(const OdeWorld& world, const MobileRobot& robot)
+Perception::Perception(const PhysicsWorld& world, const MobileRobot& robot)
     : world_(world),
       robot_(robot),
       beliefs_(world.layout().bodies.size()),

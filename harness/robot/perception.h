@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/engine/ode_world.h"
+#include "harness/engine/physics_world.h"
 #include "harness/robot/detection_errors.h"
 #include "harness/robot/mobile_robot.h"
 
@@ -41,7 +41,7 @@ struct Gaze {
 /// depends on the view. What is believed of it is off by the camera's errors of detection besides.
 class Perception {
  public:
-  Perception(const OdeWorld& world, const MobileRobot& robot);
+  Perception(const PhysicsWorld& world, const MobileRobot& robot);
 
   void reset(std::uint64_t seed = 0);
   /// Turns the gaze to a place; a message instead if the neck does not turn so far.
@@ -85,7 +85,7 @@ class Perception {
              const std::string& frame);
   Eigen::Vector3d from_frame(const std::string& frame, const Eigen::Vector3d& p_F) const;
 
-  const OdeWorld& world_;
+  const PhysicsWorld& world_;
   const MobileRobot& robot_;
   PlaceSpec gaze_;
   Eigen::Vector3d looked_W_ = Eigen::Vector3d::Zero();  // where the place was then

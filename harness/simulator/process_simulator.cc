@@ -53,16 +53,18 @@ Clock::time_point after(double seconds) {
 }
 
 std::string_view method_name(const RequestBody& body) {
-  static constexpr std::string_view kNames[] = {"hello", "reset", "act", "observe", "close", "?"};
+  static constexpr std::string_view kNames[] = {"hello", "reset",    "act", "observe",
+                                                "close", "describe", "?"};
   return kNames[body.index()];
 }
 
-/// The other side understood us and says no: the scenario's fault, not a loss.
-bool is_refusal(const ErrorReply& error) {
-  return error.code == "unsupported" || error.code == "invalid_params";
-}
-
 }  // namespace
+
+bool is_refusal(const ErrorReply& error) {
+  // The numbers are those of JSON-RPC for an unknown method and for wrong parameters.
+  return error.code == "unsupported" || error.code == "invalid_params" || error.code == "-32601" ||
+         error.code == "-32602";
+}
 
 ChildProcess::ChildProcess(const std::vector<std::string>& command, std::int64_t memory_mb,
                            const std::atomic<bool>* stop)
@@ -308,9 +310,26 @@ bool ProcessSimulator::ensure_started() {
   auto& body = std::get<ReplyBody>(reply);
   if (auto* hello = std::get_if<HelloReply>(&body)) {
     info_ = std::move(hello->info);
-    return true;
+    return !info_.can("describe") || ask_for_description();
   }
   lose(fmt::format("it refused `hello`: {}", std::get<ErrorReply>(body).message));
+  return false;
+}
+
+bool ProcessSimulator::ask_for_description() {
+  auto reply = link_->ask(DescribeRequest{}, options_.hello_timeout_s);
+  if (auto* reason = std::get_if<std::string>(&reply)) {
+    lose(std::move(*reason));
+    return false;
+  }
+  auto& body = std::get<ReplyBody>(reply);
+  if (auto* described = std::get_if<DescribeReply>(&body)) {
+    info_.parameters = std::move(described->info.parameters);
+    info_.actions = std::move(described->info.actions);
+    info_.arguments = std::move(described->info.arguments);
+    return true;
+  }
+  lose(fmt::format("it refused `describe`: {}", std::get<ErrorReply>(body).message));
   return false;
 }
 
@@ -349,9 +368,11 @@ Outcome ProcessSimulator::reset(const State& initial, std::uint64_t seed) {
 Outcome ProcessSimulator::act(std::string_view action, const State& arguments,
                               double sim_time_limit_s) {
   if (!link_) return {SimStatus::kLost, lost_reason_, 0.0, {}};
-  const double timeout_s = options_.act_timeout_s > 0.0
-                               ? options_.act_timeout_s
-                               : kActOverheadS + sim_time_limit_s / options_.min_real_time_factor;
+  // The slower of what the scenario and the simulator say.
+  double factor = options_.min_real_time_factor;
+  if (info_.min_real_time_factor > 0.0) factor = std::min(factor, info_.min_real_time_factor);
+  const double timeout_s = options_.act_timeout_s > 0.0 ? options_.act_timeout_s
+                                                        : kActOverheadS + sim_time_limit_s / factor;
   return outcome_of(
       link_->ask(ActRequest{std::string(action), arguments, sim_time_limit_s}, timeout_s));
 }

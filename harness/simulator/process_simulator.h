@@ -108,6 +108,7 @@ class ProcessSimulator final : public Simulator {
  private:
   class Link;
   bool ensure_started();
+  bool ask_for_description();
   void close();
   void lose(std::string reason);
   Outcome outcome_of(std::variant<ReplyBody, std::string> reply);

@@ -21,21 +21,53 @@ OrderedJson error_to_json(const ErrorReply& error) {
   return OrderedJson{{"code", error.code}, {"message", error.message}};
 }
 
-OrderedJson info_to_json(std::int64_t protocol, const SimulatorInfo& info) {
+OrderedJson arguments_to_json(const std::vector<ActionArgument>& arguments) {
+  OrderedJson list = OrderedJson::array();
+  for (const auto& argument : arguments) {
+    OrderedJson json{
+        {"name", argument.name}, {"unit", argument.unit}, {"required", argument.required}};
+    if (argument.example) {
+      json["example"] =
+          std::visit([](const auto& plain) { return OrderedJson(plain); }, *argument.example);
+    }
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+OrderedJson parameters_to_json(const SimulatorInfo& info) {
   OrderedJson parameters = OrderedJson::array();
   for (const Parameter& p : info.parameters) {
-    parameters.push_back(OrderedJson{{"name", p.name}, {"unit", p.unit}, {"settable", p.settable}});
+    OrderedJson json{{"name", p.name}, {"unit", p.unit}, {"settable", p.settable}};
+    if (p.lower) json["lower"] = *p.lower;
+    if (p.upper) json["upper"] = *p.upper;
+    parameters.push_back(std::move(json));
   }
+  return parameters;
+}
+
+OrderedJson actions_to_json(const SimulatorInfo& info) {
   OrderedJson actions = OrderedJson::array();
-  for (const std::string& name : info.actions) actions.push_back(OrderedJson{{"name", name}});
+  for (const std::string& name : info.actions) {
+    OrderedJson json{{"name", name}};
+    const auto arguments = info.arguments.find(name);
+    if (arguments != info.arguments.end()) json["args"] = arguments_to_json(arguments->second);
+    actions.push_back(std::move(json));
+  }
+  return actions;
+}
+
+OrderedJson info_to_json(std::int64_t protocol, const SimulatorInfo& info) {
   OrderedJson out{{"protocol", protocol},
                   {"name", info.name},
                   {"version", info.version},
                   {"determinism", info.determinism},
                   {"seeds", info.seeds},
                   {"time_step", info.timestep_s},
-                  {"params", std::move(parameters)},
-                  {"actions", std::move(actions)}};
+                  {"params", parameters_to_json(info)},
+                  {"actions", actions_to_json(info)}};
+  if (!info.capabilities.empty()) out["capabilities"] = OrderedJson(info.capabilities);
+  if (info.min_real_time_factor > 0.0) out["min_real_time_factor"] = info.min_real_time_factor;
   if (info.scene) {
     // A world so large that it does not go in a line is simulated without recordings.
     const auto scene = scene_text(*info.scene);
@@ -75,6 +107,7 @@ struct RequestEncoder {
   }
   void operator()(const ObserveRequest&) const { json["method"] = "observe"; }
   void operator()(const CloseRequest&) const { json["method"] = "close"; }
+  void operator()(const DescribeRequest&) const { json["method"] = "describe"; }
   void operator()(const UnknownRequest& unknown) const { json["method"] = unknown.method; }
 };
 
@@ -91,6 +124,10 @@ struct ReplyEncoder {
     json["result"] = OrderedJson{{"state", state_json<OrderedJson>(reply.state)}};
   }
   void operator()(const CloseReply&) const { json["result"] = OrderedJson{{"status", "ok"}}; }
+  void operator()(const DescribeReply& reply) const {
+    json["result"] = OrderedJson{{"params", parameters_to_json(reply.info)},
+                                 {"actions", actions_to_json(reply.info)}};
+  }
 };
 
 using Json = nlohmann::json;
@@ -169,7 +206,6 @@ class FieldReader {
     return state;
   }
 
- private:
   static std::optional<Value> value_of(const Json& json) {
     if (json.is_boolean()) return Value(json.get<bool>());
     if (json.is_string()) return Value(json.get<std::string>());
@@ -178,6 +214,7 @@ class FieldReader {
     return std::nullopt;
   }
 
+ private:
   std::string code_;
   bool failed_ = false;
   Malformed error_;
@@ -238,12 +275,65 @@ RequestBody read_request_body(FieldReader& reader, const Json& json) {
   const std::string method = reader.string(json, "method");
   if (method == "observe") return ObserveRequest{};
   if (method == "close") return CloseRequest{};
+  if (method == "describe") return DescribeRequest{};
   if (method != "hello" && method != "reset" && method != "act") return UnknownRequest{method};
   const Json* params = reader.object(json, "params", true);
   if (params == nullptr) return UnknownRequest{method};
   if (method == "hello") return read_hello(reader, *params);
   if (method == "reset") return read_reset(reader, *params);
   return read_act(reader, *params);
+}
+
+std::vector<ActionArgument> read_arguments(FieldReader& reader, const Json& list) {
+  std::vector<ActionArgument> arguments;
+  if (!list.is_array()) reader.fail("`args` of an action is not a list");
+  for (const Json& item : list) {
+    if (!item.is_object()) {
+      reader.fail("an element of `args` is not an object");
+      break;
+    }
+    ActionArgument argument{reader.string(item, "name"), reader.string(item, "unit", false),
+                            reader.boolean(item, "required", false)};
+    if (const Json* example = reader.member(item, "example", false)) {
+      argument.example = FieldReader::value_of(*example);
+    }
+    arguments.push_back(std::move(argument));
+  }
+  return arguments;
+}
+
+/// `params` and `actions`, of `hello` and of `describe`.
+void read_world(FieldReader& reader, const Json& result, SimulatorInfo& info) {
+  const Json* params = reader.member(result, "params", true);
+  const Json* actions = reader.member(result, "actions", true);
+  if (params == nullptr || actions == nullptr) return;
+  if (!params->is_array() || !actions->is_array()) {
+    return reader.fail("`params` and `actions` are not lists");
+  }
+  for (const Json& item : *params) {
+    if (!item.is_object()) return reader.fail("an element of `params` is not an object");
+    Parameter parameter{reader.string(item, "name"), reader.string(item, "unit", false),
+                        reader.boolean(item, "settable", false)};
+    if (item.contains("lower")) parameter.lower = reader.number(item, "lower");
+    if (item.contains("upper")) parameter.upper = reader.number(item, "upper");
+    info.parameters.push_back(std::move(parameter));
+  }
+  for (const Json& item : *actions) {  // a name, or an object that has one
+    info.actions.push_back(item.is_string()   ? item.get<std::string>()
+                           : item.is_object() ? reader.string(item, "name")
+                                              : std::string());
+    if (info.actions.back().empty()) return reader.fail("an element of `actions` has no name");
+    if (const Json* args = item.is_object() ? reader.member(item, "args", false) : nullptr) {
+      info.arguments[info.actions.back()] = read_arguments(reader, *args);
+    }
+  }
+}
+
+/// A name, or a number as JSON-RPC has it.
+std::string read_code(FieldReader& reader, const Json& error) {
+  const Json* code = reader.member(error, "code", false);
+  const auto number = code == nullptr ? std::nullopt : base::json_as<std::int64_t>(*code);
+  return number ? std::to_string(*number) : reader.string(error, "code");
 }
 
 HelloReply read_info(FieldReader& reader, const Json& result) {
@@ -261,28 +351,18 @@ HelloReply read_info(FieldReader& reader, const Json& result) {
   if (const Json* scene = reader.member(result, "pose", false)) {
     hello.info.scene = scene_from_text(base::json_text(*scene), unread);
   }
-  const Json* params = reader.member(result, "params", true);
-  const Json* actions = reader.member(result, "actions", true);
-  if (params == nullptr || actions == nullptr) return hello;
-  if (!params->is_array() || !actions->is_array()) {
-    reader.fail("`params` and `actions` are not lists");
-    return hello;
-  }
-  for (const Json& item : *params) {
-    if (!item.is_object()) {
-      reader.fail("an element of `params` is not an object");
-      return hello;
+  if (const Json* able = reader.member(result, "capabilities", false)) {
+    if (!able->is_array()) reader.fail("`capabilities` is not a list");
+    for (const Json& item : *able) {
+      if (item.is_string()) hello.info.capabilities.push_back(item.get<std::string>());
     }
-    hello.info.parameters.push_back(Parameter{reader.string(item, "name"),
-                                              reader.string(item, "unit", false),
-                                              reader.boolean(item, "settable", false)});
   }
-  for (const Json& item : *actions) {  // a name, or an object that has one
-    hello.info.actions.push_back(item.is_string()   ? item.get<std::string>()
-                                 : item.is_object() ? reader.string(item, "name")
-                                                    : std::string());
-    if (hello.info.actions.back().empty()) reader.fail("an element of `actions` has no name");
+  hello.info.min_real_time_factor = reader.number(result, "min_real_time_factor", false);
+  const double factor = hello.info.min_real_time_factor;
+  if (factor != 0.0 && !(factor >= 1e-4 && factor <= 1e6)) {
+    reader.fail("`min_real_time_factor` is not within 0.0001 to 1000000");
   }
+  read_world(reader, result, hello.info);
   return hello;
 }
 
@@ -391,6 +471,11 @@ ReplyBody read_result(FieldReader& reader, const Json& result, const Request& as
     }
     return reply;
   }
+  if (std::holds_alternative<DescribeRequest>(asked.body)) {
+    DescribeReply reply;
+    read_world(reader, result, reply.info);
+    return reply;
+  }
   return read_outcome(reader, result);
 }
 
@@ -454,7 +539,7 @@ std::variant<ReplyBody, Malformed> decode_reply(std::string_view line, const Req
                      id);
   }
   if (error != nullptr) {
-    ErrorReply reply{reader.string(*error, "code"), reader.string(*error, "message", false)};
+    ErrorReply reply{read_code(reader, *error), reader.string(*error, "message", false)};
     if (!reader.failed()) return ReplyBody(std::move(reply));
   }
   const Json* result = reader.object(json, "result", true);

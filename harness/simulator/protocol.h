@@ -33,13 +33,14 @@ struct ActRequest {
 };
 struct ObserveRequest {};
 struct CloseRequest {};
+struct DescribeRequest {};
 /// A well-formed request of a method that this version does not know.
 struct UnknownRequest {
   std::string method;
 };
 
 using RequestBody = std::variant<HelloRequest, ResetRequest, ActRequest, ObserveRequest,
-                                 CloseRequest, UnknownRequest>;
+                                 CloseRequest, DescribeRequest, UnknownRequest>;
 
 /// `id` is the client's, counted up; a reply carries the id of its request.
 struct Request {
@@ -48,11 +49,13 @@ struct Request {
 };
 
 /// The other side said no: `code` is parse_error, invalid_request, invalid_params, unsupported,
-/// incorrect_state, line_too_long, not_finite or internal.
+/// incorrect_state, line_too_long, not_finite or internal; or a number, as JSON-RPC has them.
 struct ErrorReply {
   std::string code;
   std::string message;
 };
+/// The other side understood us and says no: the scenario's fault, not a loss.
+bool is_refusal(const ErrorReply& error);
 struct HelloReply {
   std::int64_t protocol = kProtocolVersion;
   SimulatorInfo info;
@@ -74,8 +77,13 @@ struct ObserveReply {
   State state;
 };
 struct CloseReply {};
+/// What the world has: parameters, actions and their arguments, and nothing else of `info`.
+struct DescribeReply {
+  SimulatorInfo info;
+};
 
-using ReplyBody = std::variant<ErrorReply, HelloReply, OutcomeReply, ObserveReply, CloseReply>;
+using ReplyBody =
+    std::variant<ErrorReply, HelloReply, OutcomeReply, ObserveReply, CloseReply, DescribeReply>;
 
 /// A line that is not the protocol: the harness counts the simulator as lost.
 struct Malformed {

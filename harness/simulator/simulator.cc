@@ -1,11 +1,16 @@
 #include "harness/simulator/simulator.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
 #include "compiler/base/contract.h"
 
 namespace parallax::harness {
+
+bool SimulatorInfo::can(std::string_view capability) const {
+  return std::find(capabilities.begin(), capabilities.end(), capability) != capabilities.end();
+}
 namespace {
 
 constexpr std::array<std::pair<SimStatus, std::string_view>, 6> kWords = {{

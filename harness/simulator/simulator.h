@@ -57,7 +57,17 @@ struct Parameter {
   std::string name;
   std::string unit;  // "m", "rad", "1"
   bool settable = false;
+  std::optional<double> lower = {}, upper = {};  // of a start, where it says so
 };
+
+/// What a controller takes, where the simulator says so.
+struct ActionArgument {
+  std::string name;
+  std::string unit;
+  bool required = false;
+  std::optional<Value> example = {};  // a value that it can be tried with
+};
+using ActionArguments = std::map<std::string, std::vector<ActionArgument>, std::less<>>;
 
 /// What a simulator says of itself at the handshake.
 struct SimulatorInfo {
@@ -70,6 +80,12 @@ struct SimulatorInfo {
   double timestep_s = 0.0;
   /// What it records of motion, if it does.
   std::optional<RecordedScene> scene = {};
+  /// Of those actions whose arguments it tells; others take what they like.
+  ActionArguments arguments = {};
+  std::vector<std::string> capabilities = {};  // "describe", "margins", "noise", "poses"
+  double min_real_time_factor = 0.0;           // how fast it simulates at least; 0: not said
+
+  bool can(std::string_view capability) const;
 };
 
 /// One simulated world. One instance per worker process, never shared.

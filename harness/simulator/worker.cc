@@ -103,6 +103,7 @@ struct Dispatcher {
     return {ObserveReply{simulator.observe()}};
   }
   Answer operator()(const CloseRequest&) const { return {CloseReply{}, true}; }
+  Answer operator()(const DescribeRequest&) const { return {DescribeReply{simulator.info()}}; }
   Answer operator()(const UnknownRequest& unknown) const {
     return {ErrorReply{"unsupported", "no method `" + unknown.method + "`"}};
   }

@@ -1,11 +1,13 @@
 #include "harness/world/density.h"
 
+#include "harness/world/shapes.h"
+
 namespace parallax::harness {
 
 double density_kg_m3(const BodySpec& body, double mass_kg) {
-  double volume_m3 = 0.0;
-  for (const BoxShape& shape : body.shapes) volume_m3 += shape.size_m.prod();
-  return mass_kg / volume_m3;
+  double sum_m3 = 0.0;
+  for (const BodyShape& shape : body.shapes) sum_m3 += volume_m3(shape);
+  return mass_kg / sum_m3;
 }
 
 std::optional<std::string> odd_density(const BodySpec& body, double mass_kg) {

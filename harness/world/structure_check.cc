@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "compiler/base/suggest.h"
-#include "harness/world/structure_check.h"
+#include "harness/world/shapes.h"
 #include "harness/world/world_layout.h"
 
 namespace parallax::harness {
@@ -120,17 +120,49 @@ class StructureChecker {
       add(path + "/mass_kg", fmt::format("is more than {:g} kg", kMaxMass_kg));
     }
     if (body.shapes.empty()) add(path + "/shapes", "is empty");
-    for (const BoxShape& shape : body.shapes) {
+    for (const BodyShape& shape : body.shapes) {
       if (!(shape.size_m.array() > 0.0).all() || !shape.size_m.allFinite()) {
         add(path + "/shapes", "a size is not positive");
       }
       if (!shape.p_BS.allFinite()) add(path + "/shapes", "a position is not a number");
+      const double turns = shape.yaw_rad + shape.pitch_rad + shape.roll_rad;
+      if (!std::isfinite(turns)) add(path + "/shapes", "an angle is not a number");
     }
     if (!body.p_WB.allFinite() || !std::isfinite(body.yaw_rad)) {
       add(path, "the placement is not a number");
     }
     check_extent(body);
+    check_inertia(body);
     check_settable(body);
+  }
+
+  /// A body can have these moments only if each is at most the sum of the other two.
+  void check_inertia(const BodySpec& body) {
+    if (!body.inertia || !problems_.empty()) return;
+    const std::string path = "bodies/" + body.name + "/inertia";
+    const InertiaSpec& inertia = *body.inertia;
+    if (body.mass_kg == 0.0) return add(path, "is of a body without mass");
+    if (!inertia.p_BC.allFinite() || !inertia.I_C_kg_m2.allFinite()) {
+      return add(path, "is not a number");
+    }
+    if (inertia.p_BC.cwiseAbs().maxCoeff() > kMaxExtent_m) {
+      return add(path, fmt::format("has its centre more than {:g} m away", kMaxExtent_m));
+    }
+    if (!inertia.I_C_kg_m2.isApprox(inertia.I_C_kg_m2.transpose(), 1e-9)) {
+      return add(path, "is not symmetric");
+    }
+    const Eigen::Vector3d moments = principal_moments(inertia.I_C_kg_m2);
+    if (!(moments.minCoeff() > 0.0)) return add(path, "has a moment that is not positive");
+    if (moments.maxCoeff() > body.mass_kg * kMaxExtent_m * kMaxExtent_m) {
+      return add(path, fmt::format("is that of a body of more than {:g} m", kMaxExtent_m));
+    }
+    const double play = 1e-3 * moments.maxCoeff();  // numbers are rounded where they are written
+    if (2.0 * moments.maxCoeff() > moments.sum() + play) {
+      add(path,
+          fmt::format("is that of no body: its moments are {:.3g}, {:.3g} and {:.3g}, and one is "
+                      "more than the other two together",
+                      moments.x(), moments.y(), moments.z()));
+    }
   }
 
   void check_extent(const BodySpec& body) {
@@ -143,9 +175,9 @@ class StructureChecker {
     }
     const bool huge = std::any_of(
         body.shapes.begin(), body.shapes.end(),
-        [&](const BoxShape& shape) { return is_far(shape.size_m) || is_far(shape.p_BS); });
+        [&](const BodyShape& shape) { return is_far(shape.size_m) || is_far(shape.p_BS); });
     if (huge)
-      add(path + "/shapes", fmt::format("a box is larger or farther than {:g} m", kMaxExtent_m));
+      add(path + "/shapes", fmt::format("a shape is larger or farther than {:g} m", kMaxExtent_m));
   }
 
   bool is_base(const BodySpec& body) const {
@@ -191,9 +223,35 @@ class StructureChecker {
       return;
     }
     if (!joint.axis_W.allFinite() || joint.axis_W.norm() < 1e-9) {
-      add(path + "/axis_W", "has no direction");
+      add(path + "/axis", "has no direction");
     }
-    check_stops(path + "/range_m", joint);
+    problems_.require_not_negative(path + "/damping_n_s_m", joint.damping_n_s_m);
+    problems_.require_not_negative(path + "/damping_nm_s", joint.damping_nm_s);
+    if (joint.type == JointType::kHinge) {
+      check_hinge(path, joint);
+    } else {
+      check_stops(path + "/range_m", joint);
+    }
+  }
+
+  void check_hinge(const std::string& path, const JointSpec& joint) {
+    problems_.require_not_negative(path + "/max_torque_nm", joint.max_torque_nm);
+    if (!joint.p_WA.allFinite() || joint.p_WA.cwiseAbs().maxCoeff() > kMaxExtent_m) {
+      add(path + "/at_m", fmt::format("is more than {:g} m away", kMaxExtent_m));
+    }
+    const double low = joint.low_rad.value_or(0.0), high = joint.high_rad.value_or(0.0);
+    const std::string range = path + "/range_rad";
+    if (joint.low_rad && joint.high_rad && low > high) {
+      add(range, fmt::format("is reversed: {:g} is above {:g}", low, high));
+    } else if (joint.low_rad && joint.high_rad && low == high) {
+      add(range, "leaves the hinge no way to turn");
+    } else if (low > 0.0 || high < 0.0) {
+      add(range, "excludes 0, the default placement");
+    } else if (!(low >= -kMostTurn_rad && high <= kMostTurn_rad)) {
+      add(range, fmt::format("goes beyond {0:g} rad, up to which stops hold; without stops "
+                             "a hinge turns for ever",
+                             kMostTurn_rad));
+    }
   }
 
   void check_stops(const std::string& path, const JointSpec& joint) {

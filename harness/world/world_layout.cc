@@ -11,6 +11,7 @@
 
 #include "compiler/base/contract.h"
 #include "harness/world/arguments.h"
+#include "harness/world/shapes.h"
 
 namespace parallax::harness {
 namespace {
@@ -100,6 +101,18 @@ void add_assemblies(WorldLayout& layout, const std::vector<JointSpec>& joints) {
   }
 }
 
+void number_groups(WorldLayout& layout) {
+  std::map<std::string_view, std::uint32_t> numbers;
+  for (const BodySpec& body : layout.bodies) {
+    if (!body.apart.empty()) numbers.emplace(body.apart, 0U);
+  }
+  std::uint32_t last = 0;
+  for (auto& [word, number] : numbers) number = ++last;
+  for (const BodySpec& body : layout.bodies) {
+    layout.apart_of.push_back(body.apart.empty() ? 0U : numbers.at(body.apart));
+  }
+}
+
 std::vector<Parameter> mobile_parameters(const WorldSpec& spec, const WorldLayout& layout) {
   const MobileRobotSpec& robot = *spec.mobile;
   const BodyId base = *layout.find_body(robot.base_body);
@@ -127,10 +140,7 @@ std::vector<Parameter> mobile_parameters(const WorldSpec& spec, const WorldLayou
     all.push_back({body.name + ".seen.yaw", "rad"});
   }
   for (const SliderId id : observed_sliders(layout, robot)) {
-    const JointSpec& joint = layout.sliders[id];
-    all.push_back({joint.name + ".q", "m"});
-    for (const char* item : {".x", ".y", ".z"}) all.push_back({joint.child + item, "m"});
-    all.push_back({joint.child + ".yaw", "rad"});
+    for (Parameter& one : joint_parameters(layout.sliders[id])) all.push_back(std::move(one));
   }
   return all;
 }
@@ -141,8 +151,9 @@ StartState refusal(SimStatus status, std::string reason) { return {status, std::
 double lowest_point_m(const BodySpec& body) {
   double lowest_m = 0.0;
   bool first = true;
-  for (const BoxShape& shape : body.shapes) {
-    const double low_m = shape.p_BS.z() - 0.5 * shape.size_m.z();
+  for (const BodyShape& shape : body.shapes) {
+    const double low_m =
+        shape.p_BS.z() - half_extents(shape.form, shape.size_m, shape_rotation(shape)).z();
     if (first || low_m < lowest_m) lowest_m = low_m;
     first = false;
   }
@@ -215,7 +226,9 @@ WorldLayout lay_out(const WorldSpec& spec) {
     PARALLAX_REQUIRE(layout.find_body(joint.child), "a world that passed check_world");
     if (joint.type == JointType::kSlider) layout.sliders.add(joint);
     if (joint.type == JointType::kGantry) layout.gantries.add(joint);
+    if (joint.type == JointType::kHinge) layout.hinges.add(joint);
   }
+  number_groups(layout);
   add_links(layout, Welds(layout, joints));
   add_assemblies(layout, joints);
   for (std::size_t i = 0; i < layout.bodies.size(); ++i) {
@@ -226,6 +239,17 @@ WorldLayout lay_out(const WorldSpec& spec) {
     layout.is_free.push_back(layout.link_of[i].has_value() && !named);
   }
   return layout;
+}
+
+std::optional<HingeId> WorldLayout::find_hinge(std::string_view name) const {
+  return find_by_name(hinges, name);
+}
+
+std::vector<Parameter> joint_parameters(const JointSpec& joint) {
+  std::vector<Parameter> all = {{joint.name + ".q", joint.type == JointType::kHinge ? "rad" : "m"}};
+  for (const char* item : {".x", ".y", ".z"}) all.push_back({joint.child + item, "m"});
+  all.push_back({joint.child + ".yaw", "rad"});
+  return all;
 }
 
 /// Sliders whose position says something: all but the fingers.
@@ -261,6 +285,9 @@ std::vector<Parameter> observables(const WorldSpec& spec) {
   } else if (const auto base = layout.find_body(spec.robot.base_body)) {
     all.push_back({"robot.x", "m", layout.bodies[*base].can_set("x")});
     for (const char* name : {"tool.x", "tool.z", "opening"}) all.push_back({name, "m", false});
+  }
+  for (const JointSpec& joint : layout.hinges) {
+    for (Parameter& one : joint_parameters(joint)) all.push_back(std::move(one));
   }
   std::sort(all.begin(), all.end(),
             [](const Parameter& a, const Parameter& b) { return a.name < b.name; });

@@ -16,10 +16,12 @@ namespace parallax::harness {
 struct BodyTag {};
 struct SliderTag {};
 struct GantryTag {};
+struct HingeTag {};
 struct LinkTag {};
 using BodyId = base::Id<BodyTag>;      // in WorldLayout::bodies
 using SliderId = base::Id<SliderTag>;  // in WorldLayout::sliders
 using GantryId = base::Id<GantryTag>;  // in WorldLayout::gantries
+using HingeId = base::Id<HingeTag>;    // in WorldLayout::hinges
 using LinkId = base::Id<LinkTag>;      // in WorldLayout::links
 
 /// Bodies that are welded together and move as one.
@@ -32,8 +34,11 @@ struct WorldLayout {
   base::Store<BodyId, BodySpec> bodies;        // sorted by name
   base::Store<SliderId, JointSpec> sliders;    // sorted by name
   base::Store<GantryId, JointSpec> gantries;   // sorted by name
+  base::Store<HingeId, JointSpec> hinges;      // sorted by name
   base::Store<LinkId, Link> links;             // sorted by the name of their first member
   std::vector<std::optional<LinkId>> link_of;  // by body; none: static
+  /// By body: those of one number, but 0, are kept apart by BodySpec::apart.
+  std::vector<std::uint32_t> apart_of;
   /// By body. Bodies of one assembly hang together by joints and never collide with each other;
   /// 0 is the static world.
   std::vector<std::uint32_t> assembly_of;
@@ -42,6 +47,14 @@ struct WorldLayout {
   std::optional<BodyId> find_body(std::string_view name) const;
   std::optional<SliderId> find_slider(std::string_view name) const;
   std::optional<GantryId> find_gantry(std::string_view name) const;
+  std::optional<HingeId> find_hinge(std::string_view name) const;
+  /// Can the two never touch?
+  bool never_collide(BodyId a, BodyId b) const {
+    const auto either = [&](const std::vector<std::uint32_t>& of) {
+      return of[a.index()] != 0 && of[a.index()] == of[b.index()];
+    };
+    return either(assembly_of) || either(apart_of);
+  }
 };
 
 /// Position of a body's origin [m] and its turn about z [rad], in the world.
@@ -63,11 +76,15 @@ WorldLayout lay_out(const WorldSpec& spec);
 /// .z, .opening, .parked, .open; for each free body BODY.bottom, BODY.mass, BODY.held_by.ARM,
 /// BODY.perceived, BODY.seen.known and BODY.seen.x, .y, .z, .yaw, .bottom (where it is believed to
 /// be; 0 when unknown); JOINT.q of sliders that are no fingers, and CHILD.x, .y, .z, .yaw of what
-/// they carry. Besides these an observation has "digest". `spec` must pass check_structure.
+/// they carry. Of each hinge, with any robot or none: JOINT.q and CHILD.x, .y, .z, .yaw. Besides
+/// these an observation has "digest". `spec` must pass check_structure.
 std::vector<Parameter> observables(const WorldSpec& spec);
 
 /// Sliders whose position says something: all but the fingers.
 std::vector<SliderId> observed_sliders(const WorldLayout& layout, const MobileRobotSpec& robot);
+
+/// "JOINT.q" and the pose of what a joint of the building carries.
+std::vector<Parameter> joint_parameters(const JointSpec& joint);
 
 /// Where everything is at reset, or why that cannot be.
 struct StartState {

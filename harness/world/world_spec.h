@@ -12,11 +12,23 @@
 
 namespace parallax::harness {
 
-/// One box of a body, turned about the z axis of the body's frame B.
-struct BoxShape {
-  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d p_BS = Eigen::Vector3d::Zero();  // centre of the shape in B [m]
+/// What fills the box of a shape. Cylinders and capsules stand along the shape's z axis; the caps
+/// of a capsule lie inside its box.
+enum class ShapeForm : std::uint8_t { kBox, kSphere, kCylinder, kCapsule };
+
+/// One shape of a body, turned in the body's frame B about x, then y, then z.
+struct BodyShape {
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();  // of the box round it
+  Eigen::Vector3d p_BS = Eigen::Vector3d::Zero();    // centre of the shape in B [m]
   double yaw_rad = 0.0;
+  ShapeForm form = ShapeForm::kBox;  // but for boxes, size_m.x() and .y() are the diameter
+  double roll_rad = 0.0, pitch_rad = 0.0;
+};
+
+/// How the mass of a body is spread, where that does not follow from its shapes.
+struct InertiaSpec {
+  Eigen::Vector3d p_BC = Eigen::Vector3d::Zero();       // centre of mass in B [m]
+  Eigen::Matrix3d I_C_kg_m2 = Eigen::Matrix3d::Zero();  // about it, along the axes of B
 };
 
 /// How a gripper takes hold of a body.
@@ -30,17 +42,19 @@ struct GraspSpec {
   double effort_n = 20.0;   // squeezing force
 };
 
-/// Boxes that move as one. A body that no joint names is free; the floor is built in and called
+/// Shapes that move as one. A body that no joint names is free; the floor is built in and called
 /// "floor", so no body may have that name.
 struct BodySpec {
   std::string name;
-  std::vector<BoxShape> shapes;
-  double mass_kg = 0.0;  // 0: static, part of the world; else spread evenly over the shapes
-  std::string material;  // key of FrictionSpec::pairs
+  std::vector<BodyShape> shapes;
+  double mass_kg = 0.0;  // 0: static, part of the world; else spread evenly over the shapes, or
+  std::optional<InertiaSpec> inertia;
+  std::string material;                            // key of FrictionSpec::pairs
   Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();  // default position in the world [m]
   double yaw_rad = 0.0;
   bool gravity = true;
   bool collides = true;
+  std::string apart;  // bodies of one such word do not collide with each other; empty: none
   /// Which of x, y, z, yaw, bottom, mass a scenario may set at reset; the others keep their
   /// default. The robot's base body takes x (and, of a mobile robot, y and yaw) and carries the
   /// whole robot along.
@@ -56,8 +70,11 @@ struct BodySpec {
 
 /// kFixed welds two bodies into one rigid body, so it neither bends nor costs time. kGantry
 /// carries the child along x, y and z of the parent and turns it about z, upright at all times;
-/// with the world as parent its height is that of the floor relief, whatever the load.
-enum class JointType : std::uint8_t { kSlider, kFixed, kGantry };
+/// with the world as parent its height is that of the floor relief, whatever the load. kHinge turns
+/// the child about the axis through p_WA; without stops it turns for ever.
+enum class JointType : std::uint8_t { kSlider, kFixed, kGantry, kHinge };
+
+inline constexpr double kMostTurn_rad = 3.1;  // of a hinge from its default, where it has stops
 
 /// Where a gripper takes hold of the child of a slider to move it.
 struct HandleSpec {
@@ -67,7 +84,8 @@ struct HandleSpec {
   double width_m = 0.016;
 };
 
-/// Position 0 is the default placement; positive moves the child along axis_W.
+/// Position 0 is the default placement; positive moves the child along axis_W, or turns it about
+/// that by the right hand.
 struct JointSpec {
   std::string name;
   JointType type = JointType::kSlider;
@@ -76,7 +94,11 @@ struct JointSpec {
   Eigen::Vector3d axis_W = Eigen::Vector3d::UnitX();  // at the default placement
   std::optional<double> low_m, high_m;                // stops
   double max_force_n = 0.0;     // motor, or dry friction where nothing drives it; 0: free
-  double max_torque_nm = 50.0;  // of a gantry about z
+  double max_torque_nm = 50.0;  // of a gantry about z; of a hinge as max_force_n of a slider
+  Eigen::Vector3d p_WA = Eigen::Vector3d::Zero();  // a point of a hinge's axis, by default [m]
+  std::optional<double> low_rad, high_rad;         // stops of a hinge
+  double damping_n_s_m = 0.0;                      // of a slider
+  double damping_nm_s = 0.0;                       // of a hinge, per rad
   std::optional<HandleSpec> handle;
 };
 

@@ -7,8 +7,8 @@ namespace {
 
 class BackboneSearch {
  public:
-  BackboneSearch(SolverSession& session, std::span<const Literal> atoms)
-      : session_(session), atoms_(atoms), index_(session.model()) {
+  BackboneSearch(SolverSession& session, std::span<const Literal> atoms, Asked asked)
+      : session_(session), atoms_(atoms), asked_(asked), index_(session.model()) {
     for (const auto atom : atoms) {
       const auto described = session.model().atom(atom.var());
       const bool event = described.kind == compiler::AtomKind::kHappens;
@@ -47,7 +47,7 @@ class BackboneSearch {
       const auto wanted = session_.new_variable();
       std::vector<Literal> some = {~wanted};
       for (std::size_t i = 0; i < atoms_.size(); ++i) {
-        if (needed_[i] > n || (seen_true_[i] && seen_false_[i])) continue;
+        if (needed_[i] > n || is_settled(i)) continue;
         const auto other = seen_true_[i] ? ~atoms_[i] : atoms_[i];
         if (session_.is_fixed(~other)) continue;
         some.push_back(other);
@@ -68,6 +68,10 @@ class BackboneSearch {
     }
   }
 
+  bool is_settled(std::size_t i) const {
+    return seen_false_[i] && (seen_true_[i] || asked_ == Asked::kAll);
+  }
+
   void note(Timepoint n) {
     session_.require_model(n);
     any_ = true;
@@ -83,7 +87,9 @@ class BackboneSearch {
     for (std::size_t i = 0; i < atoms_.size(); ++i) {
       const bool yes = seen_true_[i], no = seen_false_[i];
       auto extent = yes ? Extent::kAll : no ? Extent::kNone : Extent::kAbsent;
-      if (yes && no) {
+      if (no && asked_ == Asked::kAll) {
+        extent = Extent::kNotAll;
+      } else if (yes && no) {
         extent = Extent::kSome;
       } else if (stopped_) {
         extent = Extent::kUndecided;
@@ -97,6 +103,7 @@ class BackboneSearch {
 
   SolverSession& session_;
   std::span<const Literal> atoms_;
+  Asked asked_;
   compiler::AtomIndex index_;
   std::vector<Timepoint> needed_;  // by atom: the shortest length that has it
   std::vector<bool> seen_true_, seen_false_;
@@ -105,8 +112,9 @@ class BackboneSearch {
 
 }  // namespace
 
-Consequences find_consequences(SolverSession& session, std::span<const Literal> atoms) {
-  return BackboneSearch(session, atoms).run();
+Consequences find_consequences(SolverSession& session, std::span<const Literal> atoms,
+                               Asked asked) {
+  return BackboneSearch(session, atoms, asked).run();
 }
 
 }  // namespace parallax::runtime

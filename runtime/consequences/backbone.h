@@ -13,6 +13,7 @@ enum class Extent : std::uint8_t {
   kNone,
   kSome,  // in one, and not in another
   kAll,
+  kNotAll,     // not in one; whether in another was not asked
   kAbsent,     // no trace has its timepoint
   kUndecided,  // the solver was stopped
 };
@@ -28,11 +29,17 @@ struct Consequences {
   bool complete = true;  // nothing is undecided
 };
 
+enum class Asked : std::uint8_t {
+  kAllAndSome,
+  kAll,  // what is in all traces; of the rest no more is found out than that
+};
+
 /// Asks about HoldsAt and Happens atoms. Every valuation found settles all atoms that differ from
 /// one found before; the solver is then asked to let some other one differ, until it cannot
 /// (Janota, Lynce and Marques-Silva 2015, iterative algorithm with chunks that hold all
 /// candidates). At most one call for each atom that is true in some only, and one for each length
 /// of traces.
-Consequences find_consequences(SolverSession& session, std::span<const Literal> atoms);
+Consequences find_consequences(SolverSession& session, std::span<const Literal> atoms,
+                               Asked asked = Asked::kAllAndSome);
 
 }  // namespace parallax::runtime

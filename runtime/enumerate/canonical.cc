@@ -1,6 +1,7 @@
 #include "runtime/enumerate/canonical.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace parallax::runtime {
 
@@ -25,6 +26,7 @@ class CanonicalSearch {
       const auto open = unpreferred(end);
       const auto status = open.empty() ? SolveStatus::kUnsatisfiable : solve_any(open);
       if (status == SolveStatus::kUnknown) return false;
+      has_moved_ = has_moved_ || status == SolveStatus::kSatisfiable;
       if (status == SolveStatus::kUnsatisfiable) {
         keep(end);
         block_ *= 2;
@@ -37,6 +39,7 @@ class CanonicalSearch {
     return true;
   }
   std::vector<Literal> take() { return std::move(fixed_); }
+  bool has_moved() const { return has_moved_; }
 
  private:
   std::vector<Literal> unpreferred(std::size_t end) const {
@@ -77,6 +80,7 @@ class CanonicalSearch {
   std::vector<Literal> fixed_;
   std::size_t at_ = 0;
   std::size_t block_ = 1024;
+  bool has_moved_ = false;
 };
 
 }  // namespace
@@ -108,22 +112,23 @@ std::vector<Literal> projected_atoms(const CompiledModel& model, Distinct distin
   return out;
 }
 
-std::optional<std::vector<Literal>> make_canonical(SolverSession& session, Timepoint n,
-                                                   std::span<const Literal> assumptions,
-                                                   std::span<const Literal> order) {
+std::optional<OrderedValuation> make_canonical(SolverSession& session, Timepoint n,
+                                               std::span<const Literal> assumptions,
+                                               std::span<const Literal> order) {
   CanonicalSearch search(session, n, assumptions, order);
   if (!search.run()) return std::nullopt;
   auto fixed = search.take();
   fixed.erase(fixed.begin(), fixed.begin() + static_cast<std::ptrdiff_t>(assumptions.size()));
-  return fixed;
+  return OrderedValuation{std::move(fixed), search.has_moved()};
 }
 
-std::optional<std::vector<Literal>> in_order(SolverSession& session, Timepoint n,
-                                             std::span<const Literal> assumptions,
-                                             std::span<const Literal> order, TraceOrder wanted) {
+std::optional<OrderedValuation> in_order(SolverSession& session, Timepoint n,
+                                         std::span<const Literal> assumptions,
+                                         std::span<const Literal> order, TraceOrder wanted) {
   if (wanted == TraceOrder::kCanonical) return make_canonical(session, n, assumptions, order);
-  std::vector<Literal> found;
-  for (const auto literal : order) found.push_back(session.value(literal) ? literal : ~literal);
+  OrderedValuation found;
+  for (const auto literal : order)
+    found.literals.push_back(session.value(literal) ? literal : ~literal);
   return found;
 }
 

@@ -18,21 +18,27 @@ std::vector<std::vector<Literal>> projection_blocks(const CompiledModel& model, 
 /// The same atoms, one block after the other.
 std::vector<Literal> projected_atoms(const CompiledModel& model, Distinct distinct);
 
+/// The literals of an order as they are in a valuation, one after the other.
+struct OrderedValuation {
+  std::vector<Literal> literals;
+  /// Another valuation, which differs in these literals, was come upon on the way.
+  bool has_others = false;
+};
+
 /// Moves the session's valuation to the first one in lexicographic order: `order` lists literals
 /// by weight, each in its preferred polarity. The session must hold a valuation found with horizon
 /// `n` under `assumptions`. Afterwards value() gives the first valuation, whatever the solver
 /// found before. A few calls where nothing can be improved; about log2 of the length of `order` for
 /// each literal that can.
-/// Returns the literals as they are in it, in the order given; none if the solver was stopped on
-/// the way.
-[[nodiscard]] std::optional<std::vector<Literal>> make_canonical(
-    SolverSession& session, Timepoint n, std::span<const Literal> assumptions,
-    std::span<const Literal> order);
+/// None if the solver was stopped on the way.
+[[nodiscard]] std::optional<OrderedValuation> make_canonical(SolverSession& session, Timepoint n,
+                                                             std::span<const Literal> assumptions,
+                                                             std::span<const Literal> order);
 
 /// The same where the canonical order is wanted, else the literals as they are in the valuation.
-[[nodiscard]] std::optional<std::vector<Literal>> in_order(SolverSession& session, Timepoint n,
-                                                           std::span<const Literal> assumptions,
-                                                           std::span<const Literal> order,
-                                                           TraceOrder wanted);
+[[nodiscard]] std::optional<OrderedValuation> in_order(SolverSession& session, Timepoint n,
+                                                       std::span<const Literal> assumptions,
+                                                       std::span<const Literal> order,
+                                                       TraceOrder wanted);
 
 }  // namespace parallax::runtime

@@ -23,17 +23,26 @@ std::optional<Trace> ModelEnumerator::next() {
   exhausted_ = status == SolveStatus::kUnsatisfiable;
   by_symmetry_ = exhausted_ && breaker_ != nullptr && session_->failed(assumptions.front());
   if (status != SolveStatus::kSatisfiable) return std::nullopt;
-  auto blocking = in_order(*session_, n, assumptions, order_, wanted_);
-  if (!blocking) return std::nullopt;
+  auto found = in_order(*session_, n, assumptions, order_, wanted_);
+  if (!found) return std::nullopt;
+  has_more_ = found->has_others;
   // What is left without the first trace tells constants apart.
   if (breaker_ != nullptr) std::exchange(breaker_, nullptr)->retire();
   session_->require_model(n);
   auto trace = decode_trace(session_->model(), symbols_, n,
                             [&](Literal literal) { return session_->value(literal); });
   trace.number = ++found_;
-  for (auto& literal : *blocking) literal = ~literal;
-  session_->add_clause(*blocking);
+  for (auto& literal : found->literals) literal = ~literal;
+  session_->add_clause(found->literals);
   return trace;
+}
+
+void ModelEnumerator::look_on() {
+  if (found_ == 0) {
+    (void)next();
+  } else if (!exhausted_ && !has_more_) {
+    exhausted_ = session_->solve(session_->model().horizon, {}) == SolveStatus::kUnsatisfiable;
+  }
 }
 
 SourceStats ModelEnumerator::stats() const {

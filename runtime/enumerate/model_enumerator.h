@@ -24,6 +24,9 @@ class ModelEnumerator final : public TraceSource {
                            SymmetryBreaker* breaker = nullptr);
   std::optional<Trace> next() override;
   bool exhausted() const override { return exhausted_; }
+  /// No canonical order is looked for, and no call is needed where the way to the last trace led
+  /// past another one.
+  void look_on() override;
   SourceStats stats() const override;
 
  private:
@@ -35,6 +38,7 @@ class ModelEnumerator final : public TraceSource {
   std::int64_t found_ = 0;
   bool exhausted_ = false;
   bool by_symmetry_ = false;
+  bool has_more_ = false;  // a trace that is not listed yet was come upon
 };
 
 /// Descends a tree whose levels are blocks of atoms. At a node, which is a valuation of the blocks

@@ -118,10 +118,10 @@ std::optional<Trace> PlanEnumerator::next() {
       // the first of those; what belongs to the key, of all.
       const bool first = options_.order == TraceOrder::kCanonical && !options_.representatives;
       const auto& under = order == &key_order_ && !first ? searched : fixed;
-      const auto literals = in_order(*session_, n_, under, *order, options_.order);
-      done_ = !literals;
+      const auto found = in_order(*session_, n_, under, *order, options_.order);
+      done_ = !found;
       if (done_) return std::nullopt;
-      fixed.insert(fixed.end(), literals->begin(), literals->end());
+      fixed.insert(fixed.end(), found->literals.begin(), found->literals.end());
     }
     auto trace = decode_trace(session_->model(), symbols_, n_,
                               [&](Literal literal) { return session_->value(literal); });

@@ -51,6 +51,9 @@ class TraceSource {
     return trace.has_value();
   }
   virtual bool exhausted() const = 0;
+  /// Finds out whether there is another trace, for exhausted() to tell; which one may stay unknown.
+  /// Nothing is listed after it.
+  virtual void look_on() { (void)next(); }
   virtual SourceStats stats() const = 0;
 };
 

@@ -199,6 +199,15 @@ std::optional<Trace> ModelTraces::next() {
   return trace;
 }
 
+void ModelTraces::look_on() {
+  if (is_due()) attempt_graph();
+  source_->look_on();
+  if (search_ != nullptr && search_->gave_up()) {
+    leave_search();
+    source_->look_on();
+  }
+}
+
 bool ModelTraces::print_next(const TraceFormat& format, std::string& out) {
   if (paths_ == nullptr && components_ == nullptr) return TraceSource::print_next(format, out);
   const bool found = source_->print_next(format, out);

@@ -70,6 +70,7 @@ class ModelTraces final : public TraceSource {
   std::optional<Trace> next() override;
   bool print_next(const TraceFormat& format, std::string& out) override;
   bool exhausted() const override { return source_->exhausted(); }
+  void look_on() override;
   SourceStats stats() const override;
   /// Why the strategy that was asked for cannot be had; empty: it can.
   const std::string& refusal() const { return refusal_; }

@@ -175,6 +175,9 @@ TEST_CASE("each third-party library stays behind its seam") {
   const std::vector<Seam> seams = {
       {"cadical", {"runtime/solver/cadical_solver.cc", "tools/bench/plain_cadical.cc"}},
       {"ode/", {"harness/engine/ode_"}},
+      {"sdf/", {"harness/import/sdf_reader.cc"}},
+      {"urdf", {"harness/import/urdf_reader.cc"}},
+      {"console_bridge/", {"harness/import/urdf_reader.cc"}},
       {"yaml-cpp/", {"harness/config/"}},
       {"CLI/", {"tools/cli/command_line.cc"}},
       {"Eigen/", {"harness/", "tools/bench/"}},
@@ -194,6 +197,20 @@ TEST_CASE("each third-party library stays behind its seam") {
       }
     }
   }
+}
+
+TEST_CASE("only the maker of worlds knows which engine steps them") {
+  bool made = false;
+  for (const auto& file : source_files()) {
+    for (const auto& include : includes_of(file)) {
+      if (!include.target.starts_with("harness/engine/ode_")) continue;
+      made = made || file == "harness/engine/physics_world.cc";
+      CHECK_MESSAGE(
+          (file.starts_with("harness/engine/ode_") || file == "harness/engine/physics_world.cc"),
+          file << " includes " << include.target);
+    }
+  }
+  CHECK(made);
 }
 
 TEST_CASE("one file includes CLI11, whose header takes seconds to compile") {

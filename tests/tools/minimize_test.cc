@@ -107,6 +107,63 @@ TEST_CASE("one trace is one of the best, and with a goal a trace of any length")
   CHECK(contains(text.out, "optimum 6 (no proof)"));
 }
 
+TEST_CASE("a compiled model has the objectives that it was compiled with") {
+  const CliFixture cli;
+  cli.write("m.e", kWays);
+  const std::string price = "sum Price(place): Happens(Go(place),time)";
+  const std::vector<std::string> objectives = {
+      "--minimize", price + ", sum -3: Happens(Go(Xa),time) & HoldsAt(At(A),time)", "--minimize",
+      "count Happens(event,time) | HoldsAt(At(B),time)"};
+  const auto with = [](std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  for (const auto* goal : {"", "HoldsAt(At(D),time)"}) {
+    const std::vector<std::string> until =
+        *goal == 0 ? std::vector<std::string>{} : std::vector<std::string>{"--until", goal};
+    REQUIRE(
+        cli.parallax(with(with({"compile", "m.e", "-o", "m.dec.cnf"}, until), objectives)).code ==
+        0);
+    for (const std::vector<std::string>& asked :
+         {std::vector<std::string>{"--limit", "0"}, {"--limit", "1"}, {"--count"}, {"--certify"}}) {
+      const auto told = cli.parallax(with(with(with({"traces", "m.e"}, until), objectives), asked));
+      const auto read = cli.parallax(with({"traces", "m.dec.cnf", "--best"}, asked));
+      CAPTURE(read.err);
+      CHECK(told.code == 0);
+      CHECK(read.code == 0);
+      CHECK(told.out == read.out);
+    }
+    // Written again, it is the same; without --best the objectives say nothing.
+    REQUIRE(cli.parallax({"compile", "m.dec.cnf", "-o", "again.dec.cnf"}).code == 0);
+    CHECK(cli.read("again.dec.cnf") == cli.read("m.dec.cnf"));
+    CHECK(cli.parallax(with({"traces", "m.e", "--limit", "0"}, until)).out ==
+          cli.parallax({"traces", "m.dec.cnf", "--limit", "0"}).out);
+  }
+  cli.write("says.e", std::string(kWays) + "minimize " + price + "\n");
+  REQUIRE(cli.parallax({"compile", "says.e", "--best", "-o", "says.dec.cnf"}).code == 0);
+  CHECK(cli.parallax({"traces", "says.dec.cnf", "--best", "--limit", "0"}).out ==
+        cli.parallax({"traces", "says.e", "--best", "--limit", "0"}).out);
+}
+
+TEST_CASE("objectives of compiled models are asked for where there are some") {
+  const CliFixture cli;
+  cli.write("m.e", kWays);
+  const auto refused = [&](const std::vector<std::string>& words, const std::string& text) {
+    const auto result = cli.parallax(words);
+    CAPTURE(result.err);
+    CHECK(result.code == 2);
+    CHECK(contains(result.err, text));
+    CHECK(result.out.empty());
+  };
+  REQUIRE(cli.parallax({"compile", "m.e", "-o", "m.dec.cnf"}).code == 0);
+  CHECK(cli.read("m.dec.cnf").starts_with("c dec format 1.0\n"));
+  refused({"traces", "m.dec.cnf", "--best"}, "compile it with --best or --minimize");
+  refused({"traces", "m.dec.cnf", "--minimize", "count Happens(event,time)"}, "give it to compile");
+  refused({"compile", "m.e", "--best"}, "no `minimize` statement");
+  refused({"compile", "m.e", "--emit=lp", "--minimize", "count Happens(event,time)"}, "--emit=cnf");
+  refused({"compile", "m.dec.cnf", "--best"}, "--emit=cnf");
+}
+
 TEST_CASE("the proof refutes that a trace is better, and only where that is true") {
   const CliFixture cli;
   cli.write("m.e", kGoal);

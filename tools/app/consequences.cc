@@ -104,14 +104,21 @@ base::Result<ModelConsequences> find_model_consequences(const CompiledModel& mod
   auto asked = facts_of(model, query.at);
   std::vector<Literal> atoms;
   for (const auto& one : asked) atoms.push_back(one.atom);
-  runtime::SolverSession session(model, runtime::make_cadical_solver(&context.stop()));
-  const auto found = runtime::find_consequences(session, atoms);
+  // Traces that all have the horizon's length need no guards by which clauses come and go.
+  runtime::SolverSession session(
+      model, runtime::make_cadical_solver(&context.stop()),
+      model.has_constraints ? runtime::Loading::kAsNeeded : runtime::Loading::kWitness);
+  const auto found = runtime::find_consequences(
+      session, atoms, query.only_always ? runtime::Asked::kAll : runtime::Asked::kAllAndSome);
   std::optional<FactReasons> reasons;
   if (query.why) reasons.emplace(model, asked, context);
   ModelConsequences out{{}, found.any, found.complete};
   for (std::size_t i = 0; i < asked.size(); ++i) {
     auto& fact = asked[i].fact;
     fact.extent = found.extents[i];
+    const bool counts =
+        fact.extent == runtime::Extent::kAll || fact.extent == runtime::Extent::kUndecided;
+    if (query.only_always && !counts) continue;
     if (reasons && fact.extent == runtime::Extent::kAll && found.any == true) {
       fact.axioms = reasons->of(i);
       if (!fact.axioms) out.complete = false;

@@ -12,8 +12,9 @@
 namespace parallax::tools {
 
 struct ConsequencesQuery {
-  std::int64_t at = -1;  // this timepoint only; -1: all
-  bool why = false;      // find axioms for what is always so
+  std::int64_t at = -1;      // this timepoint only; -1: all
+  bool why = false;          // find axioms for what is always so
+  bool only_always = false;  // only what is in all traces, which takes less
 };
 
 /// `HoldsAt(name,time)` or `Happens(name,time)`, and in which traces.
@@ -28,8 +29,10 @@ struct ConsequenceFact {
 };
 
 struct ModelConsequences {
-  std::vector<ConsequenceFact> facts;  // by timepoint: fluents, then events, as declared
-  std::optional<bool> any;             // is there a trace?
+  /// By timepoint: fluents, then events, as declared. Without what is not in all traces, where only
+  /// that is asked for.
+  std::vector<ConsequenceFact> facts;
+  std::optional<bool> any;  // is there a trace?
   bool complete = true;
 };
 

@@ -42,8 +42,10 @@ base::Result<compiler::CompiledModel> load_artifact(const ModelOptions& options,
   if (!options.compat.empty() || !options.until.empty()) {
     return refuse("the meaning of a compiled model is fixed; give --compat and --until to compile");
   }
-  if (!options.minimize.empty() || options.best) {
-    return refuse("--minimize and --best need the texts of the model; name them instead");
+  if (!options.minimize.empty()) {
+    return refuse(
+        "--minimize needs the texts of the model; give it to compile, and --best to what reads the "
+        "compiled model");
   }
   auto model = compiler::load_artifact(options.models.front(), context.files(), sink);
   if (model && options.horizon >= 0 && options.horizon != model->horizon) {

@@ -74,7 +74,7 @@ std::optional<Ending> list_logged(const runtime::TraceQuery& query,
     writer.write(*trace);
   }
   // At the limit one more call tells "these are all" from "there are more".
-  if (!enumerator.exhausted() && !context.stopped()) (void)enumerator.next();
+  if (!enumerator.exhausted() && !context.stopped()) enumerator.look_on();
   stats = enumerator.stats();
   if (enumerator.exhausted()) {
     return Ending{.exploration = "complete", .complete = true, .searched = true};
@@ -243,7 +243,7 @@ std::optional<Ending> list_model_traces(const SearchOptions& options,
   // At the limit one more call tells "these are all" from "there are more". Who wants any witness
   // does not want to wait for that.
   const bool asks_on = query.order == runtime::TraceOrder::kCanonical;
-  if (asks_on && writer.full() && !context.stopped()) (void)traces.next();
+  if (asks_on && writer.full() && !context.stopped()) traces.look_on();
   show_stats(options, traces.stats(), context);
   if (!traces.exhausted()) return Ending{};
   if (traces.stats().by_symmetry) certifier.rest_on_symmetry();

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <utility>
 
@@ -26,6 +27,12 @@ Bench::~Bench() {
 void Bench::begin(std::string section) {
   section_ = std::move(section);
   fmt::print("\n{}\n  {:<43}{:>8} {:>8} {:>11}\n", section_, "", "wall", "cpu", "memory");
+}
+
+void Bench::sum_up() {
+  const auto first = std::find_if(rows_.begin(), rows_.end(),
+                                  [&](const Row& row) { return row.section == section_; });
+  fmt::print("{}", summary_text({first, rows_.end()}));
 }
 
 const Row& Bench::compare(std::string name, const std::vector<Contestant>& contestants,
@@ -69,6 +76,17 @@ std::string Bench::program_file(const std::string& name, Encoding encoding) {
   if (encoding == Encoding::kExported) return compiled_file(name, ".lp", {"--emit=lp"});
   const auto file = path(name + ".tuned.lp");
   if (!fs::exists(file)) std::ofstream(file) << family_program(name).value();
+  return file;
+}
+
+std::string Bench::program_without(const std::string& name, const std::string& line) {
+  const auto file = path(name + ".shown.lp");
+  if (fs::exists(file)) return file;
+  std::ifstream in(program_file(name, Encoding::kExported));
+  std::ofstream out(file);
+  for (std::string text; std::getline(in, text);) {
+    if (text != line) out << text << '\n';
+  }
   return file;
 }
 

@@ -22,6 +22,8 @@ class Bench {
 
   /// Ends what is measured under `section` and begins another one.
   void begin(std::string section);
+  /// Prints how much dearer the peers were in the section, in the mean and where they did best.
+  void sum_up();
   /// Measures the contestants and adds the row.
   const Row& compare(std::string name, const std::vector<Contestant>& contestants,
                      std::optional<std::string> expected = std::nullopt);
@@ -37,6 +39,8 @@ class Bench {
   std::string model_file(const std::string& name);
   /// `NAME.lp` or `NAME.tuned.lp`, for clingo.
   std::string program_file(const std::string& name, Encoding encoding);
+  /// `NAME.shown.lp`: the exported program without a line.
+  std::string program_without(const std::string& name, const std::string& line);
   /// `NAME.dec.cnf`: what `parallax compile` makes of it.
   std::string artifact_file(const std::string& name);
 
@@ -72,6 +76,8 @@ void measure_examples(Bench& bench);
 void measure_counting(Bench& bench);
 void measure_listing(Bench& bench);
 void measure_first_trace(Bench& bench);
+void measure_large_first_trace(Bench& bench);
+void measure_consequences(Bench& bench);
 void measure_optimum(Bench& bench);
 void measure_strategies(Bench& bench);
 void measure_difference(Bench& bench);

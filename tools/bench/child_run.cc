@@ -109,6 +109,24 @@ std::string clingo_optimum(const std::string& tail) {
   return number_after(tail.substr(at, tail.find('\n', at + 1) - at), ":");
 }
 
+std::string clingo_consequences(const std::string& tail) {
+  const auto at = tail.rfind("\nConsequences ");
+  if (at == std::string::npos) return "";
+  return number_after(tail.substr(at, tail.find('\n', at + 1) - at), ":");
+}
+
+std::string consequences_answer(const std::string& tail, const std::vector<std::string>& extents) {
+  const auto at = tail.rfind("\"counts\":{");
+  if (at == std::string::npos) return "";
+  std::int64_t sum = 0;
+  for (const auto& extent : extents) {
+    const auto number = number_after(tail.substr(at), "\"" + extent + "\":");
+    if (number.empty()) return "";
+    sum += std::stoll(number);
+  }
+  return std::to_string(sum);
+}
+
 std::string optimum_answer(const std::string& tail) { return number_after(tail, "\"optimum\":"); }
 
 std::string jsonl_answer(const std::string& tail) {

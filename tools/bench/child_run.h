@@ -47,6 +47,12 @@ std::string clingo_optimum(const std::string& tail);
 /// The number in `"optimum":82`.
 std::string optimum_answer(const std::string& tail);
 
+/// How many atoms stay as they are in every model, or are in some: `Consequences : 11`.
+std::string clingo_consequences(const std::string& tail);
+
+/// The sum of these numbers in the closing `"counts"` of `parallax consequences --json`.
+std::string consequences_answer(const std::string& tail, const std::vector<std::string>& extents);
+
 /// The number of traces in the closing object of a list in jsonl.
 std::string jsonl_answer(const std::string& tail);
 

@@ -51,6 +51,26 @@ Contestant clingo_minimizes(const std::string& file, const std::string& costs,
   return clingo;
 }
 
+Contestant clingo_finds(const std::string& file, const std::string& configuration) {
+  auto clingo = clingo_with(
+      {"clingo", file, "-q", "--warn=none", "--configuration=" + configuration}, Encoding::kTuned);
+  clingo.program = "clingo, " + configuration;
+  clingo.answer = [](const ChildRun& run) {
+    return run.code == 20 ? "unsatisfiable" : "satisfiable";
+  };
+  return clingo;
+}
+
+Contestant clingo_consequences(const std::string& file, const std::string& mode,
+                               const std::string& configuration) {
+  auto clingo = clingo_with({"clingo", file, "0", "-q", "--warn=none", "--enum-mode=" + mode,
+                             "--configuration=" + configuration},
+                            Encoding::kExported);
+  clingo.program = "clingo, " + configuration;
+  clingo.answer = [](const ChildRun& run) { return clingo_consequences(run.tail); };
+  return clingo;
+}
+
 Contestant clingo_grounds(const std::string& file, Encoding encoding) {
   auto gringo = clingo_with({"clingo", "--mode=gringo", file, "--warn=none"}, encoding);
   gringo.good_codes.push_back(0);

@@ -27,6 +27,12 @@ Contestant clingo_lists(const std::string& file, Encoding encoding);
 /// `clingo FILE COSTS --configuration=CONFIGURATION`: the optimum of a program written by hand.
 Contestant clingo_minimizes(const std::string& file, const std::string& costs,
                             const std::string& configuration);
+/// `clingo FILE --configuration=CONFIGURATION`: one answer set; the answer is whether there is one.
+Contestant clingo_finds(const std::string& file, const std::string& configuration);
+/// `clingo FILE 0 --enum-mode=MODE --configuration=CONFIGURATION`: the atoms of all answer sets
+/// (cautious) or of any (brave) of an exported program; the answer is how many.
+Contestant clingo_consequences(const std::string& file, const std::string& mode,
+                               const std::string& configuration);
 /// `clingo --mode=gringo FILE`: grounds and stops.
 Contestant clingo_grounds(const std::string& file, Encoding encoding);
 

@@ -17,7 +17,10 @@ const std::vector<Section>& sections() {
       {"compilation", "compile time, beside clingo's grounder", measure_compilation},
       {"counting", "counting traces, beside clingo", measure_counting},
       {"listing", "listing traces, beside clingo", measure_listing},
-      {"first-trace", "the first trace, beside CaDiCaL alone", measure_first_trace},
+      {"first-trace", "the first trace, beside CaDiCaL alone and clingo", measure_first_trace},
+      {"first-trace-large", "the same, larger; measured only if it is named",
+       measure_large_first_trace, true},
+      {"consequences", "what always and what ever holds, beside clingo", measure_consequences},
       {"optimum", "the cheapest trace, beside clingo", measure_optimum},
       {"strategies", "ways to enumerate, side by side", measure_strategies},
       {"proofs", "a checked proof that a list is complete, beside the list alone", measure_proofs},
@@ -51,7 +54,9 @@ int measure_all(const BenchOptions& options) {
   for (const auto& section : sections()) {
     const bool named = std::count(options.only.begin(), options.only.end(), section.name) != 0;
     const bool wanted = named || (options.only.empty() && !section.only_by_name);
-    if (wanted) section.measure(bench);
+    if (!wanted) continue;
+    section.measure(bench);
+    bench.sum_up();
   }
   if (!options.json.empty()) std::ofstream(options.json) << to_json(bench.rows());
   const bool agree = std::all_of(bench.rows().begin(), bench.rows().end(),
@@ -78,7 +83,7 @@ OneOf section_names() {
 std::string list_of_sections() {
   std::string text = "Sections:\n";
   for (const auto& section : sections()) {
-    text += fmt::format("  {:<14}{}\n", section.name, section.what);
+    text += fmt::format("  {:<18}{}\n", section.name, section.what);
   }
   return text +
          "Examples:\n  parallax_bench --only counting --json counting.json\n"
@@ -89,7 +94,9 @@ int run(int argc, char** argv) {
   OptionTable table("parallax_bench", "Measures the program beside its peers");
   table.footer(list_of_sections());
   BenchOptions options;
-  table.option("--only", options.only, "Sections to measure; default: all but build")
+  table
+      .option("--only", options.only,
+              "Sections to measure; default: all but those that say otherwise")
       .check(section_names());
   table.option("--json", options.json, "File for all figures as one JSON document");
   table.option("--repetitions", options.measure.repetitions, "Runs of which the median counts")

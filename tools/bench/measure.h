@@ -37,6 +37,11 @@ struct Row {
 /// A line for each side, under the row's name.
 std::string to_text(const Row& row);
 
+/// Of the rows of a section that have peers: for every peer the geometric mean of its cost in units
+/// of ours, and the row where that is least; the same for the best of clingo's configurations,
+/// where several took part. Rows in which one of the two did not end are counted apart.
+std::string summary_text(const std::vector<Row>& rows);
+
 /// All rows with times, memory, answers and commands as one JSON document.
 std::string to_json(const std::vector<Row>& rows);
 

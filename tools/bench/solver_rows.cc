@@ -2,16 +2,22 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <fstream>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "tools/bench/bench.h"
 #include "tools/bench/child_run.h"
 #include "tools/bench/contestants.h"
+#include "tools/bench/families/families.h"
 
 namespace parallax::tools {
 namespace {
+
+/// Of clingo's own sets of options, those that do best on planning problems.
+constexpr std::array kConfigurations = {"auto", "handy", "trendy"};
 
 /// The first `limit` traces (0: all), found in one of the ways that `--strategy` names.
 Contestant lists_by(const char* strategy, const std::string& file, int limit) {
@@ -24,25 +30,76 @@ Contestant lists_by(const char* strategy, const std::string& file, int limit) {
 
 }  // namespace
 
-void measure_first_trace(Bench& bench) {
-  bench.begin("first trace of an artifact, beside CaDiCaL alone on the same file");
-  const auto first = [](const std::string& file, const std::string& order) {
-    auto ours =
-        parallax_with({"traces", file, "--limit", "1", "--format", "jsonl", "--order", order});
-    ours.program = "--order " + order;
-    ours.answer = [](const ChildRun& run) {
-      return jsonl_answer(run.tail) == "1" ? "satisfiable" : "unsatisfiable";
-    };
-    return ours;
+namespace {
+
+Contestant finds_first(const std::string& file, const std::string& order) {
+  auto ours =
+      parallax_with({"traces", file, "--limit", "1", "--format", "jsonl", "--order", order});
+  ours.program = "--order " + order;
+  ours.answer = [](const ChildRun& run) {
+    return jsonl_answer(run.tail) == "1" ? "satisfiable" : "unsatisfiable";
   };
+  return ours;
+}
+
+void compare_first(Bench& bench, const std::string& name) {
+  const auto file = bench.artifact_file(name);
+  Contestant plain{"cadical", {bench_program(), "solve", file}, "", {10, 20}, {}};
+  plain.answer = [](const ChildRun& run) {
+    return run.code == 10 ? "satisfiable" : "unsatisfiable";
+  };
+  std::vector<Contestant> contestants = {finds_first(file, "any"), finds_first(file, "canonical"),
+                                         plain};
+  if (family_program(name)) {
+    for (const auto* configuration : kConfigurations) {
+      contestants.push_back(
+          clingo_finds(bench.program_file(name, Encoding::kTuned), configuration));
+    }
+  }
+  bench.compare(name, contestants);
+}
+
+}  // namespace
+
+void measure_first_trace(Bench& bench) {
+  bench.begin("first trace of an artifact, beside CaDiCaL alone on the same file, and clingo");
   for (const auto* name : {"falling_40", "bankproj_8_400_10_60", "lamps_20_50", "robot_6_3_0",
                            "robot_6_4_2", "robot_8_4_0", "robot_7_5_m1", "robot_9_5_0"}) {
-    const auto file = bench.artifact_file(name);
-    Contestant plain{"cadical", {bench_program(), "solve", file}, "", {10, 20}, {}};
-    plain.answer = [](const ChildRun& run) {
-      return run.code == 10 ? "satisfiable" : "unsatisfiable";
+    compare_first(bench, name);
+  }
+}
+
+void measure_large_first_trace(Bench& bench) {
+  bench.begin("first trace, larger, beside CaDiCaL alone and clingo");
+  for (const auto* name : {"robot_10_4_0", "robot_12_4_0", "robot_8_5_m1", "robot_9_5_m1",
+                           "robot_10_5_0", "robot_9_6_0"}) {
+    compare_first(bench, name);
+  }
+}
+
+void measure_consequences(Bench& bench) {
+  bench.begin("what all traces share, and what some have, beside clingo");
+  const auto ours = [](const std::string& file, const std::vector<std::string>& extents) {
+    auto contestant = parallax_with({"consequences", file, "--json"});
+    if (extents.size() == 1) contestant.command.emplace_back("--always");
+    contestant.answer = [extents](const ChildRun& run) {
+      return consequences_answer(run.tail, extents);
     };
-    bench.compare(name, {first(file, "any"), first(file, "canonical"), plain});
+    return contestant;
+  };
+  for (const auto* name : {"robot_4_2_4", "robot_6_4_2", "bankproj_4_100_5_20", "bankplan_3_12_4_5",
+                           "lamps_20_50", "falling_40"}) {
+    const auto file = bench.model_file(name);
+    const auto program = bench.program_without(name, "#show released_at/2.");
+    for (const auto& [what, mode, extents] :
+         {std::tuple("all", "cautious", std::vector<std::string>{"always"}),
+          std::tuple("some", "brave", std::vector<std::string>{"always", "sometimes"})}) {
+      std::vector<Contestant> contestants = {ours(file, extents)};
+      for (const auto* configuration : kConfigurations) {
+        contestants.push_back(clingo_consequences(program, mode, configuration));
+      }
+      bench.compare(fmt::format("{}, {}", name, what), contestants);
+    }
   }
 }
 
@@ -58,7 +115,7 @@ void measure_optimum(Bench& bench) {
          "sum 2: Happens(Grasp(thing),time), count Happens(Drop(thing),time)"});
     ours.answer = [](const ChildRun& run) { return optimum_answer(run.tail); };
     std::vector<Contestant> contestants = {ours};
-    for (const auto* configuration : {"auto", "handy", "trendy"}) {
+    for (const auto* configuration : kConfigurations) {
       contestants.push_back(
           clingo_minimizes(bench.program_file(name, Encoding::kTuned), costs, configuration));
     }

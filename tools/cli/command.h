@@ -77,6 +77,7 @@ inline constexpr std::int64_t kMaxSeed = (std::int64_t{1} << 53U) - 1;
 /// Adds the options that every command has.
 void add_common_options(OptionTable& table, CommonOptions& options);
 
+Command adapter_check_command();
 Command run_command();
 Command repair_command();
 Command replay_command();
@@ -95,7 +96,10 @@ Command diagnostics_command();
 Command export_command();
 Command fmt_command();
 Command learn_command();
+Command new_command();
 Command ledger_command();
+Command record_command();
+Command replay_adapter_command();
 Command prove_command();
 Command rates_command();
 Command draw_command();

@@ -64,12 +64,29 @@ int compile_and_write(CompileOptions& options, Invocation& invocation) {
         fmt::format("--emit={} needs the texts of the model", options.emit));
     return 0;
   }
+  if (options.model.best && !options.model.minimize.empty()) {
+    invocation.sink().error_about(
+        codes::kUsage, "--best",
+        "takes the model's own objectives; it does not go with --minimize");
+    return 0;
+  }
+  const bool has_objectives = options.model.best || !options.model.minimize.empty();
+  if (has_objectives && (options.emit != "cnf" || names_artifact(options.model))) {
+    invocation.sink().error_about(
+        codes::kUsage, options.model.best ? "--best" : "--minimize",
+        "goes with the texts of a model, and into what is compiled of them (--emit=cnf)");
+    return 0;
+  }
   if (is_front_end_stage(options.emit)) return write_front_end_stage(options, invocation);
   auto& sink = invocation.sink();
   if (is_pass(options.emit)) options.model.emit_pass = options.emit;
   options.model.folded = true;
   const auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
+  if (options.model.best && compilation->model.objectives.empty()) {
+    sink.error_about(codes::kUsage, "--best", "the model has no `minimize` statement");
+    return 0;
+  }
   report_costs(options, *compilation, invocation);
   const auto& model = compilation->model;
   std::string text;  // if it is not the artifact
@@ -77,18 +94,16 @@ int compile_and_write(CompileOptions& options, Invocation& invocation) {
     if (options.emit != "cnf") return take(text);
     compiler::write_artifact(model, {.projection_line = !options.no_projection}, take);
   };
-  if (options.emit == "cnf") {
-    // Written below.
-  } else if (compilation->passes.text) {
+  if (compilation->passes.text) {
     text = *compilation->passes.text;
-  } else if (!compilation->plan) {
+  } else if (options.emit != "cnf" && !compilation->plan) {
     sink.error_about(
         codes::kUsage, "",
         fmt::format("--emit={} needs a plan (--plan, or a scenario with one)", options.emit));
     return 0;
   } else if (options.emit == "cfg") {
     text = compiler::dump_text(*compilation->plan, invocation.files());
-  } else {
+  } else if (options.emit != "cnf") {
     text = compiler::dump_dot(*compilation->plan, invocation.files());
   }
   if (options.out.empty() && invocation.options().json) {
@@ -128,6 +143,7 @@ Command compile_command() {
       "Examples:\n"
       "  parallax compile domain.e start.e --horizon 6 -o start.dec.cnf\n"
       "  parallax compile domain.e --stats -o domain.dec.cnf\n"
+      "  parallax compile domain.e --minimize \"count Happens(event,time)\" -o domain.dec.cnf\n"
       "  parallax compile scenarios/two_regions/edge.yaml --emit=cfg\n"
       "  parallax compile domain.e start.e --plan fetch.lisp --bind robot.bind \\\n"
       "      --regions scenario.yaml --emit=cfg-dot -o plan.dot");
@@ -135,6 +151,13 @@ Command compile_command() {
   add_plan_options(command, options->model);
   command.flag("--no-projection-line", options->no_projection,
                "Leave out `c t pmc` and `c p show`, for readers that take no comment there");
+  command
+      .option(
+          "--minimize", options->model.minimize,
+          "Keep an objective for `traces --best` of what is compiled; again: a less important one")
+      .list(ListForm::kOneEachTime);
+  command.flag("--best", options->model.best,
+               "The same with what the model's `minimize` statements say, in their order");
   command.flag(
       "--stats", options->model.stats,
       "Show on standard error what each axiom costs, dearest first, and what each pass took");

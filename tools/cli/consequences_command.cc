@@ -35,6 +35,7 @@ const char* extent_word(Extent extent) {
       return "never";
     case Extent::kAbsent:
       return "absent";
+    case Extent::kNotAll:  // is in no list
     case Extent::kUndecided:
       break;
   }
@@ -93,7 +94,11 @@ std::string text_of(const ConsequencesOptions& options, const compiler::Compiled
 
 ordered_json json_of(const compiler::CompiledModel& model, const ModelConsequences& found) {
   auto facts = ordered_json::array();
+  ordered_json counts = {
+      {"always", 0}, {"sometimes", 0}, {"never", 0}, {"absent", 0}, {"undecided", 0}};
   for (const auto& fact : found.facts) {
+    auto& count = counts[extent_word(fact.extent)];
+    count = count.get<std::int64_t>() + 1;
     ordered_json entry = {{"time", fact.time},
                           {"atom", fact.happens ? "Happens" : "HoldsAt"},
                           {"name", fact.name},
@@ -112,7 +117,8 @@ ordered_json json_of(const compiler::CompiledModel& model, const ModelConsequenc
           {"has_traces", found.any ? ordered_json(*found.any) : ordered_json()},
           {"complete", found.complete},
           {"horizon", model.horizon},
-          {"facts", std::move(facts)}};
+          {"facts", std::move(facts)},
+          {"counts", std::move(counts)}};
 }
 
 int tell_consequences(const ConsequencesOptions& options, const compiler::CompiledModel& model,
@@ -207,6 +213,7 @@ int run_consequences(ConsequencesOptions options, Invocation& invocation) {
     return 0;
   }
   if (abduces) options.model.until = {options.observed};
+  options.query.only_always = options.always;
   const auto compilation = compile_models(options.model, invocation);
   if (!compilation) return 0;
   return abduces ? tell_abduction(options, compilation->model, invocation)

@@ -104,7 +104,8 @@ int draw_start(const DrawOptions& options, Invocation& invocation) {
     sink.error_about(codes::kUsage, options.what, "the scenario has no `world` to draw");
     return 0;
   }
-  const harness::OdeWorld world(scenario->world);
+  const std::unique_ptr<const harness::PhysicsWorld> owned = harness::make_world(scenario->world);
+  const harness::PhysicsWorld& world = *owned;
   const std::vector<harness::Picture> pictures = {{harness::scene_of(world, scenario->world), {}}};
   const fs::path out = options.out.empty() ? fs::path("scene.svg") : fs::path(options.out);
   if (!check_replaceable(out.string(), is_picture, invocation.files(), sink)) return 0;

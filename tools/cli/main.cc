@@ -70,13 +70,14 @@ int run(int argc, char** argv) {
   table.footer(kFooter);
   CommonOptions options;
   std::vector<Command> commands = {
-      run_command(),         repair_command(),       replay_command(),  suite_command(),
-      check_command(),       traces_command(),       compile_command(), verify_command(),
-      diagnostics_command(), explain_command(),      fmt_command(),     diff_command(),
-      worker_command(),      rates_command(),        draw_command(),    supervise_command(),
-      coverage_command(),    monitor_command(),      report_command(),  learn_command(),
-      export_command(),      ledger_command(),       bisect_command(),  calibrate_command(),
-      prove_command(),       consequences_command(), confirm_command(), threshold_command()};
+      run_command(),           repair_command(),       replay_command(),  suite_command(),
+      check_command(),         traces_command(),       compile_command(), verify_command(),
+      diagnostics_command(),   explain_command(),      fmt_command(),     diff_command(),
+      worker_command(),        rates_command(),        draw_command(),    supervise_command(),
+      coverage_command(),      monitor_command(),      report_command(),  learn_command(),
+      export_command(),        ledger_command(),       bisect_command(),  calibrate_command(),
+      prove_command(),         consequences_command(), confirm_command(), threshold_command(),
+      adapter_check_command(), new_command(),          record_command(),  replay_adapter_command()};
   Program program{
       table, fmt::format("parallax {} (CaDiCaL {})", kVersion, kCadicalVersion), true, {}};
   for (auto& command : commands) {

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "compiler/base/codes/files.h"
+#include "compiler/base/file_io.h"
 #include "tools/page/write_page.h"
 
 namespace parallax::tools {

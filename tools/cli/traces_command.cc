@@ -352,8 +352,11 @@ int list_witness(const TracesOptions& options, const compiler::Compilation& comp
 int list_best(const TracesOptions& options, compiler::Compilation& compilation, StartTime start,
               Invocation& invocation) {
   if (compilation.model.objectives.empty()) {
-    invocation.sink().error_about(codes::kUsage, "--best",
-                                  "the model has no `minimize` statement; or give --minimize");
+    invocation.sink().error_about(
+        codes::kUsage, "--best",
+        names_artifact(options.model)
+            ? "the compiled model has no objective; compile it with --best or --minimize"
+            : "the model has no `minimize` statement; or give --minimize");
     return 0;
   }
   if (options.search.hits == "all") {

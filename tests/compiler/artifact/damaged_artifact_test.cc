@@ -121,6 +121,32 @@ TEST_CASE("a newer minor version is read, and what is unknown in it is skipped w
   CHECK(read.codes() == "W6011");
 }
 
+TEST_CASE("terms of an objective are held against the model") {
+  auto text = WrittenModel(kReleases).artifact();
+  text = with(without_hash(text), "format 1.0", "format 1.1");
+  const auto terms = [&](const std::string& lines) {
+    return codes_of(with(text, "c dec axiom ", lines + "c dec axiom "));
+  };
+  const std::string begin = "c dec objective \"count Happens(event,time)\"\n";
+  CHECK(terms(begin).empty());
+  CHECK(terms(begin + "c dec term -3 at 2 1\nc dec term 4611686018427387900 at 3\n").empty());
+  CHECK(terms("c dec term 1 at 3 1\n") == "E6004");
+  CHECK(terms(begin + "c dec term 0 at 3 1\n") == "E6003");
+  CHECK(terms(begin + "c dec term one at 3 1\n") == "E6003");
+  CHECK(terms(begin + "c dec term 1 3 1\n") == "E6003");
+  CHECK(terms(begin + "c dec term 1 at 3 0\n") == "E6003");
+  CHECK(terms(begin + "c dec term 1 at 3 1 2\n") == "E6003");
+  CHECK(terms(begin + "c dec term 1 at 4 1\n") == "E6006");
+  CHECK(terms(begin + "c dec term 1 at 3 1000000\n") == "E6006");
+  CHECK(terms(begin + "c dec term 4611686018427387904 at 3 1\n") == "E6006");
+  CHECK(terms(begin + "c dec term -4611686018427387903 at 3 1\nc dec term 1 at 3\n") == "E6006");
+  // The last variable is of the state at the horizon, which shorter traces do not have.
+  const auto header = text.find("p cnf ") + 6;
+  const auto last = text.substr(header, text.find(' ', header) - header);
+  CHECK(terms(begin + "c dec term 1 at 2 " + last + '\n') == "E6006");
+  CHECK(terms(begin + "c dec term 1 at 3 " + last + '\n').empty());
+}
+
 TEST_CASE("what the file claims is never believed beyond its size") {
   const auto text = WrittenModel(kReleases).artifact();
   CHECK(codes_of(with(text, "c dec horizon 3", "c dec horizon 1000000")) == "E6012");

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "harness/engine/ode_world.h"
 #include "tests/harness/world/hand_made.h"
 
 namespace parallax::harness {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "harness/engine/ode_world.h"
 #include "harness/geometry_proof/hand_shapes.h"
 #include "harness/geometry_proof/sight_error.h"
 #include "harness/robot/mobile_robot.h"

@@ -39,8 +39,8 @@ TEST_CASE("a closed drawer, or a lower robot, leaves the way free") {
   CHECK(ok(leave(kitchen_world(), kNear, "")));
 
   WorldSpec low = kitchen_world();
-  BoxShape& lower_body = body_of(low, "base").shapes.front();
-  const BoxShape before = lower_body;
+  BodyShape& lower_body = body_of(low, "base").shapes.front();
+  const BodyShape before = lower_body;
   lower_body.size_m.z() = 0.30;  // 0.03 to 0.33, below all drawers
   lower_body.p_BS.z() = 0.18;
   CHECK(ok(leave(low, kNear, "dMid")));

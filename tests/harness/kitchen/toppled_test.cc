@@ -25,8 +25,8 @@ TEST_CASE("a carton that has toppled is not placed, where orientation is asked f
   // A carton on a narrow foot, its weight beside it: it topples by itself, to the left.
   WorldSpec spec = scenario->world;
   BodySpec& milk = body_of(spec, "milk1");
-  milk.shapes = {BoxShape{{0.06, 0.02, 0.10}, {0.0, 0.0, -0.05}},
-                 BoxShape{{0.06, 0.08, 0.06}, {0.0, 0.04, 0.03}}};
+  milk.shapes = {BodyShape{{0.06, 0.02, 0.10}, {0.0, 0.0, -0.05}},
+                 BodyShape{{0.06, 0.08, 0.06}, {0.0, 0.04, 0.03}}};
   Kitchen kitchen(spec);
   kitchen.start({{"milk1.y", 0.03}, {"milk1.bottom", 0.85}, {"cereal1.y", 0.23}});
   CHECK(reading(*strict, "ItemAt(milk1,pw1)", kitchen.simulator().state()) == Reading::kHolds);

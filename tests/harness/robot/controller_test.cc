@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "harness/engine/ode_world.h"
 #include "tests/harness/world/hand_made.h"
 
 namespace parallax::harness {

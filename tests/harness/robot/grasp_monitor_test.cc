@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "harness/engine/ode_world.h"
 #include "tests/harness/world/fetch_world.h"
 #include "tests/harness/world/hand_made.h"
 

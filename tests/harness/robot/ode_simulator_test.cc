@@ -162,7 +162,7 @@ TEST_CASE("an obstacle on the drive blocks the robot, which says where") {
   BodySpec wall;
   wall.name = "wall";
   wall.material = "steel";
-  wall.shapes = {BoxShape{{0.1, 0.4, 0.5}, {0.0, 0.0, 0.0}}};
+  wall.shapes = {BodyShape{{0.1, 0.4, 0.5}, {0.0, 0.0, 0.0}}};
   wall.p_WB = {1.3, -0.6, 0.25};
   spec.bodies.push_back(wall);
   OdeSimulator simulator(spec);
@@ -180,7 +180,7 @@ TEST_CASE("an overlapping start is invalid and names the pair and the depth") {
   BodySpec crate;
   crate.name = "crate";
   crate.material = "box";
-  crate.shapes = {BoxShape{{0.2, 0.2, 0.2}, {0.0, 0.0, 0.0}}};
+  crate.shapes = {BodyShape{{0.2, 0.2, 0.2}, {0.0, 0.0, 0.0}}};
   crate.p_WB = {2.0, 0.0, 0.1};
   spec.bodies.push_back(crate);
   OdeSimulator simulator(spec);

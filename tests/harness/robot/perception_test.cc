@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "harness/engine/ode_world.h"
 #include "tests/harness/world/hand_made.h"
 
 namespace parallax::harness {

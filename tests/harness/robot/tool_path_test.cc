@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include "harness/engine/ode_world.h"
 #include "harness/robot/mobile_controller.h"
 #include "tests/harness/world/hand_made.h"
 

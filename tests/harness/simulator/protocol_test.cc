@@ -129,6 +129,81 @@ TEST_CASE("fields that are not known are ignored") {
   CHECK(std::get<OutcomeReply>(std::get<ReplyBody>(decoded)).outcome.status == SimStatus::kOk);
 }
 
+TEST_CASE("what a simulator says of its world survives the round trip") {
+  SimulatorInfo info;
+  info.name = "told";
+  info.determinism = "bitwise";
+  info.parameters = {{"box.x", "m", true, -1.5, 2.0}, {"box.held", "1", false}};
+  info.actions = {"push", "wait"};
+  info.arguments["push"] = {{"target.x", "m", true, Value(1.5)}, {"speed", "m/s", false}};
+  info.capabilities = {"describe", "noise"};
+  info.min_real_time_factor = 0.25;
+  const auto check = [&](const SimulatorInfo& read) {
+    REQUIRE(read.parameters.size() == 2);
+    CHECK(read.parameters[0].lower == -1.5);
+    CHECK(read.parameters[0].upper == 2.0);
+    CHECK_FALSE(read.parameters[1].lower.has_value());
+    CHECK(read.actions == info.actions);
+    REQUIRE(read.arguments.size() == 1);
+    const auto& push = read.arguments.at("push");
+    CHECK(push.at(0).required);
+    CHECK(push.at(0).unit == "m");
+    CHECK(push.at(0).example == Value(1.5));
+    CHECK_FALSE(push.at(1).example.has_value());
+  };
+  const Request hello{1, HelloRequest{}};
+  const auto reply = decode_reply(encode_reply(1, HelloReply{kProtocolVersion, info}), hello);
+  const auto& read = std::get<HelloReply>(std::get<ReplyBody>(reply)).info;
+  check(read);
+  CHECK(read.can("noise"));
+  CHECK_FALSE(read.can("poses"));
+  CHECK(read.min_real_time_factor == 0.25);
+  const Request describe{2, DescribeRequest{}};
+  CHECK(encode_request(describe) == R"({"id":2,"method":"describe"})");
+  const auto described = decode_reply(encode_reply(2, DescribeReply{info}), describe);
+  check(std::get<DescribeReply>(std::get<ReplyBody>(described)).info);
+}
+
+TEST_CASE("codes of errors are words or numbers") {
+  const Request asked{3, ObserveRequest{}};
+  const auto error = [&](const std::string& code) {
+    const auto reply =
+        decode_reply(R"({"id":3,"error":{"code":)" + code + R"(,"message":"no"}})", asked);
+    REQUIRE(std::holds_alternative<ReplyBody>(reply));
+    return std::get<ErrorReply>(std::get<ReplyBody>(reply));
+  };
+  CHECK(error("\"unsupported\"").code == "unsupported");
+  CHECK(error("-32601").code == "-32601");
+  CHECK(is_refusal(error("-32601")));
+  CHECK(is_refusal(error("-32602")));
+  CHECK_FALSE(is_refusal(error("-32603")));
+  CHECK_FALSE(is_refusal(error("\"internal\"")));
+  for (const auto* code : {"1.5", "null", "[]"}) {
+    CAPTURE(code);
+    const auto reply = decode_reply(
+        std::string(R"({"id":3,"error":{"code":)") + code + R"(,"message":"no"}})", asked);
+    CHECK(std::holds_alternative<Malformed>(reply));
+  }
+}
+
+TEST_CASE("a world that is told in a wrong form is malformed") {
+  const Request hello{1, HelloRequest{}};
+  const auto says = [&](const std::string& members) {
+    return decode_reply(R"({"id":1,"result":{"protocol":1,"name":"s",)" + members + "}}", hello);
+  };
+  CHECK(std::holds_alternative<ReplyBody>(says(R"("params":[],"actions":["go"])")));
+  for (const auto* wrong : {R"("params":[],"actions":[{"name":"go","args":{}}])",
+                            R"("params":[],"actions":[{"name":"go","args":["x"]}])",
+                            R"("params":[],"actions":[{"name":"go","args":[{"unit":"m"}]}])",
+                            R"("params":[{"name":"x","lower":"0"}],"actions":[])",
+                            R"("params":[],"actions":[],"capabilities":"all")",
+                            R"("params":[],"actions":[],"min_real_time_factor":1e-300)",
+                            R"("params":[],"actions":[],"min_real_time_factor":-1)"}) {
+    CAPTURE(wrong);
+    CHECK(std::holds_alternative<Malformed>(says(wrong)));
+  }
+}
+
 TEST_CASE("a reply that is not the protocol is malformed") {
   const Request act{3, ActRequest{}}, observe{4, ObserveRequest{}}, hello{1, HelloRequest{}};
   CHECK(malformed_message("Segmentation fault", act) == "the line is not JSON");

@@ -4,7 +4,7 @@ namespace parallax::harness {
 namespace {
 
 BodySpec body(std::string name, std::string material, double mass_kg, Eigen::Vector3d p_WB,
-              std::vector<BoxShape> shapes) {
+              std::vector<BodyShape> shapes) {
   BodySpec spec;
   spec.name = std::move(name);
   spec.material = std::move(material);
@@ -14,8 +14,8 @@ BodySpec body(std::string name, std::string material, double mass_kg, Eigen::Vec
   return spec;
 }
 
-BoxShape box(double x_m, double y_m, double z_m, Eigen::Vector3d p_BS = Eigen::Vector3d::Zero()) {
-  return BoxShape{{x_m, y_m, z_m}, p_BS};
+BodyShape box(double x_m, double y_m, double z_m, Eigen::Vector3d p_BS = Eigen::Vector3d::Zero()) {
+  return BodyShape{{x_m, y_m, z_m}, p_BS};
 }
 
 JointSpec slider(std::string name, std::string parent, std::string child, Eigen::Vector3d axis_W,
@@ -40,7 +40,7 @@ void add_robot(WorldSpec& spec) {
   spec.bodies.push_back(base);
   spec.bodies.push_back(body("arm", "steel", 3.0, {0.5, -0.3, 0.50}, {box(0.06, 0.60, 0.06)}));
   spec.bodies.push_back(body("palm", "steel", 0.6, {0.5, 0.0, 0.305}, {box(0.06, 0.16, 0.04)}));
-  const BoxShape pad = box(0.02, 0.01, 0.05);
+  const BodyShape pad = box(0.02, 0.01, 0.05);
   spec.bodies.push_back(body("near_pad", "pad", 0.1, {0.5, -0.05, 0.24}, {pad}));
   spec.bodies.push_back(body("far_pad", "pad", 0.1, {0.5, 0.05, 0.24}, {pad}));
 

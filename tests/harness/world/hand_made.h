@@ -16,7 +16,7 @@ inline BodySpec box_body(std::string name, const Eigen::Vector3d& size_m,
                          const Eigen::Vector3d& p_WB, double mass_kg = 0.0) {
   BodySpec body;
   body.name = std::move(name);
-  body.shapes = {BoxShape{size_m}};
+  body.shapes = {BodyShape{size_m}};
   body.p_WB = p_WB;
   body.mass_kg = mass_kg;
   return body;

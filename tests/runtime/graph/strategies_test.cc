@@ -71,10 +71,25 @@ struct Seen {
   std::size_t far = 0;  // whose clauses look far
 };
 
+/// Whether there is more is told after any number of traces, by every strategy that solves.
+void compare_ends(const compiler::CompiledModel& model, Distinct distinct, std::size_t count) {
+  for (const auto strategy : {Strategy::kAuto, Strategy::kBlocking, Strategy::kSearch}) {
+    for (std::size_t k = 0; k <= count; k += 1 + count / 3) {
+      auto asked = query(strategy, distinct);
+      asked.wanted = static_cast<std::int64_t>(k);
+      ModelTraces traces(model, asked);
+      for (std::size_t i = 0; i < k; ++i) REQUIRE(traces.next());
+      traces.look_on();
+      CHECK(traces.exhausted() == (k == count));
+    }
+  }
+}
+
 void compare(const compiler::CompiledModel& model, Distinct distinct, Seen& seen) {
   const auto wanted = lines(model, query(Strategy::kBlocking, distinct), false);
   if (wanted.size() == kLimit) return;
   ++seen.models;
+  compare_ends(model, distinct, wanted.size());
   seen.traces += wanted.size();
   const auto split = runtime::split_into_windows(model, distinct);
   const auto* reason = std::get_if<std::string>(&split);

@@ -90,6 +90,14 @@ TEST_CASE("answers are read from the end of the output, or are empty") {
   CHECK(tools::jsonl_answer(
             "{\"trace\":7}\n{\"summary\":true,\"traces\":42,\"complete\":true}\n") == "42");
   CHECK(tools::jsonl_answer("{\"trace\":7,\"traces\":1").empty());
+  CHECK(tools::clingo_consequences("Consequences: [9;11]\n\n  Cautious   : yes\nConsequences : 11\n"
+                                   "Calls : 1\n") == "11");
+  CHECK(tools::clingo_consequences("Consequences: [9;11]\n").empty());
+  const std::string counts =
+      "{\"always\":4,\"counts\":{\"always\":11,\"sometimes\":7,\"never\":30}}";
+  CHECK(tools::consequences_answer(counts, {"always"}) == "11");
+  CHECK(tools::consequences_answer(counts, {"always", "sometimes"}) == "18");
+  CHECK(tools::consequences_answer("{\"always\":4}", {"always"}).empty());
   CHECK(tools::count_answer("1759222\n") == "1759222");
   CHECK(tools::count_answer("error\n").empty());
 }
@@ -121,6 +129,37 @@ TEST_CASE("rows compare times and answers of those who have some") {
   CHECK(json["rows"][0]["sides"][1]["ratio"].get<double>() == doctest::Approx(2.5));
   CHECK(json["rows"][0]["sides"][2]["remark"] == "not installed");
   CHECK(!json["rows"][0]["sides"][2].contains("wall_s"));
+}
+
+TEST_CASE("a section comes to geometric means, with the best row of each peer named") {
+  const auto named = [](std::string program, double cpu_s) {
+    auto out = side("42", cpu_s);
+    out.program = std::move(program);
+    return out;
+  };
+  const Row dear{"s",
+                 "dear",
+                 {side("42", 1.0), named("clingo, auto", 16.0), named("clingo, handy", 8.0)},
+                 "42",
+                 ""};
+  Row cheap{"s",
+            "cheap",
+            {side("42", 1.0), named("clingo, auto", 1.0), named("clingo, handy", 2.0)},
+            "42",
+            ""};
+  const auto text = tools::summary_text({dear, cheap});
+  CHECK(text.find("best of clingo's 2.83 x ours in 2 rows, least 1.00: cheap") !=
+        std::string::npos);
+  CHECK(text.find("clingo, auto     4.00 x ours in 2 rows, least 1.00: cheap") !=
+        std::string::npos);
+  CHECK(text.find("clingo, handy    4.00 x ours in 2 rows, least 2.00: cheap") !=
+        std::string::npos);
+  cheap.sides[1].cost.reset();
+  cheap.sides[1].remark = "no end within 60 s of cpu";
+  const auto without = tools::summary_text({dear, cheap});
+  CHECK(without.find("clingo, auto     16.00 x ours in 1 rows, least 16.00: dear; no end in 1") !=
+        std::string::npos);
+  CHECK(tools::summary_text({dear}).empty());
 }
 
 TEST_CASE("an answer that is wrong on all sides is seen") {

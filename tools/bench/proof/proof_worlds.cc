@@ -11,8 +11,8 @@
 namespace parallax::bench {
 namespace {
 
+using harness::BodyShape;
 using harness::BodySpec;
-using harness::BoxShape;
 using harness::JointSpec;
 using harness::JointType;
 
@@ -30,12 +30,12 @@ class Dice {
   std::uint64_t next_ = 0;
 };
 
-BoxShape box_of(double x_m, double y_m, double z_m) {
+BodyShape box_of(double x_m, double y_m, double z_m) {
   return {{x_m, y_m, z_m}, Eigen::Vector3d::Zero(), 0.0};
 }
 
 BodySpec body(std::string name, double mass_kg, Eigen::Vector3d p_WB,
-              std::vector<BoxShape> shapes) {
+              std::vector<BodyShape> shapes) {
   BodySpec spec;
   spec.name = std::move(name);
   spec.material = "wood";

@@ -1,0 +1,319 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <system_error>
+
+#include "compiler/base/codes/scenarios.h"
+#include "compiler/base/file_io.h"
+#include "harness/config/sections.h"
+#include "harness/import/import.h"
+#include "harness/world/structure_check.h"
+
+namespace parallax::harness {
+namespace {
+
+// An imported world becomes the tree that a scenario would have for it, so that one reader and one
+// set of checks serve both, and a scenario may lay its own keys over it.
+
+YamlNode node_at(YamlNode::Kind kind, const base::SourceRange& range, std::string text = {}) {
+  return {kind, range, std::move(text), false, {}, {}};
+}
+
+/// A map under way.
+class MapNode {
+ public:
+  explicit MapNode(const base::SourceRange& range) : node_(node_at(YamlNode::Kind::kMap, range)) {}
+
+  void put(std::string_view key, YamlNode value) { put_at(key, node_.range, std::move(value)); }
+  void put_at(std::string_view key, const base::SourceRange& range, YamlNode value) {
+    node_.entries.push_back({std::string(key), range, std::move(value)});
+  }
+  void text(std::string_view key, const std::string& value) {
+    if (value.empty()) return;
+    auto node = node_at(YamlNode::Kind::kScalar, node_.range, value);
+    node.quoted = true;
+    put(key, std::move(node));
+  }
+  void word(std::string_view key, std::string_view value) {
+    put(key, node_at(YamlNode::Kind::kScalar, node_.range, std::string(value)));
+  }
+  void number(std::string_view key, double value) { put(key, scalar(value)); }
+  void number_unless_zero(std::string_view key, double value) {
+    if (value != 0.0) number(key, value);
+  }
+  void numbers(std::string_view key, std::initializer_list<double> values) {
+    auto list = node_at(YamlNode::Kind::kList, node_.range);
+    for (const double value : values) list.items.push_back(scalar(value));
+    put(key, std::move(list));
+  }
+  void vector(std::string_view key, const Eigen::Vector3d& v) {
+    numbers(key, {v.x(), v.y(), v.z()});
+  }
+  void stops(std::string_view key, const std::optional<double>& low,
+             const std::optional<double>& high, double most) {
+    if (low || high) numbers(key, {low.value_or(-most), high.value_or(most)});
+  }
+  YamlNode take() { return std::move(node_); }
+
+ private:
+  YamlNode scalar(double value) const {
+    return node_at(YamlNode::Kind::kScalar, node_.range, fmt::format("{}", value));
+  }
+  YamlNode node_;
+};
+
+YamlNode shape_node(const BodyShape& shape, const base::SourceRange& range) {
+  MapNode out(range);
+  const double radius_m = 0.5 * shape.size_m.x(), length_m = shape.size_m.z();
+  MapNode round(range);
+  round.number(Key::kRadiusM, radius_m);
+  switch (shape.form) {
+    case ShapeForm::kBox:
+      out.vector(Key::kSizeM, shape.size_m);
+      break;
+    case ShapeForm::kSphere:
+      out.put(Key::kSphere, round.take());
+      break;
+    case ShapeForm::kCylinder:
+      round.number(Key::kLengthM, length_m);
+      out.put(Key::kCylinder, round.take());
+      break;
+    case ShapeForm::kCapsule:
+      round.number(Key::kLengthM, length_m - 2.0 * radius_m);
+      out.put(Key::kCapsule, round.take());
+      break;
+  }
+  out.vector(Key::kAtM, shape.p_BS);
+  out.number_unless_zero(Key::kYawRad, shape.yaw_rad);
+  out.number_unless_zero(Key::kPitchRad, shape.pitch_rad);
+  out.number_unless_zero(Key::kRollRad, shape.roll_rad);
+  return out.take();
+}
+
+YamlNode body_node(const BodySpec& body, const base::SourceRange& range) {
+  MapNode out(range);
+  auto shapes = node_at(YamlNode::Kind::kList, range);
+  for (const BodyShape& shape : body.shapes) shapes.items.push_back(shape_node(shape, range));
+  out.put(Key::kShapes, std::move(shapes));
+  out.number_unless_zero(Key::kMassKg, body.mass_kg);
+  if (body.inertia) {
+    MapNode inertia(range);
+    inertia.vector(Key::kCentreM, body.inertia->p_BC);
+    const Eigen::Matrix3d& I = body.inertia->I_C_kg_m2;
+    inertia.numbers(Key::kMomentsKgM2, {I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)});
+    out.put(Key::kInertia, inertia.take());
+  }
+  out.text(Key::kMaterial, body.material);
+  out.vector(Key::kPositionM, body.p_WB);
+  out.number_unless_zero(Key::kYawRad, body.yaw_rad);
+  if (!body.collides) out.word(Key::kCollides, "false");
+  out.text(Key::kApart, body.apart);
+  return out.take();
+}
+
+YamlNode joint_node(const JointSpec& joint, const base::SourceRange& range) {
+  MapNode out(range);
+  out.text(Key::kParent, joint.parent.empty() ? "world" : joint.parent);
+  out.text(Key::kChild, joint.child);
+  if (joint.type == JointType::kFixed) {
+    out.word(Key::kType, "fixed");
+    return out.take();
+  }
+  out.vector(Key::kAxis, joint.axis_W);
+  if (joint.type == JointType::kHinge) {
+    out.word(Key::kType, "hinge");
+    out.vector(Key::kAtM, joint.p_WA);
+    out.stops(Key::kRangeRad, joint.low_rad, joint.high_rad, kMostTurn_rad);
+    out.number_unless_zero(Key::kMaxTorqueNm, joint.max_torque_nm);
+    out.number_unless_zero(Key::kDampingNmS, joint.damping_nm_s);
+  } else {
+    out.word(Key::kType, "slider");
+    out.stops(Key::kRangeM, joint.low_m, joint.high_m, 0.5 * kMaxExtent_m);
+    out.number_unless_zero(Key::kMaxForceN, joint.max_force_n);
+    out.number_unless_zero(Key::kDampingNSM, joint.damping_n_s_m);
+  }
+  return out.take();
+}
+
+/// Texts under `bodies` that say `material`, and the floor's.
+std::set<std::string> materials_in(const YamlNode& world) {
+  std::set<std::string> out;
+  if (const auto* floor = world.find(Key::kFloorMaterial)) out.insert(floor->value.text);
+  if (const auto* bodies = world.find(Key::kBodies)) {
+    for (const auto& body : bodies->value.entries) {
+      if (const auto* material = body.value.find(Key::kMaterial)) out.insert(material->value.text);
+    }
+  }
+  return out;
+}
+
+class WorldImporter {
+ public:
+  WorldImporter(YamlNode& world, const base::PathGate& gate, base::SourceFiles& files,
+                base::DiagnosticSink& sink)
+      : world_(world), gate_(gate), files_(files), sink_(sink) {}
+
+  bool run() {
+    const auto errors_before = sink_.error_count();
+    const auto* sdf = world_.find(Key::kSdf);
+    const auto* urdf = world_.find(Key::kUrdf);
+    if (sdf != nullptr && urdf != nullptr) {
+      sink_.error(codes::kUnknownKey, urdf->key_range, Key::kUrdf,
+                  fmt::format("`{}`, which has `{}`", Key::kWorld, Key::kSdf));
+      return false;
+    }
+    if (sdf == nullptr && urdf == nullptr) return true;
+    is_sdf_ = sdf != nullptr;
+    const YamlEntry entry = is_sdf_ ? *sdf : *urdf;
+    read_request(entry);
+    read_folders();
+    if (sink_.error_count() != errors_before) return false;
+    if (!is_there(entry)) return false;
+    const auto path = path_beside(file_range_, file_text_, files_);
+    if (!gate_.check(path, file_range_, sink_)) return false;
+    if (!base::check_file(path, file_range_, sink_)) return false;
+    const auto loaded = base::load_text(path, files_, sink_);
+    if (!loaded) return false;
+    file_ = *loaded;
+    input_.text = std::string(files_[file_].text());
+    const ImportedWorld made = is_sdf_ ? import_sdf(input_) : import_urdf(input_);
+    for (const std::string& one : made.files) files_.note_input(one);
+    if (made.fault) {
+      sink_.error(codes::kBadImport, range_at(made.fault->offset), made.fault->message);
+      return false;
+    }
+    for (const LeftOut& kind : made.left_out) {
+      sink_.warning(codes::kNotTakenOver, range_at(kind.offset), kind.count, kind.what, kind.first);
+    }
+    lay_under(made);
+    return sink_.error_count() == errors_before;
+  }
+
+ private:
+  void read_request(const YamlEntry& entry) {
+    if (!entry.value.is_map()) {
+      set_file(entry.value, entry.key);
+      return;
+    }
+    YamlFields fields(entry.value, key_text(entry.key), sink_);
+    fields.only({Key::kFile, Key::kAtM, Key::kYawRad, is_sdf_ ? Key::kFile : Key::kFixed});
+    if (const auto* file = fields.require(Key::kFile)) set_file(*file, Key::kFile);
+    read_vector(fields, Key::kAtM, input_.p_WI);
+    fields.number(Key::kYawRad, kAnyNumber, input_.yaw_rad);
+    fields.boolean(Key::kFixed, input_.fixed);
+  }
+
+  void set_file(const YamlNode& node, std::string_view key) {
+    file_range_ = node.range;
+    if (const auto text = read_text(node, key_text(key), sink_)) file_text_ = *text;
+  }
+
+  void read_folders() {
+    const auto* models = world_.find(Key::kModels);
+    if (models == nullptr) return;
+    for (const auto& one : located_texts(models->value, Key::kModels, sink_)) {
+      const auto folder = path_beside(one.source, one.text, files_);
+      if (!gate_.check(folder, one.source, sink_)) continue;
+      std::error_code error;
+      if (!std::filesystem::is_directory(folder, error) ||
+          folder.string().find(':') != std::string::npos) {
+        sink_.error(codes::kBadImport, one.source, fmt::format("`{}` is no folder", one.text));
+        continue;
+      }
+      input_.folders.push_back(base::real_path(folder));
+    }
+  }
+
+  bool is_there(const YamlEntry& entry) {
+    if (is_sdf_ ? reads_sdf() : reads_urdf()) return true;
+    sink_.error(codes::kImportUnavailable, entry.key_range, entry.key,
+                is_sdf_ ? "libsdformat-dev" : "liburdfdom-dev");
+    return false;
+  }
+
+  base::SourceRange range_at(std::size_t offset) const {
+    const auto text = files_[file_].text();
+    const auto end = std::min(text.find_first_of(">\n", offset), text.size());
+    base::SourceRange range = file_range_;
+    range.file = file_;
+    range.begin = static_cast<std::uint32_t>(std::min(offset, text.size()));
+    range.end = static_cast<std::uint32_t>(std::max(end, offset));
+    return range;
+  }
+
+  void lay_under(const ImportedWorld& made) {
+    const auto whole = range_at(0);
+    MapNode under(whole), bodies(whole), joints(whole);
+    for (const ImportedBody& body : made.bodies) {
+      put_once(bodies, body.spec.name, body_node(body.spec, range_at(body.offset)));
+    }
+    for (const ImportedJoint& joint : made.joints) {
+      put_once(joints, joint.spec.name, joint_node(joint.spec, range_at(joint.offset)));
+    }
+    under.put(Key::kBodies, bodies.take());
+    under.put(Key::kJoints, joints.take());
+    under.text(Key::kFloorMaterial, made.floor_material);
+    if (made.gravity_m_s2) {
+      MapNode solver(whole);
+      solver.number("gravity_m_s2", *made.gravity_m_s2);
+      under.put(Key::kSolver, solver.take());
+    }
+    std::erase_if(world_.entries, [](const YamlEntry& entry) {
+      return entry.key == Key::kSdf || entry.key == Key::kUrdf || entry.key == Key::kModels;
+    });
+    const auto range = world_.range;
+    world_ = merged(under.take(), std::move(world_));
+    world_.range = range;
+    add_friction(made.friction, whole);
+  }
+
+  /// Of the materials that are left when the scenario has said which it has others of.
+  void add_friction(const FrictionSpec& friction, const base::SourceRange& range) {
+    const auto known = materials_in(world_);
+    MapNode pairs(range), under(range);
+    for (const auto& [pair, mu] : friction.pairs) {
+      if (!known.contains(pair.first) || !known.contains(pair.second)) continue;
+      pairs.number(pair.first + "-" + pair.second, mu);
+    }
+    under.put(Key::kFriction, pairs.take());
+    const auto own_range = world_.range;
+    world_ = merged(under.take(), std::move(world_));
+    world_.range = own_range;
+  }
+
+  void put_once(MapNode& map, const std::string& name, YamlNode node) {
+    const auto range = node.range;
+    if (names_.insert({&map, name}).second) {
+      map.put_at(name, range, std::move(node));
+      return;
+    }
+    sink_.error(codes::kBadImport, range, fmt::format("two things come to be called `{}`", name));
+  }
+
+  YamlNode& world_;
+  const base::PathGate& gate_;
+  base::SourceFiles& files_;
+  base::DiagnosticSink& sink_;
+  bool is_sdf_ = false;
+  base::SourceRange file_range_;
+  std::string file_text_;
+  base::FileId file_;
+  ImportInput input_;
+  std::set<std::pair<const MapNode*, std::string>> names_;
+};
+
+}  // namespace
+
+bool add_imported(YamlNode& root, const base::PathGate& gate, base::SourceFiles& files,
+                  base::DiagnosticSink& sink) {
+  if (!root.is_map()) return true;
+  for (YamlEntry& entry : root.entries) {
+    if (entry.key == Key::kWorld && entry.value.is_map()) {
+      return WorldImporter(entry.value, gate, files, sink).run();
+    }
+  }
+  return true;
+}
+
+}  // namespace parallax::harness

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "harness/conformance/run_record.h"
+#include "harness/simulator/process_simulator.h"
+#include "harness/simulator/simulator.h"
+
+namespace parallax::harness {
+
+/// What is looked at, in this order.
+enum class CheckKind : std::uint8_t {
+  kHandshake,
+  kReset,
+  kActions,
+  kDeterminism,
+  kSeeds,
+  kInvalidStart,
+  kUnknown,
+  kTimeLimit,
+  kTiming,
+  kUnits,
+  kEnd,
+};
+std::string_view to_string(CheckKind kind);
+
+struct ConformanceOptions {
+  ProcessOptions process;  // the command, its limits, the stop flag
+  /// Starts and actions to try; empty: from what the simulator says of itself.
+  std::vector<State> starts;
+  std::vector<TriedAction> actions;
+  double tolerance = 1e-3;  // what still counts as the same, in the unit of each variable
+  /// Asked once it has said what it is; false ends the check.
+  std::function<bool(const SimulatorInfo&)> on_info;
+};
+
+struct CheckResult {
+  CheckKind kind;
+  bool was_made = false;
+  std::string said;  // what was seen, or why it was not made
+};
+
+struct ConformanceFinding {
+  CheckKind kind;
+  bool is_fault = false;  // else a warning
+  std::string text;
+};
+
+/// How closely the same start and seed gave the same run.
+enum class Repeatability : std::uint8_t { kUnknown, kNone, kTolerance, kBitwise };
+std::string_view to_string(Repeatability repeatability);
+
+/// What can be claimed of runs with this simulator, as it was measured; docs/adapters.md.
+struct SupportedClaims {
+  std::string replay, retries, independence, jobs, search, recordings;
+};
+
+struct ConformanceReport {
+  SimulatorInfo info;
+  std::vector<CheckResult> checks;  // one of each kind
+  std::vector<ConformanceFinding> findings;
+  Repeatability repeatability = Repeatability::kUnknown;
+  double largest_deviation = 0.0;   // of an observed start from the asked one
+  double largest_difference = 0.0;  // of runs with the same start and seed
+  double round_trip_s = 0.0;        // median
+  double real_time_factor = 0.0;    // simulated over wall time of the actions; 0: unknown
+  SupportedClaims claims;
+  bool complete = false;  // false: given up, stopped, or `on_info` said no
+
+  std::size_t faults() const;
+};
+
+/// Starts the simulator, several times, and asks it what a campaign asks and what none should.
+/// Every request is bounded by its limit and a simulator that is lost three times is given up;
+/// nothing that was started is left.
+ConformanceReport check_conformance(const ConformanceOptions& options);
+
+std::string conformance_text(const ConformanceReport& report, const std::string& command);
+std::string conformance_json(const ConformanceReport& report,
+                             const std::vector<std::string>& command);
+
+}  // namespace parallax::harness

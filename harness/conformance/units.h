@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/simulator/simulator.h"
+
+namespace parallax::harness {
+
+/// What is odd about the units that a simulator names, and about what it observes in them.
+struct UnitFinding {
+  bool is_fault = false;  // else worth a look
+  std::string text;
+};
+
+/// Names against units ("box.yaw" in "m"), units that are none of SI ("deg", "mm"), angles beyond a
+/// full turn, lengths beyond 10 km. `seen`: all states that were observed.
+std::vector<UnitFinding> unit_findings(const SimulatorInfo& info, const std::vector<State>& seen);
+
+}  // namespace parallax::harness

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/import/import.h"
+
+namespace parallax::harness {
+
+// What the readers of all formats come to: links and joints of one world, with full poses.
+
+struct LinkShape {
+  ShapeForm form = ShapeForm::kBox;
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
+  Eigen::Isometry3d X_LS = Eigen::Isometry3d::Identity();
+  std::optional<double> friction;
+};
+
+struct LinkDescription {
+  std::string name;
+  Eigen::Isometry3d X_WL = Eigen::Isometry3d::Identity();
+  double mass_kg = 0.0;                                    // 0: no inertia is given
+  Eigen::Isometry3d X_LC = Eigen::Isometry3d::Identity();  // centre of mass and its axes
+  Eigen::Matrix3d I_C_kg_m2 = Eigen::Matrix3d::Zero();     // along these axes
+  std::vector<LinkShape> shapes;
+  bool is_static = false;
+  bool has_floor = false;  // what it has besides shapes
+  std::string apart;       // BodySpec::apart
+  std::size_t offset = 0;
+};
+
+struct JointDescription {
+  std::string name;
+  JointType type = JointType::kFixed;
+  std::string parent;  // link, or empty for the world
+  std::string child;
+  Eigen::Vector3d axis_W = Eigen::Vector3d::UnitX(), p_WA = Eigen::Vector3d::Zero();
+  double low = 0.0, high = 0.0;  // beyond the bounds of what we can say: none
+  double damping = 0.0, friction = 0.0;
+  std::size_t offset = 0;
+};
+
+/// Collects what is left out, by kind, in the order of the first of each.
+class LeftOutList {
+ public:
+  void add(const std::string& what, const std::string& name, std::size_t offset);
+  std::vector<LeftOut> take() { return std::move(kinds_); }
+
+ private:
+  std::vector<LeftOut> kinds_;
+};
+
+struct Description {
+  std::vector<LinkDescription> links;
+  std::vector<JointDescription> joints;
+  std::optional<double> floor_friction;  // of a plane that is the floor
+  bool has_floor = false;
+  LeftOutList left_out;
+};
+
+/// Bodies and joints in our own vocabulary: links without mass become part of what they are fixed
+/// to, body frames stand upright at the default placement, and friction goes by materials.
+void assemble(Description description, ImportedWorld& world);
+
+/// A name that keys and variables can have: letters, digits and `_`; "::" becomes one `_`.
+std::string plain_name(const std::string& name);
+
+/// Where links, joints and models of these names begin in the text.
+class NamePlaces {
+ public:
+  explicit NamePlaces(const XmlOutline& outline);
+  /// 0 where it is not in this file.
+  std::size_t of(const std::string& tag, const std::string& name) const;
+  /// The first of the names in quotes or `[]` of a library's message that stands in the text.
+  std::size_t of_message(const std::string& message) const;
+
+ private:
+  std::map<std::string, std::size_t> by_tag_, by_name_;
+};
+
+}  // namespace parallax::harness

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/import/xml_outline.h"
+#include "harness/world/world_spec.h"
+
+namespace parallax::harness {
+
+/// A file of another format, and where to look for what it names.
+struct ImportInput {
+  std::string text;
+  /// Folders in which `model://NAME` is looked for, the first first. Nothing else is opened.
+  std::vector<std::filesystem::path> folders;
+  Eigen::Vector3d p_WI = Eigen::Vector3d::Zero();  // where its origin is put [m]
+  double yaw_rad = 0.0;
+  bool fixed = false;  // a robot's root to the world
+};
+
+/// Places are offsets in ImportInput::text.
+struct ImportedBody {
+  BodySpec spec;
+  std::size_t offset = 0;
+};
+struct ImportedJoint {
+  JointSpec spec;
+  std::size_t offset = 0;
+};
+
+/// What of one kind is in the file but not in the world.
+struct LeftOut {
+  std::string what;  // "sensors"
+  std::size_t count = 0;
+  std::string first;  // name of the first one
+  std::size_t offset = 0;
+};
+
+struct ImportedWorld {
+  std::optional<TextFault> fault;  // then the rest says nothing
+  std::vector<ImportedBody> bodies;
+  std::vector<ImportedJoint> joints;
+  FrictionSpec friction;       // of the materials that the file makes
+  std::string floor_material;  // if the file has a floor
+  std::optional<double> gravity_m_s2;
+  std::vector<LeftOut> left_out;
+  std::vector<std::string> files;  // that were read besides
+};
+
+/// Was the library that reads the format there when this was built?
+bool reads_sdf();
+bool reads_urdf();
+
+/// Hands only texts that `outline_of` lets pass to the library, whose own messages are kept back.
+/// Not to be called by two threads at once.
+ImportedWorld import_sdf(const ImportInput& input);
+ImportedWorld import_urdf(const ImportInput& input);
+
+}  // namespace parallax::harness

@@ -1,0 +1,480 @@
+// The only place of libsdformat.
+
+#include <fmt/format.h>
+
+#include "harness/import/description.h"
+
+#ifndef PARALLAX_HAS_SDFORMAT
+
+namespace parallax::harness {
+
+bool reads_sdf() { return false; }
+ImportedWorld import_sdf(const ImportInput& /*input*/) {
+  ImportedWorld world;
+  world.fault = TextFault{0, "this build reads no SDF"};
+  return world;
+}
+
+}  // namespace parallax::harness
+
+#else
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <sdf/sdf.hh>
+#include <set>
+#include <sstream>
+
+namespace parallax::harness {
+namespace {
+
+namespace fs = std::filesystem;
+namespace math = ignition::math;
+
+constexpr std::size_t kMaxIncluded = 500;
+constexpr double kDefaultFriction = 1.0;  // of the format
+
+Eigen::Vector3d vector_of(const math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
+
+Eigen::Isometry3d isometry_of(const math::Pose3d& pose) {
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  X.translation() = vector_of(pose.Pos());
+  const auto& q = pose.Rot();
+  X.linear() = Eigen::Quaterniond(q.W(), q.X(), q.Y(), q.Z()).normalized().toRotationMatrix();
+  return X;
+}
+
+/// The library keeps a log in the home folder and speaks on the standard error: neither is wanted.
+class QuietLibrary {
+ public:
+  QuietLibrary() {
+    if (const char* home = std::getenv("HOME")) home_ = home;
+    ::setenv("HOME", "/dev/null", 1);
+    sdf::Console::Instance()->SetQuiet(true);
+    if (home_.empty()) {
+      ::unsetenv("HOME");
+    } else {
+      ::setenv("HOME", home_.c_str(), 1);
+    }
+  }
+
+ private:
+  std::string home_;
+};
+
+std::string trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r\n");
+  if (first == text.npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1));
+}
+
+/// A way down from a folder: plain names, no `..`, nothing hidden, no other scheme.
+bool is_plain_path(const std::string& path) {
+  if (path.empty() || path.front() == '/' || path.find_first_of("\\:&<>%?*\"'") != path.npos) {
+    return false;
+  }
+  for (const auto& part : fs::path(path)) {
+    if (part.empty() || part.string().front() == '.') return false;
+  }
+  return true;
+}
+
+/// Is every file of the folder a file, and no link? Links could lead out.
+bool holds_links(const fs::path& root, const fs::path& path) {
+  std::error_code error;
+  for (fs::path at = path; at != root && at.has_relative_path(); at = at.parent_path()) {
+    if (fs::is_symlink(fs::symlink_status(at, error))) return true;
+  }
+  return false;
+}
+
+/// Looks at every file that the library would open, before it does: those that `<include>` names,
+/// and what these name in turn.
+class IncludeGate {
+ public:
+  explicit IncludeGate(const std::vector<fs::path>& folders) : folders_(folders) {}
+
+  std::optional<TextFault> check(const XmlOutline& outline) {
+    std::vector<std::string> around;
+    return check(outline, around);
+  }
+  std::vector<std::string> files() const { return {files_.begin(), files_.end()}; }
+
+ private:
+  std::optional<TextFault> check(const XmlOutline& outline, std::vector<std::string>& around) {
+    elements_ += outline.elements.size();
+    parts_ += static_cast<std::size_t>(
+        std::count_if(outline.elements.begin(), outline.elements.end(), &is_part));
+    if (elements_ > kMaxImportElements || parts_ > kMaxImportParts) {
+      return TextFault{0, fmt::format("what is included comes to more than {} elements, or to more "
+                                      "than {} models, links, joints and frames",
+                                      kMaxImportElements, kMaxImportParts)};
+    }
+    for (const XmlElement& element : outline.elements) {
+      if (element.tag != "uri" || !element.parent) continue;
+      if (outline.elements[*element.parent].tag != "include") continue;
+      if (auto message = follow(trimmed(element.text), around)) {
+        return TextFault{element.offset, *std::move(message)};
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::optional<std::string> follow(const std::string& uri, std::vector<std::string>& around) {
+    constexpr std::string_view kScheme = "model://";
+    const auto shown = uri.substr(0, 120);
+    if (!uri.starts_with(kScheme) || !is_plain_path(uri.substr(kScheme.size()))) {
+      return fmt::format("`{}` is not included: only `model://NAME` is, without `..`", shown);
+    }
+    const std::string name = uri.substr(kScheme.size());
+    for (const fs::path& folder : folders_) {
+      std::error_code error;
+      const fs::path there = folder / name;
+      if (!fs::exists(fs::symlink_status(there, error))) continue;
+      if (holds_links(folder, there)) return fmt::format("`{}` leads through a link", shown);
+      return fs::is_directory(there, error) ? check_folder(there, shown, around)
+                                            : check_file(there, shown, around);
+    }
+    return fmt::format("`{}` is in none of the folders under `models`", shown);
+  }
+
+  std::optional<std::string> check_folder(const fs::path& folder, const std::string& uri,
+                                          std::vector<std::string>& around) {
+    for (const char* const name : {"model.config", "manifest.xml"}) {
+      const fs::path manifest = folder / name;
+      std::error_code error;
+      if (!fs::exists(fs::symlink_status(manifest, error))) continue;
+      std::string text;
+      if (auto message = read(manifest, text)) return message;
+      const XmlOutline outline = outline_of(text);
+      if (outline.fault) return fmt::format("{} of `{}`: {}", name, uri, outline.fault->message);
+      bool any = false;
+      for (const XmlElement& element : outline.elements) {
+        if (element.tag != "sdf") continue;
+        const std::string file = trimmed(element.text);
+        if (!is_plain_path(file) || file.find('/') != file.npos) {
+          return fmt::format("{} of `{}` names no file of its folder", name, uri);
+        }
+        any = true;
+        if (auto message = check_file(folder / file, uri, around)) return message;
+      }
+      if (!any) return fmt::format("{} of `{}` names no SDF file", name, uri);
+      return std::nullopt;
+    }
+    return fmt::format("`{}` has no model.config", uri);
+  }
+
+  std::optional<std::string> check_file(const fs::path& path, const std::string& uri,
+                                        std::vector<std::string>& around) {
+    const std::string key = path.lexically_normal().string();
+    if (std::find(around.begin(), around.end(), key) != around.end()) {
+      return fmt::format("`{}` includes itself", uri);
+    }
+    if (++followed_ > kMaxIncluded) {
+      return fmt::format("more than {} models are included", kMaxIncluded);
+    }
+    std::string text;
+    if (auto message = read(path, text)) return message;
+    const XmlOutline outline = outline_of(text);
+    if (outline.fault) return fmt::format("`{}`: {}", uri, outline.fault->message);
+    around.push_back(key);
+    const auto fault = check(outline, around);
+    around.pop_back();
+    if (fault) return fmt::format("in `{}`: {}", uri, fault->message);
+    return std::nullopt;
+  }
+
+  std::optional<std::string> read(const fs::path& path, std::string& text) {
+    std::error_code error;
+    const auto status = fs::symlink_status(path, error);
+    const auto shown = path.filename().string();
+    if (!fs::is_regular_file(status)) return fmt::format("there is no regular file `{}`", shown);
+    if (fs::file_size(path, error) > kMaxImportBytes) return fmt::format("`{}` is too long", shown);
+    std::ifstream in(path, std::ios::binary);
+    std::ostringstream all;
+    all << in.rdbuf();
+    if (!in) return fmt::format("`{}` cannot be read", shown);
+    text = all.str();
+    files_.insert(path.string());
+    return std::nullopt;
+  }
+
+  const std::vector<fs::path>& folders_;
+  std::set<std::string> files_;
+  std::size_t followed_ = 0, elements_ = 0, parts_ = 0;  // of all files together
+};
+
+class SdfReader {
+ public:
+  SdfReader(const ImportInput& input, const XmlOutline& outline, ImportedWorld& world)
+      : input_(input), places_(outline), world_(world) {
+    X_WI_.translation() = input.p_WI;
+    X_WI_.linear() = Eigen::AngleAxisd(input.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  }
+
+  void run() {
+    const QuietLibrary quiet;
+    sdf::ParserConfig config;
+    config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
+    config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
+    config.SetDeprecatedElementsPolicy(sdf::EnforcementPolicy::LOG);
+    for (const fs::path& folder : input_.folders) config.AddURIPath("model://", folder.string());
+    // What IncludeGate did not find there is nowhere.
+    config.SetFindCallback([](const std::string&) { return std::string(); });
+    sdf::Root root;
+    const sdf::Errors errors = root.LoadSdfString(input_.text, config);
+    if (!errors.empty()) return fault(errors.front());
+    if (root.WorldCount() > 1) return fault(0, "holds more than one world");
+    if (root.WorldCount() == 1) {
+      read_world(*root.WorldByIndex(0));
+    } else if (root.Model() != nullptr) {
+      read_model(*root.Model(), X_WI_, {}, root.Model()->Static(), {});
+    } else {
+      return fault(0, "holds neither a world nor a model");
+    }
+    if (!world_.fault) assemble(std::move(out_), world_);
+  }
+
+ private:
+  void fault(std::size_t offset, std::string message) {
+    if (!world_.fault) world_.fault = TextFault{offset, std::move(message)};
+  }
+  void fault(const sdf::Error& error) {
+    fault(places_.of_message(error.Message()), error.Message());
+  }
+  bool is_fine(const sdf::Errors& errors) {
+    if (!errors.empty()) fault(errors.front());
+    return errors.empty();
+  }
+
+  void read_world(const sdf::World& world) {
+    const math::Vector3d g = world.Gravity();
+    if (g.X() != 0.0 || g.Y() != 0.0) return fault(0, "gravity does not point along z");
+    world_.gravity_m_s2 = g.Z();
+    for (std::uint64_t i = 0; i < world.LightCount(); ++i) {
+      leave("lights", world.LightByIndex(i)->Name(), "light");
+    }
+    for (std::uint64_t i = 0; i < world.ActorCount(); ++i) {
+      leave("actors", world.ActorByIndex(i)->Name(), "actor");
+    }
+    leave_children(world.Element(), "plugin", "plugins");
+    for (std::uint64_t i = 0; i < world.ModelCount(); ++i) {
+      const sdf::Model& model = *world.ModelByIndex(i);
+      math::Pose3d pose;
+      if (!is_fine(model.SemanticPose().Resolve(pose))) return;
+      read_model(model, X_WI_ * isometry_of(pose), {}, model.Static(), {});
+    }
+  }
+
+  /// `scope` is "outer::" of a nested model; `apart` that of the outermost.
+  void read_model(const sdf::Model& model, const Eigen::Isometry3d& X_WM, const std::string& scope,
+                  bool is_static, const std::string& apart) {
+    const std::string whole = scope + model.Name();
+    const std::string group = !apart.empty()        ? apart
+                              : model.SelfCollide() ? std::string()
+                                                    : plain_name(whole);
+    leave_children(model.Element(), "plugin", "plugins");
+    const bool alone = model.LinkCount() == 1 && model.ModelCount() == 0;
+    for (std::uint64_t i = 0; i < model.LinkCount() && !world_.fault; ++i) {
+      const sdf::Link& link = *model.LinkByIndex(i);
+      const std::string name = link_name(whole, link.Name());
+      LinkDescription one;
+      one.name = alone && scope.empty() ? whole : name;
+      names_[name] = one.name;
+      one.offset = places_.of(alone ? "model" : "link", alone ? model.Name() : link.Name());
+      one.is_static = is_static;
+      one.apart = alone && scope.empty() ? std::string() : group;
+      read_link(link, X_WM, one);
+      out_.links.push_back(std::move(one));
+    }
+    for (std::uint64_t i = 0; i < model.ModelCount() && !world_.fault; ++i) {
+      const sdf::Model& inner = *model.ModelByIndex(i);
+      math::Pose3d pose;
+      if (!is_fine(inner.SemanticPose().Resolve(pose))) return;
+      read_model(inner, X_WM * isometry_of(pose), whole + "::", is_static || inner.Static(), group);
+    }
+    for (std::uint64_t i = 0; i < model.JointCount() && !world_.fault; ++i) {
+      read_joint(*model.JointByIndex(i), X_WM, whole);
+    }
+  }
+
+  static std::string link_name(const std::string& model, const std::string& link) {
+    return model + "::" + link;
+  }
+
+  void read_link(const sdf::Link& link, const Eigen::Isometry3d& X_WM, LinkDescription& one) {
+    math::Pose3d pose;
+    if (!is_fine(link.SemanticPose().Resolve(pose))) return;
+    one.X_WL = X_WM * isometry_of(pose);
+    const math::Inertiald& inertial = link.Inertial();
+    one.mass_kg = inertial.MassMatrix().Mass();
+    one.X_LC = isometry_of(inertial.Pose());
+    const math::Matrix3d I = inertial.MassMatrix().Moi();
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        one.I_C_kg_m2(row, column) =
+            I(static_cast<std::size_t>(row), static_cast<std::size_t>(column));
+      }
+    }
+    if (link.VisualCount() > 0) leave("visuals", one.name, one.offset, link.VisualCount());
+    if (link.SensorCount() > 0) leave("sensors", one.name, one.offset, link.SensorCount());
+    if (link.LightCount() > 0) leave("lights", one.name, one.offset, link.LightCount());
+    for (std::uint64_t i = 0; i < link.CollisionCount() && !world_.fault; ++i) {
+      read_collision(*link.CollisionByIndex(i), one);
+    }
+  }
+
+  void read_collision(const sdf::Collision& collision, LinkDescription& link) {
+    LinkShape shape;
+    math::Pose3d in_link;
+    if (!is_fine(collision.SemanticPose().Resolve(in_link))) return;
+    shape.X_LS = isometry_of(in_link);
+    shape.friction = friction_of(collision.Element());
+    const sdf::Geometry& geometry = *collision.Geom();
+    if (const auto* box = geometry.BoxShape()) {
+      shape.size_m = vector_of(box->Size());
+    } else if (const auto* sphere = geometry.SphereShape()) {
+      set_round(shape, ShapeForm::kSphere, sphere->Radius(), 0.0);
+    } else if (const auto* cylinder = geometry.CylinderShape()) {
+      set_round(shape, ShapeForm::kCylinder, cylinder->Radius(), cylinder->Length());
+    } else if (const auto* capsule = geometry.CapsuleShape()) {
+      set_round(shape, ShapeForm::kCapsule, capsule->Radius(), capsule->Length());
+    } else if (const auto* plane = geometry.PlaneShape()) {
+      return read_plane(vector_of(plane->Normal()), shape, link);
+    } else if (geometry.MeshShape() != nullptr) {
+      return leave("meshes (collisions)", link.name, link.offset);
+    } else {
+      return leave("collisions of other forms", link.name, link.offset);
+    }
+    link.shapes.push_back(shape);
+  }
+
+  static void set_round(LinkShape& shape, ShapeForm form, double radius_m, double length_m) {
+    shape.form = form;
+    const double across_m = 2.0 * radius_m;
+    const double along_m = form == ShapeForm::kSphere    ? across_m
+                           : form == ShapeForm::kCapsule ? length_m + across_m
+                                                         : length_m;
+    shape.size_m = {across_m, across_m, along_m};
+  }
+
+  /// Our floor is the plane z = 0.
+  void read_plane(const Eigen::Vector3d& normal, const LinkShape& shape, LinkDescription& link) {
+    const Eigen::Isometry3d X_WS = link.X_WL * shape.X_LS;
+    const bool level = (X_WS.linear() * normal).isApprox(Eigen::Vector3d::UnitZ(), 1e-9);
+    if (!level || !link.is_static || std::abs(X_WS.translation().z()) > 1e-9) {
+      return leave("planes that are not the floor", link.name, link.offset);
+    }
+    out_.has_floor = link.has_floor = true;
+    out_.floor_friction = shape.friction;
+  }
+
+  static std::optional<double> friction_of(const sdf::ElementPtr& collision) {
+    sdf::ElementPtr at = collision;
+    for (const char* tag : {"surface", "friction", "ode"}) {
+      if (at == nullptr || !at->HasElement(tag)) return kDefaultFriction;
+      at = at->GetElement(tag);
+    }
+    return at->HasElement("mu") ? at->Get<double>("mu") : kDefaultFriction;
+  }
+
+  void read_joint(const sdf::Joint& joint, const Eigen::Isometry3d& X_WM,
+                  const std::string& model) {
+    JointDescription one;
+    one.name = model + "::" + joint.Name();
+    one.offset = places_.of("joint", joint.Name());
+    std::string parent, child;
+    if (!is_fine(joint.ResolveParentLink(parent)) || !is_fine(joint.ResolveChildLink(child))) {
+      return;
+    }
+    one.parent = parent == "world" ? std::string() : known(model, parent);
+    one.child = known(model, child);
+    const sdf::JointType type = joint.Type();
+    if (type == sdf::JointType::REVOLUTE || type == sdf::JointType::CONTINUOUS) {
+      one.type = JointType::kHinge;
+    } else if (type == sdf::JointType::PRISMATIC) {
+      one.type = JointType::kSlider;
+    } else if (type != sdf::JointType::FIXED) {
+      leave("joints of other types (held fast)", one.name, one.offset);
+    }
+    math::Pose3d pose;
+    if (!is_fine(joint.SemanticPose().Resolve(pose, "__model__"))) return;
+    one.p_WA = (X_WM * isometry_of(pose)).translation();
+    const sdf::JointAxis* axis = joint.Axis(0);
+    if (one.type != JointType::kFixed) {
+      if (axis == nullptr) return fault(one.offset, "the joint has no axis");
+      math::Vector3d xyz;
+      if (!is_fine(axis->ResolveXyz(xyz, "__model__"))) return;
+      one.axis_W = X_WM.linear() * vector_of(xyz);
+      one.low = axis->Lower();
+      one.high = axis->Upper();
+      if (type == sdf::JointType::CONTINUOUS) {
+        one.high = std::numeric_limits<double>::infinity();
+        one.low = -one.high;
+      }
+      one.damping = axis->Damping();
+      one.friction = axis->Friction();
+      if (axis->SpringStiffness() != 0.0) leave("springs of joints", one.name, one.offset);
+      if (std::isfinite(axis->Effort()) && axis->Effort() >= 0.0 && axis->Effort() < 1e15) {
+        leave("limits of effort (nothing drives an imported joint)", one.name, one.offset);
+      }
+      if (std::isfinite(axis->MaxVelocity()) && axis->MaxVelocity() >= 0.0 &&
+          axis->MaxVelocity() < 1e15) {
+        leave("limits of velocity", one.name, one.offset);
+      }
+    }
+    out_.joints.push_back(std::move(one));
+  }
+
+  /// The name that the link has with us.
+  std::string known(const std::string& model, const std::string& link) const {
+    const auto found = names_.find(link_name(model, link));
+    return found == names_.end() ? link_name(model, link) : found->second;
+  }
+
+  void leave(const std::string& what, const std::string& name, std::size_t offset,
+             std::uint64_t count = 1) {
+    for (std::uint64_t i = 0; i < count; ++i) out_.left_out.add(what, name, offset);
+  }
+  void leave(const std::string& what, const std::string& name, const char* tag) {
+    leave(what, name, places_.of(tag, name));
+  }
+  void leave_children(const sdf::ElementPtr& element, const char* tag, const char* what) {
+    if (element == nullptr || !element->HasElement(tag)) return;
+    for (auto one = element->GetElement(tag); one != nullptr; one = one->GetNextElement(tag)) {
+      const auto name = one->HasAttribute("name") ? one->Get<std::string>("name") : std::string();
+      leave(what, name, tag);
+    }
+  }
+
+  const ImportInput& input_;
+  NamePlaces places_;
+  ImportedWorld& world_;
+  Eigen::Isometry3d X_WI_ = Eigen::Isometry3d::Identity();
+  Description out_;
+  std::map<std::string, std::string> names_;  // of links, by scoped name
+};
+
+}  // namespace
+
+bool reads_sdf() { return true; }
+
+ImportedWorld import_sdf(const ImportInput& input) {
+  ImportedWorld world;
+  const XmlOutline outline = outline_of(input.text);
+  world.fault = outline.fault;
+  if (world.fault) return world;
+  IncludeGate gate(input.folders);
+  world.fault = gate.check(outline);
+  world.files = gate.files();
+  if (world.fault) return world;
+  SdfReader(input, outline, world).run();
+  return world;
+}
+
+}  // namespace parallax::harness
+
+#endif

@@ -1,0 +1,329 @@
+// Worlds and robots in other formats, from their files to bodies that stand still.
+
+#include <algorithm>
+#include <numbers>
+
+#include "harness/engine/ode_world.h"
+#include "harness/import/import.h"
+#include "tests/harness/config/scenario_text.h"
+#include "tests/harness/world/hand_made.h"
+
+namespace parallax::harness::test {
+namespace {
+
+const std::filesystem::path kShipped = std::filesystem::path(PARALLAX_SOURCE_DIR) / "scenarios";
+
+/// A scenario with this under `world`.
+std::string scenario_with(const std::string& world) {
+  return "model: domain.e\nhorizon: 2\nworld:\n" + world + R"(
+regions: {gaps: allowed, cells: {here: {x: [0, 1]}}}
+mapping: {At(region): {inside: region, body: cup, drawn: false}}
+actions: {}
+)";
+}
+
+const std::string kCup = R"(  bodies:
+    cup: {size_m: [0.1, 0.1, 0.1], mass_kg: 0.2, position_m: [5, 5, 0.05]}
+)";
+
+struct Loaded {
+  explicit Loaded(const std::string& world) { scenario = workspace.load(scenario_with(world)); }
+  Workspace workspace;
+  std::optional<Scenario> scenario;
+  std::string first() const {
+    const auto all = workspace.reports();
+    return all.empty() ? std::string() : all.front();
+  }
+};
+
+const BodySpec& body(const WorldSpec& world, const std::string& name) {
+  const auto found = std::find_if(world.bodies.begin(), world.bodies.end(),
+                                  [&](const BodySpec& one) { return one.name == name; });
+  REQUIRE_MESSAGE(found != world.bodies.end(), name);
+  return *found;
+}
+
+const JointSpec& joint(const WorldSpec& world, const std::string& name) {
+  const auto found = std::find_if(world.joints.begin(), world.joints.end(),
+                                  [&](const JointSpec& one) { return one.name == name; });
+  REQUIRE_MESSAGE(found != world.joints.end(), name);
+  return *found;
+}
+
+std::vector<Eigen::Vector3d> places_after(OdeWorld& world, double time_s) {
+  const auto steps = std::lround(time_s / world.timestep_s());
+  for (long i = 0; i < steps; ++i) REQUIRE(world.step());
+  std::vector<Eigen::Vector3d> out;
+  for (std::size_t i = 0; i < world.layout().bodies.size(); ++i) {
+    out.push_back(world.position(world.layout().bodies.id_at(i)));
+  }
+  return out;
+}
+
+/// Nothing moves by more than this in ten seconds [m], and after the first of them, in which all
+/// sinks into the engine's surface layer of a millimetre, by no more than a fifth of one.
+void check_still(const WorldSpec& spec, double most_m) {
+  OdeWorld world(spec);
+  REQUIRE_FALSE(world.reset(default_placements(world.layout()), 1).has_value());
+  const auto before = places_after(world, 0.0), settled = places_after(world, 1.0),
+             after = places_after(world, 9.0);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    CAPTURE(world.layout().bodies[world.layout().bodies.id_at(i)].name);
+    CHECK((after[i] - before[i]).norm() < most_m);
+    CHECK((after[i] - settled[i]).norm() < 0.0002);
+  }
+}
+
+std::string file_in_scenarios(const Workspace& workspace, const std::string& name) {
+  std::filesystem::copy(kShipped / name,
+                        workspace.folder() / std::filesystem::path(name).filename(),
+                        std::filesystem::copy_options::recursive);
+  return std::filesystem::path(name).filename().string();
+}
+
+TEST_CASE("an office in SDF: includes, frames, a door on its hinge, and what is left out is said") {
+  if (!reads_sdf()) return;
+  Workspace workspace;
+  file_in_scenarios(workspace, "worlds/office.sdf");
+  file_in_scenarios(workspace, "worlds/models");
+  const auto scenario = workspace.load(scenario_with(
+      "  sdf: office.sdf\n  models: models\n"
+      "  bodies: {mug1: {settable: [x, y]}, cup: {size_m: [0.1, 0.1, 0.1], mass_kg: 0.2, "
+      "position_m: [5, 5, 0.05]}}\n"));
+  REQUIRE(scenario.has_value());
+  const WorldSpec& world = scenario->world;
+  CHECK(workspace.reports() ==
+        std::vector<std::string>{
+            "W5144 at 5:5: not taken over, 1 of them: lights; the first is `sun`",
+            "W5144 at 35:7: not taken over, 2 of them: visuals; the first is `door::leaf`"});
+  const BodySpec& mug = body(world, "mug1");
+  CHECK((mug.p_WB - Eigen::Vector3d(1.8, 0.8, 0.77)).norm() < 1e-9);
+  CHECK(mug.yaw_rad == doctest::Approx(0.5));
+  CHECK(mug.mass_kg == doctest::Approx(0.3));
+  CHECK(mug.shapes.front().form == ShapeForm::kCylinder);
+  CHECK(mug.settable == std::vector<std::string>{"x", "y"});
+  const JointSpec& hinge = joint(world, "door_hinge");
+  CHECK(hinge.type == JointType::kHinge);
+  CHECK((hinge.p_WA - Eigen::Vector3d(0.0, -0.445, 1.05)).norm() < 1e-9);
+  CHECK((hinge.axis_W - Eigen::Vector3d::UnitZ()).norm() < 1e-9);
+  CHECK(hinge.low_rad == 0.0);
+  CHECK(hinge.high_rad == 1.6);
+  CHECK(hinge.damping_nm_s == 2.0);
+  CHECK(hinge.max_torque_nm == 0.5);
+  const BodySpec& leaf = body(world, "door_leaf");
+  CHECK((leaf.p_WB - Eigen::Vector3d(0.0, -0.005, 1.05)).norm() < 1e-9);
+  CHECK(leaf.shapes[1].roll_rad == doctest::Approx(0.5 * std::numbers::pi));
+  CHECK(world.solver.gravity_m_s2 == doctest::Approx(-9.8));
+  CHECK(world.friction.pairs.at({"mu0.6", "mu0.8"}) == 0.6);
+  check_still(world, 0.001);
+
+  OdeWorld running(world);
+  REQUIRE_FALSE(running.reset(default_placements(running.layout()), 1).has_value());
+  const HingeId id = *running.layout().find_hinge("door_hinge");
+  running.set_hinge_motor(id, 1.0, 60.0);
+  for (int i = 0; i < 1500; ++i) REQUIRE(running.step());
+  CHECK(running.hinge_angle_rad(id) == doctest::Approx(1.6).epsilon(0.01));
+}
+
+TEST_CASE("a base on wheels in URDF stands still and keeps its tree") {
+  if (!reads_urdf()) return;
+  Workspace workspace;
+  file_in_scenarios(workspace, "robots/differential_drive.urdf");
+  const auto scenario = workspace.load(scenario_with(
+      "  urdf: {file: differential_drive.urdf, at_m: [1, 2, 0], yaw_rad: 0.5}\n" + kCup));
+  REQUIRE(scenario.has_value());
+  const WorldSpec& world = scenario->world;
+  CHECK(world.joints.size() == 3);  // the footprint and the camera became part of others
+  const double c = std::cos(0.5), s = std::sin(0.5);
+  const JointSpec& wheel = joint(world, "left_wheel_joint");
+  CHECK((wheel.p_WA - Eigen::Vector3d(1.0 + 0.06 * c - 0.18 * s, 2.0 + 0.06 * s + 0.18 * c, 0.1))
+            .norm() < 1e-9);
+  CHECK((wheel.axis_W - Eigen::Vector3d(-s, c, 0.0)).norm() < 1e-9);
+  CHECK_FALSE(wheel.high_rad.has_value());
+  CHECK(body(world, "mast").shapes.size() == 2);
+  check_still(world, 0.001);
+}
+
+TEST_CASE("the other worlds and robots that are shipped stand still for ten seconds") {
+  for (const char* name :
+       {"cafe.sdf", "storehouse.sdf", "six_joint_manipulator.urdf", "two_armed.urdf"}) {
+    const bool is_sdf = std::string_view(name).ends_with(".sdf");
+    if (!(is_sdf ? reads_sdf() : reads_urdf())) continue;
+    CAPTURE(name);
+    Workspace workspace;
+    file_in_scenarios(workspace, std::string(is_sdf ? "worlds/" : "robots/") + name);
+    if (is_sdf) file_in_scenarios(workspace, "worlds/models");
+    const auto scenario = workspace.load(scenario_with(
+        (is_sdf ? std::string("  models: models\n  sdf: ") : std::string("  urdf: ")) + name +
+        "\n" + kCup));
+    for (const auto& one : workspace.reports()) CHECK_MESSAGE(one.starts_with("W5144"), one);
+    REQUIRE(scenario.has_value());
+    check_still(scenario->world, is_sdf ? 0.001 : 0.002);
+  }
+}
+
+/// Turned as far as a strong motor takes them, up and down.
+void check_stops(const WorldSpec& spec) {
+  for (const double sign : {1.0, -1.0}) {
+    OdeWorld world(spec);
+    REQUIRE_FALSE(world.reset(default_placements(world.layout()), 1).has_value());
+    const auto& hinges = world.layout().hinges;
+    for (std::size_t i = 0; i < hinges.size(); ++i) {
+      const HingeId id = hinges.id_at(i);
+      if (hinges[id].low_rad) world.set_hinge_motor(id, sign, 200.0);
+    }
+    for (int i = 0; i < 2500; ++i) {
+      REQUIRE(world.step());
+      for (std::size_t k = 0; k < hinges.size(); ++k) {
+        const HingeId id = hinges.id_at(k);
+        if (!hinges[id].low_rad) continue;
+        CAPTURE(hinges[id].name);
+        REQUIRE(world.hinge_angle_rad(id) > *hinges[id].low_rad - 0.03);
+        REQUIRE(world.hinge_angle_rad(id) < *hinges[id].high_rad + 0.03);
+      }
+    }
+  }
+}
+
+TEST_CASE("the joints of an arm stop at their limits") {
+  if (!reads_urdf()) return;
+  Workspace workspace;
+  file_in_scenarios(workspace, "robots/six_joint_manipulator.urdf");
+  const auto scenario = workspace.load(scenario_with(
+      "  urdf: {file: six_joint_manipulator.urdf, fixed: true, at_m: [0, 0, 1]}\n" + kCup));
+  REQUIRE(scenario.has_value());
+  check_stops(scenario->world);
+}
+
+TEST_CASE("files that no reader may see are refused in one line, at their place") {
+  struct BadFile {
+    std::string text, report;
+  };
+  const std::string sdf = "<?xml version='1.0'?>\n<sdf version='1.9'><world name='w'>\n";
+  const std::string end = "</world></sdf>";
+  std::string deep, wide, many;
+  for (int i = 0; i < 1001; ++i) many += "<model/>\n";
+  for (int i = 0; i < 100000; ++i) deep += "<a>";
+  for (int i = 0; i < 30001; ++i) wide += "<a/>";
+  const auto with_uri = [&](const std::string& uri) {
+    return sdf + "<include><uri>" + uri + "</uri></include>" + end;
+  };
+  const auto with_link = [&](const std::string& inside) {
+    return sdf + "<model name='m'>\n<link name='l'>" + inside + "</link></model>" + end;
+  };
+  const std::string box =
+      "<collision name='c'><geometry><box><size>1 1 1</size></box></geometry></collision>";
+  const std::string at_2 = "E5143 at 2:";
+  for (const BadFile& one : std::vector<BadFile>{
+           {"<!DOCTYPE x [<!ENTITY a 'aa'>]><sdf/>",
+            "E5143 at 1:1: the file cannot be taken over: document types"},
+           {"<sdf><![CDATA[x]]></sdf>", "E5143 at 1:6: the file cannot be taken over: CDATA"},
+           {"<sdf>" + deep,
+            "E5143 at 1:195: the file cannot be taken over: elements nest deeper than 64"},
+           {"<sdf>" + wide + "</sdf>",
+            "E5143 at 1:120002: the file cannot be taken over: there are more than"},
+           {sdf + many + end,
+            "E5143 at 1003:1: the file cannot be taken over: there are more than 1000 models"},
+           {"<sdf a='<'/>", "E5143 at 1:8"},
+           {"<sdf><a></sdf>",
+            "E5143 at 1:9: the file cannot be taken over: `</sdf>` closes nothing"},
+           {"", "E5143 at 1:1: the file cannot be taken over: there is no XML element"},
+           {"<sdf version='1.9'/>", "E5143 at 1:1"},
+           {with_uri("model://../x"),
+            "E5143 at 3:10: the file cannot be taken over: `model://../x` is not included"},
+           {with_uri("/etc/passwd"), "E5143 at 3:10"},
+           {with_uri("file:///etc/passwd"), "E5143 at 3:10"},
+           {with_uri("model://a/&#46;&#46;/x"), "E5143 at 3:10"},
+           {with_uri("model://none"),
+            "E5143 at 3:10: the file cannot be taken over: `model://none` is in none of"},
+           {with_uri("model://out"),
+            "E5143 at 3:10: the file cannot be taken over: `model://out` leads through a link"},
+           {with_uri("model://ring"),
+            "E5143 at 3:10: the file cannot be taken over: in `model://ring`: `model://ring` "
+            "includes itself"},
+           {sdf +
+                "<model name='m'><pose relative_to='nowhere'>0 0 0 0 0 0</pose>\n<link "
+                "name='l'/></model>" +
+                end,
+            "E5143 at "},
+           {with_link("<inertial><mass>-1</mass></inertial>" + box), "E5143 at "},
+           {with_link("<inertial><mass>nan</mass></inertial>" + box), "E5143 at "},
+           {with_link("<inertial><mass>1e30</mass></inertial>" + box), "E5"},
+           {with_link("<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>9</izz></"
+                      "inertia></inertial>" +
+                      box),
+            "E5"},
+           {with_link("<collision name='c'><geometry><box><size>1 -1 "
+                      "1</size></box></geometry></collision>"),
+            "E5"},
+           {with_link(
+                "<collision "
+                "name='c'><geometry><sphere><radius>nan</radius></sphere></geometry></collision>"),
+            "E5"},
+       }) {
+    if (!reads_sdf()) return;
+    CAPTURE(one.text.substr(0, 300));
+    Workspace workspace;
+    workspace.write("world.sdf", one.text);
+    std::filesystem::create_directories(workspace.folder() / "models/ring");
+    std::filesystem::create_directory_symlink("/etc", workspace.folder() / "models/out");
+    workspace.write("models/ring/model.config", "<model><sdf>model.sdf</sdf></model>");
+    workspace.write("models/ring/model.sdf", with_uri("model://ring"));
+    CHECK_FALSE(
+        workspace.load(scenario_with("  sdf: world.sdf\n  models: models\n" + kCup)).has_value());
+    const auto reports = workspace.reports();
+    REQUIRE_FALSE(reports.empty());
+    CHECK(reports[0].substr(0, one.report.size()) == one.report);
+    CHECK(workspace.sink.exit_code() == 3);
+  }
+}
+
+TEST_CASE("a robot description that cannot be is refused at its link or joint") {
+  if (!reads_urdf()) return;
+  const std::string link =
+      "<link name='a'><inertial><mass value='1'/><inertia ixx='1' iyy='1' "
+      "izz='1' ixy='0' ixz='0' iyz='0'/></inertial><collision><geometry>"
+      "<box size='1 1 1'/></geometry></collision></link>\n";
+  const auto with = [&](const std::string& rest) {
+    return "<robot name='r'>\n" + link + rest + "</robot>";
+  };
+  const auto joint_of = [](const std::string& type, const std::string& rest) {
+    return "<link name='b'/>\n<joint name='j' type='" + type +
+           "'><parent link='a'/><child link='b'/>" + rest + "</joint>";
+  };
+  for (const auto& [text, report] : std::vector<std::pair<std::string, std::string>>{
+           {"<robot/>", "E5143 at 1:1"},
+           {"<robot name='r'></robot>", "E5143 at 1:1"},
+           {with("<link name='b'/>"), "E5143 at "},
+           {with("<joint name='j' type='fixed'><parent link='a'/><child link='a'/></joint>"),
+            "E5143 at "},
+           {with("<joint name='j' type='fixed'><parent link='a'/><child link='none'/></joint>"),
+            "E5143 at "},
+           {with(joint_of("continuous", "<axis xyz='0 0 1'/>")),
+            "E5143 at 3:1: the file cannot be taken over: the link `b` has no mass"},
+           {with(joint_of("revolute", "<axis xyz='0 0 1'/>")), "E5143 at "},
+       }) {
+    CAPTURE(text);
+    Workspace workspace;
+    workspace.write("robot.urdf", text);
+    CHECK_FALSE(workspace.load(scenario_with("  urdf: robot.urdf\n" + kCup)).has_value());
+    const auto reports = workspace.reports();
+    REQUIRE_FALSE(reports.empty());
+    CHECK(reports[0].substr(0, report.size()) == report);
+  }
+}
+
+TEST_CASE("a world is in one format, and its file where files may be") {
+  CHECK(Loaded("  sdf: a.sdf\n  urdf: b.urdf\n").first().starts_with("E5102"));
+  if (!reads_sdf()) {
+    CHECK(Loaded("  sdf: a.sdf\n").first() ==
+          "E5142 at 4:3: `sdf` cannot be read: this program was built without libsdformat-dev");
+    return;
+  }
+  CHECK(Loaded("  sdf: none.sdf\n").first().starts_with("E0001 at 4:8"));
+  CHECK(Loaded("  sdf: /etc/passwd\n").first().starts_with("E1016 at 4:8"));
+  CHECK(Loaded("  sdf: {fil: x}\n").first() == "E5106 at 4:3: `sdf` lacks the key `file`");
+}
+
+}  // namespace
+}  // namespace parallax::harness::test

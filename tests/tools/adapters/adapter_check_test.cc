@@ -1,0 +1,264 @@
+// `parallax adapter-check`: simulators that misbehave in one way each, and some that do not.
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "tests/tools/adapters/python_fixture.h"
+#include "tests/tools/cli_json.h"
+
+namespace parallax::test {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A simulator that shares no code with the adapter: a box that is pushed, with noise of the seed.
+/// What stands in the place of `# FAULT` changes an answer before it is sent; `reply` is what is.
+constexpr const char* kPlainSimulator = R"(import json, os, random, sys, time
+PARAMS = [{"name": "box.x", "unit": "m", "settable": True, "lower": -5, "upper": 5},
+          {"name": "box.yaw", "unit": "rad"}, {"name": "box.held", "unit": "1"}]
+HELLO = {"protocol": 1, "name": "plain", "version": "1", "determinism": "bitwise", "seeds": True,
+         "time_step": 0.01, "capabilities": ["noise"], "params": PARAMS,
+         "actions": [{"name": "push", "args": [{"name": "by", "unit": "m", "required": True,
+                                                "example": 1}]}]}
+state, rng, resets, finite = {}, random.Random(), 0, True
+def outcome(status, sim_time=0.0): return {"status": status, "sim_time": sim_time}
+def answer(method, params):
+    if method == "hello": return HELLO
+    if method == "reset":
+        start = params["state"]
+        if any(name != "box.x" or not isinstance(x, (int, float)) for name, x in start.items()):
+            return outcome("unsupported")
+        x = start.get("box.x", 0.0)
+        if not -5 <= x <= 5: return outcome("invalid_start")
+        rng.seed(params["seed"])
+        state.update({"box.x": float(x), "box.yaw": 0.0, "box.held": False})
+        return outcome("ok")
+    if method == "act":
+        if params["action"] != "push" or list(params["args"]) != ["by"]: return outcome("unsupported")
+        if params["sim_time_limit"] < 2: return outcome("truncated", params["sim_time_limit"])
+        state["box.x"] += params["args"]["by"] + rng.gauss(0, 0.01)
+        return outcome("ok", 2.0)
+    if method == "observe": return {"state": state}
+    return outcome("ok")
+def run():
+    for line in sys.stdin:
+        request = json.loads(line)
+        method, params = request["method"], request.get("params", {})
+        if method not in ("hello", "reset", "act", "observe", "close"):
+            reply = {"id": request["id"], "error": {"code": -32601, "message": "no such method"}}
+        else:
+            result = json.loads(json.dumps(answer(method, params)))
+            result = changed(method, params, result)
+            reply = {"id": request["id"], "result": result}
+        print(json.dumps(reply), flush=True)
+        if method == "close": break
+memory = {"resets": 0}
+def changed(method, params, result):
+    if method == "reset": memory["resets"] += 1
+    # FAULT
+    return result
+run()
+)";
+
+std::string simulator_with(const std::string& fault) {
+  std::string text = kPlainSimulator;
+  const std::string mark = "# FAULT";
+  return text.replace(text.find(mark), mark.size(), fault);
+}
+
+struct Misbehaviour {
+  const char* name;
+  const char* fault;  // Python, in `changed`
+  const char* check;  // that has to find it
+  const char* words;  // of the finding
+};
+
+constexpr Misbehaviour kMisbehaviours[] = {
+    {"starts elsewhere",
+     "if method == 'reset' and result['status'] == 'ok': state['box.x'] += 0.25", "reset",
+     "the start asks for `box.x`"},
+    {"keeps something of the run before",
+     "if method == 'act' and result['status'] == 'ok': state['box.x'] += 0.1 * memory['resets']",
+     "determinism", "in one process, after another run"},
+    {"has randomness of its own",
+     "if method == 'act' and result['status'] == 'ok': state['box.x'] += random.random()", "seeds",
+     "the same one gives other results"},
+    {"ignores the seed it says to use", "if method == 'reset': rng.seed(1)", "seeds",
+     "four seeds give the same result"},
+    {"takes any start", "if method == 'reset': result['status'] = 'ok'", "invalid start",
+     "a variable that there is not is taken"},
+    {"calls an unknown action a failure",
+     "if method == 'act' and result['status'] == 'unsupported': result['status'] = 'failed'",
+     "unknown", "an unknown action is failed instead of unsupported"},
+    {"runs on beyond the limit",
+     "if method == 'act' and result['status'] == 'truncated': result.update(status='ok', "
+     "sim_time=2.0)",
+     "time limit", "ran 2 s with a limit of 1 s"},
+    {"writes to standard output", "if method == 'act': print('Loading plugin...')", "actions",
+     "malformed reply to `act`: the line is not JSON: `Loading plugin...`"},
+    {"says NaN",
+     "if method == 'observe' and memory['resets'] > 1: result['state']['box.x'] = float('nan')",
+     "reset", "NaN and Infinity are no JSON"},
+    {"hangs", "if method == 'act': time.sleep(600)", "actions", "no reply to `act` within"},
+    {"counts in degrees", "if method == 'observe': result['state']['box.yaw'] = 90.0", "units",
+     "are these degrees?"},
+    {"dies at its third reset", "if memory['resets'] == 3: os._exit(3)", "reset",
+     "it ended during `reset` (exit status 3)"},
+    {"stays when it is left alone",
+     "if method == 'hello': import atexit; atexit.register(time.sleep, 600)", "end",
+     "it does not end within"},
+    {"lives on in simulated time between requests",
+     "if method == 'observe': state['box.x'] += 0.01", "reset", "time passes between requests"},
+    {"works alone only",
+     "if method == 'hello' and os.path.exists('lock'): os._exit(4)\n"
+     "    if method == 'hello': open('lock', 'w').close()\n"
+     "    if method == 'close': os.remove('lock')",
+     "determinism", "a second process beside the first one does not work"},
+    {"answers with the wrong number",
+     "if method == 'act': print(json.dumps({'id': 999, 'result': {}}))", "actions",
+     "carries id 999"},
+    {"says a status of its own", "if method == 'act': result['status'] = 'done'", "actions",
+     "no status `done`"},
+    {"does not observe what it declares", "if method == 'observe': del result['state']['box.yaw']",
+     "reset", "`box.yaw` is declared and not observed"},
+    {"claims to be fast",
+     "if method == 'hello': result['min_real_time_factor'] = 100\n"
+     "    if method == 'act': time.sleep(0.1)",
+     "timing", "says 100 at least"},
+    {"names millimetres", "if method == 'hello': result['params'][0]['unit'] = 'mm'", "units",
+     "`box.x` is in `mm`"},
+    {"floods", "if method == 'act': sys.stdout.write('x' * 3000000); sys.stdout.flush()", "actions",
+     "is longer than"},
+    {"changes kinds",
+     "if method == 'act': state['box.held'] = 1\n"
+     "    if method == 'reset': state['box.held'] = False",
+     "actions", "now a boolean or text, now a number"}};
+
+std::vector<std::string> check_command(const std::string& file, const char* limit_s = "30") {
+  return {"adapter-check", "--request-limit", limit_s, "--", "python3", "-B", file};
+}
+
+TEST_CASE("each fault is named by the check that is about it") {
+  if (skipped_without_python()) return;
+  for (const auto& one : kMisbehaviours) {
+    CAPTURE(one.name);
+    const CliFixture cli;
+    cli.write("bad.py", simulator_with(one.fault));
+    auto words = check_command("bad.py", "3");
+    words.insert(words.begin() + 1, "--json");
+    const auto result = cli.parallax(words);
+    CAPTURE(result.out);
+    CAPTURE(result.err);
+    CHECK(result.code == 1);
+    REQUIRE(Json::accept(result.out));
+    bool is_named = false;
+    const auto report = Json::parse(result.out);
+    for (const auto& finding : report.at("findings")) {
+      is_named =
+          is_named || (finding.at("severity") == "fault" && finding.at("check") == one.check &&
+                       finding.at("text").get<std::string>().find(one.words) != std::string::npos);
+    }
+    CHECK(is_named);
+  }
+}
+
+TEST_CASE("simulators without a fault are said to have none, and what they support") {
+  if (skipped_without_python()) return;
+  const PythonFixture python;
+  python.write("good.py", simulator_with("pass"));
+  for (const auto* file : {"good.py", "kinematic_2d.py"}) {
+    CAPTURE(file);
+    auto words = check_command(file);
+    words.insert(words.begin() + 1, "--json");
+    const auto result = python.parallax(words);
+    CAPTURE(result.out);
+    CHECK(result.code == 0);
+    const auto report = Json::parse(result.out);
+    CHECK(report.at("findings") == Json::array());
+    CHECK(report.at("complete") == true);
+    CHECK(report.at("checks").size() == 11);
+    for (const auto& check : report.at("checks")) CHECK(check.at("state") == "ok");
+    CHECK(report.at("measured").at("determinism") == "bitwise");
+    CHECK(report.at("measured").at("largest_start_deviation") == 0.0);
+    CHECK(report.at("claims").at("replay") == "bitwise");
+    CHECK(report.at("claims").at("several_jobs") == "yes");
+  }
+  const auto text = python.parallax(check_command("good.py"));
+  CHECK(text.out.find("no fault, 0 warnings") != std::string::npos);
+}
+
+TEST_CASE("the built-in simulator keeps the protocol, too") {
+  const CliFixture cli;
+  const auto program = std::string(PARALLAX_PROGRAM);
+  const auto result = cli.parallax(
+      {"adapter-check", "--scenario", "scenario.yaml", "--", program, "worker", "scenario.yaml"});
+  CAPTURE(result.out);
+  CAPTURE(result.err);
+  CHECK(result.code == 0);
+  CHECK(result.out.find("largest deviation 0") != std::string::npos);
+}
+
+TEST_CASE("a simulator is held against a scenario") {
+  if (skipped_without_python()) return;
+  const PythonFixture python;
+  const auto fits = python.parallax({"adapter-check", "--scenario", "kinematic_2d.yaml"});
+  CAPTURE(fits.out);
+  CHECK(fits.code == 0);
+  CHECK(fits.err.find("starting `python3 kinematic_2d.py`, as kinematic_2d.yaml:5 says") !=
+        std::string::npos);
+  python.replace("kinematic_2d.yaml", "body: crate, unless", "body: crat, unless");
+  const auto odd = python.parallax({"adapter-check", "--scenario", "kinematic_2d.yaml"});
+  CAPTURE(odd.err);
+  CHECK(odd.code == 3);
+  CHECK(odd.err.find("error[E5115]") != std::string::npos);
+}
+
+bool is_there(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  std::string text;
+  std::getline(file, text);
+  const auto end = text.rfind(") ");
+  return end != std::string::npos && text[end + 2] != 'Z' && text[end + 2] != 'X';
+}
+
+TEST_CASE("nothing that a simulator starts is left behind") {
+  if (skipped_without_python()) return;
+  const CliFixture cli;
+  cli.write("forks.py",
+            simulator_with("if method == 'hello' and os.fork() == 0:\n"
+                           "        os.setsid()\n"
+                           "        print(os.getpid(), file=open('pids', 'a'), flush=True)\n"
+                           "        time.sleep(600)\n"));
+  CHECK(cli.parallax(check_command("forks.py")).code == 0);
+  std::ifstream pids(cli.folder() / "pids");
+  int count = 0;
+  for (pid_t pid = 0; pids >> pid; ++count) {
+    for (int wait = 0; is_there(pid) && wait < 500; ++wait) ::usleep(10'000);
+    CHECK_FALSE(is_there(pid));
+    if (is_there(pid)) ::kill(pid, SIGKILL);
+  }
+  CHECK(count >= 1);  // others may end before they have written
+}
+
+TEST_CASE("a command line that asks for nothing, or for what there is not") {
+  const CliFixture cli;
+  const auto code = [&](const std::vector<std::string>& words) { return cli.parallax(words).code; };
+  CHECK(code({"adapter-check"}) == 2);
+  CHECK(code({"adapter-check", "--scenario", "scenario.yaml"}) == 2);  // it names no command
+  CHECK(code({"adapter-check", "--act", "push by", "--", "true"}) == 2);
+  CHECK(code({"adapter-check", "--act", " ", "--", "true"}) == 2);
+  CHECK(code({"adapter-check", "--scenario", "nothing.yaml"}) == 2);
+  const auto silent = cli.parallax({"adapter-check", "--", "true"});
+  CHECK(silent.code == 1);
+  CHECK(silent.out.find("it ended during `hello` (exit status 0)") != std::string::npos);
+  const auto absent = cli.parallax({"adapter-check", "--", "no-such-program"});
+  CHECK(absent.code == 1);
+  CHECK(absent.out.find("cannot start `no-such-program`") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace parallax::test

@@ -1,0 +1,27 @@
+# cmake -DOUTPUT=templates.cc -DFOLDER=templates -P embed.cmake
+# Writes C++ that holds the templates as raw string literals, in pieces that every compiler takes.
+cmake_policy(SET CMP0053 NEW)  # @names@ are replaced by file(CONFIGURE) alone
+file(GLOB_RECURSE files RELATIVE ${FOLDER} ${FOLDER}/*)
+list(SORT files)
+set(rows "")
+foreach(name ${files})
+  file(READ ${FOLDER}/${name} text HEX)  # as text, semicolons and brackets would be lists
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "\\\\x\\1" text "${text}")
+  string(REGEX REPLACE "\\\\x0a" "\\\\n\"\n     \"" text "${text}")
+  string(APPEND rows "    {\"${name}\",\n     \"${text}\"},\n")
+endforeach()
+file(WRITE ${OUTPUT} "// Made by tools/scaffold/embed.cmake.
+#include \"tools/scaffold/templates.h\"
+
+namespace parallax::tools {
+namespace {
+
+const TemplateFile kTemplates[] = {
+${rows}};
+
+}  // namespace
+
+std::span<const TemplateFile> template_files() { return kTemplates; }
+
+}  // namespace parallax::tools
+")
