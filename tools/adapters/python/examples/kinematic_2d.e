@@ -13,12 +13,10 @@ event PickUp()
 event Place(room)
 
 [time] {room} HoldsAt(RobotIn(room),time).
-[room1,room2,time]
-  HoldsAt(RobotIn(room1),time) & HoldsAt(RobotIn(room2),time) -> room1=room2.
+[room1,room2,time] HoldsAt(RobotIn(room1),time) & HoldsAt(RobotIn(room2),time) -> room1=room2.
 [time] HoldsAt(Holding(),time) | {room} HoldsAt(CrateIn(room),time).
 [room,time] HoldsAt(Holding(),time) -> !HoldsAt(CrateIn(room),time).
-[room1,room2,time]
-  HoldsAt(CrateIn(room1),time) & HoldsAt(CrateIn(room2),time) -> room1=room2.
+[room1,room2,time] HoldsAt(CrateIn(room1),time) & HoldsAt(CrateIn(room2),time) -> room1=room2.
 
 [room,time] Initiates(Go(room),RobotIn(room),time).
 [room1,room2,time] room1!=room2 -> Terminates(Go(room1),RobotIn(room2),time).
@@ -33,8 +31,7 @@ event Place(room)
   HoldsAt(Holding(),time) & HoldsAt(RobotIn(room),time) ->
     Initiates(Place(room),CrateIn(room),time).
 [room,time]
-  HoldsAt(Holding(),time) & HoldsAt(RobotIn(room),time) ->
-    Terminates(Place(room),Holding(),time).
+  HoldsAt(Holding(),time) & HoldsAt(RobotIn(room),time) -> Terminates(Place(room),Holding(),time).
 
 HoldsAt(RobotIn(front),0).
 HoldsAt(CrateIn(back),0).
