@@ -200,8 +200,10 @@ class Assembler {
   void add_friction() {
     for (const double a : frictions_) {
       for (const double b : frictions_) {
-        const auto pair = std::minmax(material_of(a), material_of(b));
-        world_.friction.pairs[{pair.first, pair.second}] = std::min(a, b);
+        // By value: the references of std::minmax do not outlive its arguments.
+        const std::pair<std::string, std::string> pair =
+            std::minmax({material_of(a), material_of(b)});
+        world_.friction.pairs[pair] = std::min(a, b);
       }
     }
   }
