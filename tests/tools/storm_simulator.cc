@@ -78,11 +78,14 @@ void misbehave(const std::string& kind, const char* log) {
     hang();
   }
   if (kind == "orphan") {
-    if (::fork() == 0) {
+    const pid_t child = ::fork();
+    if (child == 0) {
       ::setsid();
-      note(log, "process " + std::to_string(::getpid()));
       hang();
     }
+    // Who is ended before it left the group was never an orphan: wait until it has left.
+    while (::getsid(child) != child) ::usleep(100);
+    note(log, "process " + std::to_string(child));
     ::_exit(9);
   }
 }
