@@ -21,15 +21,64 @@ TemporalEncoder::TemporalEncoder(const StateConstraint& formula, std::uint32_t o
 std::optional<TemporalEncoder::Values> TemporalEncoder::fulfilled() {
   auto root = tree_.add(formula_.formula.formula, false);
   if (!root) return std::nullopt;
-  if (tree_[*root].looks_on) root = tree_.looking_back(*root).value_or(*root);
   if (!settle(*root)) return std::nullopt;
-  if (!tree_[*root].looks_on) return nodes_[*root].ends;
-  // What is nested about later timepoints is another formula for each end.
+  return tree_[*root].looks_on ? fulfilled(*root) : nodes_[*root].ends;
+}
+
+/// By n, of the trace from 0 to n: the node at 0.
+std::optional<TemporalEncoder::Values> TemporalEncoder::fulfilled(Number part) {
+  const auto node = tree_[part];
+  const auto size = static_cast<std::size_t>(model_.horizon()) + 1;
+  if (node.looks_on && node.kind >= Kind::kAnd && node.kind <= Kind::kAny) {
+    std::vector<Values> children;
+    for (const auto child : node.children) {
+      auto values = fulfilled(child);
+      if (!values) return std::nullopt;
+      children.push_back(*std::move(values));
+    }
+    Values out;
+    for (std::size_t n = 0; n < size; ++n) {
+      std::vector<Value> parts;
+      for (const auto& child : children) parts.push_back(child[n]);
+      out.push_back(junction(part, parts));
+    }
+    return out;
+  }
+  if (const auto back = tree_.looking_back(part)) {
+    if (!settle(*back)) return std::nullopt;
+    return nodes_[*back].ends;
+  }
+  if (!settle(part)) return std::nullopt;
+  if (auto values = by_automaton(part)) return values;
+  // Another formula for each end.
   Values out;
   for (Timepoint n = 0; n <= model_.horizon(); ++n) {
     const View view{n, nullptr, nullptr};
     settle_future(view);
-    out.push_back(any(*root, 0, view));
+    out.push_back(any(part, 0, view));
+  }
+  return out;
+}
+
+/// The smaller one of those of the formula and of its negation. None: both are larger than one
+/// formula for each end is, and than what is small in any case.
+std::optional<TemporalEncoder::Values> TemporalEncoder::by_automaton(Number part) {
+  constexpr std::size_t kSmall = 64;  // steps for each timepoint
+  const auto size = static_cast<std::size_t>(model_.horizon()) + 1;
+  const auto operators = static_cast<std::size_t>(std::count_if(
+      wanted_.begin(), wanted_.end(), [&](Number number) { return tree_[number].looks_on; }));
+  auto most = size * std::max(operators * size / 2, kSmall);
+  TemporalAutomaton straight(tree_, nodes_, formulas_, model_.horizon());
+  TemporalAutomaton opposite(tree_, nodes_, formulas_, model_.horizon());
+  const bool has_straight = straight.build(part, false, most);
+  if (has_straight) most = straight.size() > 0 ? straight.size() - 1 : 0;
+  const bool has_opposite = opposite.build(part, true, most);
+  if (!has_straight && !has_opposite) return std::nullopt;
+  const auto name = [&](FormulaId formula) { return *named(formula); };
+  if (!has_opposite) return straight.values(name);
+  auto out = opposite.values(name);
+  for (auto& value : out) {
+    if (value) value = ~*value;
   }
   return out;
 }
@@ -53,7 +102,7 @@ base::Status TemporalEncoder::require_violation(const std::vector<FormulaId>& hi
 
 /// Works out all that does not depend on where traces end, but for the end itself.
 bool TemporalEncoder::settle(Number root) {
-  nodes_.assign(tree_.size(), {});
+  nodes_.resize(tree_.size());
   std::set<Number> wanted;
   std::vector<Number> todo = {root};
   while (!todo.empty()) {
@@ -65,6 +114,7 @@ bool TemporalEncoder::settle(Number root) {
   }
   wanted_.assign(wanted.begin(), wanted.end());
   for (const auto number : wanted_) {
+    if (!nodes_[number].ends.empty()) continue;
     if (tree_[number].kind == Kind::kLeaf) {
       if (!settle_leaf(number)) return false;
     } else if (!tree_[number].looks_on) {

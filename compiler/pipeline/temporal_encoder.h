@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compiler/pipeline/state_constraint.h"
+#include "compiler/pipeline/temporal_automaton.h"
 #include "compiler/pipeline/temporal_tree.h"
 
 namespace parallax::compiler {
@@ -24,8 +25,8 @@ class TemporalEncoder {
   TemporalEncoder(const StateConstraint& formula, std::uint32_t origin, GroundModel& model,
                   FormulaGrounder& grounder, base::DiagnosticSink& sink);
 
-  using Value = std::optional<FormulaId>;
-  using Values = std::vector<Value>;  // by timepoint
+  using Value = TemporalValues::Value;
+  using Values = TemporalValues::Values;
 
   /// By n: the trace from 0 to n fulfils the formula, at its last timepoint if the formula only
   /// looks back, else at its first; none where it names what does not exist. None: reported.
@@ -41,11 +42,7 @@ class TemporalEncoder {
  private:
   using Kind = TemporalTree::Kind;
   using Number = TemporalTree::Number;
-  struct Node {
-    Values ends;     // of traces that end here
-    Values surely;   // of those that may end or go on: whatever happens here
-    Values goes_on;  // up to the timepoint before the horizon
-  };
+  using Node = TemporalValues;
   /// Which traces are spoken of.
   struct View {
     Timepoint last = 0;
@@ -54,6 +51,8 @@ class TemporalEncoder {
     const std::vector<FormulaId>* complete = nullptr;  // beside `hit`
   };
 
+  std::optional<Values> fulfilled(Number part);
+  std::optional<Values> by_automaton(Number part);
   bool settle(Number root);
   bool settle_leaf(Number number);
   bool looks_ahead(FormulaId formula, Timepoint t) const;

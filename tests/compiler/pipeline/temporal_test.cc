@@ -92,6 +92,22 @@ TemporalFormula temporal_formula(FuzzRandom& random) {
   }
 }
 
+bool nests_later(const TemporalFormula& formula) {
+  static const std::vector<std::string> kLater = {"always", "eventually", "next", "weak_next",
+                                                  "until"};
+  const bool later = std::find(kLater.begin(), kLater.end(), formula.op) != kLater.end();
+  return std::any_of(formula.parts.begin(), formula.parts.end(),
+                     [&](const auto& part) { return later ? part.looks_on() : nests_later(part); });
+}
+
+/// Operators about later timepoints within each other.
+TemporalFormula nested_formula(FuzzRandom& random) {
+  for (;;) {
+    auto formula = random_temporal(random, 2 + static_cast<int>(random.below(3)));
+    if (nests_later(formula)) return formula;
+  }
+}
+
 TEST_CASE("a property is violated where some trace is, and the trace that is given violates it") {
   FuzzRandom random(22);
   int violated = 0, held = 0, early = 0;
@@ -170,8 +186,8 @@ TEST_CASE("traces end where a temporal constraint holds for the first time") {
     CAPTURE(model);
     std::vector<std::vector<Valuation>> by_length;
     for (int n = 0; n <= kHorizon; ++n) by_length.push_back(all_traces(model, n));
-    for (int i = 0; i < 6; ++i) {
-      const auto formula = temporal_formula(random);
+    for (int i = 0; i < 16; ++i) {
+      const auto formula = i < 6 ? temporal_formula(random) : nested_formula(random);
       const auto text = formula.print();
       CAPTURE(text);
       const Compiled compiled(model, kHorizon, text);
@@ -258,6 +274,29 @@ TEST_CASE("the encoding grows with the horizon, not with its square") {
     CAPTURE(property);
     const auto small = clauses(50, property), large = clauses(200, property);
     CHECK(large < 4.5 * small);
+  }
+}
+
+TEST_CASE("constraints that nest operators grow with the horizon") {
+  const std::string model =
+      "sort thing\nthing A, B, C\nfluent F(thing)\nfluent G(thing)\nevent E()\n"
+      "[time] Initiates(E(),F(A),time).\n";
+  const auto clauses = [&](int horizon, const std::string& goal) {
+    const Compiled compiled(model, horizon, goal);
+    REQUIRE(compiled.result);
+    return static_cast<double>(compiled.result->model.clauses.size());
+  };
+  for (const std::string goal :
+       {"always (HoldsAt(F(A),time) -> eventually HoldsAt(G(A),time))",
+        "eventually (HoldsAt(F(A),time) & next (HoldsAt(F(B),time) until HoldsAt(G(A),time)))",
+        "[thing] always (HoldsAt(F(thing),time) -> next eventually HoldsAt(G(thing),time))",
+        "always (once HoldsAt(F(A),time) -> HoldsAt(F(B),time) until always HoldsAt(G(A),time))"}) {
+    CAPTURE(goal);
+    const auto small = clauses(100, goal), middle = clauses(200, goal), large = clauses(400, goal);
+    CAPTURE(small);
+    CAPTURE(middle);
+    CAPTURE(large);
+    CHECK(large - middle < 2.02 * (middle - small));
   }
 }
 
