@@ -24,6 +24,8 @@ ImportedWorld import_urdf(const ImportInput& /*input*/) {
 #include <algorithm>
 #include <limits>
 
+#include "harness/import/urdf_tree.h"
+
 namespace parallax::harness {
 namespace {
 
@@ -227,7 +229,7 @@ bool reads_urdf() { return true; }
 ImportedWorld import_urdf(const ImportInput& input) {
   ImportedWorld world;
   const XmlOutline outline = outline_of(input.text);
-  world.fault = outline.fault;
+  world.fault = outline.fault ? outline.fault : tree_fault(outline);
   if (world.fault) return world;
   UrdfReader(input, outline, world).run();
   return world;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 namespace parallax::harness {
 namespace {
 
@@ -86,6 +88,7 @@ class OutlineReader {
     element.tag = word();
     if (!open_.empty()) element.parent = open_.back();
     if (element.tag.empty()) return fail(start, "a `<` begins no tag");
+    std::set<std::string_view> names;
     for (;;) {
       skip_spaces();
       if (here(">") || here("/>")) break;
@@ -99,7 +102,9 @@ class OutlineReader {
       if (end == text_.npos) return fail(start, "the value of an attribute is not well formed");
       const auto value = text_.substr(at_ + 1, end - at_ - 1);
       if (value.find('<') != value.npos) return fail(at_, "the value of an attribute holds a `<`");
+      if (!names.insert(name).second) return fail(at_, "an attribute is given twice");
       if (name == "name") element.name = value;
+      if (name == "link") element.link = value;
       at_ = end + 1;
     }
     if (out_.elements.size() == kMaxImportElements) {

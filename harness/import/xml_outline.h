@@ -17,6 +17,7 @@ inline constexpr std::size_t kMaxImportParts = 1'000;
 struct XmlElement {
   std::string_view tag;
   std::string_view name;              // its attribute of that name, as written
+  std::string_view link;              // its attribute of that name, as written
   std::string_view text;              // what is between its tags, as written
   std::size_t offset = 0;             // of its tag in the text
   std::optional<std::size_t> parent;  // number of the element around it

@@ -291,6 +291,10 @@ TEST_CASE("a robot description that cannot be is refused at its link or joint") 
     return "<link name='b'/>\n<joint name='j' type='" + type +
            "'><parent link='a'/><child link='b'/>" + rest + "</joint>";
   };
+  const auto edge = [](const std::string& parent, const std::string& child) {
+    return "<joint name='" + parent + child + "' type='fixed'><parent link='" + parent +
+           "'/><child link='" + child + "'/></joint>\n";
+  };
   for (const auto& [text, report] : std::vector<std::pair<std::string, std::string>>{
            {"<robot/>", "E5143 at 1:1"},
            {"<robot name='r'></robot>", "E5143 at 1:1"},
@@ -302,6 +306,17 @@ TEST_CASE("a robot description that cannot be is refused at its link or joint") 
            {with(joint_of("continuous", "<axis xyz='0 0 1'/>")),
             "E5143 at 3:1: the file cannot be taken over: the link `b` has no mass"},
            {with(joint_of("revolute", "<axis xyz='0 0 1'/>")), "E5143 at "},
+           {with("<link name='b'/><link name='c'/>\n" + edge("a", "b") + edge("b", "c") +
+                 edge("c", "b")),
+            "E5143 at 6:1: the file cannot be taken over: the link `b` hangs on two joints"},
+           {with("<link name='b'/><link name='c'/>\n" + edge("b", "c") + edge("c", "b")),
+            "E5143 at 5:1: the file cannot be taken over: the link `b` hangs on itself"},
+           {with("<link name='b'/>\n" + edge("a", "&#98;") + edge("b", "b")),
+            "E5143 at 4:53: the file cannot be taken over: the name of a link holds a `&`"},
+           {with("<link name='b'/>\n<joint name='j' type='fixed'><parent link='a'/>"
+                 "<child link='b'/><child link='a'/></joint>"),
+            "E5143 at 4:65: the file cannot be taken over: the joint `j` has two elements <child>"},
+           {with("<link name='b' name='c'/>"), "E5143 at 3:"},
        }) {
     CAPTURE(text);
     Workspace workspace;
