@@ -31,9 +31,17 @@ Kind dual(Kind kind) {
       return Kind::kRelease;
     case Kind::kRelease:
       return Kind::kUntil;
-    default:
-      return kind;
+    case Kind::kLeaf:
+    case Kind::kHistorically:
+    case Kind::kOnce:
+    case Kind::kPreviously:
+    case Kind::kWeakPreviously:
+    case Kind::kSince:
+    case Kind::kTriggered:
+    case Kind::kAtStart:
+      return kind;  // a leaf here, whose value is negated
   }
+  return kind;
 }
 
 bool is_junction(Kind kind) { return kind >= Kind::kAnd && kind <= Kind::kAny; }
