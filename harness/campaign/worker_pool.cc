@@ -1,6 +1,6 @@
 #include "harness/campaign/worker_pool.h"
 
-#include <chrono>
+#include <algorithm>
 #include <system_error>
 
 #include "compiler/base/contract.h"
@@ -9,6 +9,11 @@ namespace parallax::harness {
 namespace {
 
 constexpr auto kStopSlice = std::chrono::milliseconds(50);  // how late the stop flag may be seen
+
+// A simulation is also given to somebody else when it has taken so much longer than others did on
+// average. A run is rarely that long by itself; the second worker had nothing to do.
+constexpr double kStragglerFactor = 2.0;
+constexpr std::chrono::duration<double> kStragglerLeast{0.1};
 
 }  // namespace
 
@@ -39,6 +44,7 @@ void WorkerPool::close() {
     // Under the lock, or a worker that has just found it false would sleep through the call.
     const std::lock_guard lock(mutex_);
     closing_ = true;
+    for (auto* remote : remotes_) remote->interrupt();
   }
   changed_.notify_all();
   for (auto& thread : threads_) thread.join();
@@ -50,6 +56,7 @@ void WorkerPool::abandon() {
   ++generation_;
   queue_.clear();
   results_.clear();
+  under_way_.clear();
 }
 
 void WorkerPool::submit(Job job) {
@@ -62,12 +69,12 @@ void WorkerPool::submit(Job job) {
 }
 
 void WorkerPool::submit(std::shared_ptr<const SampleMaker> maker, std::int64_t sample) {
-  submit(Job{std::move(maker), sample, std::nullopt, 0});
+  submit(Job{std::move(maker), sample, std::nullopt});
 }
 
 void WorkerPool::submit_repeat(std::shared_ptr<const SampleMaker> maker, SampleRecord record) {
   const auto sample = record.sample;
-  submit(Job{std::move(maker), sample, std::move(record), 0});
+  submit(Job{std::move(maker), sample, std::move(record)});
 }
 
 /// The flag is raised by a signal handler, which cannot notify; so it is looked at now and then.
@@ -103,15 +110,31 @@ void WorkerPool::work(std::size_t worker) {
   try {
     std::unique_ptr<Simulator> simulator;
     // One worker starts at once to say who it is; the others wait until there is something to do.
+    // Of those that are elsewhere all start: any of them may be slow, or never come.
     if (worker == 0) {
       simulator = make_simulator_();
       PARALLAX_REQUIRE(simulator != nullptr, "the factory makes a simulator");
-      auto info = simulator->info();
+      std::optional<SimulatorInfo> info;
+      if (simulator->remote() == nullptr) info = simulator->info();
       const std::lock_guard lock(mutex_);
+      elsewhere_ = !info;
       info_ = std::move(info);
+    } else {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return closing_ || elsewhere_ || !queue_.empty(); });
+      if (closing_) return;
+      if (elsewhere_) {
+        lock.unlock();
+        simulator = make_simulator_();
+        PARALLAX_REQUIRE(simulator != nullptr, "the factory makes a simulator");
+      }
     }
     changed_.notify_all();
-    serve_jobs(simulator.get());
+    if (simulator && simulator->remote() != nullptr) {
+      serve_elsewhere(*simulator);
+    } else {
+      serve_jobs(simulator.get());
+    }
   } catch (...) {
     const std::lock_guard lock(mutex_);
     if (!thrown_) thrown_ = std::current_exception();
@@ -125,25 +148,114 @@ void WorkerPool::serve_jobs(Simulator* simulator) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return closing_ || !queue_.empty(); });
     if (closing_) return;
-    const Job job = std::move(queue_.front());
-    queue_.pop_front();
+    const Job job = *take_job();
     lock.unlock();
     if (simulator == nullptr) {
       own = make_simulator_();
       PARALLAX_REQUIRE(own != nullptr, "the factory makes a simulator");
       simulator = own.get();
     }
-    MotionTap tap(*simulator, static_cast<bool>(moved_));
-    simulate(job, tap);
+    simulate(job, *simulator);
   }
 }
 
-void WorkerPool::simulate(const Job& job, MotionTap& simulator) {
-  const auto abandoned = [&] { return closing_ || generation_ != job.generation || stopped(); };
-  auto record = job.repeat ? job.maker->repeat(*job.repeat, simulator, abandoned)
-                           : job.maker->make(job.sample, simulator, abandoned);
-  if (!record) return;
-  if (moved_) moved_(*record, simulator.log());
+void WorkerPool::serve_elsewhere(Simulator& simulator) {
+  auto& remote = *simulator.remote();
+  {
+    const std::lock_guard lock(mutex_);
+    remotes_.insert(&remote);
+    if (closing_) remote.interrupt();
+  }
+  // A job is taken when a worker is there to do it, and by nobody who still waits for one.
+  while (remote.ready()) {
+    std::unique_lock lock(mutex_);
+    if (!info_) {
+      info_ = remote.info();
+      repeats_ = may_repeat_losses(*info_);
+      changed_.notify_all();
+    }
+    while (!closing_ && !has_job()) changed_.wait_for(lock, kStopSlice);
+    if (closing_) break;
+    lock.unlock();
+    if (!remote.ready()) break;
+    lock.lock();
+    const auto job = take_job();
+    if (!job) continue;
+    remote.throw_when_gone(repeats_ && job->flight->assignments < kMostAssignments);
+    lock.unlock();
+    simulate(*job, simulator);
+  }
+  const std::lock_guard lock(mutex_);
+  remotes_.erase(&remote);
+}
+
+const WorkerPool::Job* WorkerPool::straggler() const {
+  if (!repeats_ || finished_runs_ == 0) return nullptr;
+  const auto mean = spent_ / static_cast<double>(finished_runs_);
+  const auto limit = std::max(kStragglerLeast, kStragglerFactor * mean);
+  const Job* oldest = nullptr;
+  for (const auto& [key, job] : under_way_) {
+    const auto& flight = *job.flight;
+    if (flight.copies != 1 || Clock::now() - flight.begun < limit) continue;
+    if (oldest == nullptr || flight.begun < oldest->flight->begun) oldest = &job;
+  }
+  return oldest;
+}
+
+std::optional<WorkerPool::Job> WorkerPool::take_job() {
+  Job job;
+  if (!queue_.empty()) {
+    job = std::move(queue_.front());
+    queue_.pop_front();
+    job.flight->begun = Clock::now();
+    under_way_.insert_or_assign(job.key(), job);
+  } else if (const auto* late = straggler()) {
+    job = *late;
+  } else {
+    return std::nullopt;
+  }
+  ++job.flight->copies;
+  ++job.flight->assignments;
+  return job;
+}
+
+/// The worker that was at it is gone. If nobody else is, it is the next one to be done.
+void WorkerPool::put_back(const Job& job) {
+  {
+    const std::lock_guard lock(mutex_);
+    auto& flight = *job.flight;
+    if (--flight.copies > 0 || flight.done || generation_ != job.generation) return;
+    under_way_.erase(job.key());
+    queue_.push_front(job);
+  }
+  changed_.notify_all();
+}
+
+/// Is it the first result of this simulation? Nobody else's counts then.
+bool WorkerPool::claim(const Job& job, Clock::duration took) {
+  const std::lock_guard lock(mutex_);
+  if (job.flight->done.exchange(true)) return false;
+  if (generation_ == job.generation) under_way_.erase(job.key());
+  spent_ += took;
+  ++finished_runs_;
+  return true;
+}
+
+void WorkerPool::simulate(const Job& job, Simulator& simulator) {
+  const auto abandoned = [&] {
+    return closing_ || generation_ != job.generation || job.flight->done || stopped();
+  };
+  const auto begun = Clock::now();
+  MotionTap tap(simulator, static_cast<bool>(moved_));
+  std::optional<SampleRecord> record;
+  try {
+    record = job.repeat ? job.maker->repeat(*job.repeat, tap, abandoned)
+                        : job.maker->make(job.sample, tap, abandoned);
+  } catch (const WorkerGone&) {
+    return put_back(job);
+  }
+  if (!record || !claim(job, Clock::now() - begun)) return;
+  if (moved_) moved_(*record, tap.log());
   finished_(*record);
   ++runs_made_;
   const std::lock_guard lock(mutex_);

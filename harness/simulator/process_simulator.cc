@@ -170,6 +170,11 @@ ChildProcess::Wait ChildProcess::read_line(std::string& line, Clock::time_point 
   }
 }
 
+bool ChildProcess::has_hung_up() const {
+  pollfd at{output_.get(), POLLIN, 0};
+  return ::poll(&at, 1, 0) > 0 && (at.revents & (POLLHUP | POLLERR)) != 0;
+}
+
 bool ChildProcess::has_ended() const {
   siginfo_t info{};
   // Not reaped yet: as long as the leader is a zombie its group's number cannot be taken over.

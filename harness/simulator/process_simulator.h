@@ -44,6 +44,10 @@ class ChildProcess {
   /// Waits for one line of standard output; `line` is set for kLine only, without its newline.
   Wait read_line(std::string& line, Clock::time_point deadline, std::size_t max_bytes);
 
+  /// Nobody can write to its standard output any more, as far as is known; asks and waits for
+  /// nothing.
+  bool has_hung_up() const;
+
   /// Closes the child's input, waits until it ends or `deadline`, then ends the group: TERM, two
   /// seconds, KILL. Returns how it ended: "exit status 3", "signal 9 (Killed)". Idempotent.
   std::string end(Clock::time_point deadline);

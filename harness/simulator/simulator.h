@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -88,11 +89,15 @@ struct SimulatorInfo {
   bool can(std::string_view capability) const;
 };
 
+class RemoteSimulator;
+
 /// One simulated world. One instance per worker process, never shared.
 /// Call order: info at any time; reset, then any number of act and observe.
 class Simulator {
  public:
   virtual ~Simulator() = default;
+  /// This one, if it is somewhere else.
+  virtual RemoteSimulator* remote() { return nullptr; }
   virtual SimulatorInfo info() = 0;
   /// From the next reset on outcomes tell what moved, with a frame every `interval_s` of simulated
   /// time in which something did; 0: no longer. One that cannot, or need not, does nothing.
@@ -107,6 +112,28 @@ class Simulator {
   /// since the last reset, so that two runs can be compared bit by bit. A simulator that is lost
   /// while observing returns kLostVariable with the reason, and nothing else.
   virtual State observe() = 0;
+};
+
+/// Thrown by reset, act and observe of a RemoteSimulator: its worker is gone, and what the
+/// simulation would have shown is not known.
+class WorkerGone : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A simulator that a worker somewhere else has, and that may be lost together with its host, which
+/// says nothing about the simulation.
+class RemoteSimulator : public Simulator {
+ public:
+  RemoteSimulator* remote() override { return this; }
+  /// Sees to it that a worker is there, which may take its time. False: there is none any more, and
+  /// there will be none.
+  virtual bool ready() = 0;
+  /// What becomes of a simulation whose worker is gone: WorkerGone is thrown, or, the default, the
+  /// simulator is lost.
+  virtual void throw_when_gone(bool throws) = 0;
+  /// May be called by any thread: nothing that this simulator is at is wanted any more.
+  virtual void interrupt() = 0;
 };
 
 }  // namespace parallax::harness

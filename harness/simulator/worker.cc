@@ -1,12 +1,18 @@
 #include "harness/simulator/worker.h"
 
+#include <poll.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "harness/simulator/protocol.h"
@@ -49,17 +55,101 @@ class LineReader {
   std::size_t searched_ = 0;
 };
 
-bool write_line(int fd, std::string line) {
-  line.push_back('\n');
-  std::size_t written = 0;
-  while (written < line.size()) {
-    const ssize_t count = ::write(fd, line.data() + written, line.size() - written);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return false;
-    written += static_cast<std::size_t>(count);
+/// Where lines go, each whole, whoever writes it.
+class LineWriter {
+ public:
+  explicit LineWriter(int fd) : fd_(fd) {}
+
+  bool write(std::string line) {
+    line.push_back('\n');
+    const std::lock_guard lock(mutex_);
+    std::size_t written = 0;
+    while (written < line.size()) {
+      const ssize_t count = ::write(fd_, line.data() + written, line.size() - written);
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return false;
+      written += static_cast<std::size_t>(count);
+    }
+    return true;
   }
-  return true;
+
+ private:
+  int fd_;
+  std::mutex mutex_;
+};
+
+/// Has the other end been closed? Only to be asked while nothing more is expected from there.
+bool is_closed(int fd) {
+  pollfd at{fd, POLLIN | POLLRDHUP, 0};
+  if (::poll(&at, 1, 0) <= 0) return false;
+  if ((at.revents & (POLLHUP | POLLRDHUP | POLLERR | POLLNVAL)) != 0) return true;
+  int waiting = 0;
+  return (at.revents & POLLIN) != 0 && ::ioctl(fd, FIONREAD, &waiting) == 0 && waiting == 0;
 }
+
+/// Says in a thread of its own that a request is under way, however long the simulator is at it.
+class Pulse {
+ public:
+  Pulse(int in_fd, LineWriter& out, const ServeOptions& options)
+      : in_fd_(in_fd), out_(out), options_(options) {
+    if (options.beat_s > 0.0) thread_ = std::thread([this] { run(); });
+  }
+  ~Pulse() {
+    set(kClosing);
+    if (thread_.joinable()) thread_.join();
+  }
+  Pulse(const Pulse&) = delete;
+  Pulse& operator=(const Pulse&) = delete;
+
+  void begin(std::int64_t request) { set(request); }
+  void end() { set(kIdle); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::int64_t kIdle = -1, kClosing = -2;
+  static constexpr auto kLook = std::chrono::milliseconds(200);  // how late an end is seen
+
+  void set(std::int64_t request) {
+    {
+      const std::lock_guard lock(mutex_);
+      request_ = request;
+    }
+    changed_.notify_all();
+  }
+
+  void run() {
+    const auto interval =
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options_.beat_s));
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      changed_.wait(lock, [this] { return request_ != kIdle; });
+      if (request_ == kClosing) return;
+      const auto request = request_;
+      auto next = Clock::now() + interval;
+      while (request_ == request) {
+        changed_.wait_until(lock, std::min(next, Clock::now() + kLook));
+        if (request_ != request) break;
+        // Unlocked: a reader that does not read must not keep the reply from being tried.
+        lock.unlock();
+        bool alive = !is_closed(in_fd_);
+        if (alive && Clock::now() >= next) {
+          alive = out_.write(beat_line(request));
+          next = Clock::now() + interval;
+        }
+        if (!alive && options_.stop != nullptr) options_.stop->store(true);
+        lock.lock();
+      }
+    }
+  }
+
+  int in_fd_;
+  LineWriter& out_;
+  const ServeOptions& options_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::int64_t request_ = kIdle;
+  std::thread thread_;
+};
 
 struct Answer {
   ReplyBody reply;
@@ -86,7 +176,9 @@ struct Dispatcher {
         hello.protocols.end()) {
       return {ErrorReply{"unsupported", "this simulator speaks protocol 1"}};
     }
-    return {HelloReply{kProtocolVersion, simulator.info()}};
+    auto info = simulator.info();
+    if (info.name.empty()) return {ErrorReply{"internal", info.version}};  // it did not start
+    return {HelloReply{kProtocolVersion, std::move(info)}};
   }
   Answer operator()(const ResetRequest& reset) const {
     simulator.record_motion(reset.record_interval_s);
@@ -111,8 +203,20 @@ struct Dispatcher {
 
 }  // namespace
 
-int serve(Simulator& simulator, int in_fd, int out_fd) {
+constexpr std::string_view kBeatBegin = R"({"beat":)";
+
+std::string beat_line(std::int64_t id) {
+  return std::string(kBeatBegin) + std::to_string(id) + '}';
+}
+
+bool is_beat(std::string_view line) { return line.starts_with(kBeatBegin); }
+
+int serve(Simulator& simulator, int in_fd, int out_fd, const ServeOptions& options) {
   LineReader reader(in_fd);
+  LineWriter out(out_fd);
+  // What a shell wrote without ending its line must not stand before the greeting.
+  if (!options.greeting.empty() && !out.write('\n' + options.greeting)) return 1;
+  Pulse pulse(in_fd, out, options);
   std::string line;
   bool reset_done = false;
   for (;;) {
@@ -122,7 +226,7 @@ int serve(Simulator& simulator, int in_fd, int out_fd) {
       case LineReader::Event::kError:
         return 1;
       case LineReader::Event::kTooLong:
-        write_line(out_fd, encode_error_without_id({"line_too_long", "line longer than 1 MiB"}));
+        out.write(encode_error_without_id({"line_too_long", "line longer than 1 MiB"}));
         return 1;
       case LineReader::Event::kLine:
         break;
@@ -130,15 +234,16 @@ int serve(Simulator& simulator, int in_fd, int out_fd) {
     const auto decoded = decode_request(line);
     if (const auto* bad = std::get_if<Malformed>(&decoded)) {
       const ErrorReply error{bad->code, bad->message};
-      if (!write_line(out_fd, bad->has_id ? encode_reply(bad->id, error)
-                                          : encode_error_without_id(error))) {
+      if (!out.write(bad->has_id ? encode_reply(bad->id, error) : encode_error_without_id(error))) {
         return 1;
       }
       continue;
     }
     const Request& request = std::get<Request>(decoded);
+    pulse.begin(request.id);
     Answer answer = std::visit(Dispatcher{simulator, reset_done}, request.body);
-    if (!write_line(out_fd, encode_reply(request.id, checked(std::move(answer.reply))))) return 1;
+    pulse.end();
+    if (!out.write(encode_reply(request.id, checked(std::move(answer.reply))))) return 1;
     if (answer.last) return 0;
   }
 }

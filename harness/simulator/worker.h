@@ -1,14 +1,33 @@
 #pragma once
 
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
 #include "harness/simulator/simulator.h"
 
 namespace parallax::harness {
 
+/// For whoever is asked from another machine: it says first who it is, and shows that it is alive.
+struct ServeOptions {
+  std::string greeting = {};  // a first line, which nobody asked for; empty: none
+  /// Above 0: while a request is under way, so often a line says so (beat_line).
+  double beat_s = 0.0;
+  /// Raised when whoever asked is gone before the answer.
+  std::atomic<bool>* stop = nullptr;
+};
+
+/// What is written while the request of this number is under way.
+std::string beat_line(std::int64_t id);
+/// Is the line one of these? What stands in it says nothing more.
+bool is_beat(std::string_view line);
+
 /// Answers protocol requests (protocol.h) read from `in_fd` on `out_fd`, one at a time, until
-/// `close`, end of file, or a line longer than 1 MiB. Writes nothing else to `out_fd`. A malformed
-/// request gets an error reply and the next line is read.
+/// `close`, end of file, or a line longer than 1 MiB. Writes nothing else to `out_fd` than what
+/// `options` ask for. A malformed request gets an error reply and the next line is read.
 /// Returns 0 after close or end of file, 1 when the line was too long or the descriptors failed
 /// (a peer that has gone: ignore SIGPIPE).
-int serve(Simulator& simulator, int in_fd, int out_fd);
+int serve(Simulator& simulator, int in_fd, int out_fd, const ServeOptions& options = {});
 
 }  // namespace parallax::harness

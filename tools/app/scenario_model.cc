@@ -248,10 +248,13 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
   const auto fluents = compiler::names_of(compilation->model.fluents);
   auto events = compiler::names_of(compilation->model.events);
   std::shared_ptr<const harness::SteppedModel> world;
+  std::string world_hash;
   if (!scenario->simulator.models.empty()) {
+    const auto before = context.files().size();
     auto loaded = load_world_model(*scenario, context);
     if (!loaded) return sink.already_reported();
     world = *std::move(loaded);
+    world_hash = harness::hash_of_sources(context.files(), before);
     const auto info = harness::ModelSimulator::info_of(*world);
     if (!harness::bind_by_name(*scenario, fluents, events, info, sink) ||
         !harness::check_against_simulator(*scenario, ground_fluents(fluents), info, sink)) {
@@ -271,9 +274,12 @@ base::Result<ScenarioModel> load(const std::filesystem::path& path, Context& con
   if (!harness::check_against_model(*scenario, fluents, events, sink)) {
     return sink.already_reported();
   }
-  return ScenarioModel{*std::move(scenario), *std::move(compilation),
-                       harness::hash_of_sources(context.files(), first), std::move(scenario_hash),
-                       std::move(world)};
+  return ScenarioModel{*std::move(scenario),
+                       *std::move(compilation),
+                       harness::hash_of_sources(context.files(), first),
+                       std::move(scenario_hash),
+                       std::move(world),
+                       std::move(world_hash)};
 }
 
 /// Reads plan, binding table and regions; without --regions no pose lies anywhere. `regions` holds

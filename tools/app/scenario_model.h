@@ -31,6 +31,7 @@ struct ScenarioModel {
   std::string scenario_hash;  // over the scenario and what it includes
   /// The world, where the simulator is a model.
   std::shared_ptr<const harness::SteppedModel> world = nullptr;
+  std::string world_hash = {};  // over its texts
 };
 
 /// The scenario to be run in the way that it asks for, or `execution`: for closed loop the model is

@@ -14,6 +14,7 @@
 #include "tools/app/scenario_model.h"
 #include "tools/app/trace_feed.h"
 #include "tools/cli/command.h"
+#include "tools/cli/launcher_options.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/sample_output.h"
 #include "tools/cli/shared_options.h"
@@ -36,6 +37,7 @@ struct RateOptions {
   std::string samples, plot;
   bool cause_kinds = false;
   double below = 1.0, above = 0.0;  // of --until-below, --until-above
+  LauncherOptions launcher;
 };
 
 base::Status check_plot(const std::string& path, Invocation& invocation) {
@@ -114,8 +116,11 @@ int run_rare(const RateOptions& options, const ScenarioModel& loaded, harness::T
   return result->traces.empty() ? 1 : 0;
 }
 
-int run_rates(const RateOptions& options, Invocation& invocation) {
+int run_rates(const RateOptions& given, Invocation& invocation) {
+  auto options = given;
   if (!check_method(options, invocation.sink())) return 0;
+  const auto workers = fleet_of(options.launcher, options.rates.jobs, invocation);
+  if (!workers) return 0;
   auto loaded = load_scenario_model(options.scenario, invocation);
   if (!loaded) return 0;
   apply(options.judging, loaded->scenario);
@@ -125,13 +130,14 @@ int run_rates(const RateOptions& options, Invocation& invocation) {
                             base::SourceRange{loaded->scenario.source, 0, 0});
     return 0;
   }
-  const auto simulator =
-      permitted_simulator(*loaded, options.commands.allow || !options.commands.refuse, invocation);
+  const auto simulator = permitted_simulator(
+      *loaded, options.commands.allow || !options.commands.refuse, invocation, *workers);
   if (!simulator) return 0;
   EnumeratedTraces traces(model, invocation);
   traces.explain_absence_by([&] { return reasons_for_absence(*loaded, invocation); });
   if (options.method != "counting") {
-    return run_rare(options, *loaded, traces, *simulator, invocation);
+    const int code = run_rare(options, *loaded, traces, *simulator, invocation);
+    return report_fleet(*workers, invocation) ? code : 0;
   }
   auto rates = options.rates;
   if (options.below <= options.above) {
@@ -156,7 +162,7 @@ int run_rates(const RateOptions& options, Invocation& invocation) {
   auto result =
       harness::estimate_rates(loaded->scenario, traces, *simulator, rates, invocation.sink());
   if (rates.progress) write_error("\r\x1b[K");
-  if (!result || !samples.write(invocation)) return 0;
+  if (!report_fleet(*workers, invocation) || !result || !samples.write(invocation)) return 0;
   if (options.cause_kinds) add_cause_kinds(samples.rows(), loaded->world != nullptr, *result);
   if (!options.plot.empty() &&
       !base::write_output(options.plot, rates_page(*result, samples.rows()), invocation.files(),
@@ -229,7 +235,9 @@ Command rates_command() {
       .show_default();
   command.option("-j,--jobs", options->rates.jobs, "Simulations at the same time")
       .check(WholeNumber{1, 256})
-      .show_default();
+      .show_default()
+      .given(options->launcher.jobs_given);
+  add_launcher_options(command, options->launcher);
   SampleOutput::add_option(command, options->samples);
   command.option("--plot", options->plot,
                  "Also draw the rates, how they settle, and how they depend on the start: a page "

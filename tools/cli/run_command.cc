@@ -16,6 +16,7 @@
 #include "tools/app/trace_feed.h"
 #include "tools/app/version.h"
 #include "tools/cli/command.h"
+#include "tools/cli/launcher_options.h"
 #include "tools/cli/limits.h"
 #include "tools/cli/sample_output.h"
 #include "tools/cli/shared_options.h"
@@ -75,6 +76,7 @@ struct RunOptions {
   bool split_initial = false;
   std::string samples;
   CommandPermission commands;
+  LauncherOptions launcher;
 };
 
 /// The command line has the last word over the scenario.
@@ -200,9 +202,12 @@ Ran run_closed(const RunOptions& options, const ScenarioModel& loaded,
   return {std::move(result), (*loop)->solve_calls()};
 }
 
-int run_scenario(const RunOptions& options, Invocation& invocation) {
+int run_scenario(const RunOptions& given, Invocation& invocation) {
   auto& sink = invocation.sink();
   using harness::Execution;
+  auto options = given;
+  const auto workers = fleet_of(options.launcher, options.jobs, invocation);
+  if (!workers) return 0;
   std::optional<Execution> execution;
   for (const auto one : {Execution::kOpenLoop, Execution::kClosedLoop}) {
     if (options.execution == to_string(one)) execution = one;
@@ -221,8 +226,8 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
   }
   const auto& model = loaded->compilation.model;
   auto campaign = campaign_options(options, *loaded, invocation);
-  const auto simulator =
-      permitted_simulator(*loaded, options.commands.allow || !options.commands.refuse, invocation);
+  const auto simulator = permitted_simulator(
+      *loaded, options.commands.allow || !options.commands.refuse, invocation, *workers);
   if (!simulator) return 0;
   for (const auto* name : {"report.txt", "report.json"}) {
     if (!base::check_output(campaign.run_dir / name, invocation.files(), sink)) return 0;
@@ -235,7 +240,7 @@ int run_scenario(const RunOptions& options, Invocation& invocation) {
                     : run_open(*loaded, *simulator, campaign, invocation);
   auto& result = ran.result;
   if (campaign.progress) write_error("\r\x1b[K");
-  if (!result) return 0;
+  if (!report_fleet(*workers, invocation) || !result) return 0;
   if (!samples.write(invocation)) return 0;
   result->coverage = coverage_of_run(*loaded, *result, invocation);
   if (result->journal_open && !harness::write_report(*result, campaign.run_dir, sink)) return 0;
@@ -276,6 +281,7 @@ Command run_command() {
       "  parallax run edge.yaml --seed 7 --out out/edge7 --resume\n"
       "  parallax run edge.yaml --keep-going --samples edge.csv\n"
       "  parallax run edge.yaml --search 40\n"
+      "  parallax run edge.yaml --launcher 'srun -n1 -c1' --jobs 32\n"
       "Exit codes: 0 no discrepancy, 1 discrepancy, 4 inconclusive, as without a trace.");
   command.option("scenario", options->scenario, "Scenario file (YAML)").required();
   command.option("--out", options->out, "Run folder; default out/NAME, numbered if taken");
@@ -284,7 +290,9 @@ Command run_command() {
       .show_default();
   command.option("-j,--jobs", options->jobs, "Simulations at the same time")
       .check(WholeNumber{1, 256})
-      .show_default();
+      .show_default()
+      .given(options->launcher.jobs_given);
+  add_launcher_options(command, options->launcher);
   command.flag("--resume", options->resume, "Continue the run in the run folder");
   command.flag("--keep-going", options->keep_going,
                "Go on after a discrepancy: with the next trace; in closed loop with the next "

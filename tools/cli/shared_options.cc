@@ -13,6 +13,7 @@
 #include "runtime/graph/model_traces.h"
 #include "tools/app/simulator_factory.h"
 #include "tools/cli/command.h"
+#include "tools/cli/launcher_options.h"
 #include "tools/cli/limits.h"
 
 namespace parallax::tools {
@@ -186,13 +187,20 @@ void add_command_options(OptionTable& command, CommandPermission& permission, bo
                "Do not start a command that the scenario names as its simulator");
 }
 
-base::Result<harness::SimulatorFactory> permitted_simulator(const ScenarioModel& loaded,
-                                                            bool permitted,
-                                                            Invocation& invocation) {
+base::Result<harness::SimulatorFactory> permitted_simulator(
+    const ScenarioModel& loaded, bool permitted, Invocation& invocation,
+    const std::shared_ptr<harness::Fleet>& fleet) {
   const auto& spec = loaded.scenario.simulator;
-  std::vector<std::string> worker = {"/proc/self/exe", "worker"};
-  if (invocation.form().allow_outside) worker.emplace_back("--allow-outside");
-  auto make = simulator_factory(loaded, worker, stop_flag(), {"/proc/self/exe", "supervise", "--"});
+  harness::SimulatorFactory make;
+  if (fleet) {
+    make = [fleet, worker = fleet_worker(loaded, *fleet, invocation)] {
+      return fleet->simulator(worker);
+    };
+  } else {
+    std::vector<std::string> worker = {"/proc/self/exe", "worker"};
+    if (invocation.form().allow_outside) worker.emplace_back("--allow-outside");
+    make = simulator_factory(loaded, worker, stop_flag(), {"/proc/self/exe", "supervise", "--"});
+  }
   if (spec.command.empty()) return make;
   const auto text = base::command_text(spec.command);
   if (!permitted) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,10 @@
 #include "tools/app/trace_search.h"
 #include "tools/app/traces_replay.h"
 #include "tools/cli/option_table.h"
+
+namespace parallax::harness {
+class Fleet;
+}
 
 namespace parallax::tools {
 
@@ -51,9 +56,10 @@ void add_command_options(OptionTable& command, CommandPermission& permission, bo
 
 /// Makes the simulator that the scenario asks for, and says which command is started when the first
 /// one is. Reports kCommandNotPermitted for one that is not `permitted`. `invocation` outlives the
-/// factory.
-base::Result<harness::SimulatorFactory> permitted_simulator(const ScenarioModel& loaded,
-                                                            bool permitted, Invocation& invocation);
+/// factory. With a fleet workers of it have the simulators.
+base::Result<harness::SimulatorFactory> permitted_simulator(
+    const ScenarioModel& loaded, bool permitted, Invocation& invocation,
+    const std::shared_ptr<harness::Fleet>& fleet = nullptr);
 
 /// The same with half the engine's step; null where the world is not that of the built-in
 /// simulator.

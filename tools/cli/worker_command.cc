@@ -1,44 +1,111 @@
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <memory>
 
 #include "compiler/base/codes/campaigns.h"
+#include "compiler/base/codes/files.h"
 #include "harness/campaign/campaign.h"
+#include "harness/cluster/program_identity.h"
 #include "harness/config/scenario.h"
 #include "harness/robot/ode_simulator.h"
 #include "harness/simulator/worker.h"
+#include "tools/app/simulator_factory.h"
+#include "tools/app/version.h"
+#include "tools/app/world_model.h"
 #include "tools/cli/command.h"
+#include "tools/cli/limits.h"
+#include "tools/cli/shared_options.h"
 
 namespace parallax::tools {
+namespace {
+
+struct WorkerOptions {
+  std::string scenario, hash;
+  bool half_step = false;
+  bool elsewhere = false;  // what follows is of such a worker
+  std::string folder, world_hash;
+  std::int64_t world_horizon = 0;
+  double beat_s = 0.0;
+  CommandPermission commands;
+};
+
+constexpr int kPeerGone = 5;
+
+/// The whole simulator of a scenario for somebody on another machine, in processes of its own as it
+/// would be there: what fails in it is told in an answer, and is no failure of ours.
+int serve_elsewhere(const WorkerOptions& options, ScenarioModel loaded, Invocation& invocation) {
+  const auto& spec = loaded.scenario.simulator;
+  if (!spec.models.empty()) {
+    const auto before = invocation.files().size();
+    loaded.scenario.horizon =
+        options.world_horizon;  // of the run, which may not be the written one
+    auto world = load_world_model(loaded.scenario, invocation);
+    if (!world) return 0;
+    if (harness::hash_of_sources(invocation.files(), before) != options.world_hash) {
+      invocation.sink().error_about(codes::kScenarioChanged, spec.models.front().text);
+      return 0;
+    }
+    loaded.world = *std::move(world);
+  }
+  const auto make = permitted_simulator(loaded, options.commands.allow, invocation);
+  if (!make) return 0;
+  harness::ServeOptions how;
+  how.greeting = harness::greeting_line(harness::this_program(kVersion));
+  how.beat_s = options.beat_s;
+  how.stop = &stop_flag();
+  const auto simulator = (*make)();
+  return harness::serve(*simulator, STDIN_FILENO, STDOUT_FILENO, how) == 0 ? 0 : kPeerGone;
+}
+
+int serve_scenario(const WorkerOptions& options, Invocation& invocation) {
+  if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) {
+    invocation.sink().error_about(
+        codes::kUsage, options.folder,
+        fmt::format("--folder: it cannot be entered here: {}", std::strerror(errno)));
+    return 0;
+  }
+  auto scenario = harness::load_scenario(options.scenario, invocation.files(), invocation.sink(),
+                                         invocation.form().allow_outside);
+  if (!scenario) return 0;
+  // Who started us read the same file a moment ago; an edit in between must not go unseen.
+  const auto hash = harness::hash_of_sources(invocation.files());
+  if (!options.hash.empty() && hash != options.hash) {
+    invocation.sink().error_about(codes::kScenarioChanged, options.scenario);
+    return 0;
+  }
+  if (options.elsewhere) {
+    return serve_elsewhere(options, {*std::move(scenario), {}, {}, hash}, invocation);
+  }
+  if (options.half_step) scenario->world.solver.timestep_s /= 2.0;
+  harness::OdeSimulator simulator(scenario->world);
+  return harness::serve(simulator, STDIN_FILENO, STDOUT_FILENO) == 0 ? 0 : kPeerGone;
+}
+
+}  // namespace
 
 Command worker_command() {
-  struct Options {
-    std::string scenario;
-    std::string hash;
-    bool half_step = false;
-  };
-  auto options = std::make_shared<Options>();
-  OptionTable command("worker",
-                      "Serve the built-in simulator of a scenario on standard input and output");
+  auto options = std::make_shared<WorkerOptions>();
+  OptionTable command("worker", "Serve the simulator of a scenario on standard input and output");
   command.hide();  // started by `run`; not meant to be typed
   command.option("scenario", options->scenario).required();
   command.option("--scenario-hash", options->hash);
   command.flag("--half-step", options->half_step, "Simulate with half the scenario's step");
-  return {std::move(command), [options](Invocation& invocation) {
-            auto scenario =
-                harness::load_scenario(options->scenario, invocation.files(), invocation.sink(),
-                                       invocation.form().allow_outside);
-            if (!scenario) return 0;
-            // The parent read the same file a moment ago; an edit in between must not go unseen.
-            if (!options->hash.empty() &&
-                harness::hash_of_sources(invocation.files()) != options->hash) {
-              invocation.sink().error_about(codes::kScenarioChanged, options->scenario);
-              return 0;
-            }
-            if (options->half_step) scenario->world.solver.timestep_s /= 2.0;
-            harness::OdeSimulator simulator(scenario->world);
-            return harness::serve(simulator, STDIN_FILENO, STDOUT_FILENO) == 0 ? 0 : 5;
-          }};
+  command.flag("--elsewhere", options->elsewhere,
+               "For another machine: whatever simulator the scenario names, in a process of its "
+               "own; says first who it is, and gives signs of life");
+  command.option("--folder", options->folder, "Of --elsewhere: paths start here");
+  command.option("--world-hash", options->world_hash, "Of --elsewhere: of a world that is a model");
+  command.option("--world-horizon", options->world_horizon, "Of --elsewhere: likewise, of the run")
+      .check(WholeNumber{0, 1'000'000});
+  command
+      .option("--beat", options->beat_s, "Of --elsewhere: seconds between signs of life; 0: none")
+      .check(FiniteNumber{0.0, 86'400.0});
+  add_command_options(command, options->commands, false);
+  return {std::move(command),
+          [options](Invocation& invocation) { return serve_scenario(*options, invocation); }};
 }
 
 }  // namespace parallax::tools

@@ -1,0 +1,96 @@
+#include "harness/cluster/program_identity.h"
+
+#include <fmt/format.h>
+#include <link.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <vector>
+
+#include "compiler/base/file_io.h"
+#include "compiler/base/json.h"
+#include "compiler/base/sha256.h"
+
+namespace parallax::harness {
+namespace {
+
+constexpr std::size_t kBuildDigits = 16;
+constexpr const char* kKey = "parallax_worker";
+
+std::size_t aligned(std::size_t size) { return (size + 3) / 4 * 4; }
+
+/// The number that the linker gave a program or library; empty if it gave none.
+std::string build_id(const dl_phdr_info& info) {
+  for (std::size_t i = 0; i < info.dlpi_phnum; ++i) {
+    const auto& header = info.dlpi_phdr[i];
+    if (header.p_type != PT_NOTE) continue;
+    // NOLINTNEXTLINE: the loader says so
+    const auto* at = reinterpret_cast<const char*>(info.dlpi_addr + header.p_vaddr);
+    const auto* end = at + header.p_memsz;
+    while (static_cast<std::size_t>(end - at) > sizeof(ElfW(Nhdr))) {
+      ElfW(Nhdr) note;
+      std::memcpy(&note, at, sizeof note);
+      const auto* name = at + sizeof note;
+      const auto* bytes = name + aligned(note.n_namesz);
+      if (bytes + note.n_descsz > end) break;
+      if (note.n_type == NT_GNU_BUILD_ID && note.n_namesz == 4 &&
+          std::memcmp(name, "GNU", 4) == 0) {
+        return {bytes, note.n_descsz};
+      }
+      at = bytes + aligned(note.n_descsz);
+    }
+  }
+  return {};
+}
+
+int add_object(dl_phdr_info* info, std::size_t /*size*/, void* objects) {
+  // The program itself has no name, and the kernel's page no file.
+  const std::string path = info->dlpi_name == nullptr ? "" : info->dlpi_name;
+  if (!path.empty() && !path.starts_with('/')) return 0;
+  auto id = build_id(*info);
+  if (id.empty()) {
+    base::DiagnosticSink unread;
+    const auto text = base::read_file(path.empty() ? "/proc/self/exe" : path, unread);
+    id = text ? base::sha256_hex(*text) : "?";
+  }
+  const auto name = std::filesystem::path(path).filename().string();
+  static_cast<std::vector<std::string>*>(objects)->push_back(name + '\0' + id);
+  return 0;
+}
+
+}  // namespace
+
+ProgramIdentity this_program(std::string version) {
+  std::vector<std::string> objects;
+  ::dl_iterate_phdr(add_object, &objects);
+  std::sort(objects.begin(), objects.end());
+  std::string all;
+  for (const auto& object : objects) all += object + '\0';
+  return {std::move(version), base::sha256_hex(all).substr(0, kBuildDigits)};
+}
+
+std::string to_string(const ProgramIdentity& identity) {
+  return fmt::format("{} (build {})", identity.version, identity.build);
+}
+
+std::string greeting_line(const ProgramIdentity& identity) {
+  return base::json_text(
+      nlohmann::ordered_json{{kKey, 1}, {"version", identity.version}, {"build", identity.build}});
+}
+
+std::optional<ProgramIdentity> parse_greeting(std::string_view line) {
+  if (line.find(kKey) == std::string_view::npos) return std::nullopt;
+  const auto json = base::parse_json(line);
+  const auto* version = base::json_member(json, "version");
+  const auto* build = base::json_member(json, "build");
+  if (base::json_member(json, kKey) == nullptr || version == nullptr || build == nullptr) {
+    return std::nullopt;
+  }
+  auto is = base::json_as<std::string>(*version);
+  auto built = base::json_as<std::string>(*build);
+  if (!is || !built) return std::nullopt;
+  return ProgramIdentity{*std::move(is), *std::move(built)};
+}
+
+}  // namespace parallax::harness
