@@ -40,8 +40,8 @@ int serve_elsewhere(const WorkerOptions& options, ScenarioModel loaded, Invocati
   const auto& spec = loaded.scenario.simulator;
   if (!spec.models.empty()) {
     const auto before = invocation.files().size();
-    loaded.scenario.horizon =
-        options.world_horizon;  // of the run, which may not be the written one
+    // Of the run, which may not be the written one.
+    loaded.scenario.horizon = static_cast<std::int32_t>(options.world_horizon);
     auto world = load_world_model(loaded.scenario, invocation);
     if (!world) return 0;
     if (harness::hash_of_sources(invocation.files(), before) != options.world_hash) {
