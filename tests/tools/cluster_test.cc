@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tests/tools/cluster_fixture.h"
+#include "tests/tools/suite/suite_fixture.h"
 #include "tests/tools/two_models.h"
 
 namespace parallax::test {
@@ -267,6 +268,43 @@ TEST_CASE("bad launchers and hosts are refused where they are wrong") {
   refused({"--hosts", "nowhere"}, 2, "nowhere");
   refused({"--hosts", "hosts", "--launcher", "env"}, 2, "--launcher");
   refused({"--launcher", "env", "--worker-silence", "0"}, 2, "--worker-silence");
+}
+
+TEST_CASE("cases of a suite simulate elsewhere, with the results of one machine") {
+  const TwoModels cli;
+  cli.write("elsewhere.sh", "echo started >> elsewhere.log\nexec \"$@\"\n");
+  cli.write("two/rate.yaml",
+            "include: common.yaml\nmodel: [opens.e, start.e]\nsimulator: {model: sticks.e}\n"
+            "expect: {rate: {at_least: 0.9}}\n");
+  // A case that is wrong on purpose is wrong there in the same words.
+  cli.replace("two/agree.yaml", "verdict: no-discrepancy", "verdict: discrepancy");
+  const auto results = [&](std::vector<std::string> more, const std::string& out) {
+    std::vector<std::string> suite = {"suite", "two",     "--no-cache", "--out",
+                                      out,     "--junit", out + ".xml"};
+    suite.insert(suite.end(), more.begin(), more.end());
+    const auto found = cli.parallax(suite);
+    CAPTURE(found.err);
+    CHECK(found.code == 1);
+    auto text = without_times(cli.read(out + ".xml"));
+    for (auto at = text.find(out + "/"); at != std::string::npos; at = text.find(out + "/")) {
+      text.replace(at, out.size() + 1, "OUT ");
+    }
+    return text;
+  };
+  const auto expected = results({}, "here");
+  CHECK(results({"--launcher", "sh elsewhere.sh", "--jobs", "2"}, "launched") == expected);
+  CHECK(std::filesystem::exists(cli.folder() / "elsewhere.log"));
+  cli.write("hosts", "1 sh elsewhere.sh\n1 false\n1 env\n");
+  CHECK(results({"--hosts", "hosts"}, "hosted") == expected);
+  const auto refused = [&](std::vector<std::string> more, const std::string& word) {
+    std::vector<std::string> suite = {"suite", "two"};
+    suite.insert(suite.end(), more.begin(), more.end());
+    const auto found = cli.parallax(suite);
+    CHECK(found.code == 2);
+    CHECK(found.err.find(word) != std::string::npos);
+  };
+  refused({"--launcher", "ssh $HOST"}, "E7129");
+  refused({"--mutate", "--launcher", "env"}, "--launcher");
 }
 
 /// A process that can still do something.

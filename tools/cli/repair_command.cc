@@ -4,6 +4,7 @@
 
 #include "compiler/base/codes/files.h"
 #include "tools/cli/command.h"
+#include "tools/cli/launcher_options.h"
 #include "tools/cli/shared_options.h"
 #include "tools/repair/apply.h"
 #include "tools/repair/experiments.h"
@@ -24,6 +25,7 @@ struct RepairCommandOptions {
   bool loop = false;
   std::string out;
   std::int64_t rounds = 8;
+  LauncherOptions launcher;
 };
 
 constexpr int kProposals = 1, kNoneFound = 4;
@@ -115,15 +117,20 @@ int repair(const RepairCommandOptions& options, Invocation& invocation) {
   if (repair.limit != 0) repair.limit = std::max(repair.limit, options.apply);
   auto experiments = options.experiments;
   if (options.runs != kUsualRuns) experiments.runs = options.runs;
+  const auto workers = fleet_of(options.launcher, experiments.jobs, invocation);
+  if (!workers) return 0;
   experiments.allow_commands = options.commands.allow;
   experiments.simulator = [&](const ScenarioModel& loaded) {
-    return permitted_simulator(loaded, options.commands.allow, invocation);
+    return permitted_simulator(loaded, options.commands.allow, invocation, *workers);
   };
   experiments.progress = progress_on_terminal(invocation.options());
-  if (options.loop) return repair_loop(options, experiments, invocation);
+  if (options.loop) {
+    const int code = repair_loop(options, experiments, invocation);
+    return report_fleet(*workers, invocation) ? code : 0;
+  }
   const auto result = repair_with_experiments(repair, experiments, invocation);
   if (experiments.progress) write_error("\r\x1b[K");
-  if (!result) return 0;
+  if (!report_fleet(*workers, invocation) || !result) return 0;
   if (invocation.options().verbosity > 0) {
     for (const auto& text : result->remarks) invocation.remark(text);
   }
@@ -154,6 +161,7 @@ Command repair_command() {
       "  parallax repair out/plan2 --limit 1 | git apply\n"
       "  parallax repair out/plan2 --apply 1\n"
       "  parallax repair out/plan2 --runs 40 --jobs 2\n"
+      "  parallax repair out/plan2 --runs 40 --hosts lab.hosts\n"
       "  parallax repair out/plan2 --loop --out repaired\n"
       "Exit codes: 0 nothing to repair, or a proposal was applied; 1 proposals; 4 none was found.");
   command.option("run_dir", options->repair.folder.folder, "The folder of a run").required();
@@ -177,7 +185,9 @@ Command repair_command() {
       .check(WholeNumber{0, 1'000'000});
   command.option("-j,--jobs", options->experiments.jobs, "Of --runs: simulations at the same time")
       .check(WholeNumber{1, 256})
-      .show_default();
+      .show_default()
+      .given(options->launcher.jobs_given);
+  add_launcher_options(command, options->launcher);
   command.flag("--loop", options->loop,
                "Apply the first proposal to a copy, run again, and so on, while the first is the "
                "only one of its rank");

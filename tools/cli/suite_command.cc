@@ -88,6 +88,8 @@ LoopOptions loop_options(const SuiteOptions& options, bool keep_passes, const Su
   out.runner.update_goldens = options.update_goldens;
   out.runner.allow_commands = options.commands.allow;
   out.runner.allow_outside = invocation.form().allow_outside;
+  out.runner.elsewhere = launcher_words(options.launcher);
+  out.spread = !options.launcher.hosts.empty();
   out.jobs = options.jobs;
   out.memory_mb = options.memory_mb;
   out.keep_passes = keep_passes;
@@ -136,6 +138,8 @@ std::string foreign_to_mutants(const SuiteOptions& options) {
   if (!options.history.empty()) return "--history";
   if (!options.verify_cache.empty()) return "--verify-cache";
   if (options.memory_mb > 0) return "--memory";
+  if (!options.launcher.launcher.empty()) return "--launcher";
+  if (!options.launcher.hosts.empty()) return "--hosts";
   return options.retries > 0 ? "--retry" : "";
 }
 
@@ -167,7 +171,8 @@ int score_mutants(const SuiteOptions& options, Invocation& invocation) {
   return mutate_suite(*cases, options.mutants, std::move(score), invocation);
 }
 
-int run_suite(const SuiteOptions& options, Invocation& invocation) {
+int run_suite(const SuiteOptions& given, Invocation& invocation) {
+  auto options = given;
   if (options.mutants.mutate && !options.paths.empty()) return score_mutants(options, invocation);
   auto& sink = invocation.sink();
   if (const auto why = unfit_for_history(options); !why.empty()) {
@@ -199,6 +204,8 @@ int run_suite(const SuiteOptions& options, Invocation& invocation) {
     sink.error_about(codes::kGoldenUpdateRefused, "--update-goldens");
     return 0;
   }
+  // Each case starts workers of its own; what is wrong with their places is told once.
+  if (!fleet_of(options.launcher, options.jobs, invocation)) return 0;
   const auto shard = chosen_shard(options.shard, environment, sink);
   if (!shard) return 0;
   const SuiteIdentity identity{
@@ -263,6 +270,7 @@ Command suite_command() {
       "  parallax suite scenarios --fast              without the long simulations\n"
       "  parallax suite scenarios/classics --only zoo\n"
       "  parallax suite scenarios --shard 2/5 --junit suite.xml\n"
+      "  parallax suite scenarios --launcher 'srun -n1 -c1' --jobs 32\n"
       "  parallax suite scenarios --resume            goes on where a suite was ended\n"
       "  parallax suite scenarios/classics --mutate   which mistakes would it not notice?\n"
       "  parallax suite --merge out/1 out/2 --out out/all --junit suite.xml");
@@ -316,7 +324,9 @@ Command suite_command() {
       .show_default();
   command.option("-j,--jobs", options->jobs, "Cases at the same time")
       .check(WholeNumber{1, 256})
-      .show_default();
+      .show_default()
+      .given(options->launcher.jobs_given);
+  add_launcher_options(command, options->launcher);
   command
       .option("--memory", options->memory_mb,
               "MB that the cases at the same time may need together, by what they took before")

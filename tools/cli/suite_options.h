@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/cli/launcher_options.h"
 #include "tools/cli/mutate_suite.h"
 #include "tools/cli/shared_options.h"
 
@@ -25,6 +26,7 @@ struct SuiteOptions {
   bool no_cache = false;
   bool fast = false;
   CommandPermission commands;
+  LauncherOptions launcher;
   MutateOptions mutants;
 };
 

@@ -133,7 +133,11 @@ void run_open_cases(SuiteRecord& record, const LoopOptions& options, const Store
     const std::lock_guard lock(printing);
     remark(text);
   };
-  const auto work = [&] {
+  const auto work = [&](std::int64_t number) {
+    auto runner = options.runner;
+    if (options.spread) {
+      runner.elsewhere.insert(runner.elsewhere.end(), {"--first-slot", std::to_string(number)});
+    }
     while (!stop.load()) {
       const auto index = schedule.take();
       if (!index) return;
@@ -141,7 +145,7 @@ void run_open_cases(SuiteRecord& record, const LoopOptions& options, const Store
       if (!one.command.empty() && options.runner.allow_commands) {
         say(fmt::format("{} starts `{}`", one.name(), base::command_text(one.command)));
       }
-      auto result = run_case(one, options.runner, stop);
+      auto result = run_case(one, runner, stop);
       if (result.outcome != Outcome::kNotFinished) {
         reuse.verify(*index, result);
         if (options.keep_passes) {
@@ -155,7 +159,7 @@ void run_open_cases(SuiteRecord& record, const LoopOptions& options, const Store
     }
   };
   std::vector<std::thread> threads;
-  for (std::int64_t i = 0; i < options.jobs; ++i) threads.emplace_back(work);
+  for (std::int64_t i = 0; i < options.jobs; ++i) threads.emplace_back(work, i);
   for (auto& thread : threads) thread.join();
 }
 

@@ -54,6 +54,7 @@ class Reuse {
 struct LoopOptions {
   RunnerOptions runner;
   std::int64_t jobs = 1;
+  bool spread = false;  // cases at the same time begin at different places of those elsewhere
   std::int64_t memory_mb = 0;  // that the cases at the same time may need; 0: any
   bool keep_passes = true;     // in the cache
 };

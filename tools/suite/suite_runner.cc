@@ -52,6 +52,7 @@ void run_rates(const SuiteCase& one, const harness::Expectation& expect,
   }
   if (rate.cause && !rate.cause->kind.empty()) words.emplace_back("--cause-kinds");
   add_permissions(options, true, words);
+  words.insert(words.end(), options.elsewhere.begin(), options.elsewhere.end());
   add_limit(expect, options, words);
   const auto child = run_this_program({std::move(words), {one.file}}, footprint, stop);
   result.messages += child.err;
@@ -115,6 +116,7 @@ void run_scenario(const SuiteCase& one, const harness::Expectation& expect,
     words.insert(words.end(), {"--max-traces", std::to_string(*expect.iterations + 1)});
   }
   add_permissions(options, true, words);
+  words.insert(words.end(), options.elsewhere.begin(), options.elsewhere.end());
   add_limit(expect, options, words);
   const auto child = run_this_program({std::move(words), {one.file}}, footprint, stop);
   result.messages += child.err;

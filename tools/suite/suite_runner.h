@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tools/suite/suite_case.h"
 #include "tools/suite/suite_ledger.h"
@@ -26,6 +27,7 @@ struct RunnerOptions {
   /// Of a case that is expected to fail: no more is done than shows whether it does. Traces beyond
   /// the expected number are not looked for, and the limit of a model's case is processor time.
   bool ends_early = false;
+  std::vector<std::string> elsewhere = {};  // options of commands that simulate: where workers are
   std::optional<double> time_limit_s = {};  // of the processes of a scenario without one of its own
 };
 

@@ -101,6 +101,31 @@ TEST_CASE("a run cannot tell which condition is missing; further ones from other
   }
 }
 
+TEST_CASE("experiments and rounds are the same where workers elsewhere simulate") {
+  for (const std::string execution : {"open-loop", "closed-loop"}) {
+    CAPTURE(execution);
+    const Drawer cli(kLit, execution);
+    cli.write("elsewhere.sh", "echo started >> elsewhere.log\nexec \"$@\"\n");
+    cli.write("hosts", "1 sh elsewhere.sh\n2 env\n");
+    json_of(cli, {"run", "drawer.yaml", "--out", "out"}, 1);
+    const auto here = json_of(cli, {"repair", "out"}, 1);
+    const auto recorded = cli.read("out/experiments/journal.ndjson");
+    fs::remove_all(cli.folder() / "out" / "experiments");
+    CHECK(json_of(cli, {"repair", "out", "--hosts", "hosts"}, 1) == here);
+    CHECK(cli.read("out/experiments/journal.ndjson") == recorded);
+    CHECK(fs::exists(cli.folder() / "elsewhere.log"));
+
+    const std::vector<std::string> loop = {"repair", "out", "--runs", "0", "--loop", "--out"};
+    auto one = loop, other = loop;
+    one.emplace_back("one");
+    other.insert(other.end(), {"other", "--launcher", "sh elsewhere.sh", "--jobs", "2"});
+    const auto expected = cli.parallax(one), found = cli.parallax(other);
+    CAPTURE(found.err);
+    CHECK(found.code == expected.code);
+    CHECK(cli.read("other/repair.patch") == cli.read("one/repair.patch"));
+  }
+}
+
 TEST_CASE("an experiment that was not drawn for its number is no evidence") {
   for (const std::string execution : {"open-loop", "closed-loop"}) {
     CAPTURE(execution);
