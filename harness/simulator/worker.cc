@@ -20,12 +20,16 @@
 namespace parallax::harness {
 namespace {
 
+constexpr int kStopSliceMs = 100;  // how late a raised flag may be seen
+
+bool is_raised(const std::atomic<bool>* flag) { return flag != nullptr && flag->load(); }
+
 /// Lines from a descriptor, without their newline.
 class LineReader {
  public:
-  enum class Event : std::uint8_t { kLine, kEnd, kTooLong, kError };
+  enum class Event : std::uint8_t { kLine, kEnd, kTooLong, kError, kStopped };
 
-  explicit LineReader(int fd) : fd_(fd) {}
+  LineReader(int fd, const std::atomic<bool>* stop) : fd_(fd), stop_(stop) {}
 
   Event next(std::string& line) {
     for (;;) {
@@ -39,6 +43,7 @@ class LineReader {
       }
       searched_ = buffer_.size();
       if (buffer_.size() > kMaxLineBytes) return Event::kTooLong;
+      if (!wait()) return Event::kStopped;
       std::array<char, 65536> chunk{};
       const ssize_t count = ::read(fd_, chunk.data(), chunk.size());
       if (count < 0 && errno == EINTR) continue;
@@ -50,7 +55,18 @@ class LineReader {
   }
 
  private:
+  /// Until there is something to read. False: the flag was raised.
+  bool wait() const {
+    if (stop_ == nullptr) return true;
+    while (!stop_->load()) {
+      pollfd at{fd_, POLLIN, 0};
+      if (::poll(&at, 1, kStopSliceMs) != 0) return true;
+    }
+    return false;
+  }
+
   int fd_;
+  const std::atomic<bool>* stop_;
   std::string buffer_;
   std::size_t searched_ = 0;
 };
@@ -212,7 +228,7 @@ std::string beat_line(std::int64_t id) {
 bool is_beat(std::string_view line) { return line.starts_with(kBeatBegin); }
 
 int serve(Simulator& simulator, int in_fd, int out_fd, const ServeOptions& options) {
-  LineReader reader(in_fd);
+  LineReader reader(in_fd, options.stop);
   LineWriter out(out_fd);
   // What a shell wrote without ending its line must not stand before the greeting.
   if (!options.greeting.empty() && !out.write('\n' + options.greeting)) return 1;
@@ -224,6 +240,7 @@ int serve(Simulator& simulator, int in_fd, int out_fd, const ServeOptions& optio
       case LineReader::Event::kEnd:
         return 0;
       case LineReader::Event::kError:
+      case LineReader::Event::kStopped:
         return 1;
       case LineReader::Event::kTooLong:
         out.write(encode_error_without_id({"line_too_long", "line longer than 1 MiB"}));
@@ -243,6 +260,7 @@ int serve(Simulator& simulator, int in_fd, int out_fd, const ServeOptions& optio
     pulse.begin(request.id);
     Answer answer = std::visit(Dispatcher{simulator, reset_done}, request.body);
     pulse.end();
+    if (is_raised(options.stop)) return 1;
     if (!out.write(encode_reply(request.id, checked(std::move(answer.reply))))) return 1;
     if (answer.last) return 0;
   }

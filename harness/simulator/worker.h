@@ -14,7 +14,9 @@ struct ServeOptions {
   std::string greeting = {};  // a first line, which nobody asked for; empty: none
   /// Above 0: while a request is under way, so often a line says so (beat_line).
   double beat_s = 0.0;
-  /// Raised when whoever asked is gone before the answer.
+  /// Raised when whoever asked is gone before the answer. Raised by anybody else, say a batch
+  /// system that cancels the job, it ends the serving without an answer: one of a simulator that
+  /// was cut off amid its work would be about us, and not about the simulation.
   std::atomic<bool>* stop = nullptr;
 };
 

@@ -51,6 +51,27 @@ TEST_CASE("so are rates, for any number of workers and places") {
   CHECK(cli.lines_of("trouble.log") >= 20);
 }
 
+TEST_CASE("workers that are asked to end amid a simulation give no answers that are not its own") {
+  const Cluster cli;
+  for (const auto* kind : {"seeded", "unseeded"}) {
+    CAPTURE(kind);
+    cli.coin(0.3, kind);
+    const auto report = json_of(
+        cli, {"rates", "coin.yaml", "--runs", "150", "--samples", std::string(kind) + ".jsonl",
+              "--launcher", Cluster::unruly("end"), "--jobs", "3"});
+    const auto samples = cli.read(std::string(kind) + ".jsonl");
+    CHECK(samples.find("interrupted") == std::string::npos);
+    const int lost = report.at("traces").at(0).at("lost");
+    if (std::string(kind) == "seeded") {
+      CHECK(lost == 0);
+    } else {
+      CHECK(lost > 0);
+      CHECK(samples.find("exit status 143") != std::string::npos);
+    }
+  }
+  CHECK(cli.lines_of("trouble.log") >= 10);
+}
+
 TEST_CASE(
     "claims about a simulator without seeds are true, though slow failures meet lost workers") {
   const Cluster cli;

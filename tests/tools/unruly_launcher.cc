@@ -1,8 +1,8 @@
 // A launcher between parallax and a worker that goes wrong: unruly_launcher KINDS PERCENT LOG
 // COMMAND... starts the command and hands lines on both ways. Of the simulations that pass through
-// it that many of a hundred meet one of the KINDS (die,hang,lag), at any of their requests; each is
-// written to LOG before. Which ones is as random as the machine can make it. Shares no code with
-// the harness.
+// it that many of a hundred meet one of the KINDS (die,end,hang,lag), at any of their requests;
+// each is written to LOG before. Which ones is as random as the machine can make it. Shares no code
+// with the harness.
 
 #include <fcntl.h>
 #include <poll.h>
@@ -49,6 +49,10 @@ class Trouble {
     ::close(log);
     if (kind == "lag") {
       ::usleep(kLag);
+      return;
+    }
+    if (kind == "end") {  // as batch systems do it
+      ::kill(worker, SIGTERM);
       return;
     }
     if (kind == "hang") {
