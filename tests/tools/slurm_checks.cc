@@ -1,0 +1,203 @@
+// Campaigns and suites on a Slurm that tools/cluster-test has started for this program: two nodes
+// on one machine. The scripts are those of docs/cluster.md.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/tools/cluster_fixture.h"
+#include "tests/tools/suite/case_repository.h"
+
+namespace parallax::test {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The block of the page whose second line names this file.
+std::string script_of_page(const std::string& name) {
+  std::ifstream in(std::string(PARALLAX_SOURCE_DIR) + "/docs/cluster.md");
+  std::string block;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("    ")) {
+      block += line.substr(4) + '\n';
+      continue;
+    }
+    if (block.find("\n# " + name + "\n") != std::string::npos) return block;
+    block.clear();
+  }
+  throw std::runtime_error("docs/cluster.md has no script " + name);
+}
+
+/// A command of Slurm in the fixture's folder, for whose jobs `parallax` is this build's.
+ProcessResult slurm(const CliFixture& cli, std::vector<std::string> command) {
+  const auto path = std::string(PARALLAX_BINARY_DIR) + ":" + std::getenv("PATH");
+  command.insert(command.begin(), {"/usr/bin/env", "PATH=" + path});
+  ProcessOptions options;
+  options.folder = cli.folder().string();
+  return run_process(command, options);
+}
+
+std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) out.push_back(line);
+  return out;
+}
+
+/// Jobs that have not ended, as `squeue` prints them.
+std::vector<std::string> jobs(const CliFixture& cli, const std::string& format,
+                              std::vector<std::string> more = {}) {
+  more.insert(more.begin(), {"squeue", "-h", "-r", "-o", format});
+  const auto found = slurm(cli, more);
+  REQUIRE(found.code == 0);
+  return lines(found.out);
+}
+
+void wait_for_no_job(const CliFixture& cli) {
+  for (int i = 0; i < 3000 && !jobs(cli, "%i").empty(); ++i) {
+    run_process({"sleep", "0.05"});
+  }
+  CHECK(jobs(cli, "%i %j %T").empty());
+}
+
+std::string submit(const CliFixture& cli, std::vector<std::string> words) {
+  words.insert(words.begin(), {"sbatch", "--parsable"});
+  const auto found = slurm(cli, words);
+  CAPTURE(found.err);
+  REQUIRE(found.code == 0);
+  return found.out.substr(0, found.out.find('\n'));
+}
+
+Json results_of(const CliFixture& cli, int part) {
+  std::ifstream in(cli.folder() / ("out/" + std::to_string(part) + "/results.json"));
+  const auto json = Json::parse(in, nullptr, false);
+  return json.is_object() ? json.at("cases") : Json::object();
+}
+
+std::size_t count(const Json& cases, const char* outcome) {
+  return static_cast<std::size_t>(std::count_if(
+      cases.begin(), cases.end(), [&](const Json& one) { return one.at("outcome") == outcome; }));
+}
+
+TEST_CASE("forty cases in four array tasks, one of them killed, are completed and merged") {
+  const CaseRepository cli;
+  std::filesystem::create_directories(cli.folder() / "out");
+  cli.write("array.sh", script_of_page("array.sh"));
+  // The names of the page: its suite is called `scenarios`.
+  std::filesystem::rename(cli.folder() / "repository", cli.folder() / "scenarios");
+  const std::vector<std::string> merge = {"suite",   "--merge", "out/1", "out/2",
+                                          "out/3",   "out/4",   "--out", "out/all",
+                                          "--junit", "all.xml", "--json"};
+  int killed = 0;
+  std::size_t open = 0;
+  // A task may be done before the signal comes; then all of it is tried again.
+  for (int attempt = 0; attempt < 10 && open == 0; ++attempt) {
+    for (int part = 1; part <= 4; ++part) {
+      std::filesystem::remove_all(cli.folder() / "out" / std::to_string(part));
+    }
+    const auto array = submit(cli, {"array.sh"});
+    killed = 0;
+    while (killed == 0 && !jobs(cli, "%i").empty()) {
+      for (int part = 1; part <= 4 && killed == 0; ++part) {
+        const auto cases = results_of(cli, part);
+        if (count(cases, "passed") > 0 && count(cases, "not finished") > 2) killed = part;
+      }
+    }
+    if (killed != 0) {
+      slurm(cli, {"scancel", "--signal=KILL", "--full", array + "_" + std::to_string(killed)});
+    }
+    wait_for_no_job(cli);
+    if (killed != 0) open = count(results_of(cli, killed), "not finished");
+  }
+  REQUIRE(open > 0);
+  const auto partial = cli.parallax(merge);
+  CAPTURE(partial.err);
+  CHECK(partial.code == 4);
+  CHECK(Json::parse(partial.out).at("not_run") == open);
+
+  submit(cli, {"--array=" + std::to_string(killed), "array.sh"});
+  wait_for_no_job(cli);
+  const auto all = cli.parallax(merge);
+  CAPTURE(all.err);
+  CHECK(all.code == 0);
+  CHECK(Json::parse(all.out).at("passed") == CaseRepository::kCases);
+  REQUIRE(cli.parallax({"suite", "scenarios", "--jobs", "2", "--no-cache", "--out", "whole",
+                        "--junit", "whole.xml"})
+              .code == 0);
+  CHECK(without_times(cli.read("all.xml")) == without_times(cli.read("whole.xml")));
+}
+
+const std::vector<std::string> kRun = {"run", "scenario.yaml", "--record", "all", "--out", "run"};
+
+std::vector<std::string> with(std::vector<std::string> words,
+                              const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST_CASE("a campaign whose workers srun starts is that of one machine, also if one is cancelled") {
+  const CliFixture here, there;
+  CHECK(here.parallax(kRun).code == 0);
+  bool cancelled = false;
+  ProcessOptions options;
+  options.signal_when = [&] {
+    if (cancelled) return 0;
+    // Some simulations are done, so that there are workers at others.
+    std::ifstream journal(there.folder() / "run/journal.ndjson");
+    std::string line;
+    int count = 0;
+    while (std::getline(journal, line)) ++count;
+    if (count < 10) return 0;
+    const auto running = jobs(there, "%i", {"-t", "R"});
+    if (running.empty()) return 0;
+    cancelled = slurm(there, {"scancel", running.front()}).code == 0;
+    return 0;
+  };
+  const auto found = there.parallax(
+      with(kRun, {"--launcher", "srun --quiet -n1 -c1", "--jobs", "4", "--worker-silence", "60"}),
+      options);
+  CAPTURE(found.err);
+  CHECK(found.code == 0);
+  CHECK(cancelled);
+  CHECK(found.err.find("a worker was lost") != std::string::npos);
+  CHECK(differing_files(here, there, "run") == "");
+  wait_for_no_job(there);
+}
+
+TEST_CASE("so is one that is a job itself, with its workers on the nodes of the job") {
+  const CliFixture here, there;
+  CHECK(here.parallax(kRun).code == 0);
+  there.write("campaign.sh", script_of_page("campaign.sh"));
+  there.replace("campaign.sh", "cases/drawer.yaml", "scenario.yaml");
+  there.replace("campaign.sh", "--out out/drawer", "--record all --out run");
+  submit(there, {"campaign.sh"});
+  wait_for_no_job(there);
+  CAPTURE(there.read("campaign.txt"));
+  CHECK(differing_files(here, there, "run") == "");
+}
+
+TEST_CASE("no job is left where the campaign is killed") {
+  for (const int signal : {SIGTERM, SIGKILL}) {
+    const CliFixture cli;
+    ProcessOptions options;
+    options.signal_when = [&] {
+      std::ifstream journal(cli.folder() / "run/journal.ndjson");
+      std::string line;
+      int count = 0;
+      while (std::getline(journal, line)) ++count;
+      return count > 5 ? signal : 0;
+    };
+    const auto ended =
+        cli.parallax(with(kRun, {"--launcher", "srun --quiet -n1 -c1", "--jobs", "3"}), options);
+    CHECK(ended.code == 128 + signal);
+    wait_for_no_job(cli);
+  }
+}
+
+}  // namespace
+}  // namespace parallax::test
