@@ -175,6 +175,16 @@ TEST_CASE("a run whose last worker vanished is continued as if nothing had been"
   CHECK(cli.read("cut/journal.ndjson") == cli.read("whole/journal.ndjson"));
 }
 
+TEST_CASE("an action that takes longer than a silence is no silence") {
+  const Cluster cli;
+  cli.coin(0.3, "unseeded");  // so that a loss would show
+  const auto report =
+      json_of(cli, {"rates", "coin.yaml", "--runs", "3", "--launcher", "env COIN_SECONDS=2",
+                    "--jobs", "3", "--worker-silence", "0.5"});
+  CHECK(report.at("traces").at(0).at("lost") == 0);
+  CHECK(report.at("traces").at(0).at("runs") == 3);
+}
+
 TEST_CASE("clocks of other machines have no part in it") {
   // Another time since the start of the machine, which is what durations are measured by.
   const std::vector<std::string> ahead = {"unshare", "--time",     "--monotonic",

@@ -1,7 +1,8 @@
 // A simulator that shows a discrepancy with a known probability: coin_simulator P KIND LOG. With
 // the kind `seeded` the seed decides, and it says so; with `unseeded` the machine does, and runs
-// that go wrong take longer. Each reset is written to LOG with the number of its process. What it
-// says of its version is in COIN_VERSION. Shares no code with the harness.
+// that go wrong take longer. An action takes COIN_SECONDS besides. Each reset is written to LOG
+// with the number of its process. What it says of its version is in COIN_VERSION. Shares no code
+// with the harness.
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -41,6 +42,7 @@ int main(int argc, char** argv) {
   const double p = std::atof(argv[1]);
   const bool seeded = std::string(argv[2]) == "seeded";
   const char* version = std::getenv("COIN_VERSION");
+  const char* seconds = std::getenv("COIN_SECONDS");
   std::random_device machine;
   Json state;
   bool goes_wrong = false;
@@ -66,6 +68,7 @@ int main(int argc, char** argv) {
       result = {{"status", "ok"}};
     } else if (method == "act") {
       if (goes_wrong && !seeded) ::usleep(kSlow);
+      if (seconds != nullptr) ::sleep(static_cast<unsigned>(std::atoi(seconds)));
       if (!goes_wrong) state["box.x"] = 0.5;
       result = {{"status", "ok"}, {"sim_time", 1.0}};
     } else if (method == "observe") {
