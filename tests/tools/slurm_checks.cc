@@ -12,6 +12,7 @@
 
 #include "tests/tools/cluster_fixture.h"
 #include "tests/tools/suite/case_repository.h"
+#include "tests/tools/two_models.h"
 
 namespace parallax::test {
 namespace {
@@ -130,6 +131,27 @@ TEST_CASE("forty cases in four array tasks, one of them killed, are completed an
                         "--junit", "whole.xml"})
               .code == 0);
   CHECK(without_times(cli.read("all.xml")) == without_times(cli.read("whole.xml")));
+}
+
+TEST_CASE("a sweep over seeds in one array is the suites of these seeds") {
+  const TwoModels cli;
+  std::filesystem::create_directories(cli.folder() / "out");
+  std::filesystem::rename(cli.folder() / "two", cli.folder() / "scenarios");
+  cli.write("sweep.sh", script_of_page("sweep.sh"));
+  submit(cli, {"sweep.sh"});
+  wait_for_no_job(cli);
+  for (const std::string seed : {"1", "2"}) {
+    const auto parts = "out/seed-" + seed;
+    std::vector<std::string> merge = {"suite",      "--merge", "--out",
+                                      "all" + seed, "--junit", "all" + seed + ".xml"};
+    for (const auto* part : {"/1", "/2", "/3", "/4"}) merge.insert(merge.begin() + 2, parts + part);
+    CHECK(cli.parallax(merge).code == 0);
+    CHECK(cli.parallax({"suite", "scenarios", "--seed", seed, "--no-cache", "--out", "one" + seed,
+                        "--junit", "one" + seed + ".xml"})
+              .code == 0);
+    CHECK(without_times(cli.read("all" + seed + ".xml")) ==
+          without_times(cli.read("one" + seed + ".xml")));
+  }
 }
 
 const std::vector<std::string> kRun = {"run", "scenario.yaml", "--record", "all", "--out", "run"};
