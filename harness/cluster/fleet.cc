@@ -24,6 +24,7 @@ void add_notes(base::DiagnosticBuilder warning, const std::string& text) {
   for (auto begin = text.find('\n'); begin != std::string::npos;) {
     const auto end = text.find('\n', begin + 1);
     auto line = text.substr(begin + 1, end - begin - 1);
+    while (line.ends_with('\r')) line.pop_back();
     if (!line.empty()) warning.note(std::move(line));
     begin = end;
   }
