@@ -161,6 +161,16 @@ void WorkerPool::serve_jobs(Simulator* simulator) {
 
 void WorkerPool::serve_elsewhere(Simulator& simulator) {
   auto& remote = *simulator.remote();
+  // Whatever ends this, nobody is interrupted who is gone.
+  struct Leave {
+    WorkerPool& pool;
+    RemoteSimulator& remote;
+    ~Leave() {
+      const std::lock_guard lock(pool.mutex_);
+      pool.remotes_.erase(&remote);
+    }
+  };
+  const Leave leave{*this, remote};
   {
     const std::lock_guard lock(mutex_);
     remotes_.insert(&remote);
@@ -185,8 +195,6 @@ void WorkerPool::serve_elsewhere(Simulator& simulator) {
     lock.unlock();
     simulate(*job, simulator);
   }
-  const std::lock_guard lock(mutex_);
-  remotes_.erase(&remote);
 }
 
 const WorkerPool::Job* WorkerPool::straggler() const {
@@ -231,9 +239,14 @@ void WorkerPool::put_back(const Job& job) {
   changed_.notify_all();
 }
 
-/// Is it the first result of this simulation? Nobody else's counts then.
-bool WorkerPool::claim(const Job& job, Clock::duration took) {
+/// Is it the first result of this simulation? Nobody else's counts then. A loss is none while
+/// somebody else is at it.
+bool WorkerPool::claim(const Job& job, SampleStatus status, Clock::duration took) {
   const std::lock_guard lock(mutex_);
+  if (status == SampleStatus::kLost && job.flight->copies > 1) {
+    --job.flight->copies;
+    return false;
+  }
   if (job.flight->done.exchange(true)) return false;
   if (generation_ == job.generation) under_way_.erase(job.key());
   spent_ += took;
@@ -254,7 +267,7 @@ void WorkerPool::simulate(const Job& job, Simulator& simulator) {
   } catch (const WorkerGone&) {
     return put_back(job);
   }
-  if (!record || !claim(job, Clock::now() - begun)) return;
+  if (!record || !claim(job, record->status, Clock::now() - begun)) return;
   if (moved_) moved_(*record, tap.log());
   finished_(*record);
   ++runs_made_;

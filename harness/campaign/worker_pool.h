@@ -89,7 +89,7 @@ class WorkerPool {
   std::optional<Job> take_job();
 
   void put_back(const Job& job);
-  bool claim(const Job& job, Clock::duration took);
+  bool claim(const Job& job, SampleStatus status, Clock::duration took);
   template <typename Ready>
   bool wait_until(std::unique_lock<std::mutex>& lock, Ready ready);
   bool stopped() const { return stop_ != nullptr && stop_->load(); }

@@ -197,6 +197,24 @@ TEST_CASE("one that takes too long is made twice, and the late one is ignored") 
   CHECK(ran.assignments.at(4) == 2);
 }
 
+TEST_CASE("while one is still at it, those that are lost at the same do not make it a loss") {
+  Place place;
+  place.hangs = [](std::int64_t sample, std::int64_t assignment) {
+    return sample == 4 && assignment == 1;
+  };
+  place.goes = [&](std::int64_t sample, std::int64_t assignment) {
+    if (sample != 4 || assignment == 1) return false;
+    if (assignment == kMostAssignments) {  // as many as may be; now the first one goes on
+      place.released = true;
+      place.changed.notify_all();
+    }
+    return true;
+  };
+  const auto ran = run(place, 3, 20);
+  check_all_seen(ran);
+  CHECK(ran.assignments.at(4) >= kMostAssignments);
+}
+
 TEST_CASE("without a promise that it is the same run it is made once, however long it takes") {
   Place place;
   place.seeds = false;
