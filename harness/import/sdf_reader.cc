@@ -1,23 +1,6 @@
-// The only place of libsdformat.
+// The only place of libsdformat, a module of its own (sdf_module.h).
 
 #include <fmt/format.h>
-
-#include "harness/import/description.h"
-
-#ifndef PARALLAX_HAS_SDFORMAT
-
-namespace parallax::harness {
-
-bool reads_sdf() { return false; }
-ImportedWorld import_sdf(const ImportInput& /*input*/) {
-  ImportedWorld world;
-  world.fault = TextFault{0, "this build reads no SDF"};
-  return world;
-}
-
-}  // namespace parallax::harness
-
-#else
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +10,10 @@ ImportedWorld import_sdf(const ImportInput& /*input*/) {
 #include <sdf/sdf.hh>
 #include <set>
 #include <sstream>
+#include <string_view>
+
+#include "harness/import/description.h"
+#include "harness/import/sdf_module.h"
 
 namespace parallax::harness {
 namespace {
@@ -460,21 +447,19 @@ class SdfReader {
 
 }  // namespace
 
-bool reads_sdf() { return true; }
-
-ImportedWorld import_sdf(const ImportInput& input) {
-  ImportedWorld world;
+extern "C" __attribute__((visibility("default"))) bool parallax_read_sdf(const char* version,
+                                                                         const ImportInput& input,
+                                                                         ImportedWorld& world) {
+  if (std::string_view(version) != PARALLAX_IMPORT_VERSION) return false;
   const XmlOutline outline = outline_of(input.text);
   world.fault = outline.fault;
-  if (world.fault) return world;
+  if (world.fault) return true;
   IncludeGate gate(input.folders);
   world.fault = gate.check(outline);
   world.files = gate.files();
-  if (world.fault) return world;
+  if (world.fault) return true;
   SdfReader(input, outline, world).run();
-  return world;
+  return true;
 }
 
 }  // namespace parallax::harness
-
-#endif
