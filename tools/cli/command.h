@@ -93,6 +93,7 @@ Command suite_command();
 Command traces_command();
 Command verify_command();
 Command diagnostics_command();
+Command doctor_command();
 Command export_command();
 Command fmt_command();
 Command learn_command();

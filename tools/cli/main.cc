@@ -77,7 +77,8 @@ int run(int argc, char** argv) {
       coverage_command(),      monitor_command(),      report_command(),  learn_command(),
       export_command(),        ledger_command(),       bisect_command(),  calibrate_command(),
       prove_command(),         consequences_command(), confirm_command(), threshold_command(),
-      adapter_check_command(), new_command(),          record_command(),  replay_adapter_command()};
+      adapter_check_command(), new_command(),          record_command(),  replay_adapter_command(),
+      doctor_command()};
   Program program{
       table, fmt::format("parallax {} (CaDiCaL {})", kVersion, kCadicalVersion), true, {}};
   for (auto& command : commands) {
