@@ -74,6 +74,8 @@ class Splitter {
     }
     anchor_to_carried();
     const auto added = static_cast<std::uint32_t>(carried_.size());
+    out_.carried.resize(added);
+    for (const auto& [v, k] : carried_) out_.carried[k] = static_cast<std::int32_t>(v) + 1;
     out_.state_slots = model_.state_slots + added;
     out_.stride = static_cast<std::uint32_t>(model_.stride()) + added;
     for (const auto& event : model_.events) {

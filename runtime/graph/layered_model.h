@@ -36,6 +36,8 @@ struct LayeredModel {
   std::vector<std::uint32_t> events;  // step slots of Happens, in declaration order
   /// Other state slots that one window can hand on to the next.
   std::vector<std::uint32_t> hidden;
+  /// Of the state slots behind those of the model: which fixed variable is carried there.
+  std::vector<std::int32_t> carried;
   /// State slots of ReleasedAt that are neither, though some clause mentions them.
   std::vector<std::uint32_t> loose_releases;
   WindowClauses start;

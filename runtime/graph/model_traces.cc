@@ -1,8 +1,6 @@
 #include "runtime/graph/model_traces.h"
 
 #include <algorithm>
-#include <map>
-#include <random>
 #include <utility>
 #include <variant>
 
@@ -17,33 +15,24 @@ namespace {
 
 /// More than so many traces repay a graph that takes some seconds.
 constexpr std::int64_t kFew = 1000;
-/// What lies so far ahead is not worth to be found one by one.
-constexpr std::int64_t kFar = 64;
 /// A trace that costs a search more conflicts than this is a solver's to find.
 constexpr std::int64_t kConflicts = 1000;
 /// That symmetry makes it easy to see that there is no trace shows within so many conflicts.
 constexpr std::int64_t kEasy = 20'000;
-/// Transitions are found by search some hundred times faster than traces by a solver that is to
-/// give them in order. So a graph that stays small is tried first, and larger ones as traces come.
-constexpr GraphLimits kSmall = {500'000, 50'000, 10'000};
-constexpr GraphLimits kMedium = {2'000'000, 500'000, 200'000};
 
 }  // namespace
 
 ModelTraces::ModelTraces(const CompiledModel& model, TraceQuery query)
     : model_(model), query_(query) {
-  const auto within = [&](const GraphLimits& limits) {
-    return GraphLimits{std::min(limits.nodes, query.limits.nodes),
-                       std::min(limits.edges, query.limits.edges),
-                       std::min(limits.conflicts, query.limits.conflicts)};
-  };
   switch (query.strategy) {
     case Strategy::kAuto:
       if (query.wanted > 0 && query.wanted <= kFew) {
         // What comes first in canonical order is the search's to find; any one is the solver's.
         if (query.order == TraceOrder::kCanonical) use_search(kConflicts);
       } else {
-        attempts_ = {{kFar, query.limits}, {1, within(kMedium)}, {0, within(kSmall)}};
+        attempts_ = {{kFar, query.limits},
+                     {1, kMediumGraph.within(query.limits)},
+                     {0, kSmallGraph.within(query.limits)}};
         attempt_graph();
         if (source_ == nullptr) use_search(kConflicts);
       }
@@ -179,7 +168,7 @@ void ModelTraces::attempt_graph() {
 /// The search met too many conflicts: by now the graph or a solver is better.
 void ModelTraces::leave_search() {
   search_ = nullptr;
-  if (!is_tried_) use_graph(kSmall);
+  if (!is_tried_) use_graph(kSmallGraph);
   if (paths_ != nullptr) return;
   if (given_ == 0) {
     use_blocking();
@@ -233,111 +222,6 @@ SourceStats ModelTraces::stats() const {
   stats.remark = remark_;
   if (paths_ != nullptr && session_) stats.solve_calls += session_->solve_calls();
   return stats;
-}
-
-namespace {
-
-bool count_components(const CompiledModel& model, const TraceQuery& query, ComponentEffort effort,
-                      TraceCount& result) {
-  const ComponentTraces components(model, query.distinct, query.stop, effort);
-  if (!components.total()) return false;
-  result.count = *components.total();
-  result.complete = true;
-  result.stats = components.stats();
-  return true;
-}
-
-}  // namespace
-
-TraceCount count_traces(const CompiledModel& model, const TraceQuery& query) {
-  TraceCount result;
-  // What clauses tie together from afar a graph has to carry along.
-  if (query.strategy == Strategy::kAuto && looks_far(model) &&
-      count_components(model, query, ComponentEffort::kTrial, result)) {
-    return result;
-  }
-  ModelTraces traces(model, query);
-  if (traces.graph() == nullptr && !traces.refusal().empty()) {
-    result.refusal = traces.refusal();
-    return result;
-  }
-  const auto stopped = [&] { return query.stop != nullptr && query.stop->load(); };
-  while (true) {
-    if (const auto* graph = traces.graph()) {
-      result.count = graph->count();
-      result.complete = true;
-      result.stats = traces.stats();
-      result.stats.strategy = "graph";  // it may count what it cannot list
-      result.stats.states = graph->node_count();
-      result.stats.transitions = graph->edge_count();
-      result.stats.remark.clear();
-      return result;
-    }
-    if (stopped()) break;
-    if (query.strategy == Strategy::kComponents ||
-        (query.strategy == Strategy::kAuto && result.count == kFar)) {
-      if (count_components(model, query, ComponentEffort::kFull, result)) {
-        result.stats.remark = traces.stats().remark;
-        return result;
-      }
-    }
-    if (!traces.next()) break;
-    ++result.count;
-  }
-  result.complete = traces.exhausted();
-  result.stats = traces.stats();
-  return result;
-}
-
-namespace {
-
-/// A number below `bound`, which is positive: bits are drawn until they are below it.
-mpz_class draw_below(const mpz_class& bound, std::mt19937_64& random) {
-  const auto bits = mpz_sizeinbase(bound.get_mpz_t(), 2);
-  while (true) {
-    mpz_class number = 0;
-    for (std::size_t have = 0; have < bits; have += 32) {
-      number <<= 32;
-      number += static_cast<unsigned long>(random() >> 32U);
-    }
-    number >>= (32 - bits % 32) % 32;
-    if (number < bound) return number;
-  }
-}
-
-}  // namespace
-
-TraceSample sample_traces(const CompiledModel& model, const TraceQuery& query, std::size_t size,
-                          std::uint64_t seed) {
-  TraceSample sample;
-  const auto counted = count_traces(model, query);
-  sample.population = counted.count;
-  sample.complete = counted.complete;
-  sample.stats = counted.stats;
-  sample.refusal = counted.refusal;
-  if (!counted.complete || counted.count == 0) return sample;
-  std::mt19937_64 random(seed);
-  std::multimap<mpz_class, std::size_t> draws;  // by the number of traces before
-  for (std::size_t i = 0; i < size; ++i) draws.emplace(draw_below(counted.count, random), i);
-  sample.traces.resize(size);
-  ModelTraces traces(model, query);
-  std::optional<Trace> last;
-  mpz_class next = 0;  // how many traces come before the one that is next
-  for (const auto& [before, place] : draws) {
-    if (!last || before >= next) {
-      traces.seek(before);
-      last = traces.next();
-      next = before + 1;
-    }
-    if (!last) {
-      sample.complete = false;
-      sample.traces.clear();
-      return sample;
-    }
-    sample.traces[place] = *last;
-    sample.traces[place].number = static_cast<std::int64_t>(place) + 1;
-  }
-  return sample;
 }
 
 }  // namespace parallax::runtime

@@ -54,6 +54,13 @@ struct TraceQuery {
   const std::atomic<bool>* stop = nullptr;
 };
 
+/// What lies so far ahead is not worth to be found one by one.
+inline constexpr std::int64_t kFar = 64;
+/// Transitions are found by search some hundred times faster than traces by a solver that is to
+/// give them in order. So a graph that stays small is tried first, and larger ones as traces come.
+inline constexpr GraphLimits kSmallGraph = {500'000, 50'000, 10'000};
+inline constexpr GraphLimits kMediumGraph = {2'000'000, 500'000, 200'000};
+
 /// The layered graph of a model, or why it has none.
 struct ModelGraph {
   std::unique_ptr<LayeredModel> layered;  // none: no graph of any size
@@ -121,33 +128,5 @@ class ModelTraces final : public TraceSource {
   std::string refusal_;
   std::string remark_;  // why the graph was not used
 };
-
-struct TraceCount {
-  mpz_class count;
-  bool complete = false;  // else at least so many
-  SourceStats stats;
-  std::string refusal;  // why the strategy that was asked for cannot be had; nothing was counted
-};
-
-/// Counts the traces of a model without constraints at its full horizon. Left to choose, a few are
-/// found one by one; if there are more, the graph counts them, and where the model has none, they
-/// are counted by components, or else one by one.
-TraceCount count_traces(const CompiledModel& model, const TraceQuery& query);
-
-struct TraceSample {
-  /// Numbered 1 .. size as drawn; each was any of `population` traces with equal probability,
-  /// whatever the others. Empty if there is no trace or the search was stopped.
-  std::vector<Trace> traces;
-  mpz_class population;
-  bool complete = false;  // else stopped
-  SourceStats stats;
-  std::string refusal;  // as of TraceCount
-};
-
-/// Draws `size` traces uniformly, with replacement. The same seed draws the same traces whatever
-/// the strategy. With the graph each costs one walk, by components some counts; without both all
-/// traces are found twice.
-TraceSample sample_traces(const CompiledModel& model, const TraceQuery& query, std::size_t size,
-                          std::uint64_t seed);
 
 }  // namespace parallax::runtime

@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "runtime/graph/state_orbits.h"
+
 namespace parallax::runtime {
 namespace {
 
@@ -32,6 +34,12 @@ std::vector<std::vector<Literal>> literals(const WindowClauses& window) {
     for (const auto literal : written) clause.push_back(Literal::from_dimacs(literal));
   }
   return out;
+}
+
+/// Each once.
+void sort_out(std::vector<std::uint32_t>& nodes) {
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
 }
 
 }  // namespace
@@ -144,8 +152,12 @@ Move StepSolver::read(const Value& value) const {
 }
 
 TraceGraph::TraceGraph(const LayeredModel& model, const GraphLimits& limits,
-                       const std::atomic<bool>* stop)
-    : model_(model), limits_(limits), stop_(stop), start_(model, model.start, true, stop) {
+                       const std::atomic<bool>* stop, const GraphOrbits* orbits)
+    : model_(model),
+      limits_(limits),
+      stop_(stop),
+      orbits_(orbits),
+      start_(model, model.start, true, stop) {
   for (const auto& step : model.steps) {
     steps_.push_back(std::make_unique<StepSolver>(model, step, false, stop));
   }
@@ -153,9 +165,11 @@ TraceGraph::TraceGraph(const LayeredModel& model, const GraphLimits& limits,
 }
 
 std::unique_ptr<TraceGraph> TraceGraph::build(const LayeredModel& model, const GraphLimits& limits,
-                                              const std::atomic<bool>* stop, std::string& reason) {
-  auto graph = std::unique_ptr<TraceGraph>(new TraceGraph(model, limits, stop));
+                                              const std::atomic<bool>* stop, std::string& reason,
+                                              const GraphOrbits* orbits) {
+  auto graph = std::unique_ptr<TraceGraph>(new TraceGraph(model, limits, stop, orbits));
   if (!graph->expand(reason)) return nullptr;
+  graph->orbits_ = nullptr;
   graph->count_back();
   return graph;
 }
@@ -167,8 +181,9 @@ std::size_t GraphNodeHash::operator()(const GraphNode& node) const {
   return hash;
 }
 
-std::uint32_t TraceGraph::intern(GraphNode node) {
+std::uint32_t TraceGraph::intern(GraphNode node, const StateOrbits* orbits) {
   if (node.hidden.size() > 1) determined_ = false;
+  if (orbits != nullptr) orbits->represent(node);
   const auto [entry, added] =
       node_index_.try_emplace(std::move(node), static_cast<std::uint32_t>(nodes_.size()));
   if (added) nodes_.push_back(&entry->first);
@@ -185,13 +200,15 @@ std::uint32_t TraceGraph::intern_events(Bits events) {
 bool TraceGraph::expand(std::string& reason) {
   auto moves = start_.moves({}, {}, {limits_.nodes, limits_.conflicts, limits_.solver});
   if (!moves) return give_up(reason);
+  const auto* orbits = orbits_ == nullptr ? nullptr : &orbits_->at_start;
   std::map<Bits, std::vector<Bits>> starts;
   for (auto& move : *moves) starts[move.observed].push_back(std::move(move.hidden));
   for (auto& [observed, hidden] : starts) {
     std::sort(hidden.begin(), hidden.end());
-    starts_.push_back(intern({observed, std::move(hidden)}));
+    starts_.push_back(intern({observed, std::move(hidden)}, orbits));
   }
   layers_.push_back(starts_);
+  sort_out(layers_.back());
   std::size_t total = starts_.size();
   for (Timepoint t = 0; t < model_.horizon; ++t) {
     const auto step = model_.step_at[static_cast<std::size_t>(t)];
@@ -200,8 +217,7 @@ bool TraceGraph::expand(std::string& reason) {
       if (!edges_[step].contains(node) && !expand_node(step, node, reason)) return false;
       for (const auto& edge : edges_[step].at(node)) next.push_back(edge.target);
     }
-    std::sort(next.begin(), next.end());
-    next.erase(std::unique(next.begin(), next.end()), next.end());
+    sort_out(next);
     total += next.size();
     layers_.push_back(std::move(next));
     if (total > limits_.nodes) return give_up(reason);
@@ -220,11 +236,12 @@ bool TraceGraph::expand_node(std::uint32_t step, std::uint32_t node, std::string
       ways[{std::move(move.events), std::move(move.observed)}].push_back(std::move(move.hidden));
     }
   }
+  const auto* orbits = orbits_ == nullptr ? nullptr : &orbits_->later;
   auto& edges = edges_[step][node];
   for (auto& [way, hidden] : ways) {
     std::sort(hidden.begin(), hidden.end());
     hidden.erase(std::unique(hidden.begin(), hidden.end()), hidden.end());
-    edges.push_back({intern_events(way.first), intern({way.second, std::move(hidden)})});
+    edges.push_back({intern_events(way.first), intern({way.second, std::move(hidden)}, orbits)});
   }
   edge_count_ += edges.size();
   return edge_count_ <= limits_.edges || give_up(reason);

@@ -2,6 +2,7 @@
 
 #include <gmpxx.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <limits>
@@ -97,7 +98,15 @@ struct GraphLimits {
   std::size_t edges = 20'000'000;                                     // that are stored
   std::int64_t conflicts = std::numeric_limits<std::int64_t>::max();  // of the search for them
   bool solver = true;  // states that a search does not settle are given to one
+  /// The lesser of each.
+  GraphLimits within(const GraphLimits& other) const {
+    return {std::min(nodes, other.nodes), std::min(edges, other.edges),
+            std::min(conflicts, other.conflicts), solver && other.solver};
+  }
 };
+
+class StateOrbits;
+struct GraphOrbits;
 
 /// The traces of a model as the paths of a layered graph: every distinct state of a window is asked
 /// for its successors once, whatever leads to it and whenever, so that cost grows with states and
@@ -107,9 +116,11 @@ struct GraphLimits {
 class TraceGraph {
  public:
   /// None if the solver was stopped or a limit was hit; `reason` says which. `model` outlives the
-  /// graph, `stop` may be null.
+  /// graph, `stop` may be null. With `orbits` a state stands for all of its orbit: the graph counts
+  /// as without, but its paths are no longer the traces.
   static std::unique_ptr<TraceGraph> build(const LayeredModel& model, const GraphLimits& limits,
-                                           const std::atomic<bool>* stop, std::string& reason);
+                                           const std::atomic<bool>* stop, std::string& reason,
+                                           const GraphOrbits* orbits = nullptr);
 
   /// The reason where a state needs a solver and the limits say that it has none.
   static constexpr std::string_view kWantsSolver = "a state has too many choices for a search";
@@ -122,7 +133,7 @@ class TraceGraph {
   const LayeredModel& model() const { return model_; }
   const GraphNode& node(std::uint32_t index) const { return *nodes_[index]; }
   const Bits& events(std::uint32_t index) const { return *event_sets_[index]; }
-  /// The nodes at timepoint 0 in canonical order.
+  /// The nodes at timepoint 0 in canonical order; with orbits one for each state there.
   const std::vector<std::uint32_t>& starts() const { return starts_; }
   /// The ways on from a node, in canonical order; some may lead to no trace.
   const std::vector<GraphEdge>& edges(Timepoint t, std::uint32_t node) const;
@@ -134,13 +145,14 @@ class TraceGraph {
   std::int64_t solve_calls() const;
 
  private:
-  TraceGraph(const LayeredModel& model, const GraphLimits& limits, const std::atomic<bool>* stop);
+  TraceGraph(const LayeredModel& model, const GraphLimits& limits, const std::atomic<bool>* stop,
+             const GraphOrbits* orbits);
   bool expand(std::string& reason);
   bool expand_node(std::uint32_t step, std::uint32_t node, std::string& reason);
   bool wants_solver() const;
   bool give_up(std::string& reason) const;
   void count_back();
-  std::uint32_t intern(GraphNode node);
+  std::uint32_t intern(GraphNode node, const StateOrbits* orbits);
   std::uint32_t intern_events(Bits events);
 
   using Counts = std::unordered_map<std::uint32_t, mpz_class>;  // by node, for look-up only
@@ -148,6 +160,7 @@ class TraceGraph {
   const LayeredModel& model_;
   GraphLimits limits_;
   const std::atomic<bool>* stop_;
+  const GraphOrbits* orbits_;  // while it is built; null: every state for itself
   StepSolver start_;
   std::vector<std::unique_ptr<StepSolver>> steps_;
   // For look-up only; the numbers follow the order in which nodes and events were met.

@@ -19,22 +19,6 @@ constexpr std::int64_t kWork = 1'000'000;
 constexpr std::int64_t kQuick = 50'000'000;
 constexpr std::int64_t kThorough = 300'000'000;
 
-NodeMap moved_nodes(const NamedAtoms& atoms, const ConstantMap& map) {
-  NodeMap moved;
-  for (std::uint32_t constant = 0; constant < map.size(); ++constant) {
-    if (map[constant] == constant) continue;
-    for (const auto node : atoms.mentions(constant)) {
-      const auto to = atoms.image(node, map);
-      PARALLAX_REQUIRE(to.has_value(), "a symmetry was checked");
-      if (*to != node) moved.emplace_back(node, *to);
-    }
-  }
-  // What mentions several is met once from each.
-  std::sort(moved.begin(), moved.end());
-  moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
-  return moved;
-}
-
 std::vector<std::vector<std::string>> cycles_of(const std::vector<std::string>& constants,
                                                 const ConstantMap& map) {
   std::vector<std::vector<std::string>> cycles;
@@ -51,6 +35,22 @@ std::vector<std::vector<std::string>> cycles_of(const std::vector<std::string>& 
 }
 
 }  // namespace
+
+NodeMap moved_nodes(const NamedAtoms& atoms, const ConstantMap& map) {
+  NodeMap moved;
+  for (std::uint32_t constant = 0; constant < map.size(); ++constant) {
+    if (map[constant] == constant) continue;
+    for (const auto node : atoms.mentions(constant)) {
+      const auto to = atoms.image(node, map);
+      PARALLAX_REQUIRE(to.has_value(), "a symmetry was checked");
+      if (*to != node) moved.emplace_back(node, *to);
+    }
+  }
+  // What mentions several is met once from each.
+  std::sort(moved.begin(), moved.end());
+  moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+  return moved;
+}
 
 ModelSymmetry::ModelSymmetry(const CompiledModel& model, SymmetryEffort effort) {
   const NamedAtoms atoms(model);

@@ -25,6 +25,9 @@ struct Interchangeables {
 /// A symmetry as the named nodes that it moves: each, and the one whose place it takes.
 using NodeMap = std::vector<std::pair<ModelNode, ModelNode>>;
 
+/// What a symmetry of the constants makes of the atoms that it moves. `map` was checked.
+NodeMap moved_nodes(const NamedAtoms& atoms, const ConstantMap& map);
+
 /// How long may be searched for symmetries of several constants at once?
 enum class SymmetryEffort : std::uint8_t {
   kQuick,     // before anything is known to be hard: some tenths of a second

@@ -16,12 +16,6 @@ namespace {
 
 constexpr auto kUnordered = std::numeric_limits<std::size_t>::max();
 
-/// The variable that a node has at a timepoint; fixed ones are the same at each.
-std::int32_t variable_at(const CompiledModel& model, ModelNode node, Timepoint t) {
-  const auto variable = static_cast<std::int32_t>(node) + 1;
-  return variable <= model.base() ? variable : variable + t * model.stride();
-}
-
 /// By variable - 1: 1 and -1 of those that a clause of one literal settles.
 std::vector<std::int8_t> settled_values(const CompiledModel& model) {
   std::vector<std::int8_t> values(static_cast<std::size_t>(model.variable_count()), 0);

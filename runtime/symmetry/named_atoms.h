@@ -20,6 +20,13 @@ inline ModelNode node_of(const compiler::CompiledModel& model, std::int32_t vari
   return static_cast<ModelNode>(place < 0 ? variable - 1 : model.base() + place % model.stride());
 }
 
+/// The variable that a node has at a timepoint; fixed ones are the same at each.
+inline std::int32_t variable_at(const compiler::CompiledModel& model, ModelNode node,
+                                compiler::Timepoint t) {
+  const auto variable = static_cast<std::int32_t>(node) + 1;
+  return variable <= model.base() ? variable : variable + t * model.stride();
+}
+
 /// Where a constant stands as an argument in a printed name, at any depth: bytes of the name.
 struct ConstantPlace {
   std::uint32_t begin = 0;

@@ -13,6 +13,7 @@
 #include "compiler/base/codes/campaigns.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/graph/model_traces.h"
+#include "runtime/graph/trace_count.h"
 
 namespace parallax::tools {
 

@@ -8,7 +8,9 @@
 #include "runtime/cubes/cube_solver.h"
 #include "runtime/enumerate/model_enumerator.h"
 #include "runtime/enumerate/plan_enumerator.h"
+#include "runtime/graph/orbit_number.h"
 #include "runtime/graph/orbit_traces.h"
+#include "runtime/graph/trace_count.h"
 #include "tools/app/trace_writer.h"
 
 namespace parallax::tools {
@@ -209,10 +211,6 @@ Ending list_plan_traces(const SearchOptions& options, const compiler::CompiledMo
   return ending;
 }
 
-bool has_symmetry(const compiler::CompiledModel& model) {
-  return !runtime::ModelSymmetry(model).empty();
-}
-
 std::optional<Ending> list_model_traces(const SearchOptions& options,
                                         const compiler::CompiledModel& model,
                                         TraceCertifier& certifier, TraceWriter& writer,
@@ -250,12 +248,40 @@ std::optional<Ending> list_model_traces(const SearchOptions& options,
   return Ending{options.from > 1 ? "complete from there on" : "complete", options.from == 1};
 }
 
+namespace {
+
+std::optional<CountedTraces> count_model_orbits(const SearchOptions& options,
+                                                const compiler::CompiledModel& model,
+                                                const runtime::ModelSymmetry& symmetry,
+                                                const runtime::TraceQuery& query,
+                                                TraceCertifier& certifier, Context& context) {
+  const auto counted = runtime::count_orbits(model, symmetry, query);
+  if (!counted) return std::nullopt;
+  certifier.rest_on_symmetry();
+  show_constants(options, symmetry.constants(), context);
+  if (options.stats && !context.form().json) {
+    context.statistics(
+        fmt::format("strategy orbit counting; {} symmetries asked\n", counted->counted));
+  }
+  CountedTraces result{counted->orbits.get_str(), "orbit counting", {}};
+  result.ending = {"complete", true};
+  result.ending.in_all = counted->traces.get_str();
+  return result;
+}
+
+}  // namespace
+
 std::optional<CountedTraces> count_model_traces(const SearchOptions& options,
                                                 const compiler::CompiledModel& model,
                                                 TraceCertifier& certifier, Context& context) {
   auto query = query_of(options, context);
   query.wanted = 0;
   query.breaks_symmetry = !certifier.is_asked();
+  if (options.up_to_symmetry) {
+    const runtime::ModelSymmetry symmetry(model);
+    if (!symmetry.empty())
+      return count_model_orbits(options, model, symmetry, query, certifier, context);
+  }
   if (leaves_proof(query, certifier)) {
     // Only of a model without traces the number is proved.
     runtime::SolverSession session(model, certifier.solver(), certifier.loading());
@@ -273,6 +299,7 @@ std::optional<CountedTraces> count_model_traces(const SearchOptions& options,
   CountedTraces result{counted.count.get_str(), counted.stats.strategy, {}};
   if (counted.stats.by_symmetry) certifier.rest_on_symmetry();
   if (counted.complete) result.ending = {"complete", true};
+  result.ending.in_all = result.number;  // without symmetry each is an orbit of its own
   return result;
 }
 

@@ -41,9 +41,6 @@ struct Ending {
 Ending list_plan_traces(const SearchOptions& options, const compiler::CompiledModel& model,
                         TraceCertifier& certifier, TraceWriter& writer, Context& context);
 
-/// Can any two constants of the model be exchanged?
-bool has_symmetry(const compiler::CompiledModel& model);
-
 /// Traces of a model: listed, or drawn where a sample is asked for. None if the strategy cannot be
 /// had, reported. Where a proof is asked for the first ones are searched by the certifier's solver.
 std::optional<Ending> list_model_traces(const SearchOptions& options,
@@ -51,8 +48,8 @@ std::optional<Ending> list_model_traces(const SearchOptions& options,
                                         TraceCertifier& certifier, TraceWriter& writer,
                                         Context& context);
 
-/// The number of traces of a model without making them. None if the strategy cannot be had,
-/// reported.
+/// The number of traces of a model, or of their orbits, without making them. None if the strategy
+/// cannot be had, reported; of orbits also where they have to be listed, which is not reported.
 struct CountedTraces {
   std::string number, strategy;
   Ending ending;

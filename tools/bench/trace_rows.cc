@@ -60,6 +60,7 @@ void measure_counting(Bench& bench) {
   }
   bench.begin("counting more than can be listed");
   compare_counts(bench, {"roaming_6_4_30", "36576324650499955"});
+  compare_counts(bench, {"roaming_6_12_40", "7067596208426570798154076"});
   bench.begin("counting where clauses look far");
   compare_counts(bench, {"distant_4_6", "331776"});
   compare_counts(bench, {"distant_8_30",

@@ -92,11 +92,15 @@ void close_list(const TracesOptions& options, const compiler::CompiledModel& mod
   }
 }
 
-/// `--count` without a plan or constraints: no trace needs to be made.
-int count_only(const TracesOptions& options, const compiler::CompiledModel& model,
-               TraceCertifier& certifier, const BestTraces* best,
-               std::chrono::steady_clock::time_point start, Invocation& invocation) {
+/// `--count` without a plan or constraints: no trace needs to be made. None: orbits have to be
+/// listed to be counted.
+std::optional<int> count_only(const TracesOptions& options, const compiler::CompiledModel& model,
+                              TraceCertifier& certifier, const BestTraces* best,
+                              std::chrono::steady_clock::time_point start, Invocation& invocation) {
   const auto counted = count_model_traces(options.search, model, certifier, invocation);
+  if (!counted && options.search.up_to_symmetry && !invocation.sink().has_errors()) {
+    return std::nullopt;
+  }
   if (!counted) return 0;
   const auto& ending = counted->ending;
   if (counted->number == "0" && ending.complete) {
@@ -107,13 +111,12 @@ int count_only(const TracesOptions& options, const compiler::CompiledModel& mode
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   if (!ending.complete) invocation.remark("stopped before the end: there may be more traces");
   if (ending.complete && counted->number == "0") point_to_explanation(options, invocation);
-  // Without interchangeable constants every trace is an orbit of its own.
   const bool all = options.search.up_to_symmetry;
   const bool proved = best != nullptr && !best->proof_fields().empty();
   const auto fields =
       (best != nullptr ? best->fields() : "") +
       (proved ? best->proof_fields() : certifier.fields()) +
-      (all ? fmt::format("\"up_to_symmetry\":true,\"in_all\":{},", counted->number) : "");
+      (all ? fmt::format("\"up_to_symmetry\":true,\"in_all\":{},", ending.in_all) : "");
   if (invocation.options().json) {
     invocation.document(
         fmt::format("{{\"status\":\"ok\",\"traces\":{},\"complete\":{},\"exploration\":\"{}\","
@@ -122,7 +125,7 @@ int count_only(const TracesOptions& options, const compiler::CompiledModel& mode
                     wall.count()));
   } else {
     invocation.result(counted->number +
-                      (all ? fmt::format(" up to symmetry, {} in all\n", counted->number) : "\n"));
+                      (all ? fmt::format(" up to symmetry, {} in all\n", ending.in_all) : "\n"));
   }
   return counted->number == "0" && options.expect_traces ? 1 : 0;
 }
@@ -294,10 +297,10 @@ int list_compiled(const TracesOptions& options, const compiler::Compilation& com
     certifier.emplace(not_asked, options.model.models, model, invocation);
     best->certify(options.certify, options.model.models, *all, invocation);
   };
-  if (options.count && !options.check && !model.has_constraints &&
-      (!options.search.up_to_symmetry || !has_symmetry(model))) {
+  if (options.count && !options.check && !model.has_constraints) {
     prove_optimum();
-    return count_only(options, model, *certifier, best, start, invocation);
+    const auto code = count_only(options, model, *certifier, best, start, invocation);
+    if (code) return *code;
   }
   std::optional<TraceCheck> check;
   if (options.check) check.emplace(*compilation.typed, &stop_flag(), invocation.sink());

@@ -6,6 +6,7 @@
 
 #include "runtime/graph/component_traces.h"
 #include "runtime/graph/model_traces.h"
+#include "runtime/graph/trace_count.h"
 #include "tests/support/clause_problem.h"
 #include "tests/support/text_model.h"
 

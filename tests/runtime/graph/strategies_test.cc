@@ -4,6 +4,7 @@
 
 #include "runtime/enumerate/model_enumerator.h"
 #include "runtime/graph/model_traces.h"
+#include "runtime/graph/trace_count.h"
 #include "tests/support/classic_models.h"
 #include "tests/support/random_model.h"
 #include "tests/support/text_model.h"

@@ -12,6 +12,7 @@
 #include "runtime/enumerate/model_enumerator.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/graph/model_traces.h"
+#include "runtime/graph/trace_count.h"
 #include "runtime/optimize/bounded_model.h"
 #include "runtime/optimize/core_guided.h"
 #include "tests/runtime/enumerate/brute_force.h"

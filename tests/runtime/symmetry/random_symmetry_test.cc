@@ -3,7 +3,9 @@
 #include <string>
 
 #include "runtime/enumerate/canonical.h"
+#include "runtime/graph/orbit_number.h"
 #include "runtime/graph/orbit_traces.h"
+#include "runtime/graph/state_orbits.h"
 #include "runtime/symmetry/lex_leader.h"
 #include "tests/runtime/symmetry/symmetric_traces.h"
 #include "tests/support/random_model.h"
@@ -92,7 +94,39 @@ std::string model_text(FuzzRandom& random) {
 
 struct Seen {
   std::size_t models = 0, symmetric = 0, together = 0, unsatisfiable = 0, large = 0;
+  std::size_t counted = 0, folded = 0, hidden = 0;
 };
+
+/// Orbits are counted as they are listed.
+void check_number(const compiler::CompiledModel& model, const runtime::TraceQuery& query,
+                  std::size_t orbits, std::size_t traces, Seen& seen) {
+  const runtime::ModelSymmetry symmetry(model);
+  const auto number = runtime::count_orbits(model, symmetry, query);
+  if (!number) return;
+  CHECK(number->orbits == orbits);
+  CHECK(number->traces == traces);
+  ++seen.counted;
+}
+
+/// A graph with one state of each orbit counts as the whole one, on fewer states.
+void check_folded_graph(const compiler::CompiledModel& model, const runtime::TraceQuery& query,
+                        std::size_t traces, Seen& seen) {
+  auto split = runtime::split_into_windows(model, query.distinct, runtime::FixedTies::kCarried);
+  const auto* layered = std::get_if<runtime::LayeredModel>(&split);
+  if (layered == nullptr || traces == 0) return;
+  const auto orbits = runtime::GraphOrbits::of(model, *layered);
+  if (orbits.empty()) return;
+  std::string reason;
+  const auto whole = runtime::TraceGraph::build(*layered, {}, nullptr, reason);
+  const auto folded = runtime::TraceGraph::build(*layered, {}, nullptr, reason, &orbits);
+  REQUIRE(whole != nullptr);
+  REQUIRE(folded != nullptr);
+  CHECK(folded->count() == traces);
+  // Starts stay what they are where only what comes later is alike.
+  CHECK(folded->node_count() <= whole->node_count() + whole->starts().size());
+  if (folded->node_count() < whole->node_count()) ++seen.folded;
+  if (!layered->hidden.empty()) ++seen.hidden;
+}
 
 void check_orbits(const compiler::CompiledModel& model, bool all_atoms, Seen& seen) {
   const auto traces = all_traces(model, all_atoms);
@@ -129,6 +163,8 @@ void check_orbits(const compiler::CompiledModel& model, bool all_atoms, Seen& se
   CHECK(covered == known);
   CHECK(orbits.total() == known.size());
   CHECK((given == 0) == known.empty());
+  if (!constants.empty()) check_number(model, query, given, known.size(), seen);
+  check_folded_graph(model, query, known.size(), seen);
 }
 
 /// The first trace is the same, and there is one in the same models.
@@ -165,8 +201,13 @@ TEST_CASE("random models: orbits, their sizes and existence agree with exchangin
     check_existence(model.compiled);
   }
   MESSAGE(seen.models << " models, " << seen.symmetric << " symmetric, " << seen.unsatisfiable
-                      << " without a trace, " << seen.large << " left out");
+                      << " without a trace, " << seen.large << " left out; " << seen.counted
+                      << " counted, " << seen.folded << " folded, " << seen.hidden
+                      << " with hidden atoms");
   CHECK(seen.symmetric > 100);
+  CHECK(seen.counted > 100);
+  CHECK(seen.folded > 50);
+  CHECK(seen.hidden > 5);
   CHECK(seen.symmetric + seen.large + 20 < seen.models);
   CHECK(seen.unsatisfiable > 10);
 }
@@ -289,6 +330,8 @@ TEST_CASE("random models with constants that belong together: orbits, sizes and 
   MESSAGE(seen.models << " models, " << seen.symmetric << " symmetric, " << seen.together
                       << " of several at once, " << seen.large << " left out");
   CHECK(seen.together > 50);
+  CHECK(seen.counted > 50);
+  CHECK(seen.folded > 10);
   CHECK(named > 10);
 }
 

@@ -5,7 +5,9 @@
 #include <string>
 
 #include "runtime/enumerate/canonical.h"
+#include "runtime/graph/orbit_number.h"
 #include "runtime/graph/orbit_traces.h"
+#include "runtime/graph/trace_count.h"
 #include "runtime/symmetry/permutation_check.h"
 #include "tests/runtime/symmetry/symmetric_traces.h"
 #include "tests/support/text_model.h"
@@ -202,6 +204,71 @@ TEST_CASE("orbits of traces with large groups are counted, not listed") {
   CHECK(!traces.next().has_value());
   CHECK(traces.exhausted());
   CHECK(traces.total() == 6227020800);  // 13! ways to sit, whatever time says
+}
+
+/// So many of `n` things, and the same again: n over k.
+mpz_class choose(unsigned long n, unsigned long k) {
+  mpz_class out;
+  mpz_bin_uiui(out.get_mpz_t(), n, k);
+  return out;
+}
+
+std::string list_of(const std::string& sort, char letter, int count) {
+  std::string text = "sort " + sort + "\n" + sort + " ";
+  for (int i = 1; i <= count; ++i) text += (i > 1 ? ", " : "") + (letter + std::to_string(i));
+  return text + "\n";
+}
+
+TEST_CASE("orbits of things that know nothing of each other: multisets of their histories") {
+  // A switch begins on or off, and is pressed or not at each of 6 steps: 128 histories.
+  TextModel model(list_of("switch", 'S', 12) +
+                  "fluent On(switch)\nevent Press(switch)\n"
+                  "[switch,time] !HoldsAt(On(switch),time) -> Initiates(Press(switch),On(switch),"
+                  "time).\n"
+                  "[switch,time] HoldsAt(On(switch),time) -> Terminates(Press(switch),On(switch),"
+                  "time).\nrange time 0 6\n");
+  REQUIRE(!model.sink.has_errors());
+  const runtime::ModelSymmetry symmetry(model.compiled);
+  const auto number = runtime::count_orbits(model.compiled, symmetry, {});
+  REQUIRE(number.has_value());
+  CHECK(number->orbits == choose(128 + 12 - 1, 12));
+  mpz_class all;
+  mpz_ui_pow_ui(all.get_mpz_t(), 128, 12);
+  CHECK(number->traces == all);
+  CHECK(number->counted == 77);  // partitions of 12
+}
+
+TEST_CASE("many things that one hand moves are counted on states up to exchanging them") {
+  // At each step one of 40 things is taken or put down, or nothing: with h of them held there are
+  // h ways down and 40 - h up.
+  constexpr int kThingCount = 40, kSteps = 12;
+  TextModel model(list_of("thing", 'T', kThingCount) +
+                  "fluent Held(thing)\nevent Take(thing)\nevent Drop(thing)\n"
+                  "[thing,time] Initiates(Take(thing),Held(thing),time).\n"
+                  "[thing,time] Terminates(Drop(thing),Held(thing),time).\n"
+                  "[thing,time] Happens(Take(thing),time) -> !HoldsAt(Held(thing),time).\n"
+                  "[thing,time] Happens(Drop(thing),time) -> HoldsAt(Held(thing),time).\n"
+                  "[event1,event2,time] Happens(event1,time) & Happens(event2,time) -> "
+                  "event1=event2.\n"
+                  "[thing] !HoldsAt(Held(thing),0).\nrange time 0 12\n");
+  REQUIRE(!model.sink.has_errors());
+  std::vector<mpz_class> ways(kThingCount + 1);
+  ways[0] = 1;
+  for (int step = 0; step < kSteps; ++step) {
+    auto next = ways;
+    for (int held = 0; held <= kThingCount; ++held) {
+      const auto at = static_cast<std::size_t>(held);
+      if (held > 0) next[at - 1] += ways[at] * held;
+      if (held < kThingCount) next[at + 1] += ways[at] * (kThingCount - held);
+    }
+    ways = next;
+  }
+  const mpz_class wanted = std::accumulate(ways.begin(), ways.end(), mpz_class(0));
+  const auto counted = runtime::count_traces(model.compiled, {});
+  CHECK(counted.complete);
+  CHECK(counted.count == wanted);
+  CHECK(counted.stats.by_symmetry);
+  CHECK(counted.stats.states < 100);
 }
 
 TEST_CASE("a trace whose constants stand in a ring or in a row") {

@@ -11,6 +11,7 @@
 #include "parallax/compile.h"
 #include "runtime/enumerate/plan_enumerator.h"
 #include "runtime/graph/model_traces.h"
+#include "runtime/graph/trace_count.h"
 #include "runtime/trace/trace.h"
 #include "tools/app/trace_feed.h"
 
