@@ -78,6 +78,7 @@ struct Key {
   static constexpr std::string_view kRangeRad = "range_rad";
   static constexpr std::string_view kRates = "rates";
   static constexpr std::string_view kReason = "reason";
+  static constexpr std::string_view kRestingJoints = "resting_joints";
   static constexpr std::string_view kRollRad = "roll_rad";
   static constexpr std::string_view kSdf = "sdf";
   static constexpr std::string_view kSearch = "search";
@@ -165,6 +166,7 @@ struct Key {
   static constexpr std::string_view kMatch = "match";
   static constexpr std::string_view kMaterial = "material";
   static constexpr std::string_view kMaxContactsPerPair = "max_contacts_per_pair";
+  static constexpr std::string_view kMaxContactsPerSide = "max_contacts_per_side";
   static constexpr std::string_view kMaxCorrectingVelocityMS = "max_correcting_velocity_m_s";
   static constexpr std::string_view kMaxForceN = "max_force_n";
   static constexpr std::string_view kMaxLostInARow = "max_lost_in_a_row";

@@ -18,11 +18,14 @@ SolverSpec read_solver(const YamlNode& node, base::DiagnosticSink& sink) {
   fields.only({Key::kTimestepS, "gravity_m_s2", Key::kErp, Key::kCfm, Key::kSurfaceLayerM,
                Key::kMaxCorrectingVelocityMS, Key::kStartPenetrationM, Key::kMaxContactsPerPair,
                Key::kSleepLinearMS, Key::kSleepAngularRadS, Key::kSleepAfterS, Key::kContactErp,
-               Key::kContactCfm, Key::kHeldAfterS, Key::kHeldClearanceM});
+               Key::kContactCfm, Key::kHeldAfterS, Key::kHeldClearanceM, Key::kRestingJoints,
+               Key::kMaxContactsPerSide});
   fields.number(Key::kContactErp, kPositive, solver.contact_erp);
   fields.number(Key::kContactCfm, kNotNegative, solver.contact_cfm);
   fields.number(Key::kHeldAfterS, kNotNegative, solver.held_after_s);
   fields.number(Key::kHeldClearanceM, kAnyNumber, solver.held_clearance_m);
+  fields.integer(Key::kMaxContactsPerSide, 3, 64, solver.max_contacts_per_side);
+  fields.boolean(Key::kRestingJoints, solver.resting_joints);
   fields.number(Key::kTimestepS, kPositive, solver.timestep_s);
   fields.number("gravity_m_s2", kAnyNumber, solver.gravity_m_s2);
   fields.number(Key::kErp, kNotNegative, solver.erp);

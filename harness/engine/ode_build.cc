@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "harness/engine/ode_engine.h"
+#include "harness/engine/ode_rest.h"
 #include "harness/world/shapes.h"
 
 namespace parallax::harness {
@@ -121,6 +122,9 @@ void OdeBuilder::build() {
   create_sliders();
   create_gantries();
   create_hinges();
+  engine_.gantry_orders.resize(engine_.gantries.size());
+  engine_.touched.resize(engine_.links.size());
+  engine_.resting = std::make_unique<RestingJoints>(engine_);
 }
 
 void OdeBuilder::collect_friction() {
@@ -214,6 +218,7 @@ GeomInfo OdeBuilder::info_for(BodyId id) const {
   const WorldLayout& layout = engine_.layout;
   const BodySpec& body = layout.bodies[id];
   GeomInfo info{id,
+                layout.link_of[id.index()],
                 layout.assembly_of[id.index()],
                 layout.apart_of[id.index()],
                 material_index(body.material),
@@ -237,6 +242,7 @@ void OdeBuilder::create_geoms() {
   std::size_t count = 1;
   for (const BodySpec& body : engine_.layout.bodies) count += body.shapes.size();
   engine_.geoms.reserve(count);
+  create_link_spaces();
 
   GeomInfo& floor = engine_.geoms.emplace_back();
   floor.material = material_index(spec_.floor_material);
@@ -255,12 +261,23 @@ void OdeBuilder::create_geoms() {
   dSpaceClean(engine_.static_space);
 }
 
+/// What is tried against each shape of the world before the engine looks closer is each space.
+void OdeBuilder::create_link_spaces() {
+  constexpr std::size_t kManyShapes = 5;
+  for (const Link& link : engine_.layout.links) {
+    std::size_t count = 0;
+    for (const BodyId id : link.members) count += engine_.layout.bodies[id].shapes.size();
+    engine_.link_spaces.push_back(count < kManyShapes ? engine_.movable_space
+                                                      : dSimpleSpaceCreate(engine_.movable_space));
+  }
+}
+
 void OdeBuilder::create_shape(const BodyShape& shape, BodyId id, GeomInfo& info) {
   const std::optional<LinkId> link = engine_.layout.link_of[id.index()];
   const BodyInLink& place = engine_.in_link[id.index()];
   const Eigen::Vector3d p = place.p_LB + place.R_LB * shape.p_BS;
-  dxGeom* geom =
-      create_geom(link ? engine_.movable_space : engine_.static_space, shape.form, shape.size_m);
+  dxGeom* geom = create_geom(link ? engine_.link_spaces[link->index()] : engine_.static_space,
+                             shape.form, shape.size_m);
   dGeomSetData(geom, &info);
   dMatrix3 R;
   const Eigen::Matrix3d R_LS = place.R_LB * shape_rotation(shape);
@@ -292,14 +309,13 @@ void OdeBuilder::create_sliders() {
     if (spec.low_m) dJointSetSliderParam(joint, dParamLoStop, *spec.low_m);
     if (spec.high_m) dJointSetSliderParam(joint, dParamHiStop, *spec.high_m);
     engine_.sliders.push_back(joint);
-    if (spec.damping_n_s_m > 0.0) damp_slider(spec);
+    engine_.slider_dampers.push_back(spec.damping_n_s_m > 0.0 ? damper_of(spec) : nullptr);
   }
 }
 
 // A motor at rest that may exert any force, but gives: the force is that of a damper, taken at the
 // end of the step, so that no damping is too much for the length of a step.
-
-void OdeBuilder::damp_slider(const JointSpec& spec) {
+dxJoint* OdeBuilder::damper_of(const JointSpec& spec) {
   dxJoint* motor = dJointCreateLMotor(engine_.world, nullptr);
   dJointAttach(motor, body_of(spec.child), body_of(spec.parent));
   dJointSetLMotorNumAxes(motor, 1);
@@ -307,6 +323,7 @@ void OdeBuilder::damp_slider(const JointSpec& spec) {
   dJointSetLMotorAxis(motor, 0, 1, axis.x(), axis.y(), axis.z());
   dJointSetLMotorParam(motor, dParamFMax, dInfinity);
   dJointSetLMotorParam(motor, dParamCFM, 1.0 / spec.damping_n_s_m);
+  return motor;
 }
 
 dxJoint* OdeBuilder::turner_of(const JointSpec& spec) {
@@ -331,8 +348,10 @@ void OdeBuilder::create_hinges() {
     engine_.hinges.push_back(joint);
     // At a stop the motor of the hinge itself would push with all its force, also one at rest.
     engine_.turners.push_back(turner_of(spec));
+    engine_.hinge_dampers.push_back(nullptr);
     if (spec.damping_nm_s == 0.0) continue;
     dxJoint* damper = turner_of(spec);
+    engine_.hinge_dampers.back() = damper;
     dJointSetAMotorParam(damper, dParamFMax, dInfinity);
     dJointSetAMotorParam(damper, dParamCFM, 1.0 / spec.damping_nm_s);
   }

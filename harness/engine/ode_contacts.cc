@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "harness/engine/ode_engine.h"
+#include "harness/engine/ode_rest.h"
+#include "harness/engine/ode_vector.h"
 
 namespace parallax::harness {
 namespace {
@@ -66,9 +68,24 @@ void set_stiffness(const SolverSpec& solver, dSurfaceParameters& surface) {
   }
 }
 
+/// What moves a geom; null: nothing does.
+dBodyID mover(const OdeWorld::Engine& engine, const GeomInfo& info) {
+  return info.link ? engine.resting->host(info.link->index()) : nullptr;
+}
+
+/// Two spaces, or a space and a geom: looks closer.
+bool look_inside(void* data, dGeomID a, dGeomID b, dNearCallback* callback) {
+  if (dGeomIsSpace(a) == 0 && dGeomIsSpace(b) == 0) return false;
+  dSpaceCollide2(a, b, data, callback);
+  return true;
+}
+
 void add_contacts(void* data, dGeomID a, dGeomID b) {
+  if (look_inside(data, a, b, &add_contacts)) return;
   auto& engine = *static_cast<OdeWorld::Engine*>(data);
-  const dBodyID body_a = dGeomGetBody(a), body_b = dGeomGetBody(b);
+  const GeomInfo& info_a = info_of(a);
+  const GeomInfo& info_b = info_of(b);
+  const dBodyID body_a = mover(engine, info_a), body_b = mover(engine, info_b);
   if (!moves(body_a) && !moves(body_b)) return;
   std::array<dContact, kMostContacts> contacts;
   const int count = contact_points(a, b, engine.solver.max_contacts_per_pair, contacts);
@@ -76,20 +93,14 @@ void add_contacts(void* data, dGeomID a, dGeomID b) {
 
   keep_awake(engine.solver, body_a, body_b);
   keep_awake(engine.solver, body_b, body_a);
-  const GeomInfo& info_a = info_of(a);
-  const GeomInfo& info_b = info_of(b);
   const double mu = engine.friction[info_a.material * engine.material_count + info_b.material];
   for (int i = 0; i < count; ++i) {
-    dSurfaceParameters& surface = contacts[static_cast<std::size_t>(i)].surface;
-    surface = dSurfaceParameters{};
-    surface.mode = dContactApprox1;
-    surface.mu = mu;
-    set_stiffness(engine.solver, surface);
-    dJointAttach(dJointCreateContact(engine.world, engine.contact_group,
-                                     &contacts[static_cast<std::size_t>(i)]),
-                 body_a, body_b);
+    const dContactGeom& geom = contacts[static_cast<std::size_t>(i)].geom;
+    engine.new_contacts.push_back(
+        {a, b, to_vector(geom.pos), to_vector(geom.normal), geom.depth, mu});
   }
-  engine.statistics.contacts += count;
+  if (info_a.link) engine.touched[info_a.link->index()] = true;
+  if (info_b.link) engine.touched[info_b.link->index()] = true;
   note_touch(info_a, info_b, engine.touches);
   note_touch(info_b, info_a, engine.touches);
 }
@@ -102,6 +113,7 @@ struct OverlapSearch {
 };
 
 void search_overlap(void* data, dGeomID a, dGeomID b) {
+  if (look_inside(data, a, b, &search_overlap)) return;
   auto& search = *static_cast<OverlapSearch*>(data);
   std::array<dContact, kMostContacts> contacts;
   const int count = contact_points(a, b, search.engine.solver.max_contacts_per_pair, contacts);
@@ -130,6 +142,7 @@ struct ProbeSearch {
 
 /// One of the two is the probe, which carries no GeomInfo.
 void visit(void* data, dGeomID a, dGeomID b) {
+  if (look_inside(data, a, b, &visit)) return;
   auto& search = *static_cast<ProbeSearch*>(data);
   const dGeomID other = dGeomGetData(a) == nullptr ? b : a;
   const GeomInfo& info = info_of(other);
@@ -186,9 +199,34 @@ std::string name_of(const OdeWorld::Engine& engine, const GeomInfo& info) {
   return info.body ? engine.layout.bodies[*info.body].name : "floor";
 }
 
-void make_contacts(OdeWorld::Engine& engine) {
+void find_contacts(OdeWorld::Engine& engine) {
   std::fill(engine.touches.begin(), engine.touches.end(), Touch{});
+  std::fill(engine.touched.begin(), engine.touched.end(), false);
+  engine.new_contacts.clear();
   visit_pairs(engine, &engine, &add_contacts);
+  if (engine.solver.max_contacts_per_side) {
+    thin_out(engine.new_contacts, static_cast<std::size_t>(*engine.solver.max_contacts_per_side));
+  }
+  engine.statistics.contacts += static_cast<std::int64_t>(engine.new_contacts.size());
+}
+
+void attach_contacts(OdeWorld::Engine& engine) {
+  dContact contact{};
+  dSurfaceParameters& surface = contact.surface;
+  surface.mode = dContactApprox1;
+  set_stiffness(engine.solver, surface);
+  for (const NewContact& found : engine.new_contacts) {
+    surface.mu = found.friction;
+    contact.geom.g1 = found.a;
+    contact.geom.g2 = found.b;
+    contact.geom.depth = found.depth_m;
+    for (int i = 0; i < 3; ++i) {
+      contact.geom.pos[i] = found.p_W[i];
+      contact.geom.normal[i] = found.normal_W[i];
+    }
+    dJointAttach(dJointCreateContact(engine.world, engine.contact_group, &contact),
+                 mover(engine, info_of(found.a)), mover(engine, info_of(found.b)));
+  }
 }
 
 std::optional<Overlap> find_deepest_overlap(OdeWorld::Engine& engine) {

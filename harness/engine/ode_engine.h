@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ enum class ContactRole : std::uint8_t { kWorld, kFree, kNearPad, kFarPad, kPart 
 /// What the collision callback knows of a geom.
 struct GeomInfo {
   std::optional<BodyId> body;  // none: the floor
+  std::optional<LinkId> link;  // none: it never moves
   std::uint32_t assembly = 0, apart = 0;
   std::uint32_t material = 0;
   ContactRole role = ContactRole::kWorld;
@@ -41,6 +43,24 @@ struct Gantry {
   double start_yaw_rad = 0.0;
 };
 
+/// What the motors of a gantry are told, until they have been told it: velocities in the parent's
+/// frame.
+struct GantryOrder {
+  Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();
+  double yaw_rate_rad_s = 0.0;
+  bool waiting = false;
+};
+
+/// A contact of the next step, before it is known which bodies move.
+struct NewContact {
+  dxGeom *a = nullptr, *b = nullptr;
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero(), normal_W = Eigen::Vector3d::Zero();  // into a
+  double depth_m = 0.0;
+  double friction = 0.0;
+};
+
+class RestingJoints;
+
 /// Pose of body B in its link L (in the world for a static body).
 struct BodyInLink {
   Eigen::Vector3d p_LB = Eigen::Vector3d::Zero();
@@ -57,19 +77,26 @@ struct OdeWorld::Engine {
   dxWorld* world = nullptr;
   dxThreadingImplementation* threading = nullptr;
   dxSpace* static_space = nullptr;
-  dxSpace* movable_space = nullptr;
+  dxSpace* movable_space = nullptr;  // in it a space for each link of many shapes
   dxJointGroup* contact_group = nullptr;
-  std::vector<dxBody*> links;       // by LinkId
-  std::vector<bool> never_sleeps;   // by LinkId: parts of the robot
-  std::vector<dxJoint*> sliders;    // by SliderId
-  std::vector<Gantry> gantries;     // by GantryId
-  std::vector<dxJoint*> hinges;     // by HingeId
-  std::vector<dxJoint*> turners;    // by HingeId: their motors
-  std::vector<BodyInLink> in_link;  // by BodyId
-  std::vector<GeomInfo> geoms;      // never grows after building: geoms point into it
+  std::vector<dxBody*> links;              // by LinkId
+  std::vector<dxSpace*> link_spaces;       // by LinkId
+  std::vector<bool> never_sleeps;          // by LinkId: parts of the robot
+  std::vector<dxJoint*> sliders;           // by SliderId
+  std::vector<Gantry> gantries;            // by GantryId
+  std::vector<dxJoint*> slider_dampers;    // by SliderId; null: none
+  std::vector<GantryOrder> gantry_orders;  // by GantryId
+  std::vector<dxJoint*> hinges;            // by HingeId
+  std::vector<dxJoint*> turners;           // by HingeId: their motors
+  std::vector<dxJoint*> hinge_dampers;     // by HingeId; null: none
+  std::vector<BodyInLink> in_link;         // by BodyId
+  std::vector<GeomInfo> geoms;             // never grows after building: geoms point into it
   std::uint32_t material_count = 0;
-  std::vector<double> friction;   // (material_count x material_count)
-  std::vector<Touch> touches;     // by BodyId
+  std::vector<double> friction;  // (material_count x material_count)
+  std::vector<Touch> touches;    // by BodyId
+  std::vector<bool> touched;     // by LinkId, of the robot: in the next step
+  std::vector<NewContact> new_contacts;
+  std::unique_ptr<RestingJoints> resting;
   std::vector<double> masses_kg;  // by LinkId
   std::uint64_t digest = 0;
   bool measure_times = false;
@@ -95,11 +122,12 @@ class OdeBuilder {
   void create_world();
   void create_links();
   void create_geoms();
+  void create_link_spaces();
   void create_shape(const BodyShape& shape, BodyId id, GeomInfo& info);
   void create_sliders();
   void create_gantries();
   void create_hinges();
-  void damp_slider(const JointSpec& spec);
+  dxJoint* damper_of(const JointSpec& spec);
   dxJoint* turner_of(const JointSpec& spec);
   dxBody* body_of(const std::string& name) const;
   void collect_friction();
@@ -113,11 +141,26 @@ class OdeBuilder {
   std::vector<std::string> materials_;  // sorted
 };
 
+/// Of a gantry's parent in the world.
+Eigen::Matrix3d parent_rotation(const OdeWorld& world, const Gantry& gantry);
+
+/// Tells the motors of gantries what is waiting for them.
+void carry_out_orders(const OdeWorld& world, OdeWorld::Engine& engine);
+
 /// Gives a free body another mass, spread as before.
 void set_free_mass(OdeWorld::Engine& engine, BodyId id, double mass_kg);
 
-/// Collision pass: makes contact joints for the next step and records what touches free bodies.
-void make_contacts(OdeWorld::Engine& engine);
+/// Collision pass: finds the contacts of the next step, and records what touches free bodies and
+/// parts of the robot.
+void find_contacts(OdeWorld::Engine& engine);
+
+/// Makes joints of them, between what moves.
+void attach_contacts(OdeWorld::Engine& engine);
+
+/// Leaves at most `most` of those contacts between two links (or a link and what never moves) that
+/// have the same normal and friction: those that span the most. Where a flat side lies on another
+/// it makes no difference what else touches between them.
+void thin_out(std::vector<NewContact>& contacts, std::size_t most);
 
 /// Collision pass that makes nothing: the deepest pair, if any touches.
 std::optional<Overlap> find_deepest_overlap(OdeWorld::Engine& engine);

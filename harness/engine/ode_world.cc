@@ -13,6 +13,8 @@
 #include "compiler/base/contract.h"
 #include "compiler/base/hash.h"
 #include "harness/engine/ode_engine.h"
+#include "harness/engine/ode_rest.h"
+#include "harness/engine/ode_vector.h"
 #include "harness/world/angles.h"
 #include "harness/world/shapes.h"
 
@@ -50,14 +52,6 @@ struct ThreadData {
 
 void mix(std::uint64_t& hash, double value) {
   hash = base::fnv1a64_word(hash, std::bit_cast<std::uint64_t>(value));
-}
-
-Eigen::Vector3d to_vector(const dReal* v) { return {v[0], v[1], v[2]}; }
-
-Eigen::Matrix3d to_matrix(const dReal* R) {
-  Eigen::Matrix3d out;
-  out << R[0], R[1], R[2], R[4], R[5], R[6], R[8], R[9], R[10];
-  return out;
 }
 
 void place_at_rest(dxBody* body, const Eigen::Vector3d& p_WL, double yaw_rad, bool never_sleeps) {
@@ -100,11 +94,6 @@ bool fold_state(OdeWorld::Engine& engine) {
 /// The engine does not notice that a joint has changed, so sleeping bodies would stay asleep.
 void wake(dxBody* body) {
   if (body != nullptr && dBodyIsEnabled(body) == 0) dBodyEnable(body);
-}
-
-Eigen::Matrix3d parent_rotation(const OdeWorld& world, const Gantry& gantry) {
-  return gantry.parent == nullptr ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
-                                  : world.rotation(gantry.parent_id);
 }
 
 class Stopwatch {
@@ -186,6 +175,7 @@ std::optional<Overlap> OdeWorld::reset(std::span<const Placement> placements, st
     }
     ++index;
   }
+  engine_->resting->reset();
   for (std::size_t i = 0; i < engine_->sliders.size(); ++i) {
     const SliderId id = engine_->layout.sliders.id_at(i);
     set_motor(id, 0.0, engine_->layout.sliders[id].max_force_n);
@@ -210,9 +200,14 @@ std::optional<Overlap> OdeWorld::reset(std::span<const Placement> placements, st
 bool OdeWorld::step() {
   const MessageCounter counter(engine_->statistics.engine_messages);
   Stopwatch stopwatch(engine_->measure_times);
-  make_contacts(*engine_);
+  find_contacts(*engine_);
   stopwatch.add_lap_to(engine_->statistics.collide_s);
+  engine_->resting->begin_step(engine_->touched);
+  carry_out_orders(*this, *engine_);
+  attach_contacts(*engine_);
   dWorldStep(engine_->world, engine_->solver.timestep_s);
+  engine_->resting->end_step();
+  engine_->statistics.joints_at_rest = engine_->resting->resting();
   stopwatch.add_lap_to(engine_->statistics.solve_s);
   dJointGroupEmpty(engine_->contact_group);
   ++engine_->statistics.steps;
@@ -231,6 +226,8 @@ void OdeWorld::set_motor(SliderId id, double velocity_m_s, double max_force_n) {
   dxJoint* const joint = engine_->sliders[id.index()];
   dJointSetSliderParam(joint, dParamVel, velocity_m_s);
   dJointSetSliderParam(joint, dParamFMax, max_force_n);
+  engine_->resting->tell(id, {{velocity_m_s, 0.0, 0.0, 0.0}, max_force_n});
+  if (engine_->resting->manages(id)) return;  // awake, or at rest
   for (int side = 0; side < 2; ++side) wake(dJointGetBody(joint, side));
 }
 
@@ -246,6 +243,8 @@ void OdeWorld::set_hinge_motor(HingeId id, double rate_rad_s, double max_torque_
   dxJoint* const joint = engine_->turners[id.index()];
   dJointSetAMotorParam(joint, dParamVel, rate_rad_s);
   dJointSetAMotorParam(joint, dParamFMax, max_torque_nm);
+  engine_->resting->tell(id, {{rate_rad_s, 0.0, 0.0, 0.0}, max_torque_nm});
+  if (engine_->resting->manages(id)) return;
   for (int side = 0; side < 2; ++side) wake(dJointGetBody(joint, side));
 }
 
@@ -266,38 +265,11 @@ double OdeWorld::gantry_yaw_rad(GantryId id) const {
 }
 
 void OdeWorld::set_gantry(GantryId id, const Eigen::Vector3d& velocity_m_s, double yaw_rate_rad_s) {
-  const Gantry& gantry = engine_->gantries[id.index()];
-  const JointSpec& spec = engine_->layout.gantries[id];
-  Eigen::Vector3d velocity = velocity_m_s;
-  if (gantry.parent != nullptr) {
-    // The engine measures the velocity half way between the two centres of mass, where a turn of
-    // the child counts half; what is asked for is that of the child's centre in the parent.
-    const dReal* a = dBodyGetPosition(gantry.child);
-    const dReal* b = dBodyGetPosition(gantry.parent);
-    const Eigen::Vector3d d(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-    const Eigen::Vector3d d_P = parent_rotation(*this, gantry).transpose() * d;
-    velocity -= 0.5 * yaw_rate_rad_s * Eigen::Vector3d::UnitZ().cross(d_P);
-  }
-  // The tilt that has crept in is taken back at the rate of the engine's own joints.
-  const Eigen::Vector3d up = rotation(gantry.child_id).col(2);
-  const Eigen::Vector3d back =
-      up.cross(Eigen::Vector3d::UnitZ()) * (engine_->solver.erp / engine_->solver.timestep_s);
-  const double rigid = dInfinity;
-  const double vertical_n = gantry.parent == nullptr ? rigid : spec.max_force_n;
-  dJointSetLMotorParam(gantry.linear, dParamVel1, velocity.x());
-  dJointSetLMotorParam(gantry.linear, dParamVel2, velocity.y());
-  dJointSetLMotorParam(gantry.linear, dParamVel3, velocity.z());
-  dJointSetLMotorParam(gantry.linear, dParamFMax1, spec.max_force_n);
-  dJointSetLMotorParam(gantry.linear, dParamFMax2, spec.max_force_n);
-  dJointSetLMotorParam(gantry.linear, dParamFMax3, vertical_n);
-  dJointSetAMotorParam(gantry.angular, dParamVel1, back.x());
-  dJointSetAMotorParam(gantry.angular, dParamVel2, back.y());
-  dJointSetAMotorParam(gantry.angular, dParamVel3, yaw_rate_rad_s);
-  dJointSetAMotorParam(gantry.angular, dParamFMax1, rigid);
-  dJointSetAMotorParam(gantry.angular, dParamFMax2, rigid);
-  dJointSetAMotorParam(gantry.angular, dParamFMax3, spec.max_torque_nm);
-  wake(gantry.child);
-  wake(gantry.parent);
+  engine_->gantry_orders[id.index()] = {velocity_m_s, yaw_rate_rad_s, true};
+  const Eigen::Vector3d& v = velocity_m_s;
+  if (engine_->resting->tell(id, {{v.x(), v.y(), v.z(), yaw_rate_rad_s}, 0.0})) return;
+  wake(engine_->gantries[id.index()].child);
+  wake(engine_->gantries[id.index()].parent);
 }
 
 double OdeWorld::mass_kg(BodyId id) const {

@@ -47,6 +47,7 @@ struct Bounds {
 struct StepStatistics {
   std::int64_t steps = 0;
   std::int64_t contacts = 0;
+  std::int64_t joints_at_rest = 0;  // in all steps together: not solved, because nothing moved them
   std::int64_t engine_messages = 0;  // complaints of the contact solver
   double collide_s = 0.0, solve_s = 0.0;
 };

@@ -117,7 +117,9 @@ struct SolverSpec {
   double surface_layer_m = 0.001;
   double max_correcting_velocity_m_s = 1.0;
   double start_penetration_m = 0.002;  // deeper at reset: invalid start
-  std::int64_t max_contacts_per_pair = 8;
+  std::int64_t max_contacts_per_pair = 8;  // of two shapes
+  // Of two bodies, among those with the same normal; none: as many as their shapes have.
+  std::optional<std::int64_t> max_contacts_per_side;
   // A free body slower than this for so long is put to sleep until something touches it.
   double sleep_linear_m_s = 0.01;
   double sleep_angular_rad_s = 0.02;
@@ -126,6 +128,8 @@ struct SolverSpec {
   // was so far above everything below it.
   double held_after_s = 0.2;
   double held_clearance_m = 0.010;
+  // Joints of a robot on gantries that are at rest are not solved: what they connect moves as one.
+  bool resting_joints = true;
 };
 
 /// A point with a heading that actions can name: in the world, or in the frame of a body that

@@ -1,0 +1,159 @@
+#include "harness/engine/ode_rest.h"
+
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/engine/ode_vector.h"
+
+namespace parallax::harness {
+namespace {
+
+constexpr double kCalm_s = 0.02;       // before a joint is at rest
+constexpr double kCalmRate = 1e-5;     // of its motion [m/s or rad/s]
+constexpr double kSameCommand = 1e-5;  // what a motor is told changes by no more
+constexpr double kShareOfForce = 0.5;  // that a joint at rest may need
+
+bool same(const MotorCommand& a, const MotorCommand& b) {
+  return a.max_force == b.max_force && (a.rates - b.rates).cwiseAbs().maxCoeff() <= kSameCommand;
+}
+
+}  // namespace
+
+RestingJoints::RestingJoints(OdeWorld::Engine& engine)
+    : engine_(engine),
+      hosts_(engine),
+      watches_(hosts_.joints().size()),
+      by_slider_(engine.sliders.size(), -1),
+      by_hinge_(engine.hinges.size(), -1),
+      by_gantry_(engine.gantries.size(), -1) {
+  for (std::size_t i = 0; i < hosts_.joints().size(); ++i) {
+    const RobotJoint& joint = hosts_.joints()[i];
+    std::vector<int>& by = joint.kind == RobotJoint::Kind::kGantry   ? by_gantry_
+                           : joint.kind == RobotJoint::Kind::kSlider ? by_slider_
+                                                                     : by_hinge_;
+    by[joint.index] = static_cast<int>(i);
+  }
+  calm_steps_needed_ = std::max<std::int64_t>(1, std::llround(kCalm_s / engine.solver.timestep_s));
+}
+
+void RestingJoints::tell(SliderId id, const MotorCommand& command) {
+  if (const int joint = by_slider_[id.index()]; joint >= 0) {
+    watches_[static_cast<std::size_t>(joint)].now = command;
+  }
+}
+
+void RestingJoints::tell(HingeId id, const MotorCommand& command) {
+  if (const int joint = by_hinge_[id.index()]; joint >= 0) {
+    watches_[static_cast<std::size_t>(joint)].now = command;
+  }
+}
+
+bool RestingJoints::tell(GantryId id, const MotorCommand& command) {
+  const int joint = by_gantry_[id.index()];
+  if (joint < 0) return false;
+  watches_[static_cast<std::size_t>(joint)].now = command;
+  return true;
+}
+
+void RestingJoints::reset() {
+  hosts_.reset();
+  for (Watch& watch : watches_) watch = Watch{};
+}
+
+bool RestingJoints::is_calm(const RobotJoint& joint, const Watch& watch) const {
+  if (!joint.may_rest || !same(watch.now, watch.before)) return false;
+  dxBody* const child = engine_.links[joint.child];
+  Eigen::Vector3d v = to_vector(dBodyGetLinearVel(child));
+  Eigen::Vector3d w = to_vector(dBodyGetAngularVel(child));
+  if (joint.parent) {
+    dxBody* const parent = engine_.links[*joint.parent];
+    const Eigen::Vector3d turn = to_vector(dBodyGetAngularVel(parent));
+    const Eigen::Vector3d arm =
+        to_vector(dBodyGetPosition(child)) - to_vector(dBodyGetPosition(parent));
+    v -= to_vector(dBodyGetLinearVel(parent)) + turn.cross(arm);
+    w -= turn;
+  }
+  return v.norm() <= kCalmRate && w.norm() <= kCalmRate;
+}
+
+bool RestingJoints::is_overloaded(const RobotJoint& joint, const Watch& watch) const {
+  const auto [turn, shift] = hosts_.motion_of_parent(joint);
+  const Eigen::Vector3d about = joint.kind == RobotJoint::Kind::kHinge
+                                    ? Eigen::Vector3d(shift + turn * joint.spec->p_WA)
+                                    : to_vector(dBodyGetPosition(engine_.links[joint.child]));
+  const Wrench load = hosts_.load(joint, about);
+  const Eigen::Vector3d axis = turn * joint.spec->axis_W.normalized();
+  const double limit = kShareOfForce * watch.now.max_force;
+  switch (joint.kind) {
+    case RobotJoint::Kind::kGantry: {
+      const Eigen::Vector3d force = turn.transpose() * load.force;
+      const double limit_n = kShareOfForce * joint.spec->max_force_n;
+      return force.head<2>().cwiseAbs().maxCoeff() > limit_n ||
+             (joint.parent && std::abs(force.z()) > limit_n) ||
+             std::abs(load.torque.z()) > kShareOfForce * joint.spec->max_torque_nm;
+    }
+    case RobotJoint::Kind::kSlider:
+      return std::abs(axis.dot(load.force)) > limit;
+    case RobotJoint::Kind::kHinge:
+      return std::abs(axis.dot(load.torque)) > limit;
+  }
+  return true;
+}
+
+/// By joint: does it move something that is touched? Of a hand everything up to its gantry.
+std::vector<bool> RestingJoints::disturbed(const std::vector<bool>& touched) const {
+  const std::vector<RobotJoint>& joints = hosts_.joints();
+  std::vector<bool> all(joints.size(), false);
+  std::vector<bool> links = touched;
+  for (std::size_t i = joints.size(); i-- > 0;) {  // from the hands up
+    if (!links[joints[i].child]) continue;
+    all[i] = true;
+    if (joints[i].kind != RobotJoint::Kind::kGantry && joints[i].parent) {
+      links[*joints[i].parent] = true;
+    }
+  }
+  for (std::size_t i = 0; i < joints.size(); ++i) {  // and down to what they carry
+    if (joints[i].parent && links[*joints[i].parent]) all[i] = true, links[joints[i].child] = true;
+  }
+  return all;
+}
+
+void RestingJoints::begin_step(const std::vector<bool>& touched) {
+  std::vector<RobotJoint>& joints = hosts_.joints();
+  if (joints.empty()) return;
+  const std::vector<bool> moved = disturbed(touched);
+  bool changed = false;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    Watch& watch = watches_[i];
+    const bool rested = joints[i].rests;
+    if (rested) {
+      // `before` stays what it was told when it came to rest.
+      joints[i].rests = !moved[i] && !watch.overloaded && same(watch.now, watch.before);
+      if (!joints[i].rests) watch = Watch{watch.now, watch.now, 0, false};
+    } else {
+      watch.calm_steps = !moved[i] && is_calm(joints[i], watch) ? watch.calm_steps + 1 : 0;
+      watch.before = watch.now;
+      joints[i].rests = watch.calm_steps >= calm_steps_needed_;
+    }
+    changed = changed || joints[i].rests != rested;
+  }
+  if (changed) hosts_.regroup();
+  hosts_.remember_velocities();
+}
+
+void RestingJoints::end_step() {
+  const std::vector<RobotJoint>& joints = hosts_.joints();
+  const auto rests = [](const RobotJoint& joint) { return joint.rests; };
+  if (std::none_of(joints.begin(), joints.end(), rests)) return;
+  hosts_.follow();
+  hosts_.measure_loads(engine_.solver.timestep_s);
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (!joints[i].rests) continue;
+    ++resting_;
+    watches_[i].overloaded = is_overloaded(joints[i], watches_[i]);
+  }
+}
+
+}  // namespace parallax::harness
