@@ -1,6 +1,9 @@
 // A robot behind ROS 1: a real master, a node with an action server and topics, on the loopback.
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <vector>
 
 #include "tests/tools/adapters/python_fixture.h"
 
@@ -8,7 +11,8 @@ namespace parallax::test {
 namespace {
 
 constexpr const char* kModules =
-    "import rospy, actionlib, rosmaster, move_base_msgs.msg, std_srvs.srv, rosgraph_msgs.msg";
+    "import rospy, actionlib, rosmaster, tf2_ros, move_base_msgs.msg, std_srvs.srv, "
+    "rosgraph_msgs.msg";
 
 /// The Python that has ROS; empty, and said so, where none has.
 std::string python_with_ros() {
@@ -17,7 +21,7 @@ std::string python_with_ros() {
       return python;
     }
   }
-  std::cout << "SKIPPED: there is no rospy, actionlib or rosmaster\n";
+  std::cout << "SKIPPED: there is no rospy, actionlib, rosmaster or tf2_ros\n";
   return {};
 }
 
@@ -87,6 +91,49 @@ TEST_CASE("a robot that speaks ROS 1 keeps the protocol, and its runs are judged
       {"adapter-check", "--act", "drive target.x=3.5", "--json", "--", python, "-B", adapter});
   // The wall is where it is whatever the seed, which counts against the noise that it claims.
   CHECK(aborted.result.out.find("drive failed") != std::string::npos);
+}
+
+TEST_CASE(
+    "frames of tf are observed as they are now, through links that move and links that do not") {
+  const auto python = python_with_ros();
+  if (python.empty()) return;
+  const CliFixture cli;
+  const std::string folder = std::string(PARALLAX_PYTHON_ADAPTER) + "/examples/ros1/";
+  std::string requests = "{\"id\":1,\"method\":\"hello\",\"params\":{\"protocol\":[1]}}\n";
+  // Simulated time stands still between two starts: they differ in nothing that has a time.
+  for (const auto* x : {"-2.5", "2", "0.25"}) {
+    requests += std::string(R"({"id":2,"method":"reset","params":{"seed":7,"state":{"robot.x":)") +
+                x + "}}}\n" + R"({"id":3,"method":"observe"})" + "\n";
+  }
+  requests += std::string(R"({"id":4,"method":"act","params":{"action":"drive",)") +
+              R"("args":{"target.x":1.5},"sim_time_limit":30}})" + "\n" +
+              R"({"id":5,"method":"observe"})" + "\n";
+  cli.write("requests", requests);
+  ProcessOptions options;
+  options.folder = cli.folder().string();
+  const auto result = run_process({python, "-B", folder + "with_robot.py", "sh", "-c",
+                                   python + " -B " + folder + "robot_adapter.py < requests"},
+                                  options);
+  CAPTURE(result.out);
+  CAPTURE(result.err);
+  std::istringstream lines(result.out);
+  std::vector<double> places;
+  for (std::string line; std::getline(lines, line);) {
+    REQUIRE(nlohmann::json::accept(line));
+    const auto reply = nlohmann::json::parse(line).at("result");
+    if (!reply.contains("state")) continue;
+    const auto& state = reply.at("state");
+    places.push_back(state.at("robot.x").get<double>());
+    CHECK(state.at("hand.x").get<double>() == doctest::Approx(places.back() + 0.3));
+    CHECK(state.at("hand.y").get<double>() == doctest::Approx(0.1));
+    CHECK(state.at("hand.z").get<double>() == doctest::Approx(0.5));
+    CHECK(state.at("hand.yaw").get<double>() == doctest::Approx(0.25));
+  }
+  REQUIRE(places.size() == 4);
+  CHECK(places[0] == -2.5);
+  CHECK(places[1] == 2.0);
+  CHECK(places[2] == 0.25);
+  CHECK(std::abs(places[3] - 1.5) < 0.1);
 }
 
 TEST_CASE("no master is a loss, not an observation") {

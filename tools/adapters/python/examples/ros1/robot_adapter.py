@@ -14,6 +14,10 @@ from parallax_ros1 import RosAdapter  # noqa: E402
 sim = RosAdapter("ros1-robot", version="1", determinism="tolerance", noise=True, time_step=0.05)
 sim.topic("robot.x", "/pose", PoseStamped, lambda message: message.pose.position.x, unit="m",
           settable=True, default=0.0, lower=-3.0, upper=2.9)
+sim.frame("hand.x", "hand", "x")
+sim.frame("hand.y", "hand", "y")
+sim.frame("hand.z", "hand", "z")
+sim.frame("hand.yaw", "hand", "yaw")
 
 
 @sim.on_reset

@@ -1,14 +1,16 @@
 """A small simulated robot as a ROS 1 node: it drives along x as /drive asks (move_base_msgs), says where
-it is on /pose, and makes /clock go while it moves, twenty times as fast as the wall's. /reset takes the
-private parameters x and seed. It cannot go beyond x = 3 and says so."""
+it is on /pose and in tf (map, odom, base, hand), and makes /clock go while it moves, twenty times as fast as the
+wall's. /reset takes the private parameters x and seed. It cannot go beyond x = 3 and says so."""
 
+import math
 import random
 import threading
 import time
 
 import actionlib
 import rospy
-from geometry_msgs.msg import PoseStamped
+import tf2_ros
+from geometry_msgs.msg import PoseStamped, TransformStamped
 from move_base_msgs.msg import MoveBaseAction
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger, TriggerResponse
@@ -16,11 +18,24 @@ from std_srvs.srv import Trigger, TriggerResponse
 STEP_S, SPEED_M_S, WALL_X = 0.05, 0.5, 3.0
 
 
+def link(parent, child, x, y, z, yaw, stamp):
+    said = TransformStamped()
+    said.header.frame_id, said.child_frame_id, said.header.stamp = parent, child, stamp
+    at, turn = said.transform.translation, said.transform.rotation
+    at.x, at.y, at.z = x, y, z
+    turn.z, turn.w = math.sin(yaw / 2), math.cos(yaw / 2)
+    return said
+
+
 class Robot:
     def __init__(self):
         self.lock, self.x, self.now, self.random = threading.RLock(), 0.0, 1.0, random.Random(0)
         self.clock = rospy.Publisher("/clock", Clock, queue_size=10)
         self.pose = rospy.Publisher("/pose", PoseStamped, queue_size=1)
+        self.frames, still = tf2_ros.TransformBroadcaster(), tf2_ros.StaticTransformBroadcaster()
+        # The wheels counted from (1, 0) on, where it looked to the left of the map's x.
+        still.sendTransform([link("map", "odom", 1.0, 0.0, 0.0, math.pi / 2, rospy.Time(0)),
+                             link("base", "hand", 0.3, 0.1, 0.5, 0.25, rospy.Time(0))])
         rospy.Service("/reset", Trigger, self.reset)
         self.server = actionlib.SimpleActionServer("/drive", MoveBaseAction, self.drive, False)
         self.server.start()
@@ -52,6 +67,9 @@ class Robot:
             said.header.stamp, said.pose.position.x = rospy.Time.from_sec(self.now), self.x
         self.clock.publish(Clock(clock=said.header.stamp))
         self.pose.publish(said)
+        x = said.pose.position.x
+        self.frames.sendTransform(link("odom", "base", 0.0, 1.0 - x, 0.0, -math.pi / 2,
+                                       said.header.stamp))
 
 
 rospy.set_param("/use_sim_time", True)

@@ -1,0 +1,1 @@
+from stub_world import PoseStamped, Twist  # noqa: F401

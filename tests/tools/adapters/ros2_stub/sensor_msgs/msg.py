@@ -1,0 +1,1 @@
+from stub_world import BatteryState  # noqa: F401

@@ -1,0 +1,1 @@
+from stub_world import EntityState, Result, SimulationState  # noqa: F401
