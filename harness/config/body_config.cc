@@ -8,6 +8,7 @@
 
 #include "compiler/base/codes/scenarios.h"
 #include "harness/config/sections.h"
+#include "harness/import/mesh.h"
 #include "harness/world/shapes.h"
 
 namespace parallax::harness {
@@ -41,7 +42,41 @@ void read_round(const YamlNode& node, const RoundForm& round, BodyShape& shape,
   shape.size_m = round_size_m(round.form, radius_m, length_m);
 }
 
-/// The one form that is given: a box by its `size_m`, or something round.
+/// Corners, whose convex hull is the shape. Its place is where the middle of the box round it is.
+void read_hull(const YamlNode& node, BodyShape& shape, base::DiagnosticSink& sink) {
+  const auto fault = [&](const YamlNode& at, const std::string& text) {
+    sink.error(codes::kBadImport, at.range, text);
+  };
+  if (!node.is_list() || node.items.size() < 4 || node.items.size() > kMaxHullVertices) {
+    return fault(node,
+                 fmt::format("`{}` is no list of 4 to {} corners", Key::kHull, kMaxHullVertices));
+  }
+  std::vector<Eigen::Vector3d> corners;
+  for (const auto& item : node.items) {
+    if (!item.is_list() || item.items.size() != 3) {
+      return fault(item, fmt::format("a corner of `{}` is no list of three numbers", Key::kHull));
+    }
+    Eigen::Vector3d corner;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto x = read_number(item.items[i], key_text(Key::kHull), kAnyNumber, sink);
+      if (!x) return;
+      corner[static_cast<Eigen::Index>(i)] = *x;
+    }
+    corners.push_back(corner);
+  }
+  if (!reads_meshes()) {
+    sink.error(codes::kImportUnavailable, node.range, Key::kHull, "libassimp-dev and libqhull-dev");
+    return;
+  }
+  const MadeHull made = hull_of(corners);
+  if (made.fault) return fault(node, "the hull " + *made.fault);
+  shape.form = ShapeForm::kHull;
+  shape.size_m = made.hull->size_m;
+  shape.p_BS = made.middle;
+  shape.hull = made.hull;
+}
+
+/// The one form that is given: a box by its `size_m`, a hull, or something round.
 void read_form(const YamlFields& fields, BodyShape& shape) {
   const RoundForm* form = nullptr;
   bool taken = fields.find(Key::kSizeM) != nullptr;
@@ -56,6 +91,12 @@ void read_form(const YamlFields& fields, BodyShape& shape) {
     taken = true;
     form = &round;
   }
+  if (const auto* hull = fields.find(Key::kHull)) {
+    if (!taken) return read_hull(*hull, shape, fields.sink());
+    fields.sink().error(codes::kUnknownKey, hull->range, Key::kHull,
+                        fields.what() + ", which has another form already");
+    return;
+  }
   if (form != nullptr) {
     read_round(*fields.find(form->key), *form, shape, fields.sink());
   } else if (fields.require(Key::kSizeM) != nullptr) {
@@ -66,13 +107,18 @@ void read_form(const YamlFields& fields, BodyShape& shape) {
 BodyShape read_shape(const YamlNode& node, std::string what, base::DiagnosticSink& sink) {
   BodyShape shape;
   YamlFields fields(node, std::move(what), sink);
-  fields.only({Key::kSizeM, Key::kSphere, Key::kCylinder, Key::kCapsule, Key::kAtM, Key::kYawRad,
-               Key::kPitchRad, Key::kRollRad});
+  fields.only({Key::kSizeM, Key::kSphere, Key::kCylinder, Key::kCapsule, Key::kHull, Key::kAtM,
+               Key::kYawRad, Key::kPitchRad, Key::kRollRad});
   read_form(fields, shape);
+  const Eigen::Vector3d middle = shape.p_BS;
   read_vector(fields, Key::kAtM, shape.p_BS);
   fields.number(Key::kYawRad, kAnyNumber, shape.yaw_rad);
   fields.number(Key::kPitchRad, kAnyNumber, shape.pitch_rad);
   fields.number(Key::kRollRad, kAnyNumber, shape.roll_rad);
+  if (shape.form == ShapeForm::kHull) {
+    if (fields.find(Key::kAtM) == nullptr) shape.p_BS = Eigen::Vector3d::Zero();
+    shape.p_BS += shape_rotation(shape) * middle;
+  }
   return shape;
 }
 
@@ -128,7 +174,7 @@ void read_shapes(const YamlFields& fields, BodySpec& body) {
     read_form(fields, body.shapes.emplace_back());
     return;
   }
-  for (const auto other : {Key::kSizeM, Key::kSphere, Key::kCylinder, Key::kCapsule,
+  for (const auto other : {Key::kSizeM, Key::kSphere, Key::kCylinder, Key::kCapsule, Key::kHull,
                            list != nullptr ? Key::kRing : Key::kSizeM}) {
     const auto* extra = fields.find(other);
     if (extra == nullptr) continue;
@@ -284,9 +330,9 @@ BodySpec read_body(const YamlEntry& entry, base::DiagnosticSink& sink) {
   BodySpec body;
   body.name = entry.key;
   YamlFields fields(entry.value, fmt::format("the body `{}`", entry.key), sink);
-  fields.only({Key::kSizeM, Key::kSphere, Key::kCylinder, Key::kCapsule, Key::kShapes, Key::kRing,
-               Key::kMassKg, Key::kInertia, Key::kMaterial, Key::kPositionM, Key::kYawRad,
-               Key::kGravity, Key::kCollides, Key::kApart, Key::kSettable, Key::kKind,
+  fields.only({Key::kSizeM, Key::kSphere, Key::kCylinder, Key::kCapsule, Key::kHull, Key::kShapes,
+               Key::kRing, Key::kMassKg, Key::kInertia, Key::kMaterial, Key::kPositionM,
+               Key::kYawRad, Key::kGravity, Key::kCollides, Key::kApart, Key::kSettable, Key::kKind,
                Key::kGrasp});
   read_shapes(fields, body);
   fields.number(Key::kMassKg, kNotNegative, body.mass_kg);

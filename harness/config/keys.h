@@ -63,11 +63,13 @@ struct Key {
   static constexpr std::string_view kGainedCauses = "gained_causes";
   static constexpr std::string_view kGainedDiscrepancies = "gained_discrepancies";
   static constexpr std::string_view kGainedTraces = "gained_traces";
+  static constexpr std::string_view kHull = "hull";
   static constexpr std::string_view kInertia = "inertia";
   static constexpr std::string_view kLengthM = "length_m";
   static constexpr std::string_view kLost = "lost";
   static constexpr std::string_view kLostTraces = "lost_traces";
   static constexpr std::string_view kMargin = "margin";
+  static constexpr std::string_view kMesh = "mesh";
   static constexpr std::string_view kModels = "models";
   static constexpr std::string_view kMomentsKgM2 = "moments_kg_m2";
   static constexpr std::string_view kOrder = "order";
@@ -80,6 +82,7 @@ struct Key {
   static constexpr std::string_view kReason = "reason";
   static constexpr std::string_view kRestingJoints = "resting_joints";
   static constexpr std::string_view kRollRad = "roll_rad";
+  static constexpr std::string_view kScale = "scale";
   static constexpr std::string_view kSdf = "sdf";
   static constexpr std::string_view kSearch = "search";
   static constexpr std::string_view kSettings = "settings";

@@ -356,7 +356,9 @@ base::Result<Scenario> load_scenario(const std::filesystem::path& path, base::So
   // Files are registered in order of loading, so the next one is the scenario itself.
   scenario.source = base::FileId(static_cast<std::uint32_t>(files.size()));
   auto root = load_yaml(path, gate, files, sink);
-  if (!root || !add_imported(*root, gate, files, sink)) return sink.already_reported();
+  if (!root || !add_imported(*root, gate, files, sink) || !add_meshes(*root, gate, files, sink)) {
+    return sink.already_reported();
+  }
   ScenarioReader(*root, gate, files, sink).read(scenario);
   for (const auto& model : scenario.models) files.note_input(model.text);
   for (const auto& model : scenario.simulator.models) files.note_input(model.text);

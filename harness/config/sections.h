@@ -35,6 +35,11 @@ WorldSpec read_world(const YamlNode& node, base::DiagnosticSink& sink);
 bool add_imported(YamlNode& root, const base::PathGate& gate, base::SourceFiles& files,
                   base::DiagnosticSink& sink);
 
+/// Puts `hull: [CORNER, ...]` in the place of every `mesh` of a body of `world`: the corners of the
+/// convex hull of what is in its file. False after an error was reported.
+bool add_meshes(YamlNode& root, const base::PathGate& gate, base::SourceFiles& files,
+                base::DiagnosticSink& sink);
+
 /// One family of `regions`, as written.
 struct RegionSection {
   std::string name;  // empty: the only one

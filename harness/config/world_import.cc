@@ -8,6 +8,7 @@
 #include "compiler/base/file_io.h"
 #include "harness/config/sections.h"
 #include "harness/import/import.h"
+#include "harness/import/mesh.h"
 #include "harness/world/structure_check.h"
 
 namespace parallax::harness {
@@ -63,8 +64,13 @@ class MapNode {
   YamlNode node_;
 };
 
-YamlNode shape_node(const BodyShape& shape, const base::SourceRange& range) {
+YamlNode shape_node(const BodyShape& shape, const MeshUse* mesh, const base::SourceRange& range) {
   MapNode out(range);
+  MapNode file(range);
+  if (mesh != nullptr) {
+    file.text(Key::kFile, mesh->file);
+    file.vector(Key::kScale, mesh->scale);
+  }
   const double radius_m = 0.5 * shape.size_m.x(), length_m = shape.size_m.z();
   MapNode round(range);
   round.number(Key::kRadiusM, radius_m);
@@ -83,6 +89,9 @@ YamlNode shape_node(const BodyShape& shape, const base::SourceRange& range) {
       round.number(Key::kLengthM, length_m - 2.0 * radius_m);
       out.put(Key::kCapsule, round.take());
       break;
+    case ShapeForm::kHull:
+      out.put(Key::kMesh, file.take());
+      break;
   }
   out.vector(Key::kAtM, shape.p_BS);
   out.number_unless_zero(Key::kYawRad, shape.yaw_rad);
@@ -91,10 +100,15 @@ YamlNode shape_node(const BodyShape& shape, const base::SourceRange& range) {
   return out.take();
 }
 
-YamlNode body_node(const BodySpec& body, const base::SourceRange& range) {
+YamlNode body_node(const ImportedBody& made, const base::SourceRange& range) {
+  const BodySpec& body = made.spec;
   MapNode out(range);
   auto shapes = node_at(YamlNode::Kind::kList, range);
-  for (const BodyShape& shape : body.shapes) shapes.items.push_back(shape_node(shape, range));
+  for (std::size_t i = 0; i < body.shapes.size(); ++i) {
+    const auto mesh = made.meshes.find(i);
+    shapes.items.push_back(
+        shape_node(body.shapes[i], mesh == made.meshes.end() ? nullptr : &mesh->second, range));
+  }
   out.put(Key::kShapes, std::move(shapes));
   out.number_unless_zero(Key::kMassKg, body.mass_kg);
   if (body.inertia) {
@@ -177,6 +191,9 @@ class WorldImporter {
     if (!loaded) return false;
     file_ = *loaded;
     input_.text = std::string(files_[file_].text());
+    input_.find_mesh = [&](const std::string& uri, const std::string& from) {
+      return mesh_file(uri, from.empty() ? path : std::filesystem::path(from));
+    };
     const ImportedWorld made = is_sdf_ ? import_sdf(input_) : import_urdf(input_);
     for (const std::string& one : made.files) files_.note_input(one);
     if (made.fault) {
@@ -242,11 +259,37 @@ class WorldImporter {
     return range;
   }
 
+  /// A plain way down from a folder of `models`, or from that of the description. Whether it may be
+  /// read is decided when it is.
+  std::optional<std::string> mesh_file(const std::string& uri,
+                                       const std::filesystem::path& description) const {
+    namespace fs = std::filesystem;
+    if (!reads_meshes()) return std::nullopt;
+    std::vector<fs::path> folders = {description.parent_path()};
+    std::string name = uri;
+    for (const std::string_view scheme : {"model://", "package://"}) {
+      if (!uri.starts_with(scheme)) continue;
+      folders = input_.folders;
+      name = uri.substr(scheme.size());
+    }
+    const fs::path way(name);
+    if (name.find(':') != name.npos || way.is_absolute()) return std::nullopt;
+    for (const fs::path& part : way) {
+      if (part.empty() || part.string().front() == '.') return std::nullopt;
+    }
+    if (!is_mesh_format(way)) return std::nullopt;
+    for (const fs::path& folder : folders) {
+      std::error_code error;
+      if (fs::is_regular_file(folder / way, error)) return fs::absolute(folder / way).string();
+    }
+    return std::nullopt;
+  }
+
   void lay_under(const ImportedWorld& made) {
     const auto whole = range_at(0);
     MapNode under(whole), bodies(whole), joints(whole);
     for (const ImportedBody& body : made.bodies) {
-      put_once(bodies, body.spec.name, body_node(body.spec, range_at(body.offset)));
+      put_once(bodies, body.spec.name, body_node(body, range_at(body.offset)));
     }
     for (const ImportedJoint& joint : made.joints) {
       put_once(joints, joint.spec.name, joint_node(joint.spec, range_at(joint.offset)));

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <set>
 #include <string_view>
 #include <variant>
@@ -31,9 +32,26 @@ Eigen::Matrix3d matrix_of(const std::array<double, 4>& q) {
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
 }
 
+/// The middle of the corners need not be the place of the shape.
+Probe hull_probe(const RecordedShape& shape, const Pose& at) {
+  std::vector<Eigen::Vector3d> corners;
+  for (const auto& corner : shape.corners) corners.push_back(vector_of(corner));
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  std::string why;
+  auto hull = hull_with(std::move(corners), shape.faces, middle, why);
+  Probe out{Eigen::Vector3d::Zero(), vector_of(at.p), matrix_of(at.q)};
+  if (!hull) return out;  // of another simulator, and not convex: a point
+  out.p_WS += out.R_WS * middle;
+  out.size_m = hull->size_m;
+  out.form = ShapeForm::kHull;
+  out.hull = std::make_shared<const ConvexHull>(std::move(*hull));
+  return out;
+}
+
 Probe probe_of(const RecordedShape& shape, const Pose& at) {
   Probe out{vector_of(shape.size), vector_of(at.p), matrix_of(at.q)};
   if (shape.kind == ShapeKind::kBox) return out;
+  if (shape.kind == ShapeKind::kHull) return hull_probe(shape, at);
   out.form = shape.kind == ShapeKind::kSphere     ? ShapeForm::kSphere
              : shape.kind == ShapeKind::kCylinder ? ShapeForm::kCylinder
                                                   : ShapeForm::kCapsule;

@@ -64,6 +64,7 @@ std::vector<Eigen::Vector3d> outline_points(const Probe& shape) {
     }
     return points;
   }
+  if (shape.form == ShapeForm::kHull) return shape.hull->vertices;
   if (shape.form == ShapeForm::kCylinder) {
     for (const double z : {-half.z(), half.z()}) add_circle_points(half.x(), z, points);
     return points;

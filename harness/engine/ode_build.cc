@@ -26,11 +26,11 @@ double total_volume_m3(const BodySpec& body) {
 Eigen::Vector3d centre_of_mass_B(const BodySpec& body) {
   if (body.inertia) return body.inertia->p_BC;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const BodyShape& shape : body.shapes) sum += volume_m3(shape) * shape.p_BS;
+  for (const BodyShape& shape : body.shapes) sum += volume_m3(shape) * centroid_B(shape);
   return sum / total_volume_m3(body);
 }
 
-/// About its middle, along its own axes.
+/// About its centre of mass, along its own axes.
 dMass mass_of(const BodyShape& shape, double mass_kg) {
   constexpr int kAlongZ = 3;
   const Eigen::Vector3d& size_m = shape.size_m;
@@ -49,6 +49,12 @@ dMass mass_of(const BodyShape& shape, double mass_kg) {
     case ShapeForm::kCapsule:
       dMassSetCapsuleTotal(&mass, mass_kg, kAlongZ, radius_m, size_m.z() - size_m.x());
       break;
+    case ShapeForm::kHull: {
+      const Eigen::Matrix3d I = mass_kg * shape.hull->moments_m2;
+      dMassSetParameters(&mass, mass_kg, 0.0, 0.0, 0.0, I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2),
+                         I(1, 2));
+      break;
+    }
   }
   return mass;
 }
@@ -73,7 +79,7 @@ dMass mass_in_link(const BodySpec& body, const BodyInLink& place) {
   dMassSetZero(&total);
   for (const BodyShape& shape : body.shapes) {
     dMass part = mass_of(shape, body.mass_kg * volume_m3(shape) / total_volume_m3(body));
-    put(part, place.R_LB * shape_rotation(shape), place.p_LB + place.R_LB * shape.p_BS);
+    put(part, place.R_LB * shape_rotation(shape), place.p_LB + place.R_LB * centroid_B(shape));
     dMassAdd(&total, &part);
   }
   return total;
@@ -86,21 +92,6 @@ void copy_rotation(const Eigen::Matrix3d& R, double (&out)[12]) {
     for (int column = 0; column < 3; ++column) out[4 * row + column] = R(row, column);
     out[4 * row + 3] = 0.0;
   }
-}
-
-dxGeom* create_geom(dxSpace* space, ShapeForm form, const Eigen::Vector3d& size_m) {
-  const double radius_m = 0.5 * size_m.x();
-  switch (form) {
-    case ShapeForm::kBox:
-      break;
-    case ShapeForm::kSphere:
-      return dCreateSphere(space, radius_m);
-    case ShapeForm::kCylinder:
-      return dCreateCylinder(space, radius_m, size_m.z());
-    case ShapeForm::kCapsule:
-      return dCreateCapsule(space, radius_m, size_m.z() - size_m.x());
-  }
-  return dCreateBox(space, size_m.x(), size_m.y(), size_m.z());
 }
 
 OdeBuilder::OdeBuilder(const WorldSpec& spec, OdeWorld::Engine& engine)
@@ -276,8 +267,10 @@ void OdeBuilder::create_shape(const BodyShape& shape, BodyId id, GeomInfo& info)
   const std::optional<LinkId> link = engine_.layout.link_of[id.index()];
   const BodyInLink& place = engine_.in_link[id.index()];
   const Eigen::Vector3d p = place.p_LB + place.R_LB * shape.p_BS;
-  dxGeom* geom = create_geom(link ? engine_.link_spaces[link->index()] : engine_.static_space,
-                             shape.form, shape.size_m);
+  dxGeom* geom =
+      create_geom(engine_, link ? engine_.link_spaces[link->index()] : engine_.static_space,
+                  {shape.form, shape.size_m, shape.hull});
+  info.hull = shape.hull.get();
   dGeomSetData(geom, &info);
   dMatrix3 R;
   const Eigen::Matrix3d R_LS = place.R_LB * shape_rotation(shape);

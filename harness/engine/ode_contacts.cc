@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -13,7 +14,7 @@
 namespace parallax::harness {
 namespace {
 
-constexpr int kMostContacts = 16;
+constexpr int kMostContacts = 16, kMostHullContacts = 256;
 
 bool moves(dBodyID body) { return body != nullptr && dBodyIsEnabled(body) != 0; }
 
@@ -47,14 +48,54 @@ void note_touch(const GeomInfo& self, const GeomInfo& other, std::vector<Touch>&
   }
 }
 
-/// Contact points of a pair, none when both hang together.
+/// Do both hang together, or are they of one word?
+bool are_kept_apart(const GeomInfo& one, const GeomInfo& other) {
+  return (one.assembly != 0 && one.assembly == other.assembly) ||
+         (one.apart != 0 && one.apart == other.apart);
+}
+
+/// Of many points the deepest, then again and again the one that is farthest from those taken: what
+/// has many corners below stands on all sides of them, and not on the first few.
+int spread_out(const std::array<dContactGeom, kMostHullContacts>& found, int count, int limit,
+               std::array<dContact, kMostContacts>& out) {
+  const auto point = [&](int i) {
+    const auto& pos = found[static_cast<std::size_t>(i)].pos;
+    return Eigen::Vector3d(pos[0], pos[1], pos[2]);
+  };
+  std::array<double, kMostHullContacts> away;  // from those taken; below 0: taken
+  away.fill(std::numeric_limits<double>::infinity());
+  int next = 0;
+  for (int i = 1; i < count; ++i) {
+    if (found[static_cast<std::size_t>(i)].depth > found[static_cast<std::size_t>(next)].depth) {
+      next = i;
+    }
+  }
+  int taken = 0;
+  while (taken < std::min(count, limit)) {
+    out[static_cast<std::size_t>(taken++)].geom = found[static_cast<std::size_t>(next)];
+    away[static_cast<std::size_t>(next)] = -1.0;
+    int farthest = 0;
+    for (int i = 0; i < count; ++i) {
+      double& way = away[static_cast<std::size_t>(i)];
+      if (way >= 0.0) way = std::min(way, (point(i) - point(next)).squaredNorm());
+      if (way > away[static_cast<std::size_t>(farthest)]) farthest = i;
+    }
+    next = farthest;
+  }
+  return taken;
+}
+
+/// Contact points of a pair, none when they are kept apart.
 int contact_points(dGeomID a, dGeomID b, std::int64_t limit,
                    std::array<dContact, kMostContacts>& out) {
-  const GeomInfo &one = info_of(a), &other = info_of(b);
-  if (one.assembly != 0 && one.assembly == other.assembly) return 0;
-  if (one.apart != 0 && one.apart == other.apart) return 0;
-  return dCollide(a, b, static_cast<int>(std::min<std::int64_t>(limit, kMostContacts)),
-                  &out[0].geom, sizeof(dContact));
+  if (are_kept_apart(info_of(a), info_of(b))) return 0;
+  const int most = static_cast<int>(std::min<std::int64_t>(limit, kMostContacts));
+  if (info_of(a).hull == nullptr && info_of(b).hull == nullptr) {
+    return dCollide(a, b, most, &out[0].geom, sizeof(dContact));
+  }
+  std::array<dContactGeom, kMostHullContacts> found;
+  const int count = dCollide(a, b, kMostHullContacts, found.data(), sizeof(dContactGeom));
+  return spread_out(found, count, most, out);
 }
 
 void set_stiffness(const SolverSpec& solver, dSurfaceParameters& surface) {
@@ -105,6 +146,40 @@ void add_contacts(void* data, dGeomID a, dGeomID b) {
   note_touch(info_b, info_a, engine.touches);
 }
 
+Eigen::Vector3d in_frame_of(dGeomID geom, const Eigen::Vector3d& p_W) {
+  const dReal *p = dGeomGetPosition(geom), *R = dGeomGetRotation(geom);
+  const Eigen::Vector3d from = p_W - Eigen::Vector3d(p[0], p[1], p[2]);
+  return {R[0] * from.x() + R[4] * from.y() + R[8] * from.z(),
+          R[1] * from.x() + R[5] * from.y() + R[9] * from.z(),
+          R[2] * from.x() + R[6] * from.y() + R[10] * from.z()};
+}
+
+/// A point that the geom is sure to have: its middle, or the corner of a hull.
+Eigen::Vector3d point_in(dGeomID geom, const ConvexHull* hull) {
+  const dReal *p = dGeomGetPosition(geom), *R = dGeomGetRotation(geom);
+  const Eigen::Vector3d v = hull == nullptr ? Eigen::Vector3d::Zero() : hull->vertices.front();
+  return {p[0] + R[0] * v.x() + R[1] * v.y() + R[2] * v.z(),
+          p[1] + R[4] * v.x() + R[5] * v.y() + R[6] * v.z(),
+          p[2] + R[8] * v.x() + R[9] * v.y() + R[10] * v.z()};
+}
+
+/// The mesh of a hull is its surface: what is in it as a whole touches nothing. How deep that is;
+/// 0 where nothing is in the other. Planes and rays have no middle.
+double depth_within(dGeomID a, const ConvexHull* hull_a, dGeomID b, const ConvexHull* hull_b) {
+  const auto has_middle = [](dGeomID geom) {
+    const int kind = dGeomGetClass(geom);
+    return kind != dPlaneClass && kind != dRayClass;
+  };
+  double depth = 0.0;
+  if (hull_a != nullptr && has_middle(b)) {
+    depth = std::max(depth, hull_a->depth_of(in_frame_of(a, point_in(b, hull_b))));
+  }
+  if (hull_b != nullptr && has_middle(a)) {
+    depth = std::max(depth, hull_b->depth_of(in_frame_of(b, point_in(a, hull_a))));
+  }
+  return depth;
+}
+
 struct OverlapSearch {
   OdeWorld::Engine& engine;
   double depth_m = 0.0;
@@ -116,7 +191,12 @@ void search_overlap(void* data, dGeomID a, dGeomID b) {
   if (look_inside(data, a, b, &search_overlap)) return;
   auto& search = *static_cast<OverlapSearch*>(data);
   std::array<dContact, kMostContacts> contacts;
-  const int count = contact_points(a, b, search.engine.solver.max_contacts_per_pair, contacts);
+  if (are_kept_apart(info_of(a), info_of(b))) return;
+  int count = contact_points(a, b, search.engine.solver.max_contacts_per_pair, contacts);
+  if (count == 0) {
+    const double depth_m = depth_within(a, info_of(a).hull, b, info_of(b).hull);
+    if (depth_m > 0.0) contacts[static_cast<std::size_t>(count++)].geom.depth = depth_m;
+  }
   for (int i = 0; i < count; ++i) {
     const double depth_m = contacts[static_cast<std::size_t>(i)].geom.depth;
     if (search.first != nullptr && depth_m <= search.depth_m) continue;
@@ -138,6 +218,7 @@ struct ProbeSearch {
   double best = 0.0;  // depth of an overlap, or distance along a ray
   bool nearest = false;
   const GeomInfo* found = nullptr;
+  const ConvexHull* probe_hull = nullptr;
 };
 
 /// One of the two is the probe, which carries no GeomInfo.
@@ -148,8 +229,13 @@ void visit(void* data, dGeomID a, dGeomID b) {
   const GeomInfo& info = info_of(other);
   if (info.body ? search.ignored[info.body->index()] : !search.floor_counts) return;
   std::array<dContactGeom, 8> contacts;
-  const int count =
+  int count =
       dCollide(a, b, static_cast<int>(contacts.size()), contacts.data(), sizeof(dContactGeom));
+  if (count == 0 && !search.nearest) {
+    const dGeomID probe = other == a ? b : a;
+    const double depth = depth_within(other, info.hull, probe, search.probe_hull);
+    if (depth > 0.0) contacts[static_cast<std::size_t>(count++)].depth = depth;
+  }
   for (int i = 0; i < count; ++i) {
     const double depth = contacts[static_cast<std::size_t>(i)].depth;
     const bool better =
@@ -182,7 +268,8 @@ void visit_ray(OdeWorld::Engine& engine, const Eigen::Vector3d& from_W, const Ei
 }
 
 void visit_probe(OdeWorld::Engine& engine, const Probe& probe, ProbeSearch& search) {
-  const dGeomID geom = create_geom(nullptr, probe.form, probe.size_m);
+  const dGeomID geom = create_geom(engine, nullptr, {probe.form, probe.size_m, probe.hull});
+  search.probe_hull = probe.hull.get();
   dMatrix3 R;
   copy_rotation(probe.R_WS, R);
   dGeomSetPosition(geom, probe.p_WS.x(), probe.p_WS.y(), probe.p_WS.z());

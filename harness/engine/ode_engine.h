@@ -15,6 +15,7 @@ struct dxBody;
 struct dxJoint;
 struct dxJointGroup;
 struct dxGeom;
+struct dxTriMeshData;
 struct dxThreadingImplementation;
 
 namespace parallax::harness {
@@ -30,6 +31,7 @@ struct GeomInfo {
   std::uint32_t material = 0;
   ContactRole role = ContactRole::kWorld;
   std::uint32_t gripper = 0;  // of a pad
+  const ConvexHull* hull = nullptr;
 };
 
 /// A gantry: linear motors along the parent's axes, angular ones about the world's.
@@ -101,6 +103,8 @@ struct OdeWorld::Engine {
   std::uint64_t digest = 0;
   bool measure_times = false;
   StepStatistics statistics;
+  /// What the engine makes of hulls, once for each of them. Held here as long as geoms name them.
+  std::vector<std::pair<std::shared_ptr<const ConvexHull>, dxTriMeshData*>> meshes;
 };
 
 /// Its body's name, or "floor".
@@ -109,8 +113,17 @@ std::string name_of(const OdeWorld::Engine& engine, const GeomInfo& info);
 /// A rotation as the engine wants it: four numbers a row.
 void copy_rotation(const Eigen::Matrix3d& R, double (&out)[12]);
 
+/// What a geom is made of.
+struct GeomForm {
+  ShapeForm form = ShapeForm::kBox;
+  const Eigen::Vector3d& size_m;
+  const std::shared_ptr<const ConvexHull>& hull;
+};
+
 /// A geom of this form and size; `space` may be null.
-dxGeom* create_geom(dxSpace* space, ShapeForm form, const Eigen::Vector3d& size_m);
+dxGeom* create_geom(OdeWorld::Engine& engine, dxSpace* space, const GeomForm& form);
+/// Of all hulls; no geom names them any more.
+void destroy_meshes(OdeWorld::Engine& engine);
 
 /// Creates everything from the layout, in its order. One use per engine.
 class OdeBuilder {

@@ -139,6 +139,7 @@ OdeWorld::~OdeWorld() {
   dJointGroupDestroy(engine_->contact_group);
   dSpaceDestroy(engine_->movable_space);
   dSpaceDestroy(engine_->static_space);
+  destroy_meshes(*engine_);
   dWorldDestroy(engine_->world);
   dThreadingFreeImplementation(engine_->threading);  // only after the world that uses it
 }

@@ -16,14 +16,16 @@ std::unique_ptr<PhysicsWorld> make_world(const WorldSpec& spec) {
 Probe PhysicsWorld::placed(BodyId id, const BodyShape& shape) const {
   const Eigen::Matrix3d R_WB = rotation(id);
   const Eigen::Vector3d p_WS = position(id) + R_WB * shape.p_BS;
-  if (!is_upright_box(shape)) return {shape.size_m, p_WS, R_WB * shape_rotation(shape), shape.form};
+  if (!is_upright_box(shape)) {
+    return {shape.size_m, p_WS, R_WB * shape_rotation(shape), shape.form, shape.hull};
+  }
   return {shape.size_m, p_WS, R_WB * Eigen::AngleAxisd(shape.yaw_rad, Eigen::Vector3d::UnitZ())};
 }
 
 Bounds PhysicsWorld::bounds(BodyId id, const BodyShape& shape) const {
   const Probe box = placed(id, shape);
-  const Eigen::Vector3d half = half_extents(box.form, box.size_m, box.R_WS);
-  return Bounds{box.p_WS - half, box.p_WS + half};
+  const auto [low, high] = span(box.form, box.size_m, box.hull.get(), box.R_WS);
+  return Bounds{box.p_WS + low, box.p_WS + high};
 }
 
 Bounds PhysicsWorld::bounds(BodyId id) const {

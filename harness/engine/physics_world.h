@@ -26,6 +26,7 @@ struct Probe {
   Eigen::Vector3d p_WS = Eigen::Vector3d::Zero();
   Eigen::Matrix3d R_WS = Eigen::Matrix3d::Identity();
   ShapeForm form = ShapeForm::kBox;
+  std::shared_ptr<const ConvexHull> hull = {};  // of kHull
 };
 
 struct RayHit {

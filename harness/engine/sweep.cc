@@ -59,6 +59,10 @@ Sweep::Sweep(const PhysicsWorld& world, const BodyMask& bodies, const BodyMask& 
     if (!layout.bodies[id].collides) continue;
     for (const BodyShape& shape : layout.bodies[id].shapes) {
       Probe box = world.placed(id, shape);
+      if (!room.isZero(0.0) && box.form == ShapeForm::kHull) {
+        box.form = ShapeForm::kBox;  // room all round is asked of the box round it
+        box.hull = nullptr;
+      }
       box.size_m += room;
       parts_.push_back({layout.bodies[id].name, box});
     }
@@ -71,7 +75,8 @@ std::optional<Obstacle> Sweep::at(const Eigen::Vector3d& offset, const Eigen::Ve
       Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   for (const Part& part : parts_) {
     const Eigen::Vector3d p = axis_W + turn * (part.probe.p_WS + offset - axis_W);
-    const Probe moved{part.probe.size_m, p, turn * part.probe.R_WS, part.probe.form};
+    const Probe moved{part.probe.size_m, p, turn * part.probe.R_WS, part.probe.form,
+                      part.probe.hull};
     if (const auto hit = world_.find_obstacle(moved, ignored_, tolerance_m_)) {
       return Obstacle{part.name, hit->first, 0.0};
     }
@@ -87,8 +92,8 @@ std::optional<double> Sweep::clearance_of(const Obstacle& hit, const Eigen::Vect
   double most = 0.0;
   for (const Part& part : parts_) {
     if (part.name != hit.part) continue;
-    const Probe moved{part.probe.size_m, part.probe.p_WS + offset, part.probe.R_WS,
-                      part.probe.form};
+    const Probe moved{part.probe.size_m, part.probe.p_WS + offset, part.probe.R_WS, part.probe.form,
+                      part.probe.hull};
     const Extent begin = extent_along(moved, ahead);
     for (const BodyShape& shape : world_.layout().bodies[*id].shapes) {
       const Probe box = world_.placed(*id, shape);

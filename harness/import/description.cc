@@ -104,6 +104,7 @@ class Assembler {
         Eigen::AngleAxisd(-body.yaw_rad, Eigen::Vector3d::UnitZ()) * link.X_WL.linear();
     double rough = -1.0;
     for (const LinkShape& shape : link.shapes) {
+      if (shape.mesh) out.meshes.emplace(body.shapes.size(), *shape.mesh);
       BodyShape one;
       one.form = shape.form;
       one.size_m = shape.size_m;
@@ -223,6 +224,16 @@ void LeftOutList::add(const std::string& what, const std::string& name, std::siz
   } else {
     kinds_.push_back({what, 1, name, offset});
   }
+}
+
+void add_mesh(const ImportInput& input, const std::string& uri, const std::string& from,
+              const Eigen::Vector3d& scale, LinkShape shape, LinkDescription& link,
+              LeftOutList& left_out) {
+  const auto file = input.find_mesh ? input.find_mesh(uri, from) : std::nullopt;
+  if (!file) return left_out.add("meshes that are not to be had", link.name, link.offset);
+  shape.form = ShapeForm::kHull;
+  shape.mesh = MeshUse{*file, scale};
+  link.shapes.push_back(std::move(shape));
 }
 
 void assemble(Description description, ImportedWorld& world) {

@@ -18,6 +18,7 @@ struct LinkShape {
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
   Eigen::Isometry3d X_LS = Eigen::Isometry3d::Identity();
   std::optional<double> friction;
+  std::optional<MeshUse> mesh = {};  // then form and size say nothing
 };
 
 struct LinkDescription {
@@ -61,6 +62,11 @@ struct Description {
   bool has_floor = false;
   LeftOutList left_out;
 };
+
+/// Adds the shape of a mesh, or says that it is left out.
+void add_mesh(const ImportInput& input, const std::string& uri, const std::string& from,
+              const Eigen::Vector3d& scale, LinkShape shape, LinkDescription& link,
+              LeftOutList& left_out);
 
 /// Bodies and joints in our own vocabulary: links without mass become part of what they are fixed
 /// to, body frames stand upright at the default placement, and friction goes by materials.

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,12 +21,23 @@ struct ImportInput {
   Eigen::Vector3d p_WI = Eigen::Vector3d::Zero();  // where its origin is put [m]
   double yaw_rad = 0.0;
   bool fixed = false;  // a robot's root to the world
+  /// The file of a mesh that is named so in the description at `from` (empty: in `text`); none
+  /// where it is not to be had.
+  std::function<std::optional<std::string>(const std::string& uri, const std::string& from)>
+      find_mesh = {};
+};
+
+/// A mesh in the place of a shape, whose pose is that of the mesh.
+struct MeshUse {
+  std::string file;
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
 };
 
 /// Places are offsets in ImportInput::text.
 struct ImportedBody {
   BodySpec spec;
   std::size_t offset = 0;
+  std::map<std::size_t, MeshUse> meshes = {};  // by the number of the shape
 };
 struct ImportedJoint {
   JointSpec spec;

@@ -331,8 +331,10 @@ class SdfReader {
       set_round(shape, ShapeForm::kCapsule, capsule->Radius(), capsule->Length());
     } else if (const auto* plane = geometry.PlaneShape()) {
       return read_plane(vector_of(plane->Normal()), shape, link);
-    } else if (geometry.MeshShape() != nullptr) {
-      return leave("meshes (collisions)", link.name, link.offset);
+    } else if (const auto* mesh = geometry.MeshShape()) {
+      if (!mesh->Submesh().empty()) return leave("parts of meshes", link.name, link.offset);
+      return add_mesh(input_, mesh->Uri(), mesh->FilePath(), vector_of(mesh->Scale()),
+                      std::move(shape), link, out_.left_out);
     } else {
       return leave("collisions of other forms", link.name, link.offset);
     }

@@ -156,9 +156,11 @@ class UrdfReader {
       shape.form = ShapeForm::kCylinder;
       const double across_m = 2.0 * cylinder->radius;
       shape.size_m = Eigen::Vector3d(across_m, across_m, cylinder->length);
+    } else if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(geometry)) {
+      const Eigen::Vector3d scale(mesh->scale.x, mesh->scale.y, mesh->scale.z);
+      return add_mesh(input_, mesh->filename, {}, scale, std::move(shape), link, out_.left_out);
     } else {
-      out_.left_out.add("meshes (collisions)", link.name, link.offset);
-      return;
+      return out_.left_out.add("collisions of other forms", link.name, link.offset);
     }
     link.shapes.push_back(shape);
   }

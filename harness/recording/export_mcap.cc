@@ -63,6 +63,11 @@ std::string scene_schema() {
   auto cylinder = solid;
   cylinder["properties"]["bottom_scale"] = plain_schema("number");
   cylinder["properties"]["top_scale"] = plain_schema("number");
+  const auto triangles = object_schema({{"pose", pose_schema()},
+                                        {"points", list_schema(numbers_schema({"x", "y", "z"}))},
+                                        {"color", colour},
+                                        {"colors", list_schema(colour)},
+                                        {"indices", list_schema(plain_schema("integer"))}});
   const auto anything = list_schema(plain_schema("object"));
   const auto entity = object_schema({{"timestamp", time_schema("time")},
                                      {"frame_id", plain_schema("string")},
@@ -75,7 +80,7 @@ std::string scene_schema() {
                                      {"spheres", list_schema(solid)},
                                      {"cylinders", list_schema(cylinder)},
                                      {"lines", anything},
-                                     {"triangles", anything},
+                                     {"triangles", list_schema(triangles)},
                                      {"texts", anything},
                                      {"models", anything}});
   const auto deletion = object_schema({{"timestamp", time_schema("time")},
@@ -161,6 +166,21 @@ void add_shape(const RecordedShape& shape, const OrderedMcapJson& colour, Ordere
         entity["spheres"].push_back(solid(cap, width, width, width));
       }
       break;
+    case ShapeKind::kHull: {
+      auto points = OrderedMcapJson::array(), indices = OrderedMcapJson::array();
+      for (const auto& corner : shape.corners) points.push_back(point_json(corner));
+      for (const auto& face : shape.faces) {
+        for (const auto corner : face) indices.push_back(corner);
+      }
+      entity["triangles"].push_back(
+          {{"pose",
+            {{"position", point_json(shape.pose.p)}, {"orientation", turn_json(shape.pose.q)}}},
+           {"points", std::move(points)},
+           {"color", colour},
+           {"colors", OrderedMcapJson::array()},
+           {"indices", std::move(indices)}});
+      return;
+    }
     case ShapeKind::kCylinder:
       break;
   }

@@ -11,7 +11,7 @@
 namespace parallax::harness {
 
 /// Cylinders and capsules stand along the z axis of their pose.
-enum class ShapeKind : std::uint8_t { kBox, kSphere, kCylinder, kCapsule };
+enum class ShapeKind : std::uint8_t { kBox, kSphere, kCylinder, kCapsule, kHull };
 
 struct RecordedShape {
   ShapeKind kind = ShapeKind::kBox;
@@ -19,6 +19,9 @@ struct RecordedShape {
   /// capsule not counted. What is left is 0 [m].
   std::array<double, 3> size = {0.0, 0.0, 0.0};
   Pose pose;  // in the body
+  /// Of a hull: its corners, in the frame of the pose, and which of them each face has.
+  std::vector<std::array<double, 3>> corners = {};
+  std::vector<std::array<std::uint32_t, 3>> faces = {};
   friend bool operator==(const RecordedShape&, const RecordedShape&) = default;
 };
 

@@ -14,6 +14,8 @@ using SceneJson = nlohmann::json;
 using OrderedSceneJson = nlohmann::ordered_json;
 
 constexpr std::size_t kMostBodies = 10'000, kMostShapes = 100'000, kMostGrippers = 64;
+constexpr std::size_t kMostCorners = 256, kMostFaces = 512;
+constexpr const char* kHull = "hull";
 constexpr std::array<std::pair<ShapeKind, const char*>, 4> kShapes = {
     {{ShapeKind::kBox, "box"},
      {ShapeKind::kSphere, "sphere"},
@@ -46,6 +48,10 @@ OrderedSceneJson shape_json(const RecordedShape& shape) {
     if (kind != shape.kind) continue;
     auto& size = out[name] = OrderedSceneJson::array();
     for (std::size_t i = 0; i < size_count(kind); ++i) size.push_back(shape.size[i]);
+  }
+  if (shape.kind == ShapeKind::kHull) {
+    out[kHull] = shape.corners;
+    out["faces"] = shape.faces;
   }
   if (shape.pose != Pose()) out["pose"] = pose_json(shape.pose);
   return out;
@@ -206,8 +212,15 @@ class SceneReader {
           shape.kind = kind;
         }
       }
+      if (const auto* hull = base::json_member(item, kHull); size == nullptr && hull != nullptr) {
+        read_hull(item, *hull, what, shape);
+        shape.pose = pose(base::json_member(item, "pose"), "a shape of " + what);
+        if (!why_.empty()) return;
+        body.shapes.push_back(std::move(shape));
+        continue;
+      }
       if (size == nullptr) {
-        return fail("a shape of " + what + " is neither box, sphere, cylinder nor capsule");
+        return fail("a shape of " + what + " is neither box, sphere, cylinder, capsule nor hull");
       }
       const auto count = size_count(shape.kind);
       const auto all = numbers(*size, count, count, "the size of a shape of " + what);
@@ -218,6 +231,33 @@ class SceneReader {
       shape.pose = pose(base::json_member(item, "pose"), "a shape of " + what);
       if (!why_.empty()) return;
       body.shapes.push_back(shape);
+    }
+  }
+
+  void read_hull(const SceneJson& json, const SceneJson& corners, const std::string& what,
+                 RecordedShape& shape) {
+    const auto* faces = base::json_member(json, "faces");
+    if (faces == nullptr || !faces->is_array() || faces->empty() || faces->size() > kMostFaces ||
+        !corners.is_array() || corners.size() < 4 || corners.size() > kMostCorners) {
+      return fail("a hull of " + what + " has not 4 to 256 corners and up to 512 `faces`");
+    }
+    shape.kind = ShapeKind::kHull;
+    for (const auto& item : corners) {
+      const auto corner = numbers(item, 3, 3, "a corner of " + what);
+      if (!why_.empty()) return;
+      shape.corners.push_back({corner[0], corner[1], corner[2]});
+    }
+    for (const auto& item : *faces) {
+      if (!item.is_array() || item.size() != 3)
+        return fail("a face of " + what + " is no triangle");
+      auto& face = shape.faces.emplace_back();
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto corner = base::json_as<std::int64_t>(item[i]);
+        if (!corner || *corner < 0 || *corner >= static_cast<std::int64_t>(corners.size())) {
+          return fail("a face of " + what + " has no such corner");
+        }
+        face[i] = static_cast<std::uint32_t>(*corner);
+      }
     }
   }
 

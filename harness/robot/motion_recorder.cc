@@ -40,6 +40,11 @@ RecordedShape recorded_shape(const BodyShape& shape) {
     case ShapeForm::kCapsule:
       out = {ShapeKind::kCapsule, {radius_m, length_m - 2.0 * radius_m, 0.0}, {}};
       break;
+    case ShapeForm::kHull:
+      out.kind = ShapeKind::kHull;
+      for (const auto& corner : shape.hull->vertices) out.corners.push_back(listed(corner));
+      out.faces = shape.hull->faces;
+      break;
   }
   const bool upright = shape.roll_rad == 0.0 && shape.pitch_rad == 0.0;
   out.pose = {listed(shape.p_BS),

@@ -18,8 +18,8 @@ Bounds own_bounds(const BodySpec& body) {
   Bounds all;
   bool first = true;
   for (const BodyShape& shape : body.shapes) {
-    const Eigen::Vector3d half = half_extents(shape.form, shape.size_m, shape_rotation(shape));
-    const Eigen::Vector3d low = shape.p_BS - half, high = shape.p_BS + half;
+    const auto [from, to] = span(shape.form, shape.size_m, shape.hull.get(), shape_rotation(shape));
+    const Eigen::Vector3d low = shape.p_BS + from, high = shape.p_BS + to;
     all.low = first ? low : Eigen::Vector3d(all.low.cwiseMin(low));
     all.high = first ? high : Eigen::Vector3d(all.high.cwiseMax(high));
     first = false;

@@ -41,8 +41,22 @@ double volume_m3(const BodyShape& shape) {
       return disc_m2 * shape.size_m.z();
     case ShapeForm::kCapsule:
       return disc_m2 * (straight_m(shape.size_m) + radius_m * 4.0 / 3.0);
+    case ShapeForm::kHull:
+      return shape.hull->volume_m3;
   }
   return shape.size_m.prod();
+}
+
+Eigen::Vector3d centroid_B(const BodyShape& shape) {
+  if (shape.form != ShapeForm::kHull) return shape.p_BS;
+  return shape.p_BS + shape_rotation(shape) * shape.hull->centroid;
+}
+
+std::pair<Eigen::Vector3d, Eigen::Vector3d> span(ShapeForm form, const Eigen::Vector3d& size_m,
+                                                 const ConvexHull* hull, const Eigen::Matrix3d& R) {
+  if (form == ShapeForm::kHull) return hull->span(R);
+  const Eigen::Vector3d half = half_extents(form, size_m, R);
+  return {-half, half};
 }
 
 Eigen::Vector3d half_extents(ShapeForm form, const Eigen::Vector3d& size_m,
@@ -51,6 +65,7 @@ Eigen::Vector3d half_extents(ShapeForm form, const Eigen::Vector3d& size_m,
   const Eigen::Vector3d along = R.col(2).cwiseAbs();
   switch (form) {
     case ShapeForm::kBox:
+    case ShapeForm::kHull:
       break;
     case ShapeForm::kSphere:
       return Eigen::Vector3d::Constant(radius_m);
@@ -76,6 +91,8 @@ bool contains(const BodyShape& shape, const Eigen::Vector3d& p_B) {
       return p_S.norm() <= radius_m;
     case ShapeForm::kCylinder:
       return p_S.head<2>().norm() <= radius_m;
+    case ShapeForm::kHull:
+      return shape.hull->depth_of(p_S) >= 0.0;
     case ShapeForm::kCapsule:
       break;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 
 #include "harness/world/world_spec.h"
 
@@ -11,7 +12,16 @@ Eigen::Matrix3d shape_rotation(const BodyShape& shape);
 
 double volume_m3(const BodyShape& shape);
 
-/// Half of the sides of the axis-aligned box round something of this form and size that R turns.
+/// Where the centre of mass of an evenly filled shape is in the frame of the body [m].
+Eigen::Vector3d centroid_B(const BodyShape& shape);
+
+/// Lowest and highest coordinates, from the shape's place on, of something that R turns. `hull` is
+/// null but for hulls.
+std::pair<Eigen::Vector3d, Eigen::Vector3d> span(ShapeForm form, const Eigen::Vector3d& size_m,
+                                                 const ConvexHull* hull, const Eigen::Matrix3d& R);
+
+/// Half of the sides of the axis-aligned box round something of this form and size that R turns;
+/// of a hull, round its box.
 Eigen::Vector3d half_extents(ShapeForm form, const Eigen::Vector3d& size_m,
                              const Eigen::Matrix3d& R);
 

@@ -124,6 +124,9 @@ class StructureChecker {
       if (!(shape.size_m.array() > 0.0).all() || !shape.size_m.allFinite()) {
         add(path + "/shapes", "a size is not positive");
       }
+      if ((shape.form == ShapeForm::kHull) != (shape.hull != nullptr)) {
+        add(path + "/shapes", "a hull has no corners, or something else has");
+      }
       if (!shape.p_BS.allFinite()) add(path + "/shapes", "a position is not a number");
       const double turns = shape.yaw_rad + shape.pitch_rad + shape.roll_rad;
       if (!std::isfinite(turns)) add(path + "/shapes", "an angle is not a number");

@@ -152,8 +152,9 @@ double lowest_point_m(const BodySpec& body) {
   double lowest_m = 0.0;
   bool first = true;
   for (const BodyShape& shape : body.shapes) {
-    const double low_m =
-        shape.p_BS.z() - half_extents(shape.form, shape.size_m, shape_rotation(shape)).z();
+    const auto [low, high] =
+        span(shape.form, shape.size_m, shape.hull.get(), shape_rotation(shape));
+    const double low_m = shape.p_BS.z() + low.z();
     if (first || low_m < lowest_m) lowest_m = low_m;
     first = false;
   }

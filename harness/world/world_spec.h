@@ -4,25 +4,30 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "harness/world/convex_hull.h"
+
 namespace parallax::harness {
 
 /// What fills the box of a shape. Cylinders and capsules stand along the shape's z axis; the caps
 /// of a capsule lie inside its box.
-enum class ShapeForm : std::uint8_t { kBox, kSphere, kCylinder, kCapsule };
+enum class ShapeForm : std::uint8_t { kBox, kSphere, kCylinder, kCapsule, kHull };
 
 /// One shape of a body, turned in the body's frame B about x, then y, then z.
 struct BodyShape {
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();  // of the box round it
   Eigen::Vector3d p_BS = Eigen::Vector3d::Zero();    // centre of the shape in B [m]
   double yaw_rad = 0.0;
-  ShapeForm form = ShapeForm::kBox;  // but for boxes, size_m.x() and .y() are the diameter
+  ShapeForm form = ShapeForm::kBox;  // of what is round, size_m.x() and .y() are the diameter
   double roll_rad = 0.0, pitch_rad = 0.0;
+  /// Of kHull. Shared, as it never changes and shapes are copied with every probe of a sweep.
+  std::shared_ptr<const ConvexHull> hull = {};
 };
 
 /// How the mass of a body is spread, where that does not follow from its shapes.

@@ -78,6 +78,7 @@ Diagnosis diagnose(const std::atomic<bool>& stop) {
   checks.push_back(has_folder ? try_simulator(runner) : untried("simulator"));
   checks.push_back(try_sdf());
   checks.push_back(try_urdf());
+  checks.push_back(try_meshes());
   checks.push_back(try_git(runner));
   checks.push_back(try_python(runner));
   return diagnosis;

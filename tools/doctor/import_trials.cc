@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "harness/import/import.h"
+#include "harness/import/mesh.h"
 #include "tools/doctor/trials.h"
 
 namespace parallax::tools {
@@ -52,6 +53,24 @@ CheckUp try_urdf() {
   harness::ImportInput input;
   input.text = kUrdf;
   return judged(std::move(check), harness::import_urdf(input));
+}
+
+CheckUp try_meshes() {
+  CheckUp check{.name = "meshes", .package = "libassimp-dev and libqhull-dev", .is_needed = false};
+  if (!harness::reads_meshes()) return missing(std::move(check));
+  const std::string kWedge =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  const auto made = harness::mesh_corners(kWedge, "obj", Eigen::Vector3d::Ones());
+  const auto hull = made.fault ? harness::MadeHull{} : harness::hull_of(made.corners);
+  if (hull.hull != nullptr && hull.hull->vertices.size() == 4) {
+    check.health = Health::kWorks;
+    check.found = "made the hull of a wedge";
+    return check;
+  }
+  check.health = Health::kBroken;
+  check.found = "a wedge: " + made.fault.value_or(hull.fault.value_or("became something else"));
+  check.remedy = fmt::format("install {} again", check.package);
+  return check;
 }
 
 }  // namespace parallax::tools

@@ -34,6 +34,8 @@ CheckUp try_solver(const TrialRunner& runner);
 CheckUp try_simulator(const TrialRunner& runner);
 CheckUp try_sdf();
 CheckUp try_urdf();
+/// Also that a hull can be made.
+CheckUp try_meshes();
 CheckUp try_git(const TrialRunner& runner);
 CheckUp try_python(const TrialRunner& runner);
 

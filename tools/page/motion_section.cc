@@ -52,6 +52,9 @@ Json scene_json(const harness::RecordedScene& scene) {
       shapes.push_back({{"kind", static_cast<int>(shape.kind)},
                         {"size", shape.size},
                         {"pose", pose_json(shape.pose)}});
+      if (shape.kind != harness::ShapeKind::kHull) continue;
+      shapes.back()["corners"] = shape.corners;
+      shapes.back()["faces"] = shape.faces;
     }
     Json out = {{"name", word(body.name)},
                 {"kind", static_cast<int>(body.kind)},

@@ -138,7 +138,14 @@ TEST_CASE("recording: heads that lie, with a checksum that is right") {
   CHECK(with("/bodies/0/colour", "red").ends_with("the colour of `table` is not #rrggbb"));
   CHECK(with("/bodies/0/shapes/0/box", {1, 2, -3}).ends_with("shape of `table` is negative"));
   CHECK(with("/bodies/0/shapes/0", {{"mesh", "x.stl"}})
-            .ends_with("is neither box, sphere, cylinder nor capsule"));
+            .ends_with("is neither box, sphere, cylinder, capsule nor hull"));
+  CHECK(with("/bodies/0/shapes/4/faces", {{0, 1, 4}}).ends_with("`table` has no such corner"));
+  CHECK(with("/bodies/0/shapes/4/faces", {{0, 1}}).ends_with("of `table` is no triangle"));
+  CHECK(with("/bodies/0/shapes/4/faces", {{0, 1, -1}}).ends_with("`table` has no such corner"));
+  CHECK(with("/bodies/0/shapes/4/faces", 3).ends_with("corners and up to 512 `faces`"));
+  CHECK(with("/bodies/0/shapes/4/hull", {{0, 0, 0}}).ends_with("corners and up to 512 `faces`"));
+  CHECK(with("/bodies/0/shapes/4/hull/2", {0, 0}).ends_with("is no list of 3 numbers"));
+  CHECK(with("/bodies/0/shapes/4/hull/2", {0, 0, 1e9}).ends_with("has what is no number"));
   CHECK(with("/arms/0/to", 99).ends_with("`to` of the arm `left` is not the number of a body"));
   // Fewer bodies than the frames speak of.
   auto fewer = good;

@@ -52,7 +52,12 @@ inline Recording sample_recording() {
   table.shapes = {{ShapeKind::kBox, {0.1, 0.2, 0.3}, Pose{{0, 0, 0.5}, {0, 1, 0, 0}}},
                   {ShapeKind::kSphere, {0.1, 0, 0}, {}},
                   {ShapeKind::kCylinder, {0.1, 0.4, 0}, {}},
-                  {ShapeKind::kCapsule, {0.1, 0.4, 0}, {}}};
+                  {ShapeKind::kCapsule, {0.1, 0.4, 0}, {}},
+                  {ShapeKind::kHull,
+                   {},
+                   Pose{{0, 0, 1}},
+                   {{0, 0, 0}, {0.1, 0, 0}, {0, 0.2, 0}, {0, 0, 0.3}},
+                   {{{0, 2, 1}}, {{0, 1, 3}}, {{0, 3, 2}}, {{1, 2, 3}}}}};
   const RecordedBody base{"base", BodyKind::kRobot, "", {}, true, {}, {}};
   const RecordedBody pad{"pad", BodyKind::kGripper, "", {}, true, 1, Pose{{0.5, 0, 0}}};
   const RecordedBody cup{"c\"u\xC3\xBCp", BodyKind::kItem, "", {}, true, {}, {}};

@@ -92,7 +92,19 @@ addEventListener("load", () => setTimeout(() => {
     return object;
   };
 
-  const geometriesOf = ({ kind, size: [a, b, c] }) => {
+  /// Triangles with corners of their own, so that each face has one shade.
+  const hullOf = ({ corners, faces }) => {
+    const places = [];
+    for (const face of faces) for (const corner of face) places.push(...corners[corner]);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(places), 3));
+    geometry.computeVertexNormals();
+    return geometry;
+  };
+
+  const geometriesOf = (shape) => {
+    const { kind, size: [a, b, c] } = shape;
+    if (kind === 4) return [[hullOf(shape), 0]];
     if (kind === 0) return [[new THREE.BoxBufferGeometry(a, b, c), 0]];
     if (kind === 1) return [[new THREE.SphereBufferGeometry(a, 24, 16), 0]];
     const tube = new THREE.CylinderBufferGeometry(a, a, b, 28);
@@ -115,7 +127,7 @@ addEventListener("load", () => setTimeout(() => {
         const mesh = new THREE.Mesh(geometry, fill);
         mesh.position.z = z;
         part.add(mesh);
-        if (shape.kind === 0) part.add(new THREE.LineSegments(new THREE.EdgesGeometry(geometry), line));
+        if (shape.kind === 0 || shape.kind === 4) part.add(new THREE.LineSegments(new THREE.EdgesGeometry(geometry), line));
       }
       group.add(part);
     }
